@@ -1,0 +1,54 @@
+// What `show` says of a campaign: a plain struct, so that the terminal table, the JSON and reports agree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "master/search/search_algorithm.h"
+#include "master/store/result_store.h"
+
+namespace gauntlet::master {
+
+struct PopulationMember {
+  IndividualId id = 0;
+  std::vector<IndividualId> parents;
+  std::uint32_t birth_generation = 0;
+  double fitness = 0.0;
+  sim::Genome genome;
+  std::vector<RunId> runs;  // of this individual, in logical order
+};
+
+struct GenerationSummary {
+  std::uint32_t generation = 0;
+  std::uint64_t runs = 0;
+  double best = 0.0;  // over the runs of the generation
+  double mean = 0.0;
+  double worst = 0.0;
+  std::uint64_t total_failures = 0;
+};
+
+struct CampaignSummary {
+  std::string experiment;
+  std::string search;  // "genetic", "random", "cases"
+  std::uint64_t seed = 0;
+  SearchProgress progress;
+  std::uint64_t runs_done = 0;    // stored
+  std::uint64_t runs_failed = 0;  // verdict other than completed
+  std::uint64_t distinct_individuals = 0;
+  double best_fitness = 0.0;  // of the population; lower = tougher
+  double mean_fitness = 0.0;
+  double worst_fitness = 0.0;
+  std::uint64_t total_failures = 0;
+  std::array<std::uint64_t, 20> failure_types{};           // total failures per type
+  std::uint64_t unclassified_failures = 0;                 // total failures without a split event
+  std::vector<std::pair<std::string, double>> statistics;  // of the search itself
+  std::vector<GenerationSummary> generations;
+  std::vector<PopulationMember> population;
+  std::string state_hash;
+  bool nondeterministic = false;  // two results of one spec differed
+  bool finished = false;
+};
+
+}  // namespace gauntlet::master

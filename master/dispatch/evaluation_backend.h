@@ -1,0 +1,52 @@
+// Runs go in, finished runs come out; where and how often they are simulated is the backend's business.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/base/result.h"
+#include "sim/run_result.h"
+#include "sim/run_spec.h"
+
+namespace gauntlet::master {
+
+using RunId = std::uint64_t;  // 1, 2, 3, ... in logical order within a campaign
+
+struct RunRequest {
+  RunId id = 0;
+  std::string spec;  // serialized gauntlet.v1.RunSpec (master/dispatch/run_codec.h)
+};
+
+struct FinishedRun {
+  RunId id = 0;
+  sim::RunResult result;
+  std::string worker;         // instance id and host, for the log
+  std::uint32_t attempt = 1;  // how many leases it took
+};
+
+struct WorkerStatistics {
+  int connected = 0;
+  int busy = 0;
+  int lost = 0;                // since the start
+  std::uint64_t releases = 0;  // runs leased again because their worker was lost
+  std::uint64_t duplicates = 0;
+  std::uint64_t rejected_messages = 0;
+};
+
+class EvaluationBackend {
+ public:
+  virtual ~EvaluationBackend() = default;
+  virtual void Submit(std::vector<RunRequest> runs) = 0;
+  // Waits up to `timeout` for something to happen; returns what has finished since the last call. Error: no
+  // worker can be had.
+  virtual Result<std::vector<FinishedRun>> Poll(std::chrono::milliseconds timeout) = 0;
+  // These runs are stored durably: workers may forget them.
+  virtual void Acknowledge(const std::vector<RunId>& runs) = 0;
+  // Lets workers go; returns when they are gone or the deadline has passed.
+  virtual void Shutdown(std::chrono::milliseconds deadline) = 0;
+  virtual WorkerStatistics Statistics() const = 0;
+};
+
+}  // namespace gauntlet::master

@@ -1,0 +1,67 @@
+// An experiment: everything a campaign depends on but the machine. Read from TOML, changed by --set, written
+// back resolved.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "sim/run_spec.h"
+
+namespace gauntlet::master {
+
+// Ranges that generated genes are drawn from (spec 1.1).
+struct GenomeSpec {
+  int genes = 8;               // obstacles per test case (thesis Table 4.1)
+  double position_min = -3.0;  // m, centre x and y
+  double position_max = 3.0;   // m
+  double length_min = 0.4;     // m
+  double length_max = 2.0;     // m
+  double width_min = 0.1;      // m
+  double width_max = 0.4;      // m
+  double step = 0.1;  // m, grid of positions and sizes (the thesis' files carry one decimal); 0 = continuous
+  int tries_per_gene = 500;  // redraws of one gene before the whole case starts anew
+};
+
+enum class SearchKind { kGenetic, kRandom, kCases };
+enum class ParentSelection { kAllParentBestHalf, kTwoBestParentsTwoWorseAway, kTwoRandomParentsTwoWorseAway };
+enum class CrossoverKind { kSinglePoint, kDoublePoint, kUniform };
+// Who is simulated in a generation: everybody with new seeds, or the newborn only. kScheme = as
+// the parent selection's source does it: everybody in the two-parent schemes, children only in
+// AllParent-BestHalf.
+enum class Reevaluation { kScheme, kPopulation, kChildren };
+enum class FitnessAggregation { kMean, kLast };
+
+struct SearchSpec {
+  SearchKind kind = SearchKind::kGenetic;
+  int population = 20;
+  int generations = 50;
+  ParentSelection parent_selection = ParentSelection::kTwoBestParentsTwoWorseAway;
+  CrossoverKind crossover = CrossoverKind::kSinglePoint;
+  double crossover_probability = 0.1;  // per couple
+  double mutation_probability = 0.05;  // per gene; a mutated gene is redrawn
+  Reevaluation reevaluation = Reevaluation::kScheme;
+  FitnessAggregation aggregation = FitnessAggregation::kMean;
+  int replicates = 1;         // runs per evaluation
+  int cases = 1000;           // of random search
+  int variation_tries = 100;  // of an offspring that breaks a validity rule; then it becomes a copy
+};
+
+struct ArenaSpec {
+  double side = 6.0;            // m
+  double wall_thickness = 0.1;  // m
+};
+
+struct Experiment {
+  std::string name;
+  std::string description;
+  std::string scenario;
+  sim::Parameters scenario_parameters;  // resolved
+  std::string controller;
+  sim::Parameters controller_parameters;  // resolved
+  ArenaSpec arena;
+  GenomeSpec genome;
+  SearchSpec search;
+  std::uint64_t seed = 1;
+};
+
+}  // namespace gauntlet::master

@@ -1,0 +1,93 @@
+// Where a campaign's searches, individuals, runs and search states survive. Writes are handed over at once
+// and committed in groups on the store's own thread; a caller learns of the commit by Committed().
+// Thread-safety: one calling thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "master/dispatch/evaluation_backend.h"
+#include "master/search/search_algorithm.h"
+#include "sim/base/result.h"
+
+namespace gauntlet::master {
+
+using SearchId = std::uint32_t;  // 1, 2, ... within a campaign
+
+struct StoredSearch {
+  SearchId id = 0;
+  std::string name;
+  std::string algorithm;
+  std::uint64_t seed = 0;
+  bool finished = false;
+};
+
+struct StoredRun {
+  RunId id = 0;
+  SearchId search = 0;
+  IndividualId individual = 0;
+  std::uint32_t evaluation = 0;
+  std::uint32_t replicate = 0;
+  std::uint32_t generation = 0;
+  std::uint64_t seed = 0;
+  std::string spec;    // serialized RunSpec, as it was sent
+  std::string result;  // serialized RunResult (without trajectory)
+  std::uint64_t hash = 0;
+  std::string worker;
+  std::uint32_t attempt = 1;
+  // Copies of a few result fields, so that they can be queried: what show needs without decoding every
+  // result.
+  int verdict = 0;
+  double fitness = 0.0;
+  bool total_failure = false;
+  int failure_type = -1;
+};
+
+struct SavedState {
+  SearchId search = 0;
+  std::uint32_t generation = 0;
+  RunId last_run = 0;  // the state has seen the results 1..last_run of the campaign that belong to the search
+  std::string state;   // SearchAlgorithm::Save
+  std::string results_digest;  // running digest of the applied results (state_hash's first ingredient)
+};
+
+struct StoredEvent {
+  std::int64_t unix_ms = 0;
+  std::string kind;  // "start", "resume", "stop", "worker-lost", "finished", ...
+  std::string text;
+};
+
+class ResultStore {
+ public:
+  virtual ~ResultStore() = default;
+
+  // Appending; durable once Committed() has reported the run, or Flush() has returned without error.
+  virtual void AddSearch(const StoredSearch& search) = 0;
+  virtual void AddIndividuals(SearchId search, const std::vector<Individual>& individuals) = 0;
+  virtual void AddRun(StoredRun run) = 0;
+  virtual void SaveState(const SavedState& state) = 0;
+  virtual void MarkFinished(SearchId search) = 0;
+  virtual void AddEvent(const StoredEvent& event) = 0;
+
+  // Runs that became durable since the last call. Error: writing failed (kNoSpace when the disk is full,
+  // kInUse when a newer master has taken over); nothing uncommitted is lost silently: it was never
+  // acknowledged.
+  virtual Result<std::vector<RunId>> Committed() = 0;
+  virtual Status Flush() = 0;
+  // A file descriptor that becomes readable when Committed() has news; -1 when there is none to wait for.
+  virtual int CommitNotifier() const = 0;
+
+  // Reading what is durable (call Flush first to see all).
+  virtual Result<std::vector<StoredSearch>> LoadSearches() = 0;
+  virtual Result<std::optional<SavedState>> LoadNewestState(SearchId search) = 0;
+  // Runs of a search with id > after, in id order.
+  virtual Status ForEachRun(SearchId search, RunId after,
+                            const std::function<void(const StoredRun&)>& visit) = 0;
+  virtual Result<std::optional<StoredRun>> LoadRun(RunId run) = 0;
+  virtual Result<std::vector<StoredEvent>> LoadEvents() = 0;
+};
+
+}  // namespace gauntlet::master

@@ -1,0 +1,43 @@
+// The phenotype of a test case: walls and obstacles as boxes, ready for physics, sensors and planning.
+// Immutable after construction.
+#pragma once
+
+#include <vector>
+
+#include "sim/arena/test_case.h"
+#include "sim/geometry/oriented_box.h"
+#include "sim/geometry/polygon.h"
+
+namespace gauntlet::sim {
+
+class Arena {
+ public:
+  explicit Arena(const TestCase& test_case);
+
+  // The inner faces of the walls, m.
+  const Vec2& interior_min() const { return interior_min_; }
+  const Vec2& interior_max() const { return interior_max_; }
+
+  // Obstacles in gene order. What lies beyond the walls is kept in the box: no robot can be there and no line
+  // between two robots passes there, so clipping changes nothing but drawings (see VisiblePart).
+  const std::vector<OrientedBox>& obstacles() const { return obstacles_; }
+  // The four walls: +y, -y, +x, -x.
+  const std::vector<OrientedBox>& walls() const { return walls_; }
+  // Obstacles, then walls.
+  const std::vector<OrientedBox>& boxes() const { return boxes_; }
+
+  // The part of obstacle `index` inside the interior (thesis 3.2.1: what lies outside the edge is split off).
+  Polygon VisiblePart(std::size_t index) const;
+  bool InInterior(const Vec2& p) const;
+  // Centre-to-centre line of sight: no obstacle or wall touches the segment.
+  bool LineOfSight(const Vec2& a, const Vec2& b) const;
+
+ private:
+  Vec2 interior_min_;
+  Vec2 interior_max_;
+  std::vector<OrientedBox> obstacles_;
+  std::vector<OrientedBox> walls_;
+  std::vector<OrientedBox> boxes_;
+};
+
+}  // namespace gauntlet::sim

@@ -1,0 +1,60 @@
+// The arena as cells that a robot's centre may or may not be in (spec 1.1: 0.05 m cells, inflated by 0.10 m),
+// with the connected components of the free cells.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sim/arena/arena.h"
+
+namespace gauntlet::sim {
+
+struct Cell {
+  int column = 0;  // along x
+  int row = 0;     // along y
+  bool operator==(const Cell&) const = default;
+};
+
+class OccupancyGrid {
+ public:
+  static constexpr double kCellSize = 0.05;          // m
+  static constexpr double kDefaultInflation = 0.10;  // m: body 0.085 + 0.015 margin
+
+  // A cell is blocked when its centre is less than `inflation` metres from an obstacle or a wall's inner
+  // face, or beyond the wall.
+  OccupancyGrid(const Arena& arena, double inflation);
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  // Adds one more obstacle, as after a gene was appended. Blocked cells only grow.
+  void AddObstacle(const OrientedBox& box);
+
+  bool InGrid(Cell cell) const {
+    return cell.column >= 0 && cell.row >= 0 && cell.column < columns_ && cell.row < rows_;
+  }
+  bool Free(Cell cell) const { return InGrid(cell) && blocked_[Index(cell)] == 0; }
+  Vec2 CenterOf(Cell cell) const;
+  // May lie outside the grid.
+  Cell CellAt(const Vec2& p) const;
+
+  // Whether two free cells are 4-connected through free cells.
+  bool Connected(Cell a, Cell b) const;
+  // 1 for every cell 4-connected to `start` (row-major, columns() * rows()), 0 elsewhere; all 0 when `start`
+  // is blocked.
+  std::vector<std::uint8_t> Reachable(Cell start) const;
+  std::size_t Index(Cell cell) const {
+    return static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(cell.column);
+  }
+
+ private:
+  void Block(const OrientedBox& box);
+
+  Vec2 origin_;  // lower left corner of cell (0, 0)
+  double inflation_;
+  int columns_;
+  int rows_;
+  std::vector<std::uint8_t> blocked_;
+};
+
+}  // namespace gauntlet::sim

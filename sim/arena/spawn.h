@@ -1,0 +1,29 @@
+// Where robots begin: uniformly in an area, without overlap, only where the start can be reached (spec 1.1).
+#pragma once
+
+#include <vector>
+
+#include "sim/arena/occupancy_grid.h"
+#include "sim/arena/test_case.h"
+#include "sim/base/result.h"
+#include "sim/random/random_stream.h"
+
+namespace gauntlet::sim {
+
+struct SpawnRequest {
+  int count = 0;
+  Rectangle area;                // m; clipped to the free interior
+  bool disc = false;             // the area is the disc inscribed in `area` instead of the rectangle
+  double robot_radius = 0.0;     // m
+  double gap = 0.01;             // m, least gap between bodies
+  int tries_per_robot = 100;     // then the area is enlarged by 10 % about its centre
+  double max_enlargement = 2.0;  // largest area side relative to the first; beyond it the request is refused
+  std::vector<Vec2> occupied;    // centres of robots that are there already
+  Vec2 start = Vec2::Zero();     // spawn only in the component of the grid that this point is in
+};
+
+// Poses in spawn order with uniform headings; draws from `random` only. Error "no-room-to-spawn: ..." when
+// they do not fit.
+Result<std::vector<Pose>> Spawn(const SpawnRequest& request, const OccupancyGrid& grid, RandomStream& random);
+
+}  // namespace gauntlet::sim

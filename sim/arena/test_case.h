@@ -1,0 +1,27 @@
+// A test case: the environment a swarm is tested in. It says nothing about the controller, the seed or the
+// robots' behaviour.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sim/arena/obstacle_gene.h"
+
+namespace gauntlet::sim {
+
+struct Rectangle {
+  Vec2 min = Vec2::Zero();  // m
+  Vec2 max = Vec2::Zero();  // m
+};
+
+struct TestCase {
+  std::string name;             // where it came from; no influence on a run
+  double side_x = 6.0;          // m, between the centre lines of the walls (thesis 4.5.3: 6 x 6 m)
+  double side_y = 6.0;          // m
+  double wall_thickness = 0.1;  // m; the free interior ends half a thickness inside the centre lines
+  Genome obstacles;
+  std::optional<Rectangle> spawn_area;  // overrides the scenario's spawn area (imported .argos files)
+  std::optional<int> robots;            // overrides the scenario's number of robots under test (birds)
+};
+
+}  // namespace gauntlet::sim

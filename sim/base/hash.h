@@ -1,0 +1,33 @@
+// FNV-1a, 64 bit: the hash of trajectories and run results (http://www.isthe.com/chongo/tech/comp/fnv/).
+// It detects differences between honest runs; it is no defence against forgery.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace gauntlet {
+
+class Fnv1a64 {
+ public:
+  void AddByte(std::uint8_t byte) {
+    state_ ^= byte;
+    state_ *= 0x100000001b3ULL;
+  }
+  // Least significant byte first, on any machine.
+  void AddUint64(std::uint64_t value) {
+    for (int i = 0; i < 8; ++i) AddByte(static_cast<std::uint8_t>(value >> (8 * i)));
+  }
+  // The bits of the double; -0.0 and 0.0 differ on purpose.
+  void AddDouble(double value) { AddUint64(std::bit_cast<std::uint64_t>(value)); }
+  void AddBytes(std::string_view bytes) {
+    for (const char c : bytes) AddByte(static_cast<std::uint8_t>(c));
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325ULL;
+};
+
+}  // namespace gauntlet

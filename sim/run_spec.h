@@ -1,0 +1,27 @@
+// Everything a run depends on. Same RunSpec, same RunResult, bit for bit.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "sim/arena/test_case.h"
+#include "sim/robot/foot_bot.h"
+
+namespace gauntlet::sim {
+
+// Parameter name -> value in SI units; booleans are 0 or 1. Resolved: every parameter of the scenario or
+// controller stands here, so a later change of a default cannot change a stored run.
+using Parameters = std::map<std::string, double>;
+
+struct RunSpec {
+  TestCase test_case;
+  std::string scenario;  // registry name
+  Parameters scenario_parameters;
+  std::string controller;  // registry name of the controller under test
+  Parameters controller_parameters;
+  std::uint64_t seed = 0;
+  bool record_trajectory = false;  // return every pose of every tick; no influence on the hash
+};
+
+}  // namespace gauntlet::sim
