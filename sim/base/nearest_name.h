@@ -1,0 +1,61 @@
+// "Unknown key 'bird_sped'; did you mean 'bird_speed'?": finds the known name nearest to an unknown one.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gauntlet {
+
+// Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b` (optimal string
+// alignment distance).
+inline std::size_t EditDistance(std::string_view a, std::string_view b) {
+  const std::size_t width = b.size() + 1;
+  std::vector<std::size_t> before_last(width);
+  std::vector<std::size_t> last(width);
+  std::vector<std::size_t> row(width);
+  for (std::size_t j = 0; j < width; ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before_last.swap(last);
+    last.swap(row);
+    row[0] = i;
+    for (std::size_t j = 1; j < width; ++j) {
+      const std::size_t substitution = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, substitution});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        row[j] = std::min(row[j], before_last[j - 2] + 1);
+      }
+    }
+  }
+  return row[b.size()];
+}
+
+// The known name with the smallest edit distance, the earlier one on ties; "" when none is near. Near: at
+// most a third of the longer name's characters differ (but one always may, unless that is the whole name), or
+// the unknown name of at least three characters is the beginning or the end of exactly the returned one.
+inline std::string NearestName(std::string_view unknown, std::span<const std::string_view> known) {
+  std::string_view best;
+  std::size_t best_distance = std::string_view::npos;
+  for (const std::string_view name : known) {
+    const std::size_t distance = EditDistance(unknown, name);
+    const std::size_t longer = std::max(unknown.size(), name.size());
+    const bool near = distance <= std::max<std::size_t>(1, longer / 3) && distance < longer;
+    if (near && distance < best_distance) {
+      best = name;
+      best_distance = distance;
+    }
+  }
+  if (best.empty() && unknown.size() >= 3) {
+    for (const std::string_view name : known) {
+      if (!name.starts_with(unknown) && !name.ends_with(unknown)) continue;
+      if (!best.empty()) return {};
+      best = name;
+    }
+  }
+  return std::string(best);
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,20 @@
+#include "worker/run_executor.h"
+
+#include "controllers/registry.h"
+#include "sim/simulation.h"
+
+namespace gauntlet::worker {
+
+sim::RunResult Run(const sim::RunSpec& spec) {
+  const auto scenario = controllers::CreateScenario(spec);
+  if (!scenario.ok()) {
+    sim::RunResult refused;
+    refused.verdict = sim::Verdict::kRefused;
+    refused.message = scenario.error().message;
+    refused.hash = sim::HashOf(refused);
+    return refused;
+  }
+  return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory);
+}
+
+}  // namespace gauntlet::worker
