@@ -6,8 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "master/experiment/experiment.h"
 #include "master/search/search_algorithm.h"
 #include "master/store/result_store.h"
+#include "sim/base/result.h"
 
 namespace gauntlet::master {
 
@@ -50,5 +52,10 @@ struct CampaignSummary {
   bool nondeterministic = false;  // two results of one spec differed
   bool finished = false;
 };
+
+// Gathers the summary of a search from what is stored. `search` is freshly made for the experiment; it is brought to the newest saved state.
+// Population, fitness figures and state_hash are those of the last complete generation; runs and failures count everything stored.
+Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
+                                  ResultStore& store);
 
 }  // namespace gauntlet::master

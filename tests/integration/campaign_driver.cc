@@ -1,0 +1,104 @@
+#include "tests/integration/campaign_driver.h"
+
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "sim/random/random_stream.h"
+
+namespace gauntlet::testing_support {
+
+std::string GauntletPath() {
+  return std::string(GAUNTLET_BINARY_DIR) + "/gauntlet";
+}
+std::string WorkerPath() {
+  return std::string(GAUNTLET_BINARY_DIR) + "/gauntlet-worker";
+}
+
+namespace {
+
+std::vector<std::string> WithProgram(const std::vector<std::string>& arguments) {
+  std::vector<std::string> argv = {GauntletPath()};
+  argv.insert(argv.end(), arguments.begin(), arguments.end());
+  return argv;
+}
+
+std::chrono::milliseconds RandomTime(sim::RandomStream& random, std::chrono::milliseconds longest) {
+  return std::chrono::milliseconds(random.Below(static_cast<std::uint32_t>(longest.count())) + 1);
+}
+
+}  // namespace
+
+ProcessResult Gauntlet(const std::vector<std::string>& arguments, std::chrono::seconds deadline) {
+  return RunProcess(WithProgram(arguments), {}, deadline);
+}
+
+std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments) {
+  return std::make_unique<Process>(WithProgram(arguments));
+}
+
+std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers) {
+  return {"evolve",        campaign.experiment,
+          "--dir",         dir,
+          "--workers",     std::to_string(workers),
+          "--seed",        campaign.seed,
+          "--population",  std::to_string(campaign.population),
+          "--generations", std::to_string(campaign.generations),
+          "--quiet"};
+}
+
+nlohmann::json Show(const std::string& dir) {
+  const ProcessResult result = Gauntlet({"show", dir, "--json"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json parsed = nlohmann::json::parse(result.out, nullptr, /*allow_exceptions=*/false);
+  EXPECT_FALSE(parsed.is_discarded()) << result.out;
+  return parsed.is_discarded() ? nlohmann::json() : parsed;
+}
+
+std::string StateHash(const std::string& dir) {
+  return Show(dir).value("state_hash", "");
+}
+
+int EvolveThroughMasterKills(const SmallCampaign& campaign, const std::string& dir, int workers, int kills,
+                             std::uint64_t seed, std::chrono::milliseconds longest_life) {
+  sim::RandomStream random(seed, sim::StreamPurpose::kTest);
+  int hits = 0;
+  std::vector<std::string> arguments = EvolveArguments(campaign, dir, workers);
+  for (int kill = 0; kill < kills; ++kill) {
+    std::unique_ptr<Process> master = StartGauntlet(arguments);
+    const bool ended = Eventually([&] { return !master->Running(); }, RandomTime(random, longest_life));
+    if (!ended) {
+      const std::vector<pid_t> family = DescendantsOf(master->pid());
+      master->Signal(SIGKILL);
+      ++hits;
+      master->Wait();
+      EXPECT_TRUE(Eventually([&] { return std::none_of(family.begin(), family.end(), Alive); },
+                             std::chrono::seconds(10)))
+          << "workers outlived their killed master";
+    }
+    // A master killed before it had created its campaign leaves nothing to resume: then the same command is
+    // given again.
+    if (Gauntlet({"show", dir, "--json"}).exit_code == 0)
+      arguments = {"resume", dir, "--workers", std::to_string(workers), "--quiet"};
+  }
+  const ProcessResult last = Gauntlet(arguments);
+  EXPECT_EQ(last.exit_code, 0) << last.err;
+  return hits;
+}
+
+int EvolveThroughWorkerKills(const SmallCampaign& campaign, const std::string& dir, int workers, int kills,
+                             std::uint64_t seed, std::chrono::milliseconds between_kills) {
+  sim::RandomStream random(seed, sim::StreamPurpose::kTest);
+  std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, workers));
+  int hits = 0;
+  while (hits < kills && !Eventually([&] { return !master->Running(); }, RandomTime(random, between_kills))) {
+    const std::vector<pid_t> family = DescendantsOf(master->pid());
+    if (family.empty()) continue;
+    kill(family[random.Below(static_cast<std::uint32_t>(family.size()))], SIGKILL);
+    ++hits;
+  }
+  const ProcessResult result = master->Wait(std::chrono::seconds(300));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return hits;
+}
+
+}  // namespace gauntlet::testing_support

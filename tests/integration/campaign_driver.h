@@ -1,0 +1,48 @@
+// Runs the real binaries as a user would and reads their JSON.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/process.h"
+
+namespace gauntlet::testing_support {
+
+std::string GauntletPath();
+std::string WorkerPath();
+
+// gauntlet ARGUMENTS..., waited for.
+ProcessResult Gauntlet(const std::vector<std::string>& arguments,
+                       std::chrono::seconds deadline = std::chrono::seconds(300));
+std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments);
+
+// A campaign small enough for a test: a few dozen to a few hundred runs.
+struct SmallCampaign {
+  int population = 8;
+  int generations = 4;
+  std::string seed = "7";
+  std::string experiment = "flocking";
+};
+std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers);
+
+// `show DIR --json`, parsed; a null value (and a test failure) when it does not answer with one JSON
+// document.
+nlohmann::json Show(const std::string& dir);
+// state_hash of `show`.
+std::string StateHash(const std::string& dir);
+
+// Kills the master of the campaign at `moments` random moments (SIGKILL) and resumes it each time; finally
+// lets it end. Returns how many of the kills hit a running master.
+int EvolveThroughMasterKills(const SmallCampaign& campaign, const std::string& dir, int workers, int kills,
+                             std::uint64_t seed, std::chrono::milliseconds longest_life);
+
+// Runs the campaign while random workers and runners are killed (SIGKILL) until it ends. Returns how many
+// were killed.
+int EvolveThroughWorkerKills(const SmallCampaign& campaign, const std::string& dir, int workers, int kills,
+                             std::uint64_t seed, std::chrono::milliseconds between_kills);
+
+}  // namespace gauntlet::testing_support

@@ -1,0 +1,289 @@
+// The command line as scripts rely on it: exit codes, one JSON document on stdout, replay, evaluate.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing_support::EvolveArguments;
+using testing_support::Gauntlet;
+using testing_support::ProcessResult;
+using testing_support::Show;
+using testing_support::SmallCampaign;
+using testing_support::TemporaryDirectory;
+
+void WriteFile(const std::string& path, const std::string& text) {
+  std::ofstream(path) << text;
+}
+
+// One finished campaign for all tests that only read.
+class FinishedCampaignTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    scratch_ = new TemporaryDirectory;
+    ASSERT_EQ(Gauntlet(EvolveArguments(SmallCampaign{}, Dir(), 2)).exit_code, 0);
+  }
+  static void TearDownTestSuite() { delete scratch_; }
+  static std::string Dir() { return *scratch_ / "c"; }
+
+  static TemporaryDirectory* scratch_;
+};
+TemporaryDirectory* FinishedCampaignTest::scratch_ = nullptr;
+
+TEST_F(FinishedCampaignTest, ShowAccountsForEveryRun) {
+  const json shown = Show(Dir());
+  EXPECT_EQ(shown["experiment"], "flocking");
+  EXPECT_EQ(shown["seed"], "7");
+  EXPECT_EQ(shown["runs_done"], 8 * 4);
+  EXPECT_EQ(shown["runs_failed"], 0);
+  EXPECT_EQ(shown["generation"], 4);
+  EXPECT_TRUE(shown["finished"].get<bool>());
+  ASSERT_EQ(shown["population"].size(), 8u);
+  double sum = 0.0;
+  double best = 10.0;
+  for (const json& member : shown["population"]) {
+    EXPECT_EQ(member["genome"].size(), 8u);
+    EXPECT_FALSE(member["runs"].empty());
+    sum += member["fitness"].get<double>();
+    best = std::min(best, member["fitness"].get<double>());
+  }
+  EXPECT_NEAR(shown["mean_fitness"].get<double>(), sum / 8, 1e-12);
+  EXPECT_EQ(shown["best_fitness"].get<double>(), best);
+}
+
+TEST_F(FinishedCampaignTest, EveryStoredRunReproducesItsHash) {
+  for (int run = 1; run <= 32; run += 5) {
+    const ProcessResult replayed = Gauntlet({"replay", Dir(), std::to_string(run)});
+    EXPECT_EQ(replayed.exit_code, 0) << replayed.out << replayed.err;
+  }
+}
+
+TEST_F(FinishedCampaignTest, ReplayDrawsTheRun) {
+  const std::string svg = *scratch_ / "run.svg";
+  const std::string csv = *scratch_ / "run.csv";
+  ASSERT_EQ(Gauntlet({"replay", Dir(), "1", "--svg", svg, "--csv", csv}).exit_code, 0);
+  std::ifstream svg_file(svg);
+  std::string text((std::istreambuf_iterator<char>(svg_file)), {});
+  EXPECT_THAT(text, HasSubstr("<svg"));
+  std::ifstream csv_file(csv);
+  std::string header;
+  std::getline(csv_file, header);
+  EXPECT_EQ(header, "tick,time_s,robot,x,y,heading,speed");
+}
+
+TEST_F(FinishedCampaignTest, UnknownRunIsNamed) {
+  const ProcessResult result = Gauntlet({"replay", Dir(), "4711"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("4711"));
+}
+
+TEST_F(FinishedCampaignTest, ANonEmptyDirectoryIsNotOverwritten) {
+  const ProcessResult result = Gauntlet(EvolveArguments(SmallCampaign{}, Dir(), 2));
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("gauntlet resume " + Dir()));
+}
+
+TEST(ReplayTest, AChangedByteInTheStoredSpecIsFound) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  SmallCampaign campaign;
+  campaign.generations = 1;
+  ASSERT_EQ(Gauntlet(EvolveArguments(campaign, dir, 2)).exit_code, 0);
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open((dir + "/campaign.db").c_str(), &db), SQLITE_OK);
+  // The seed is a fixed64: eight bytes that occur once in the spec.
+  char* error = nullptr;
+  sqlite3_stmt* select = nullptr;
+  ASSERT_EQ(sqlite3_prepare_v2(db, "SELECT spec FROM runs WHERE id = 3", -1, &select, nullptr), SQLITE_OK);
+  ASSERT_EQ(sqlite3_step(select), SQLITE_ROW);
+  std::string spec(static_cast<const char*>(sqlite3_column_blob(select, 0)),
+                   static_cast<std::size_t>(sqlite3_column_bytes(select, 0)));
+  sqlite3_finalize(select);
+  spec.back() = static_cast<char>(spec.back() ^ 1);
+  std::string drop_guards;
+  ASSERT_EQ(sqlite3_exec(
+                db, "SELECT 'DROP TRIGGER ' || name || ';' FROM sqlite_master WHERE type = 'trigger'",
+                [](void* text, int, char** values, char**) {
+                  *static_cast<std::string*>(text) += values[0];
+                  return 0;
+                },
+                &drop_guards, &error),
+            SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db, drop_guards.c_str(), nullptr, nullptr, &error), SQLITE_OK) << error;
+  sqlite3_stmt* update = nullptr;
+  ASSERT_EQ(sqlite3_prepare_v2(db, "UPDATE runs SET spec = ? WHERE id = 3", -1, &update, nullptr), SQLITE_OK);
+  sqlite3_bind_blob(update, 1, spec.data(), static_cast<int>(spec.size()), SQLITE_TRANSIENT);
+  ASSERT_EQ(sqlite3_step(update), SQLITE_DONE);
+  sqlite3_finalize(update);
+  sqlite3_close(db);
+
+  const ProcessResult intact = Gauntlet({"replay", dir, "2"});
+  EXPECT_EQ(intact.exit_code, 0) << intact.err;
+  const ProcessResult changed = Gauntlet({"replay", dir, "3"});
+  EXPECT_EQ(changed.exit_code, 1) << changed.out << changed.err;
+  EXPECT_THAT(changed.out + changed.err, HasSubstr("differ"));
+}
+
+TEST(CommandLineTest, EvolveWithJsonPrintsOneDocument) {
+  const TemporaryDirectory scratch;
+  SmallCampaign campaign;
+  campaign.generations = 1;
+  std::vector<std::string> arguments = EvolveArguments(campaign, scratch / "c", 2);
+  arguments.push_back("--json");
+  const ProcessResult result = Gauntlet(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_FALSE(json::parse(result.out, nullptr, false).is_discarded()) << result.out;
+}
+
+TEST(CommandLineTest, RandomKeepsAllCases) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  const ProcessResult result =
+      Gauntlet({"random", "flocking", "--cases", "12", "--dir", dir, "--workers", "2", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json shown = Show(dir);
+  EXPECT_EQ(shown["population"].size(), 12u);
+  EXPECT_EQ(shown["runs_done"], 12);
+}
+
+TEST(CommandLineTest, ListNamesEveryParameterWithItsUnitAndDefault) {
+  const ProcessResult result = Gauntlet({"list", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json listed = json::parse(result.out, nullptr, false);
+  ASSERT_FALSE(listed.is_discarded());
+  EXPECT_THAT(result.out, HasSubstr("flocking"));
+  EXPECT_THAT(result.out, HasSubstr("flocking-improved"));
+}
+
+struct Refusal {
+  std::string name;
+  std::vector<std::string> arguments;
+  std::vector<std::string> said;  // parts of the message
+};
+
+void PrintTo(const Refusal& refusal, std::ostream* os) {
+  *os << refusal.name;
+}
+
+class RefusalTest : public testing::TestWithParam<Refusal> {};
+
+TEST_P(RefusalTest, ExitsWith2AndNamesTheCulprit) {
+  const TemporaryDirectory scratch;
+  std::vector<std::string> arguments = GetParam().arguments;
+  if (arguments[0] == "evolve" || arguments[0] == "random" || arguments[0] == "evaluate") {
+    arguments.insert(arguments.end(), {"--dir", scratch / "c"});
+  }
+  const ProcessResult result = Gauntlet(arguments);
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  EXPECT_EQ(result.out, "");
+  for (const std::string& part : GetParam().said) EXPECT_THAT(result.err, HasSubstr(part));
+  EXPECT_FALSE(std::filesystem::exists(scratch / "c"))
+      << "something was started before the input was checked";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CommandLine, RefusalTest,
+    testing::Values(Refusal{"UnknownExperiment", {"evolve", "floking"}, {"floking", "flocking"}},
+                    Refusal{"UnknownKey",
+                            {"evolve", "flocking", "--set", "search.populaton=20"},
+                            {"search.populaton", "search.population"}},
+                    Refusal{"ValueOutOfRange",
+                            {"evolve", "flocking", "--set", "search.mutation_probability=1.5"},
+                            {"search.mutation_probability", "1.5", "1"}},
+                    Refusal{"NoWorkers", {"evolve", "flocking", "--workers", "0"}, {"0"}},
+                    Refusal{"AbsurdlyManyWorkers", {"evolve", "flocking", "--workers", "100000"}, {"100000"}},
+                    Refusal{
+                        "SeedThatIsNoNumber", {"evolve", "flocking", "--seed", "lucky"}, {"lucky", "random"}},
+                    Refusal{"NegativeGenerations", {"evolve", "flocking", "--generations", "-1"}, {"-1"}},
+                    Refusal{"NoCampaign", {"show", "/nonexistent/campaign"}, {"/nonexistent/campaign"}},
+                    Refusal{"ResumeNothing", {"resume", "/nonexistent/campaign"}, {"/nonexistent/campaign"}},
+                    Refusal{"UnknownCommand", {"evlove", "flocking"}, {"evlove"}},
+                    Refusal{"MissingCaseFile",
+                            {"evaluate", "flocking", "--case", "/nonexistent.json"},
+                            {"/nonexistent.json"}}),
+    [](const testing::TestParamInfo<Refusal>& info) { return info.param.name; });
+
+TEST(EvaluateTest, SimulatesValidCasesAndRefusesTheOthersByRule) {
+  const TemporaryDirectory scratch;
+  WriteFile(
+      scratch / "open.json",
+      R"({"name": "open", "obstacles": [{"x": 0.5, "y": -1, "length": 1, "width": 0.2, "orientationDeg": 30}]})");
+  WriteFile(scratch / "closed.json",
+            R"({"name": "closed", "obstacles": [{"length": 9, "width": 0.3, "orientationDeg": 135}]})");
+  WriteFile(scratch / "broken.json", "{\"name\": \"broken\",\n  \"obstacles\": [{\"x\": }]}");
+  const ProcessResult result = Gauntlet(
+      {"evaluate", "flocking", "--case", scratch / "open.json", "--case", scratch / "closed.json", "--case",
+       scratch / "broken.json", "--replicates", "3", "--json", "--dir", scratch / "c", "--workers", "2"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json document = json::parse(result.out, nullptr, false);
+  ASSERT_FALSE(document.is_discarded()) << result.out;
+  ASSERT_EQ(document["cases"].size(), 3u);
+  const json& open = document["cases"][0];
+  EXPECT_TRUE(open["refused"].is_null());
+  ASSERT_EQ(open["runs"].size(), 3u);
+  EXPECT_NE(open["runs"][0]["seed"], open["runs"][1]["seed"]);
+  EXPECT_GE(open["fitness"].get<double>(), 0.0);
+  EXPECT_EQ(document["cases"][1]["refused"], "no-path");
+  EXPECT_TRUE(document["cases"][1]["fitness"].is_null());
+  EXPECT_THAT(document["cases"][2]["error"].get<std::string>(), HasSubstr("broken.json:2"));
+}
+
+TEST(EvaluateTest, ExitsWith2WhenEveryCaseIsRefused) {
+  const TemporaryDirectory scratch;
+  WriteFile(scratch / "closed.json",
+            R"({"obstacles": [{"length": 9, "width": 0.3, "orientationDeg": 135}]})");
+  const ProcessResult result = Gauntlet({"evaluate", "flocking", "--case", scratch / "closed.json", "--json",
+                                         "--dir", scratch / "c", "--workers", "1"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(json::parse(result.out, nullptr, false)["cases"][0]["refused"], "no-path");
+}
+
+// Files of the thesis' author (released with the thesis; not part of this repository).
+TEST(EvaluateTest, RealArgosFilesAreSimulatedOrRefusedByRule) {
+  const char* given = std::getenv("GAUNTLET_ARGOS_CASES");
+  const std::string folder =
+      given != nullptr ? given : std::string(GAUNTLET_SOURCE_DIR) + "/../shared/data/argos-cases";
+  if (!std::filesystem::exists(folder)) {
+    GTEST_SKIP() << "the author's .argos files are not here (set GAUNTLET_ARGOS_CASES to their folder)";
+  }
+  const TemporaryDirectory scratch;
+  std::vector<std::string> arguments = {"evaluate",    "flocking",  "--json", "--dir",
+                                        scratch / "c", "--workers", "2"};
+  std::size_t files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".argos") continue;
+    arguments.insert(arguments.end(), {"--case", entry.path().string()});
+    ++files;
+  }
+  const ProcessResult result = Gauntlet(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json document = json::parse(result.out, nullptr, false);
+  ASSERT_EQ(document["cases"].size(), files);
+  int simulated = 0;
+  for (const json& one : document["cases"]) {
+    if (one["refused"].is_null()) {
+      EXPECT_TRUE(one["error"].is_null()) << one;
+      EXPECT_TRUE(one["fitness"].is_number()) << one;
+      ++simulated;
+    } else {
+      EXPECT_THAT(one["refused"].get<std::string>(),
+                  testing::AnyOf("start-blocked", "goal-blocked", "no-path", "contained-obstacle",
+                                 "no-room-to-spawn"));
+    }
+  }
+  fmt::print("{} of {} files simulated, {} refused\n", simulated, files,
+             files - static_cast<std::size_t>(simulated));
+  EXPECT_GT(simulated, 0);
+}
+
+}  // namespace
+}  // namespace gauntlet

@@ -1,0 +1,98 @@
+// The same campaign gives the same state_hash, whatever happens to its processes.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet {
+namespace {
+
+using testing_support::ChildrenOf;
+using testing_support::Eventually;
+using testing_support::EvolveArguments;
+using testing_support::Gauntlet;
+using testing_support::Process;
+using testing_support::ProcessResult;
+using testing_support::Show;
+using testing_support::SmallCampaign;
+using testing_support::StartGauntlet;
+using testing_support::StateHash;
+using testing_support::TemporaryDirectory;
+
+// The undisturbed run with one worker that every drill is compared with.
+const std::string& UndisturbedHash() {
+  static const std::string hash = [] {
+    const TemporaryDirectory scratch;
+    const ProcessResult result = Gauntlet(EvolveArguments(SmallCampaign{}, scratch / "c", 1));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return StateHash(scratch / "c");
+  }();
+  return hash;
+}
+
+class WorkerCountTest : public testing::TestWithParam<int> {};
+
+TEST_P(WorkerCountTest, StateHashDoesNotDependOnIt) {
+  const TemporaryDirectory scratch;
+  const ProcessResult result = Gauntlet(EvolveArguments(SmallCampaign{}, scratch / "c", GetParam()));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
+  EXPECT_EQ(UndisturbedHash().size(), 64u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Workers, WorkerCountTest, testing::Values(2, 5),
+                         [](const testing::TestParamInfo<int>& info) {
+                           return fmt::format("{}", info.param);
+                         });
+
+TEST(DeterminismDrill, AnotherSeedGivesAnotherStateHash) {
+  const TemporaryDirectory scratch;
+  SmallCampaign other;
+  other.seed = "8";
+  ASSERT_EQ(Gauntlet(EvolveArguments(other, scratch / "c", 2)).exit_code, 0);
+  EXPECT_NE(StateHash(scratch / "c"), UndisturbedHash());
+}
+
+TEST(DeterminismDrill, KilledMasterResumesToTheSameStateHash) {
+  const TemporaryDirectory scratch;
+  testing_support::EvolveThroughMasterKills(SmallCampaign{}, scratch / "c", 2, 4, 1,
+                                            std::chrono::milliseconds(900));
+  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
+}
+
+TEST(DeterminismDrill, KilledWorkersAndRunnersDoNotChangeTheStateHash) {
+  const TemporaryDirectory scratch;
+  testing_support::EvolveThroughWorkerKills(SmallCampaign{}, scratch / "c", 2, 6, 2,
+                                            std::chrono::milliseconds(200));
+  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
+}
+
+TEST(DeterminismDrill, InterruptedCampaignExitsWith3AndResumesToTheSameStateHash) {
+  const TemporaryDirectory scratch;
+  SmallCampaign campaign;
+  const std::string dir = scratch / "c";
+  std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 2));
+  ASSERT_TRUE(Eventually([&] { return !ChildrenOf(master->pid()).empty(); }, std::chrono::seconds(20)));
+  master->Signal(SIGINT);
+  const ProcessResult stopped = master->Wait();
+  EXPECT_EQ(stopped.exit_code, 3) << stopped.err;
+  EXPECT_THAT(stopped.err, testing::HasSubstr("gauntlet resume " + dir));
+  const ProcessResult resumed = Gauntlet({"resume", dir, "--workers", "3", "--quiet"});
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_EQ(StateHash(dir), UndisturbedHash());
+}
+
+TEST(DeterminismDrill, ResumingAFinishedCampaignChangesNothing) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  ASSERT_EQ(Gauntlet(EvolveArguments(SmallCampaign{}, dir, 2)).exit_code, 0);
+  const nlohmann::json before = Show(dir);
+  EXPECT_EQ(Gauntlet({"resume", dir, "--quiet"}).exit_code, 0);
+  EXPECT_EQ(Show(dir), before);
+  EXPECT_TRUE(before["finished"].get<bool>());
+}
+
+}  // namespace
+}  // namespace gauntlet

@@ -1,0 +1,61 @@
+// The long forms of the drills, on the default experiment. `./dev drill` runs them; the suite has shorter
+// ones.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet {
+namespace {
+
+using testing_support::EvolveArguments;
+using testing_support::Gauntlet;
+using testing_support::SmallCampaign;
+using testing_support::StateHash;
+using testing_support::TemporaryDirectory;
+
+SmallCampaign DefaultCampaign() {
+  SmallCampaign campaign;
+  campaign.population = 20;
+  campaign.generations = 50;
+  campaign.seed = "1";
+  return campaign;
+}
+
+const std::string& UndisturbedHash() {
+  static const std::string hash = [] {
+    const TemporaryDirectory scratch;
+    EXPECT_EQ(Gauntlet(EvolveArguments(DefaultCampaign(), scratch / "c", 2)).exit_code, 0);
+    return StateHash(scratch / "c");
+  }();
+  return hash;
+}
+
+TEST(LongDrill, MasterKilledAt20RandomMoments) {
+  const TemporaryDirectory scratch;
+  const int hits = testing_support::EvolveThroughMasterKills(DefaultCampaign(), scratch / "c", 2, 20, 3,
+                                                             std::chrono::milliseconds(3000));
+  fmt::print("master kills that hit: {} of 20\n", hits);
+  EXPECT_GE(hits, 5);
+  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
+}
+
+TEST(LongDrill, WorkersKilled40Times) {
+  const TemporaryDirectory scratch;
+  const int hits = testing_support::EvolveThroughWorkerKills(DefaultCampaign(), scratch / "c", 3, 40, 4,
+                                                             std::chrono::milliseconds(600));
+  fmt::print("workers and runners killed: {}\n", hits);
+  EXPECT_GE(hits, 10);
+  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
+}
+
+TEST(LongDrill, EveryWorkerCountGivesTheSameStateHash) {
+  for (const int workers : {1, 5}) {
+    const TemporaryDirectory scratch;
+    ASSERT_EQ(Gauntlet(EvolveArguments(DefaultCampaign(), scratch / "c", workers)).exit_code, 0);
+    EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash()) << workers << " workers";
+  }
+}
+
+}  // namespace
+}  // namespace gauntlet

@@ -1,0 +1,197 @@
+// A hostile world around a running campaign: second masters, damaged files, a full disk, garbage on the port.
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing_support::ChildrenOf;
+using testing_support::Eventually;
+using testing_support::EvolveArguments;
+using testing_support::Gauntlet;
+using testing_support::GauntletPath;
+using testing_support::Process;
+using testing_support::ProcessResult;
+using testing_support::RunProcess;
+using testing_support::Show;
+using testing_support::SmallCampaign;
+using testing_support::StartGauntlet;
+using testing_support::StateHash;
+using testing_support::TemporaryDirectory;
+
+std::string ReadFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(in)), {});
+}
+
+SmallCampaign LongerCampaign() {
+  SmallCampaign campaign;
+  campaign.population = 20;
+  campaign.generations = 60;
+  return campaign;
+}
+
+TEST(RefusalTest, ACampaignInUseIsRefusedWithItsOwner) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(LongerCampaign(), dir, 2));
+  ASSERT_TRUE(Eventually([&] { return !ChildrenOf(master->pid()).empty(); }, std::chrono::seconds(20)));
+  const ProcessResult second = Gauntlet({"resume", dir, "--quiet"});
+  EXPECT_EQ(second.exit_code, 2);
+  char host[256] = {};
+  gethostname(host, sizeof host - 1);
+  EXPECT_THAT(second.err, HasSubstr(std::to_string(master->pid())));
+  EXPECT_THAT(second.err, HasSubstr(host));
+  EXPECT_TRUE(master->Running());
+  master->Signal(SIGTERM);
+  EXPECT_EQ(master->Wait().exit_code, 3);
+}
+
+class DamagedCampaignTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    SmallCampaign campaign;
+    campaign.generations = 1;
+    ASSERT_EQ(Gauntlet(EvolveArguments(campaign, dir_, 2)).exit_code, 0);
+  }
+  // Both commands refuse, say why, and leave the file as it is.
+  void ExpectRefusal(const std::string& said) {
+    const std::string before = ReadFile(dir_ + "/campaign.db");
+    for (const std::string command : {"show", "resume"}) {
+      const ProcessResult result = Gauntlet({command, dir_});
+      EXPECT_EQ(result.exit_code, 2) << command << ": " << result.err;
+      EXPECT_THAT(result.err, HasSubstr(said)) << command;
+    }
+    EXPECT_EQ(ReadFile(dir_ + "/campaign.db"), before);
+  }
+
+  TemporaryDirectory scratch_;
+  std::string dir_ = scratch_ / "c";
+};
+
+TEST_F(DamagedCampaignTest, ANewerFormatIsRefused) {
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open((dir_ + "/campaign.db").c_str(), &db), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version = 999", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(db);
+  ExpectRefusal("999");
+}
+
+TEST_F(DamagedCampaignTest, ADamagedDatabaseIsReportedAndLeftAlone) {
+  std::fstream file(dir_ + "/campaign.db", std::ios::in | std::ios::out | std::ios::binary);
+  file.seekp(4096);
+  file << std::string(8192, '\x5a');
+  file.close();
+  ExpectRefusal("damaged");
+}
+
+TEST_F(DamagedCampaignTest, ADatabaseThatIsNoneIsReportedAndLeftAlone) {
+  std::ofstream(dir_ + "/campaign.db", std::ios::binary)
+      << "this is not a database, this is a text of some length";
+  ExpectRefusal("campaign.db");
+}
+
+void SendBytes(int port, const std::string& bytes) {
+  const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  ASSERT_GE(fd, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
+    std::size_t sent = 0;
+    while (sent < bytes.size()) {
+      const ssize_t size = send(fd, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+      if (size <= 0) break;
+      sent += static_cast<std::size_t>(size);
+    }
+  }
+  close(fd);
+}
+
+// A ZMTP 3.0 greeting with the NULL mechanism, and a READY command: what follows is taken as messages.
+std::string ZmtpHandshake() {
+  std::string greeting = "\xff";
+  greeting += std::string(8, '\0') + "\x7f";
+  greeting += "\x03";
+  greeting += std::string(1, '\0');
+  greeting += "NULL" + std::string(16, '\0');
+  greeting += std::string(1, '\0') + std::string(31, '\0');
+  const std::string ready = std::string("\x05READY", 6) + std::string("\x0bSocket-Type", 12) +
+                            std::string("\0\0\0\x06", 4) + "DEALER";
+  return greeting + "\x04" + static_cast<char>(ready.size()) + ready;
+}
+
+TEST(HostilePortTest, GarbageAndOversizedMessagesAreDroppedAndTheCampaignGoesOn) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  SmallCampaign campaign;
+  campaign.generations = 12;
+  std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 2));
+  ASSERT_TRUE(
+      Eventually([&] { return std::filesystem::exists(dir + "/access.json"); }, std::chrono::seconds(20)));
+  const json access = json::parse(ReadFile(dir + "/access.json"), nullptr, false);
+  const std::string endpoint = access["endpoints"][0].get<std::string>();
+  const int port = std::stoi(endpoint.substr(endpoint.rfind(':') + 1));
+
+  SendBytes(port, "GET / HTTP/1.1\r\n\r\n");
+  SendBytes(port, std::string(100000, '\xff'));
+  // One short frame of garbage, then a frame that announces 2^40 bytes.
+  SendBytes(port, ZmtpHandshake() + std::string("\0\x05hello", 7));
+  SendBytes(port, ZmtpHandshake() + std::string("\x02\0\0\x01\0\0\0\0\0", 9) + std::string(1000, 'x'));
+
+  const ProcessResult result = master->Wait();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const TemporaryDirectory undisturbed;
+  ASSERT_EQ(Gauntlet(EvolveArguments(campaign, undisturbed / "c", 2)).exit_code, 0);
+  EXPECT_EQ(StateHash(dir), StateHash(undisturbed / "c"));
+}
+
+TEST(FullDiskTest, StopsWithExit3AndResumesWhenThereIsSpace) {
+  const TemporaryDirectory scratch;
+  const std::string mount = scratch / "small";
+  std::filesystem::create_directory(mount);
+  // A file system of its own in a mount namespace of its own; everything happens inside one shell, and ends
+  // with it.
+  const std::string script = fmt::format(
+      "mount -t tmpfs -o size=600k none {0} || exit 77\n"
+      "{1} evolve flocking --dir {0}/c --workers 2 --population 20 --generations 30 --quiet 2> "
+      "{2}/first.err; echo first $?\n"
+      "mount -o remount,size=64m {0}\n"
+      "{1} resume {0}/c --workers 2 --quiet; echo resumed $?\n"
+      "{1} show {0}/c --json > {2}/show.json\n",
+      mount, GauntletPath(), scratch.path());
+  const ProcessResult result =
+      RunProcess({"/usr/bin/unshare", "--mount", "--map-root-user", "/bin/sh", "-c", script}, {},
+                 std::chrono::seconds(280));
+  if (result.exit_code == 77 || result.exit_code == 1)
+    GTEST_SKIP() << "no mount namespace to be had here: " << result.err;
+  EXPECT_THAT(result.out, HasSubstr("first 3")) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("resumed 0")) << result.err;
+  EXPECT_THAT(ReadFile(scratch / "first.err"), HasSubstr("disk"));
+  const TemporaryDirectory undisturbed;
+  ASSERT_EQ(Gauntlet({"evolve", "flocking", "--dir", undisturbed / "c", "--workers", "2", "--population",
+                      "20", "--generations", "30", "--quiet"})
+                .exit_code,
+            0);
+  const json shown = json::parse(ReadFile(scratch / "show.json"), nullptr, false);
+  ASSERT_FALSE(shown.is_discarded());
+  EXPECT_EQ(shown["state_hash"], StateHash(undisturbed / "c"));
+}
+
+}  // namespace
+}  // namespace gauntlet
