@@ -1,0 +1,223 @@
+#include "analysis/figures/run_panel.h"
+
+#include <algorithm>
+#include <functional>
+
+#include <fmt/format.h>
+
+namespace gauntlet::analysis {
+namespace {
+
+constexpr double kRow = 25.0;        // pixels between legend rows
+constexpr double kFigureRow = 20.0;  // pixels between figures
+constexpr std::size_t kMostMetrics = 9;
+constexpr std::size_t kMostTitle = 118;  // characters that fit the page
+
+std::string Shortened(std::string text, std::size_t most) {
+  if (text.size() <= most) return text;
+  std::size_t cut = most - 1;
+  while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0) == 0x80) --cut;
+  text.resize(cut);
+  return text + "\u2026";
+}
+
+std::string Plural(std::string_view noun, std::size_t count) {
+  return count == 1 ? std::string(noun) : fmt::format("{}s", noun);
+}
+
+class Panel {
+ public:
+  Panel(SvgCanvas& canvas, const FigureFrame& frame)
+      : canvas_(canvas),
+        left_(frame.right() + 30),
+        right_(frame.page_width() - 22),
+        y_(FigureFrame::kTop + 12) {}
+
+  void Heading(std::string_view text) {
+    canvas_.Text({left_, y_}, text, "class=\"heading\"");
+    y_ += 8;
+    canvas_.Line({left_, y_}, {right_, y_}, "class=\"rule\"");
+    y_ += 19;
+  }
+  // `draw` gets the middle of the swatch, which is 34 pixels wide.
+  void Row(std::string_view text, const std::function<void(Pixel)>& draw) {
+    draw({left_ + 17, y_ - 4.5});
+    canvas_.Text({left_ + 46, y_}, text, "class=\"legend\"");
+    y_ += kRow;
+  }
+  void Figure(std::string_view name, std::string_view value) {
+    canvas_.Text({left_, y_}, name, "class=\"name\"");
+    canvas_.Text({right_, y_}, value, "class=\"value\"");
+    y_ += kFigureRow;
+  }
+  void Skip(double pixels) { y_ += pixels; }
+
+ private:
+  SvgCanvas& canvas_;
+  double left_;
+  double right_;
+  double y_;
+};
+
+// A swatch of a way: faint at its beginning, strong at its end.
+void DrawWaySwatch(SvgCanvas& canvas, Pixel middle, std::string_view color, double width) {
+  for (int i = 0; i < 4; ++i) {
+    const double x = middle.x - 17 + i * 8.5;
+    canvas.Line({x, middle.y}, {x + 8.5, middle.y},
+                fmt::format("stroke=\"{}\" stroke-width=\"{}\" stroke-opacity=\"{}\"", color, width,
+                            SvgNumber(0.3 + 0.22 * i)));
+  }
+}
+
+void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const std::vector<Track>& tracks) {
+  const auto count = [&](TrackKind kind) {
+    return static_cast<std::size_t>(
+        std::count_if(tracks.begin(), tracks.end(), [kind](const Track& t) { return t.kind == kind; }));
+  };
+  const std::size_t kept = count(TrackKind::kKept);
+  const std::size_t lost = count(TrackKind::kLost);
+  panel.Heading("LEGEND");
+  if (kept > 0) {
+    panel.Row(fmt::format("{} {}, not lost", kept, Plural(figure.member, kept)),
+              [&](Pixel p) { DrawWaySwatch(canvas, p, kKeptColor, 2.0); });
+  }
+  if (lost > 0) {
+    panel.Row(fmt::format("{} {}, lost", lost, Plural(figure.member, lost)),
+              [&](Pixel p) { DrawWaySwatch(canvas, p, kLostColor, 2.6); });
+  }
+  if (count(TrackKind::kPrey) > 0) {
+    panel.Row("prey, travelled", [&](Pixel p) { DrawWaySwatch(canvas, p, kPreyColor, 3.6); });
+  }
+  if (LatestAnnotation(figure, "path") != nullptr) {
+    panel.Row("planned path", [&](Pixel p) {
+      canvas.Line({p.x - 17, p.y}, {p.x + 17, p.y}, "class=\"plan\"");
+    });
+  }
+  if (!tracks.empty()) {
+    panel.Row("faint = early, strong = late", [&](Pixel p) { DrawWaySwatch(canvas, p, kInk, 1.5); });
+    panel.Row("start, with heading", [&](Pixel p) {
+      canvas.Line(p, {p.x + 9, p.y}, fmt::format("stroke=\"{}\" stroke-width=\"1.6\"", kKeptColor));
+      canvas.Circle(p, 3.6, fmt::format("class=\"start\" stroke=\"{}\"", kKeptColor));
+    });
+    panel.Row("end, with heading and number",
+              [&](Pixel p) { DrawRobot(canvas, p, 8.0, 0.0, TrackKind::kKept, kKeptColor, "3"); });
+  }
+  if (lost > 0) {
+    panel.Row(fmt::format("end of a lost {}", figure.member),
+              [&](Pixel p) { DrawRobot(canvas, p, 8.0, 0.0, TrackKind::kLost, kLostColor, "7"); });
+  }
+  if (LatestAnnotation(figure, "split") != nullptr) {
+    panel.Row("last split; where they were then", [&](Pixel p) {
+      canvas.Circle({p.x - 6, p.y}, 8.0, "class=\"split\"");
+      canvas.Polygon({{p.x + 10, p.y - 5}, {p.x + 15, p.y}, {p.x + 10, p.y + 5}, {p.x + 5, p.y}},
+                     "class=\"split-robot\"");
+    });
+  }
+  if (LatestAnnotation(figure, "disc") != nullptr) {
+    panel.Row("goal", [&](Pixel p) { canvas.Circle(p, 8.0, "class=\"goal\""); });
+  }
+  if (figure.spec.test_case.spawn_area || figure.spawn_area) {
+    panel.Row("area the swarm starts in", [&](Pixel p) {
+      canvas.Rectangle({p.x - 14, p.y - 8}, 28, 16, "class=\"spawn\"");
+    });
+  }
+  const std::size_t obstacles = figure.spec.test_case.obstacles.size();
+  if (obstacles > 0) {
+    panel.Row(obstacles == 1 ? std::string("obstacle 1") : fmt::format("obstacles 1 to {}", obstacles),
+              [&](Pixel p) {
+                canvas.Rectangle({p.x - 14, p.y - 7}, 28, 14, "class=\"obstacle\"");
+                canvas.Text({p.x, p.y + 4.5}, "1", "class=\"obstacle-number\"");
+              });
+  }
+}
+
+void DrawFigures(Panel& panel, const RunFigure& figure) {
+  const sim::RunResult& result = figure.result;
+  panel.Skip(14);
+  panel.Heading("RUN");
+  panel.Figure("scenario", Shortened(figure.spec.scenario, 26));
+  panel.Figure("controller", Shortened(figure.spec.controller, 26));
+  panel.Figure("seed", fmt::format("{}", figure.spec.seed));
+  if (result.verdict == sim::Verdict::kCompleted) {
+    panel.Figure("simulated", fmt::format("{:.1f} s", result.ticks * sim::kTickSeconds));
+    panel.Figure("fitness (lower = tougher)", fmt::format("{:.4f}", result.fitness));
+  }
+  for (std::size_t i = 0; i < std::min(kMostMetrics, result.metrics.size()); ++i) {
+    std::string name = result.metrics[i].first;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    panel.Figure(Shortened(name, 26), fmt::format("{:.5g}", result.metrics[i].second));
+  }
+  panel.Figure("hash", fmt::format("{:016x}", result.hash));
+}
+
+}  // namespace
+
+const sim::Annotation* LatestAnnotation(const RunFigure& figure, std::string_view kind) {
+  const sim::Annotation* latest = nullptr;
+  for (const sim::Annotation& annotation : figure.result.annotations) {
+    if (annotation.kind != kind || annotation.points.empty()) continue;
+    if (latest == nullptr || annotation.tick >= latest->tick) latest = &annotation;
+  }
+  return latest;
+}
+
+std::string DescribeOutcome(const RunFigure& figure) {
+  const sim::RunResult& result = figure.result;
+  switch (result.verdict) {
+    case sim::Verdict::kCompleted:
+      break;
+    case sim::Verdict::kRefused:
+      return fmt::format("refused: {}", result.message);
+    case sim::Verdict::kCrashed:
+      return fmt::format("the simulation crashed: {}", result.message);
+    case sim::Verdict::kHung:
+      return fmt::format("the simulation hung: {}", result.message);
+    case sim::Verdict::kOutOfMemory:
+      return fmt::format("the simulation ran out of memory: {}", result.message);
+  }
+  std::size_t members = 0;
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < result.robots.size(); ++i) {
+    if (static_cast<int>(i) == figure.prey) continue;
+    ++members;
+    if (result.robots[i].lost) ++lost;
+  }
+  const std::string_view prefix = result.failure.total ? "total failure: " : "";
+  if (lost == 0) return fmt::format("{}no {} lost", prefix, figure.member);
+  return fmt::format("{}{} of {} {} lost", prefix, lost, members, Plural(figure.member, members));
+}
+
+void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {
+  const sim::RunResult& result = figure.result;
+  canvas.Text(
+      {FigureFrame::kLeft, 40},
+      Shortened(figure.run.empty() ? figure.experiment : fmt::format("{}, {}", figure.experiment, figure.run),
+                70),
+      "class=\"title\"");
+  const std::string outcome = DescribeOutcome(figure);
+  const bool harmless = outcome.starts_with("no ");
+  const bool bad = result.failure.total || result.verdict != sim::Verdict::kCompleted;
+  std::string rest;
+  if (result.verdict == sim::Verdict::kCompleted) {
+    rest = fmt::format("fitness {:.3f} after {:.0f} s", result.fitness, result.ticks * sim::kTickSeconds);
+    if (!result.failure.label.empty()) rest += fmt::format(", failure type: {}", result.failure.label);
+  }
+  const std::string_view color = bad ? kLostColor : harmless ? kPreyColor : std::string_view("#9a6700");
+  canvas.Rectangle({FigureFrame::kLeft, 56}, 5, 20, fmt::format("fill=\"{}\"", color));
+  const std::string line = Shortened(outcome, kMostTitle);
+  canvas.Text({FigureFrame::kLeft + 14, 71}, line, fmt::format("class=\"outcome\" fill=\"{}\"", color));
+  if (!rest.empty()) {
+    canvas.Text({frame.page_width() - 22, 71},
+                Shortened(rest, kMostTitle - std::min(line.size() + 4, kMostTitle / 2)),
+                "class=\"subtitle\" text-anchor=\"end\"");
+  }
+}
+
+void DrawPanel(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,
+               const std::vector<Track>& tracks) {
+  Panel panel(canvas, frame);
+  DrawLegend(canvas, panel, figure, tracks);
+  DrawFigures(panel, figure);
+}
+
+}  // namespace gauntlet::analysis

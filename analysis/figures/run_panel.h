@@ -1,0 +1,21 @@
+// What stands beside and above the arena in a run's picture: title, legend, figures of the run.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "analysis/figures/figure_frame.h"
+#include "analysis/figures/run_figure.h"
+#include "analysis/figures/run_tracks.h"
+#include "analysis/figures/svg_canvas.h"
+
+namespace gauntlet::analysis {
+
+// The annotation of that kind with the latest tick; nullptr when there is none.
+const sim::Annotation* LatestAnnotation(const RunFigure& figure, std::string_view kind);
+
+void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame);
+void DrawPanel(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,
+               const std::vector<Track>& tracks);
+
+}  // namespace gauntlet::analysis

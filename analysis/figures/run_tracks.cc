@@ -1,0 +1,222 @@
+#include "analysis/figures/run_tracks.h"
+
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "sim/geometry/trigonometry.h"
+
+namespace gauntlet::analysis {
+namespace {
+
+constexpr double kLeastStep = 1.2;     // pixels between points that are drawn
+constexpr int kFadeSteps = 8;          // pieces of growing strength per way
+constexpr double kArrowEvery = 110.0;  // pixels of way between two arrowheads
+
+struct Rgb {
+  int red;
+  int green;
+  int blue;
+};
+
+// Neighbours of one hue: from light to dark with the robot's rank in its family.
+constexpr Rgb kKeptLight{96, 156, 214};
+constexpr Rgb kKeptDark{22, 70, 132};
+constexpr Rgb kLostLight{240, 104, 42};
+constexpr Rgb kLostDark{178, 36, 8};
+
+std::string Mix(Rgb a, Rgb b, double share) {
+  const auto channel = [share](int from, int to) {
+    return from + static_cast<int>(std::lround(share * (to - from)));
+  };
+  return fmt::format("#{:02x}{:02x}{:02x}", channel(a.red, b.red), channel(a.green, b.green),
+                     channel(a.blue, b.blue));
+}
+
+bool Finite(const sim::Vec2& p) {
+  return std::isfinite(p.x()) && std::isfinite(p.y());
+}
+
+void AppendPoint(Track& track, Pixel p, double time, bool always) {
+  if (!track.points.empty() && !always) {
+    const Pixel last = track.points.back();
+    if (std::hypot(p.x - last.x, p.y - last.y) < kLeastStep) return;
+  }
+  track.points.push_back(p);
+  track.times.push_back(time);
+}
+
+void ReadTrajectory(const RunFigure& figure, const FigureFrame& frame, Track& track) {
+  const auto& ticks = figure.result.trajectory;
+  const auto robot = static_cast<std::size_t>(track.robot);
+  for (std::size_t t = 0; t < ticks.size(); ++t) {
+    if (robot >= ticks[t].size() || !Finite(ticks[t][robot].position())) continue;
+    const sim::RobotState& state = ticks[t][robot];
+    const double time =
+        ticks.size() > 1 ? static_cast<double>(t) / static_cast<double>(ticks.size() - 1) : 1.0;
+    if (track.points.empty()) track.start = {state.position(), state.heading};
+    track.end = {state.position(), state.heading};
+    AppendPoint(track, frame.At(state.position()), time, t + 1 == ticks.size());
+  }
+}
+
+void ReadSummary(const sim::RobotSummary& summary, const FigureFrame& frame, Track& track) {
+  track.start = summary.start;
+  track.end = summary.end;
+  AppendPoint(track, frame.At(summary.start.position), 0.0, true);
+  const double count = static_cast<double>(summary.waypoints.size()) + 1;
+  for (std::size_t i = 0; i < summary.waypoints.size(); ++i) {
+    if (Finite(summary.waypoints[i])) {
+      AppendPoint(track, frame.At(summary.waypoints[i]), static_cast<double>(i + 1) / count, false);
+    }
+  }
+  AppendPoint(track, frame.At(summary.end.position), 1.0, true);
+}
+
+double WidthOf(TrackKind kind) {
+  switch (kind) {
+    case TrackKind::kKept:
+      return 1.5;
+    case TrackKind::kLost:
+      return 2.3;
+    case TrackKind::kPrey:
+      return 3.2;
+  }
+  return 1.0;
+}
+
+void DrawArrow(SvgCanvas& canvas, Pixel tip, double dx, double dy, double size, std::string_view color) {
+  const Pixel base{tip.x - dx * size, tip.y - dy * size};
+  const double half = 0.55 * size;
+  canvas.Polygon({tip, {base.x - dy * half, base.y + dx * half}, {base.x + dy * half, base.y - dx * half}},
+                 fmt::format("class=\"arrow\" fill=\"{}\"", color));
+}
+
+// Arrowheads along the way, the first half a distance from the start.
+void DrawArrows(SvgCanvas& canvas, const Track& track) {
+  double way = kArrowEvery / 2;
+  const double size = track.kind == TrackKind::kPrey ? 11.0 : 8.5;
+  for (std::size_t i = 3; i < track.points.size(); ++i) {
+    const Pixel a = track.points[i - 1];
+    const Pixel b = track.points[i];
+    const double step = std::hypot(b.x - a.x, b.y - a.y);
+    way += step;
+    if (way < kArrowEvery || step == 0.0) continue;
+    way = 0.0;
+    // The direction over the last few points: steadier than that of one step.
+    const Pixel before = track.points[i - 3];
+    const double length = std::hypot(b.x - before.x, b.y - before.y);
+    if (length > 0)
+      DrawArrow(canvas, b, (b.x - before.x) / length, (b.y - before.y) / length, size, track.color);
+  }
+}
+
+}  // namespace
+
+std::vector<Track> TracksOf(const RunFigure& figure, const FigureFrame& frame) {
+  const auto& result = figure.result;
+  const std::size_t robots =
+      std::max(result.robots.size(), result.trajectory.empty() ? 0 : result.trajectory.front().size());
+  std::vector<Track> tracks;
+  for (std::size_t i = 0; i < robots; ++i) {
+    Track track;
+    track.robot = static_cast<int>(i);
+    const bool lost = i < result.robots.size() && result.robots[i].lost;
+    track.kind = track.robot == figure.prey ? TrackKind::kPrey : lost ? TrackKind::kLost : TrackKind::kKept;
+    if (!result.trajectory.empty()) {
+      ReadTrajectory(figure, frame, track);
+    } else {
+      ReadSummary(result.robots[i], frame, track);
+    }
+    if (!track.points.empty()) tracks.push_back(std::move(track));
+  }
+  for (const TrackKind kind : {TrackKind::kKept, TrackKind::kLost}) {
+    const auto family = static_cast<double>(
+        std::count_if(tracks.begin(), tracks.end(), [kind](const Track& t) { return t.kind == kind; }));
+    double rank = 0.0;
+    for (Track& track : tracks) {
+      if (track.kind != kind) continue;
+      const double share = family > 1 ? rank / (family - 1) : 0.5;
+      track.color =
+          kind == TrackKind::kKept ? Mix(kKeptLight, kKeptDark, share) : Mix(kLostLight, kLostDark, share);
+      rank += 1.0;
+    }
+  }
+  for (Track& track : tracks) {
+    if (track.kind == TrackKind::kPrey) track.color = kPreyColor;
+  }
+  return tracks;
+}
+
+std::optional<sim::Vec2> PositionAt(const RunFigure& figure, int robot, sim::Tick tick) {
+  const auto& ticks = figure.result.trajectory;
+  if (robot < 0 || tick < 0 || static_cast<std::size_t>(tick) >= ticks.size()) return std::nullopt;
+  const auto& states = ticks[static_cast<std::size_t>(tick)];
+  if (static_cast<std::size_t>(robot) >= states.size()) return std::nullopt;
+  const sim::Vec2 position = states[static_cast<std::size_t>(robot)].position();
+  return Finite(position) ? std::optional(position) : std::nullopt;
+}
+
+void DrawWay(SvgCanvas& canvas, const Track& track) {
+  const std::string_view name = track.kind == TrackKind::kPrey   ? "prey"
+                                : track.kind == TrackKind::kLost ? "lost"
+                                                                 : "kept";
+  canvas.OpenGroup(fmt::format("class=\"way {}\" id=\"robot-{}\" stroke=\"{}\" stroke-width=\"{}\"", name,
+                               track.robot, track.color, WidthOf(track.kind)));
+  const double weakest = track.kind == TrackKind::kKept ? 0.22 : 0.38;
+  std::size_t begin = 0;
+  for (int piece = 0; piece < kFadeSteps; ++piece) {
+    std::size_t end = begin;
+    while (end + 1 < track.points.size() &&
+           (track.times[end] * kFadeSteps < piece + 1 || piece + 1 == kFadeSteps)) {
+      ++end;
+    }
+    if (end > begin) {
+      const std::vector<Pixel> points(track.points.begin() + static_cast<std::ptrdiff_t>(begin),
+                                      track.points.begin() + static_cast<std::ptrdiff_t>(end) + 1);
+      const double strength = weakest + (0.95 - weakest) * piece / (kFadeSteps - 1);
+      canvas.Polyline(points, fmt::format("stroke-opacity=\"{}\"", SvgNumber(strength)));
+    }
+    begin = end;
+  }
+  canvas.CloseGroup();
+  if (track.kind != TrackKind::kKept) DrawArrows(canvas, track);
+}
+
+void DrawStart(SvgCanvas& canvas, const FigureFrame& frame, const Track& track) {
+  const Pixel center = frame.At(track.start.position);
+  const sim::Vec2 heading = sim::UnitVector(track.start.heading);
+  constexpr double kRadius = 3.6;
+  canvas.Line(center, {center.x + heading.x() * kRadius * 2.4, center.y - heading.y() * kRadius * 2.4},
+              fmt::format("stroke=\"{}\" stroke-width=\"1.6\"", track.color));
+  canvas.Circle(center, kRadius, fmt::format("class=\"start\" stroke=\"{}\"", track.color));
+}
+
+void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, TrackKind kind,
+               std::string_view color, std::string_view label) {
+  if (kind == TrackKind::kLost) {
+    const double inner = 0.8 * radius;
+    const double outer = 1.45 * radius;
+    for (const auto& [x, y] :
+         std::array<std::pair<double, double>, 4>{{{1, 1}, {1, -1}, {-1, 1}, {-1, -1}}}) {
+      canvas.Line({center.x + x * inner * 0.707, center.y + y * inner * 0.707},
+                  {center.x + x * outer, center.y + y * outer},
+                  fmt::format("class=\"cross\" stroke=\"{}\"", color));
+    }
+  }
+  const sim::Vec2 nose = sim::UnitVector(heading);
+  canvas.Line({center.x + nose.x() * radius, center.y - nose.y() * radius},
+              {center.x + nose.x() * radius * 1.85, center.y - nose.y() * radius * 1.85},
+              fmt::format("class=\"nose\" stroke=\"{}\"", color));
+  canvas.Circle(center, radius, fmt::format("class=\"robot\" fill=\"{}\"", color));
+  if (!label.empty()) canvas.Text({center.x, center.y + 3.4}, label, "class=\"number\"");
+}
+
+void DrawEnd(SvgCanvas& canvas, const FigureFrame& frame, const Track& track) {
+  const double radius = std::max(6.5, sim::foot_bot::kRadius * frame.scale());
+  DrawRobot(canvas, frame.At(track.end.position), radius, track.end.heading, track.kind, track.color,
+            track.kind == TrackKind::kPrey ? std::string("P") : fmt::format("{}", track.robot));
+}
+
+}  // namespace gauntlet::analysis

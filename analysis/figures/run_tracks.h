@@ -1,0 +1,37 @@
+// The ways of the robots in a run's picture: lines that grow stronger with time, start and end marks.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/figures/figure_frame.h"
+#include "analysis/figures/run_figure.h"
+#include "analysis/figures/svg_canvas.h"
+
+namespace gauntlet::analysis {
+
+enum class TrackKind { kKept, kLost, kPrey };
+
+struct Track {
+  int robot = 0;
+  TrackKind kind = TrackKind::kKept;
+  std::string color;
+  std::vector<Pixel> points;  // thinned: neighbours are at least a pixel apart
+  std::vector<double> times;  // of the points, as a share of the run: 0..1
+  sim::Pose start;
+  sim::Pose end;
+};
+
+// One track per robot that has any pose, in robot order.
+std::vector<Track> TracksOf(const RunFigure& figure, const FigureFrame& frame);
+// Pose of a robot at a tick; nothing when the trajectory does not hold it.
+std::optional<sim::Vec2> PositionAt(const RunFigure& figure, int robot, sim::Tick tick);
+
+void DrawWay(SvgCanvas& canvas, const Track& track);
+void DrawStart(SvgCanvas& canvas, const FigureFrame& frame, const Track& track);
+void DrawEnd(SvgCanvas& canvas, const FigureFrame& frame, const Track& track);
+// The mark of a robot at its end, also used by the legend. `radius` in pixels, heading in rad.
+void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, TrackKind kind,
+               std::string_view color, std::string_view label);
+
+}  // namespace gauntlet::analysis
