@@ -1,0 +1,31 @@
+// Wandering: straight on, and now and then a new heading (Buchanan's dps code, spec section 1).
+#pragma once
+
+#include "sim/random/random_stream.h"
+
+namespace gauntlet::controllers {
+
+struct RandomWalkParameters {
+  double turn_probability = 0.0;  // per tick
+  double turn_limit = 0.0;        // rad; a new heading differs by up to this much to either side
+};
+
+// One robot's random walk. It remembers the angle still to be turned; a robot has no compass, so the angle is
+// dead-reckoned from the turns that its controller reports.
+class RandomWalk {
+ public:
+  explicit RandomWalk(const RandomWalkParameters& parameters) : parameters_(parameters) {}
+
+  // The bearing to take in this tick, rad. Draws once or twice from `random`.
+  double Next(sim::RandomStream& random);
+  // The controller commanded a turn of `angle` rad for the coming tick.
+  void Turned(double angle) { remaining_ -= angle; }
+  // The way is straight on from here: after the bearing was reached, or after something else steered.
+  void Reset() { remaining_ = 0.0; }
+
+ private:
+  RandomWalkParameters parameters_;
+  double remaining_ = 0.0;
+};
+
+}  // namespace gauntlet::controllers

@@ -1,0 +1,183 @@
+#include "controllers/flocking/bird_controller.h"
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "controllers/common/proximity.h"
+#include "controllers/common/steering.h"
+#include "sim/geometry/trigonometry.h"
+
+namespace gauntlet::controllers {
+namespace {
+
+using sim::Vec2;
+
+// A proximity ray that passes a beacon nearer than this, within this distance of it, hit that robot's body
+// and not an obstacle (spec 2.3 rule 1). A fixed window of angles would turn touching neighbours, who subtend
+// 60 degrees, into obstacles and freeze pairs.
+constexpr double kBodyMiss = 0.10;      // m from the ray to the beacon
+constexpr double kBodyDistance = 0.30;  // m from centre to centre
+constexpr double kFrontOfCatchUp = 60.0 * sim::kDegree;
+constexpr double kFrontOfSeparation = sim::kPi / 2.0;
+constexpr double kStopWhenAhead = 45.0 * sim::kDegree;
+constexpr double kNoDirection = 1e-3;  // a sum of unit vectors shorter than this points nowhere
+
+bool IsRobot(const sim::Blob& blob) {
+  return blob.color == BirdController::kBirdColor || blob.color == BirdController::kPreyColor;
+}
+
+// Unit vector of the prey's bearing, else of the mean position of the visible birds; zero when nobody is
+// visible.
+struct Goal {
+  Vec2 direction = Vec2::Zero();
+  bool prey = false;
+  bool known = false;
+};
+
+Goal FindGoal(std::span<const sim::Blob> blobs) {
+  for (const sim::Blob& blob : blobs) {
+    if (blob.color == BirdController::kPreyColor) return {sim::UnitVector(blob.bearing), true, true};
+  }
+  Goal goal;
+  Vec2 sum = Vec2::Zero();
+  for (const sim::Blob& blob : blobs) {
+    if (blob.color != BirdController::kBirdColor) continue;
+    sum += blob.range * sim::UnitVector(blob.bearing);
+    goal.known = true;
+  }
+  const double length = std::sqrt(sum.dot(sum));
+  // Birds evenly around: their mean position is here, so straight on is as good as any way.
+  if (goal.known) goal.direction = length > 0.0 ? Vec2(sum / length) : Vec2(1.0, 0.0);
+  return goal;
+}
+
+// Positions of the robots near enough to be what a proximity ray hits, in the robot's frame.
+class NearRobots {
+ public:
+  explicit NearRobots(std::span<const sim::Blob> blobs) {
+    for (const sim::Blob& blob : blobs) {
+      if (count_ == positions_.size()) break;
+      if (blob.range < kBodyDistance && IsRobot(blob)) {
+        positions_[count_++] = blob.range * sim::UnitVector(blob.bearing);
+      }
+    }
+  }
+  bool HitBy(const Vec2& ray) const {
+    for (std::size_t i = 0; i < count_; ++i) {
+      if (std::fabs(sim::Cross(ray, positions_[i])) <= kBodyMiss && ray.dot(positions_[i]) >= 0.0)
+        return true;
+    }
+    return false;
+  }
+
+ private:
+  // No more than 16 discs of 0.085 m find room with their centres within 0.30 m.
+  std::array<Vec2, 16> positions_;
+  std::size_t count_ = 0;
+};
+
+// Where obstacles push: minus the sum of the readings along their bearings, over every ray that did not hit a
+// robot. `ahead` tells whether one of them is within 90 degrees of the heading.
+struct ObstaclePush {
+  Vec2 away = Vec2::Zero();
+  bool ahead = false;
+};
+
+ObstaclePush FindObstacles(const sim::SensorReadings& readings, double least_reading) {
+  ObstaclePush push;
+  if (!readings.proximity_active) return push;
+  const NearRobots robots(readings.blobs);
+  const auto& directions = ProximityDirections();
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const double reading = readings.proximity[i];
+    if (reading <= 0.0 || reading < least_reading || robots.HitBy(directions[i])) continue;
+    push.away -= reading * directions[i];
+    push.ahead = push.ahead || directions[i].x() > 0.0;
+  }
+  return push;
+}
+
+double ObstacleBearing(const Vec2& away_sum, const Goal& goal) {
+  const double length = std::sqrt(away_sum.dot(away_sum));
+  const Vec2 away = length > 0.0 ? Vec2(away_sum / length) : Vec2(Vec2::Zero());
+  const Vec2 sum = (goal.known ? goal.direction : Vec2(1.0, 0.0)) + away;
+  return sim::AngleOf(sum.dot(sum) < kNoDirection * kNoDirection ? sim::LeftOf(away) : sum);
+}
+
+// The nearest robot in front and on the side of the goal that is closer than the separation distance.
+const sim::Blob* FindTooNear(std::span<const sim::Blob> blobs, double distance, const Goal& goal) {
+  const sim::Blob* nearest = nullptr;
+  for (const sim::Blob& blob : blobs) {
+    if (blob.range >= distance || std::fabs(blob.bearing) > kFrontOfSeparation || !IsRobot(blob)) continue;
+    if (nearest != nullptr && blob.range >= nearest->range) continue;
+    if (goal.known && sim::UnitVector(blob.bearing).dot(goal.direction) < 0.0) continue;
+    nearest = &blob;
+  }
+  return nearest;
+}
+
+// Whether a robot is visible in front and the nearest such robot is farther than `distance`.
+bool IsBehind(std::span<const sim::Blob> blobs, double distance) {
+  bool somebody = false;
+  for (const sim::Blob& blob : blobs) {
+    if (std::fabs(blob.bearing) > kFrontOfCatchUp || !IsRobot(blob)) continue;
+    if (blob.range <= distance) return false;
+    somebody = true;
+  }
+  return somebody;
+}
+
+}  // namespace
+
+BirdController::BirdController(const BirdSettings& settings)
+    : settings_(settings),
+      // At the sensor's full range every reading counts, whatever the last bit of the formula says.
+      least_obstacle_reading_(settings.obstacle_distance >= sim::foot_bot::kProximityRange
+                                  ? 0.0
+                                  : ProximityReadingAt(settings.obstacle_distance)),
+      wander_(settings.wander) {}
+
+sim::DeviceSet BirdController::Devices() const {
+  return sim::Device::kWheels | sim::Device::kLeds | sim::Device::kProximity |
+         sim::Device::kOmnidirectionalCamera;
+}
+
+void BirdController::Step(const sim::ControlStep& step) {
+  const std::span<const sim::Blob> blobs = step.readings.blobs;
+  Reactions reactions{settings_.speed, settings_.turn_rate, settings_.straight_within,
+                      settings_.turning_speed_factor};
+  if (settings_.catch_up && IsBehind(blobs, settings_.catch_up->distance)) {
+    reactions.speed *= settings_.catch_up->gain;
+    reactions.turn_rate *= settings_.catch_up->gain;
+  }
+
+  const Goal goal = FindGoal(blobs);
+  const ObstaclePush obstacles = FindObstacles(step.readings, least_obstacle_reading_);
+  DriveCommand command;
+  if (obstacles.ahead) {
+    last_rule_ = BirdRule::kObstacle;
+    command = React(ObstacleBearing(obstacles.away, goal), reactions);
+    command.forward *= settings_.obstacle_speed_factor;
+  } else if (const sim::Blob* near = FindTooNear(blobs, settings_.separation_distance, goal)) {
+    last_rule_ = BirdRule::kSeparate;
+    command = React(sim::WrapAngle(near->bearing + sim::kPi), reactions);
+    if (std::fabs(near->bearing) > kStopWhenAhead) {
+      command.forward = reactions.speed * reactions.turning_speed_factor;
+    }
+  } else if (goal.known) {
+    last_rule_ = goal.prey ? BirdRule::kChase : BirdRule::kFlock;
+    command = React(sim::AngleOf(goal.direction), reactions);
+  } else {
+    last_rule_ = BirdRule::kWander;
+    command = React(wander_.Next(step.random), reactions);
+    wander_.Turned(command.turn * sim::kTickSeconds);
+  }
+  if (last_rule_ != BirdRule::kWander || command.turn == 0.0) wander_.Reset();
+
+  step.actuators.beacon = kBirdColor;
+  step.actuators.Drive(command.forward, command.turn);
+}
+
+}  // namespace gauntlet::controllers

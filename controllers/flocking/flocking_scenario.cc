@@ -1,0 +1,155 @@
+#include "controllers/flocking/flocking_scenario.h"
+
+#include <string>
+#include <utility>
+
+#include "controllers/flocking/flocking_metrics.h"
+#include "sim/arena/spawn.h"
+#include "sim/geometry/trigonometry.h"
+
+namespace gauntlet::controllers {
+namespace {
+
+double Length(const std::vector<sim::Vec2>& path) {
+  double length = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
+  return length;
+}
+
+sim::Vec2 MeanPosition(const sim::Observer& observer, const std::vector<sim::RobotIndex>& robots,
+                       sim::Tick tick) {
+  sim::Vec2 sum = sim::Vec2::Zero();
+  for (const sim::RobotIndex robot : robots) {
+    sum += observer.At(tick)[static_cast<std::size_t>(robot)].position();
+  }
+  return sum / static_cast<double>(robots.size());
+}
+
+}  // namespace
+
+sim::Vec2 FlockingStart(const sim::TestCase& test_case, double corner_distance) {
+  return {test_case.side_x / 2.0 - corner_distance, test_case.side_y / 2.0 - corner_distance};
+}
+
+sim::Vec2 FlockingGoal(const sim::TestCase& test_case, double corner_distance) {
+  return -FlockingStart(test_case, corner_distance);
+}
+
+FlockingScenario::FlockingScenario(const sim::TestCase& test_case, const FlockingSettings& settings,
+                                   const BirdSettings& bird, std::uint64_t seed)
+    : arena_(test_case),
+      settings_(settings),
+      bird_(bird),
+      seed_(seed),
+      start_(FlockingStart(test_case, settings.corner_distance)),
+      goal_(FlockingGoal(test_case, settings.corner_distance)) {
+  settings_.birds = test_case.robots.value_or(settings.birds);
+  const sim::Vec2 corner(test_case.side_x / 2.0, test_case.side_y / 2.0);
+  const sim::Vec2 side(settings.spawn_side, settings.spawn_side);
+  spawn_area_ = test_case.spawn_area.value_or(sim::Rectangle{corner - side, corner});
+}
+
+Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::Headquarters& headquarters) {
+  if (settings_.birds < settings_.min_swarm) {
+    return InvalidInput("min-swarm: " + std::to_string(settings_.birds) +
+                        " birds can never be a swarm of at least " + std::to_string(settings_.min_swarm) +
+                        "; use more birds or a smaller min_swarm");
+  }
+  prey_path_ = PlanPreyPath(arena_, start_, goal_, settings_.prey.inflation);
+  if (prey_path_.empty()) {
+    return InvalidInput(std::string(NameOf(sim::ValidityRule::kNoPath)) + ": the prey finds no path");
+  }
+
+  sim::SpawnRequest request;
+  request.count = settings_.birds;
+  request.area = spawn_area_;
+  request.robot_radius = sim::foot_bot::kRadius;
+  request.occupied = {start_};
+  request.start = start_;
+  sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
+  const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
+  const auto poses = sim::Spawn(request, grid, random);
+  if (!poses.ok()) return poses.error();
+
+  std::vector<sim::RobotSetup> swarm;
+  swarm.reserve(static_cast<std::size_t>(settings_.birds) + 1);
+  for (const sim::Pose& pose : *poses) {
+    swarm.push_back(
+        {pose, BirdController::kBirdColor, settings_.camera_range, std::make_unique<BirdController>(bird_)});
+  }
+  const sim::Pose prey_pose{start_, sim::AngleOf(goal_ - start_)};
+  swarm.push_back({prey_pose, BirdController::kPreyColor, 0.0,
+                   std::make_unique<PreyController>(headquarters, prey(), prey_path_, settings_.prey)});
+  return swarm;
+}
+
+bool FlockingScenario::Arrived(const sim::Observer& observer) const {
+  const sim::Vec2 position = observer.Latest()[static_cast<std::size_t>(prey())].position();
+  return (position - goal_).squaredNorm() <= settings_.goal_radius * settings_.goal_radius;
+}
+
+bool FlockingScenario::Finished(const sim::Observer& observer) {
+  return Arrived(observer);
+}
+
+sim::Outcome FlockingScenario::Evaluate(const sim::Observer& observer) {
+  const SplitHistory history = FindSplits(observer, arena_, prey(), settings_.split);
+  sim::Outcome outcome;
+  std::vector<double> headings;
+  for (sim::RobotIndex bird = 0; bird < settings_.birds; ++bird) {
+    const auto index = static_cast<std::size_t>(bird);
+    const bool remains = history.main_cluster[index] != 0;
+    outcome.lost.push_back(!remains);
+    if (remains) headings.push_back(observer.Latest()[index].heading);
+  }
+  outcome.lost.push_back(false);  // the prey
+
+  const int remaining = static_cast<int>(headings.size());
+  const double order = AngularOrder(headings);
+  outcome.fitness = FlockingFitness(order, remaining, settings_.birds, settings_.min_swarm);
+  outcome.failure.total = remaining < settings_.min_swarm;
+
+  const std::vector<sim::Vec2> spawn_corners = {spawn_area_.min,
+                                                {spawn_area_.max.x(), spawn_area_.min.y()},
+                                                spawn_area_.max,
+                                                {spawn_area_.min.x(), spawn_area_.max.y()}};
+  outcome.annotations = {
+      {"area", "start of the birds", spawn_corners, 0.0, -1, {}},
+      {"path", "planned path of the prey", prey_path_, 0.0, -1, {}},
+      {"disc", "goal", {goal_}, settings_.goal_radius, -1, {}},
+  };
+
+  double split_time = -1.0;
+  double split_angle = -1.0;
+  double split_speed_ratio = -1.0;
+  if (const SplitEvent* split = LastSplit(history.events)) {
+    const RelativeMotion motion = CompareMotion(observer, *split, settings_.split.half_window);
+    const int type = FailureTypeOf(motion);
+    if (outcome.failure.total) {
+      outcome.failure.type = type;
+      outcome.failure.label = FailureLabel(type);
+    }
+    const sim::Vec2 place = MeanPosition(observer, split->birds, split->tick);
+    outcome.annotations.push_back({"split", FailureLabel(type), {place}, 0.0, split->tick, split->birds});
+    split_time = split->tick * sim::kTickSeconds;
+    split_angle = motion.angle;
+    split_speed_ratio = motion.speed_ratio;
+  }
+
+  const bool arrived = Arrived(observer);
+  outcome.metrics = {
+      {"angular_order", order},
+      {"birds_left", remaining},
+      {"proportion_left", static_cast<double>(remaining) / settings_.birds},
+      {"arrival_time", observer.last_tick() * sim::kTickSeconds},
+      {"timeout", arrived ? 0.0 : 1.0},
+      {"prey_path_length", Length(prey_path_)},
+      {"splits", static_cast<double>(history.events.size())},
+      {"split_time", split_time},
+      {"split_angle", split_angle},
+      {"split_speed_ratio", split_speed_ratio},
+  };
+  return outcome;
+}
+
+}  // namespace gauntlet::controllers

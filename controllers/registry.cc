@@ -1,0 +1,110 @@
+#include "controllers/registry.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "controllers/flocking/flocking_registry.h"
+#include "sim/base/nearest_name.h"
+
+namespace gauntlet::controllers {
+namespace {
+
+std::string Shortest(double value) {
+  std::array<char, 32> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  return {buffer.data(), end};
+}
+
+// "unknown parameter 'bird_sped'; did you mean 'bird_speed'?", or the list of what there is.
+template <typename Infos>
+Error Unknown(const char* what, std::string_view name, const Infos& infos) {
+  std::vector<std::string_view> known;
+  for (const auto& info : infos) known.push_back(info.name);
+  std::string message = "unknown " + std::string(what) + " '" + std::string(name) + "'";
+  const std::string nearest = NearestName(name, known);
+  if (!nearest.empty()) return InvalidInput(message + "; did you mean '" + nearest + "'?");
+  message += "; known:";
+  for (const std::string_view candidate : known) message += " " + std::string(candidate);
+  return InvalidInput(std::move(message));
+}
+
+template <typename Info>
+const Info* FindByName(std::span<const Info> infos, std::string_view name) {
+  for (const Info& info : infos) {
+    if (info.name == name) return &info;
+  }
+  return nullptr;
+}
+
+Status CheckRange(const ParameterInfo& info, double value) {
+  const std::string unit = info.unit.empty() || info.unit == "bool" ? "" : " " + std::string(info.unit);
+  const std::string given = "parameter '" + std::string(info.name) + "' = " + Shortest(value);
+  if (!(value >= info.min && value <= info.max)) {  // also refuses what is not a number
+    return InvalidInput(given + unit + " is out of range: from " + Shortest(info.min) + " to " +
+                        Shortest(info.max) + unit);
+  }
+  if (info.integer && value != std::floor(value)) return InvalidInput(given + " is not a whole number");
+  return Ok{};
+}
+
+}  // namespace
+
+std::span<const ScenarioInfo> Scenarios() {
+  static const std::array<ScenarioInfo, 1> scenarios = {FlockingScenarioInfo()};
+  return scenarios;
+}
+
+std::span<const ControllerInfo> Controllers() {
+  return FlockingControllerInfos();
+}
+
+const ScenarioInfo* FindScenario(std::string_view name) {
+  return FindByName(Scenarios(), name);
+}
+
+const ControllerInfo* FindController(std::string_view name) {
+  return FindByName(Controllers(), name);
+}
+
+Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos,
+                                          const sim::Parameters& given) {
+  sim::Parameters resolved;
+  for (const ParameterInfo& info : infos) resolved.emplace(info.name, info.default_value);
+  for (const auto& [name, value] : given) {
+    const ParameterInfo* info = FindByName(infos, name);
+    if (info == nullptr) return Unknown("parameter", name, infos);
+    const Status in_range = CheckRange(*info, value);
+    if (!in_range.ok()) return in_range.error();
+    resolved[name] = value;
+  }
+  return resolved;
+}
+
+Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) {
+  const ScenarioInfo* scenario = FindScenario(spec.scenario);
+  if (scenario == nullptr) return Unknown("scenario", spec.scenario, Scenarios());
+  const ControllerInfo* controller = FindController(spec.controller);
+  if (controller == nullptr) return Unknown("controller", spec.controller, Controllers());
+  if (controller->scenario != scenario->name) {
+    return InvalidInput("controller '" + spec.controller + "' is written for the scenario '" +
+                        std::string(controller->scenario) + "', not for '" + spec.scenario + "'");
+  }
+
+  sim::RunSpec resolved = spec;
+  auto scenario_parameters = ResolveParameters(scenario->parameters, spec.scenario_parameters);
+  if (!scenario_parameters.ok()) return scenario_parameters.error();
+  resolved.scenario_parameters = std::move(*scenario_parameters);
+  auto controller_parameters = ResolveParameters(controller->parameters, spec.controller_parameters);
+  if (!controller_parameters.ok()) return controller_parameters.error();
+  resolved.controller_parameters = std::move(*controller_parameters);
+
+  const auto requirements = scenario->requirements(resolved.scenario_parameters, spec.test_case);
+  if (const auto violation = sim::CheckValidity(spec.test_case, requirements)) {
+    return InvalidInput(std::string(NameOf(violation->rule)) + ": " + violation->message);
+  }
+  return scenario->create(resolved);
+}
+
+}  // namespace gauntlet::controllers
