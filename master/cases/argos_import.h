@@ -1,0 +1,29 @@
+// Reads the environment out of an ARGoS3 experiment file (.argos): arena, boxes, number and start area of the
+// foot-bots.
+#pragma once
+
+#include <string>
+
+#include "sim/arena/test_case.h"
+#include "sim/base/result.h"
+
+namespace gauntlet::master {
+
+struct ImportedCase {
+  sim::TestCase test_case;
+  std::string notice;  // one line: what was taken and what was ignored; "" when all of the file counts
+};
+
+// `file_name` stands in messages and becomes the case's name.
+//
+// - Coordinates are relative to the arena's centre. Boxes that stand where our walls are (centre on the
+//   arena's edge, length of the side, within 1 cm) become the walls; all others become obstacles in file
+//   order.
+// - <distribute> of foot-bots gives the number and, with method="uniform", the spawn area. Foot-bots that
+//   stand in the file by themselves are counted only.
+// - Movable boxes become fixed and all boxes count as full height; the notice says so.
+// - Error "FILE:LINE:COLUMN: ..." for malformed XML, a missing arena, values that are no numbers, boxes
+//   rotated about another axis than z and cylinders.
+Result<ImportedCase> ParseArgos(const std::string& text, const std::string& file_name);
+
+}  // namespace gauntlet::master

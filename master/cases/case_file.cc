@@ -1,0 +1,66 @@
+#include "master/cases/case_file.h"
+
+#include <fstream>
+#include <iterator>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "master/cases/argos_import.h"
+#include "master/dispatch/run_codec.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = 16U << 20;
+
+Result<std::string> ReadFile(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    return Error{ErrorKind::kNotFound, fmt::format("{}: no such file", path.string())};
+  }
+  if (std::filesystem::is_directory(status)) {
+    return InvalidInput(
+        fmt::format("{} is a directory, expected a case file (.json or .argos)", path.string()));
+  }
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > kMostBytes) {
+    return InvalidInput(
+        fmt::format("{} has {} bytes; a case file has at most {}", path.string(), size, kMostBytes));
+  }
+  std::ifstream stream(path, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream) return Error{ErrorKind::kIo, fmt::format("{}: cannot be read", path.string())};
+  return text;
+}
+
+bool IsArgos(const std::filesystem::path& path, const std::string& text) {
+  const std::string extension = path.extension().string();
+  if (extension == ".argos" || extension == ".xml") return true;
+  if (extension == ".json") return false;
+  const auto first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  return first != std::string::npos && text[first] == '<';
+}
+
+}  // namespace
+
+Result<LoadedCase> LoadCase(const std::filesystem::path& path) {
+  const Result<std::string> text = ReadFile(path);
+  if (!text) return text.error();
+  LoadedCase loaded;
+  if (IsArgos(path, *text)) {
+    Result<ImportedCase> imported = ParseArgos(*text, path.string());
+    if (!imported) return imported.error();
+    loaded = {std::move(imported->test_case), std::move(imported->notice)};
+    loaded.test_case.name = path.filename().string();
+  } else {
+    Result<sim::TestCase> parsed = ParseCaseJson(*text, path.string());
+    if (!parsed) return parsed.error();
+    loaded.test_case = std::move(*parsed);
+    if (loaded.test_case.name.empty()) loaded.test_case.name = path.filename().string();
+  }
+  return loaded;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,263 @@
+#include "master/cases/argos_import.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "master/cases/case_file.h"
+
+namespace gauntlet::master {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr const char* kWalls = R"(
+    <box id="north" movable="false" size="6,0.1,1"><body position="0,3,0" orientation="0,0,0"/></box>
+    <box id="south" movable="false" size="6,0.1,1"><body position="0,-3,0" orientation="0,0,0"/></box>
+    <box id="east" movable="false" size="6,0.1,1"><body position="3,0,0" orientation="270,0,0"/></box>
+    <box id="west" movable="false" size="0.1,6,1"><body position="-3,0,0" orientation="0,0,0"/></box>)";
+
+constexpr const char* kTenRobots = R"(
+    <distribute>
+      <position method="uniform" min="2,2,0" max="3,2.9,0"/>
+      <orientation method="gaussian" mean="0,0,0" std_dev="360,0,0"/>
+      <entity quantity="10" max_trials="100"><foot-bot id="fb"><controller config="c"/></foot-bot></entity>
+    </distribute>)";
+
+std::string Document(const std::string& arena_content,
+                     const std::string& arena = R"(size="6,6,1" center="0,0,0.5")") {
+  return "<?xml version=\"1.0\"?>\n<argos-configuration>\n  <framework/>\n  <arena " + arena + ">" +
+         arena_content + "\n  </arena>\n  <media/>\n</argos-configuration>\n";
+}
+
+std::string ErrorOf(const std::string& text) {
+  const Result<ImportedCase> imported = ParseArgos(text, "case.argos");
+  return imported.ok() ? "imported" : imported.error().message;
+}
+
+TEST(ArgosImport, TakesArenaObstaclesRobotsAndSpawnArea) {
+  const auto imported = ParseArgos(Document(std::string(kWalls) + R"(
+    <box id="a" movable="false" size="1.4,0.4,1"><body position="0.8,2.4,0" orientation="100,0,0"/></box>
+    <box id="b" movable="false" size="3.2,0.2,1"><body position="-2.7, 2.7 ,0" orientation="-30,0,0"/></box>)" +
+                                            kTenRobots),
+                                   "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  const sim::TestCase& test_case = imported->test_case;
+  EXPECT_EQ(test_case.side_x, 6.0);
+  EXPECT_EQ(test_case.side_y, 6.0);
+  EXPECT_EQ(test_case.wall_thickness, 0.1);
+  ASSERT_EQ(test_case.obstacles.size(), 2U);
+  EXPECT_EQ(test_case.obstacles[0], (sim::ObstacleGene{0.8, 2.4, 1.4, 0.4, 100.0}));
+  EXPECT_EQ(test_case.obstacles[1], (sim::ObstacleGene{-2.7, 2.7, 3.2, 0.2, 330.0}));
+  EXPECT_EQ(test_case.robots, 10);
+  ASSERT_TRUE(test_case.spawn_area.has_value());
+  EXPECT_EQ(test_case.spawn_area->min, sim::Vec2(2.0, 2.0));
+  EXPECT_EQ(test_case.spawn_area->max, sim::Vec2(3.0, 2.9));
+}
+
+TEST(ArgosImport, SaysInOneLineWhatWasIgnored) {
+  const auto imported = ParseArgos(
+      Document(std::string(kWalls) + "<light id=\"l\" position=\"0,0,1\"/>" + kTenRobots), "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  EXPECT_EQ(imported->notice, "case.argos: ignored: framework, media, light, start orientations");
+}
+
+TEST(ArgosImport, BoxesNearTheEdgeThatAreNoWallsStayObstacles) {
+  const auto imported = ParseArgos(Document(R"(
+    <box id="moved" size="6,0.1,1"><body position="0,2.98,0" orientation="0,0,0"/></box>
+    <box id="short" size="5.9,0.1,1"><body position="0,-3,0" orientation="0,0,0"/></box>
+    <box id="askew" size="6,0.1,1"><body position="3,0,0" orientation="89,0,0"/></box>
+    <box id="almost" size="6.005,0.1,1"><body position="-2.995,0,0" orientation="90,0,0"/></box>)"),
+                                   "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  EXPECT_EQ(imported->test_case.obstacles.size(), 3U);
+  EXPECT_THAT(imported->notice, HasSubstr("1 of 4 walls are in the file, the others were added"));
+}
+
+TEST(ArgosImport, ThicknessComesFromTheWallsOfTheFile) {
+  const auto imported = ParseArgos(Document(R"(
+    <box id="n" size="4,0.2,1"><body position="0,2.5,0"/></box>
+    <box id="s" size="4.2,0.2,1"><body position="0,-2.5,0"/></box>
+    <box id="e" size="0.2,5,1"><body position="2,0,0"/></box>
+    <box id="w" size="0.2,5,1"><body position="-2,0,0"/></box>)",
+                                            R"(size="4,5,1")"),
+                                   "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  EXPECT_EQ(imported->test_case.side_x, 4.0);
+  EXPECT_EQ(imported->test_case.side_y, 5.0);
+  EXPECT_EQ(imported->test_case.wall_thickness, 0.2);
+  EXPECT_TRUE(imported->test_case.obstacles.empty());
+  EXPECT_THAT(imported->notice, Not(HasSubstr("walls")));
+}
+
+TEST(ArgosImport, CoordinatesAreRelativeToTheArenasCenter) {
+  const auto imported = ParseArgos(
+      Document(R"(<box id="a" size="1,0.2,1"><body position="11,20.5,0" orientation="45,0,0"/></box>
+    <distribute><position method="uniform" min="12,22,0" max="13,23,0"/>
+      <entity quantity="3"><foot-bot id="f"/></entity></distribute>)",
+               R"(size="6,6,1" center="10,20,0.5")"),
+      "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  ASSERT_EQ(imported->test_case.obstacles.size(), 1U);
+  EXPECT_EQ(imported->test_case.obstacles[0], (sim::ObstacleGene{1.0, 0.5, 1.0, 0.2, 45.0}));
+  EXPECT_EQ(imported->test_case.spawn_area->min, sim::Vec2(2.0, 2.0));
+}
+
+TEST(ArgosImport, FixedFootBotsAreCountedAndSeveralAreasJoined) {
+  const auto imported = ParseArgos(Document(R"(
+    <foot-bot id="x"/><foot-bot id="y"/>
+    <distribute><position method="uniform" min="0,0,0" max="1,1,0"/>
+      <entity quantity="3"><foot-bot id="f"/></entity></distribute>
+    <distribute><position method="uniform" min="-1,0.5,0" max="0,2,0"/>
+      <entity quantity="4"><foot-bot id="g"/></entity></distribute>
+    <distribute><position method="grid" center="0,0,0" distances="1,1,0" layout="2,2,1"/>
+      <entity quantity="1"><foot-bot id="h"/></entity></distribute>)"),
+                                   "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  EXPECT_EQ(imported->test_case.robots, 10);
+  EXPECT_EQ(imported->test_case.spawn_area->min, sim::Vec2(-1.0, 0.0));
+  EXPECT_EQ(imported->test_case.spawn_area->max, sim::Vec2(1.0, 2.0));
+  EXPECT_THAT(imported->notice, HasSubstr("poses of single foot-bots"));
+  EXPECT_THAT(imported->notice, HasSubstr("start positions (method \"grid\")"));
+}
+
+TEST(ArgosImport, WithoutFootBotsTheScenarioDecides) {
+  const auto imported = ParseArgos(Document(kWalls), "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  EXPECT_FALSE(imported->test_case.robots.has_value());
+  EXPECT_FALSE(imported->test_case.spawn_area.has_value());
+  EXPECT_THAT(imported->notice, HasSubstr("no foot-bots, so the scenario's number is taken"));
+}
+
+TEST(ArgosImport, MovableAndLowBoxesAreNoticed) {
+  const auto imported = ParseArgos(Document(R"(
+    <box id="m" movable="true" mass="1" size="1,0.2,0.2"><body position="1,1,0" orientation="0,0,0"/></box>)"),
+                                   "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  EXPECT_THAT(imported->notice, HasSubstr("1 movable boxes were made fixed"));
+  EXPECT_THAT(imported->notice, HasSubstr("1 boxes lower than a robot's camera"));
+}
+
+TEST(ArgosImport, MalformedXmlIsNamedWithLineAndColumn) {
+  const std::string message =
+      ErrorOf("<argos-configuration>\n  <arena size=\"6,6,1\">\n  </aren>\n</argos-configuration>");
+  EXPECT_THAT(message, StartsWith("case.argos:3:"));
+  EXPECT_THAT(message, HasSubstr("malformed XML"));
+  EXPECT_THAT(ErrorOf(""), StartsWith("case.argos:1:1: malformed XML"));
+}
+
+TEST(ArgosImport, ErrorsPointAtTheElement) {
+  // <body> stands in line 5, after 13 characters.
+  const std::string message =
+      ErrorOf(Document("\n    <box id=\"Wall3\" movable=\"false\" size=\"1,0.1,1\">\n            <body "
+                       "position=\"0,abc,0\"/></box>"));
+  EXPECT_EQ(message,
+            "case.argos:6:14: <box id=\"Wall3\"> has position=\"0,abc,0\": 'abc' is not a number, expected "
+            "\"x,y,z in m\"");
+}
+
+TEST(ArgosImport, RefusesWhatItCannotRepresent) {
+  EXPECT_THAT(ErrorOf("<lua/>"), HasSubstr("the root element is <lua>, expected <argos-configuration>"));
+  EXPECT_THAT(ErrorOf("<argos-configuration><framework/></argos-configuration>"),
+              HasSubstr("has no <arena>"));
+  EXPECT_THAT(ErrorOf(Document("", "")), HasSubstr("<arena> has no size"));
+  EXPECT_THAT(ErrorOf(Document("", R"(size="6,6")")), HasSubstr("size=\"6,6\": 2 numbers"));
+  EXPECT_THAT(ErrorOf(Document("", R"(size="6,nan,1")")), HasSubstr("'nan' is not a number"));
+  EXPECT_THAT(ErrorOf(Document(R"(<cylinder id="c7" radius="1" height="1"/>)")),
+              HasSubstr("<cylinder id=\"c7\"> is round: obstacles must be boxes"));
+  EXPECT_THAT(
+      ErrorOf(Document(R"(<box id="t" size="1,1,1"><body position="0,0,0" orientation="0,15,0"/></box>)")),
+      HasSubstr("<box id=\"t\"> has orientation=\"0,15,0\": boxes may be rotated about z only"));
+  EXPECT_THAT(ErrorOf(Document(R"(<box id="t" size="1,1,1"/>)")), HasSubstr("<box id=\"t\"> has no <body>"));
+  EXPECT_THAT(ErrorOf(Document(R"(<distribute><position method="uniform" min="2,2,0" max="3,3,0"/>
+      <entity quantity="ten"><foot-bot id="f"/></entity></distribute>)")),
+              HasSubstr("<entity> of <foot-bot id=\"f\"> has quantity=\"ten\", expected a whole number"));
+  EXPECT_THAT(ErrorOf(Document(R"(<distribute><position method="uniform" min="4,2,0" max="3,3,0"/>
+      <entity quantity="2"><foot-bot id="f"/></entity></distribute>)")),
+              HasSubstr("beyond max=\"3,3,0\""));
+  EXPECT_THAT(ErrorOf(Document(R"(<distribute><entity quantity="2000000000"><foot-bot id="f"/></entity>
+      <entity quantity="2000000000"><foot-bot id="g"/></entity></distribute>)")),
+              HasSubstr("4000000000 foot-bots"));
+}
+
+class CaseFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ = std::filesystem::path(::testing::TempDir()) /
+                 (std::string("gauntlet-case-file-") +
+                  ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(directory_);
+    std::filesystem::create_directories(directory_);
+  }
+  void TearDown() override { std::filesystem::remove_all(directory_); }
+  std::filesystem::path Write(const std::string& name, const std::string& text) const {
+    std::ofstream(directory_ / name, std::ios::binary) << text;
+    return directory_ / name;
+  }
+
+  std::filesystem::path directory_;
+};
+
+TEST_F(CaseFile, FormatFollowsFromExtensionOrContent) {
+  const std::string xml = Document(std::string(kWalls) + kTenRobots);
+  const std::string json =
+      R"({"obstacles": [{"x": 1, "y": 0.5, "length": 1, "width": 0.2, "orientationDeg": 10}]})";
+  for (const auto& path : {Write("a.argos", xml), Write("a.txt", "\n  " + xml)}) {
+    const auto loaded = LoadCase(path);
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    EXPECT_EQ(loaded->test_case.robots, 10);
+    EXPECT_EQ(loaded->test_case.name, path.filename().string());
+    EXPECT_THAT(loaded->notice, HasSubstr("ignored: framework"));
+  }
+  for (const auto& path : {Write("b.json", json), Write("b", json)}) {
+    const auto loaded = LoadCase(path);
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    ASSERT_EQ(loaded->test_case.obstacles.size(), 1U);
+    EXPECT_EQ(loaded->test_case.obstacles[0].y, 0.5);
+    EXPECT_EQ(loaded->test_case.name, path.filename().string());
+    EXPECT_EQ(loaded->notice, "");
+  }
+}
+
+TEST_F(CaseFile, ErrorsNameTheFile) {
+  EXPECT_THAT(LoadCase(directory_ / "none.json").error().message, HasSubstr("none.json: no such file"));
+  EXPECT_THAT(LoadCase(directory_).error().message, HasSubstr("is a directory"));
+  EXPECT_THAT(LoadCase(Write("bad.argos", "<arena")).error().message, HasSubstr("bad.argos:1:"));
+  EXPECT_THAT(LoadCase(Write("bad.json", "{\n\"obstacles\": 3\n}")).error().message, HasSubstr("bad.json:"));
+}
+
+// Files of the thesis' author; not part of the repository.
+TEST(RealArgosCases, EveryFileImports) {
+  const char* given = std::getenv("GAUNTLET_ARGOS_CASES");
+  const std::filesystem::path directory =
+      given != nullptr ? given : std::filesystem::path(GAUNTLET_SOURCE_DIR) / "../shared/data/argos-cases";
+  if (!std::filesystem::is_directory(directory)) {
+    GTEST_SKIP() << "no " << directory << "; set GAUNTLET_ARGOS_CASES to the directory of the author's files";
+  }
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(directory)) {
+    if (entry.path().extension() != ".argos") continue;
+    ++files;
+    const auto loaded = LoadCase(entry.path());
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    EXPECT_EQ(loaded->test_case.side_x, 6.0) << entry.path();
+    EXPECT_EQ(loaded->test_case.wall_thickness, 0.1) << entry.path();
+    EXPECT_EQ(loaded->test_case.obstacles.size(), 6U) << entry.path();
+    EXPECT_EQ(loaded->test_case.robots, 10) << entry.path();
+    ASSERT_TRUE(loaded->test_case.spawn_area.has_value()) << entry.path();
+    EXPECT_EQ(loaded->test_case.spawn_area->min, sim::Vec2(2.0, 2.0)) << entry.path();
+    EXPECT_EQ(loaded->test_case.spawn_area->max, sim::Vec2(3.0, 3.0)) << entry.path();
+  }
+  EXPECT_GT(files, 0);
+}
+
+}  // namespace
+}  // namespace gauntlet::master
