@@ -25,7 +25,8 @@ struct PopulationMember {
 struct GenerationSummary {
   std::uint32_t generation = 0;
   std::uint64_t runs = 0;
-  double best = 0.0;  // over the runs of the generation
+  std::uint64_t completed = 0;  // runs with the verdict completed; best, mean and worst are over these
+  double best = 0.0;
   double mean = 0.0;
   double worst = 0.0;
   std::uint64_t total_failures = 0;
