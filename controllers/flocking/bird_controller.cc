@@ -22,7 +22,7 @@ constexpr double kBodyDistance = 0.30;  // m from centre to centre
 constexpr double kFrontOfCatchUp = 60.0 * sim::kDegree;
 constexpr double kFrontOfSeparation = sim::kPi / 2.0;
 constexpr double kStopWhenAhead = 45.0 * sim::kDegree;
-constexpr double kNoDirection = 1e-3;  // a sum of unit vectors shorter than this points nowhere
+constexpr double kNoDirection = 1e-3;  // a shorter sum of unit vectors or of readings points nowhere
 
 bool IsRobot(const sim::Blob& blob) {
   return blob.color == BirdController::kBirdColor || blob.color == BirdController::kPreyColor;
@@ -101,7 +101,7 @@ ObstaclePush FindObstacles(const sim::SensorReadings& readings, double least_rea
 
 double ObstacleBearing(const Vec2& away_sum, const Goal& goal) {
   const double length = std::sqrt(away_sum.dot(away_sum));
-  const Vec2 away = length > 0.0 ? Vec2(away_sum / length) : Vec2(Vec2::Zero());
+  const Vec2 away = length > kNoDirection ? Vec2(away_sum / length) : Vec2(Vec2::Zero());
   const Vec2 sum = (goal.known ? goal.direction : Vec2(1.0, 0.0)) + away;
   return sim::AngleOf(sum.dot(sum) < kNoDirection * kNoDirection ? sim::LeftOf(away) : sum);
 }

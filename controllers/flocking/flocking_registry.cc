@@ -45,7 +45,7 @@ constexpr std::array kScenarioParameters = std::to_array<ParameterInfo>({
 constexpr std::array kBirdParameters = std::to_array<ParameterInfo>({
     {"bird_speed", "m/s", 0.08, 0.005, 0.3, false,
      "forward speed (calibrated; released controller at most 0.10)"},
-    {"turn_rate", "rad/s", 45.0 * kDegree, 0.05, 4.0, false, "turn rate of the turning reactions (chosen)"},
+    {"turn_rate", "rad/s", 45.0 * kDegree, 0.05, 2.0, false, "turn rate of the turning reactions (chosen)"},
     {"straight_within", "rad", 10.0 * kDegree, 0.0, kPi / 2.0, false,
      "a smaller bearing means straight on (released controller)"},
     {"turning_speed_factor", "", 0.5, 0.0, 1.0, false, "forward speed while turning (chosen)"},
@@ -64,7 +64,7 @@ constexpr std::array kBirdParameters = std::to_array<ParameterInfo>({
 constexpr std::array kCatchUpParameters = std::to_array<ParameterInfo>({
     {"catch_up_distance", "m", 0.3, 0.18, 3.0, false,
      "d_new: a bird hurries when the nearest robot in front is farther (thesis 4.7.2; calibrated)"},
-    {"catch_up_gain", "", 2.0, 1.0, 4.0, false,
+    {"catch_up_gain", "", 2.0, 1.0, 3.0, false,
      "factor on speed and turn rate when hurrying (thesis 4.7.2; calibrated)"},
 });
 

@@ -1,0 +1,28 @@
+#include "controllers/common/proximity.h"
+
+#include <cmath>
+
+#include "gtest/gtest.h"
+
+namespace gauntlet::controllers {
+namespace {
+
+TEST(ProximityDirections, StartJustLeftOfTheHeadingAndGoCounterClockwise) {
+  const auto& directions = ProximityDirections();
+  constexpr double kDegree = 3.14159265358979323846 / 180.0;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const double bearing = (7.5 + 15.0 * static_cast<double>(i)) * kDegree;
+    EXPECT_NEAR(directions[i].x(), std::cos(bearing), 1e-13);
+    EXPECT_NEAR(directions[i].y(), std::sin(bearing), 1e-13);
+  }
+}
+
+TEST(ProximityReadingAt, FollowsTheSensorOfArgos) {
+  EXPECT_EQ(ProximityReadingAt(0.005), 1.0);
+  EXPECT_NEAR(ProximityReadingAt(0.009889556), 1.0, 1e-6);
+  EXPECT_NEAR(ProximityReadingAt(0.05), 0.2004, 1e-4);
+  EXPECT_NEAR(ProximityReadingAt(0.1), 0.1004, 1e-4);
+}
+
+}  // namespace
+}  // namespace gauntlet::controllers

@@ -1,0 +1,159 @@
+#include "controllers/registry.h"
+
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "controllers/flocking/flocking_registry.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+
+namespace gauntlet::controllers {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string ErrorOf(const sim::RunSpec& spec) {
+  const auto scenario = CreateScenario(spec);
+  return scenario.ok() ? "" : scenario.error().message;
+}
+
+sim::RunSpec FlockingSpec() {
+  sim::RunSpec spec;
+  spec.scenario = "flocking";
+  spec.controller = "flocking";
+  return spec;
+}
+
+void ExpectSane(std::span<const ParameterInfo> infos) {
+  std::set<std::string_view> names;
+  for (const ParameterInfo& info : infos) {
+    SCOPED_TRACE(info.name);
+    EXPECT_TRUE(names.insert(info.name).second) << "twice";
+    EXPECT_LT(info.min, info.max);
+    EXPECT_GE(info.default_value, info.min);
+    EXPECT_LE(info.default_value, info.max);
+    EXPECT_FALSE(info.description.empty());
+    if (info.integer) EXPECT_EQ(info.default_value, std::floor(info.default_value));
+  }
+  EXPECT_TRUE(ResolveParameters(infos, {}).ok());
+}
+
+TEST(Registry, EveryDefaultLiesInItsRangeAndEveryNameIsUnique) {
+  std::set<std::string_view> names;
+  for (const ScenarioInfo& scenario : Scenarios()) {
+    SCOPED_TRACE(scenario.name);
+    EXPECT_TRUE(names.insert(scenario.name).second);
+    ExpectSane(scenario.parameters);
+    const ControllerInfo* controller = FindController(scenario.default_controller);
+    ASSERT_NE(controller, nullptr);
+    EXPECT_EQ(controller->scenario, scenario.name);
+  }
+  names.clear();
+  for (const ControllerInfo& controller : Controllers()) {
+    SCOPED_TRACE(controller.name);
+    EXPECT_TRUE(names.insert(controller.name).second);
+    ExpectSane(controller.parameters);
+    EXPECT_NE(FindScenario(controller.scenario), nullptr);
+  }
+}
+
+TEST(Registry, EveryControllerRunsInItsScenarioOnAnEmptyArena) {
+  for (const ControllerInfo& controller : Controllers()) {
+    sim::RunSpec spec;
+    spec.scenario = controller.scenario;
+    spec.controller = controller.name;
+    EXPECT_EQ(ErrorOf(spec), "") << controller.name;
+  }
+}
+
+TEST(Registry, KnowsTheFlockingBehaviour) {
+  ASSERT_NE(FindScenario("flocking"), nullptr);
+  ASSERT_NE(FindController("flocking"), nullptr);
+  ASSERT_NE(FindController("flocking-improved"), nullptr);
+  EXPECT_EQ(FindScenario("flock"), nullptr);
+  EXPECT_EQ(FindController(""), nullptr);
+}
+
+TEST(ResolveParameters, FillsInDefaultsAndKeepsWhatWasGiven) {
+  const auto resolved = ResolveParameters(FindController("flocking")->parameters, {{"bird_speed", 0.1}});
+  ASSERT_TRUE(resolved.ok());
+  EXPECT_EQ(resolved->at("bird_speed"), 0.1);
+  EXPECT_EQ(resolved->at("separation_distance"), 0.25);
+  EXPECT_EQ(resolved->size(), FindController("flocking")->parameters.size());
+}
+
+TEST(ResolveParameters, NamesTheNearestKnownParameter) {
+  const auto resolved = ResolveParameters(FindController("flocking")->parameters, {{"bird_sped", 0.1}});
+  ASSERT_FALSE(resolved.ok());
+  EXPECT_EQ(resolved.error().message, "unknown parameter 'bird_sped'; did you mean 'bird_speed'?");
+}
+
+TEST(ResolveParameters, ListsWhatThereIsWhenNothingIsNear) {
+  const auto resolved = ResolveParameters(FindController("flocking")->parameters, {{"catch_up_gain", 2.0}});
+  ASSERT_FALSE(resolved.ok());
+  EXPECT_THAT(resolved.error().message, HasSubstr("known: bird_speed turn_rate"));
+}
+
+TEST(ResolveParameters, RefusesValuesOutOfRange) {
+  const auto infos = FindScenario("flocking")->parameters;
+  const auto too_fast = ResolveParameters(infos, {{"prey_speed", 0.5}});
+  ASSERT_FALSE(too_fast.ok());
+  EXPECT_EQ(too_fast.error().message,
+            "parameter 'prey_speed' = 0.5 m/s is out of range: from 0.005 to 0.3 m/s");
+  EXPECT_FALSE(ResolveParameters(infos, {{"prey_speed", std::nan("")}}).ok());
+  EXPECT_FALSE(ResolveParameters(infos, {{"prey_speed", std::numeric_limits<double>::infinity()}}).ok());
+  EXPECT_TRUE(ResolveParameters(infos, {{"prey_speed", 0.3}}).ok());
+}
+
+TEST(ResolveParameters, RefusesFractionsWhereOnlyWholeNumbersMakeSense) {
+  const auto resolved = ResolveParameters(FindScenario("flocking")->parameters, {{"birds", 9.5}});
+  ASSERT_FALSE(resolved.ok());
+  EXPECT_EQ(resolved.error().message, "parameter 'birds' = 9.5 is not a whole number");
+}
+
+TEST(CreateScenario, RefusesUnknownNames) {
+  sim::RunSpec spec = FlockingSpec();
+  spec.controller = "flocking-improve";
+  EXPECT_EQ(ErrorOf(spec), "unknown controller 'flocking-improve'; did you mean 'flocking-improved'?");
+  spec = FlockingSpec();
+  spec.scenario = "folcking";
+  EXPECT_EQ(ErrorOf(spec), "unknown scenario 'folcking'; did you mean 'flocking'?");
+}
+
+TEST(CreateScenario, RefusesParametersOfAnotherController) {
+  sim::RunSpec spec = FlockingSpec();
+  spec.controller_parameters = {{"catch_up_distance", 0.4}};
+  EXPECT_THAT(ErrorOf(spec), StartsWith("unknown parameter 'catch_up_distance'"));
+  spec.controller = "flocking-improved";
+  EXPECT_EQ(ErrorOf(spec), "");
+}
+
+TEST(CreateScenario, BeginsWithTheRuleThatTheTestCaseBreaks) {
+  sim::RunSpec spec = FlockingSpec();
+  spec.test_case.obstacles = {{0.0, 0.0, 7.0, 0.2, 0.0}};
+  EXPECT_THAT(ErrorOf(spec), StartsWith("no-path: "));
+  spec.test_case.obstacles = {{2.5, 2.5, 0.4, 0.4, 0.0}};
+  EXPECT_THAT(ErrorOf(spec), StartsWith("start-blocked: "));
+}
+
+TEST(FlockingSettingsFrom, TurnsSecondsIntoTicks) {
+  const auto parameters = ResolveParameters(FindScenario("flocking")->parameters, {});
+  const FlockingSettings settings = FlockingSettingsFrom(*parameters);
+  EXPECT_EQ(settings.tick_limit, 9000);
+  EXPECT_EQ(settings.split.link.memory, 20);
+  EXPECT_EQ(settings.split.rejoin, 50);
+  EXPECT_EQ(settings.split.half_window, 5);
+}
+
+TEST(BirdSettingsFrom, OnlyTheImprovedBirdCatchesUp) {
+  EXPECT_FALSE(BirdSettingsFrom(*ResolveParameters(FindController("flocking")->parameters, {})).catch_up);
+  const auto improved = BirdSettingsFrom(
+      *ResolveParameters(FindController("flocking-improved")->parameters, {{"catch_up_gain", 1.5}}));
+  ASSERT_TRUE(improved.catch_up);
+  EXPECT_EQ(improved.catch_up->gain, 1.5);
+}
+
+}  // namespace
+}  // namespace gauntlet::controllers

@@ -1,0 +1,13 @@
+// One number that says whether two builds compute the same runs.
+#pragma once
+
+#include <cstdint>
+
+namespace gauntlet::worker {
+
+// Hash over whole RunResults of every built-in controller in a few short fixed cases, and over a probe of our
+// own trigonometry and random numbers. Equal on every machine and for every compiler; a worker says it in its
+// hello, and a campaign refuses workers with another one. Takes some ten milliseconds.
+std::uint64_t GoldenHash();
+
+}  // namespace gauntlet::worker
