@@ -22,7 +22,7 @@ std::string StyleSheet() {
       "{ink}; }}\n"
       ".title {{ font-size: 23px; font-weight: bold; }}\n"
       ".outcome {{ font-size: 17px; font-weight: bold; }}\n"
-      ".subtitle {{ font-size: 14px; fill: {soft}; }}\n"
+      ".subtitle {{ font-size: 13px; fill: {soft}; text-anchor: end; }}\n"
       ".heading {{ font-size: 11.5px; font-weight: bold; letter-spacing: 1.2px; fill: {soft}; }}\n"
       ".rule {{ stroke: #d5d9de; stroke-width: 1; }}\n"
       ".name {{ font-size: 12px; fill: {soft}; }}\n"
@@ -46,7 +46,7 @@ std::string StyleSheet() {
       ".start {{ fill: #ffffff; stroke-width: 1.5; }}\n"
       ".robot {{ stroke: #ffffff; stroke-width: 1.4; }}\n"
       ".nose {{ stroke-width: 2.6; stroke-linecap: round; }}\n"
-      ".cross {{ stroke-width: 3; stroke-linecap: round; }}\n"
+      ".ring {{ fill: none; stroke-width: 2; }}\n"
       ".number {{ font-size: 9.5px; font-weight: bold; fill: #ffffff; text-anchor: middle; }}\n"
       ".split {{ fill: {split}; fill-opacity: 0.12; stroke: {split}; stroke-width: 2.2; stroke-dasharray: 4 "
       "3; }}\n"
@@ -155,10 +155,12 @@ void DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim:
 }
 
 void DrawPlaces(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {
-  const auto& own = figure.spec.test_case.spawn_area;
-  if (const auto& area = own ? own : figure.spawn_area)
-    DrawBox(canvas, frame, area->min, area->max, "class=\"spawn\"");
   for (const sim::Annotation& annotation : figure.result.annotations) {
+    if (annotation.kind == "area") {
+      std::vector<Pixel> corners;
+      for (const sim::Vec2& corner : annotation.points) corners.push_back(frame.At(corner));
+      canvas.Polygon(corners, "class=\"spawn\"");
+    }
     if (annotation.kind != "disc" || annotation.points.empty()) continue;
     const Pixel center = frame.At(annotation.points.front());
     const double radius = std::max(5.0, annotation.radius * frame.scale());
@@ -223,6 +225,18 @@ Pixel PlaceCallout(const FigureFrame& frame, Pixel place, double width, double h
   return best;
 }
 
+// Where those who left at the last split were at that moment.
+void DrawSplitRobots(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {
+  const sim::Annotation* split = LatestAnnotation(figure, "split");
+  if (split == nullptr) return;
+  for (const sim::RobotIndex robot : split->robots) {
+    const auto position = PositionAt(figure, robot, split->tick);
+    if (!position) continue;
+    const Pixel p = frame.At(*position);
+    canvas.Polygon({{p.x, p.y - 6}, {p.x + 6, p.y}, {p.x, p.y + 6}, {p.x - 6, p.y}}, "class=\"split-robot\"");
+  }
+}
+
 void DrawSplit(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame, const sim::Arena& arena,
                const std::vector<Track>& tracks) {
   const sim::Annotation* split = LatestAnnotation(figure, "split");
@@ -237,7 +251,7 @@ void DrawSplit(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& fr
   for (const Track& track : tracks) keep_free.push_back(frame.At(track.start.position));
 
   const std::string label = SplitLabel(figure, *split);
-  const double width = 7.9 * static_cast<double>(label.size()) + 18;
+  const double width = 6.7 * static_cast<double>(label.size()) + 18;
   constexpr double kHeight = 25;
   const Pixel corner = PlaceCallout(frame, place, width, kHeight, tracks, keep_free);
   const Pixel anchor{std::clamp(place.x, corner.x, corner.x + width),
@@ -245,12 +259,6 @@ void DrawSplit(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& fr
 
   canvas.OpenGroup("id=\"split\"");
   canvas.Circle(place, std::max(14.0, 0.2 * frame.scale()), "class=\"split\"");
-  for (const sim::RobotIndex robot : split->robots) {
-    const auto position = PositionAt(figure, robot, split->tick);
-    if (!position) continue;
-    const Pixel p = frame.At(*position);
-    canvas.Polygon({{p.x, p.y - 6}, {p.x + 6, p.y}, {p.x, p.y + 6}, {p.x - 6, p.y}}, "class=\"split-robot\"");
-  }
   canvas.Line(place, anchor, "class=\"callout-line\"");
   canvas.Rectangle(corner, width, kHeight, "class=\"callout\" rx=\"5\"");
   canvas.Text({corner.x + 9, corner.y + 17}, label, "class=\"callout-text\"");
@@ -283,6 +291,7 @@ std::string DrawRun(const RunFigure& figure) {
   }
   DrawPlans(canvas, figure, frame);
   DrawObstacleNumbers(canvas, frame, arena);
+  DrawSplitRobots(canvas, figure, frame);
   for (const Track& track : tracks) DrawStart(canvas, frame, track);
   for (const TrackKind kind : {TrackKind::kKept, TrackKind::kPrey, TrackKind::kLost}) {
     for (const Track& track : tracks) {

@@ -2,9 +2,7 @@
 // broke.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
@@ -12,20 +10,23 @@
 namespace gauntlet::analysis {
 
 struct RunFigure {
-  std::string experiment;                    // its name
-  std::string run;                           // how the run is called, e.g. "run 123"
-  sim::RunSpec spec;                         // what was simulated
-  sim::RunResult result;                     // with a trajectory; without one its waypoints are drawn
-  std::optional<sim::Rectangle> spawn_area;  // m; the test case's own area goes before it
-  std::string member = "robot";              // what one of the swarm is called, singular
-  int prey = -1;                             // the robot that the others follow, -1 = none
+  std::string experiment;        // its name
+  std::string run;               // how the run is called, e.g. "run 123"
+  sim::RunSpec spec;             // what was simulated
+  sim::RunResult result;         // with a trajectory; without one its waypoints are drawn
+  std::string member = "robot";  // what one of the swarm is called, singular
 };
+
+// The robot whose planned path the result shows: the one that the annotation "path" names, or else the one
+// that starts where the path begins; -1 when there is none.
+int PreyOf(const sim::RunResult& result);
 
 // The run's outcome in words, e.g. "total failure: 6 of 10 birds lost".
 std::string DescribeOutcome(const RunFigure& figure);
 
 // A complete SVG document without scripts and outside references. Pure: same figure, same bytes.
-// Annotations drawn: "path" (dashed line), "disc" (goal), "split" (the latest is marked and labelled).
+// Annotations drawn: "area" (where the swarm starts), "path" (dashed line), "disc" (goal), "split" (the
+// latest is marked and labelled).
 std::string DrawRun(const RunFigure& figure);
 
 }  // namespace gauntlet::analysis

@@ -11,7 +11,7 @@ namespace {
 constexpr double kRow = 25.0;        // pixels between legend rows
 constexpr double kFigureRow = 20.0;  // pixels between figures
 constexpr std::size_t kMostMetrics = 9;
-constexpr std::size_t kMostTitle = 118;  // characters that fit the page
+constexpr std::size_t kMostTitle = 95;  // characters that fit the page
 
 std::string Shortened(std::string text, std::size_t most) {
   if (text.size() <= most) return text;
@@ -107,7 +107,7 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
               [&](Pixel p) { DrawRobot(canvas, p, 8.0, 0.0, TrackKind::kLost, kLostColor, "7"); });
   }
   if (LatestAnnotation(figure, "split") != nullptr) {
-    panel.Row("last split; where they were then", [&](Pixel p) {
+    panel.Row("last split, and who left then", [&](Pixel p) {
       canvas.Circle({p.x - 6, p.y}, 8.0, "class=\"split\"");
       canvas.Polygon({{p.x + 10, p.y - 5}, {p.x + 15, p.y}, {p.x + 10, p.y + 5}, {p.x + 5, p.y}},
                      "class=\"split-robot\"");
@@ -116,7 +116,7 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
   if (LatestAnnotation(figure, "disc") != nullptr) {
     panel.Row("goal", [&](Pixel p) { canvas.Circle(p, 8.0, "class=\"goal\""); });
   }
-  if (figure.spec.test_case.spawn_area || figure.spawn_area) {
+  if (LatestAnnotation(figure, "area") != nullptr) {
     panel.Row("area the swarm starts in", [&](Pixel p) {
       canvas.Rectangle({p.x - 14, p.y - 8}, 28, 16, "class=\"spawn\"");
     });
@@ -163,22 +163,15 @@ const sim::Annotation* LatestAnnotation(const RunFigure& figure, std::string_vie
 
 std::string DescribeOutcome(const RunFigure& figure) {
   const sim::RunResult& result = figure.result;
-  switch (result.verdict) {
-    case sim::Verdict::kCompleted:
-      break;
-    case sim::Verdict::kRefused:
-      return fmt::format("refused: {}", result.message);
-    case sim::Verdict::kCrashed:
-      return fmt::format("the simulation crashed: {}", result.message);
-    case sim::Verdict::kHung:
-      return fmt::format("the simulation hung: {}", result.message);
-    case sim::Verdict::kOutOfMemory:
-      return fmt::format("the simulation ran out of memory: {}", result.message);
+  if (result.verdict != sim::Verdict::kCompleted) {
+    const std::string_view what = result.verdict == sim::Verdict::kRefused ? "refused" : "the run failed";
+    return fmt::format("{}: {}", what, result.message);
   }
+  const int prey = PreyOf(result);
   std::size_t members = 0;
   std::size_t lost = 0;
   for (std::size_t i = 0; i < result.robots.size(); ++i) {
-    if (static_cast<int>(i) == figure.prey) continue;
+    if (static_cast<int>(i) == prey) continue;
     ++members;
     if (result.robots[i].lost) ++lost;
   }
@@ -197,19 +190,20 @@ void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& fr
   const std::string outcome = DescribeOutcome(figure);
   const bool harmless = outcome.starts_with("no ");
   const bool bad = result.failure.total || result.verdict != sim::Verdict::kCompleted;
-  std::string rest;
-  if (result.verdict == sim::Verdict::kCompleted) {
-    rest = fmt::format("fitness {:.3f} after {:.0f} s", result.fitness, result.ticks * sim::kTickSeconds);
-    if (!result.failure.label.empty()) rest += fmt::format(", failure type: {}", result.failure.label);
-  }
   const std::string_view color = bad ? kLostColor : harmless ? kPreyColor : std::string_view("#9a6700");
   canvas.Rectangle({FigureFrame::kLeft, 56}, 5, 20, fmt::format("fill=\"{}\"", color));
   const std::string line = Shortened(outcome, kMostTitle);
-  canvas.Text({FigureFrame::kLeft + 14, 71}, line, fmt::format("class=\"outcome\" fill=\"{}\"", color));
-  if (!rest.empty()) {
-    canvas.Text({frame.page_width() - 22, 71},
-                Shortened(rest, kMostTitle - std::min(line.size() + 4, kMostTitle / 2)),
-                "class=\"subtitle\" text-anchor=\"end\"");
+  canvas.Text({FigureFrame::kLeft + 14, 71}, line,
+              fmt::format("class=\"outcome\" style=\"fill: {}\"", color));
+  if (result.verdict != sim::Verdict::kCompleted) return;
+  const double right = frame.page_width() - 22;
+  canvas.Text({right, 40},
+              fmt::format("fitness {:.3f} after {:.0f} s", result.fitness, result.ticks * sim::kTickSeconds),
+              "class=\"subtitle\"");
+  if (!result.failure.label.empty()) {
+    canvas.Text({right, 71},
+                fmt::format("failure type {}: {}", result.failure.type, Shortened(result.failure.label, 80)),
+                "class=\"subtitle\"");
   }
 }
 

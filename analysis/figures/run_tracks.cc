@@ -1,6 +1,6 @@
 #include "analysis/figures/run_tracks.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -114,16 +114,31 @@ void DrawArrows(SvgCanvas& canvas, const Track& track) {
 
 }  // namespace
 
+int PreyOf(const sim::RunResult& result) {
+  for (const sim::Annotation& annotation : result.annotations) {
+    if (annotation.kind != "path" || annotation.points.empty()) continue;
+    if (!annotation.robots.empty()) return annotation.robots.front();
+    for (std::size_t i = 0; i < result.robots.size(); ++i) {
+      constexpr double kSamePlace = 1e-6;  // m
+      if ((result.robots[i].start.position - annotation.points.front()).norm() < kSamePlace) {
+        return static_cast<int>(i);
+      }
+    }
+  }
+  return -1;
+}
+
 std::vector<Track> TracksOf(const RunFigure& figure, const FigureFrame& frame) {
   const auto& result = figure.result;
   const std::size_t robots =
       std::max(result.robots.size(), result.trajectory.empty() ? 0 : result.trajectory.front().size());
+  const int prey = PreyOf(result);
   std::vector<Track> tracks;
   for (std::size_t i = 0; i < robots; ++i) {
     Track track;
     track.robot = static_cast<int>(i);
     const bool lost = i < result.robots.size() && result.robots[i].lost;
-    track.kind = track.robot == figure.prey ? TrackKind::kPrey : lost ? TrackKind::kLost : TrackKind::kKept;
+    track.kind = track.robot == prey ? TrackKind::kPrey : lost ? TrackKind::kLost : TrackKind::kKept;
     if (!result.trajectory.empty()) {
       ReadTrajectory(figure, frame, track);
     } else {
@@ -164,7 +179,7 @@ void DrawWay(SvgCanvas& canvas, const Track& track) {
                                                                  : "kept";
   canvas.OpenGroup(fmt::format("class=\"way {}\" id=\"robot-{}\" stroke=\"{}\" stroke-width=\"{}\"", name,
                                track.robot, track.color, WidthOf(track.kind)));
-  const double weakest = track.kind == TrackKind::kKept ? 0.22 : 0.38;
+  const double weakest = track.kind == TrackKind::kKept ? 0.32 : 0.4;
   std::size_t begin = 0;
   for (int piece = 0; piece < kFadeSteps; ++piece) {
     std::size_t end = begin;
@@ -196,14 +211,7 @@ void DrawStart(SvgCanvas& canvas, const FigureFrame& frame, const Track& track) 
 void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, TrackKind kind,
                std::string_view color, std::string_view label) {
   if (kind == TrackKind::kLost) {
-    const double inner = 0.8 * radius;
-    const double outer = 1.45 * radius;
-    for (const auto& [x, y] :
-         std::array<std::pair<double, double>, 4>{{{1, 1}, {1, -1}, {-1, 1}, {-1, -1}}}) {
-      canvas.Line({center.x + x * inner * 0.707, center.y + y * inner * 0.707},
-                  {center.x + x * outer, center.y + y * outer},
-                  fmt::format("class=\"cross\" stroke=\"{}\"", color));
-    }
+    canvas.Circle(center, 1.62 * radius, fmt::format("class=\"ring\" stroke=\"{}\"", color));
   }
   const sim::Vec2 nose = sim::UnitVector(heading);
   canvas.Line({center.x + nose.x() * radius, center.y - nose.y() * radius},

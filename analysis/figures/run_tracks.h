@@ -1,7 +1,9 @@
 // The ways of the robots in a run's picture: lines that grow stronger with time, start and end marks.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/figures/figure_frame.h"
