@@ -1,0 +1,309 @@
+#include "master/experiment/experiment_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "master/experiment/toml_text.h"
+#include "sim/base/nearest_name.h"
+
+namespace gauntlet::master {
+namespace {
+
+std::string KindOf(const TomlValue& value) {
+  if (const auto* other = std::get_if<OtherToml>(&value)) return other->kind;
+  if (std::holds_alternative<std::string>(value)) return "text";
+  if (std::holds_alternative<std::int64_t>(value)) return "a whole number";
+  return std::holds_alternative<double>(value) ? "a number that is not whole" : "true or false";
+}
+
+std::string ExpectationOf(const Key& key) {
+  switch (key.type) {
+    case KeyType::kText:
+      return "text";
+    case KeyType::kChoice:
+      return fmt::format("one of {}", fmt::join(key.choices, ", "));
+    case KeyType::kInteger:
+      return fmt::format("a whole number, {} to {}", key.min, key.max);
+    case KeyType::kNumber:
+      return fmt::format("a number, {} to {}{}{}", key.min, key.max, key.unit.empty() ? "" : " ", key.unit);
+    case KeyType::kFlag:
+      return "true or false";
+    case KeyType::kSeed:
+      break;
+  }
+  return "a whole number, 0 to 18446744073709551615 (as text from 9223372036854775808 on)";
+}
+
+std::optional<std::uint64_t> SeedOf(const TomlValue& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value); integer != nullptr && *integer >= 0) {
+    return static_cast<std::uint64_t>(*integer);
+  }
+  const auto* text = std::get_if<std::string>(&value);
+  if (text == nullptr) return std::nullopt;
+  std::uint64_t seed = 0;
+  const char* end = text->data() + text->size();
+  const auto [parsed, error] = std::from_chars(text->data(), end, seed);
+  if (error != std::errc() || parsed != end) return std::nullopt;
+  return seed;
+}
+
+// The assignment's value in the type of the key, or nothing when it is of another kind.
+std::optional<KeyValue> Convert(const Key& key, const Assignment& assignment) {
+  const TomlValue& value = assignment.value;
+  const auto* integer = std::get_if<std::int64_t>(&value);
+  switch (key.type) {
+    case KeyType::kText:
+    case KeyType::kChoice:
+      if (const auto* text = std::get_if<std::string>(&value)) return *text;
+      // --set name=123 means the text.
+      if (!assignment.text.empty()) return assignment.text;
+      return std::nullopt;
+    case KeyType::kInteger:
+      if (integer != nullptr) return *integer;
+      return std::nullopt;
+    case KeyType::kNumber:
+      if (integer != nullptr) return static_cast<double>(*integer);
+      if (const auto* number = std::get_if<double>(&value)) return *number;
+      return std::nullopt;
+    case KeyType::kFlag:
+      if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+      if (integer != nullptr && (*integer == 0 || *integer == 1)) return *integer == 1;
+      return std::nullopt;
+    case KeyType::kSeed:
+      break;
+  }
+  if (const std::optional<std::uint64_t> seed = SeedOf(value)) return *seed;
+  return std::nullopt;
+}
+
+std::string NameFromFile(const std::string& file_name) {
+  std::string name = std::filesystem::path(file_name).stem().string();
+  for (char& c : name) {
+    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '.' || c == '_' || c == '-';
+    if (!good) c = '-';
+  }
+  return name;
+}
+
+template <typename Infos>
+std::string NamesOf(const Infos& infos) {
+  std::string names;
+  for (const auto& info : infos) names += (names.empty() ? "" : ", ") + std::string(info.name);
+  return names;
+}
+
+// "unknown scenario 'floking'; did you mean 'flocking'?", or with all there are.
+template <typename Infos>
+std::string Unknown(std::string_view what, std::string_view name, const Infos& infos) {
+  std::vector<std::string_view> known;
+  for (const auto& info : infos) known.push_back(info.name);
+  const std::string nearest = NearestName(name, known);
+  const std::string hint =
+      nearest.empty() ? "; known: " + NamesOf(infos) : "; did you mean '" + nearest + "'?";
+  return fmt::format("unknown {} '{}'{}", what, name, hint);
+}
+
+// Builds one experiment from assignments in order; the later ones win.
+class Reader {
+ public:
+  Reader(std::vector<Assignment> assignments, std::string file_name, const Catalogue& catalogue)
+      : assignments_(std::move(assignments)), file_name_(std::move(file_name)), catalogue_(catalogue) {}
+
+  Result<Experiment> Read() {
+    keys_ = CommonKeys();
+    if (Status status = AssignWhere([](std::string_view path) { return IsBase(path); }); !status.ok()) {
+      return status.error();
+    }
+    if (Status status = ResolveNames(); !status.ok()) return status.error();
+    if (Status status = AssignWhere([](std::string_view path) { return !IsBase(path); }); !status.ok()) {
+      return status.error();
+    }
+    if (experiment_.name.empty()) experiment_.name = NameFromFile(file_name_);
+    if (const std::optional<BrokenRule> broken = CheckRules(experiment_)) {
+      return InvalidInput(fmt::format("{}: {}", PlaceOf(broken->path), broken->message));
+    }
+    return experiment_;
+  }
+
+ private:
+  // The keys that decide which other keys there are.
+  static bool IsBase(std::string_view path) { return path == "scenario" || path == "controller"; }
+
+  template <typename Predicate>
+  Status AssignWhere(Predicate wanted) {
+    for (const Assignment& assignment : assignments_) {
+      if (!wanted(assignment.path)) continue;
+      if (Status status = Assign(assignment); !status.ok()) return status;
+    }
+    return Ok{};
+  }
+
+  Status Assign(const Assignment& assignment) {
+    const auto key =
+        std::find_if(keys_.begin(), keys_.end(), [&](const Key& k) { return k.path == assignment.path; });
+    if (key == keys_.end()) return UnknownKey(assignment);
+    const std::optional<KeyValue> value = Convert(*key, assignment);
+    if (!value.has_value()) {
+      return InvalidInput(fmt::format("{}: {} is {}, expected {}", assignment.where, assignment.path,
+                                      KindOf(assignment.value), ExpectationOf(*key)));
+    }
+    if (const std::optional<std::string> wrong = CheckValue(*key, *value)) {
+      return InvalidInput(fmt::format("{}: {}", assignment.where, *wrong));
+    }
+    key->set(experiment_, *value);
+    places_[key->path] = assignment.where;
+    return Ok{};
+  }
+
+  Status UnknownKey(const Assignment& assignment) const {
+    const std::string table = assignment.path.substr(0, assignment.path.find('.') + 1);
+    // An empty table of a known name is harmless.
+    const bool known_table = std::any_of(keys_.begin(), keys_.end(), [&](const Key& key) {
+      return key.path.starts_with(assignment.path + ".") || IsParameterTable(assignment.path);
+    });
+    const auto* other = std::get_if<OtherToml>(&assignment.value);
+    if (known_table && other != nullptr && other->kind == "a table") return Ok{};
+
+    std::vector<std::string_view> known;
+    std::string siblings;
+    for (const Key& key : keys_) {
+      known.push_back(key.path);
+      if (table.empty() || !key.path.starts_with(table)) continue;
+      siblings += (siblings.empty() ? "" : ", ") + key.path;
+    }
+    const std::string nearest = NearestName(assignment.path, known);
+    std::string hint = "; top-level keys: name, description, seed, scenario, controller";
+    if (!siblings.empty()) hint = "; known: " + siblings;
+    if (!nearest.empty()) hint = "; did you mean '" + nearest + "'?";
+    return InvalidInput(fmt::format("{}: unknown key '{}'{}", assignment.where, assignment.path, hint));
+  }
+
+  static bool IsParameterTable(std::string_view path) {
+    return path == "scenario_parameters" || path == "controller_parameters";
+  }
+
+  // Looks scenario and controller up and adds the keys of their parameters, with defaults.
+  Status ResolveNames() {
+    if (experiment_.scenario.empty()) {
+      return InvalidInput(fmt::format("{}: scenario is missing; known: {}", PlaceOf("scenario"),
+                                      NamesOf(catalogue_.scenarios)));
+    }
+    const controllers::ScenarioInfo* scenario = catalogue_.FindScenario(experiment_.scenario);
+    if (scenario == nullptr) {
+      return InvalidInput(fmt::format("{}: {}", PlaceOf("scenario"),
+                                      Unknown("scenario", experiment_.scenario, catalogue_.scenarios)));
+    }
+    if (experiment_.controller.empty()) experiment_.controller = scenario->default_controller;
+    const controllers::ControllerInfo* controller = catalogue_.FindController(experiment_.controller);
+    if (controller == nullptr) {
+      return InvalidInput(fmt::format("{}: {}", PlaceOf("controller"),
+                                      Unknown("controller", experiment_.controller, catalogue_.controllers)));
+    }
+    if (controller->scenario != scenario->name) {
+      return InvalidInput(fmt::format("{}: controller '{}' is written for the scenario '{}', not for '{}'",
+                                      PlaceOf("controller"), controller->name, controller->scenario,
+                                      scenario->name));
+    }
+    for (Key& key : ScenarioParameterKeys(*scenario)) AddWithDefault(std::move(key));
+    for (Key& key : ControllerParameterKeys(*controller)) AddWithDefault(std::move(key));
+    return Ok{};
+  }
+
+  void AddWithDefault(Key key) {
+    key.set(experiment_, key.default_value);
+    keys_.push_back(std::move(key));
+  }
+
+  std::string PlaceOf(const std::string& path) const {
+    const auto found = places_.find(path);
+    return found == places_.end() ? file_name_ : found->second;
+  }
+
+  std::vector<Assignment> assignments_;
+  std::string file_name_;
+  Catalogue catalogue_;
+  Experiment experiment_;
+  std::vector<Key> keys_;
+  std::map<std::string, std::string> places_;  // path -> where it was assigned last
+};
+
+// Writes keys with their table headers.
+class Writer {
+ public:
+  explicit Writer(const Experiment& experiment) : experiment_(experiment) {}
+
+  void Comment(std::string_view line) { text_ += line.empty() ? "#\n" : fmt::format("# {}\n", line); }
+
+  void Add(const Key& key) {
+    const std::string unit = key.unit.empty() ? "" : key.unit + "; ";
+    AddLine(key.path, ToToml(key.get(experiment_)), unit + key.description);
+  }
+
+  std::string Take() { return std::move(text_); }
+
+ private:
+  void AddLine(const std::string& path, const std::string& value, const std::string& comment) {
+    const std::size_t dot = path.find('.');
+    const std::string table = dot == std::string::npos ? "" : path.substr(0, dot);
+    if (table != table_) text_ += fmt::format("\n[{}]\n", table);
+    table_ = table;
+    const std::string line = fmt::format("{} = {}", path.substr(table.empty() ? 0 : dot + 1), value);
+    text_ += comment.empty() ? line + "\n" : fmt::format("{:<36}  # {}\n", line, comment);
+  }
+
+  const Experiment& experiment_;
+  std::string table_;
+  std::string text_;
+};
+
+}  // namespace
+
+Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
+                                   const std::vector<std::string>& sets) {
+  return ParseExperiment(text, file_name, sets, BuiltInCatalogue());
+}
+
+Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
+                                   const std::vector<std::string>& sets, const Catalogue& catalogue) {
+  Result<std::vector<Assignment>> assignments = ReadToml(text, file_name);
+  if (!assignments.ok()) return assignments.error();
+  for (const std::string& set : sets) {
+    Result<Assignment> assignment = ReadSet(set);
+    if (!assignment.ok()) return assignment.error();
+    assignments->push_back(std::move(*assignment));
+  }
+  return Reader(std::move(*assignments), file_name, catalogue).Read();
+}
+
+std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header) {
+  return WriteExperiment(experiment, header, BuiltInCatalogue());
+}
+
+std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header,
+                            const Catalogue& catalogue) {
+  Writer writer(experiment);
+  for (const std::string& line : header) writer.Comment(line);
+  const auto is_top = [](const Key& key) { return key.path.find('.') == std::string::npos; };
+  for (const Key& key : CommonKeys()) {
+    if (is_top(key)) writer.Add(key);
+  }
+  if (const auto* scenario = catalogue.FindScenario(experiment.scenario)) {
+    for (const Key& key : ScenarioParameterKeys(*scenario)) writer.Add(key);
+  }
+  if (const auto* controller = catalogue.FindController(experiment.controller)) {
+    for (const Key& key : ControllerParameterKeys(*controller)) writer.Add(key);
+  }
+  for (const Key& key : CommonKeys()) {
+    if (!is_top(key)) writer.Add(key);
+  }
+  return writer.Take();
+}
+
+}  // namespace gauntlet::master

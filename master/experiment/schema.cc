@@ -1,0 +1,325 @@
+#include "master/experiment/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "master/experiment/toml_text.h"
+#include "master/search/genome_generator.h"
+
+namespace gauntlet::master {
+namespace {
+
+// A place in an Experiment: Field(e) is a reference to it.
+template <auto Member>
+auto& Field(auto& experiment) {
+  return experiment.*Member;
+}
+template <auto Part, auto Member>
+auto& Field(auto& experiment) {
+  return experiment.*Part.*Member;
+}
+
+template <auto... Path>
+Key TextKey(std::string path, std::string description) {
+  return {.path = std::move(path),
+          .type = KeyType::kText,
+          .unit = "",
+          .min = 0.0,
+          .max = 0.0,
+          .choices = {},
+          .description = std::move(description),
+          .default_value = {},
+          .get = [](const Experiment& e) -> KeyValue { return Field<Path...>(e); },
+          .set = [](Experiment& e, const KeyValue& v) { Field<Path...>(e) = std::get<std::string>(v); }};
+}
+
+template <auto... Path>
+Key IntegerKey(std::string path, double min, double max, std::string description) {
+  return {.path = std::move(path),
+          .type = KeyType::kInteger,
+          .unit = "",
+          .min = min,
+          .max = max,
+          .choices = {},
+          .description = std::move(description),
+          .default_value = {},
+          .get = [](const Experiment& e) -> KeyValue { return std::int64_t{Field<Path...>(e)}; },
+          .set = [](Experiment& e,
+                    const KeyValue& v) { Field<Path...>(e) = static_cast<int>(std::get<std::int64_t>(v)); }};
+}
+
+template <auto... Path>
+Key NumberKey(std::string path, std::string unit, double min, double max, std::string description) {
+  return {.path = std::move(path),
+          .type = KeyType::kNumber,
+          .unit = std::move(unit),
+          .min = min,
+          .max = max,
+          .choices = {},
+          .description = std::move(description),
+          .default_value = {},
+          .get = [](const Experiment& e) -> KeyValue { return Field<Path...>(e); },
+          .set = [](Experiment& e, const KeyValue& v) { Field<Path...>(e) = std::get<double>(v); }};
+}
+
+// `choices` in the order of the enumeration, which begins at 0 without gaps.
+template <auto... Path>
+Key ChoiceKey(std::string path, std::vector<std::string> choices, std::string description) {
+  Key key{.path = std::move(path),
+          .type = KeyType::kChoice,
+          .unit = "",
+          .min = 0.0,
+          .max = 0.0,
+          .choices = choices,
+          .description = std::move(description),
+          .default_value = {},
+          .get = {},
+          .set = {}};
+  key.get = [choices](const Experiment& e) -> KeyValue {
+    return choices.at(static_cast<std::size_t>(Field<Path...>(e)));
+  };
+  key.set = [choices](Experiment& e, const KeyValue& v) {
+    auto& field = Field<Path...>(e);
+    const auto found = std::find(choices.begin(), choices.end(), std::get<std::string>(v));
+    field = static_cast<std::remove_reference_t<decltype(field)>>(found - choices.begin());
+  };
+  return key;
+}
+
+Key SeedKey() {
+  return {.path = "seed",
+          .type = KeyType::kSeed,
+          .unit = "",
+          .min = 0.0,
+          .max = 18446744073709551615.0,
+          .choices = {},
+          .description = "all seeds of test cases, variation and runs derive from it",
+          .default_value = {},
+          .get = [](const Experiment& e) -> KeyValue { return e.seed; },
+          .set = [](Experiment& e, const KeyValue& v) { e.seed = std::get<std::uint64_t>(v); }};
+}
+
+std::vector<Key> MakeCommonKeys() {
+  constexpr auto kArena = &Experiment::arena;
+  constexpr auto kGenome = &Experiment::genome;
+  constexpr auto kSearch = &Experiment::search;
+  std::vector<Key> keys = {
+      TextKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -"),
+      TextKey<&Experiment::description>("description", "one line for people"),
+      SeedKey(),
+      TextKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
+      TextKey<&Experiment::controller>("controller", "the algorithm under test; default: the scenario's own"),
+
+      NumberKey<kArena, &ArenaSpec::side>("arena.side", "m", 1.0, 50.0,
+                                          "between the centre lines of opposite walls (thesis 4.5.3)"),
+      NumberKey<kArena, &ArenaSpec::wall_thickness>("arena.wall_thickness", "m", 0.01, 1.0,
+                                                    "half of it stands inside the centre lines"),
+
+      IntegerKey<kGenome, &GenomeSpec::genes>("genome.genes", 0, 64,
+                                              "obstacles per test case (thesis Table 4.1)"),
+      NumberKey<kGenome, &GenomeSpec::position_min>("genome.position_min", "m", -25.0, 25.0,
+                                                    "least x and y of an obstacle's centre"),
+      NumberKey<kGenome, &GenomeSpec::position_max>("genome.position_max", "m", -25.0, 25.0,
+                                                    "largest x and y of an obstacle's centre"),
+      NumberKey<kGenome, &GenomeSpec::length_min>("genome.length_min", "m", 0.01, 50.0, "shortest obstacle"),
+      NumberKey<kGenome, &GenomeSpec::length_max>("genome.length_max", "m", 0.01, 50.0, "longest obstacle"),
+      NumberKey<kGenome, &GenomeSpec::width_min>("genome.width_min", "m", 0.01, 50.0, "narrowest obstacle"),
+      NumberKey<kGenome, &GenomeSpec::width_max>("genome.width_max", "m", 0.01, 50.0, "widest obstacle"),
+      NumberKey<kGenome, &GenomeSpec::step>("genome.step", "m", 0.0, 1.0,
+                                            "grid of positions and sizes; 0 = continuous"),
+      IntegerKey<kGenome, &GenomeSpec::tries_per_gene>(
+          "genome.tries_per_gene", 1, 1e6, "redraws of one obstacle before the whole case starts anew"),
+
+      ChoiceKey<kSearch, &SearchSpec::kind>("search.algorithm", {"genetic", "random", "cases"},
+                                            "cases = a given list, as `evaluate` takes it"),
+      IntegerKey<kSearch, &SearchSpec::population>("search.population", 4, 10000,
+                                                   "individuals, an even number (thesis Table 4.1)"),
+      IntegerKey<kSearch, &SearchSpec::generations>("search.generations", 1, 1e6,
+                                                    "the initial population is generation 1"),
+      ChoiceKey<kSearch, &SearchSpec::parent_selection>(
+          "search.parent_selection",
+          {"AllParent-BestHalf", "2BestParents-2WorseAway", "2RandomParents-2WorseAway"}, "thesis 3.2.3.3"),
+      ChoiceKey<kSearch, &SearchSpec::crossover>(
+          "search.crossover", {"single-point", "double-point", "uniform"}, "thesis 3.2.3.4"),
+      NumberKey<kSearch, &SearchSpec::crossover_probability>("search.crossover_probability", "", 0.0, 1.0,
+                                                             "per couple; otherwise children are copies"),
+      NumberKey<kSearch, &SearchSpec::mutation_probability>("search.mutation_probability", "", 0.0, 1.0,
+                                                            "per gene; a mutated gene is drawn anew"),
+      ChoiceKey<kSearch, &SearchSpec::reevaluation>(
+          "search.reevaluation", {"scheme", "population", "children"},
+          "who is simulated in a generation; scheme = the children in AllParent-BestHalf, else everybody"),
+      ChoiceKey<kSearch, &SearchSpec::aggregation>("search.fitness_aggregation", {"mean", "last"},
+                                                   "how an individual's evaluations make its fitness"),
+      IntegerKey<kSearch, &SearchSpec::replicates>("search.replicates", 1, 10000,
+                                                   "runs per evaluation, each with its own seed"),
+      IntegerKey<kSearch, &SearchSpec::cases>("search.cases", 1, 1e8, "test cases of random search"),
+      IntegerKey<kSearch, &SearchSpec::variation_tries>(
+          "search.variation_tries", 1, 1e6,
+          "of an offspring that breaks a validity rule; then the step leaves it unchanged"),
+  };
+  for (Key& key : keys) key.default_value = key.get(Experiment{});
+  return keys;
+}
+
+KeyType TypeOf(const controllers::ParameterInfo& info) {
+  if (info.unit == "bool") return KeyType::kFlag;
+  return info.integer ? KeyType::kInteger : KeyType::kNumber;
+}
+
+KeyValue ParameterValue(KeyType type, double value) {
+  if (type == KeyType::kFlag) return value != 0.0;
+  if (type == KeyType::kInteger) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+double ParameterNumber(const KeyValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  return std::get<double>(value);
+}
+
+template <sim::Parameters Experiment::*Member>
+std::vector<Key> ParameterKeys(std::string_view table, std::span<const controllers::ParameterInfo> infos) {
+  std::vector<Key> keys;
+  for (const controllers::ParameterInfo& info : infos) {
+    const std::string name(info.name);
+    const KeyType type = TypeOf(info);
+    Key key{.path = fmt::format("{}.{}", table, name),
+            .type = type,
+            .unit = type == KeyType::kFlag ? "" : std::string(info.unit),
+            .min = info.min,
+            .max = info.max,
+            .choices = {},
+            .description = std::string(info.description),
+            .default_value = ParameterValue(type, info.default_value),
+            .get = {},
+            .set = {}};
+    key.get = [name, type, otherwise = info.default_value](const Experiment& e) {
+      const auto found = (e.*Member).find(name);
+      return ParameterValue(type, found == (e.*Member).end() ? otherwise : found->second);
+    };
+    key.set = [name](Experiment& e, const KeyValue& v) { (e.*Member)[name] = ParameterNumber(v); };
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+template <typename Info>
+const Info* FindByName(std::span<const Info> infos, std::string_view name) {
+  const auto found = std::find_if(infos.begin(), infos.end(), [&](const Info& i) { return i.name == name; });
+  return found == infos.end() ? nullptr : &*found;
+}
+
+bool IsName(std::string_view name) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+  return !name.empty() && name.size() <= 64 && name.front() != '.' && name.front() != '-' &&
+         name.find_first_not_of(kLetters) == std::string_view::npos;
+}
+
+}  // namespace
+
+std::string_view NameOf(KeyType type) {
+  switch (type) {
+    case KeyType::kText:
+      return "text";
+    case KeyType::kChoice:
+      return "choice";
+    case KeyType::kInteger:
+      return "integer";
+    case KeyType::kNumber:
+      return "number";
+    case KeyType::kFlag:
+      return "flag";
+    case KeyType::kSeed:
+      break;
+  }
+  return "seed";
+}
+
+const controllers::ScenarioInfo* Catalogue::FindScenario(std::string_view name) const {
+  return FindByName(scenarios, name);
+}
+
+const controllers::ControllerInfo* Catalogue::FindController(std::string_view name) const {
+  return FindByName(controllers, name);
+}
+
+Catalogue BuiltInCatalogue() {
+  return {controllers::Scenarios(), controllers::Controllers()};
+}
+
+const std::vector<Key>& CommonKeys() {
+  static const std::vector<Key> keys = MakeCommonKeys();
+  return keys;
+}
+
+std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario) {
+  return ParameterKeys<&Experiment::scenario_parameters>("scenario_parameters", scenario.parameters);
+}
+
+std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& controller) {
+  return ParameterKeys<&Experiment::controller_parameters>("controller_parameters", controller.parameters);
+}
+
+std::string ToToml(const KeyValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return QuoteToml(*text);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* seed = std::get_if<std::uint64_t>(&value)) {
+    return *seed <= std::uint64_t{INT64_MAX} ? fmt::format("{}", *seed) : fmt::format("\"{}\"", *seed);
+  }
+  // The shortest decimal that reads back as the same double, recognisable as a number that is not whole.
+  std::string number = fmt::format("{}", std::get<double>(value));
+  if (number.find_first_of(".enai") == std::string::npos) number += ".0";
+  return number;
+}
+
+std::optional<std::string> CheckValue(const Key& key, const KeyValue& value) {
+  const auto message = [&](std::string_view what) {
+    return fmt::format("{} = {} {}", key.path, ToToml(value), what);
+  };
+  if (key.type == KeyType::kChoice) {
+    const auto& text = std::get<std::string>(value);
+    if (std::find(key.choices.begin(), key.choices.end(), text) != key.choices.end()) return std::nullopt;
+    return message(fmt::format("is unknown, allowed {}", fmt::join(key.choices, ", ")));
+  }
+  if (key.type == KeyType::kInteger || key.type == KeyType::kNumber) {
+    const double number = ParameterNumber(value);
+    if (number >= key.min && number <= key.max) return std::nullopt;
+    return message(fmt::format("is out of range, allowed {} to {}{}{}", key.min, key.max,
+                               key.unit.empty() ? "" : " ", key.unit));
+  }
+  return std::nullopt;
+}
+
+std::optional<BrokenRule> CheckRules(const Experiment& experiment) {
+  if (!IsName(experiment.name)) {
+    return BrokenRule{"name",
+                      fmt::format("name = {} is no good folder name: use up to 64 letters, digits, '.', "
+                                  "'_' or '-', and begin with none of '.' and '-'",
+                                  QuoteToml(experiment.name))};
+  }
+  if (const Status genome = CheckGenomeSpec(experiment.genome); !genome.ok()) {
+    const std::string& message = genome.error().message;
+    return BrokenRule{message.substr(0, message.find(' ')), message};
+  }
+  if (experiment.arena.wall_thickness >= experiment.arena.side) {
+    return BrokenRule{"arena.wall_thickness",
+                      fmt::format("arena.wall_thickness = {} must be less than arena.side = {}",
+                                  experiment.arena.wall_thickness, experiment.arena.side)};
+  }
+  if (experiment.search.kind != SearchKind::kGenetic) return std::nullopt;
+  if (experiment.genome.genes == 0) {
+    return BrokenRule{"genome.genes", "genome.genes = 0 leaves nothing to evolve: use 1 or more"};
+  }
+  if (experiment.search.population % 2 != 0) {
+    return BrokenRule{"search.population", fmt::format("search.population = {} must be even: couples breed",
+                                                       experiment.search.population)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace gauntlet::master

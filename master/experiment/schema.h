@@ -1,0 +1,77 @@
+// The schema of experiments: one table of keys that reading TOML, --set, validation, writing and
+// `list --json` share.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "controllers/registry.h"
+#include "master/experiment/experiment.h"
+
+namespace gauntlet::master {
+
+enum class KeyType {
+  kText,
+  kChoice,   // one of `choices`
+  kInteger,  // min to max
+  kNumber,   // min to max
+  kFlag,     // true or false; 0 and 1 are taken too
+  kSeed,     // 0 to 2^64-1; in TOML, whose integers are signed, also as a string of decimal digits
+};
+// "text", "choice", "integer", "number", "flag", "seed".
+std::string_view NameOf(KeyType type);
+
+// kText and kChoice: string; kInteger: int64; kNumber: double; kFlag: bool; kSeed: uint64.
+using KeyValue = std::variant<std::string, std::int64_t, double, bool, std::uint64_t>;
+
+struct Key {
+  std::string path;  // dotted, "search.population"
+  KeyType type = KeyType::kNumber;
+  std::string unit;  // "" where there is none
+  double min = 0.0;  // of integers and numbers
+  double max = 0.0;
+  std::vector<std::string> choices;
+  std::string description;  // one line
+  KeyValue default_value;
+  std::function<KeyValue(const Experiment&)> get;
+  std::function<void(Experiment&, const KeyValue&)> set;  // `value` must have passed CheckValue
+};
+
+// The scenarios and controllers an experiment may name.
+struct Catalogue {
+  std::span<const controllers::ScenarioInfo> scenarios;
+  std::span<const controllers::ControllerInfo> controllers;
+
+  const controllers::ScenarioInfo* FindScenario(std::string_view name) const;
+  const controllers::ControllerInfo* FindController(std::string_view name) const;
+};
+// What controllers/registry.h offers.
+Catalogue BuiltInCatalogue();
+
+// Keys of every experiment, in the order they are written. Defaults are those of Experiment{}.
+const std::vector<Key>& CommonKeys();
+// One key per parameter: "scenario_parameters.NAME" and "controller_parameters.NAME".
+std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario);
+std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& controller);
+
+// "1.5", "20", "true", "\"genetic\"": the value as TOML.
+std::string ToToml(const KeyValue& value);
+
+// What is wrong with a value of the right type ("search.crossover_probability = 1.5 is out of range, allowed
+// 0 to 1"), or nothing.
+std::optional<std::string> CheckValue(const Key& key, const KeyValue& value);
+
+// A broken rule that concerns more than one key, and the key to point at.
+struct BrokenRule {
+  std::string path;
+  std::string message;
+};
+std::optional<BrokenRule> CheckRules(const Experiment& experiment);
+
+}  // namespace gauntlet::master

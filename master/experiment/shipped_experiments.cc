@@ -1,0 +1,111 @@
+// Finding experiment files: by path, or by name among the shipped ones.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "master/experiment/experiment_file.h"
+#include "sim/base/nearest_name.h"
+
+namespace gauntlet::master {
+namespace {
+
+namespace fs = std::filesystem;
+
+// No experiment is this long: a larger file was named by mistake.
+constexpr std::size_t kMaxFileBytes = 1 << 20;
+
+Result<std::string> ReadFile(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    return Error{ErrorKind::kNotFound, fmt::format("there is no experiment file '{}'", path.string())};
+  }
+  if (fs::is_directory(path, error)) {
+    return InvalidInput(fmt::format("'{}' is a folder, not an experiment file", path.string()));
+  }
+  std::ifstream file(path, std::ios::binary);
+  std::string text(kMaxFileBytes + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (!file.eof() && text.size() <= kMaxFileBytes) {
+    return Error{ErrorKind::kIo, fmt::format("cannot read '{}'", path.string())};
+  }
+  if (text.size() > kMaxFileBytes) {
+    return InvalidInput(
+        fmt::format("'{}' is larger than {} bytes: no experiment file", path.string(), kMaxFileBytes));
+  }
+  return text;
+}
+
+Result<Experiment> LoadFile(const fs::path& path, const std::vector<std::string>& sets) {
+  Result<std::string> text = ReadFile(path);
+  if (!text.ok()) return text.error();
+  return ParseExperiment(*text, path.string(), sets);
+}
+
+std::map<std::string, fs::path> ShippedFiles() {
+  std::map<std::string, fs::path> files;
+  for (const fs::path& directory : ExperimentDirectories()) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
+      if (entry.path().extension() == ".toml") files.emplace(entry.path().stem().string(), entry.path());
+    }
+  }
+  return files;
+}
+
+}  // namespace
+
+std::vector<fs::path> ExperimentDirectories() {
+  if (const char* override_directory = std::getenv("GAUNTLET_EXPERIMENTS_DIR")) return {override_directory};
+  std::vector<fs::path> directories;
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) {
+    directories.push_back(
+        (program.parent_path() / ".." / "share" / "gauntlet" / "experiments").lexically_normal());
+  }
+  directories.emplace_back(GAUNTLET_EXPERIMENTS_SOURCE_DIR);
+  return directories;
+}
+
+std::vector<ShippedExperiment> ListExperiments() {
+  std::vector<ShippedExperiment> list;
+  for (const auto& [name, path] : ShippedFiles()) {
+    ShippedExperiment shipped{
+        .name = name, .path = path, .description = "", .scenario = "", .controller = "", .error = ""};
+    const Result<Experiment> experiment = LoadFile(path, {});
+    if (experiment.ok()) {
+      shipped.description = experiment->description;
+      shipped.scenario = experiment->scenario;
+      shipped.controller = experiment->controller;
+    } else {
+      shipped.error = experiment.error().message;
+    }
+    list.push_back(std::move(shipped));
+  }
+  return list;
+}
+
+Result<Experiment> LoadExperiment(const std::string& name_or_path, const std::vector<std::string>& sets) {
+  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
+    return LoadFile(name_or_path, sets);
+  }
+  const std::map<std::string, fs::path> files = ShippedFiles();
+  if (const auto found = files.find(name_or_path); found != files.end()) return LoadFile(found->second, sets);
+  std::vector<std::string_view> names;
+  for (const auto& [name, path] : files) names.push_back(name);
+  const std::string nearest = NearestName(name_or_path, names);
+  const std::string hint = nearest.empty() ? fmt::format("; shipped: {}", fmt::join(names, ", "))
+                                           : fmt::format("; did you mean '{}'?", nearest);
+  return Error{ErrorKind::kNotFound,
+               fmt::format("unknown experiment '{}'{} (a file is named by a path ending in .toml)",
+                           name_or_path, hint)};
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,111 @@
+#include "master/experiment/toml_text.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace gauntlet::master {
+namespace {
+
+TomlValue ValueOf(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* integer = node.as_integer()) return integer->get();
+  if (const auto* number = node.as_floating_point()) return number->get();
+  if (const auto* flag = node.as_boolean()) return flag->get();
+  if (node.is_array()) return OtherToml{"an array"};
+  if (node.is_table()) return OtherToml{"a table"};
+  return OtherToml{"a date or time"};
+}
+
+struct Located {
+  toml::source_position position;
+  Assignment assignment;
+};
+
+void Flatten(const toml::table& table, const std::string& prefix, const std::string& file_name,
+             std::vector<Located>& out) {
+  for (const auto& [key, node] : table) {
+    const std::string path = prefix + std::string(key.str());
+    const toml::table* inner = node.as_table();
+    if (inner != nullptr && !inner->empty()) {
+      Flatten(*inner, path + ".", file_name, out);
+      continue;
+    }
+    const toml::source_position position = key.source().begin;
+    out.push_back(
+        {position, Assignment{.path = path,
+                              .value = ValueOf(node),
+                              .text = "",
+                              .where = fmt::format("{}:{}:{}", file_name, position.line, position.column)}});
+  }
+}
+
+// The one value of "v = text", or nothing when that is not valid TOML.
+std::optional<TomlValue> ParseValue(const std::string& text) {
+  try {
+    const toml::table table = toml::parse("v = " + text);
+    const toml::node* node = table.get("v");
+    if (node == nullptr || table.size() != 1) return std::nullopt;
+    return ValueOf(*node);
+  } catch (const toml::parse_error&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+Result<std::vector<Assignment>> ReadToml(std::string_view text, const std::string& file_name) {
+  std::vector<Located> located;
+  try {
+    Flatten(toml::parse(text), "", file_name, located);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position position = error.source().begin;
+    return InvalidInput(
+        fmt::format("{}:{}:{}: {}", file_name, position.line, position.column, error.description()));
+  }
+  // The library's tables are ordered by name; the first error to report is the first of the file.
+  std::stable_sort(located.begin(), located.end(),
+                   [](const Located& a, const Located& b) { return a.position < b.position; });
+  std::vector<Assignment> assignments;
+  for (Located& one : located) assignments.push_back(std::move(one.assignment));
+  return assignments;
+}
+
+Result<Assignment> ReadSet(const std::string& set) {
+  const std::string where = "--set " + set;
+  const std::size_t equals = set.find('=');
+  if (equals == std::string::npos || equals == 0) {
+    return InvalidInput(where + ": expected key=value, such as search.generations=10");
+  }
+  Assignment assignment{
+      .path = set.substr(0, equals), .value = {}, .text = set.substr(equals + 1), .where = where};
+  std::optional<TomlValue> value = ParseValue(assignment.text);
+  if (!value.has_value()) value = ParseValue(QuoteToml(assignment.text));
+  if (!value.has_value()) return InvalidInput(where + ": the value is not valid UTF-8 text");
+  assignment.value = std::move(*value);
+  return assignment;
+}
+
+std::string QuoteToml(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else if (c == '\n') {
+      quoted += "\\n";
+    } else if (c == '\t') {
+      quoted += "\\t";
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+      quoted += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "\"";
+}
+
+}  // namespace gauntlet::master

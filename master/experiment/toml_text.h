@@ -1,0 +1,38 @@
+// TOML as a flat list of assignments. The only place that knows the TOML library.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "sim/base/result.h"
+
+namespace gauntlet::master {
+
+// A value of a kind that no key takes; `kind` is for the message: "an array", "a date".
+struct OtherToml {
+  std::string kind;
+};
+using TomlValue = std::variant<std::string, std::int64_t, double, bool, OtherToml>;
+
+struct Assignment {
+  std::string path;  // dotted
+  TomlValue value;
+  std::string text;   // of --set: the value as it was typed
+  std::string where;  // "file:line:column" or "--set key=value", for messages
+};
+
+// All assignments in the order of the file. An empty table is an assignment of OtherToml "a table" to its
+// name, so that it can be refused when unknown. Error: "file:line:column: what is malformed".
+Result<std::vector<Assignment>> ReadToml(std::string_view text, const std::string& file_name);
+
+// "key=value": the value is read as TOML where it is valid TOML, else it is text. Error: no '=', no key, or
+// text that is not UTF-8.
+Result<Assignment> ReadSet(const std::string& set);
+
+// A TOML basic string.
+std::string QuoteToml(std::string_view text);
+
+}  // namespace gauntlet::master

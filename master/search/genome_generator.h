@@ -1,0 +1,56 @@
+// Random test cases by the rules of thesis 3.2.1: genes are drawn one after another, each redrawn until it
+// breaks no validity rule, and the whole case starts anew when one gene cannot be placed.
+#pragma once
+
+#include <optional>
+
+#include "master/experiment/experiment.h"
+#include "sim/arena/test_case.h"
+#include "sim/arena/validity.h"
+#include "sim/base/result.h"
+#include "sim/random/random_stream.h"
+
+namespace gauntlet::master {
+
+// Draws genes and whole test cases. Immutable; every draw is a function of the stream it is given.
+class GenomeGenerator {
+ public:
+  // After so many fresh starts the ranges are held to be too tight for any case.
+  static constexpr int kMaxRestarts = 100;
+
+  // `spec` must have passed CheckGenomeSpec. `arena_without_obstacles` gives sides and walls.
+  GenomeGenerator(const GenomeSpec& spec, const sim::TestCase& arena_without_obstacles,
+                  const sim::ArenaRequirements& requirements);
+
+  // One gene, uniform in the ranges: on the grid of `step` metres (the thesis' files carry one decimal) or
+  // continuous, and turned by whole degrees. It may break validity rules.
+  sim::ObstacleGene RandomGene(sim::RandomStream& random) const;
+
+  // A valid case. Error: none was found in kMaxRestarts starts; the message names the ranges.
+  Result<sim::TestCase> RandomTestCase(sim::RandomStream& random) const;
+
+  // The arena with these obstacles.
+  sim::TestCase WithObstacles(sim::Genome genome) const;
+  // Whether a genome breaks no validity rule in this arena.
+  bool Valid(const sim::Genome& genome) const;
+
+  const GenomeSpec& spec() const { return spec_; }
+
+ private:
+  // Nothing when a gene found no place in tries_per_gene draws.
+  std::optional<sim::Genome> TryGenome(sim::RandomStream& random) const;
+
+  GenomeSpec spec_;
+  sim::TestCase arena_;
+  sim::ArenaRequirements requirements_;
+};
+
+// Whether genes can be drawn: every minimum at most its maximum, `step` 0 or a whole fraction of a metre, and
+// a point of the grid in every range. The error names key, value and rule.
+Status CheckGenomeSpec(const GenomeSpec& spec);
+
+// The first gene that lies outside the ranges of `spec` (rule kGeneRange: names gene, field, value and
+// range), or nothing. Neither the grid nor the number of genes is judged.
+std::optional<sim::Violation> CheckGeneRanges(const sim::Genome& genome, const GenomeSpec& spec);
+
+}  // namespace gauntlet::master

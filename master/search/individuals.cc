@@ -1,0 +1,120 @@
+#include "master/search/individuals.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "sim/base/check.h"
+#include "sim/base/hash.h"
+
+namespace gauntlet::master {
+namespace {
+
+double Aggregate(const std::vector<double>& evaluations, FitnessAggregation aggregation) {
+  if (evaluations.empty()) return std::numeric_limits<double>::infinity();
+  if (aggregation == FitnessAggregation::kLast) return evaluations.back();
+  double sum = 0.0;
+  for (const double fitness : evaluations) sum += fitness;
+  return sum / static_cast<double>(evaluations.size());
+}
+
+}  // namespace
+
+Individual MakeIndividual(IndividualId id, sim::TestCase test_case) {
+  Individual individual;
+  individual.id = id;
+  individual.birth_generation = 1;
+  individual.test_case = std::move(test_case);
+  individual.fitness = std::numeric_limits<double>::infinity();
+  return individual;
+}
+
+EvaluationRequest NextEvaluation(const Individual& individual, int replicates, std::uint32_t generation) {
+  return {
+      .individual = individual.id,
+      .evaluation = static_cast<std::uint32_t>(individual.evaluations.size()) + individual.failed_evaluations,
+      .replicates = static_cast<std::uint32_t>(replicates),
+      .generation = generation,
+      .test_case = individual.test_case};
+}
+
+bool HasFitness(const EvaluationOutcome& outcome) {
+  return outcome.completed && std::isfinite(outcome.fitness);
+}
+
+void RecordOutcome(const EvaluationOutcome& outcome, FitnessAggregation aggregation, Individual& individual) {
+  if (HasFitness(outcome)) {
+    individual.evaluations.push_back(outcome.fitness);
+  } else {
+    ++individual.failed_evaluations;
+  }
+  individual.fitness = Aggregate(individual.evaluations, aggregation);
+}
+
+void EncodeIndividual(const Individual& individual, CanonicalEncoder& encoder) {
+  encoder.Uint(individual.id);
+  encoder.Uint(individual.parents.size());
+  for (const IndividualId parent : individual.parents) encoder.Uint(parent);
+  encoder.Uint(individual.birth_generation);
+  encoder.Uint(individual.test_case.obstacles.size());
+  for (const sim::ObstacleGene& gene : individual.test_case.obstacles) {
+    encoder.Double(gene.x);
+    encoder.Double(gene.y);
+    encoder.Double(gene.length);
+    encoder.Double(gene.width);
+    encoder.Double(gene.orientation_deg);
+  }
+  encoder.Uint(individual.evaluations.size());
+  for (const double fitness : individual.evaluations) encoder.Double(fitness);
+  encoder.Uint(individual.failed_evaluations);
+}
+
+Individual DecodeIndividual(FitnessAggregation aggregation, CanonicalDecoder& decoder) {
+  Individual individual;
+  individual.id = decoder.Uint();
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    individual.parents.push_back(decoder.Uint());
+  }
+  individual.birth_generation = static_cast<std::uint32_t>(decoder.Uint());
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    sim::ObstacleGene gene;
+    gene.x = decoder.Double();
+    gene.y = decoder.Double();
+    gene.length = decoder.Double();
+    gene.width = decoder.Double();
+    gene.orientation_deg = decoder.Double();
+    individual.test_case.obstacles.push_back(gene);
+  }
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    individual.evaluations.push_back(decoder.Double());
+  }
+  individual.failed_evaluations = static_cast<std::uint32_t>(decoder.Uint());
+  individual.fitness = Aggregate(individual.evaluations, aggregation);
+  return individual;
+}
+
+std::uint64_t GenomeHash(const sim::Genome& genome) {
+  Fnv1a64 hash;
+  for (const sim::ObstacleGene& gene : genome) {
+    hash.AddDouble(gene.x);
+    hash.AddDouble(gene.y);
+    hash.AddDouble(gene.length);
+    hash.AddDouble(gene.width);
+    hash.AddDouble(gene.orientation_deg);
+  }
+  return hash.value();
+}
+
+void PendingRequests::Settle(const EvaluationOutcome& outcome) {
+  GAUNTLET_CHECK(!requests_.empty(), fmt::format("individual {} was not asked for", outcome.individual));
+  const Entry expected = requests_.front();
+  GAUNTLET_CHECK(
+      outcome.individual == expected.individual && outcome.evaluation == expected.evaluation,
+      fmt::format("told individual {} evaluation {}, expected {} evaluation {}", outcome.individual,
+                  outcome.evaluation, expected.individual, expected.evaluation));
+  requests_.pop_front();
+}
+
+}  // namespace gauntlet::master
