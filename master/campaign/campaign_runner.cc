@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "master/dispatch/run_codec.h"
+#include "sim/base/hash.h"
 
 namespace gauntlet::master {
 namespace {
@@ -17,8 +18,15 @@ constexpr std::chrono::seconds kRateWindow{5};
 
 }  // namespace
 
+std::uint64_t SpecHash(std::string_view spec) {
+  Fnv1a64 hash;
+  hash.AddBytes(spec);
+  return hash.value();
+}
+
 RunId RunIdOf(SearchId search, std::uint64_t sequence) {
-  GAUNTLET_CHECK(search >= 1 && sequence >= 1 && sequence < (1ULL << kSequenceBits), "run number out of range");
+  GAUNTLET_CHECK(search >= 1 && sequence >= 1 && sequence < (1ULL << kSequenceBits),
+                 "run number out of range");
   return (static_cast<RunId>(search - 1) << kSequenceBits) + sequence;
 }
 
@@ -69,6 +77,7 @@ Status CampaignRunner::AskSearch() {
       spec.controller_parameters = parts_.experiment.controller_parameters;
       spec.seed = run.seed;
       run.spec = EncodeRunSpec(spec);
+      run.spec_hash = SpecHash(run.spec);
 
       const auto stored = stored_ahead_.find(run.id);
       if (stored == stored_ahead_.end()) {
@@ -76,10 +85,12 @@ Status CampaignRunner::AskSearch() {
         evaluation.runs.push_back({std::move(run), false});
       } else {
         if (stored->second.spec != run.spec) {
-          return Error{ErrorKind::kCorrupt,
-                       fmt::format("run {} is stored with another spec than the search asks for: the campaign was made by "
-                                   "another version, or its files were changed",
-                                   run.id)};
+          return Error{
+              ErrorKind::kCorrupt,
+              fmt::format(
+                  "run {} is stored with another spec than the search asks for: the campaign was made by "
+                  "another version, or its files were changed",
+                  run.id)};
         }
         evaluation.runs.push_back({std::move(stored->second), true});
         stored_ahead_.erase(stored);
@@ -193,7 +204,8 @@ void CampaignRunner::TellCompleted() {
 CampaignProgress CampaignRunner::Progress(TimePoint started) {
   const TimePoint now = parts_.clock.Now();
   rate_samples_.emplace_back(now, runs_done_);
-  while (rate_samples_.size() > 2 && now - rate_samples_.front().first > kRateWindow) rate_samples_.pop_front();
+  while (rate_samples_.size() > 2 && now - rate_samples_.front().first > kRateWindow)
+    rate_samples_.pop_front();
 
   CampaignProgress progress;
   progress.search = parts_.search.Progress();
@@ -210,7 +222,8 @@ CampaignProgress CampaignRunner::Progress(TimePoint started) {
   const double seconds = std::chrono::duration<double>(now - oldest).count();
   if (seconds > 0.0) progress.runs_per_second = static_cast<double>(runs_done_ - runs_then) / seconds;
   if (progress.runs_per_second > 0.0 && progress.runs_planned >= runs_done_) {
-    progress.remaining_seconds = static_cast<double>(progress.runs_planned - runs_done_) / progress.runs_per_second;
+    progress.remaining_seconds =
+        static_cast<double>(progress.runs_planned - runs_done_) / progress.runs_per_second;
   }
   return progress;
 }

@@ -1,5 +1,6 @@
-// Drives one search of a campaign: asks the search, submits runs, stores what comes back, and tells the search once it is durable, in logical
-// order. Everything it decides is a function of the experiment and the stored results.
+// Drives one search of a campaign: asks the search, submits runs, stores what comes back, and tells the
+// search once it is durable, in logical order. Everything it decides is a function of the experiment and the
+// stored results.
 #pragma once
 
 #include <chrono>
@@ -8,12 +9,12 @@
 #include <optional>
 #include <vector>
 
+#include "master/campaign/state_digest.h"
 #include "master/dispatch/clock.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/experiment/experiment.h"
 #include "master/search/search_algorithm.h"
 #include "master/store/result_store.h"
-#include "master/campaign/state_digest.h"
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::master {
@@ -31,12 +32,16 @@ struct CampaignProgress {
   std::uint64_t total_failures = 0;  // runs so far
   std::uint64_t runs_failed = 0;     // verdict other than completed
   WorkerStatistics workers;
-  double elapsed_seconds = 0.0;                // of this session
-  std::optional<double> remaining_seconds;     // at the present rate
+  double elapsed_seconds = 0.0;             // of this session
+  std::optional<double> remaining_seconds;  // at the present rate
 };
 
-// The id of run number `sequence` (1, 2, ...) of a search: searches do not share numbers, so ids do not depend on which search was faster.
+// The id of run number `sequence` (1, 2, ...) of a search: searches do not share numbers, so ids do not
+// depend on which search was faster.
 RunId RunIdOf(SearchId search, std::uint64_t sequence);
+
+// StoredRun::spec_hash.
+std::uint64_t SpecHash(std::string_view spec);
 
 class CampaignRunner {
  public:
@@ -51,12 +56,12 @@ class CampaignRunner {
   };
   explicit CampaignRunner(const Parts& parts);
 
-  // Brings the search to the newest stored state and takes up the results stored after it. Call once, before Run. Error: what is stored does not
-  // fit the experiment (kCorrupt) or cannot be read.
+  // Brings the search to the newest stored state and takes up the results stored after it. Call once, before
+  // Run. Error: what is stored does not fit the experiment (kCorrupt) or cannot be read.
   Status Restore();
 
-  // Until the search has finished or `stop_requested` answers true. `on_progress` is called about ten times a second. Error: the store or the
-  // backend failed; whatever was acknowledged is stored.
+  // Until the search has finished or `stop_requested` answers true. `on_progress` is called about ten times a
+  // second. Error: the store or the backend failed; whatever was acknowledged is stored.
   Result<CampaignEnd> Run(const std::function<bool()>& stop_requested,
                           const std::function<void(const CampaignProgress&)>& on_progress);
 
@@ -82,7 +87,8 @@ class CampaignRunner {
 
   Parts parts_;
   std::deque<PendingEvaluation> pending_;
-  std::map<RunId, StoredRun> stored_ahead_;  // results that a former session stored and the saved state has not seen
+  std::map<RunId, StoredRun>
+      stored_ahead_;  // results that a former session stored and the saved state has not seen
   RunId last_asked_ = 0;
   RunId last_told_ = 0;
   RunId saved_until_ = 0;

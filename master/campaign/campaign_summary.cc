@@ -59,7 +59,8 @@ std::string EncodePopulation(const std::vector<Individual>& population) {
     encoder.Double(individual.fitness);
     encoder.Uint(individual.test_case.obstacles.size());
     for (const sim::ObstacleGene& gene : individual.test_case.obstacles) {
-      for (const double value : {gene.x, gene.y, gene.length, gene.width, gene.orientation_deg}) encoder.Double(value);
+      for (const double value : {gene.x, gene.y, gene.length, gene.width, gene.orientation_deg})
+        encoder.Double(value);
     }
   }
   return encoder.Take();
@@ -110,8 +111,9 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   double counted = 0.0;
   summary.best_fitness = summary.mean_fitness = summary.worst_fitness = kNone;
   for (const Individual& individual : population) {
-    summary.population.push_back({individual.id, individual.parents, individual.birth_generation, individual.fitness,
-                                  individual.test_case.obstacles, runs_of[individual.id]});
+    summary.population.push_back({individual.id, individual.parents, individual.birth_generation,
+                                  individual.fitness, individual.test_case.obstacles,
+                                  runs_of[individual.id]});
     if (!std::isfinite(individual.fitness)) continue;
     summary.best_fitness = std::fmin(summary.best_fitness, individual.fitness);
     summary.worst_fitness = std::fmax(summary.worst_fitness, individual.fitness);
@@ -120,7 +122,8 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   }
   if (counted > 0.0) summary.mean_fitness = sum / counted;
 
-  summary.state_hash = StateHash(WriteExperiment(experiment), digest, EncodePopulation(population), search_state);
+  summary.state_hash =
+      StateHash(WriteExperiment(experiment), digest, EncodePopulation(population), search_state);
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
   for (const StoredSearch& stored : *searches) {

@@ -54,8 +54,9 @@ struct CampaignSummary {
   bool finished = false;
 };
 
-// Gathers the summary of a search from what is stored. `search` is freshly made for the experiment; it is brought to the newest saved state.
-// Population, fitness figures and state_hash are those of the last complete generation; runs and failures count everything stored.
+// Gathers the summary of a search from what is stored. `search` is freshly made for the experiment; it is
+// brought to the newest saved state. Population, fitness figures and state_hash are those of the last
+// complete generation; runs and failures count everything stored.
 Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
                                   ResultStore& store);
 

@@ -34,6 +34,7 @@ struct StoredRun {
   std::uint32_t generation = 0;
   std::uint64_t seed = 0;
   std::string spec;    // serialized RunSpec, as it was sent
+  std::uint64_t spec_hash = 0;  // FNV-1a of `spec`: finds a changed byte that would not change the result
   std::string result;  // serialized RunResult (without trajectory)
   std::uint64_t hash = 0;
   std::string worker;

@@ -1,0 +1,52 @@
+// A whole session of a campaign: directory, lock, store, workers and search brought together, and cleaned up
+// whatever happens.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "master/campaign/campaign_runner.h"
+#include "master/campaign/campaign_summary.h"
+#include "master/campaign/replay.h"
+#include "master/experiment/experiment.h"
+#include "sim/arena/test_case.h"
+
+namespace gauntlet::master {
+
+struct SessionOptions {
+  int workers = 1;  // processes of the local pool
+  std::function<bool()> stop_requested = [] { return false; };
+  std::function<void(const CampaignProgress&)> on_progress = [](const CampaignProgress&) {};
+};
+
+struct SessionReport {
+  CampaignEnd end = CampaignEnd::kFinished;
+  CampaignSummary summary;
+  double wall_seconds = 0.0;
+  double master_cpu_seconds = 0.0;      // user + system of the master process alone, in this session
+  std::uint64_t runs_this_session = 0;  // simulated, not taken from the store
+};
+
+// Creates the campaign in `dir` (which must not exist or be empty) and runs it. `cases`: what `evaluate`
+// simulates, in order (search kind kCases); empty otherwise. Errors: kInvalidInput, kInUse; kNoSpace and kIo
+// when the campaign stopped and can be resumed.
+Result<SessionReport> StartCampaign(const std::string& dir, const Experiment& experiment,
+                                    const std::vector<sim::TestCase>& cases, const SessionOptions& options);
+
+// Goes on where the campaign in `dir` was; a finished one is only summarised.
+Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOptions& options);
+
+// What is stored, for `show`. Error kInUse (with the owner) while a living master holds the campaign.
+Result<CampaignSummary> ReadCampaign(const std::string& dir);
+
+// A finished campaign's runs in logical order, for `evaluate --json`.
+Status ForEachStoredRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit);
+
+struct CampaignReplay {
+  Experiment experiment;
+  ReplayReport report;
+};
+Result<CampaignReplay> ReplayCampaignRun(const std::string& dir, RunId run);
+
+}  // namespace gauntlet::master

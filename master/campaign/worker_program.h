@@ -1,0 +1,21 @@
+// gauntlet-worker as a helper program: one simulation outside of any campaign, and the golden hash of this
+// machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "sim/base/result.h"
+#include "sim/run_result.h"
+
+namespace gauntlet::master {
+
+// Simulates a serialized RunSpec in a runner, under the limits of any run, and returns the result (not
+// checked against anything).
+Result<sim::RunResult> SimulateInRunner(std::string_view spec);
+
+// The hash of a fixed set of runs on this machine, as `gauntlet-worker --golden` prints it.
+Result<std::uint64_t> GoldenHashOfThisMachine();
+
+}  // namespace gauntlet::master
