@@ -33,6 +33,14 @@ struct WorkerStatistics {
   std::uint64_t releases = 0;  // runs leased again because their worker was lost
   std::uint64_t duplicates = 0;
   std::uint64_t rejected_messages = 0;
+  std::uint64_t nondeterministic = 0;  // duplicates whose result differed from the first one
+};
+
+// Something a person or the store's event table should know of.
+struct DispatchEvent {
+  std::string kind;  // "worker-joined", "worker-lost", "worker-left", "worker-refused", "worker-died",
+                     // "runner-failure", "run-given-up", "nondeterministic", "rejected-message"
+  std::string text;  // one sentence
 };
 
 class EvaluationBackend {
@@ -47,6 +55,8 @@ class EvaluationBackend {
   // Lets workers go; returns when they are gone or the deadline has passed.
   virtual void Shutdown(std::chrono::milliseconds deadline) = 0;
   virtual WorkerStatistics Statistics() const = 0;
+  // What happened since the last call, oldest first.
+  virtual std::vector<DispatchEvent> TakeEvents() { return {}; }
 };
 
 }  // namespace gauntlet::master

@@ -1,0 +1,35 @@
+// What a campaign decides about leases, limits and retries.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+namespace gauntlet::master {
+
+struct DispatchOptions {
+  std::chrono::milliseconds heartbeat{1000};  // both ways
+  int lost_after = 3;                         // heartbeats of silence after which a worker's runs go elsewhere
+  // A run that fails of itself (crash, hang, memory) this often gets the verdict; lost workers and signals
+  // from outside are no attempts.
+  std::uint32_t attempts = 3;
+  // Leases per slot. 1: one run at a time. 2: the next run is already there when a slot becomes free, so that
+  // a run of some milliseconds never waits for a round trip.
+  std::uint32_t credit = 2;
+  // CPU time of one runner on one run, s; only there to end what would never end. At least 60 in campaigns.
+  double cpu_limit_seconds = 60.0;
+  std::uint64_t memory_limit_bytes = 2ULL << 30;  // address space of one runner; 0 = no limit
+  // How long a vanished worker is remembered: its late results are still taken. Longer than the time for
+  // which workers look for a lost master (10 min).
+  std::chrono::milliseconds forget_after{15 * 60 * 1000};
+};
+
+// What worker and master must agree on before a worker gets a lease.
+struct CampaignIdentity {
+  std::string campaign_id;
+  std::uint64_t epoch = 1;  // number of this master start; must fit 32 bits: it begins the fencing numbers
+  std::string software_version;
+  std::uint64_t golden_hash = 0;
+};
+
+}  // namespace gauntlet::master

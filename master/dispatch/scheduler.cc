@@ -1,0 +1,406 @@
+#include "master/dispatch/scheduler.h"
+
+#include <algorithm>
+#include <string>
+
+#include "sim/base/check.h"
+
+namespace gauntlet::master {
+namespace {
+
+// A lease that was sent and is not in a heartbeat of its worker was lost on the way, unless the two crossed.
+constexpr int kCrossingHeartbeats = 2;
+constexpr int kChecksPerHeartbeat = 8;
+
+void Erase(std::vector<Fence>& fences, Fence fence) {
+  const auto found = std::find(fences.begin(), fences.end(), fence);
+  if (found == fences.end()) return;
+  *found = fences.back();
+  fences.pop_back();
+}
+
+}  // namespace
+
+Scheduler::Scheduler(const DispatchOptions& options, Fence first_fence)
+    : options_(options), first_fence_(first_fence), next_fence_(first_fence) {
+  GAUNTLET_CHECK(options.attempts >= 1 && options.credit >= 1 && options.lost_after >= 1 &&
+                     options.heartbeat.count() > 0,
+                 "dispatch options out of range");
+}
+
+void Scheduler::Advance(TimePoint now) {
+  if (!started_) {
+    started_ = true;
+    last_now_ = now;
+    return;
+  }
+  if (now > last_now_) {
+    listening_ += std::min<Duration>(now - last_now_, options_.heartbeat);
+    last_now_ = now;
+  }
+}
+
+void Scheduler::Submit(RunId run) {
+  const bool added = runs_.try_emplace(run).second;
+  GAUNTLET_CHECK(added, "run " + std::to_string(run) + " submitted twice");
+  queue_.insert(run);
+  ++unfinished_;
+}
+
+void Scheduler::Acknowledge(RunId id) {
+  const auto found = runs_.find(id);
+  if (found == runs_.end() || found->second.acknowledged) return;
+  Run& run = found->second;
+  GAUNTLET_CHECK(run.finished, "run " + std::to_string(id) + " acknowledged before it finished");
+  run.acknowledged = true;
+  if (!run.given_up) {
+    orders_.acknowledgements.push_back({run.finished_by, run.accepted});
+    leases_.erase(run.accepted);
+  }
+  if (!run.fences.empty()) loose_ends_.emplace_back(listening_, id);
+  ForgetIfDone(id);
+}
+
+void Scheduler::WorkerJoined(InstanceId id, std::uint32_t slots, const std::vector<Fence>& held,
+                             TimePoint now) {
+  Advance(now);
+  Worker& worker = workers_[id];
+  Unlist(id, worker);
+  worker.slots = std::max<std::uint32_t>(1, slots);
+  worker.draining = false;
+  worker.lost = false;
+  Heard(id, worker);
+  Reconcile(id, worker, held, Duration::zero());
+}
+
+bool Scheduler::WorkerHeard(InstanceId id, TimePoint now) {
+  Advance(now);
+  const auto found = workers_.find(id);
+  if (found == workers_.end()) return false;
+  Heard(id, found->second);
+  return true;
+}
+
+bool Scheduler::WorkerHeartbeat(InstanceId id, const std::vector<Fence>& held, TimePoint now) {
+  Advance(now);
+  const auto found = workers_.find(id);
+  if (found == workers_.end()) return false;
+  found->second.lost = false;
+  Heard(id, found->second);
+  Reconcile(id, found->second, held, kCrossingHeartbeats * options_.heartbeat);
+  return true;
+}
+
+bool Scheduler::WorkerDraining(InstanceId id) {
+  const auto found = workers_.find(id);
+  if (found == workers_.end()) return false;
+  found->second.draining = true;
+  List(id, found->second);
+  return true;
+}
+
+bool Scheduler::WorkerLeft(InstanceId id) {
+  const auto found = workers_.find(id);
+  if (found == workers_.end()) return false;
+  Worker& worker = found->second;
+  Unlist(id, worker);
+  ReleaseAll(worker);
+  while (!worker.loose.empty()) {
+    const Fence fence = worker.loose.back();
+    const RunId run = leases_.at(fence).run;
+    EndLease(fence);
+    ForgetIfDone(run);
+  }
+  workers_.erase(found);
+  return true;
+}
+
+bool Scheduler::WorkerDied(InstanceId id) {
+  const auto found = workers_.find(id);
+  if (found == workers_.end()) return false;
+  if (!found->second.lost) Lose(id, found->second);
+  return true;
+}
+
+void Scheduler::Heard(InstanceId id, Worker& worker) {
+  worker.heard = listening_;
+  worker.blocked = false;
+  List(id, worker);
+}
+
+void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence>& held, Duration grace) {
+  std::vector<Fence> sorted(held);
+  std::sort(sorted.begin(), sorted.end());
+  const auto holds = [&sorted](Fence fence) {
+    return std::binary_search(sorted.begin(), sorted.end(), fence);
+  };
+
+  for (const Fence fence : std::vector<Fence>(worker.live)) {
+    Lease& lease = leases_.at(fence);
+    if (holds(fence) || listening_ - lease.granted < grace) continue;
+    const RunId run = lease.run;
+    EndLease(fence);
+    if (Requeue(run, runs_.at(run))) ++releases_;
+  }
+  for (const Fence fence : std::vector<Fence>(worker.loose)) {
+    Lease& lease = leases_.at(fence);
+    const RunId run_id = lease.run;
+    Run& run = runs_.at(run_id);
+    if (!holds(fence)) {
+      EndLease(fence);
+      ForgetIfDone(run_id);
+    } else if (lease.state == LeaseState::kOrphaned && !run.finished && run.live == 0) {
+      // Back in time: nobody else has the run yet.
+      lease.state = LeaseState::kLive;
+      Erase(worker.loose, fence);
+      worker.live.push_back(fence);
+      ++run.live;
+      queue_.erase(run_id);
+    } else {
+      lease.state = LeaseState::kCancelled;
+      orders_.cancels.push_back({id, fence});
+    }
+  }
+  // What the worker still holds although it was told to forget it: the message was lost. Leases of earlier
+  // masters may still bring a result.
+  for (const Fence fence : sorted) {
+    if (fence >= first_fence_ && !leases_.contains(fence)) orders_.acknowledgements.push_back({id, fence});
+  }
+  List(id, worker);
+}
+
+void Scheduler::List(InstanceId id, Worker& worker) {
+  Unlist(id, worker);
+  if (worker.lost || worker.draining || worker.blocked) return;
+  if (worker.live.size() >= std::size_t{worker.slots} * options_.credit) return;
+  worker.level = static_cast<std::uint32_t>(worker.live.size() / worker.slots);
+  worker.listed = true;
+  available_.emplace(worker.level, id);
+}
+
+void Scheduler::Unlist(InstanceId id, Worker& worker) {
+  if (worker.listed) available_.erase({worker.level, id});
+  worker.listed = false;
+}
+
+void Scheduler::Loosen(Fence fence, Lease& lease, LeaseState state) {
+  Worker& worker = workers_.at(lease.worker);
+  lease.state = state;
+  Erase(worker.live, fence);
+  worker.loose.push_back(fence);
+  --runs_.at(lease.run).live;
+  List(lease.worker, worker);
+}
+
+void Scheduler::EndLease(Fence fence) {
+  const auto found = leases_.find(fence);
+  const Lease lease = found->second;
+  leases_.erase(found);
+  Run& run = runs_.at(lease.run);
+  Erase(run.fences, fence);
+  if (lease.state == LeaseState::kLive) --run.live;
+  Worker& worker = workers_.at(lease.worker);
+  Erase(lease.state == LeaseState::kLive ? worker.live : worker.loose, fence);
+  List(lease.worker, worker);
+}
+
+bool Scheduler::Requeue(RunId id, Run& run) {
+  if (run.finished || run.live > 0) return false;
+  queue_.insert(id);
+  return true;
+}
+
+std::vector<RunId> Scheduler::ReleaseAll(Worker& worker) {
+  std::vector<RunId> released;
+  for (const Fence fence : std::vector<Fence>(worker.live)) {
+    Lease& lease = leases_.at(fence);
+    Loosen(fence, lease, LeaseState::kOrphaned);
+    if (Requeue(lease.run, runs_.at(lease.run))) released.push_back(lease.run);
+  }
+  releases_ += released.size();
+  return released;
+}
+
+void Scheduler::Lose(InstanceId id, Worker& worker) {
+  worker.lost = true;
+  ++lost_;
+  Unlist(id, worker);
+  orders_.lost.push_back({id, ReleaseAll(worker)});
+}
+
+void Scheduler::Finish(RunId id, Run& run, InstanceId worker, Fence fence) {
+  run.finished = true;
+  run.finished_by = worker;
+  run.accepted = fence;
+  --unfinished_;
+  queue_.erase(id);
+  for (const Fence other : run.fences) {
+    Lease& lease = leases_.at(other);
+    if (lease.state != LeaseState::kLive) continue;
+    orders_.cancels.push_back({lease.worker, other});
+    Loosen(other, lease, LeaseState::kCancelled);
+  }
+}
+
+Answer Scheduler::CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash) {
+  ++duplicates_;
+  orders_.acknowledgements.push_back({worker, fence});
+  if (run.given_up || run.hash != hash) {
+    ++mismatches_;
+    orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, hash});
+  }
+  ForgetIfDone(id);
+  return Answer::kDuplicate;
+}
+
+Answer Scheduler::Completed(InstanceId worker, Fence fence, RunId id, std::uint64_t hash) {
+  const auto found = leases_.find(fence);
+  if (found == leases_.end()) {
+    const auto known = runs_.find(id);
+    if (known == runs_.end() || fence >= first_fence_) {
+      orders_.acknowledgements.push_back({worker, fence});
+      return Answer::kUnwanted;
+    }
+    // Leased by an earlier master of this campaign.
+    Run& run = known->second;
+    if (run.finished && run.accepted == fence) {
+      if (run.acknowledged) orders_.acknowledgements.push_back({worker, fence});
+      return Answer::kRepeated;
+    }
+    if (run.finished) return CompareDuplicate(id, run, worker, fence, hash);
+    run.hash = hash;
+    Finish(id, run, worker, fence);
+    return Answer::kAccepted;
+  }
+
+  Lease& lease = found->second;
+  if (lease.worker != worker || lease.run != id) return Answer::kRejected;
+  if (lease.state == LeaseState::kAnswered) return Answer::kRepeated;
+  Run& run = runs_.at(id);
+  EndLease(fence);
+  if (run.finished) return CompareDuplicate(id, run, worker, fence, hash);
+  run.hash = hash;
+  leases_[fence] = Lease{id, worker, LeaseState::kAnswered, listening_};
+  Finish(id, run, worker, fence);
+  return Answer::kAccepted;
+}
+
+Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const RunFailure& failure) {
+  const auto found = leases_.find(fence);
+  if (found == leases_.end()) {
+    orders_.acknowledgements.push_back({worker, fence});
+    return Answer::kUnwanted;
+  }
+  const Lease& lease = found->second;
+  if (lease.worker != worker || lease.run != id) return Answer::kRejected;
+  if (lease.state == LeaseState::kAnswered) return Answer::kRepeated;
+  Run& run = runs_.at(id);
+  EndLease(fence);
+  orders_.acknowledgements.push_back({worker, fence});
+  if (run.finished) {
+    ForgetIfDone(id);
+    return Answer::kUnwanted;
+  }
+  if (failure.kind != FailureKind::kExternal) {
+    ++run.own_failures;
+    const std::uint32_t of_kind = ++run.failures_of_kind[static_cast<std::size_t>(failure.kind)];
+    if (run.own_failures >= options_.attempts) {
+      run.given_up = true;
+      orders_.given_up.push_back({id, worker, run.leases, failure, of_kind, run.own_failures});
+      Finish(id, run, worker, fence);
+      return Answer::kAccepted;
+    }
+  }
+  Requeue(id, run);
+  return Answer::kAccepted;
+}
+
+void Scheduler::Undelivered(Fence fence) {
+  const auto found = leases_.find(fence);
+  if (found == leases_.end() || found->second.state != LeaseState::kLive) return;
+  const Lease lease = found->second;
+  workers_.at(lease.worker).blocked = true;
+  EndLease(fence);
+  Run& run = runs_.at(lease.run);
+  --run.leases;
+  Requeue(lease.run, run);
+}
+
+std::uint32_t Scheduler::LeasesOf(RunId run) const {
+  const auto found = runs_.find(run);
+  return found == runs_.end() ? 0 : found->second.leases;
+}
+
+void Scheduler::ForgetIfDone(RunId id) {
+  const auto found = runs_.find(id);
+  if (found != runs_.end() && found->second.acknowledged && found->second.fences.empty()) runs_.erase(found);
+}
+
+void Scheduler::Purge() {
+  for (auto it = workers_.begin(); it != workers_.end();) {
+    const InstanceId id = it->first;
+    const bool forget = it->second.lost && listening_ - it->second.heard > options_.forget_after;
+    ++it;
+    if (!forget) continue;
+    orders_.forgotten.push_back(id);
+    WorkerLeft(id);
+  }
+  while (!loose_ends_.empty() && listening_ - loose_ends_.front().first > options_.forget_after) {
+    const RunId id = loose_ends_.front().second;
+    loose_ends_.pop_front();
+    const auto found = runs_.find(id);
+    if (found == runs_.end()) continue;
+    for (const Fence fence : std::vector<Fence>(found->second.fences)) EndLease(fence);
+    ForgetIfDone(id);
+  }
+}
+
+void Scheduler::Assign() {
+  if (!leasing_) return;
+  while (!queue_.empty() && !available_.empty()) {
+    const RunId id = *queue_.begin();
+    queue_.erase(queue_.begin());
+    const InstanceId worker_id = available_.begin()->second;
+    Worker& worker = workers_.at(worker_id);
+    Run& run = runs_.at(id);
+    const Fence fence = next_fence_++;
+    leases_.emplace(fence, Lease{id, worker_id, LeaseState::kLive, listening_});
+    run.fences.push_back(fence);
+    ++run.live;
+    ++run.leases;
+    worker.live.push_back(fence);
+    List(worker_id, worker);
+    orders_.leases.push_back({worker_id, fence, id, run.leases});
+  }
+}
+
+SchedulerOrders Scheduler::Decide(TimePoint now) {
+  Advance(now);
+  if (listening_ >= next_check_) {
+    next_check_ = listening_ + Duration(options_.heartbeat) / kChecksPerHeartbeat;
+    for (auto& [id, worker] : workers_) {
+      if (!worker.lost && listening_ - worker.heard >= options_.lost_after * options_.heartbeat) {
+        Lose(id, worker);
+      }
+    }
+    Purge();
+  }
+  Assign();
+  return std::exchange(orders_, {});
+}
+
+WorkerStatistics Scheduler::Statistics() const {
+  WorkerStatistics statistics;
+  for (const auto& [id, worker] : workers_) {
+    if (worker.lost) continue;
+    ++statistics.connected;
+    if (!worker.live.empty()) ++statistics.busy;
+  }
+  statistics.lost = lost_;
+  statistics.releases = releases_;
+  statistics.duplicates = duplicates_;
+  statistics.nondeterministic = mismatches_;
+  return statistics;
+}
+
+}  // namespace gauntlet::master

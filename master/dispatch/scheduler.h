@@ -1,0 +1,213 @@
+// Who does which run: the queue, leases with fencing numbers, heartbeats, retries, duplicates. It decides and
+// does nothing: events go in, orders come out, the time is an argument. No sockets, no threads, no clock.
+//
+// A run is queued, leased (at least one live lease) or finished. A lease is
+//   live       the worker is expected to answer; counts against its credit
+//   orphaned   its worker vanished; a late answer is as good as any: same spec, same bits
+//   cancelled  not needed any more; a late answer is a duplicate and is compared
+//   answered   its result was accepted and waits to be stored (Acknowledge)
+// so that no answer is ever refused for being late, and no run is finished twice.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <set>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "master/dispatch/clock.h"
+#include "master/dispatch/dispatch_options.h"
+#include "master/dispatch/evaluation_backend.h"
+
+namespace gauntlet::master {
+
+using InstanceId = std::uint64_t;  // random, one per worker process
+using Fence = std::uint64_t;       // names a lease; grows monotonically within a campaign
+
+enum class FailureKind {
+  kCrashed,
+  kHung,
+  kOutOfMemory,
+  kUnreadable,  // the answer did not decode, or its hash does not match its content
+  kExternal,    // not the run's fault: never an attempt
+};
+
+struct RunFailure {
+  FailureKind kind = FailureKind::kExternal;
+  int signal = 0;
+  int exit_code = 0;
+};
+
+struct LeaseOrder {
+  InstanceId worker = 0;
+  Fence fence = 0;
+  RunId run = 0;
+  std::uint32_t attempt = 1;  // 1 = the run's first lease
+};
+
+struct FenceOrder {
+  InstanceId worker = 0;
+  Fence fence = 0;
+};
+
+// The run ended with a verdict: `attempts` own failures, the last of which is `last`.
+struct RunGivenUp {
+  RunId run = 0;
+  InstanceId worker = 0;  // of the last failure
+  std::uint32_t leases = 1;
+  RunFailure last;
+  std::uint32_t of_last_kind = 0;
+  std::uint32_t attempts = 0;
+};
+
+struct WorkerLost {
+  InstanceId worker = 0;
+  std::vector<RunId> released;  // runs that wait for another worker now
+};
+
+// Two answers to the same spec differ: the campaign is nondeterministic.
+struct ResultMismatch {
+  RunId run = 0;
+  InstanceId first_worker = 0;
+  InstanceId second_worker = 0;
+  std::uint64_t first_hash = 0;  // 0: the run had ended with a verdict of failure
+  std::uint64_t second_hash = 0;
+};
+
+struct SchedulerOrders {
+  std::vector<LeaseOrder> leases;            // send these leases
+  std::vector<FenceOrder> cancels;           // tell the worker that the lease is not needed any more
+  std::vector<FenceOrder> acknowledgements;  // tell the worker to forget the lease
+  std::vector<RunGivenUp> given_up;
+  std::vector<WorkerLost> lost;
+  std::vector<ResultMismatch> mismatches;
+  std::vector<InstanceId> forgotten;  // these lost workers are unknown from now on
+};
+
+enum class Answer {
+  kAccepted,   // the run's result, or a counted failure
+  kDuplicate,  // the run had finished already
+  kRepeated,   // the very answer that was accepted, sent again
+  kUnwanted,   // nobody waits for it any more
+  kRejected,   // names a lease that this worker does not have, or another run than the lease's
+};
+
+class Scheduler {
+ public:
+  // Fencing numbers are first_fence, first_fence + 1, ...; smaller ones belong to earlier masters.
+  Scheduler(const DispatchOptions& options, Fence first_fence);
+
+  // Ids are new; smaller ids are leased first, whenever they were submitted or released.
+  void Submit(RunId run);
+  // The result of this finished run is stored durably.
+  void Acknowledge(RunId run);
+  // No lease is given from now on.
+  void StopLeasing() { leasing_ = false; }
+
+  // A worker said hello, for the first time or after a reconnect; `held`: the leases it works on or has
+  // results for.
+  void WorkerJoined(InstanceId worker, std::uint32_t slots, const std::vector<Fence>& held, TimePoint now);
+  // The following return false when the worker is unknown.
+  bool WorkerHeard(InstanceId worker, TimePoint now);
+  bool WorkerHeartbeat(InstanceId worker, const std::vector<Fence>& held, TimePoint now);
+  bool WorkerDraining(InstanceId worker);  // finishes what it has, wants nothing new
+  bool WorkerLeft(InstanceId worker);      // said goodbye: nothing will come from it any more
+  bool WorkerDied(InstanceId worker);      // its process is gone; what it sent before may still arrive
+
+  Answer Completed(InstanceId worker, Fence fence, RunId run, std::uint64_t hash);
+  Answer Failed(InstanceId worker, Fence fence, RunId run, const RunFailure& failure);
+  // The lease could not be sent. The worker gets no other before it is heard of again.
+  void Undelivered(Fence fence);
+
+  // Looks for silent workers, gives leases, and hands over all orders since the last call.
+  SchedulerOrders Decide(TimePoint now);
+
+  bool Known(InstanceId worker) const { return workers_.contains(worker); }
+  std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown runs
+  std::size_t queued() const { return queue_.size(); }
+  std::size_t unfinished() const { return unfinished_; }
+  std::size_t remembered_runs() const { return runs_.size(); }  // all that takes memory
+  WorkerStatistics Statistics() const;
+
+ private:
+  enum class LeaseState { kLive, kOrphaned, kCancelled, kAnswered };
+  struct Lease {
+    RunId run = 0;
+    InstanceId worker = 0;
+    LeaseState state = LeaseState::kLive;
+    Duration granted{};
+  };
+  struct Run {
+    std::vector<Fence> fences;  // live, orphaned and cancelled leases
+    std::uint32_t live = 0;
+    std::uint32_t leases = 0;  // given so far
+    std::uint32_t own_failures = 0;
+    std::array<std::uint32_t, 4> failures_of_kind{};
+    bool finished = false;
+    bool given_up = false;
+    bool acknowledged = false;
+    Fence accepted = 0;
+    InstanceId finished_by = 0;
+    std::uint64_t hash = 0;
+  };
+  struct Worker {
+    std::uint32_t slots = 1;
+    std::vector<Fence> live;
+    std::vector<Fence> loose;  // orphaned and cancelled
+    Duration heard{};
+    bool lost = false;
+    bool draining = false;
+    bool blocked = false;  // the last lease could not be delivered
+    // Its place in available_, when it has one.
+    bool listed = false;
+    std::uint32_t level = 0;
+  };
+
+  void Advance(TimePoint now);
+  void Heard(InstanceId id, Worker& worker);
+  void Reconcile(InstanceId id, Worker& worker, const std::vector<Fence>& held, Duration grace);
+  void List(InstanceId id, Worker& worker);    // puts it where it belongs in available_
+  void Unlist(InstanceId id, Worker& worker);  // takes it out of available_
+  void Loosen(Fence fence, Lease& lease, LeaseState state);
+  void EndLease(Fence fence);
+  bool Requeue(RunId id, Run& run);
+  std::vector<RunId> ReleaseAll(Worker& worker);
+  void Lose(InstanceId id, Worker& worker);
+  void Finish(RunId id, Run& run, InstanceId worker, Fence fence);
+  Answer CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);
+  void ForgetIfDone(RunId id);
+  void Purge();
+  void Assign();
+
+  DispatchOptions options_;
+  Fence first_fence_;
+  Fence next_fence_;
+  bool leasing_ = true;
+
+  // Time in which the master was listening: it advances by at most one heartbeat per event, so that a master
+  // that was itself frozen or busy does not take its workers for silent.
+  Duration listening_{};
+  TimePoint last_now_{};
+  bool started_ = false;
+  Duration next_check_{};
+
+  std::unordered_map<RunId, Run> runs_;
+  std::set<RunId> queue_;
+  std::size_t unfinished_ = 0;
+  std::unordered_map<Fence, Lease> leases_;
+  std::map<InstanceId, Worker> workers_;
+  // Workers that can take a lease, least loaded first: (live leases / slots, id).
+  std::set<std::pair<std::uint32_t, InstanceId>> available_;
+  // Stored runs of which some lease was never answered, by the time they were stored.
+  std::deque<std::pair<Duration, RunId>> loose_ends_;
+  SchedulerOrders orders_;
+  int lost_ = 0;
+  std::uint64_t releases_ = 0;
+  std::uint64_t duplicates_ = 0;
+  std::uint64_t mismatches_ = 0;
+};
+
+}  // namespace gauntlet::master

@@ -1,0 +1,43 @@
+// Transport over a ZeroMQ ROUTER socket; workers connect with DEALER sockets and send one frame per message.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "master/dispatch/transport.h"
+#include "sim/base/result.h"
+
+namespace gauntlet::master {
+
+struct ZmqTransportOptions {
+  std::string endpoint = "tcp://127.0.0.1:*";  // "*" as port: any free one
+  // A longer message is dropped and counted; a connection that announces one longer than this and a mebibyte
+  // is closed before its bytes are read.
+  std::size_t max_message_bytes = 16U << 20;
+  int peer_queue = 1000;  // messages per peer and direction before it counts as not reading
+};
+
+class ZmqTransport final : public Transport {
+ public:
+  // Binds. Error: the endpoint is malformed, in use or not ours.
+  static Result<std::unique_ptr<ZmqTransport>> Bind(const ZmqTransportOptions& options = {});
+  ~ZmqTransport() override;
+  ZmqTransport(const ZmqTransport&) = delete;
+  ZmqTransport& operator=(const ZmqTransport&) = delete;
+
+  // What workers connect to: the port is the real one.
+  const std::string& endpoint() const;
+
+  SendOutcome Send(const PeerId& peer, std::string_view bytes) override;
+  void Receive(std::size_t limit, std::vector<PeerMessage>& messages) override;
+  WaitOutcome Wait(std::chrono::milliseconds timeout, std::span<const int> fds) override;
+  void WakeUp() override;
+  TransportRejections Rejections() const override;
+
+ private:
+  struct Sockets;  // keeps zmq.hpp out of this header
+  explicit ZmqTransport(std::unique_ptr<Sockets> sockets);
+  std::unique_ptr<Sockets> sockets_;
+};
+
+}  // namespace gauntlet::master
