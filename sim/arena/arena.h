@@ -12,6 +12,7 @@ namespace gauntlet::sim {
 
 class Arena {
  public:
+  // The test case obeys the rules up to "limits" (validity.h); a broken one may abort.
   explicit Arena(const TestCase& test_case);
 
   // The inner faces of the walls, m.
@@ -21,13 +22,14 @@ class Arena {
   // Obstacles in gene order. What lies beyond the walls is kept in the box: no robot can be there and no line
   // between two robots passes there, so clipping changes nothing but drawings (see VisiblePart).
   const std::vector<OrientedBox>& obstacles() const { return obstacles_; }
-  // The four walls: +y, -y, +x, -x.
+  // The four walls: +y, -y, +x, -x. They overlap in the corners.
   const std::vector<OrientedBox>& walls() const { return walls_; }
   // Obstacles, then walls.
   const std::vector<OrientedBox>& boxes() const { return boxes_; }
 
   // The part of obstacle `index` inside the interior (thesis 3.2.1: what lies outside the edge is split off).
   Polygon VisiblePart(std::size_t index) const;
+  // Strictly between the inner faces of the walls.
   bool InInterior(const Vec2& p) const;
   // Centre-to-centre line of sight: no obstacle or wall touches the segment.
   bool LineOfSight(const Vec2& a, const Vec2& b) const;

@@ -15,27 +15,37 @@ struct Cell {
   bool operator==(const Cell&) const = default;
 };
 
+// Const functions may be called from several threads at once.
 class OccupancyGrid {
  public:
   static constexpr double kCellSize = 0.05;          // m
   static constexpr double kDefaultInflation = 0.10;  // m: body 0.085 + 0.015 margin
 
   // A cell is blocked when its centre is less than `inflation` metres from an obstacle or a wall's inner
-  // face, or beyond the wall.
+  // face, or beyond the wall. The grid spans the walls' centre lines; inflation >= 0.
   OccupancyGrid(const Arena& arena, double inflation);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
-  // Adds one more obstacle, as after a gene was appended. Blocked cells only grow.
+  double inflation() const { return inflation_; }
+  // Adds one more obstacle, as after a gene was appended. Blocked cells only grow. Touches only the cells
+  // near the box.
   void AddObstacle(const OrientedBox& box);
 
   bool InGrid(Cell cell) const {
     return cell.column >= 0 && cell.row >= 0 && cell.column < columns_ && cell.row < rows_;
   }
   bool Free(Cell cell) const { return InGrid(cell) && blocked_[Index(cell)] == 0; }
-  Vec2 CenterOf(Cell cell) const;
+  Vec2 CenterOf(Cell cell) const {
+    return {origin_.x() + (cell.column + 0.5) * kCellSize, origin_.y() + (cell.row + 0.5) * kCellSize};
+  }
+  // The lower left corner of cell (0, 0), m.
+  const Vec2& origin() const { return origin_; }
   // May lie outside the grid.
   Cell CellAt(const Vec2& p) const;
+  // Distance from p to the nearest obstacle or inner face of a wall, m; not of cells but exact. 0 or less
+  // inside them.
+  double Clearance(const Vec2& p) const;
 
   // Whether two free cells are 4-connected through free cells.
   bool Connected(Cell a, Cell b) const;
@@ -48,13 +58,16 @@ class OccupancyGrid {
   }
 
  private:
-  void Block(const OrientedBox& box);
+  void BlockWalls();
 
-  Vec2 origin_;  // lower left corner of cell (0, 0)
+  Vec2 interior_min_;
+  Vec2 interior_max_;
   double inflation_;
   int columns_;
   int rows_;
-  std::vector<std::uint8_t> blocked_;
+  Vec2 origin_;
+  std::vector<OrientedBox> obstacles_;
+  std::vector<std::uint8_t> blocked_;  // row-major, 0 or 1
 };
 
 }  // namespace gauntlet::sim

@@ -9,8 +9,16 @@
 
 namespace gauntlet::sim {
 
+// Largest distance between two samples of a line of sight, m.
+inline constexpr double kPathSampleDistance = 0.02;
+
 // Waypoints from start to goal, both included (the exact points, not their cells' centres); empty when there
-// is no path. Ties are broken by cell index, so the path is a function of its inputs.
+// is no path. Ties are broken by cell index, so the path is a function of its inputs. Never longer than the
+// shortest path from cell to neighbouring cell.
 std::vector<Vec2> PlanPath(const OccupancyGrid& grid, const Vec2& start, const Vec2& goal);
+
+// Whether every sample of the segment a-b lies in a free cell: n equal steps of at most kPathSampleDistance,
+// ends included. Both ends lie within the grid.
+bool PathIsFree(const OccupancyGrid& grid, const Vec2& a, const Vec2& b);
 
 }  // namespace gauntlet::sim

@@ -24,6 +24,7 @@ enum class ValidityRule {
   kClearance,      // "clearance": an obstacle is closer than the scenario's clearance to one of its places
   kNoPath,         // "no-path": no path from start to goal for a robot's body
   kNoRoomToSpawn,  // "no-room-to-spawn": the swarm does not fit even in the enlarged spawn area
+  kLimits,         // "limits": a number beyond what is simulated (constants below)
 };
 std::string_view NameOf(ValidityRule rule);
 
@@ -33,6 +34,15 @@ struct Violation {
   std::string message;  // names the value and what would be right
 };
 
+// The limits: wide enough for any sensible arena, narrow enough for every computation to end soon.
+inline constexpr double kMinArenaSide = 1.0;       // m
+inline constexpr double kMaxArenaSide = 100.0;     // m
+inline constexpr double kMinThickness = 0.001;     // m; of walls and obstacles
+inline constexpr double kMaxObstacleSize = 200.0;  // m
+inline constexpr double kMaxCoordinate = 1000.0;   // m
+inline constexpr std::size_t kMaxObstacles = 1000;
+inline constexpr int kMaxRobotsPerCase = 1000;
+
 // What a scenario demands of its arenas.
 struct ArenaRequirements {
   Vec2 start = Vec2::Zero();  // start of the swarm, or the nest
@@ -41,20 +51,34 @@ struct ArenaRequirements {
   double inflation = OccupancyGrid::kDefaultInflation;
 };
 
-// The first broken rule, or nothing. Gene ranges are not checked here (they belong to the generator).
+// The first broken rule, or nothing: the arena first, then gene by gene in the order finite-numbers,
+// positive-size, limits, contained-obstacle, clearance, start-blocked, goal-blocked, no-path. Gene ranges are
+// not checked here (they belong to the generator), nor is whether the swarm fits (see Spawn). Messages count
+// obstacles from 1.
 std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaRequirements& requirements);
 
 // Judges one gene after another, as generation and repair need it: O(cells) per gene instead of a fresh
-// start.
+// start. Copies are independent, so a valid prefix can be kept and continued in several ways.
 class IncrementalValidity {
  public:
+  // Takes the arena's size from `empty_arena`; its obstacles are ignored.
   IncrementalValidity(const TestCase& empty_arena, const ArenaRequirements& requirements);
-  // Appends the gene when it breaks no rule; otherwise changes nothing and returns the violation.
+  // Appends the gene when it breaks no rule; otherwise changes nothing and returns the violation. An arena
+  // that breaks a rule by itself takes no gene.
   std::optional<Violation> TryAppend(const ObstacleGene& gene);
+
+  // The rule that the arena breaks without any obstacle.
+  const std::optional<Violation>& arena_violation() const { return arena_violation_; }
+  // Number of genes appended.
+  std::size_t size() const { return boxes_.size(); }
+  // With all genes appended so far. Of a stand-in arena when there is an arena_violation().
+  const OccupancyGrid& grid() const { return grid_; }
 
  private:
   ArenaRequirements requirements_;
+  std::optional<Violation> arena_violation_;
   OccupancyGrid grid_;
+  OccupancyGrid candidate_;  // grid_ with the gene under judgement; kept to reuse its memory
   std::vector<OrientedBox> boxes_;
 };
 

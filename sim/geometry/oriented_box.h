@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "sim/geometry/vec2.h"
 
@@ -13,6 +14,10 @@ struct OrientedBox {
   Vec2 axis = {1.0, 0.0};          // unit vector of the box's own x axis in the world
 };
 
+// How far beyond its exact boundary a box still contains a point, m: far more than coordinates up to 1000 m
+// lose by rounding, so that a box contains its own corners, and far less than anything a robot can notice.
+inline constexpr double kContainsTolerance = 1e-9;
+
 // length along the box's x axis before it is turned by `orientation` (rad).
 OrientedBox MakeBox(const Vec2& center, double length, double width, double orientation);
 
@@ -22,12 +27,30 @@ inline Vec2 ToLocal(const OrientedBox& box, const Vec2& p) {
   return {d.dot(box.axis), Cross(box.axis, d)};
 }
 
+// Half sides of the smallest axis-aligned rectangle around the box, whose centre is the box's centre.
+inline Vec2 BoundingHalfExtents(const OrientedBox& box) {
+  const double c = std::fabs(box.axis.x());
+  const double s = std::fabs(box.axis.y());
+  return {c * box.half_extents.x() + s * box.half_extents.y(),
+          s * box.half_extents.x() + c * box.half_extents.y()};
+}
+
 // Counter-clockwise, starting at (-length/2, -width/2) of the box's frame.
 std::array<Vec2, 4> Corners(const OrientedBox& box);
-// Boundary counts as inside.
+// Boundary counts as inside (to kContainsTolerance).
 bool Contains(const OrientedBox& box, const Vec2& p);
 // All four corners of `inner` lie in `outer` (boundary counts).
 bool ContainsBox(const OrientedBox& outer, const OrientedBox& inner);
+
+// Euclidean distance, squared; 0 inside.
+inline double SquaredDistance(const OrientedBox& box, const Vec2& p) {
+  const Vec2 local = ToLocal(box, p);
+  const double dx = std::fabs(local.x()) - box.half_extents.x();
+  const double dy = std::fabs(local.y()) - box.half_extents.y();
+  const double outside_x = dx > 0.0 ? dx : 0.0;
+  const double outside_y = dy > 0.0 ? dy : 0.0;
+  return outside_x * outside_x + outside_y * outside_y;
+}
 // Euclidean distance; 0 inside.
 double Distance(const OrientedBox& box, const Vec2& p);
 

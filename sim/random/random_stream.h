@@ -7,6 +7,11 @@
 
 namespace gauntlet::sim {
 
+using PhiloxBlock = std::array<std::uint32_t, 4>;
+using PhiloxKey = std::array<std::uint32_t, 2>;
+// The generator itself: a bijection of 128-bit counters for every key.
+PhiloxBlock Philox4x32(const PhiloxBlock& counter, const PhiloxKey& key);
+
 // What a stream is for. Stored runs depend on these numbers: do not renumber.
 enum class StreamPurpose : std::uint32_t {
   kSpawn = 1,
@@ -28,7 +33,7 @@ class RandomStream {
   std::uint64_t NextUint64();
   // In [0, 1), 53 random bits.
   double Uniform();
-  // In [low, high).
+  // In [low, high); low <= high, equal ones give low.
   double Uniform(double low, double high);
   // In [0, bound), without bias; bound >= 1.
   std::uint32_t Below(std::uint32_t bound);
@@ -37,10 +42,10 @@ class RandomStream {
   double Gaussian();
 
  private:
-  std::array<std::uint32_t, 2> key_;
-  std::array<std::uint32_t, 4> counter_;
-  std::array<std::uint32_t, 4> block_{};
-  int used_ = 4;
+  PhiloxKey key_;
+  PhiloxBlock counter_;  // number of the next block, purpose, a, b
+  PhiloxBlock block_{};
+  int used_ = 4;  // words of block_ that were handed out
 };
 
 // What a derived seed is for, so that confirming a result never meets a seed of the search. Do not renumber.

@@ -1,0 +1,161 @@
+#include "sim/arena/path_planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace gauntlet::sim {
+namespace {
+
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct OpenEntry {
+  double estimate;  // m, length of the whole path through this cell
+  std::size_t node;
+};
+
+// Heap order: the least estimate on top, the lower cell index among equals.
+bool Later(const OpenEntry& a, const OpenEntry& b) {
+  return a.estimate != b.estimate ? a.estimate > b.estimate : a.node > b.node;
+}
+
+class ThetaStar {
+ public:
+  ThetaStar(const OccupancyGrid& grid, const Vec2& start, const Vec2& goal)
+      : grid_(grid),
+        start_point_(start),
+        goal_point_(goal),
+        start_(grid.Index(grid.CellAt(start))),
+        goal_(grid.Index(grid.CellAt(goal))),
+        nodes_(static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows())) {
+    open_.reserve(1024);
+  }
+
+  // Requires that both ends are connected.
+  std::vector<Vec2> Search() {
+    nodes_[start_].length = 0.0;
+    nodes_[start_].parent = start_;
+    Push(start_);
+    while (!open_.empty()) {
+      std::pop_heap(open_.begin(), open_.end(), Later);
+      const std::size_t node = open_.back().node;
+      open_.pop_back();
+      if (node == goal_) return Waypoints();
+      if (nodes_[node].closed) continue;  // an entry from before the node was improved
+      nodes_[node].closed = true;
+      Expand(node);
+    }
+    return {};
+  }
+
+ private:
+  struct Node {
+    double length = kInfinity;  // m, of the best known path from the start
+    std::size_t parent = kNone;
+    bool closed = false;
+  };
+
+  Cell CellOf(std::size_t node) const {
+    const auto columns = static_cast<std::size_t>(grid_.columns());
+    return {static_cast<int>(node % columns), static_cast<int>(node / columns)};
+  }
+
+  // The ends stand at their exact points, every other node at its cell's centre. In the start cell's own
+  // neighbourhood this keeps every single step free: two cells that share a side are convex together.
+  Vec2 PointOf(std::size_t node, Cell cell) const {
+    if (node == start_) return start_point_;
+    if (node == goal_) return goal_point_;
+    return grid_.CenterOf(cell);
+  }
+
+  void Push(std::size_t node) {
+    const double rest = (goal_point_ - PointOf(node, CellOf(node))).norm();
+    open_.push_back({nodes_[node].length + rest, node});
+    std::push_heap(open_.begin(), open_.end(), Later);
+  }
+
+  void Expand(std::size_t node) {
+    const Cell cell = CellOf(node);
+    const std::size_t parent = nodes_[node].parent;
+    const Vec2 point = PointOf(node, cell);
+    const Vec2 parent_point = PointOf(parent, CellOf(parent));
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const Cell next = {cell.column + dx, cell.row + dy};
+        if ((dx == 0 && dy == 0) || !grid_.Free(next)) continue;
+        const bool cuts_corner =
+            dx != 0 && dy != 0 &&
+            !(grid_.Free({next.column, cell.row}) && grid_.Free({cell.column, next.row}));
+        if (cuts_corner) continue;
+        Relax(node, point, parent, parent_point, next);
+      }
+    }
+  }
+
+  void Relax(std::size_t node, const Vec2& point, std::size_t parent, const Vec2& parent_point, Cell next) {
+    const std::size_t successor = grid_.Index(next);
+    Node& target = nodes_[successor];
+    if (target.closed) return;
+    const Vec2 next_point = PointOf(successor, next);
+    // Straight from the parent is never longer than by way of the node (triangle inequality): where even that
+    // is no improvement, the costly line of sight need not be looked at.
+    const double straight = nodes_[parent].length + (next_point - parent_point).norm();
+    if (!(straight < target.length)) return;
+    if (PathIsFree(grid_, parent_point, next_point)) {
+      target.length = straight;
+      target.parent = parent;
+    } else {
+      const double by_way_of_node = nodes_[node].length + (next_point - point).norm();
+      if (!(by_way_of_node < target.length)) return;
+      target.length = by_way_of_node;
+      target.parent = node;
+    }
+    Push(successor);
+  }
+
+  std::vector<Vec2> Waypoints() const {
+    std::vector<Vec2> waypoints = {goal_point_};
+    for (std::size_t node = goal_; node != start_; node = nodes_[node].parent) {
+      const std::size_t parent = nodes_[node].parent;
+      waypoints.push_back(PointOf(parent, CellOf(parent)));
+    }
+    std::reverse(waypoints.begin(), waypoints.end());
+    return waypoints;
+  }
+
+  const OccupancyGrid& grid_;
+  Vec2 start_point_;
+  Vec2 goal_point_;
+  std::size_t start_;
+  std::size_t goal_;
+  std::vector<Node> nodes_;
+  std::vector<OpenEntry> open_;
+};
+
+}  // namespace
+
+bool PathIsFree(const OccupancyGrid& grid, const Vec2& a, const Vec2& b) {
+  // In units of cells, where truncation gives the index: inside the grid no coordinate is negative.
+  const Vec2 from = (a - grid.origin()) / OccupancyGrid::kCellSize;
+  const Vec2 way = (b - a) / OccupancyGrid::kCellSize;
+  const int steps = static_cast<int>(std::ceil((b - a).norm() / kPathSampleDistance));
+  const Vec2 step = steps == 0 ? Vec2::Zero() : Vec2(way / steps);
+  for (int i = 0; i <= steps; ++i) {
+    const Cell cell = {static_cast<int>(from.x() + i * step.x()), static_cast<int>(from.y() + i * step.y())};
+    if (!grid.Free(cell)) return false;
+  }
+  return true;
+}
+
+std::vector<Vec2> PlanPath(const OccupancyGrid& grid, const Vec2& start, const Vec2& goal) {
+  const Cell start_cell = grid.CellAt(start);
+  const Cell goal_cell = grid.CellAt(goal);
+  // Moving diagonally without cutting corners reaches exactly what moving along the axes reaches.
+  if (!grid.Connected(start_cell, goal_cell)) return {};
+  if (start_cell == goal_cell) return {start, goal};
+  return ThetaStar(grid, start, goal).Search();
+}
+
+}  // namespace gauntlet::sim

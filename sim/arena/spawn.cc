@@ -1,0 +1,163 @@
+#include "sim/arena/spawn.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sim/base/number_text.h"
+#include "sim/geometry/trigonometry.h"
+
+namespace gauntlet::sim {
+namespace {
+
+constexpr double kEnlargementStep = 1.1;  // spec 1.1: by 10 %
+constexpr double kMostEnlargement = 1000.0;
+
+Error NoRoom(const std::string& why) {
+  return InvalidInput("no-room-to-spawn: " + why);
+}
+
+std::string AreaText(const Rectangle& area) {
+  return PointText(area.min.x(), area.min.y()) + " to " + PointText(area.max.x(), area.max.y()) + " m";
+}
+
+// What makes the request senseless, if anything.
+std::optional<Error> Refusal(const SpawnRequest& request) {
+  if (request.count < 0 || request.count > kMaxSpawnedRobots) {
+    return NoRoom(std::to_string(request.count) + " robots; want 0 to " + std::to_string(kMaxSpawnedRobots));
+  }
+  if (!(request.area.min.allFinite() && request.area.max.allFinite() &&
+        (request.area.min.array() <= request.area.max.array()).all())) {
+    return NoRoom("the area " + AreaText(request.area) + " must go from its least to its greatest corner");
+  }
+  if (!(request.robot_radius > 0.0 && std::isfinite(request.robot_radius) && request.gap >= 0.0 &&
+        std::isfinite(request.gap))) {
+    return NoRoom("robot radius " + NumberText(request.robot_radius) + " m and gap " +
+                  NumberText(request.gap) + " m; want a positive radius and a gap of at least 0");
+  }
+  if (request.tries_per_robot < 1 ||
+      !(request.max_enlargement >= 1.0 && request.max_enlargement <= kMostEnlargement)) {
+    return NoRoom(std::to_string(request.tries_per_robot) + " tries per robot and enlargement up to " +
+                  NumberText(request.max_enlargement) + "; want at least 1 try and 1 to " +
+                  NumberText(kMostEnlargement));
+  }
+  return std::nullopt;
+}
+
+class Spawner {
+ public:
+  Spawner(const SpawnRequest& request, const OccupancyGrid& grid, RandomStream& random)
+      : request_(request),
+        grid_(grid),
+        random_(random),
+        reachable_(grid.Reachable(grid.CellAt(request.start))),
+        center_((request.area.min + request.area.max) / 2.0),
+        taken_(request.occupied) {
+    FindBounds();
+    Enlarge(1.0);
+  }
+
+  bool AnythingReachable() const { return (bounds_.min.array() < bounds_.max.array()).all(); }
+
+  std::optional<Pose> PlaceNext() {
+    while (true) {
+      for (int i = 0; i < request_.tries_per_robot; ++i) {
+        const Vec2 point = Draw();
+        if (!Fits(point)) continue;
+        taken_.push_back(point);
+        // 2 pi - 2 pi u lies in (0, 2 pi], and so the heading in (-pi, pi].
+        return Pose{point, kPi - 2.0 * kPi * random_.Uniform()};
+      }
+      const double next = enlargement_ * kEnlargementStep;
+      if (next > request_.max_enlargement) return std::nullopt;
+      Enlarge(next);
+    }
+  }
+
+  const Rectangle& area() const { return area_; }
+
+ private:
+  // The smallest rectangle around all reachable cells.
+  void FindBounds() {
+    for (int row = 0; row < grid_.rows(); ++row) {
+      for (int column = 0; column < grid_.columns(); ++column) {
+        if (reachable_[grid_.Index({column, row})] == 0) continue;
+        const Vec2 center = grid_.CenterOf({column, row});
+        const Vec2 half(OccupancyGrid::kCellSize / 2.0, OccupancyGrid::kCellSize / 2.0);
+        const bool first = !AnythingReachable();
+        bounds_.min = first ? Vec2(center - half) : Vec2(bounds_.min.cwiseMin(center - half));
+        bounds_.max = first ? Vec2(center + half) : Vec2(bounds_.max.cwiseMax(center + half));
+      }
+    }
+  }
+
+  void Enlarge(double factor) {
+    enlargement_ = factor;
+    const Vec2 half = (request_.area.max - request_.area.min) / 2.0 * factor;
+    area_ = {center_ - half, center_ + half};
+    disc_radius_ = half.minCoeff();
+    // Clipping throws no candidate away that could have fitted, it only saves tries.
+    const Vec2 min = area_.min.cwiseMax(bounds_.min);
+    const Vec2 max = area_.max.cwiseMin(bounds_.max);
+    clipped_ = (min.array() <= max.array()).all() ? Rectangle{min, max} : area_;
+  }
+
+  Vec2 Draw() {
+    if (request_.disc) {
+      const double radius = disc_radius_ * std::sqrt(random_.Uniform());
+      return center_ + radius * UnitVector(2.0 * kPi * random_.Uniform());
+    }
+    const double x = random_.Uniform(clipped_.min.x(), clipped_.max.x());
+    return {x, random_.Uniform(clipped_.min.y(), clipped_.max.y())};
+  }
+
+  bool Fits(const Vec2& point) const {
+    const Cell cell = grid_.CellAt(point);
+    if (!grid_.InGrid(cell) || reachable_[grid_.Index(cell)] == 0) return false;
+    // A cell is judged by its centre; near the cell's edge a body could still touch an obstacle.
+    if (grid_.Clearance(point) < request_.robot_radius + request_.gap) return false;
+    const double least = 2.0 * request_.robot_radius + request_.gap;
+    return std::none_of(taken_.begin(), taken_.end(),
+                        [&](const Vec2& other) { return (other - point).squaredNorm() < least * least; });
+  }
+
+  const SpawnRequest& request_;
+  const OccupancyGrid& grid_;
+  RandomStream& random_;
+  std::vector<std::uint8_t> reachable_;
+  Rectangle bounds_;
+  Vec2 center_;
+  double enlargement_ = 1.0;
+  Rectangle area_;
+  Rectangle clipped_;
+  double disc_radius_ = 0.0;
+  std::vector<Vec2> taken_;
+};
+
+}  // namespace
+
+Result<std::vector<Pose>> Spawn(const SpawnRequest& request, const OccupancyGrid& grid,
+                                RandomStream& random) {
+  if (std::optional<Error> refusal = Refusal(request)) return *refusal;
+  Spawner spawner(request, grid, random);
+  if (!spawner.AnythingReachable()) {
+    return NoRoom("the start " + PointText(request.start.x(), request.start.y()) +
+                  " does not lie in a free cell of the arena");
+  }
+  std::vector<Pose> poses;
+  poses.reserve(static_cast<std::size_t>(request.count));
+  for (int i = 0; i < request.count; ++i) {
+    const std::optional<Pose> pose = spawner.PlaceNext();
+    if (!pose) {
+      return NoRoom("only " + std::to_string(i) + " of " + std::to_string(request.count) +
+                    " robots fit into the reachable part of " + (request.disc ? "the disc in " : "") +
+                    AreaText(spawner.area()) + ", the enlarged spawn area");
+    }
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
+}  // namespace gauntlet::sim

@@ -1,0 +1,227 @@
+#include "sim/arena/validity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+#include "sim/base/number_text.h"
+
+namespace gauntlet::sim {
+namespace {
+
+bool AllFinite(std::initializer_list<double> values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
+std::string PointText(const Vec2& p) {
+  return gauntlet::PointText(p.x(), p.y());
+}
+
+std::string GeneText(const ObstacleGene& gene, std::size_t index) {
+  return "obstacle " + std::to_string(index + 1) + " (x " + NumberText(gene.x) + " m, y " +
+         NumberText(gene.y) + " m, " + NumberText(gene.length) + " x " + NumberText(gene.width) + " m at " +
+         NumberText(gene.orientation_deg) + " degrees)";
+}
+
+// The rules that concern nothing but the numbers of the arena itself.
+std::optional<Violation> JudgeArenaNumbers(const TestCase& test_case) {
+  const double sides[] = {test_case.side_x, test_case.side_y};
+  const std::string arena = "the arena (" + NumberText(test_case.side_x) + " x " +
+                            NumberText(test_case.side_y) + " m, walls " +
+                            NumberText(test_case.wall_thickness) + " m thick) ";
+  if (!AllFinite({sides[0], sides[1], test_case.wall_thickness})) {
+    return Violation{ValidityRule::kFiniteNumbers, -1, arena + "has a number that is not finite"};
+  }
+  if (!(sides[0] > 0.0 && sides[1] > 0.0 && test_case.wall_thickness > 0.0)) {
+    return Violation{ValidityRule::kPositiveSize, -1, arena + "must have positive sides and walls"};
+  }
+  const double shorter = std::min(sides[0], sides[1]);
+  const double longer = std::max(sides[0], sides[1]);
+  if (shorter < kMinArenaSide || longer > kMaxArenaSide) {
+    return Violation{ValidityRule::kLimits, -1,
+                     arena + "must have sides of " + NumberText(kMinArenaSide) + " to " +
+                         NumberText(kMaxArenaSide) + " m"};
+  }
+  if (test_case.wall_thickness < kMinThickness || test_case.wall_thickness > shorter / 2.0) {
+    return Violation{
+        ValidityRule::kLimits, -1,
+        arena + "must have walls of " + NumberText(kMinThickness) + " m to half of its shorter side"};
+  }
+  return std::nullopt;
+}
+
+// Spawn area, number of robots, number of obstacles.
+std::optional<Violation> JudgeSwarmNumbers(const TestCase& test_case) {
+  if (test_case.spawn_area) {
+    const Vec2& min = test_case.spawn_area->min;
+    const Vec2& max = test_case.spawn_area->max;
+    const std::string area = "the spawn area from " + PointText(min) + " to " + PointText(max) + " m ";
+    if (!(min.allFinite() && max.allFinite())) {
+      return Violation{ValidityRule::kFiniteNumbers, -1, area + "has a number that is not finite"};
+    }
+    if (!((min.array() <= max.array()).all())) {
+      return Violation{ValidityRule::kPositiveSize, -1,
+                       area + "must go from its least to its greatest corner"};
+    }
+    if (std::max(min.cwiseAbs().maxCoeff(), max.cwiseAbs().maxCoeff()) > kMaxCoordinate) {
+      return Violation{ValidityRule::kLimits, -1,
+                       area + "must lie within " + NumberText(kMaxCoordinate) + " m of the origin"};
+    }
+  }
+  if (test_case.robots && (*test_case.robots < 1 || *test_case.robots > kMaxRobotsPerCase)) {
+    return Violation{
+        ValidityRule::kLimits, -1,
+        std::to_string(*test_case.robots) + " robots; want 1 to " + std::to_string(kMaxRobotsPerCase)};
+  }
+  if (test_case.obstacles.size() > kMaxObstacles) {
+    return Violation{ValidityRule::kLimits, -1,
+                     std::to_string(test_case.obstacles.size()) + " obstacles; want at most " +
+                         std::to_string(kMaxObstacles)};
+  }
+  return std::nullopt;
+}
+
+std::optional<Violation> JudgeArena(const TestCase& test_case) {
+  if (std::optional<Violation> violation = JudgeArenaNumbers(test_case)) return violation;
+  return JudgeSwarmNumbers(test_case);
+}
+
+// The arena without obstacles, or one to stand in for it when its numbers cannot be built.
+Arena EmptyArena(const TestCase& test_case) {
+  TestCase empty;
+  if (!JudgeArenaNumbers(test_case)) {
+    empty.side_x = test_case.side_x;
+    empty.side_y = test_case.side_y;
+    empty.wall_thickness = test_case.wall_thickness;
+  }
+  return Arena(empty);
+}
+
+// The rules that concern nothing but the gene's numbers; its index counts from 0.
+std::optional<Violation> JudgeGeneNumbers(const ObstacleGene& gene, std::size_t index) {
+  const int number = static_cast<int>(index);
+  if (!AllFinite({gene.x, gene.y, gene.length, gene.width, gene.orientation_deg})) {
+    return Violation{ValidityRule::kFiniteNumbers, number,
+                     GeneText(gene, index) + " has a number that is not finite"};
+  }
+  if (!(gene.length > 0.0 && gene.width > 0.0)) {
+    return Violation{ValidityRule::kPositiveSize, number,
+                     GeneText(gene, index) + " must have a positive length and width"};
+  }
+  if (std::min(gene.length, gene.width) < kMinThickness ||
+      std::max(gene.length, gene.width) > kMaxObstacleSize) {
+    return Violation{ValidityRule::kLimits, number,
+                     GeneText(gene, index) + " must have a length and width of " + NumberText(kMinThickness) +
+                         " to " + NumberText(kMaxObstacleSize) + " m"};
+  }
+  if (std::max(std::fabs(gene.x), std::fabs(gene.y)) > kMaxCoordinate) {
+    return Violation{ValidityRule::kLimits, number,
+                     GeneText(gene, index) + " must have its centre within " + NumberText(kMaxCoordinate) +
+                         " m of the origin"};
+  }
+  return std::nullopt;
+}
+
+// Start and goal free and connected in `grid`; `culprit` begins the message.
+std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequirements& requirements, int gene,
+                                   const std::string& culprit) {
+  const Cell start = grid.CellAt(requirements.start);
+  const Cell goal = grid.CellAt(requirements.goal);
+  const std::string room =
+      "; a robot's centre needs " + NumberText(requirements.inflation) + " m of room there";
+  if (!grid.Free(start)) {
+    return Violation{ValidityRule::kStartBlocked, gene,
+                     culprit + " blocks the start " + PointText(requirements.start) + room};
+  }
+  if (!grid.Free(goal)) {
+    return Violation{ValidityRule::kGoalBlocked, gene,
+                     culprit + " blocks the goal " + PointText(requirements.goal) + room};
+  }
+  if (!grid.Connected(start, goal)) {
+    return Violation{ValidityRule::kNoPath, gene,
+                     culprit + " leaves no path from " + PointText(requirements.start) + " to " +
+                         PointText(requirements.goal) + " for a robot's body"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view NameOf(ValidityRule rule) {
+  switch (rule) {
+    case ValidityRule::kFiniteNumbers:
+      return "finite-numbers";
+    case ValidityRule::kPositiveSize:
+      return "positive-size";
+    case ValidityRule::kGeneRange:
+      return "gene-range";
+    case ValidityRule::kContainedObstacle:
+      return "contained-obstacle";
+    case ValidityRule::kStartBlocked:
+      return "start-blocked";
+    case ValidityRule::kGoalBlocked:
+      return "goal-blocked";
+    case ValidityRule::kClearance:
+      return "clearance";
+    case ValidityRule::kNoPath:
+      return "no-path";
+    case ValidityRule::kNoRoomToSpawn:
+      return "no-room-to-spawn";
+    case ValidityRule::kLimits:
+      return "limits";
+  }
+  return "unknown";
+}
+
+std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaRequirements& requirements) {
+  IncrementalValidity validity(test_case, requirements);
+  if (validity.arena_violation()) return validity.arena_violation();
+  for (const ObstacleGene& gene : test_case.obstacles) {
+    if (std::optional<Violation> violation = validity.TryAppend(gene)) return violation;
+  }
+  return std::nullopt;
+}
+
+IncrementalValidity::IncrementalValidity(const TestCase& empty_arena, const ArenaRequirements& requirements)
+    : requirements_(requirements),
+      arena_violation_(JudgeArena(empty_arena)),
+      grid_(EmptyArena(empty_arena), requirements.inflation),
+      candidate_(grid_) {
+  if (!arena_violation_) arena_violation_ = JudgePath(grid_, requirements_, -1, "the wall");
+}
+
+std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene) {
+  if (arena_violation_) return arena_violation_;
+  const std::size_t index = boxes_.size();
+  const int number = static_cast<int>(index);
+  if (std::optional<Violation> violation = JudgeGeneNumbers(gene, index)) return violation;
+
+  const OrientedBox box = BoxOf(gene);
+  const auto around = std::find_if(boxes_.begin(), boxes_.end(),
+                                   [&](const OrientedBox& earlier) { return ContainsBox(earlier, box); });
+  if (around != boxes_.end()) {
+    return Violation{ValidityRule::kContainedObstacle, number,
+                     GeneText(gene, index) + " lies wholly inside obstacle " +
+                         std::to_string(around - boxes_.begin() + 1)};
+  }
+  for (const auto& [place, name] : {std::pair{requirements_.start, "start"}, {requirements_.goal, "goal"}}) {
+    const double distance = Distance(box, place);
+    if (distance < requirements_.clearance) {
+      return Violation{ValidityRule::kClearance, number,
+                       GeneText(gene, index) + " is " + NumberText(distance) + " m from the " + name + " " +
+                           PointText(place) + "; want at least " + NumberText(requirements_.clearance) +
+                           " m"};
+    }
+  }
+  candidate_ = grid_;
+  candidate_.AddObstacle(box);
+  if (std::optional<Violation> violation =
+          JudgePath(candidate_, requirements_, number, GeneText(gene, index))) {
+    return violation;
+  }
+  std::swap(grid_, candidate_);
+  boxes_.push_back(box);
+  return std::nullopt;
+}
+
+}  // namespace gauntlet::sim

@@ -1,0 +1,234 @@
+#include "sim/geometry/trigonometry.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace gauntlet::sim {
+namespace {
+
+// Every polynomial below is a truncated Taylor series; the comment beside it states the first omitted term at
+// the end of the reduced interval. Parentheses fix the order of every sum, so no compiler may choose one.
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kReductionLimit = 1e6;
+
+// pi/2 = A + B + C (reduction after Cody and Waite 1980): A and B have at most 33 significant bits, so that
+// n * A and n * B are exact for n < 2^20; A + B + C is right to 2^-119.
+constexpr double kHalfPiA = 0x1.921fb544p+0;
+constexpr double kHalfPiB = 0x1.0b4611a6p-34;
+constexpr double kHalfPiC = 0x1.3198a2e037073p-69;
+constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
+
+// ln 2 = A + B; A has 42 significant bits, so that n * A is exact for every exponent n.
+constexpr double kLn2A = 0x1.62e42fefa38p-1;
+constexpr double kLn2B = 0x1.ef35793c7673p-45;
+constexpr double kOneOverLn2 = 0x1.71547652b82fep+0;
+
+// angle = quadrant * pi/2 + remainder, |remainder| <= pi/4 (up to rounding).
+struct Reduced {
+  double remainder;
+  std::int64_t quadrant;
+};
+
+Reduced ReduceToOctant(double angle) {
+  const double n = std::floor(angle * kTwoOverPi + 0.5);
+  const double r = ((angle - n * kHalfPiA) - n * kHalfPiB) - n * kHalfPiC;
+  return {r, static_cast<std::int64_t>(n)};
+}
+
+// sin r for |r| <= pi/4; the first omitted term, r^17 / 17!, is below 5e-17.
+double SineSeries(double r) {
+  constexpr double c3 = -1.0 / 6.0;
+  constexpr double c5 = 1.0 / 120.0;
+  constexpr double c7 = -1.0 / 5040.0;
+  constexpr double c9 = 1.0 / 362880.0;
+  constexpr double c11 = -1.0 / 39916800.0;
+  constexpr double c13 = 1.0 / 6227020800.0;
+  constexpr double c15 = -1.0 / 1307674368000.0;
+  const double z = r * r;
+  const double z2 = z * z;
+  const double low = (c3 + c5 * z) + (c7 + c9 * z) * z2;
+  const double high = (c11 + c13 * z) + c15 * z2;
+  return r + (r * z) * (low + high * (z2 * z2));
+}
+
+// cos r for |r| <= pi/4; the first omitted term, r^18 / 18!, is below 3e-18.
+double CosineSeries(double r) {
+  constexpr double c4 = 1.0 / 24.0;
+  constexpr double c6 = -1.0 / 720.0;
+  constexpr double c8 = 1.0 / 40320.0;
+  constexpr double c10 = -1.0 / 3628800.0;
+  constexpr double c12 = 1.0 / 479001600.0;
+  constexpr double c14 = -1.0 / 87178291200.0;
+  constexpr double c16 = 1.0 / 20922789888000.0;
+  const double z = r * r;
+  const double z2 = z * z;
+  const double low = (c4 + c6 * z) + (c8 + c10 * z) * z2;
+  const double high = (c12 + c14 * z) + c16 * z2;
+  return (1.0 - 0.5 * z) + z2 * (low + high * (z2 * z2));
+}
+
+// atan u for |u| <= 1/8; the first omitted term, u^17 / 17, is below 3e-17.
+double ArctangentSeries(double u) {
+  constexpr double c3 = -1.0 / 3.0;
+  constexpr double c5 = 1.0 / 5.0;
+  constexpr double c7 = -1.0 / 7.0;
+  constexpr double c9 = 1.0 / 9.0;
+  constexpr double c11 = -1.0 / 11.0;
+  constexpr double c13 = 1.0 / 13.0;
+  constexpr double c15 = -1.0 / 15.0;
+  const double z = u * u;
+  const double z2 = z * z;
+  const double low = (c3 + c5 * z) + (c7 + c9 * z) * z2;
+  const double high = (c11 + c13 * z) + c15 * z2;
+  return u + (u * z) * (low + high * (z2 * z2));
+}
+
+// 2^n for -1022 <= n <= 1023.
+double PowerOfTwo(std::int64_t n) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
+}
+
+}  // namespace
+
+SinCos SineCosine(double angle) {
+  if (!(std::fabs(angle) < kReductionLimit)) [[unlikely]] {
+    if (!std::isfinite(angle)) return {kNotANumber, kNotANumber};
+    angle = std::fmod(angle, 2.0 * kPi);
+  }
+  const Reduced reduced = ReduceToOctant(angle);
+  const double s = SineSeries(reduced.remainder);
+  const double c = CosineSeries(reduced.remainder);
+  const bool swap = (reduced.quadrant & 1) != 0;
+  const double sine = swap ? c : s;
+  const double cosine = swap ? s : c;
+  return {(reduced.quadrant & 2) != 0 ? -sine : sine, ((reduced.quadrant + 1) & 2) != 0 ? -cosine : cosine};
+}
+
+double Sin(double angle) {
+  return SineCosine(angle).sin;
+}
+
+double Cos(double angle) {
+  return SineCosine(angle).cos;
+}
+
+double Atan2(double y, double x) {
+  double opposite = std::fabs(y);
+  double adjacent = std::fabs(x);
+  const bool steep = opposite > adjacent;
+  double larger = steep ? opposite : adjacent;
+  double smaller = steep ? adjacent : opposite;
+  if (!(larger > 1e-290 && larger < 1e290)) [[unlikely]] {
+    if (larger == 0.0 && smaller == 0.0) return 0.0;
+    if (!(std::isfinite(opposite) && std::isfinite(adjacent))) return kNotANumber;
+    const double scale = larger < 1.0 ? 0x1p+100 : 0x1p-100;
+    larger *= scale;
+    smaller *= scale;
+  }
+  // atan t = atan c + atan((t - c) / (1 + t c)) with t = smaller / larger and c the nearest of 0, 1/4, 1/2,
+  // 3/4, 1, hence |(t - c) / (1 + t c)| <= 1/8.
+  static constexpr double kArctangentOfQuarters[5] = {0.0, 0.24497866312686414, 0.4636476090008061,
+                                                      0.6435011087932844, 0.78539816339744831};
+  const double eighths = 8.0 * smaller;
+  const int quarter = static_cast<int>(eighths > larger) + static_cast<int>(eighths > 3.0 * larger) +
+                      static_cast<int>(eighths > 5.0 * larger) + static_cast<int>(eighths > 7.0 * larger);
+  const double c = 0.25 * quarter;
+  const double u = (smaller - c * larger) / (larger + c * smaller);
+  double angle = kArctangentOfQuarters[quarter] + ArctangentSeries(u);
+  angle = steep ? 0.5 * kPi - angle : angle;
+  angle = x < 0.0 ? kPi - angle : angle;
+  // -pi is the same direction as pi and outside the range.
+  return y < 0.0 && angle < kPi ? -angle : angle;
+}
+
+double Exp(double x) {
+  if (!(x < 709.79)) [[unlikely]] {
+    return std::isnan(x) ? kNotANumber : kInfinity;
+  }
+  if (x < -745.2) [[unlikely]] {
+    return 0.0;
+  }
+  const double n = std::floor(x * kOneOverLn2 + 0.5);
+  const double r = (x - n * kLn2A) - n * kLn2B;
+  // |r| <= ln(2) / 2; the first omitted term, r^14 / 14!, is below 5e-18.
+  constexpr double c2 = 1.0 / 2.0;
+  constexpr double c3 = 1.0 / 6.0;
+  constexpr double c4 = 1.0 / 24.0;
+  constexpr double c5 = 1.0 / 120.0;
+  constexpr double c6 = 1.0 / 720.0;
+  constexpr double c7 = 1.0 / 5040.0;
+  constexpr double c8 = 1.0 / 40320.0;
+  constexpr double c9 = 1.0 / 362880.0;
+  constexpr double c10 = 1.0 / 3628800.0;
+  constexpr double c11 = 1.0 / 39916800.0;
+  constexpr double c12 = 1.0 / 479001600.0;
+  constexpr double c13 = 1.0 / 6227020800.0;
+  const double r2 = r * r;
+  const double r4 = r2 * r2;
+  const double low = (c2 + c3 * r) + (c4 + c5 * r) * r2;
+  const double middle = (c6 + c7 * r) + (c8 + c9 * r) * r2;
+  const double high = (c10 + c11 * r) + (c12 + c13 * r) * r2;
+  const double value = 1.0 + (r + r2 * (low + r4 * (middle + r4 * high)));
+  // 2^n in two factors, because n may lie beyond the exponents of normal numbers.
+  const auto exponent = static_cast<std::int64_t>(n);
+  const std::int64_t half = exponent / 2;
+  return (value * PowerOfTwo(half)) * PowerOfTwo(exponent - half);
+}
+
+double Log(double x) {
+  if (!(x >= std::numeric_limits<double>::min() && x < kInfinity)) [[unlikely]] {
+    if (x == 0.0) return -kInfinity;
+    if (!(x > 0.0)) return kNotANumber;
+    if (x == kInfinity) return kInfinity;
+    return Log(x * 0x1p+54) - 54.0 * (kLn2A + kLn2B);
+  }
+  constexpr std::uint64_t kFraction = (1ULL << 52) - 1;
+  constexpr double kSqrtTwo = 1.4142135623730951;
+  const auto bits = std::bit_cast<std::uint64_t>(x);
+  double mantissa = std::bit_cast<double>((bits & kFraction) | (1023ULL << 52));
+  double exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
+  if (mantissa > kSqrtTwo) {
+    mantissa *= 0.5;
+    exponent += 1.0;
+  }
+  // log m = 2 artanh s with s = (m - 1) / (m + 1), |s| <= 0.1716; the first omitted term, s^22 / 23 relative
+  // to the first, is below 1e-18.
+  const double s = (mantissa - 1.0) / (mantissa + 1.0);
+  constexpr double c3 = 2.0 / 3.0;
+  constexpr double c5 = 2.0 / 5.0;
+  constexpr double c7 = 2.0 / 7.0;
+  constexpr double c9 = 2.0 / 9.0;
+  constexpr double c11 = 2.0 / 11.0;
+  constexpr double c13 = 2.0 / 13.0;
+  constexpr double c15 = 2.0 / 15.0;
+  constexpr double c17 = 2.0 / 17.0;
+  constexpr double c19 = 2.0 / 19.0;
+  constexpr double c21 = 2.0 / 21.0;
+  const double z = s * s;
+  const double z2 = z * z;
+  const double z4 = z2 * z2;
+  const double low = (c3 + c5 * z) + (c7 + c9 * z) * z2;
+  const double middle = (c11 + c13 * z) + (c15 + c17 * z) * z2;
+  const double high = c19 + c21 * z;
+  const double log_mantissa = 2.0 * s + (s * z) * (low + z4 * (middle + z4 * high));
+  return exponent * kLn2A + (log_mantissa + exponent * kLn2B);
+}
+
+double WrapAngleOutOfRange(double angle) {
+  if (!(std::fabs(angle) < kReductionLimit)) [[unlikely]] {
+    angle = std::fmod(angle, 2.0 * kPi);
+  }
+  // Whole turns are four quarters: the split constants of pi/2 serve here too.
+  const double n = 4.0 * std::floor(angle * (0.25 * kTwoOverPi) + 0.5);
+  double wrapped = ((angle - n * kHalfPiA) - n * kHalfPiB) - n * kHalfPiC;
+  // Near an odd multiple of pi the rounding of n may pick the neighbouring turn.
+  if (wrapped > kPi) wrapped -= 2.0 * kPi;
+  if (wrapped <= -kPi) wrapped += 2.0 * kPi;
+  return wrapped;
+}
+
+}  // namespace gauntlet::sim
