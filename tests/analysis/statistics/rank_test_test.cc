@@ -39,7 +39,6 @@ std::vector<std::map<std::string, std::string>> ReadCsv(const std::string& name)
     const std::vector<std::string> fields = SplitCsvLine(line);
     std::map<std::string, std::string>& row = rows.emplace_back();
     for (std::size_t i = 0; i < header.size(); ++i) row[header[i]] = fields[i];
-      rows.back()[header[i]] = fields[i];
   }
   return rows;
 }
