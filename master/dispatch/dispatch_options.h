@@ -9,7 +9,7 @@ namespace gauntlet::master {
 
 struct DispatchOptions {
   std::chrono::milliseconds heartbeat{1000};  // both ways
-  int lost_after = 3;                         // heartbeats of silence after which a worker's runs go elsewhere
+  int lost_after = 3;  // heartbeats of silence after which a worker's runs go elsewhere
   // A run that fails of itself (crash, hang, memory) this often gets the verdict; lost workers and signals
   // from outside are no attempts.
   std::uint32_t attempts = 3;

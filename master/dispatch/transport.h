@@ -26,8 +26,8 @@ enum class SendOutcome {
 };
 
 struct WaitOutcome {
-  bool messages = false;        // Receive has something
-  bool woken = false;           // WakeUp was called, or a signal came
+  bool messages = false;       // Receive has something
+  bool woken = false;          // WakeUp was called, or a signal came
   std::vector<int> ready_fds;  // those of the given descriptors that are readable
 };
 

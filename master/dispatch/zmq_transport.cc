@@ -12,12 +12,13 @@
 namespace gauntlet::master {
 namespace {
 
-// The connection is closed only beyond the limit of a message, so that a slightly too long one can be counted.
+// The connection is closed only beyond the limit of a message, so that a slightly too long one can be
+// counted.
 constexpr std::size_t kConnectionMargin = 1U << 20;
 constexpr int kLingerMilliseconds = 100;  // for the last messages to leave
 constexpr const char* kMonitorAddress = "inproc://gauntlet-transport-monitor";
-constexpr int kMonitoredEvents = ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
-                                 ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL | ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
+constexpr int kMonitoredEvents = ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
+                                 ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
 
 }  // namespace
 
