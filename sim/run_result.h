@@ -19,6 +19,8 @@ enum class Verdict : int {
   kCrashed = 3,      // the runner died of it, reproducibly
   kHung = 4,         // it exceeded the limit of CPU time, reproducibly
   kOutOfMemory = 5,  // it exceeded the limit of memory, reproducibly
+  kInvalidCommand =
+      6,  // a controller gave a command that cannot be carried out, such as a wheel speed of NaN
 };
 
 // How the swarm did, apart from its fitness.

@@ -9,8 +9,28 @@
 
 namespace gauntlet::sim {
 
-// Simulates the scenario to its end. A function of the scenario and the seed alone. Never throws; a refusal
-// is a verdict.
+// Largest swarm of a run; a larger one is refused.
+inline constexpr int kMaxRobots = 1000;
+
+// Simulates the scenario to its end. A function of the scenario and the seed alone. Never throws.
+// A swarm that cannot be simulated (no robots, a robot outside the interior or inside an obstacle, a device
+// that this simulator lacks) is refused; a wheel speed that is not finite or beyond
+// foot_bot::kMaxWheelSpeed ends the run with the verdict kInvalidCommand. The message names robot, tick and
+// value.
 RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory);
+
+// The parts of a tick, in order.
+enum class Phase { kPhysics, kObserve, kSense, kControl };
+
+// Told when a phase begins; for benchmarks (the simulation itself has no clock).
+class PhaseProbe {
+ public:
+  virtual ~PhaseProbe() = default;
+  virtual void Begin(Phase phase) = 0;
+  // After the last phase of a tick.
+  virtual void EndTick() = 0;
+};
+
+RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory, PhaseProbe* probe);
 
 }  // namespace gauntlet::sim

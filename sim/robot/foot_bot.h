@@ -16,12 +16,14 @@ using RobotIndex = int;
 
 namespace foot_bot {
 
-inline constexpr double kRadius = 0.085036758;         // m, FOOTBOT_RADIUS
-inline constexpr double kHeight = 0.146899733;         // m
-inline constexpr double kWheelDistance = 0.14;         // m, FOOTBOT_INTERWHEEL_DISTANCE
-inline constexpr double kMass = 1.68;                  // kg, body 1.6 + turret 0.08 accelerate together
-inline constexpr double kMaxForce = 15.0;              // N, drive force limit of dynamics2d
-inline constexpr double kFriction = 0.7;               // contact friction; of a pair: the product
+inline constexpr double kRadius = 0.085036758;  // m, FOOTBOT_RADIUS
+inline constexpr double kHeight = 0.146899733;  // m
+inline constexpr double kWheelDistance = 0.14;  // m, FOOTBOT_INTERWHEEL_DISTANCE
+inline constexpr double kMass = 1.68;           // kg, body 1.6 + turret 0.08 accelerate together
+inline constexpr double kMaxForce = 15.0;       // N, drive force limit of dynamics2d
+inline constexpr double kMaxWheelSpeed =
+    1.0;                                  // m/s; ours: far beyond the robot, within the physics' accuracy
+inline constexpr double kFriction = 0.7;  // contact friction; of a pair: the product
 inline constexpr double kStaticFriction = 0.1;         // of walls and fixed obstacles
 inline constexpr int kSubstepsPerTick = 10;            // of ARGoS' physics: 0.01 s each
 inline constexpr double kProximityRange = 0.10;        // m beyond the body

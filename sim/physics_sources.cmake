@@ -1,0 +1,15 @@
+# Physics, sensors, robot and the simulation loop; included by sim/CMakeLists.txt, which defines gauntlet_sim.
+target_sources(
+  gauntlet_sim
+  PRIVATE observer.cc
+          physics/box2d_engine.cc
+          physics/differential_drive.cc
+          physics/nearby_boxes.cc
+          robot/controller.cc
+          robot/devices.cc
+          run_result.cc
+          sensors/omni_camera.cc
+          sensors/proximity.cc
+          sensors/sensor_suite.cc
+          simulation.cc)
+target_link_libraries(gauntlet_sim PRIVATE box2d::box2d)

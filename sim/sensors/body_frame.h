@@ -1,0 +1,19 @@
+// A robot's pose as the sensors need it: its direction is computed once per tick and shared by all of them.
+#pragma once
+
+#include "sim/geometry/trigonometry.h"
+#include "sim/geometry/vec2.h"
+
+namespace gauntlet::sim {
+
+struct BodyFrame {
+  Vec2 position = Vec2::Zero();
+  double heading = 0.0;         // rad in (-pi, pi]
+  Vec2 direction = {1.0, 0.0};  // unit vector of the heading
+
+  BodyFrame() = default;
+  explicit BodyFrame(const Pose& pose)
+      : position(pose.position), heading(pose.heading), direction(UnitVector(pose.heading)) {}
+};
+
+}  // namespace gauntlet::sim

@@ -1,0 +1,46 @@
+// The foot-bot's proximity ring: 24 rays from the body's surface outward, 0.10 m long (ARGoS
+// footbot_proximity; reading function and geometry measured in tests/golden/argos/sensors/prox_*.csv).
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "sim/geometry/oriented_box.h"
+#include "sim/robot/foot_bot.h"
+#include "sim/sensors/body_frame.h"
+
+namespace gauntlet::sim {
+
+using ProximityReadings = std::array<double, foot_bot::kProximitySensors>;
+
+// Reading in [0, 1] of a ray whose first hit lies `distance` metres from the body's surface; 0 from 0.10 m
+// on.
+double ProximityReading(double distance);
+
+// The readings of one robot, collected body by body. What is farther than the range costs one distance.
+class ProximityRing {
+ public:
+  explicit ProximityRing(const BodyFrame& self);
+
+  void See(const OrientedBox& box);
+  // The other robot's body and the gripper disc at its front.
+  void See(const BodyFrame& robot);
+
+  // Whether any ray hit something.
+  bool active() const { return active_; }
+  ProximityReadings Readings() const;
+
+ private:
+  void PrepareRays();
+  void SeeDisc(const Vec2& center, double radius);
+  void Hit(std::size_t sensor, double distance);
+
+  const BodyFrame& self_;
+  bool active_ = false;
+  bool prepared_ = false;
+  std::array<double, foot_bot::kProximitySensors> ray_x_;  // unit vectors of the rays in the world
+  std::array<double, foot_bot::kProximitySensors> ray_y_;
+  std::array<double, foot_bot::kProximitySensors> nearest_;  // m from the surface
+};
+
+}  // namespace gauntlet::sim

@@ -1,0 +1,277 @@
+#include "sim/simulation.h"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/base/hash.h"
+#include "sim/physics/physics_engine.h"
+#include "sim/sensors/sensor_suite.h"
+
+namespace gauntlet::sim {
+namespace {
+
+std::string RobotName(std::size_t robot) {
+  return "robot " + std::to_string(robot);
+}
+
+RunResult Refusal(std::string message) {
+  RunResult result;
+  result.verdict = Verdict::kRefused;
+  result.message = std::move(message);
+  result.hash = HashOf(result);
+  return result;
+}
+
+std::string PlaceOf(const Vec2& p) {
+  return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ") m";
+}
+
+// Why this robot cannot be simulated, or nothing.
+std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, const RobotSetup& setup) {
+  const Vec2& p = setup.pose.position;
+  if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(setup.pose.heading)) {
+    return "bad-start: " + RobotName(index) + " starts at a pose that is not finite: " + PlaceOf(p) +
+           ", heading " + std::to_string(setup.pose.heading);
+  }
+  if (!arena.InInterior(p)) {
+    return "bad-start: " + RobotName(index) + " starts outside the walls, at " + PlaceOf(p);
+  }
+  for (std::size_t box = 0; box < arena.obstacles().size(); ++box) {
+    if (Contains(arena.obstacles()[box], p)) {
+      return "bad-start: " + RobotName(index) + " starts inside obstacle " + std::to_string(box) + ", at " +
+             PlaceOf(p);
+    }
+  }
+  if (setup.controller == nullptr) return "bad-start: " + RobotName(index) + " has no controller";
+  const DeviceSet devices = setup.controller->Devices();
+  for (std::uint32_t bit = 0; bit < 32; ++bit) {
+    const Device device = static_cast<Device>(1u << bit);
+    if (devices.Has(device) && !kSupportedDevices.Has(device)) {
+      return "unsupported-device: " + RobotName(index) + " asks for " + std::string(NameOf(device)) +
+             ", which this simulator does not have";
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> RefuseSwarm(const Arena& arena, const std::vector<RobotSetup>& swarm) {
+  if (swarm.empty() || swarm.size() > static_cast<std::size_t>(kMaxRobots)) {
+    return "swarm-size: " + std::to_string(swarm.size()) + " robots; a run has 1 to " +
+           std::to_string(kMaxRobots);
+  }
+  for (std::size_t i = 0; i < swarm.size(); ++i) {
+    if (std::optional<std::string> reason = RefuseRobot(arena, i, swarm[i])) return reason;
+  }
+  return std::nullopt;
+}
+
+// NaN is not within anything.
+bool WithinLimit(double wheel_speed) {
+  return std::abs(wheel_speed) <= foot_bot::kMaxWheelSpeed;
+}
+
+// One run: the swarm between two ticks.
+class Loop {
+ public:
+  Loop(const Arena& arena, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
+       PhaseProbe* probe);
+
+  // Records the start poses as tick 0.
+  void Start();
+  // One tick. False when a controller's command cannot be carried out; see invalid_command().
+  bool Tick();
+  const std::string& invalid_command() const { return invalid_command_; }
+  std::uint64_t trajectory_hash() const { return trajectory_hash_.value(); }
+
+ private:
+  bool Act();
+  void Observe();
+  void Control();
+  void Enter(Phase phase) {
+    if (probe_ != nullptr) probe_->Begin(phase);
+  }
+
+  std::vector<RobotSetup> swarm_;
+  std::uint64_t seed_;
+  Observer& observer_;
+  PhaseProbe* probe_;
+  std::unique_ptr<PhysicsEngine> physics_ = MakeBox2dEngine();
+  SensorSuite sensors_;
+  std::vector<DeviceSet> devices_;
+  std::vector<Actuators> actuators_;  // as the controllers left them
+  std::vector<WheelSpeeds> wheels_;   // in action
+  std::vector<Color> beacons_;        // in action
+  std::vector<Pose> poses_;
+  std::vector<RobotState> states_;
+  Fnv1a64 trajectory_hash_;
+  std::string invalid_command_;
+};
+
+std::vector<SensorSuite::RobotSensors> SensorsOf(const std::vector<RobotSetup>& swarm) {
+  std::vector<SensorSuite::RobotSensors> sensors;
+  for (const RobotSetup& robot : swarm) sensors.push_back({robot.controller->Devices(), robot.camera_range});
+  return sensors;
+}
+
+Loop::Loop(const Arena& arena, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
+           PhaseProbe* probe)
+    : swarm_(std::move(swarm)),
+      seed_(seed),
+      observer_(observer),
+      probe_(probe),
+      sensors_(arena, SensorsOf(swarm_)),
+      actuators_(swarm_.size()),
+      wheels_(swarm_.size()),
+      poses_(swarm_.size()),
+      states_(swarm_.size()) {
+  for (const OrientedBox& box : arena.boxes()) physics_->AddBox(box);
+  for (std::size_t i = 0; i < swarm_.size(); ++i) {
+    physics_->AddRobot(swarm_[i].pose);
+    devices_.push_back(swarm_[i].controller->Devices());
+    beacons_.push_back(swarm_[i].beacon);
+    actuators_[i].beacon = swarm_[i].beacon;
+    poses_[i] = swarm_[i].pose;
+  }
+}
+
+void Loop::Start() {
+  for (std::size_t i = 0; i < swarm_.size(); ++i)
+    states_[i] = {.x = poses_[i].position.x(), .y = poses_[i].position.y()};
+  Observe();
+}
+
+bool Loop::Tick() {
+  Enter(Phase::kPhysics);
+  if (!Act()) return false;
+  physics_->Step(wheels_);
+  for (std::size_t i = 0; i < swarm_.size(); ++i) poses_[i] = physics_->PoseOf(static_cast<RobotIndex>(i));
+  Enter(Phase::kObserve);
+  Observe();
+  Enter(Phase::kSense);
+  sensors_.Sense(poses_, beacons_);
+  Enter(Phase::kControl);
+  Control();
+  if (probe_ != nullptr) probe_->EndTick();
+  return true;
+}
+
+// Takes over what the controllers decided in the last tick. Devices a robot does not have do nothing.
+bool Loop::Act() {
+  for (std::size_t i = 0; i < swarm_.size(); ++i) {
+    const Actuators& actuators = actuators_[i];
+    if (devices_[i].Has(Device::kLeds)) beacons_[i] = actuators.beacon;
+    if (!devices_[i].Has(Device::kWheels)) continue;
+    if (!WithinLimit(actuators.left_wheel) || !WithinLimit(actuators.right_wheel)) [[unlikely]] {
+      const bool left = !WithinLimit(actuators.left_wheel);
+      invalid_command_ = "invalid-command: " + RobotName(i) + ", tick " +
+                         std::to_string(observer_.last_tick()) + ": " + (left ? "left" : "right") +
+                         " wheel speed " +
+                         std::to_string(left ? actuators.left_wheel : actuators.right_wheel) +
+                         " m/s; a wheel turns at a finite speed of at most " +
+                         std::to_string(foot_bot::kMaxWheelSpeed) + " m/s";
+      return false;
+    }
+    wheels_[i] = {.left = actuators.left_wheel, .right = actuators.right_wheel};
+  }
+  return true;
+}
+
+void Loop::Observe() {
+  for (std::size_t i = 0; i < swarm_.size(); ++i) {
+    const Pose& pose = poses_[i];
+    const double moved = std::sqrt((pose.position - states_[i].position()).squaredNorm());
+    states_[i] = {.x = pose.position.x(),
+                  .y = pose.position.y(),
+                  .heading = pose.heading,
+                  .speed = moved / kTickSeconds};
+    trajectory_hash_.AddDouble(pose.position.x());
+    trajectory_hash_.AddDouble(pose.position.y());
+    trajectory_hash_.AddDouble(pose.heading);
+  }
+  observer_.Record(states_);
+}
+
+void Loop::Control() {
+  const sim::Tick tick = observer_.last_tick();
+  for (std::size_t i = 0; i < swarm_.size(); ++i) {
+    RandomStream random(seed_, StreamPurpose::kController, static_cast<std::uint32_t>(i),
+                        static_cast<std::uint32_t>(tick));
+    swarm_[i].controller->Step({.tick = tick,
+                                .readings = sensors_.ReadingsOf(static_cast<RobotIndex>(i)),
+                                .actuators = actuators_[i],
+                                .random = random});
+  }
+}
+
+RobotSummary Summarize(const Observer& observer, std::size_t robot, bool lost) {
+  const auto state = [&](Tick tick) -> const RobotState& { return observer.At(tick)[robot]; };
+  const Tick last = observer.last_tick();
+  RobotSummary summary;
+  summary.start = {state(0).position(), state(0).heading};
+  summary.end = {state(last).position(), state(last).heading};
+  summary.lost = lost;
+  for (Tick tick = 0; tick <= last; ++tick) {
+    summary.path_length += state(tick).speed * kTickSeconds;
+    if (tick % kSummaryTicks == 0) summary.waypoints.push_back(state(tick).position());
+  }
+  return summary;
+}
+
+std::vector<std::vector<RobotState>> TrajectoryOf(const Observer& observer) {
+  std::vector<std::vector<RobotState>> trajectory;
+  for (Tick tick = 0; tick <= observer.last_tick(); ++tick) {
+    const std::span<const RobotState> states = observer.At(tick);
+    trajectory.emplace_back(states.begin(), states.end());
+  }
+  return trajectory;
+}
+
+}  // namespace
+
+RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory) {
+  return Simulate(scenario, seed, record_trajectory, nullptr);
+}
+
+RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory, PhaseProbe* probe) {
+  // Headquarters knows the observer from the beginning; how many robots it observes is known only afterwards.
+  Observer observer(0, 0);
+  const Headquarters headquarters(scenario.arena(), observer);
+  Result<std::vector<RobotSetup>> swarm = scenario.CreateSwarm(headquarters);
+  if (!swarm.ok()) return Refusal(swarm.error().message);
+  if (std::optional<std::string> reason = RefuseSwarm(scenario.arena(), *swarm))
+    return Refusal(*std::move(reason));
+
+  const std::size_t robots = swarm->size();
+  observer = Observer(static_cast<int>(robots), scenario.tick_limit());
+  Loop loop(scenario.arena(), *std::move(swarm), seed, observer, probe);
+  loop.Start();
+
+  RunResult result;
+  while (observer.last_tick() < scenario.tick_limit()) {
+    if (!loop.Tick()) {
+      result.verdict = Verdict::kInvalidCommand;
+      result.message = loop.invalid_command();
+      break;
+    }
+    if (scenario.Finished(observer)) break;
+  }
+
+  Outcome outcome;
+  if (result.verdict == Verdict::kCompleted) outcome = scenario.Evaluate(observer);
+  outcome.lost.resize(robots, false);
+  result.fitness = outcome.fitness;
+  result.metrics = std::move(outcome.metrics);
+  result.failure = std::move(outcome.failure);
+  result.annotations = std::move(outcome.annotations);
+  result.ticks = observer.last_tick();
+  for (std::size_t i = 0; i < robots; ++i) result.robots.push_back(Summarize(observer, i, outcome.lost[i]));
+  result.trajectory_hash = loop.trajectory_hash();
+  result.hash = HashOf(result);
+  if (record_trajectory) result.trajectory = TrajectoryOf(observer);
+  return result;
+}
+
+}  // namespace gauntlet::sim

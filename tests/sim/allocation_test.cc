@@ -1,0 +1,71 @@
+// The tick loop allocates nothing after the first tick. Counts malloc, which operator new and Box2D both use.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+#include "sim/simulation.h"
+#include "tests/support/toy_scenario.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GAUNTLET_SANITIZED 1
+#else
+#define GAUNTLET_SANITIZED 0
+#endif
+
+namespace {
+long allocations = 0;
+}
+
+#if !GAUNTLET_SANITIZED
+// glibc's own allocator behind our counter (GNU C library manual, "Replacing malloc").
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* __libc_realloc(void* pointer, std::size_t size);
+extern "C" void* malloc(std::size_t size) noexcept {
+  ++allocations;
+  return __libc_malloc(size);
+}
+extern "C" void* realloc(void* pointer, std::size_t size) noexcept {
+  ++allocations;
+  return __libc_realloc(pointer, size);
+}
+#endif
+
+namespace gauntlet::sim {
+namespace {
+
+class AllocationProbe final : public PhaseProbe {
+ public:
+  explicit AllocationProbe(Tick ticks) { per_tick_.reserve(static_cast<std::size_t>(ticks)); }
+  void Begin(Phase phase) override {
+    if (phase == Phase::kPhysics) before_ = allocations;
+  }
+  void EndTick() override { per_tick_.push_back(allocations - before_); }
+  const std::vector<long>& per_tick() const { return per_tick_; }
+
+ private:
+  long before_ = 0;
+  std::vector<long> per_tick_;
+};
+
+TEST(Simulation, AllocatesNothingAfterTheFirstTick) {
+  if (GAUNTLET_SANITIZED) GTEST_SKIP() << "sanitizers bring their own malloc";
+  constexpr Tick kTicks = 2000;
+  RandomStream random(1, StreamPurpose::kTest);
+  TestCase test_case;
+  test_case.obstacles = RandomObstacles(8, random);
+  ToyScenario scenario(test_case, RandomRobots(20, test_case, Vec2::Zero(), 2.9, Huddle(0.1), random),
+                       kTicks);
+  AllocationProbe probe(kTicks);
+  const long before = allocations;
+  Simulate(scenario, 1, false, &probe);
+  EXPECT_GT(allocations, before) << "the counter does not count";
+  ASSERT_EQ(probe.per_tick().size(), static_cast<std::size_t>(kTicks));
+  for (std::size_t tick = 1; tick < probe.per_tick().size(); ++tick) {
+    EXPECT_EQ(probe.per_tick()[tick], 0) << "in tick " << tick + 1;
+  }
+}
+
+}  // namespace
+}  // namespace gauntlet::sim

@@ -1,0 +1,30 @@
+# Physics, sensors, robot and the simulation loop; included by tests/sim/CMakeLists.txt.
+gauntlet_test(
+  sim_physics_test
+  SOURCES argos_csv.cc
+          physics/argos_motion_test.cc
+          physics/argos_scenes.cc
+          physics/box2d_engine_test.cc
+          physics/differential_drive_test.cc
+          physics/nearby_boxes_test.cc
+  LIBRARIES gauntlet_sim)
+
+gauntlet_test(
+  sim_sensors_test
+  SOURCES argos_csv.cc
+          robot/devices_test.cc
+          sensors/omni_camera_test.cc
+          sensors/proximity_test.cc
+          sensors/sensor_suite_test.cc
+  LIBRARIES gauntlet_sim)
+
+gauntlet_test(
+  sim_simulation_test
+  SOURCES observer_test.cc run_result_test.cc simulation_test.cc
+  LIBRARIES gauntlet_sim)
+
+# An executable of its own, because it replaces the allocation functions.
+gauntlet_test(
+  sim_allocation_test
+  SOURCES allocation_test.cc
+  LIBRARIES gauntlet_sim)

@@ -1,0 +1,43 @@
+#include "sim/robot/devices.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "sim/geometry/trigonometry.h"
+#include "sim/robot/controller.h"
+
+namespace gauntlet::sim {
+namespace {
+
+TEST(DeviceSet, HasWhatWasPutIn) {
+  const DeviceSet devices = Device::kWheels | Device::kProximity;
+  EXPECT_TRUE(devices.Has(Device::kWheels));
+  EXPECT_TRUE(devices.Has(Device::kProximity));
+  EXPECT_FALSE(devices.Has(Device::kLeds));
+}
+
+TEST(Devices, HaveDistinctNames) {
+  std::set<std::string> names;
+  for (std::uint32_t bit = 0; bit < 10; ++bit) names.emplace(NameOf(static_cast<Device>(1u << bit)));
+  EXPECT_EQ(names.size(), 10u);
+  EXPECT_FALSE(names.contains("unknown-device"));
+}
+
+TEST(ProximityBearing, StartsFrontLeftAndGoesRoundCounterClockwise) {
+  EXPECT_NEAR(ProximityBearing(0), 7.5 * kDegree, 1e-12);
+  EXPECT_NEAR(ProximityBearing(11), 172.5 * kDegree, 1e-12);
+  EXPECT_NEAR(ProximityBearing(12), -172.5 * kDegree, 1e-12);
+  EXPECT_NEAR(ProximityBearing(23), -7.5 * kDegree, 1e-12);
+}
+
+TEST(Actuators, DriveSplitsIntoWheelSpeeds) {
+  Actuators actuators;
+  actuators.Drive(0.10, 0.5);
+  EXPECT_NEAR((actuators.left_wheel + actuators.right_wheel) / 2.0, 0.10, 1e-15);
+  EXPECT_NEAR((actuators.right_wheel - actuators.left_wheel) / foot_bot::kWheelDistance, 0.5, 1e-15);
+}
+
+}  // namespace
+}  // namespace gauntlet::sim

@@ -1,0 +1,208 @@
+#include "sim/simulation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "tests/support/toy_scenario.h"
+
+namespace gauntlet::sim {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Behaviour DriveStraight(double speed) {
+  return [speed](const ControlStep& step) { step.actuators.Drive(speed, 0.0); };
+}
+
+ToyRobot RobotAt(double x, double y, Behaviour behaviour) {
+  return {.pose = {{x, y}, 0.0}, .behaviour = std::move(behaviour)};
+}
+
+ToyScenario CrowdedWalk(std::uint64_t scene, Tick ticks) {
+  RandomStream random(scene, StreamPurpose::kTest);
+  TestCase test_case;
+  test_case.obstacles = RandomObstacles(8, random);
+  return ToyScenario(test_case, RandomRobots(11, test_case, Vec2::Zero(), 2.9, Huddle(0.1), random), ticks);
+}
+
+TEST(Simulation, CommandsOfATickMoveTheRobotInTheNext) {
+  ToyScenario scenario(TestCase{}, {RobotAt(0, 0, DriveStraight(0.1))}, 3);
+  const RunResult result = Simulate(scenario, 1, true);
+  ASSERT_EQ(result.trajectory.size(), 4u);
+  EXPECT_EQ(result.trajectory[0][0].x, 0.0);
+  EXPECT_EQ(result.trajectory[1][0].x, 0.0);
+  EXPECT_NEAR(result.trajectory[2][0].x, 0.008892857, 1e-9);
+  EXPECT_NEAR(result.trajectory[2][0].speed, 0.08892857, 1e-8);
+  EXPECT_NEAR(result.trajectory[3][0].x, 0.018892857, 1e-9);
+}
+
+TEST(Simulation, BeaconsSetInATickAreSeenInTheNext) {
+  std::vector<std::size_t> seen;
+  const Behaviour watch = [&seen](const ControlStep& step) { seen.push_back(step.readings.blobs.size()); };
+  const Behaviour light_up_in_tick_2 = [](const ControlStep& step) {
+    if (step.tick == 2) step.actuators.beacon = Color::kRed;
+  };
+  std::vector<ToyRobot> robots = {RobotAt(0, 0, light_up_in_tick_2), RobotAt(0.5, 0, watch)};
+  robots[0].beacon = Color::kBlack;
+  ToyScenario scenario(TestCase{}, robots, 4);
+  Simulate(scenario, 1, false);
+  EXPECT_EQ(seen, (std::vector<std::size_t>{0, 0, 1, 1}));
+}
+
+TEST(Simulation, RobotsHaveOnlyTheDevicesTheyAskFor) {
+  std::vector<ToyRobot> robots = {RobotAt(0, 0, [](const ControlStep& step) {
+    step.actuators.Drive(0.1, 0.0);
+    step.actuators.beacon = Color::kBlack;
+  })};
+  robots[0].devices = Device::kProximity;
+  std::size_t blobs = 0;
+  robots.push_back(
+      RobotAt(0.5, 0, [&blobs](const ControlStep& step) { blobs = step.readings.blobs.size(); }));
+  ToyScenario scenario(TestCase{}, robots, 5);
+  const RunResult result = Simulate(scenario, 1, false);
+  EXPECT_EQ(result.robots[0].path_length, 0.0);
+  EXPECT_EQ(blobs, 1u);
+}
+
+TEST(Simulation, EndsWhenTheScenarioSaysSo) {
+  ToyScenario scenario(TestCase{}, {RobotAt(0, 0, DriveStraight(0.1))}, 1000);
+  scenario.finished = [](const Observer& observer) { return observer.Latest()[0].x > 0.1; };
+  const RunResult result = Simulate(scenario, 1, false);
+  EXPECT_EQ(result.verdict, Verdict::kCompleted);
+  EXPECT_EQ(result.ticks, 12);
+  EXPECT_GT(result.robots[0].end.position.x(), 0.1);
+  EXPECT_LT(result.robots[0].end.position.x(), 0.111);
+}
+
+TEST(Simulation, SummarizesEveryRobot) {
+  ToyScenario scenario(TestCase{}, {RobotAt(0.5, 0.25, DriveStraight(0.1))}, 120);
+  const RunResult result = Simulate(scenario, 1, false);
+  EXPECT_EQ(result.ticks, 120);
+  ASSERT_EQ(result.robots.size(), 1u);
+  const RobotSummary& robot = result.robots[0];
+  EXPECT_EQ(robot.start.position, Vec2(0.5, 0.25));
+  EXPECT_NEAR(robot.path_length, 119 * 0.01 - 0.001107143, 1e-9);
+  EXPECT_NEAR(robot.end.position.x() - 0.5, robot.path_length, 1e-12);
+  ASSERT_EQ(robot.waypoints.size(), 3u);
+  EXPECT_EQ(robot.waypoints[0], Vec2(0.5, 0.25));
+  EXPECT_NEAR(robot.waypoints[2].x(), 0.5 + 0.99 - 0.001107143, 1e-9);
+  EXPECT_EQ(result.fitness, robot.end.position.norm());
+  EXPECT_TRUE(result.trajectory.empty());
+  EXPECT_EQ(result.hash, HashOf(result));
+}
+
+TEST(Simulation, SameSeedSameBits) {
+  ToyScenario first = CrowdedWalk(3, 500);
+  ToyScenario again = CrowdedWalk(3, 500);
+  ToyScenario recorded = CrowdedWalk(3, 500);
+  ToyScenario other_seed = CrowdedWalk(3, 500);
+  const RunResult result = Simulate(first, 9, false);
+  EXPECT_EQ(Simulate(again, 9, false).hash, result.hash);
+  EXPECT_EQ(Simulate(recorded, 9, true).hash, result.hash);
+  EXPECT_NE(Simulate(other_seed, 10, false).trajectory_hash, result.trajectory_hash);
+}
+
+TEST(Simulation, KeepsRobotsOutOfWallsObstaclesAndEachOther) {
+  double deepest_box = 0.0;
+  double deepest_pair = 0.0;
+  for (const std::uint64_t scene : {1u, 2u, 3u, 4u}) {
+    ToyScenario scenario = CrowdedWalk(scene, 2000);
+    const RunResult result = Simulate(scenario, scene, true);
+    for (const std::vector<RobotState>& states : result.trajectory) {
+      for (std::size_t i = 0; i < states.size(); ++i) {
+        for (const OrientedBox& box : scenario.arena().boxes()) {
+          deepest_box = std::max(deepest_box, foot_bot::kRadius - Distance(box, states[i].position()));
+        }
+        for (std::size_t j = 0; j < i; ++j) {
+          const double distance = (states[i].position() - states[j].position()).norm();
+          deepest_pair = std::max(deepest_pair, 2 * foot_bot::kRadius - distance);
+        }
+      }
+    }
+  }
+  std::printf("deepest overlap: box %.2f mm, robots %.2f mm\n", 1e3 * deepest_box, 1e3 * deepest_pair);
+  EXPECT_LT(deepest_box, 0.010);
+  EXPECT_LT(deepest_pair, 0.010);
+}
+
+TEST(Simulation, RefusesCommandsThatCannotBeCarriedOut) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {nan, infinity, -infinity, 1e300, -1.5}) {
+    const Behaviour misbehave = [bad](const ControlStep& step) {
+      step.actuators.Drive(0.1, 0.0);
+      if (step.tick == 17) step.actuators.right_wheel = bad;
+    };
+    ToyScenario scenario(TestCase{}, {RobotAt(0, 0, DriveStraight(0.1)), RobotAt(0, 1, misbehave)}, 100);
+    const RunResult result = Simulate(scenario, 1, false);
+    EXPECT_EQ(result.verdict, Verdict::kInvalidCommand);
+    EXPECT_EQ(result.ticks, 17);
+    EXPECT_THAT(result.message, AllOf(StartsWith("invalid-command: robot 1, tick 17: right wheel speed "),
+                                      HasSubstr(std::to_string(bad)), HasSubstr("at most 1.0")));
+    EXPECT_EQ(result.hash, HashOf(result));
+    EXPECT_TRUE(std::isfinite(result.robots[1].end.position.x()));
+  }
+}
+
+RunResult SimulateOne(const ToyRobot& robot, const TestCase& test_case = {}) {
+  ToyScenario scenario(test_case, {RobotAt(0, 0, DriveStraight(0.0)), robot}, 10);
+  return Simulate(scenario, 1, false);
+}
+
+TEST(Simulation, RefusesSwarmsThatCannotBeSimulated) {
+  ToyRobot robot = RobotAt(7.0, 0, DriveStraight(0.1));
+  RunResult result = SimulateOne(robot);
+  EXPECT_EQ(result.verdict, Verdict::kRefused);
+  EXPECT_THAT(result.message, StartsWith("bad-start: robot 1 starts outside the walls, at (7.0"));
+
+  TestCase blocked;
+  blocked.obstacles = {{.x = 1.0, .y = 0.0, .length = 0.5, .width = 0.5, .orientation_deg = 0.0}};
+  robot = RobotAt(1.0, 0.1, DriveStraight(0.1));
+  EXPECT_THAT(SimulateOne(robot, blocked).message,
+              StartsWith("bad-start: robot 1 starts inside obstacle 0, at (1.0"));
+
+  robot = RobotAt(std::numeric_limits<double>::quiet_NaN(), 0, DriveStraight(0.1));
+  EXPECT_THAT(SimulateOne(robot).message,
+              StartsWith("bad-start: robot 1 starts at a pose that is not finite"));
+
+  robot = RobotAt(1, 0, DriveStraight(0.1));
+  robot.devices = Device::kWheels | Device::kGripper;
+  EXPECT_THAT(SimulateOne(robot).message, StartsWith("unsupported-device: robot 1 asks for gripper"));
+
+  ToyScenario empty(TestCase{}, {}, 10);
+  EXPECT_THAT(Simulate(empty, 1, false).message, StartsWith("swarm-size: 0 robots"));
+
+  ToyScenario huge(TestCase{}, std::vector<ToyRobot>(1001, RobotAt(0, 0, DriveStraight(0.1))), 10);
+  EXPECT_THAT(Simulate(huge, 1, false).message, StartsWith("swarm-size: 1001 robots"));
+}
+
+// Robots on top of each other are possible, if odd: they drift apart and nothing becomes NaN.
+TEST(Simulation, SurvivesRobotsInOnePlace) {
+  ToyScenario scenario(TestCase{}, std::vector<ToyRobot>(5, RobotAt(0, 0, RandomWalk(0.1))), 200);
+  const RunResult result = Simulate(scenario, 1, false);
+  EXPECT_EQ(result.verdict, Verdict::kCompleted);
+  for (const RobotSummary& robot : result.robots) {
+    EXPECT_TRUE(std::isfinite(robot.end.position.x()) && std::isfinite(robot.end.position.y()));
+    EXPECT_LT(robot.end.position.norm(), 5.0);
+  }
+}
+
+TEST(Simulation, SurvivesObstaclesOfAnySize) {
+  TestCase test_case;
+  test_case.obstacles = {{.x = 0.5, .y = 0.0, .length = 1e-9, .width = 1e-9, .orientation_deg = 10.0},
+                         {.x = 0.0, .y = 0.6, .length = 2.0, .width = 1e-6, .orientation_deg = 0.0},
+                         {.x = 0.0, .y = -1e6, .length = 1e6, .width = 1e5, .orientation_deg = 0.0}};
+  ToyScenario scenario(test_case, {RobotAt(0, 0, DriveStraight(0.1)), RobotAt(0, 0.3, RandomWalk(0.1))}, 300);
+  const RunResult result = Simulate(scenario, 1, false);
+  EXPECT_EQ(result.verdict, Verdict::kCompleted);
+  EXPECT_TRUE(std::isfinite(result.fitness));
+}
+
+}  // namespace
+}  // namespace gauntlet::sim
