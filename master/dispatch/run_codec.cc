@@ -196,7 +196,7 @@ Result<sim::RunResult> DecodeRunResult(std::string_view bytes) {
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return Corrupt(fmt::format("the {} bytes of the run result do not parse", bytes.size()));
   }
-  if (message.verdict() < v1::VERDICT_COMPLETED || message.verdict() > v1::VERDICT_OUT_OF_MEMORY) {
+  if (!v1::Verdict_IsValid(message.verdict()) || message.verdict() == v1::VERDICT_UNSPECIFIED) {
     return Corrupt(
         fmt::format("the run result has the unknown verdict {}", static_cast<int>(message.verdict())));
   }
