@@ -1,32 +1,30 @@
 #include "controllers/registry.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "controllers/flocking/flocking_registry.h"
 #include "sim/base/nearest_name.h"
+#include "sim/base/number_text.h"
 
 namespace gauntlet::controllers {
 namespace {
-
-std::string Shortest(double value) {
-  std::array<char, 32> buffer;
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
-}
 
 // "unknown parameter 'bird_sped'; did you mean 'bird_speed'?", or the list of what there is.
 template <typename Infos>
 Error Unknown(const char* what, std::string_view name, const Infos& infos) {
   std::vector<std::string_view> known;
   for (const auto& info : infos) known.push_back(info.name);
-  std::string message = "unknown " + std::string(what) + " '" + std::string(name) + "'";
+  std::string message = "unknown ";
+  message.append(what).append(" '").append(name).append("'");
   const std::string nearest = NearestName(name, known);
-  if (!nearest.empty()) return InvalidInput(message + "; did you mean '" + nearest + "'?");
-  message += "; known:";
-  for (const std::string_view candidate : known) message += " " + std::string(candidate);
+  if (!nearest.empty()) {
+    message.append("; did you mean '").append(nearest).append("'?");
+    return InvalidInput(std::move(message));
+  }
+  message.append("; known:");
+  for (const std::string_view candidate : known) message.append(" ").append(candidate);
   return InvalidInput(std::move(message));
 }
 
@@ -39,13 +37,15 @@ const Info* FindByName(std::span<const Info> infos, std::string_view name) {
 }
 
 Status CheckRange(const ParameterInfo& info, double value) {
-  const std::string unit = info.unit.empty() || info.unit == "bool" ? "" : " " + std::string(info.unit);
-  const std::string given = "parameter '" + std::string(info.name) + "' = " + Shortest(value);
+  std::string given = "parameter '";
+  given.append(info.name).append("' = ").append(NumberText(value));
   if (!(value >= info.min && value <= info.max)) {  // also refuses what is not a number
-    return InvalidInput(given + unit + " is out of range: from " + Shortest(info.min) + " to " +
-                        Shortest(info.max) + unit);
+    std::string unit;
+    if (!info.unit.empty() && info.unit != "bool") unit.append(" ").append(info.unit);
+    given.append(unit).append(" is out of range: from ").append(NumberText(info.min));
+    return InvalidInput(given.append(" to ").append(NumberText(info.max)).append(unit));
   }
-  if (info.integer && value != std::floor(value)) return InvalidInput(given + " is not a whole number");
+  if (info.integer && value != std::floor(value)) return InvalidInput(given.append(" is not a whole number"));
   return Ok{};
 }
 
@@ -88,8 +88,9 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
   const ControllerInfo* controller = FindController(spec.controller);
   if (controller == nullptr) return Unknown("controller", spec.controller, Controllers());
   if (controller->scenario != scenario->name) {
-    return InvalidInput("controller '" + spec.controller + "' is written for the scenario '" +
-                        std::string(controller->scenario) + "', not for '" + spec.scenario + "'");
+    std::string message = "controller '";
+    message.append(spec.controller).append("' is written for the scenario '").append(controller->scenario);
+    return InvalidInput(message.append("', not for '").append(spec.scenario).append("'"));
   }
 
   sim::RunSpec resolved = spec;
@@ -102,7 +103,7 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
 
   const auto requirements = scenario->requirements(resolved.scenario_parameters, spec.test_case);
   if (const auto violation = sim::CheckValidity(spec.test_case, requirements)) {
-    return InvalidInput(std::string(NameOf(violation->rule)) + ": " + violation->message);
+    return InvalidInput(std::string(NameOf(violation->rule)).append(": ").append(violation->message));
   }
   return scenario->create(resolved);
 }

@@ -10,6 +10,8 @@
 namespace gauntlet::controllers {
 namespace {
 
+constexpr int kMaxBirds = 100;  // also the largest value of the parameter `birds`
+
 double Length(const std::vector<sim::Vec2>& path) {
   double length = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
@@ -50,10 +52,10 @@ FlockingScenario::FlockingScenario(const sim::TestCase& test_case, const Flockin
 }
 
 Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::Headquarters& headquarters) {
-  if (settings_.birds < settings_.min_swarm) {
-    return InvalidInput("min-swarm: " + std::to_string(settings_.birds) +
-                        " birds can never be a swarm of at least " + std::to_string(settings_.min_swarm) +
-                        "; use more birds or a smaller min_swarm");
+  if (settings_.birds < settings_.min_swarm || settings_.birds > kMaxBirds) {
+    return InvalidInput("swarm-size: " + std::to_string(settings_.birds) +
+                        " birds; from min_swarm = " + std::to_string(settings_.min_swarm) + " to " +
+                        std::to_string(kMaxBirds) + " can be tested");
   }
   prey_path_ = PlanPreyPath(arena_, start_, goal_, settings_.prey.inflation);
   if (prey_path_.empty()) {

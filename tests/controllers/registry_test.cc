@@ -35,7 +35,7 @@ void ExpectSane(std::span<const ParameterInfo> infos) {
     EXPECT_GE(info.default_value, info.min);
     EXPECT_LE(info.default_value, info.max);
     EXPECT_FALSE(info.description.empty());
-    if (info.integer) EXPECT_EQ(info.default_value, std::floor(info.default_value));
+    EXPECT_TRUE(!info.integer || info.default_value == std::floor(info.default_value));
   }
   EXPECT_TRUE(ResolveParameters(infos, {}).ok());
 }

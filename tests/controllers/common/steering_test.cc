@@ -4,6 +4,7 @@
 
 #include "gtest/gtest.h"
 #include "sim/geometry/trigonometry.h"
+#include "sim/robot/foot_bot.h"
 
 namespace gauntlet::controllers {
 namespace {

@@ -1,11 +1,10 @@
 #include "controllers/flocking/flocking_metrics.h"
 
-#include <rapidcheck/gtest.h>
-
 #include <cmath>
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "rapidcheck/gtest.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "sim/arena/path_planner.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
