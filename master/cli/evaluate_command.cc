@@ -1,0 +1,169 @@
+// gauntlet evaluate: simulate given test cases.
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "controllers/registry.h"
+#include "master/cases/case_file.h"
+#include "master/cli/commands.h"
+#include "master/cli/common_options.h"
+#include "master/cli/run_campaign.h"
+#include "master/cli/summary_json.h"
+#include "master/cli/summary_text.h"
+#include "master/dispatch/run_codec.h"
+#include "sim/arena/validity.h"
+
+namespace gauntlet::master {
+namespace {
+
+struct EvaluateOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  std::string replicates;
+};
+
+// Files in the order given; those that can be simulated also stand in `cases`, with their place in `files`.
+struct CaseList {
+  std::vector<EvaluatedCase> files;
+  std::vector<sim::TestCase> cases;
+  std::vector<std::size_t> file_of_case;
+};
+
+CaseList LoadCases(CommandContext& context, const EvaluateOptions& options, const Experiment& experiment) {
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
+  CaseList list;
+  for (const std::string& file : options.files) {
+    EvaluatedCase& evaluated = list.files.emplace_back();
+    evaluated.file = file;
+    Result<LoadedCase> loaded = LoadCase(file);
+    if (!loaded) {
+      evaluated.error = loaded.error().message;
+      continue;
+    }
+    if (!options.common.quiet && !loaded->notice.empty()) PrintMessage(context, loaded->notice);
+    if (scenario != nullptr) {
+      const auto requirements = scenario->requirements(experiment.scenario_parameters, loaded->test_case);
+      if (const auto violation = sim::CheckValidity(loaded->test_case, requirements)) {
+        evaluated.refused_rule = sim::NameOf(violation->rule);
+        evaluated.error = violation->message;
+        continue;
+      }
+    }
+    list.cases.push_back(std::move(loaded->test_case));
+    list.file_of_case.push_back(list.files.size() - 1);
+  }
+  return list;
+}
+
+// A run may still be refused when the swarm is set up (no room to spawn): that is the case's fault too.
+void NoteRefusal(EvaluatedCase& evaluated) {
+  for (const EvaluatedRun& run : evaluated.runs) {
+    if (run.result.verdict != sim::Verdict::kRefused || !evaluated.error.empty()) continue;
+    evaluated.refused_rule = RuleOf(run.result.message);
+    evaluated.error = run.result.message;
+  }
+}
+
+Status AddRuns(CommandContext& context, const std::string& directory, CaseList& list) {
+  std::optional<Error> damaged;
+  const Status read = context.service.for_each_run(directory, [&](const StoredRun& stored) {
+    Result<sim::RunResult> result = DecodeRunResult(stored.result);
+    if (!result || stored.individual < 1 || stored.individual > list.cases.size()) {
+      if (!damaged) {
+        damaged =
+            Error{ErrorKind::kCorrupt, fmt::format("run {} of {} does not read back", stored.id, directory)};
+      }
+      return;
+    }
+    EvaluatedCase& evaluated = list.files[list.file_of_case[static_cast<std::size_t>(stored.individual) - 1]];
+    evaluated.runs.push_back({stored.id, stored.seed, std::move(*result)});
+  });
+  if (!read) return read;
+  if (damaged) return *damaged;
+  for (EvaluatedCase& evaluated : list.files) NoteRefusal(evaluated);
+  return Ok{};
+}
+
+bool AnyFitness(const CaseList& list) {
+  for (const EvaluatedCase& evaluated : list.files) {
+    if (MeanFitness(evaluated)) return true;
+  }
+  return false;
+}
+
+void Print(CommandContext& context, const EvaluateOptions& options, const CaseList& list,
+           const CampaignSummary* summary, const std::string& directory) {
+  context.out << (options.common.json ? EvaluationJson(list.files, summary, directory)
+                                      : EvaluationText(list.files, {context.program, directory}))
+              << std::flush;
+  for (const EvaluatedCase& evaluated : list.files) {
+    if (evaluated.error.empty()) continue;
+    // Messages of unreadable files begin with the file.
+    PrintMessage(context, evaluated.error.starts_with(evaluated.file)
+                              ? evaluated.error
+                              : fmt::format("{}: {}", evaluated.file, evaluated.error));
+  }
+}
+
+ExitCode Evaluate(CommandContext& context, const EvaluateOptions& options) {
+  std::vector<ExtraSet> extra = {{"evaluate", "search.algorithm=cases"}};
+  if (!options.replicates.empty())
+    extra.push_back({"--replicates", "search.replicates=" + options.replicates});
+  const Result<Experiment> experiment = LoadExperimentWith(options.common, extra);
+  if (!experiment) return Fail(context, experiment.error());
+  const Result<int> workers = ParseWorkers(options.common.workers);
+  if (!workers) return Fail(context, workers.error());
+  const Result<std::string> directory = NewDirectory(options.common, *experiment, context.program);
+  if (!directory) return Fail(context, directory.error());
+
+  CaseList list = LoadCases(context, options, *experiment);
+  if (list.cases.empty()) {
+    Print(context, options, list, nullptr, *directory);
+    return kExitUsage;
+  }
+  CampaignRun campaign;
+  campaign.directory = *directory;
+  campaign.announcement = Announcement(*experiment, *workers, *directory);
+  campaign.workers = *workers;
+  campaign.run = [&](const SessionOptions& session) {
+    return context.service.start(*directory, *experiment, list.cases, session);
+  };
+  campaign.report = [&](const SessionReport& report) -> Status {
+    if (Status added = AddRuns(context, *directory, list); !added) return added;
+    Print(context, options, list, &report.summary, *directory);
+    return Ok{};
+  };
+  const ExitCode code = RunCampaign(context, options.common, campaign);
+  const bool all_refused = !AnyFitness(list);
+  return code == kExitDone && all_refused ? kExitUsage : code;
+}
+
+}  // namespace
+
+void AddEvaluateCommand(CLI::App& app, CommandAction& chosen) {
+  CLI::App* command = app.add_subcommand("evaluate", "simulate given test cases (case JSON or .argos files)");
+  const auto options = std::make_shared<EvaluateOptions>();
+  AddCommonOptions(*command, options->common);
+  command->add_option("--case", options->files, "case files, .json or .argos; several may follow")
+      ->type_name("FILE...")
+      ->required();
+  command->add_option("--replicates", options->replicates, "runs per case, each with its own seed")
+      ->type_name("K");
+  command->footer(
+      "\nSimulates each case and prints its fitness (mean of the replicates; lower = tougher). A case that\n"
+      "breaks a validity rule is refused by the rule's name; the others go on. Exit 2 when all were "
+      "refused.\n"
+      "Of .argos files the arena, the boxes, the number of foot-bots and their start area are read.\n"
+      "\n"
+      "Examples:\n"
+      "  gauntlet evaluate flocking --case one-wall.json --replicates 20\n"
+      "  gauntlet evaluate flocking-improved --case cases/*.argos --json > improved.json");
+  command->callback([options, &chosen] {
+    chosen = [options](CommandContext& context) { return Evaluate(context, *options); };
+  });
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,265 @@
+// gauntlet list: what can be named, and every parameter with unit, default and range.
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "controllers/registry.h"
+#include "master/cli/commands.h"
+#include "master/cli/table.h"
+#include "master/experiment/experiment_file.h"
+#include "master/experiment/schema.h"
+
+namespace gauntlet::master {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kTextWidth = 110;
+
+struct ListOptions {
+  std::string section;
+  bool json = false;
+};
+
+struct Search {
+  std::string_view name;
+  std::string_view description;
+  std::vector<std::string_view> keys;  // keys of the experiment, or a table of them ending with '.'
+};
+
+const std::vector<Search>& Searches() {
+  static const std::vector<Search> searches = {
+      {"genetic",
+       "a population of test cases is bred for low fitness: gauntlet evolve",
+       {"search.population", "search.generations", "search.parent_selection", "search.crossover",
+        "search.crossover_probability", "search.mutation_probability", "search.reevaluation",
+        "search.fitness_aggregation", "search.replicates", "search.variation_tries", "genome."}},
+      {"random",
+       "independent random test cases, the baseline: gauntlet random",
+       {"search.cases", "search.replicates", "genome."}},
+      {"cases", "given test cases from files: gauntlet evaluate", {"search.replicates"}},
+  };
+  return searches;
+}
+
+std::vector<const Key*> KeysOf(const Search& search) {
+  std::vector<const Key*> keys;
+  for (const std::string_view wanted : search.keys) {
+    for (const Key& key : CommonKeys()) {
+      if (wanted.ends_with('.') ? key.path.starts_with(wanted) : key.path == wanted) keys.push_back(&key);
+    }
+  }
+  return keys;
+}
+
+std::string Number(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+std::string RangeOf(double min, double max) {
+  return fmt::format("{} to {}", Number(min), Number(max));
+}
+
+std::string RangeOf(const Key& key) {
+  if (key.type == KeyType::kChoice) return fmt::format("{}", fmt::join(key.choices, " | "));
+  if (key.type == KeyType::kFlag) return "true | false";
+  if (key.type == KeyType::kText) return "text";
+  return RangeOf(key.min, key.max);
+}
+
+std::vector<Table::Column> ParameterColumns() {
+  return {{"parameter", Align::kLeft},
+          {"default", Align::kRight},
+          {"unit", Align::kLeft},
+          {"range", Align::kLeft},
+          {"", Align::kLeft}};
+}
+
+std::string ParameterTable(std::span<const controllers::ParameterInfo> parameters) {
+  Table table(ParameterColumns());
+  for (const controllers::ParameterInfo& info : parameters) {
+    table.AddRow({std::string(info.name), Number(info.default_value), std::string(info.unit),
+                  RangeOf(info.min, info.max), std::string(info.description)});
+  }
+  return table.ToText(4);
+}
+
+std::string ExperimentsText() {
+  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  for (const ShippedExperiment& shipped : ListExperiments()) {
+    table.AddRow({shipped.name, shipped.error.empty() ? shipped.description : "ERROR: " + shipped.error});
+  }
+  return "Experiments (gauntlet evolve NAME)\n" + table.ToText();
+}
+
+std::string ScenariosText() {
+  std::string text = "Scenarios (--set scenario=NAME, --set scenario_parameters.PARAMETER=VALUE)\n";
+  for (const controllers::ScenarioInfo& scenario : controllers::Scenarios()) {
+    text +=
+        "\n  " + Wrapped(fmt::format("{}: {}", scenario.name, scenario.description), kTextWidth, 4) + "\n";
+    text += fmt::format("    controller unless another is named: {}\n\n", scenario.default_controller);
+    text += ParameterTable(scenario.parameters);
+  }
+  return text;
+}
+
+std::string ControllersText() {
+  std::string text = "Controllers (--set controller=NAME, --set controller_parameters.PARAMETER=VALUE)\n";
+  for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
+    text += "\n  " + Wrapped(fmt::format("{}: {}", controller.name, controller.description), kTextWidth, 4) +
+            "\n";
+    text += fmt::format("    written for the scenario {}\n\n", controller.scenario);
+    text += ParameterTable(controller.parameters);
+  }
+  return text;
+}
+
+std::string SearchesText() {
+  std::string text = "Searches (--set search.algorithm=NAME, --set PARAMETER=VALUE)\n";
+  for (const Search& search : Searches()) {
+    text += fmt::format("\n  {}: {}\n\n", search.name, search.description);
+    Table table(ParameterColumns());
+    for (const Key* key : KeysOf(search)) {
+      table.AddRow({key->path, ToToml(key->default_value), key->unit, RangeOf(*key), key->description});
+    }
+    text += table.ToText(4);
+  }
+  return text;
+}
+
+Json ParametersJson(std::span<const controllers::ParameterInfo> parameters) {
+  Json list = Json::array();
+  for (const controllers::ParameterInfo& info : parameters) {
+    list.push_back({{"name", info.name},
+                    {"type", info.unit == "bool" ? "flag"
+                             : info.integer      ? "integer"
+                                                 : "number"},
+                    {"unit", info.unit == "bool" ? "" : info.unit},
+                    {"default", info.default_value},
+                    {"min", info.min},
+                    {"max", info.max},
+                    {"description", info.description}});
+  }
+  return list;
+}
+
+Json KeyJson(const Key& key) {
+  Json json = {{"name", key.path}, {"type", NameOf(key.type)}, {"unit", key.unit}};
+  std::visit(
+      [&](const auto& value) {
+        // Seeds are strings: readers of JSON lose digits of numbers above 2^53.
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::uint64_t>) {
+          json["default"] = fmt::format("{}", value);
+        } else {
+          json["default"] = value;
+        }
+      },
+      key.default_value);
+  if (key.type == KeyType::kChoice) {
+    json["choices"] = key.choices;
+  } else if (key.type == KeyType::kInteger || key.type == KeyType::kNumber) {
+    json["min"] = key.min;
+    json["max"] = key.max;
+  }
+  json["description"] = key.description;
+  return json;
+}
+
+Json ExperimentsJson() {
+  Json list = Json::array();
+  for (const ShippedExperiment& shipped : ListExperiments()) {
+    list.push_back({{"name", shipped.name},
+                    {"description", shipped.description},
+                    {"scenario", shipped.scenario},
+                    {"controller", shipped.controller},
+                    {"path", shipped.path.string()},
+                    {"error", shipped.error.empty() ? Json(nullptr) : Json(shipped.error)}});
+  }
+  return list;
+}
+
+Json ScenariosJson() {
+  Json list = Json::array();
+  for (const controllers::ScenarioInfo& scenario : controllers::Scenarios()) {
+    list.push_back({{"name", scenario.name},
+                    {"description", scenario.description},
+                    {"default_controller", scenario.default_controller},
+                    {"parameters", ParametersJson(scenario.parameters)}});
+  }
+  return list;
+}
+
+Json ControllersJson() {
+  Json list = Json::array();
+  for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
+    list.push_back({{"name", controller.name},
+                    {"description", controller.description},
+                    {"scenario", controller.scenario},
+                    {"parameters", ParametersJson(controller.parameters)}});
+  }
+  return list;
+}
+
+Json SearchesJson() {
+  Json list = Json::array();
+  for (const Search& search : Searches()) {
+    Json parameters = Json::array();
+    for (const Key* key : KeysOf(search)) parameters.push_back(KeyJson(*key));
+    list.push_back(
+        {{"name", search.name}, {"description", search.description}, {"parameters", std::move(parameters)}});
+  }
+  return list;
+}
+
+ExitCode List(CommandContext& context, const ListOptions& options) {
+  struct Section {
+    std::string_view name;
+    std::string (*text)();
+    Json (*json)();
+  };
+  constexpr Section kSections[] = {{"experiments", ExperimentsText, ExperimentsJson},
+                                   {"scenarios", ScenariosText, ScenariosJson},
+                                   {"controllers", ControllersText, ControllersJson},
+                                   {"searches", SearchesText, SearchesJson}};
+  std::string text;
+  Json json = Json::object();
+  for (const Section& section : kSections) {
+    if (!options.section.empty() && section.name != options.section) continue;
+    if (options.json) {
+      json[std::string(section.name)] = section.json();
+    } else {
+      text += (text.empty() ? "" : "\n") + section.text();
+    }
+  }
+  if (options.json) text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  context.out << text << std::flush;
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddListCommand(CLI::App& app, CommandAction& chosen) {
+  CLI::App* command =
+      app.add_subcommand("list", "experiments, scenarios, controllers and searches with all parameters");
+  const auto options = std::make_shared<ListOptions>();
+  command
+      ->add_option("SECTION", options->section,
+                   "experiments, scenarios, controllers or searches (default: all)")
+      ->check(CLI::IsMember({"experiments", "scenarios", "controllers", "searches"}));
+  command->add_flag("--json", options->json, "as one JSON document");
+  command->footer(
+      "\nExamples:\n"
+      "  gauntlet list experiments\n"
+      "  gauntlet list controllers --json | jq '.controllers[].name'");
+  command->callback([options, &chosen] {
+    chosen = [options](CommandContext& context) { return List(context, *options); };
+  });
+}
+
+}  // namespace gauntlet::master

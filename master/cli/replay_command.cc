@@ -1,0 +1,148 @@
+// gauntlet replay: one stored run again, checked against its hash, and drawn.
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/run_figure.h"
+#include "analysis/figures/trajectory_csv.h"
+#include "master/cli/commands.h"
+#include "master/cli/common_options.h"
+#include "master/cli/evaluation.h"
+#include "master/cli/table.h"
+
+namespace gauntlet::master {
+namespace {
+
+struct ReplayOptions {
+  std::string directory;
+  std::string run;
+  std::string svg;
+  std::string csv;
+  bool json = false;
+};
+
+Status WriteFile(const std::string& path, const std::string& content) {
+  errno = 0;
+  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  stream << content;
+  stream.close();
+  if (stream) return Ok{};
+  return Error{ErrorKind::kIo, fmt::format("{}: cannot be written: {}", path, std::strerror(errno))};
+}
+
+std::string NounOf(const std::string& scenario) {
+  return scenario == "flocking" ? "bird" : "robot";
+}
+
+analysis::RunFigure FigureOf(const CampaignReplay& replay) {
+  analysis::RunFigure figure;
+  figure.experiment = replay.experiment.name;
+  figure.run = fmt::format("run {}", replay.report.stored.id);
+  figure.spec = replay.report.spec;
+  figure.result = replay.report.replayed;
+  figure.member = NounOf(replay.report.spec.scenario);
+  return figure;
+}
+
+std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure) {
+  const ReplayReport& report = replay.report;
+  const bool same = report.differences.empty();
+  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  table.AddRow(
+      {"test case", fmt::format("{} (generation {})", report.stored.individual, report.stored.generation)});
+  table.AddRow({"seed", fmt::format("{}", report.spec.seed)});
+  table.AddRow({"outcome", analysis::DescribeOutcome(figure)});
+  if (report.replayed.verdict == sim::Verdict::kCompleted) {
+    table.AddRow({"fitness", fmt::format("{:.6f}", report.replayed.fitness)});
+    for (const auto& [name, value] : report.replayed.metrics)
+      table.AddRow({name, fmt::format("{:.6g}", value)});
+  } else {
+    table.AddRow({"verdict", std::string(NameOf(report.replayed.verdict))});
+  }
+  if (!report.replayed.failure.label.empty()) {
+    table.AddRow(
+        {"failure type", fmt::format("{}: {}", report.replayed.failure.type, report.replayed.failure.label)});
+  }
+  table.AddRow({"stored hash", fmt::format("{:016x}", report.stored_result.hash)});
+  table.AddRow(
+      {"new hash", fmt::format("{:016x}{}", report.replayed.hash, same ? "  (the same)" : "  (DIFFERENT)")});
+  std::string text = fmt::format("{}, run {}: {}\n\n", replay.experiment.name, report.stored.id,
+                                 same ? "reproduced" : "NOT REPRODUCED") +
+                     table.ToText();
+  if (!same) {
+    text += "\nWhat differs\n";
+    for (const std::string& difference : report.differences) text += "  " + difference + "\n";
+  }
+  return text;
+}
+
+std::string JsonText(const CampaignReplay& replay) {
+  const ReplayReport& report = replay.report;
+  const nlohmann::ordered_json json = {{"run", fmt::format("{}", report.stored.id)},
+                                       {"reproduced", report.differences.empty()},
+                                       {"stored_hash", fmt::format("{:016x}", report.stored_result.hash)},
+                                       {"hash", fmt::format("{:016x}", report.replayed.hash)},
+                                       {"differences", report.differences},
+                                       {"verdict", NameOf(report.replayed.verdict)},
+                                       {"fitness", report.replayed.fitness}};
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+ExitCode Replay(CommandContext& context, const ReplayOptions& options) {
+  const Result<std::uint64_t> run = ParseRunId(options.run);
+  if (!run) return Fail(context, run.error());
+  const Result<CampaignReplay> replay = context.service.replay(options.directory, *run);
+  if (!replay) {
+    const ExitCode code = Fail(context, replay.error());
+    // A stored run that does not read back did not reproduce.
+    return replay.error().kind == ErrorKind::kCorrupt ? kExitNegative : code;
+  }
+  const analysis::RunFigure figure = FigureOf(*replay);
+  context.out << (options.json ? JsonText(*replay) : Text(*replay, figure)) << std::flush;
+  if (!options.svg.empty()) {
+    if (const Status written = WriteFile(options.svg, analysis::DrawRun(figure)); !written) {
+      return Fail(context, written.error());
+    }
+    PrintMessage(context, fmt::format("wrote {}", options.svg));
+  }
+  if (!options.csv.empty()) {
+    const std::string csv = analysis::WriteTrajectoryCsv(replay->report.replayed.trajectory);
+    if (const Status written = WriteFile(options.csv, csv); !written) return Fail(context, written.error());
+    PrintMessage(context, fmt::format("wrote {}", options.csv));
+  }
+  if (replay->report.differences.empty()) return kExitDone;
+  PrintMessage(context, fmt::format("run {} of {} was not reproduced: {}", *run, options.directory,
+                                    replay->report.differences.front()));
+  return kExitNegative;
+}
+
+}  // namespace
+
+void AddReplayCommand(CLI::App& app, CommandAction& chosen) {
+  CLI::App* command = app.add_subcommand("replay", "simulate one stored run again, check its hash, draw it");
+  const auto options = std::make_shared<ReplayOptions>();
+  command->add_option("DIR", options->directory, "directory of the campaign")->required();
+  command->add_option("RUN_ID", options->run, "number of the run, as 'show' names it")->required();
+  command
+      ->add_option("--svg", options->svg, "write a picture: arena, every robot's way, where the swarm split")
+      ->type_name("F");
+  command->add_option("--csv", options->csv, "write every pose of every tick")->type_name("F");
+  command->add_flag("--json", options->json, "the result as one JSON document");
+  command->footer(
+      "\nSame run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying "
+      "what\n"
+      "differs.\n"
+      "\n"
+      "Example:\n"
+      "  gauntlet replay campaigns/flocking-20260131T120000Z 812 --svg run-812.svg --csv run-812.csv");
+  command->callback([options, &chosen] {
+    chosen = [options](CommandContext& context) { return Replay(context, *options); };
+  });
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,102 @@
+#include "master/cli/run_campaign.h"
+
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "master/cli/progress.h"
+#include "master/cli/stop_signal.h"
+#include "master/cli/summary_json.h"
+#include "master/cli/summary_text.h"
+#include "master/cli/table.h"
+
+namespace gauntlet::master {
+namespace {
+
+std::string ResumeHint(const CommandContext& context, const std::string& directory) {
+  return fmt::format("{} resume {}", context.program, ShellQuoted(directory));
+}
+
+std::string Timing(const SessionReport& report) {
+  std::string line = fmt::format("{} runs in {}", FormatCount(report.runs_this_session),
+                                 FormatDuration(report.wall_seconds));
+  if (report.runs_this_session > 0 && report.wall_seconds > 0) {
+    const auto runs = static_cast<double>(report.runs_this_session);
+    line += fmt::format(" ({:.1f}/s; master {:.0f} us of CPU per run)", runs / report.wall_seconds,
+                        1e6 * report.master_cpu_seconds / runs);
+  }
+  return line;
+}
+
+}  // namespace
+
+ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, const CampaignRun& campaign) {
+  if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
+
+  const SteadyClock clock;
+  const ProgressMode mode = ChooseProgressMode(!options.quiet && !options.no_progress,
+                                               context.err_is_terminal, std::getenv("TERM"));
+  ProgressPrinter progress(
+      mode, clock, [&](const std::string& text) { context.err << text << std::flush; }, TerminalColumns);
+  bool began = false;
+
+  SessionOptions session;
+  session.workers = campaign.workers;
+  session.stop_requested = StopSignal::Requested;
+  session.on_progress = [&](const CampaignProgress& now) {
+    began = true;
+    progress.Update(now);
+  };
+  Result<SessionReport> report = [&] {
+    const StopSignal handlers;
+    return campaign.run(session);
+  }();
+  progress.Finish();
+  if (!report) {
+    const ErrorKind kind = report.error().kind;
+    const bool resumable =
+        kind == ErrorKind::kNoSpace || (began && (kind == ErrorKind::kIo || kind == ErrorKind::kInUse));
+    const ExitCode code = Fail(context, report.error());
+    if (!resumable) return code;
+    PrintMessage(context, fmt::format("stopped; what was finished is stored. Go on with: {}",
+                                      ResumeHint(context, campaign.directory)));
+    return kExitStopped;
+  }
+  if (!options.quiet && report->runs_this_session > 0) PrintMessage(context, Timing(*report));
+  if (const Status printed = campaign.report(*report); !printed) return Fail(context, printed.error());
+  if (report->end == CampaignEnd::kStopped) {
+    PrintMessage(context, fmt::format("stopped after {} runs, all of them stored. Go on with: {}",
+                                      FormatCount(report->summary.runs_done),
+                                      ResumeHint(context, campaign.directory)));
+    return kExitStopped;
+  }
+  return kExitDone;
+}
+
+void PrintSummary(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
+                  bool json) {
+  context.out << (json ? SummaryJson(summary, directory) : SummaryText(summary, {context.program, directory}))
+              << std::flush;
+}
+
+std::string Announcement(const Experiment& experiment, int workers, const std::string& directory) {
+  const SearchSpec& search = experiment.search;
+  std::string what;
+  switch (search.kind) {
+    case SearchKind::kGenetic:
+      what = fmt::format("genetic search, {} test cases x {} generations", search.population,
+                         search.generations);
+      break;
+    case SearchKind::kRandom:
+      what =
+          fmt::format("random search, {} test cases", FormatCount(static_cast<std::uint64_t>(search.cases)));
+      break;
+    case SearchKind::kCases:
+      what = fmt::format("given test cases, {} runs each", search.replicates);
+      break;
+  }
+  return fmt::format("{}: {}, seed {}, {} worker{}, in {}", experiment.name, what, experiment.seed, workers,
+                     workers == 1 ? "" : "s", directory);
+}
+
+}  // namespace gauntlet::master

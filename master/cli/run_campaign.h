@@ -1,0 +1,32 @@
+// What evolve, random, evaluate and resume have in common: progress, clean stop, the closing messages.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "master/cli/command_context.h"
+#include "master/cli/common_options.h"
+
+namespace gauntlet::master {
+
+struct CampaignRun {
+  std::string directory;
+  std::string announcement;  // one line before it begins, without "gauntlet: "; "" = none
+  int workers = 1;
+  std::function<Result<SessionReport>(const SessionOptions&)> run;
+  // Prints the result to context.out.
+  std::function<Status(const SessionReport&)> report;
+};
+
+// Runs it with progress on context.err; SIGINT and SIGTERM stop it cleanly. Exit 0, or 3 when it was stopped
+// and can be resumed, or as the error demands.
+ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, const CampaignRun& campaign);
+
+// The summary as text or JSON.
+void PrintSummary(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
+                  bool json);
+
+// "flocking: genetic search, 20 test cases x 50 generations, seed 1, 2 workers, in DIR".
+std::string Announcement(const Experiment& experiment, int workers, const std::string& directory);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,47 @@
+#include "master/cli/stop_signal.h"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+
+namespace gauntlet::master {
+namespace {
+
+std::atomic<int> signals_received{0};
+static_assert(std::atomic<int>::is_always_lock_free, "needed in a signal handler");
+
+constexpr int kStoppedExitCode = 3;  // stopped, resumable: whatever is not stored yet is simulated again
+
+// Only async-signal-safe calls.
+void HandleSignal(int /*signal*/) {
+  const int saved_errno = errno;
+  if (signals_received.fetch_add(1) > 0) _exit(kStoppedExitCode);
+  constexpr char kMessage[] = "\ngauntlet: stopping cleanly; once more to stop at once\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage, std::strlen(kMessage));
+  errno = saved_errno;
+}
+
+}  // namespace
+
+StopSignal::StopSignal() {
+  signals_received = 0;
+  struct sigaction action {};
+  action.sa_handler = HandleSignal;
+  sigemptyset(&action.sa_mask);
+  action.sa_flags = SA_RESTART;
+  sigaction(SIGINT, &action, &old_interrupt_);
+  sigaction(SIGTERM, &action, &old_terminate_);
+}
+
+StopSignal::~StopSignal() {
+  sigaction(SIGINT, &old_interrupt_, nullptr);
+  sigaction(SIGTERM, &old_terminate_, nullptr);
+}
+
+bool StopSignal::Requested() {
+  return signals_received.load() > 0;
+}
+
+}  // namespace gauntlet::master

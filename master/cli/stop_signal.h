@@ -1,0 +1,24 @@
+// Ctrl-C and SIGTERM: the first asks the campaign to stop cleanly, the second ends the process at once.
+#pragma once
+
+#include <csignal>
+
+namespace gauntlet::master {
+
+// Installs handlers while it lives; at most one at a time.
+class StopSignal {
+ public:
+  StopSignal();
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  // True after the first signal.
+  static bool Requested();
+
+ private:
+  struct sigaction old_interrupt_ {};
+  struct sigaction old_terminate_ {};
+};
+
+}  // namespace gauntlet::master

@@ -1,0 +1,153 @@
+#include "master/cli/summary_json.h"
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace gauntlet::master {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Integers up to here are exact in every JSON reader.
+constexpr std::uint64_t kExactInJson = 1ULL << 53;
+
+Json IdJson(std::uint64_t id) {
+  return id <= kExactInJson ? Json(id) : Json(fmt::format("{}", id));
+}
+
+Json IdsJson(const std::vector<std::uint64_t>& ids) {
+  Json list = Json::array();
+  for (const std::uint64_t id : ids) list.push_back(IdJson(id));
+  return list;
+}
+
+Json FitnessJson(double fitness) {
+  return std::isfinite(fitness) ? Json(fitness) : Json(nullptr);
+}
+
+// Keys as in case files (proto/run.proto, message Obstacle), so that a genome can be copied into one.
+Json GenomeJson(const sim::Genome& genome) {
+  Json list = Json::array();
+  for (const sim::ObstacleGene& gene : genome) {
+    list.push_back({{"x", gene.x},
+                    {"y", gene.y},
+                    {"length", gene.length},
+                    {"width", gene.width},
+                    {"orientationDeg", gene.orientation_deg}});
+  }
+  return list;
+}
+
+Json FailureJson(const sim::SwarmFailure& failure) {
+  return {{"total", failure.total},
+          {"type", failure.type >= 0 ? Json(failure.type) : Json(nullptr)},
+          {"label", failure.label}};
+}
+
+Json RunJson(const EvaluatedRun& run) {
+  const sim::RunResult& result = run.result;
+  Json metrics = Json::object();
+  for (const auto& [name, value] : result.metrics) metrics[name] = FitnessJson(value);
+  const bool completed = result.verdict == sim::Verdict::kCompleted;
+  Json json = {{"id", IdJson(run.id)},
+               {"seed", fmt::format("{}", run.seed)},
+               {"fitness", completed ? FitnessJson(result.fitness) : Json(nullptr)},
+               {"verdict", NameOf(result.verdict)},
+               {"metrics", std::move(metrics)},
+               {"failure", FailureJson(result.failure)},
+               {"hash", fmt::format("{:016x}", result.hash)}};
+  if (!completed) json["message"] = result.message;
+  return json;
+}
+
+// Text from files and workers may be anything; what is not UTF-8 is replaced rather than refused.
+std::string Dump(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json TextOrNull(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+}  // namespace
+
+std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
+  Json statistics = Json::object();
+  for (const auto& [name, value] : summary.statistics) statistics[name] = FitnessJson(value);
+
+  Json generations = Json::array();
+  for (const GenerationSummary& generation : summary.generations) {
+    const bool any = generation.completed > 0;
+    generations.push_back({{"generation", generation.generation},
+                           {"runs", generation.runs},
+                           {"best_fitness", any ? FitnessJson(generation.best) : Json(nullptr)},
+                           {"mean_fitness", any ? FitnessJson(generation.mean) : Json(nullptr)},
+                           {"worst_fitness", any ? FitnessJson(generation.worst) : Json(nullptr)},
+                           {"total_failures", generation.total_failures}});
+  }
+
+  Json population = Json::array();
+  for (const PopulationMember& member : summary.population) {
+    population.push_back({{"id", IdJson(member.id)},
+                          {"fitness", FitnessJson(member.fitness)},
+                          {"birth_generation", member.birth_generation},
+                          {"parents", IdsJson(member.parents)},
+                          {"genome", GenomeJson(member.genome)},
+                          {"runs", IdsJson(member.runs)}});
+  }
+
+  const Json json = {{"experiment", summary.experiment},
+                     {"directory", directory},
+                     {"search", summary.search},
+                     {"seed", fmt::format("{}", summary.seed)},
+                     {"generation", summary.progress.generation},
+                     {"generations", summary.progress.generations},
+                     {"evaluations_done", summary.progress.evaluations_done},
+                     {"evaluations_planned", summary.progress.evaluations_planned},
+                     {"runs_done", summary.runs_done},
+                     {"runs_failed", summary.runs_failed},
+                     {"distinct_individuals", summary.distinct_individuals},
+                     {"best_fitness", FitnessJson(summary.best_fitness)},
+                     {"mean_fitness", FitnessJson(summary.mean_fitness)},
+                     {"worst_fitness", FitnessJson(summary.worst_fitness)},
+                     {"total_failures", summary.total_failures},
+                     {"failure_types", summary.failure_types},
+                     {"unclassified_failures", summary.unclassified_failures},
+                     {"statistics", std::move(statistics)},
+                     {"history", std::move(generations)},
+                     {"population", std::move(population)},
+                     {"state_hash", summary.state_hash},
+                     {"nondeterministic", summary.nondeterministic},
+                     {"finished", summary.finished}};
+  return Dump(json);
+}
+
+std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const CampaignSummary* summary,
+                           const std::string& directory) {
+  Json list = Json::array();
+  for (const EvaluatedCase& evaluated : cases) {
+    Json runs = Json::array();
+    for (const EvaluatedRun& run : evaluated.runs) runs.push_back(RunJson(run));
+    const std::optional<double> fitness = MeanFitness(evaluated);
+    list.push_back({{"file", evaluated.file},
+                    {"fitness", fitness ? FitnessJson(*fitness) : Json(nullptr)},
+                    {"refused", TextOrNull(evaluated.refused_rule)},
+                    {"error", TextOrNull(evaluated.error)},
+                    {"runs", std::move(runs)}});
+  }
+  Json json = {{"cases", std::move(list)}};
+  if (summary != nullptr) {
+    json["experiment"] = summary->experiment;
+    json["directory"] = directory;
+    json["seed"] = fmt::format("{}", summary->seed);
+    json["state_hash"] = summary->state_hash;
+    json["finished"] = summary->finished;
+  }
+  return Dump(json);
+}
+
+}  // namespace gauntlet::master

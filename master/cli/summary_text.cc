@@ -1,0 +1,211 @@
+#include "master/cli/summary_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "master/cli/table.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::size_t kMostGenerations = 12;  // rows of the table
+constexpr std::size_t kMostMembers = 10;
+
+std::string Percent(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? "-"
+                    : fmt::format("{:.1f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
+}
+
+std::string NameOfSearch(const CampaignSummary& summary) {
+  if (summary.search == "genetic") return "genetic search";
+  if (summary.search == "random") return "random search";
+  if (summary.search == "cases") return "given cases";
+  return summary.search;
+}
+
+std::string Overview(const CampaignSummary& summary) {
+  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  if (summary.progress.generations > 1) {
+    table.AddRow(
+        {"generations", fmt::format("{} of {}", summary.progress.generation, summary.progress.generations)});
+  }
+  std::string runs = FormatCount(summary.runs_done);
+  if (summary.runs_failed > 0) {
+    runs += fmt::format(", {} of them without a result (crashed, hung, refused)",
+                        FormatCount(summary.runs_failed));
+  }
+  table.AddRow({"runs", runs});
+  table.AddRow({"test cases", fmt::format("{} different", FormatCount(summary.distinct_individuals))});
+  table.AddRow(
+      {"fitness", fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
+                              FormatFitness(summary.best_fitness), FormatFitness(summary.mean_fitness),
+                              FormatFitness(summary.worst_fitness),
+                              summary.search == "genetic" ? "population" : "cases")});
+  table.AddRow({"total failures", fmt::format("{} of {} runs ({})", FormatCount(summary.total_failures),
+                                              FormatCount(summary.runs_done),
+                                              Percent(summary.total_failures, summary.runs_done))});
+  if (summary.total_failures > 0) {
+    const auto types = std::count_if(summary.failure_types.begin(), summary.failure_types.end(),
+                                     [](std::uint64_t count) { return count > 0; });
+    std::string text = fmt::format("{} of {}", types, summary.failure_types.size());
+    if (summary.unclassified_failures > 0) {
+      text += fmt::format("; {} failures without a split", FormatCount(summary.unclassified_failures));
+    }
+    table.AddRow({"failure types", text});
+  }
+  table.AddRow({"state hash", summary.state_hash});
+  return table.ToText();
+}
+
+// Rows of the first, the last and generations at even distances between them.
+std::vector<std::size_t> ShownGenerations(std::size_t count) {
+  std::vector<std::size_t> shown;
+  const std::size_t rows = std::min(count, kMostGenerations);
+  for (std::size_t i = 0; i < rows; ++i) {
+    shown.push_back(rows == 1 ? 0 : (i * (count - 1) + (rows - 1) / 2) / (rows - 1));
+  }
+  return shown;
+}
+
+std::string Generations(const CampaignSummary& summary) {
+  if (summary.generations.size() < 2) return {};
+  Table table({{"generation", Align::kRight},
+               {"runs", Align::kRight},
+               {"best", Align::kRight},
+               {"mean", Align::kRight},
+               {"worst", Align::kRight},
+               {"total failures", Align::kRight}});
+  for (const std::size_t index : ShownGenerations(summary.generations.size())) {
+    const GenerationSummary& generation = summary.generations[index];
+    const auto fitness = [&](double value) { return generation.completed > 0 ? FormatFitness(value) : "-"; };
+    table.AddRow({fmt::format("{}", generation.generation), FormatCount(generation.runs),
+                  fitness(generation.best), fitness(generation.mean), fitness(generation.worst),
+                  FormatCount(generation.total_failures)});
+  }
+  return "\n" + table.ToText();
+}
+
+std::vector<const PopulationMember*> Toughest(const CampaignSummary& summary) {
+  std::vector<const PopulationMember*> members;
+  for (const PopulationMember& member : summary.population) {
+    if (std::isfinite(member.fitness) && !member.runs.empty()) members.push_back(&member);
+  }
+  std::stable_sort(members.begin(), members.end(), [](const PopulationMember* a, const PopulationMember* b) {
+    return a->fitness < b->fitness;
+  });
+  return members;
+}
+
+std::string Members(const CampaignSummary& summary) {
+  const std::vector<const PopulationMember*> members = Toughest(summary);
+  if (members.empty()) return {};
+  Table table({{"test case", Align::kRight},
+               {"fitness", Align::kRight},
+               {"obstacles", Align::kRight},
+               {"born in generation", Align::kRight},
+               {"runs", Align::kRight},
+               {"latest run", Align::kRight}});
+  for (std::size_t i = 0; i < std::min(kMostMembers, members.size()); ++i) {
+    const PopulationMember& member = *members[i];
+    table.AddRow({fmt::format("{}", member.id), FormatFitness(member.fitness),
+                  fmt::format("{}", member.genome.size()), fmt::format("{}", member.birth_generation),
+                  FormatCount(member.runs.size()), fmt::format("{}", member.runs.back())});
+  }
+  std::string text = members.size() > kMostMembers
+                         ? fmt::format("\nThe toughest {} of {} test cases\n", kMostMembers, members.size())
+                         : "\nThe test cases, toughest first\n";
+  return text + table.ToText();
+}
+
+struct Hint {
+  std::string command;
+  std::string meaning;
+};
+
+std::string Hints(const std::vector<Hint>& hints) {
+  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  for (const Hint& hint : hints) table.AddRow({hint.command, "# " + hint.meaning});
+  return "\nNext commands to try\n" + table.ToText();
+}
+
+}  // namespace
+
+std::string SummaryText(const CampaignSummary& summary, const HintContext& context) {
+  const std::string directory = ShellQuoted(context.directory);
+  std::string text = fmt::format("{}: {}, seed {}, {}\n\n", summary.experiment, NameOfSearch(summary),
+                                 summary.seed, summary.finished ? "finished" : "not finished");
+  if (summary.nondeterministic) {
+    text +=
+        "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
+        "figures.\n\n";
+  }
+  text += Overview(summary) + Generations(summary) + Members(summary);
+
+  std::vector<Hint> hints;
+  if (!summary.finished) {
+    hints.push_back({fmt::format("{} resume {}", context.program, directory), "go on where it stopped"});
+  }
+  if (const auto members = Toughest(summary); !members.empty()) {
+    const PopulationMember& best = *members.front();
+    hints.push_back({fmt::format("{} replay {} {} --svg case-{}.svg", context.program, directory,
+                                 best.runs.back(), best.id),
+                     "see what happened in the toughest case"});
+  }
+  hints.push_back({fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"});
+  return text + Hints(hints);
+}
+
+std::string EvaluationText(const std::vector<EvaluatedCase>& cases, const HintContext& context) {
+  Table table({{"file", Align::kLeft},
+               {"fitness", Align::kRight},
+               {"runs", Align::kRight},
+               {"total failures", Align::kRight},
+               {"first run", Align::kRight},
+               {"", Align::kLeft}});
+  const EvaluatedRun* toughest = nullptr;
+  for (const EvaluatedCase& evaluated : cases) {
+    if (evaluated.runs.empty()) {
+      table.AddRow({evaluated.file, "-", "-", "-", "-",
+                    evaluated.refused_rule.empty() ? "error" : "refused: " + evaluated.refused_rule});
+      continue;
+    }
+    std::uint64_t failures = 0;
+    std::uint64_t without_result = 0;
+    for (const EvaluatedRun& run : evaluated.runs) {
+      if (run.result.failure.total) ++failures;
+      if (run.result.verdict != sim::Verdict::kCompleted) {
+        ++without_result;
+      } else if (toughest == nullptr || run.result.fitness < toughest->result.fitness) {
+        toughest = &run;
+      }
+    }
+    std::string remark;
+    if (!evaluated.refused_rule.empty()) {
+      remark = "refused: " + evaluated.refused_rule;
+    } else if (without_result > 0) {
+      remark = fmt::format("{} without a result: {}", without_result,
+                           NameOf(evaluated.runs.front().result.verdict));
+    }
+    const std::optional<double> fitness = MeanFitness(evaluated);
+    table.AddRow({evaluated.file, fitness ? FormatFitness(*fitness) : "-", FormatCount(evaluated.runs.size()),
+                  FormatCount(failures), fmt::format("{}", evaluated.runs.front().id), remark});
+  }
+  std::string text = table.ToText();
+  for (const EvaluatedCase& evaluated : cases) {
+    if (!evaluated.error.empty()) text += fmt::format("\n  {}: {}\n", evaluated.file, evaluated.error);
+  }
+  if (toughest != nullptr) {
+    const std::string directory = ShellQuoted(context.directory);
+    text +=
+        Hints({{fmt::format("{} replay {} {} --svg run-{}.svg", context.program, directory, toughest->id,
+                            toughest->id),
+                "see the toughest of these runs"},
+               {fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"}});
+  }
+  return text;
+}
+
+}  // namespace gauntlet::master

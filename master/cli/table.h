@@ -1,0 +1,50 @@
+// Plain-text tables for the terminal, and numbers as a person reads them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace gauntlet::master {
+
+enum class Align { kLeft, kRight };
+
+class Table {
+ public:
+  struct Column {
+    std::string header;
+    Align align = Align::kLeft;
+  };
+  // A table whose columns have no header prints no header line.
+  explicit Table(std::vector<Column> columns);
+
+  // Missing cells are empty; there must not be more cells than columns.
+  void AddRow(std::vector<std::string> cells);
+  // Lines end with '\n', without trailing blanks; columns are two blanks apart.
+  std::string ToText(std::size_t indent = 2) const;
+
+ private:
+  std::vector<Column> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+// Columns that the text takes on a terminal, counting code points (wide and combining characters count one).
+std::size_t DisplayWidth(std::string_view text);
+
+// Text broken at blanks into lines of at most `width` columns, each after the first indented.
+std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent);
+
+// "1,234,567".
+std::string FormatCount(std::uint64_t count);
+// Three decimals; "-" for NaN and infinity.
+std::string FormatFitness(double fitness);
+// "0.8 s", "42 s", "3 min 05 s", "2 h 10 min", "5 d 3 h"; "-" when not finite or negative.
+std::string FormatDuration(double seconds);
+// Shortest text that reads back as the same number.
+std::string FormatNumber(double value);
+// The word as one argument of a POSIX shell, quoted only where needed.
+std::string ShellQuoted(std::string_view word);
+
+}  // namespace gauntlet::master
