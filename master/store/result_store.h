@@ -33,9 +33,9 @@ struct StoredRun {
   std::uint32_t replicate = 0;
   std::uint32_t generation = 0;
   std::uint64_t seed = 0;
-  std::string spec;    // serialized RunSpec, as it was sent
+  std::string spec;             // serialized RunSpec, as it was sent
   std::uint64_t spec_hash = 0;  // FNV-1a of `spec`: finds a changed byte that would not change the result
-  std::string result;  // serialized RunResult (without trajectory)
+  std::string result;           // serialized RunResult (without trajectory)
   std::uint64_t hash = 0;
   std::string worker;
   std::uint32_t attempt = 1;
@@ -83,6 +83,9 @@ class ResultStore {
 
   // Reading what is durable (call Flush first to see all).
   virtual Result<std::vector<StoredSearch>> LoadSearches() = 0;
+  // What is known from birth: id, parents, birth_generation, test_case; in id order. The rest follows from
+  // the runs.
+  virtual Result<std::vector<Individual>> LoadIndividuals(SearchId search) = 0;
   virtual Result<std::optional<SavedState>> LoadNewestState(SearchId search) = 0;
   // Runs of a search with id > after, in id order.
   virtual Status ForEachRun(SearchId search, RunId after,

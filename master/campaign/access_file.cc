@@ -1,0 +1,42 @@
+#include "master/campaign/access_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <nlohmann/json.hpp>
+
+#include "master/campaign/atomic_file.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr int kFormat = 1;
+constexpr mode_t kOwnerOnly = 0600;
+
+}  // namespace
+
+Status WriteAccessFile(const std::string& path, const AccessInfo& info) {
+  const nlohmann::ordered_json json = {
+      {"format", kFormat}, {"campaign", info.campaign}, {"epoch", info.epoch}, {"endpoints", info.endpoints}};
+  return WriteFileAtomically(path, json.dump(2) + "\n", kOwnerOnly);
+}
+
+Status RemoveAccessFile(const std::string& path, std::uint64_t epoch) {
+  const Result<std::string> text = ReadSmallFile(path);
+  if (!text) {
+    if (text.error().kind == ErrorKind::kNotFound) return Ok{};
+    return text.error();
+  }
+  const nlohmann::json json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  if (json.is_object()) {
+    const auto written = json.find("epoch");
+    if (written != json.end() && written->is_number_unsigned() && written->get<std::uint64_t>() > epoch)
+      return Ok{};
+  }
+  if (unlink(path.c_str()) != 0 && errno != ENOENT)
+    return SystemError(fmt::format("cannot remove {}", path), errno);
+  return Ok{};
+}
+
+}  // namespace gauntlet::master

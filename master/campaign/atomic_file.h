@@ -1,0 +1,25 @@
+// Small files that other processes read while we write them.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "sim/base/result.h"
+
+namespace gauntlet::master {
+
+// Readers see the old content or the new one, also after a loss of power: temporary file in the same
+// directory, fsync, rename, fsync of the directory. `mode`: permissions of the new file. Errors: kNoSpace,
+// kIo; the old content then stands (only when nothing but the last fsync failed, the new one may).
+Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode_t mode);
+
+// A whole file of at most `limit` bytes. Errors: kNotFound, kIo, kCorrupt when it is longer.
+Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit = 1 << 20);
+
+// The error of a failed system call, by errno.
+Error SystemError(const std::string& what, int error_number);
+
+}  // namespace gauntlet::master

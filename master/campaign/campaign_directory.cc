@@ -1,0 +1,136 @@
+#include "master/campaign/campaign_directory.h"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include "master/campaign/atomic_file.h"
+
+namespace gauntlet::master {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr mode_t kReadableByAll = 0644;
+constexpr std::array<std::string_view, 7> kOwnNames = {"access.json",     "campaign.db", "epoch",      "lock",
+                                                       "experiment.toml", "log",         "status.json"};
+
+std::string WithoutSlash(std::string path) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  return path;
+}
+
+// Ours, or a draft of it ("campaign.db.new", "epoch.a8f3Gz").
+bool IsOwnName(const std::string& name) {
+  return std::any_of(kOwnNames.begin(), kOwnNames.end(), [&name](std::string_view own) {
+    return name == own || (name.starts_with(own) && name[own.size()] == '.');
+  });
+}
+
+// A directory in which a master was killed before it had made the database: all there is, is ours.
+bool IsUnfinished(const fs::path& dir) {
+  std::error_code error;
+  if (!fs::exists(dir / "lock", error)) return false;
+  for (fs::directory_iterator entry(dir, error), end; !error && entry != end; entry.increment(error)) {
+    if (!IsOwnName(entry->path().filename().string())) return false;
+  }
+  return !error;
+}
+
+Result<std::uint64_t> ReadEpoch(const std::string& path) {
+  Result<std::string> text = ReadSmallFile(path);
+  if (!text) return text.error();
+  std::string_view digits = *text;
+  while (!digits.empty() && digits.back() == '\n') digits.remove_suffix(1);
+  std::uint64_t epoch = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), epoch);
+  if (error != std::errc() || end != digits.data() + digits.size() || epoch == 0) {
+    return Error{ErrorKind::kCorrupt,
+                 fmt::format("{} holds '{}' where the number of the newest master's start should stand", path,
+                             digits.substr(0, 40))};
+  }
+  return epoch;
+}
+
+}  // namespace
+
+Result<CampaignDirectory> CampaignDirectory::Create(const std::string& dir) {
+  CampaignDirectory directory(WithoutSlash(dir));
+  std::error_code error;
+  fs::create_directories(directory.path_, error);
+  if (error) return SystemError(fmt::format("cannot make the directory {}", directory.path_), error.value());
+  if (fs::exists(directory.database_path(), error)) {
+    return InvalidInput(
+        fmt::format("{0} holds a campaign already; go on with it by `gauntlet resume {0}`, or choose another "
+                    "directory",
+                    directory.path_));
+  }
+  const bool empty = fs::is_empty(directory.path_, error);
+  if (error) return SystemError(fmt::format("cannot read {}", directory.path_), error.value());
+  if (!empty && !IsUnfinished(directory.path_)) {
+    return InvalidInput(fmt::format(
+        "{0} is not empty, and what it holds is no campaign that `gauntlet resume {0}` could go on "
+        "with; choose a directory that is empty or does not exist",
+        directory.path_));
+  }
+  return directory;
+}
+
+Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
+  CampaignDirectory directory(WithoutSlash(dir));
+  std::error_code error;
+  if (!fs::is_directory(directory.path_, error)) {
+    return Error{ErrorKind::kNotFound, fmt::format("there is no directory {}", directory.path_)};
+  }
+  if (!fs::exists(directory.database_path(), error)) {
+    return Error{ErrorKind::kNotFound,
+                 fmt::format("{} is not a campaign: it holds no campaign.db", directory.path_)};
+  }
+  return directory;
+}
+
+Result<std::uint64_t> CampaignDirectory::StartEpoch() const {
+  Result<std::uint64_t> newest = ReadEpoch(epoch_path());
+  std::uint64_t epoch = 1;
+  if (newest) {
+    epoch = *newest + 1;
+  } else if (newest.error().kind != ErrorKind::kNotFound) {
+    return newest.error();
+  }
+  if (Status written = WriteFileAtomically(epoch_path(), fmt::format("{}\n", epoch), kReadableByAll);
+      !written) {
+    return written.error();
+  }
+  return epoch;
+}
+
+Status CampaignDirectory::CheckEpoch(std::uint64_t mine) const {
+  Result<std::uint64_t> newest = ReadEpoch(epoch_path());
+  if (!newest) return newest.error();
+  if (*newest == mine) return Ok{};
+  return Error{
+      ErrorKind::kInUse,
+      fmt::format(
+          "campaign {} was taken over by a newer master (start number {}; this one is number {}); this one "
+          "stops",
+          path_, *newest, mine)};
+}
+
+Result<std::string> NewCampaignId() {
+  std::array<unsigned char, 16> bits{};
+  if (getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size())) {
+    return SystemError("no random bits to be had", errno);
+  }
+  std::string id;
+  for (const unsigned char byte : bits) id += fmt::format("{:02x}", byte);
+  return id;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,86 @@
+#include "master/campaign/campaign_ownership.h"
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <utility>
+
+#include "master/campaign/atomic_file.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr mode_t kReadableByAll = 0644;
+
+// The epoch is counted before the database is opened: from then on no former master commits anything that we
+// might not have read.
+Status OpenStore(CampaignOwnership& ownership) {
+  SqliteStore::Options options;
+  options.guard = [directory = ownership.directory, lock = ownership.lock.get(),
+                   epoch = ownership.epoch]() -> Status {
+    if (Status held = lock->Check(); !held) return held;
+    return directory.CheckEpoch(epoch);
+  };
+  Result<std::unique_ptr<SqliteStore>> store =
+      SqliteStore::Open(ownership.directory.database_path(), std::move(options));
+  if (!store) return store.error();
+  ownership.store = *std::move(store);
+  return Ok{};
+}
+
+}  // namespace
+
+Result<CampaignOwnership> CreateCampaign(const std::string& dir, const std::string& experiment,
+                                         CampaignMeta meta) {
+  Result<CampaignDirectory> directory = CampaignDirectory::Create(dir);
+  if (!directory) return directory.error();
+  Result<std::unique_ptr<CampaignLock>> lock =
+      CampaignLock::Acquire(directory->lock_path(), directory->path());
+  if (!lock) return lock.error();
+  // Another master may have made the campaign, and left it, between the two lines above.
+  if (Result<CampaignDirectory> unchanged = CampaignDirectory::Create(dir); !unchanged)
+    return unchanged.error();
+
+  Result<std::string> id = NewCampaignId();
+  if (!id) return id.error();
+  meta.campaign_id = *std::move(id);
+  meta.created_unix_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
+                             std::chrono::system_clock::now().time_since_epoch())
+                             .count();
+  Status written = WriteFileAtomically(directory->experiment_path(), experiment, kReadableByAll);
+  if (!written) return written.error();
+  Result<std::uint64_t> epoch = directory->StartEpoch();
+  if (!epoch) return epoch.error();
+  if (Status created = SqliteStore::Create(directory->database_path(), meta); !created)
+    return created.error();
+
+  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, nullptr};
+  if (Status opened = OpenStore(ownership); !opened) return opened.error();
+  return ownership;
+}
+
+Result<CampaignOwnership> TakeCampaign(const std::string& dir) {
+  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  Result<std::unique_ptr<CampaignLock>> lock =
+      CampaignLock::Acquire(directory->lock_path(), directory->path());
+  if (!lock) return lock.error();
+  Result<std::uint64_t> epoch = directory->StartEpoch();
+  if (!epoch) return epoch.error();
+  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, nullptr};
+  if (Status opened = OpenStore(ownership); !opened) return opened.error();
+  return ownership;
+}
+
+Result<CampaignView> ViewCampaign(const std::string& dir) {
+  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  Result<std::unique_ptr<CampaignLock>> lock =
+      CampaignLock::AcquireForReading(directory->lock_path(), directory->path());
+  if (!lock) return lock.error();
+  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(directory->database_path());
+  if (!store) return store.error();
+  return CampaignView{*std::move(directory), *std::move(lock), *std::move(store)};
+}
+
+}  // namespace gauntlet::master

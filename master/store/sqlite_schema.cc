@@ -1,0 +1,303 @@
+#include "master/store/sqlite_schema.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace gauntlet::master {
+namespace {
+
+constexpr int kPageSize = 8192;
+// Pages in the write-ahead log before they are moved into the database: 16 MB.
+constexpr int kCheckpointPages = 2048;
+
+constexpr std::string_view kMagic("SQLite format 3\0", 16);
+constexpr std::size_t kHeaderSize = 100;
+
+constexpr const char* kTables = R"sql(
+CREATE TABLE meta (
+  key   TEXT PRIMARY KEY,
+  value TEXT NOT NULL
+) STRICT;
+CREATE TABLE searches (
+  id        INTEGER PRIMARY KEY,
+  name      TEXT NOT NULL,
+  algorithm TEXT NOT NULL,
+  seed      INTEGER NOT NULL
+) STRICT;
+CREATE TABLE finished (
+  search INTEGER PRIMARY KEY REFERENCES searches (id)
+) STRICT;
+CREATE TABLE individuals (
+  search           INTEGER NOT NULL REFERENCES searches (id),
+  id               INTEGER NOT NULL,
+  birth_generation INTEGER NOT NULL,
+  parents          BLOB NOT NULL,
+  test_case        BLOB NOT NULL,
+  PRIMARY KEY (search, id)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE runs (
+  id            INTEGER PRIMARY KEY,
+  search        INTEGER NOT NULL REFERENCES searches (id),
+  individual    INTEGER NOT NULL,
+  evaluation    INTEGER NOT NULL,
+  replicate     INTEGER NOT NULL,
+  generation    INTEGER NOT NULL,
+  seed          INTEGER NOT NULL,
+  spec_hash     INTEGER NOT NULL,
+  hash          INTEGER NOT NULL,
+  verdict       INTEGER NOT NULL,
+  fitness       REAL,
+  fitness_bits  INTEGER NOT NULL,
+  total_failure INTEGER NOT NULL,
+  failure_type  INTEGER NOT NULL,
+  worker        TEXT NOT NULL,
+  attempt       INTEGER NOT NULL,
+  spec          BLOB NOT NULL,
+  result        BLOB NOT NULL
+) STRICT;
+CREATE INDEX runs_by_search ON runs (search);
+CREATE TABLE states (
+  search         INTEGER NOT NULL REFERENCES searches (id),
+  last_run       INTEGER NOT NULL,
+  generation     INTEGER NOT NULL,
+  state          BLOB NOT NULL,
+  results_digest BLOB NOT NULL,
+  checksum       INTEGER NOT NULL,
+  UNIQUE (search, last_run)
+) STRICT;
+CREATE TABLE events (
+  id      INTEGER PRIMARY KEY,
+  unix_ms INTEGER NOT NULL,
+  kind    TEXT NOT NULL,
+  text    TEXT NOT NULL
+) STRICT;
+)sql";
+
+constexpr std::array kTableNames = {"meta", "searches", "finished", "individuals",
+                                    "runs", "states",   "events"};
+
+// What was stored is never rewritten, not even by a defect of ours.
+std::string InsertOnlyTriggers() {
+  std::string sql;
+  for (const char* table : kTableNames) {
+    for (const char* action : {"UPDATE", "DELETE"}) {
+      sql += fmt::format(
+          "CREATE TRIGGER {0}_no_{1} BEFORE {1} ON {0} BEGIN SELECT RAISE(ABORT, '{0}: stored rows are never "
+          "changed'); END;\n",
+          table, action);
+    }
+  }
+  return sql;
+}
+
+Error WithPath(const std::string& path, const Error& error) {
+  if (error.kind == ErrorKind::kCorrupt) {
+    return {error.kind, fmt::format("{} is damaged ({}); it was left as it is", path, error.message)};
+  }
+  if (error.kind == ErrorKind::kInUse) {
+    return {error.kind, fmt::format("{} is held open by another process ({})", path, error.message)};
+  }
+  return {error.kind, fmt::format("{}: {}", path, error.message)};
+}
+
+bool HasContent(const std::string& path) {
+  struct stat info {};
+  return stat(path.c_str(), &info) == 0 && info.st_size > 0;
+}
+
+// SQLite takes an empty or missing file for a new database; here it is none.
+Status CheckHeader(const std::string& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) {
+    const ErrorKind kind = errno == ENOENT ? ErrorKind::kNotFound : ErrorKind::kIo;
+    return Error{kind, fmt::format("cannot open {}: {}", path, std::strerror(errno))};
+  }
+  std::array<char, kHeaderSize> header{};
+  const ssize_t size = pread(fd, header.data(), header.size(), 0);
+  close(fd);
+  if (size != static_cast<ssize_t>(header.size()) ||
+      std::string_view(header.data(), kMagic.size()) != kMagic) {
+    return Error{
+        ErrorKind::kCorrupt,
+        fmt::format("{} is damaged (it does not begin like a database); it was left as it is", path)};
+  }
+  return Ok{};
+}
+
+// Formats in one sentence: kVersion for a newer one.
+Status CheckFormat(SqliteConnection& connection, const std::string& path) {
+  Result<std::int64_t> application = connection.QueryInt("PRAGMA application_id");
+  if (!application) return WithPath(path, application.error());
+  if (*application != kStoreApplicationId) {
+    return Error{ErrorKind::kInvalidInput,
+                 fmt::format("{} is a database, but not a campaign's (application id {:#x} instead of {:#x})",
+                             path, *application, kStoreApplicationId)};
+  }
+  Result<std::int64_t> format = connection.QueryInt("PRAGMA user_version");
+  if (!format) return WithPath(path, format.error());
+  if (*format > kStoreFormat) {
+    return Error{
+        ErrorKind::kVersion,
+        fmt::format(
+            "{} has format {}, made by a newer gauntlet; this one knows formats up to {}: use the newer "
+            "version (nothing was changed)",
+            path, *format, kStoreFormat)};
+  }
+  if (*format < 1) {
+    return Error{ErrorKind::kCorrupt,
+                 fmt::format("{} is damaged (format {} never existed); it was left as it is", path, *format)};
+  }
+  return Ok{};
+}
+
+Status CheckPages(SqliteConnection& connection, const std::string& path) {
+  Result<SqliteStatement> check = connection.Prepare("PRAGMA quick_check(1)");
+  if (!check) return WithPath(path, check.error());
+  Result<bool> row = check->Step();
+  if (!row) return WithPath(path, row.error());
+  const std::string answer = *row ? check->Bytes(0) : "no answer";
+  if (answer != "ok") return WithPath(path, {ErrorKind::kCorrupt, answer});
+  return Ok{};
+}
+
+Status FillDatabase(const std::string& path, const CampaignMeta& meta) {
+  Result<SqliteConnection> opened =
+      SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kCreate);
+  if (!opened) return WithPath(path, opened.error());
+  SqliteConnection& connection = *opened;
+  const std::string sql = fmt::format(
+      "PRAGMA page_size = {}; PRAGMA locking_mode = EXCLUSIVE; PRAGMA synchronous = FULL; PRAGMA "
+      "journal_mode = WAL;"
+      "BEGIN; PRAGMA application_id = {}; PRAGMA user_version = {};\n{}{}",
+      kPageSize, kStoreApplicationId, kStoreFormat, kTables, InsertOnlyTriggers());
+  if (Status made = connection.Execute(sql); !made) return WithPath(path, made.error());
+  Result<SqliteStatement> insert = connection.Prepare("INSERT INTO meta (key, value) VALUES (?, ?)");
+  if (!insert) return WithPath(path, insert.error());
+  const std::string created = std::to_string(meta.created_unix_ms);
+  for (const auto& [key, value] :
+       {std::pair<std::string_view, std::string_view>{"campaign_id", meta.campaign_id},
+        {"software_version", meta.software_version},
+        {"golden_hash", meta.golden_hash},
+        {"created_unix_ms", created}}) {
+    insert->BindText(0, key);
+    insert->BindText(1, value);
+    if (Status inserted = insert->Run(); !inserted) return WithPath(path, inserted.error());
+  }
+  // The checkpoint, unlike the one that closing would do, reports its errors; it ends with a synchronised
+  // database.
+  if (Status committed = connection.Execute("COMMIT"); !committed) return WithPath(path, committed.error());
+  Result<std::int64_t> busy = connection.QueryInt("PRAGMA wal_checkpoint(TRUNCATE)");
+  if (!busy) return WithPath(path, busy.error());
+  return Ok{};
+}
+
+void RemoveDatabase(const std::string& path) {
+  for (const char* suffix : {"", "-wal", "-journal"}) unlink((path + suffix).c_str());
+}
+
+Status SyncDirectoryOf(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  const std::string directory = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  const int fd = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool synced = fd >= 0 && fsync(fd) == 0;
+  const int error = errno;
+  if (fd >= 0) close(fd);
+  if (!synced) {
+    return Error{ErrorKind::kIo, fmt::format("cannot synchronise {}: {}", directory, std::strerror(error))};
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Status CreateDatabase(const std::string& path, const CampaignMeta& meta) {
+  if (access(path.c_str(), F_OK) == 0)
+    return Error{ErrorKind::kInUse, fmt::format("{} exists already", path)};
+  const std::string draft = path + ".new";
+  RemoveDatabase(draft);  // of a master that was killed here
+  if (Status filled = FillDatabase(draft, meta); !filled) {
+    RemoveDatabase(draft);
+    return filled;
+  }
+  if (std::rename(draft.c_str(), path.c_str()) != 0) {
+    const int error = errno;
+    RemoveDatabase(draft);
+    return Error{ErrorKind::kIo, fmt::format("cannot create {}: {}", path, std::strerror(error))};
+  }
+  return SyncDirectoryOf(path);
+}
+
+Result<SqliteConnection> OpenCheckedForReading(const std::string& path) {
+  if (Status header = CheckHeader(path); !header) return header.error();
+  // Without a log the file alone is the database, and "immutable" keeps SQLite from creating one. With a log,
+  // exclusive mode keeps the log's index in memory; the VFS without locks allows it on a file that is only
+  // read.
+  const bool has_log = HasContent(path + "-wal");
+  Result<SqliteConnection> opened =
+      has_log ? SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadOnly, "unix-none")
+              : SqliteConnection::Open(SqliteUri(path, "immutable=1"), SqliteConnection::Mode::kReadOnly);
+  if (!opened) return WithPath(path, opened.error());
+  opened->CheckpointOnClose(false);
+  if (Status set = opened->Execute("PRAGMA locking_mode = EXCLUSIVE; PRAGMA query_only = ON"); !set) {
+    return WithPath(path, set.error());
+  }
+  if (Status format = CheckFormat(*opened, path); !format) return format.error();
+  if (Status pages = CheckPages(*opened, path); !pages) return pages.error();
+  return opened;
+}
+
+Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs) {
+  if (Result<SqliteConnection> checked = OpenCheckedForReading(path); !checked) return checked.error();
+  Result<SqliteConnection> opened =
+      SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadWrite, vfs);
+  if (!opened) return WithPath(path, opened.error());
+  // cache_spill: before a commit nothing reaches the file, so that a commit that is refused leaves no trace.
+  // recursive_triggers: without it INSERT OR REPLACE would delete a row behind the triggers' back.
+  const std::string sql = fmt::format(
+      "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
+      "PRAGMA foreign_keys = ON; PRAGMA recursive_triggers = ON; PRAGMA cache_spill = OFF;"
+      "PRAGMA temp_store = MEMORY; PRAGMA wal_autocheckpoint = {}; BEGIN IMMEDIATE; COMMIT",
+      kCheckpointPages);
+  if (Status set = opened->Execute(sql); !set) return WithPath(path, set.error());
+  if (Status format = CheckFormat(*opened, path); !format) return format.error();
+  return opened;
+}
+
+Result<CampaignMeta> ReadMeta(SqliteConnection& connection) {
+  Result<SqliteStatement> query = connection.Prepare("SELECT value FROM meta WHERE key = ?");
+  if (!query) return query.error();
+  const auto read = [&query](std::string_view key) -> Result<std::string> {
+    query->BindText(0, key);
+    Result<bool> row = query->Step();
+    if (!row) return row.error();
+    if (!*row) return Error{ErrorKind::kCorrupt, fmt::format("the table meta has no {}", key)};
+    std::string value = query->Bytes(0);
+    query->Reset();
+    return value;
+  };
+  CampaignMeta meta;
+  std::string created;
+  for (const auto& [key, field] :
+       {std::pair<std::string_view, std::string*>{"campaign_id", &meta.campaign_id},
+        {"software_version", &meta.software_version},
+        {"golden_hash", &meta.golden_hash},
+        {"created_unix_ms", &created}}) {
+    Result<std::string> value = read(key);
+    if (!value) return value.error();
+    *field = *std::move(value);
+  }
+  meta.created_unix_ms = std::strtoll(created.c_str(), nullptr, 10);
+  return meta;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,43 @@
+// The database file of a campaign: making one, and opening one without trusting it. The tables are described
+// in master/store/README.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "master/store/sqlite_connection.h"
+#include "sim/base/result.h"
+
+namespace gauntlet::master {
+
+// What a campaign is told apart by; stored once, when it is made.
+struct CampaignMeta {
+  std::string campaign_id;       // 32 hex digits
+  std::string software_version;  // of the gauntlet that made it
+  std::string golden_hash;       // what its simulations' bits are checked against
+  std::int64_t created_unix_ms = 0;
+
+  bool operator==(const CampaignMeta&) const = default;
+};
+
+// The database's format. A file of a higher one is refused, never changed.
+inline constexpr std::int64_t kStoreFormat = 1;
+// "GNTL": tells a campaign.db from any other SQLite file.
+inline constexpr std::int64_t kStoreApplicationId = 0x474E544C;
+
+// Makes a database with empty tables. It appears under its name at once and whole, or not at all. kInUse when
+// the file exists.
+Status CreateDatabase(const std::string& path, const CampaignMeta& meta);
+
+// Opens a database for reading and checks it: kNotFound, kVersion (both formats are named) or kCorrupt.
+// Neither the check nor the connection changes a byte of the campaign's directory. A write-ahead log left by
+// a killed master is read. The caller sees to it that nobody writes meanwhile: no lock is taken.
+Result<SqliteConnection> OpenCheckedForReading(const std::string& path);
+
+// Checks as OpenCheckedForReading does, then opens for writing: exclusively locked, write-ahead log, every
+// commit synchronised. kInUse when another process holds it. `vfs`: SqliteConnection::Open.
+Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs);
+
+Result<CampaignMeta> ReadMeta(SqliteConnection& connection);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,267 @@
+#include "master/store/sqlite_store.h"
+
+#include <fmt/format.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace gauntlet::master {
+
+Status SqliteStore::Create(const std::string& path, const CampaignMeta& meta) {
+  return CreateDatabase(path, meta);
+}
+
+Result<std::unique_ptr<SqliteStore>> SqliteStore::Open(const std::string& path, Options options) {
+  Result<SqliteConnection> connection = OpenCheckedForWriting(path, options.vfs);
+  if (!connection) return connection.error();
+  Result<std::unique_ptr<SqliteStore>> store = Make(path, *std::move(connection), std::move(options));
+  if (!store) return store;
+  (*store)->notifier_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if ((*store)->notifier_ < 0) {
+    return Error{ErrorKind::kIo, fmt::format("{}: no eventfd: {}", path, std::strerror(errno))};
+  }
+  (*store)->writer_ = std::thread([raw = store->get()] { raw->WriteLoop(); });
+  return store;
+}
+
+Result<std::unique_ptr<SqliteStore>> SqliteStore::OpenReadOnly(const std::string& path) {
+  Result<SqliteConnection> connection = OpenCheckedForReading(path);
+  if (!connection) return connection.error();
+  return Make(path, *std::move(connection), {});
+}
+
+Result<std::unique_ptr<SqliteStore>> SqliteStore::Make(const std::string& path, SqliteConnection connection,
+                                                       Options options) {
+  std::unique_ptr<SqliteStore> store(new SqliteStore(path, std::move(connection), std::move(options)));
+  Result<CampaignMeta> meta = ReadMeta(store->connection_);
+  if (!meta) return store->WithPath(meta.error());
+  store->meta_ = *std::move(meta);
+  Result<SqliteTables> tables = SqliteTables::Open(store->connection_);
+  if (!tables) return store->WithPath({ErrorKind::kCorrupt, tables.error().message});
+  store->tables_.emplace(*std::move(tables));
+  return store;
+}
+
+SqliteStore::SqliteStore(std::string path, SqliteConnection connection, Options options)
+    : path_(std::move(path)), options_(std::move(options)), connection_(std::move(connection)) {}
+
+SqliteStore::~SqliteStore() {
+  if (writer_.joinable()) {
+    {
+      const std::lock_guard lock(mutex_);
+      closing_ = true;
+    }
+    records_waiting_.notify_one();
+    writer_.join();
+    // After a failure the files are left exactly as they are: they may belong to a newer master by now.
+    const bool ours = !failure_ && (!options_.guard || options_.guard().ok());
+    if (!ours) connection_.CheckpointOnClose(false);
+  }
+  if (notifier_ >= 0) close(notifier_);
+}
+
+std::uint64_t SqliteStore::Commits() const {
+  const std::lock_guard lock(mutex_);
+  return commits_;
+}
+
+void SqliteStore::AddSearch(const StoredSearch& search) {
+  Add(search);
+}
+void SqliteStore::AddIndividuals(SearchId search, const std::vector<Individual>& individuals) {
+  if (!individuals.empty()) Add(Newborns{search, individuals});
+}
+void SqliteStore::AddRun(StoredRun run) {
+  Add(std::move(run));
+}
+void SqliteStore::SaveState(const SavedState& state) {
+  Add(state);
+}
+void SqliteStore::MarkFinished(SearchId search) {
+  Add(Finished{search});
+}
+void SqliteStore::AddEvent(const StoredEvent& event) {
+  Add(event);
+}
+
+void SqliteStore::Add(Record record) {
+  GAUNTLET_CHECK(writer_.joinable(), fmt::format("{} was opened for reading", path_));
+  {
+    std::unique_lock lock(mutex_);
+    records_written_.wait(lock, [this] { return queue_.size() < kLargestQueue || failure_.has_value(); });
+    if (failure_) return;  // never acknowledged; the caller learns of it from Committed()
+    if (std::holds_alternative<StoredRun>(record)) ++queued_runs_;
+    queue_.push_back(std::move(record));
+  }
+  records_waiting_.notify_one();
+}
+
+void SqliteStore::WriteLoop() {
+  Group group;
+  while (TakeGroup(group)) {
+    const Status written = WriteGroup(group);
+    Report(group, written);
+    Notify();
+    if (!written) return;
+  }
+}
+
+bool SqliteStore::TakeGroup(Group& group) {
+  group.clear();
+  std::unique_lock lock(mutex_);
+  records_waiting_.wait(lock, [this] { return !queue_.empty() || closing_; });
+  records_waiting_.wait_until(lock, last_commit_ + kLongestWait, [this] {
+    return queued_runs_ >= kLargestGroup || queue_.size() >= kLargestQueue || in_a_hurry_ || closing_;
+  });
+  std::size_t runs = 0;
+  while (!queue_.empty()) {
+    const bool is_run = std::holds_alternative<StoredRun>(queue_.front());
+    if (is_run && runs == kLargestGroup) break;
+    if (is_run) ++runs;
+    group.push_back(std::move(queue_.front()));
+    queue_.pop_front();
+  }
+  queued_runs_ -= runs;
+  last_commit_ = std::chrono::steady_clock::now();
+  writing_ = !group.empty();
+  return writing_;
+}
+
+Status SqliteStore::Insert(const Record& record) {
+  struct Visitor {
+    SqliteTables& tables;
+    Status operator()(const Newborns& newborns) const {
+      for (const Individual& individual : newborns.individuals) {
+        if (Status inserted = tables.Insert(newborns.search, individual); !inserted) return inserted;
+      }
+      return Ok{};
+    }
+    Status operator()(const Finished& finished) const { return tables.InsertFinished(finished.search); }
+    Status operator()(const StoredSearch& search) const { return tables.Insert(search); }
+    Status operator()(const StoredRun& run) const {
+      Status inserted = tables.Insert(run);
+      if (inserted) return inserted;
+      return Error{inserted.error().kind, fmt::format("run {}: {}", run.id, inserted.error().message)};
+    }
+    Status operator()(const SavedState& state) const { return tables.Insert(state); }
+    Status operator()(const StoredEvent& event) const { return tables.Insert(event); }
+  };
+  return std::visit(Visitor{*tables_}, record);
+}
+
+Status SqliteStore::WriteGroup(const Group& group) {
+  const std::lock_guard lock(database_mutex_);
+  Status status = tables_->Begin();
+  for (auto record = group.begin(); status && record != group.end(); ++record) status = Insert(*record);
+  // A guard's error speaks for itself; SQLite's need to be told where they come from.
+  if (!status) {
+    tables_->Rollback();
+    return WithPath(status.error());
+  }
+  if (options_.guard) {
+    if (Status allowed = options_.guard(); !allowed) {
+      tables_->Rollback();
+      return allowed;
+    }
+  }
+  status = tables_->Commit();
+  if (status) return status;
+  tables_->Rollback();
+  return WithPath(status.error());
+}
+
+void SqliteStore::Report(const Group& group, const Status& written) {
+  {
+    const std::lock_guard lock(mutex_);
+    writing_ = false;
+    if (written) {
+      ++commits_;
+      for (const Record& record : group) {
+        if (const auto* run = std::get_if<StoredRun>(&record)) committed_.push_back(run->id);
+      }
+    } else {
+      failure_ = written.error();
+      queue_.clear();
+      queued_runs_ = 0;
+    }
+  }
+  records_written_.notify_all();
+}
+
+void SqliteStore::Notify() const {
+  const std::uint64_t one = 1;
+  // It can only fail when the counter is full, and then the descriptor is readable anyway.
+  [[maybe_unused]] const ssize_t written = write(notifier_, &one, sizeof one);
+}
+
+Result<std::vector<RunId>> SqliteStore::Committed() {
+  if (notifier_ >= 0) {
+    std::uint64_t count = 0;
+    [[maybe_unused]] const ssize_t size = read(notifier_, &count, sizeof count);
+  }
+  std::vector<RunId> committed;
+  {
+    const std::lock_guard lock(mutex_);
+    if (committed_.empty() && failure_) return *failure_;
+    std::swap(committed, committed_);
+    if (!failure_) return committed;
+  }
+  Notify();  // there is an error to fetch
+  return committed;
+}
+
+Status SqliteStore::Flush() {
+  std::unique_lock lock(mutex_);
+  in_a_hurry_ = true;
+  records_waiting_.notify_one();
+  records_written_.wait(lock, [this] { return (queue_.empty() && !writing_) || failure_.has_value(); });
+  in_a_hurry_ = false;
+  if (failure_) return *failure_;
+  return Ok{};
+}
+
+Error SqliteStore::WithPath(const Error& error) const {
+  if (error.kind == ErrorKind::kNoSpace) {
+    return {error.kind,
+            fmt::format("the disk is full: {} cannot be written ({}); free some space and resume: "
+                        "everything reported as done is stored",
+                        path_, error.message)};
+  }
+  return {error.kind, fmt::format("{}: {}", path_, error.message)};
+}
+
+Result<std::vector<StoredSearch>> SqliteStore::LoadSearches() {
+  const std::lock_guard lock(database_mutex_);
+  return tables_->LoadSearches();
+}
+
+Result<std::vector<Individual>> SqliteStore::LoadIndividuals(SearchId search) {
+  const std::lock_guard lock(database_mutex_);
+  return tables_->LoadIndividuals(search);
+}
+
+Result<std::optional<SavedState>> SqliteStore::LoadNewestState(SearchId search) {
+  const std::lock_guard lock(database_mutex_);
+  return tables_->LoadNewestState(search);
+}
+
+Status SqliteStore::ForEachRun(SearchId search, RunId after,
+                               const std::function<void(const StoredRun&)>& visit) {
+  const std::lock_guard lock(database_mutex_);
+  return tables_->ForEachRun(search, after, visit);
+}
+
+Result<std::optional<StoredRun>> SqliteStore::LoadRun(RunId run) {
+  const std::lock_guard lock(database_mutex_);
+  return tables_->LoadRun(run);
+}
+
+Result<std::vector<StoredEvent>> SqliteStore::LoadEvents() {
+  const std::lock_guard lock(database_mutex_);
+  return tables_->LoadEvents();
+}
+
+}  // namespace gauntlet::master

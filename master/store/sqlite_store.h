@@ -1,0 +1,133 @@
+// ResultStore on a SQLite database, campaign.db. A thread of its own commits in groups, so that leases and
+// the search never wait for a disk.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "master/store/result_store.h"
+#include "master/store/sqlite_connection.h"
+#include "master/store/sqlite_schema.h"
+#include "master/store/sqlite_tables.h"
+
+namespace gauntlet::master {
+
+// A commit begins at once when the store was idle, and at most kLongestWait after the one before when it was
+// not; a group holds at most kLargestGroup runs. One commit costs one fsync. When writing fails, or the guard
+// answers with an error, nothing is committed any more, and every later Committed() and Flush() says so; what
+// was durable stays durable and readable. Thread-safety: one calling thread, as for every ResultStore. The
+// store must not be open twice.
+class SqliteStore final : public ResultStore {
+ public:
+  static constexpr std::chrono::milliseconds kLongestWait{20};
+  static constexpr std::size_t kLargestGroup = 512;  // runs
+  // Records that may wait for a commit; then adding blocks.
+  static constexpr std::size_t kLargestQueue = 4096;
+
+  struct Options {
+    // Asked before every commit, on the store's thread; an error stops the store for good. The place of the
+    // epoch check.
+    std::function<Status()> guard;
+    std::string vfs;  // SqliteConnection::Open
+  };
+
+  // Makes the file: CreateDatabase.
+  static Status Create(const std::string& path, const CampaignMeta& meta);
+  // Errors: those of OpenCheckedForWriting; the file is then left as it was.
+  static Result<std::unique_ptr<SqliteStore>> Open(const std::string& path, Options options);
+  // For looking at a campaign that no master serves: no byte of it is changed, and adding anything is a
+  // broken invariant. Errors: those of OpenCheckedForReading.
+  static Result<std::unique_ptr<SqliteStore>> OpenReadOnly(const std::string& path);
+
+  SqliteStore(const SqliteStore&) = delete;
+  SqliteStore& operator=(const SqliteStore&) = delete;
+  // Commits what still waits, then closes.
+  ~SqliteStore() override;
+
+  const CampaignMeta& meta() const { return meta_; }
+  // Transactions committed since it was opened.
+  std::uint64_t Commits() const;
+
+  void AddSearch(const StoredSearch& search) override;
+  void AddIndividuals(SearchId search, const std::vector<Individual>& individuals) override;
+  void AddRun(StoredRun run) override;
+  void SaveState(const SavedState& state) override;
+  void MarkFinished(SearchId search) override;
+  void AddEvent(const StoredEvent& event) override;
+
+  // After a failure, runs that became durable before it are still reported once; from then on the error.
+  Result<std::vector<RunId>> Committed() override;
+  Status Flush() override;
+  int CommitNotifier() const override { return notifier_; }
+
+  Result<std::vector<StoredSearch>> LoadSearches() override;
+  Result<std::vector<Individual>> LoadIndividuals(SearchId search) override;
+  Result<std::optional<SavedState>> LoadNewestState(SearchId search) override;
+  // `visit` must not call the store.
+  Status ForEachRun(SearchId search, RunId after,
+                    const std::function<void(const StoredRun&)>& visit) override;
+  Result<std::optional<StoredRun>> LoadRun(RunId run) override;
+  Result<std::vector<StoredEvent>> LoadEvents() override;
+
+ private:
+  struct Newborns {
+    SearchId search = 0;
+    std::vector<Individual> individuals;
+  };
+  struct Finished {
+    SearchId search = 0;
+  };
+  using Record = std::variant<StoredSearch, Newborns, StoredRun, SavedState, Finished, StoredEvent>;
+  using Group = std::vector<Record>;
+
+  SqliteStore(std::string path, SqliteConnection connection, Options options);
+  static Result<std::unique_ptr<SqliteStore>> Make(const std::string& path, SqliteConnection connection,
+                                                   Options options);
+
+  void Add(Record record);
+  void WriteLoop();
+  // Waits for records; false when there are none and none will come.
+  bool TakeGroup(Group& group);
+  Status Insert(const Record& record);
+  Status WriteGroup(const Group& group);
+  void Report(const Group& group, const Status& written);
+  void Notify() const;
+  Error WithPath(const Error& error) const;
+
+  const std::string path_;
+  const Options options_;
+  CampaignMeta meta_;
+
+  // Guards connection_ and tables_; held for a whole transaction, so that readers see whole groups.
+  std::mutex database_mutex_;
+  SqliteConnection connection_;
+  std::optional<SqliteTables> tables_;
+
+  // Guards everything below.
+  mutable std::mutex mutex_;
+  std::condition_variable records_waiting_;
+  std::condition_variable records_written_;
+  std::deque<Record> queue_;
+  std::size_t queued_runs_ = 0;
+  bool writing_ = false;     // a group has left the queue and is not committed yet
+  bool in_a_hurry_ = false;  // Flush waits
+  bool closing_ = false;
+  std::vector<RunId> committed_;
+  std::optional<Error> failure_;
+  std::uint64_t commits_ = 0;
+  std::chrono::steady_clock::time_point last_commit_{};
+
+  int notifier_ = -1;  // eventfd
+  std::thread writer_;
+};
+
+}  // namespace gauntlet::master

@@ -1,0 +1,57 @@
+// The rows of a campaign's database: writing and reading every kind of record.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "master/store/result_store.h"
+#include "master/store/sqlite_connection.h"
+#include "sim/base/result.h"
+
+namespace gauntlet::master {
+
+// Inserting is idempotent where a resumed master repeats itself (individuals, states, finished): the very
+// same record again is no change, another one under the same key is kCorrupt. A run or a search is stored
+// once; a second time is kInternal. Not thread-safe; must not outlive its connection.
+class SqliteTables {
+ public:
+  // `connection` must outlive the tables.
+  static Result<SqliteTables> Open(SqliteConnection& connection);
+
+  Status Begin() { return connection_->Execute("BEGIN IMMEDIATE"); }
+  Status Commit() { return connection_->Execute("COMMIT"); }
+  // Undoes what was inserted since Begin; without a transaction it does nothing.
+  void Rollback();
+
+  Status Insert(const StoredSearch& search);
+  Status Insert(SearchId search, const Individual& individual);
+  Status Insert(const StoredRun& run);
+  Status Insert(const SavedState& state);
+  Status Insert(const StoredEvent& event);
+  Status InsertFinished(SearchId search);
+
+  Result<std::vector<StoredSearch>> LoadSearches();
+  Result<std::vector<Individual>> LoadIndividuals(SearchId search);
+  Result<std::optional<SavedState>> LoadNewestState(SearchId search);
+  Status ForEachRun(SearchId search, RunId after, const std::function<void(const StoredRun&)>& visit);
+  Result<std::optional<StoredRun>> LoadRun(RunId run);
+  Result<std::vector<StoredEvent>> LoadEvents();
+
+ private:
+  explicit SqliteTables(SqliteConnection& connection) : connection_(&connection) {}
+
+  // The newest state of `search` with last_run <= `until`.
+  Result<std::optional<SavedState>> LoadState(SearchId search, RunId until);
+
+  SqliteConnection* connection_;
+  SqliteStatement insert_search_;
+  SqliteStatement insert_individual_;
+  SqliteStatement insert_run_;
+  SqliteStatement insert_state_;
+  SqliteStatement insert_event_;
+  SqliteStatement insert_finished_;
+  SqliteStatement select_individual_;
+};
+
+}  // namespace gauntlet::master
