@@ -1,0 +1,237 @@
+#include "master/dispatch/local_pool.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/pidfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <utility>
+
+extern char** environ;  // NOLINT(readability-redundant-declaration)
+
+namespace gauntlet::master {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kFirstDelay{100};
+constexpr milliseconds kLongestDelay{2000};
+constexpr int kGraceMilliseconds = 1000;  // between SIGTERM and SIGKILL when the pool is destroyed
+constexpr std::size_t kTailBytes = 2000;
+constexpr std::size_t kTailLines = 5;
+
+std::string EndingOf(int status) {
+  if (WIFSIGNALED(status))
+    return fmt::format("signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)));
+  return fmt::format("exit status {}", WEXITSTATUS(status));
+}
+
+// The last lines of a file, in one.
+std::string TailOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file) return "";
+  const std::streamoff size = file.tellg();
+  file.seekg(std::max<std::streamoff>(0, size - static_cast<std::streamoff>(kTailBytes)));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) {
+    if (!line.empty()) lines.push_back(std::move(line));
+  }
+  if (lines.size() > kTailLines) lines.erase(lines.begin(), lines.end() - kTailLines);
+  return fmt::format("{}", fmt::join(lines, " | "));
+}
+
+// Owns the two attribute objects of posix_spawn.
+class SpawnSetup {
+ public:
+  explicit SpawnSetup(const std::string& log_file) {
+    posix_spawn_file_actions_init(&actions_);
+    posix_spawnattr_init(&attributes_);
+    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log_file.c_str(),
+                                     O_WRONLY | O_CREAT | O_APPEND, 0644);
+    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
+    sigset_t none;
+    sigemptyset(&none);
+    posix_spawnattr_setsigmask(&attributes_, &none);
+    sigset_t defaults;
+    sigemptyset(&defaults);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGCHLD})
+      sigaddset(&defaults, signal);
+    posix_spawnattr_setsigdefault(&attributes_, &defaults);
+    posix_spawnattr_setflags(&attributes_,
+                             POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  }
+  SpawnSetup(const SpawnSetup&) = delete;
+  SpawnSetup& operator=(const SpawnSetup&) = delete;
+  ~SpawnSetup() {
+    posix_spawn_file_actions_destroy(&actions_);
+    posix_spawnattr_destroy(&attributes_);
+  }
+  const posix_spawn_file_actions_t* actions() const { return &actions_; }
+  const posix_spawnattr_t* attributes() const { return &attributes_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+  posix_spawnattr_t attributes_{};
+};
+
+}  // namespace
+
+std::string WorkerProgramPath() {
+  if (const char* path = std::getenv("GAUNTLET_WORKER"); path != nullptr && *path != '\0') return path;
+  char self[4096];
+  const ssize_t length = readlink("/proc/self/exe", self, sizeof self);
+  if (length <= 0) return "gauntlet-worker";
+  const std::string path(self, static_cast<std::size_t>(length));
+  return path.substr(0, path.rfind('/') + 1) + "gauntlet-worker";
+}
+
+Result<std::unique_ptr<LocalPool>> LocalPool::Start(const LocalPoolOptions& options, TimePoint now) {
+  if (options.workers < 1) {
+    return InvalidInput(fmt::format("a pool needs at least one worker, not {}", options.workers));
+  }
+  if (access(options.program.c_str(), X_OK) != 0) {
+    return Error{ErrorKind::kNotFound,
+                 fmt::format("cannot start workers: {}: {} (GAUNTLET_WORKER may name another program)",
+                             options.program, std::strerror(errno))};
+  }
+  std::unique_ptr<LocalPool> pool(new LocalPool(options));
+  for (Slot& slot : pool->slots_) {
+    if (Status started = pool->StartWorker(slot, now); !started) return started.error();
+  }
+  return pool;
+}
+
+LocalPool::LocalPool(const LocalPoolOptions& options) : options_(options) {
+  slots_.resize(static_cast<std::size_t>(options.workers));
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    slots_[i].log_file = fmt::format("{}/worker-{}.log", options.log_directory, i + 1);
+  }
+}
+
+LocalPool::~LocalPool() {
+  SignalAll(SIGTERM);
+  SignalAll(SIGCONT);  // a stopped process does not see SIGTERM
+  const TimePoint deadline = std::chrono::steady_clock::now() + milliseconds(kGraceMilliseconds);
+  for (Slot& slot : slots_) {
+    if (slot.pid < 0) continue;
+    if (slot.pidfd >= 0) {
+      const auto left =
+          std::chrono::duration_cast<milliseconds>(deadline - std::chrono::steady_clock::now()).count();
+      pollfd wait{slot.pidfd, POLLIN, 0};
+      poll(&wait, 1, static_cast<int>(std::max<std::int64_t>(0, left)));
+    }
+    kill(slot.pid, SIGKILL);  // no effect on one that has ended: it is not reaped yet
+    while (waitpid(slot.pid, nullptr, 0) < 0 && errno == EINTR) continue;
+    if (slot.pidfd >= 0) close(slot.pidfd);
+  }
+}
+
+Status LocalPool::StartWorker(Slot& slot, TimePoint now) {
+  std::vector<std::string> arguments = {options_.program,    "--access", options_.access_file,
+                                        "--die-with-parent", "--quiet",  "--log",
+                                        slot.log_file};
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+
+  const SpawnSetup setup(slot.log_file);
+  pid_t pid = -1;
+  const int failed =
+      posix_spawn(&pid, options_.program.c_str(), setup.actions(), setup.attributes(), argv.data(), environ);
+  if (failed != 0) {
+    return Error{ErrorKind::kIo, fmt::format("cannot start {} with its output in {}: {}", options_.program,
+                                             slot.log_file, std::strerror(failed))};
+  }
+  slot.pid = pid;
+  slot.pidfd = pidfd_open(pid, 0);  // closed on exec; not there before Linux 5.3: then Supervise finds out
+  slot.started = now;
+  return Ok{};
+}
+
+void LocalPool::Bury(Slot& slot, int status, TimePoint now) {
+  const pid_t pid = slot.pid;
+  if (slot.pidfd >= 0) close(slot.pidfd);
+  slot.pid = slot.pidfd = -1;
+  if (!replacing_) return;
+
+  slot.failed_starts = now - slot.started < options_.start_time ? slot.failed_starts + 1 : 0;
+  if (slot.failed_starts > options_.start_attempts) {
+    const std::string tail = TailOf(slot.log_file);
+    error_ = Error{
+        ErrorKind::kInternal,
+        fmt::format("workers do not stay alive: {} ended {} times in a row within {:.3g} s of its start, the "
+                    "last time with {}; {} {}",
+                    options_.program, slot.failed_starts,
+                    std::chrono::duration<double>(options_.start_time).count(), EndingOf(status),
+                    slot.log_file, tail.empty() ? "is empty" : "ends: " + tail)};
+    return;
+  }
+  milliseconds delay{0};
+  if (slot.failed_starts > 1) {
+    delay = std::min(kLongestDelay, kFirstDelay * (1 << std::min(slot.failed_starts - 2, 10)));
+  }
+  slot.start_again = now + delay;
+  events_.push_back(
+      {"worker-died",
+       fmt::format("worker process {} ended with {}; another one takes its place", pid, EndingOf(status))});
+}
+
+Result<std::vector<pid_t>> LocalPool::Supervise(TimePoint now) {
+  if (!error_) return error_.error();
+  std::vector<pid_t> ended;
+  for (Slot& slot : slots_) {
+    if (slot.pid < 0) continue;
+    int status = 0;
+    const pid_t pid = waitpid(slot.pid, &status, WNOHANG);
+    if (pid == 0 || (pid < 0 && errno == EINTR)) continue;
+    ended.push_back(slot.pid);
+    Bury(slot, status, now);
+  }
+  for (Slot& slot : slots_) {
+    if (slot.pid >= 0 || !replacing_ || !error_ || slot.start_again > now) continue;
+    if (Status started = StartWorker(slot, now); !started) error_ = started;
+  }
+  return ended;
+}
+
+void LocalPool::AppendWaitFds(std::vector<int>& fds) const {
+  for (const Slot& slot : slots_) {
+    if (slot.pidfd >= 0) fds.push_back(slot.pidfd);
+  }
+}
+
+int LocalPool::running() const {
+  return static_cast<int>(
+      std::count_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.pid >= 0; }));
+}
+
+std::vector<pid_t> LocalPool::pids() const {
+  std::vector<pid_t> pids;
+  for (const Slot& slot : slots_) {
+    if (slot.pid >= 0) pids.push_back(slot.pid);
+  }
+  return pids;
+}
+
+void LocalPool::SignalAll(int signal) {
+  for (const Slot& slot : slots_) {
+    if (slot.pid >= 0) kill(slot.pid, signal);
+  }
+}
+
+std::vector<DispatchEvent> LocalPool::TakeEvents() {
+  return std::exchange(events_, {});
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,394 @@
+#include "master/dispatch/remote_backend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <utility>
+
+#include "master/dispatch/run_codec.h"
+#include "master/dispatch/run_failure.h"
+#include "sim/base/check.h"
+
+namespace gauntlet::master {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::size_t kBatch = 512;        // messages taken from the socket at once
+constexpr int kBatchesPerStep = 8;         // then leases and heartbeats get their turn
+constexpr milliseconds kLongestWait{100};  // so that silence and pool deaths are noticed
+constexpr std::uint32_t kMaxSlots = 4096;
+constexpr std::size_t kMaxEvents = 1000;  // kept until somebody takes them
+constexpr int kUnreachableBeats = 2;      // a connection gets this long to come back
+constexpr std::size_t kShownBytes = 300;  // of a text that came from a worker
+
+std::string Shorten(const std::string& text) {
+  if (text.size() <= kShownBytes) return text;
+  return "..." + text.substr(text.size() - kShownBytes);
+}
+
+Fence FirstFence(std::uint64_t epoch) {
+  GAUNTLET_CHECK(epoch >= 1 && epoch < (1ULL << 32), fmt::format("epoch {} does not fit 32 bits", epoch));
+  return epoch << 32;
+}
+
+milliseconds RoundUp(Duration duration) {
+  return std::chrono::ceil<milliseconds>(std::max(duration, Duration::zero()));
+}
+
+}  // namespace
+
+RemoteBackend::RemoteBackend(CampaignIdentity identity, const DispatchOptions& options, Transport& transport,
+                             const Clock& clock, WorkerPool* pool)
+    : identity_(std::move(identity)),
+      options_(options),
+      transport_(transport),
+      clock_(clock),
+      pool_(pool),
+      scheduler_(options, FirstFence(identity_.epoch)) {}
+
+void RemoteBackend::Submit(std::vector<RunRequest> runs) {
+  for (RunRequest& run : runs) {
+    scheduler_.Submit(run.id);
+    specs_.emplace(run.id, std::move(run.spec));
+  }
+}
+
+void RemoteBackend::Acknowledge(const std::vector<RunId>& runs) {
+  for (const RunId run : runs) scheduler_.Acknowledge(run);
+}
+
+Result<std::vector<FinishedRun>> RemoteBackend::Poll(milliseconds timeout) {
+  const TimePoint deadline = clock_.Now() + timeout;
+  while (true) {
+    Status stepped = Step();
+    if (!finished_.empty()) break;
+    if (!stepped) return stepped.error();
+    const TimePoint now = clock_.Now();
+    if (now >= deadline) break;
+    const WaitOutcome outcome = WaitForSomething(std::min(RoundUp(deadline - now), kLongestWait), true);
+    const std::vector<int>& ready = outcome.ready_fds;
+    const bool news = watched_fd_ >= 0 && std::find(ready.begin(), ready.end(), watched_fd_) != ready.end();
+    if (outcome.woken || news) break;
+  }
+  return std::exchange(finished_, {});
+}
+
+Status RemoteBackend::Step() {
+  const TimePoint now = clock_.Now();
+  Status supervised = SupervisePool(now);
+  for (int batch = 0; batch < kBatchesPerStep && ReceiveMessages(now); ++batch) continue;
+  SendHeartbeats(now);
+  GiveLeases(now);
+  return supervised;
+}
+
+Status RemoteBackend::SupervisePool(TimePoint now) {
+  if (pool_ == nullptr || now < next_supervision_) return Ok{};
+  next_supervision_ = now + kLongestWait;
+  Result<std::vector<pid_t>> ended = pool_->Supervise(now);
+  for (DispatchEvent& event : pool_->TakeEvents()) Report(std::move(event.kind), std::move(event.text));
+  if (!ended) return ended.error();
+  for (const pid_t pid : *ended) {
+    // Should a worker elsewhere have the same pid, it is taken back at its next heartbeat.
+    for (const auto& [worker, connection] : connections_) {
+      if (connection.pid == pid) scheduler_.WorkerDied(worker);
+    }
+  }
+  return Ok{};
+}
+
+bool RemoteBackend::ReceiveMessages(TimePoint now) {
+  inbox_.clear();
+  transport_.Receive(kBatch, inbox_);
+  for (const PeerMessage& message : inbox_) Handle(message, now);
+  return inbox_.size() == kBatch;
+}
+
+void RemoteBackend::Handle(const PeerMessage& message, TimePoint now) {
+  Result<WorkerMessage> decoded = DecodeWorkerMessage(message.bytes);
+  if (!decoded) {
+    Reject("unreadable",
+           fmt::format("a message of {} bytes {}", message.bytes.size(), decoded.error().message));
+    return;
+  }
+  if (const auto* hello = std::get_if<HelloMessage>(&*decoded)) {
+    OnHello(message.peer, *hello, now);
+    return;
+  }
+  const auto instance = instances_.find(message.peer);
+  if (instance == instances_.end()) {
+    Reject("stranger", "a peer that has not said hello sent a message");
+    return;
+  }
+  const InstanceId worker = instance->second;
+  scheduler_.WorkerHeard(worker, now);
+  if (const auto* heartbeat = std::get_if<HeartbeatMessage>(&*decoded)) {
+    scheduler_.WorkerHeartbeat(worker, heartbeat->held, now);
+  } else if (auto* result = std::get_if<ResultMessage>(&*decoded)) {
+    OnResult(worker, std::move(*result));
+  } else if (const auto* drain = std::get_if<DrainMessage>(&*decoded)) {
+    scheduler_.WorkerDraining(worker);
+    Report("worker-left",
+           fmt::format("worker {} wants no more runs: {}", LabelOf(worker), Shorten(drain->reason)));
+  } else if (const auto* goodbye = std::get_if<GoodbyeMessage>(&*decoded)) {
+    Report("worker-left", fmt::format("worker {} left: {}", LabelOf(worker), Shorten(goodbye->reason)));
+    scheduler_.WorkerLeft(worker);
+    Disconnect(worker);
+  }
+}
+
+std::string RemoteBackend::ReasonToRefuse(const HelloMessage& hello) const {
+  if (hello.protocol_version != kProtocolVersion) {
+    return fmt::format(
+        "this worker speaks protocol version {}, this master speaks {}: use gauntlet-worker {}",
+        hello.protocol_version, kProtocolVersion, identity_.software_version);
+  }
+  if (hello.campaign_id != identity_.campaign_id) {
+    return fmt::format("this worker belongs to campaign '{}', this master serves campaign '{}'",
+                       Shorten(hello.campaign_id), identity_.campaign_id);
+  }
+  if (hello.software_version != identity_.software_version) {
+    return fmt::format("this worker has software version {}, this master has {}",
+                       Shorten(hello.software_version), identity_.software_version);
+  }
+  if (hello.golden_hash != identity_.golden_hash) {
+    return fmt::format(
+        "this worker's golden hash is {:016x}, the campaign's is {:016x}: the same runs end differently on "
+        "its machine, so its results cannot be mixed with the others",
+        hello.golden_hash, identity_.golden_hash);
+  }
+  if (hello.instance_id == 0) return "this worker has instance id 0; it must be a random number";
+  if (hello.slots < 1 || hello.slots > kMaxSlots) {
+    return fmt::format("this worker has {} slots; 1 to {} are possible", hello.slots, kMaxSlots);
+  }
+  return "";
+}
+
+void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimePoint now) {
+  const std::string label = fmt::format("{:016x}@{}", hello.instance_id, Shorten(hello.host));
+  if (const std::string reason = ReasonToRefuse(hello); !reason.empty()) {
+    transport_.Send(peer, EncodeRefused(reason));
+    Report("worker-refused", fmt::format("worker {} was refused: {}", label, reason));
+    return;
+  }
+  const auto other = instances_.find(peer);
+  if (other != instances_.end() && other->second != hello.instance_id) {
+    // One connection cannot speak for two workers; the former instance cannot be answered any more.
+    const InstanceId former = other->second;
+    scheduler_.WorkerLeft(former);
+    Disconnect(former);
+  }
+  const bool known = connections_.contains(hello.instance_id);
+  Connection& connection = connections_[hello.instance_id];
+  if (known && connection.peer != peer) instances_.erase(connection.peer);
+  connection = {peer, label, hello.pid, 0};
+  instances_[peer] = hello.instance_id;
+  transport_.Send(peer, EncodeWelcome(options_, identity_.epoch));
+  scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held, now);
+  if (shutting_down_) transport_.Send(peer, EncodeDrain("the master is leaving", false));
+  Report("worker-joined", fmt::format("worker {} (pid {}, slots {}) {}", label, hello.pid, hello.slots,
+                                      known ? "is back" : "joined"));
+}
+
+void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
+  if (shutting_down_) {
+    // Nobody will store it any more, and the worker waits for an answer before it leaves.
+    SendTo(worker, EncodeAcknowledge({message.fence}));
+    return;
+  }
+  std::optional<sim::RunResult> result;
+  if (!message.failure) {
+    Result<sim::RunResult> decoded = DecodeRunResult(message.result);
+    if (decoded) {
+      result = std::move(*decoded);
+    } else {
+      message.failure = RunFailure{FailureKind::kUnreadable, 0, 0};
+      message.stderr_tail = decoded.error().message;
+    }
+  }
+
+  if (!result) {
+    const Answer answer = scheduler_.Failed(worker, message.fence, message.run, *message.failure);
+    if (answer == Answer::kRejected) {
+      Reject("lease", fmt::format("worker {} reported on a lease that is not its own", LabelOf(worker)));
+    } else if (answer == Answer::kAccepted) {
+      Report("runner-failure",
+             fmt::format("run {} {} on worker {} (lease {:x}){}{}", message.run,
+                         DescribeFailure(*message.failure), LabelOf(worker), message.fence,
+                         message.stderr_tail.empty() ? "" : ": ", Shorten(message.stderr_tail)));
+    }
+    return;
+  }
+
+  switch (scheduler_.Completed(worker, message.fence, message.run, result->hash)) {
+    case Answer::kAccepted: {
+      if (result->cpu_seconds == 0.0) result->cpu_seconds = message.cpu_seconds;
+      const std::uint32_t attempt = std::max(1U, scheduler_.LeasesOf(message.run));
+      finished_.push_back({message.run, std::move(*result), LabelOf(worker), attempt});
+      specs_.erase(message.run);
+      break;
+    }
+    case Answer::kRejected:
+      Reject("lease", fmt::format("worker {} answered a lease that is not its own", LabelOf(worker)));
+      break;
+    default:
+      break;  // counted by the scheduler
+  }
+}
+
+void RemoteBackend::GiveLeases(TimePoint now) {
+  // Ends: a worker that cannot be reached gets no second lease before it is heard of again.
+  while (!Perform(scheduler_.Decide(now))) continue;
+}
+
+bool RemoteBackend::Perform(const SchedulerOrders& orders) {
+  for (const WorkerLost& lost : orders.lost) {
+    Report("worker-lost", fmt::format("worker {} is lost; {} of its runs wait for another worker",
+                                      LabelOf(lost.worker), lost.released.size()));
+  }
+  for (const ResultMismatch& mismatch : orders.mismatches) {
+    Report("nondeterministic",
+           fmt::format("run {} ended differently on two workers: {} gave {:016x}, {} gave {:016x}",
+                       mismatch.run, LabelOf(mismatch.first_worker), mismatch.first_hash,
+                       LabelOf(mismatch.second_worker), mismatch.second_hash));
+  }
+  for (const RunGivenUp& order : orders.given_up) GiveUp(order);
+  for (const FenceOrder& cancel : orders.cancels) SendTo(cancel.worker, EncodeCancel(cancel.fence));
+
+  std::map<InstanceId, std::vector<Fence>> acknowledged;
+  for (const FenceOrder& order : orders.acknowledgements) acknowledged[order.worker].push_back(order.fence);
+  for (const auto& [worker, fences] : acknowledged) SendTo(worker, EncodeAcknowledge(fences));
+
+  bool delivered = true;
+  for (const LeaseOrder& lease : orders.leases) {
+    if (SendTo(lease.worker, EncodeLease(lease, specs_.at(lease.run))) == SendOutcome::kSent) continue;
+    scheduler_.Undelivered(lease.fence);
+    delivered = false;
+  }
+  for (const InstanceId worker : orders.forgotten) Disconnect(worker);
+  return delivered;
+}
+
+void RemoteBackend::GiveUp(const RunGivenUp& order) {
+  FinishedRun run;
+  run.id = order.run;
+  run.result.verdict = VerdictOf(order.last.kind);
+  run.result.message =
+      fmt::format("{} in {} of {} attempts", DescribeFailure(order.last), order.of_last_kind, order.attempts);
+  run.result.hash = sim::HashOf(run.result);
+  run.worker = LabelOf(order.worker);
+  run.attempt = order.leases;
+  Report("run-given-up", fmt::format("run {} {}", order.run, run.result.message));
+  finished_.push_back(std::move(run));
+  specs_.erase(order.run);
+}
+
+void RemoteBackend::SendHeartbeats(TimePoint now) {
+  if (now < next_heartbeat_) return;
+  next_heartbeat_ = now + options_.heartbeat;
+  const std::string heartbeat = EncodeHeartbeat(++heartbeats_);
+  for (auto& [worker, connection] : connections_) {
+    const bool reached = transport_.Send(connection.peer, heartbeat) != SendOutcome::kUnreachable;
+    connection.unreachable = reached ? 0 : connection.unreachable + 1;
+    if (connection.unreachable >= kUnreachableBeats) scheduler_.WorkerDied(worker);
+  }
+}
+
+SendOutcome RemoteBackend::SendTo(InstanceId worker, std::string_view bytes) {
+  const auto connection = connections_.find(worker);
+  if (connection == connections_.end()) return SendOutcome::kUnreachable;
+  return transport_.Send(connection->second.peer, bytes);
+}
+
+WaitOutcome RemoteBackend::WaitForSomething(milliseconds timeout, bool watch) {
+  wait_fds_.clear();
+  if (watch && watched_fd_ >= 0) wait_fds_.push_back(watched_fd_);
+  const std::size_t others = wait_fds_.size();
+  if (pool_ != nullptr) pool_->AppendWaitFds(wait_fds_);
+  WaitOutcome outcome = transport_.Wait(timeout, wait_fds_);
+  for (const int fd : outcome.ready_fds) {
+    const auto pool_fds = wait_fds_.begin() + static_cast<std::ptrdiff_t>(others);
+    if (std::find(pool_fds, wait_fds_.end(), fd) != wait_fds_.end()) next_supervision_ = TimePoint{};
+  }
+  const TransportRejections rejections = transport_.Rejections();
+  const auto count = [this](std::uint64_t now, std::uint64_t& before, const char* kind, const char* text) {
+    for (; before < now; ++before) Reject(kind, text);
+  };
+  count(rejections.malformed, reported_rejections_.malformed, "malformed",
+        "a message was not exactly one frame");
+  count(rejections.oversized, reported_rejections_.oversized, "oversized",
+        "a message was longer than allowed");
+  count(rejections.handshakes, reported_rejections_.handshakes, "handshake",
+        "a connection did not speak ZeroMQ's protocol");
+  return outcome;
+}
+
+void RemoteBackend::Shutdown(milliseconds deadline) {
+  const TimePoint start = clock_.Now();
+  scheduler_.StopLeasing();
+  if (pool_ != nullptr) pool_->StopReplacing();
+  GiveLeases(start);  // none are given, but what was acknowledged last is sent
+  shutting_down_ = true;
+  const std::string drain = EncodeDrain("the master is leaving", false);
+  for (const auto& [worker, connection] : connections_) transport_.Send(connection.peer, drain);
+
+  // Goodbye, then SIGTERM, then SIGKILL; each stage ends early when there is nobody left.
+  const auto pool_runs = [this] { return pool_ != nullptr && pool_->running() > 0; };
+  const auto wait_until = [this](TimePoint until, const auto& somebody) {
+    while (true) {
+      next_supervision_ = TimePoint{};
+      if (Status stepped = Step(); !stepped) Report("worker-died", stepped.error().message);
+      const TimePoint now = clock_.Now();
+      if (!somebody() || now >= until) return;
+      WaitForSomething(std::min(RoundUp(until - now), kLongestWait), false);
+    }
+  };
+  wait_until(start + deadline / 2, [this] { return scheduler_.Statistics().connected > 0; });
+  if (pool_runs()) {
+    pool_->SignalAll(SIGTERM);
+    wait_until(start + deadline * 3 / 4, pool_runs);
+  }
+  if (pool_runs()) {
+    pool_->SignalAll(SIGKILL);
+    wait_until(start + deadline, pool_runs);
+  }
+}
+
+void RemoteBackend::Disconnect(InstanceId worker) {
+  const auto connection = connections_.find(worker);
+  if (connection == connections_.end()) return;
+  const auto instance = instances_.find(connection->second.peer);
+  if (instance != instances_.end() && instance->second == worker) instances_.erase(instance);
+  connections_.erase(connection);
+}
+
+std::string RemoteBackend::LabelOf(InstanceId worker) const {
+  const auto connection = connections_.find(worker);
+  return connection == connections_.end() ? fmt::format("{:016x}", worker) : connection->second.label;
+}
+
+WorkerStatistics RemoteBackend::Statistics() const {
+  WorkerStatistics statistics = scheduler_.Statistics();
+  statistics.rejected_messages = rejected_;
+  return statistics;
+}
+
+std::vector<DispatchEvent> RemoteBackend::TakeEvents() {
+  return std::exchange(events_, {});
+}
+
+void RemoteBackend::Report(std::string kind, std::string text) {
+  if (events_.size() >= kMaxEvents) events_.erase(events_.begin(), events_.begin() + kMaxEvents / 2);
+  events_.push_back({std::move(kind), std::move(text)});
+}
+
+void RemoteBackend::Reject(const std::string& kind, const std::string& text) {
+  ++rejected_;
+  if (rejected_kinds_.insert(kind).second) {
+    Report("rejected-message", text + "; it was dropped, and so will others of its kind without a word");
+  }
+}
+
+}  // namespace gauntlet::master

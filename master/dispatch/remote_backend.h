@@ -1,0 +1,98 @@
+// EvaluationBackend over worker processes: joins the pure Scheduler with a Transport, a Clock and, when the
+// master keeps its own workers, a WorkerPool.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "master/dispatch/clock.h"
+#include "master/dispatch/dispatch_options.h"
+#include "master/dispatch/evaluation_backend.h"
+#include "master/dispatch/scheduler.h"
+#include "master/dispatch/transport.h"
+#include "master/dispatch/wire.h"
+#include "master/dispatch/worker_pool.h"
+
+namespace gauntlet::master {
+
+// Single-threaded: all input and output happens inside Poll and Shutdown.
+class RemoteBackend final : public EvaluationBackend {
+ public:
+  // `pool` may be null: then workers come from elsewhere. All parts must outlive the backend.
+  RemoteBackend(CampaignIdentity identity, const DispatchOptions& options, Transport& transport,
+                const Clock& clock, WorkerPool* pool = nullptr);
+
+  // Poll returns early while `fd` is readable; -1 watches nothing.
+  void WatchFd(int fd) { watched_fd_ = fd; }
+
+  void Submit(std::vector<RunRequest> runs) override;
+  Result<std::vector<FinishedRun>> Poll(std::chrono::milliseconds timeout) override;
+  void Acknowledge(const std::vector<RunId>& runs) override;
+  // Gives no more leases, asks all workers to drop what they do and leave; after half of the deadline
+  // SIGTERM, after three quarters SIGKILL to the pool. What finished meanwhile comes with the next Poll.
+  void Shutdown(std::chrono::milliseconds deadline) override;
+  WorkerStatistics Statistics() const override;
+  std::vector<DispatchEvent> TakeEvents() override;
+
+ private:
+  struct Connection {
+    PeerId peer;
+    std::string label;  // instance id and host
+    std::int64_t pid = 0;
+    int unreachable = 0;  // heartbeats in a row that found no connection
+  };
+
+  Status Step();
+  Status SupervisePool(TimePoint now);
+  bool ReceiveMessages(TimePoint now);
+  void Handle(const PeerMessage& message, TimePoint now);
+  void OnHello(const PeerId& peer, const HelloMessage& hello, TimePoint now);
+  void OnResult(InstanceId worker, ResultMessage message);
+  // Why this worker may not work here; "" when it may.
+  std::string ReasonToRefuse(const HelloMessage& hello) const;
+  void GiveLeases(TimePoint now);
+  // False when a lease could not be delivered: others may take it.
+  bool Perform(const SchedulerOrders& orders);
+  void GiveUp(const RunGivenUp& order);
+  void SendHeartbeats(TimePoint now);
+  SendOutcome SendTo(InstanceId worker, std::string_view bytes);
+  WaitOutcome WaitForSomething(std::chrono::milliseconds timeout, bool watch);
+  void Disconnect(InstanceId worker);
+  std::string LabelOf(InstanceId worker) const;
+  void Report(std::string kind, std::string text);
+  void Reject(const std::string& kind, const std::string& text);
+
+  CampaignIdentity identity_;
+  DispatchOptions options_;
+  Transport& transport_;
+  const Clock& clock_;
+  WorkerPool* pool_;
+  int watched_fd_ = -1;
+
+  Scheduler scheduler_;
+  std::unordered_map<RunId, std::string> specs_;  // of unfinished runs
+  std::map<InstanceId, Connection> connections_;
+  std::unordered_map<PeerId, InstanceId> instances_;
+  std::vector<FinishedRun> finished_;
+  std::vector<DispatchEvent> events_;
+  std::optional<Error> pool_error_;
+
+  TimePoint next_heartbeat_{};
+  TimePoint next_supervision_{};
+  std::uint64_t heartbeats_ = 0;
+  bool shutting_down_ = false;
+  std::uint64_t rejected_ = 0;
+  std::set<std::string> rejected_kinds_;  // already reported
+  TransportRejections reported_rejections_;
+  // Kept to reuse their memory.
+  std::vector<PeerMessage> inbox_;
+  std::vector<int> wait_fds_;
+};
+
+}  // namespace gauntlet::master
