@@ -1,6 +1,7 @@
 #include "master/campaign/campaign_runner.h"
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <cmath>
 #include <limits>
@@ -45,7 +46,9 @@ Status CampaignRunner::Restore() {
     const SavedState& state = **saved;
     CanonicalDecoder decoder(state.state);
     if (Status restored = parts_.search.Restore(decoder); !restored) return restored;
-    digest_ = ResultsDigest::Restore(state.results_digest);
+    Result<ResultsDigest> digest = ResultsDigest::Restore(state.results_digest);
+    if (!digest) return digest.error();
+    digest_ = *digest;
     last_asked_ = last_told_ = saved_until_ = state.last_run;
   }
   Status read = parts_.store.ForEachRun(parts_.search_id, 0, [this](const StoredRun& run) {
@@ -116,6 +119,15 @@ void CampaignRunner::Count(const StoredRun& run) {
   ++runs_done_;
   if (run.total_failure) ++total_failures_;
   if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) ++runs_failed_;
+}
+
+void CampaignRunner::StoreEvents() {
+  for (const DispatchEvent& event : parts_.backend.TakeEvents()) {
+    spdlog::info("{}: {}", event.kind, event.text);
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    parts_.store.AddEvent(
+        {std::chrono::duration_cast<std::chrono::milliseconds>(now).count(), event.kind, event.text});
+  }
 }
 
 void CampaignRunner::Store(FinishedRun finished) {
@@ -256,6 +268,7 @@ Result<CampaignEnd> CampaignRunner::Run(const std::function<bool()>& stop_reques
       return finished.error();
     }
     for (FinishedRun& run : *finished) Store(std::move(run));
+    StoreEvents();
   }
   parts_.store.MarkFinished(parts_.search_id);
   if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();

@@ -65,6 +65,9 @@ class CampaignRunner {
   Result<CampaignEnd> Run(const std::function<bool()>& stop_requested,
                           const std::function<void(const CampaignProgress&)>& on_progress);
 
+  // Runs stored, earlier sessions included.
+  std::uint64_t runs_done() const { return runs_done_; }
+
  private:
   // The fields of a result that the search and the digest need.
   struct PendingRun {
@@ -80,6 +83,7 @@ class CampaignRunner {
   void Store(FinishedRun finished);
   Status ApplyCommits();
   void Count(const StoredRun& run);
+  void StoreEvents();
   // Tells the search every leading evaluation whose runs are all durable; saves state at boundaries.
   void TellCompleted();
   PendingRun* Find(RunId id);

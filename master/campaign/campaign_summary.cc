@@ -123,7 +123,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   if (counted > 0.0) summary.mean_fitness = sum / counted;
 
   summary.state_hash =
-      StateHash(WriteExperiment(experiment), digest, EncodePopulation(population), search_state);
+      StateHash(WriteExperiment(experiment, {}), digest, EncodePopulation(population), search_state);
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
   for (const StoredSearch& stored : *searches) {

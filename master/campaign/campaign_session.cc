@@ -1,0 +1,293 @@
+#include "master/campaign/campaign_session.h"
+
+#include <fmt/format.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "master/campaign/access_file.h"
+#include "master/campaign/atomic_file.h"
+#include "master/campaign/campaign_ownership.h"
+#include "master/campaign/worker_program.h"
+#include "master/dispatch/local_pool.h"
+#include "master/dispatch/remote_backend.h"
+#include "master/dispatch/zmq_transport.h"
+#include "master/experiment/experiment_file.h"
+#include "master/search/case_list_search.h"
+#include "master/search/make_search.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::string_view kSoftwareVersion = GAUNTLET_VERSION;
+constexpr SearchId kOnlySearch = 1;
+constexpr std::chrono::milliseconds kShutdownTime{2000};
+constexpr std::chrono::milliseconds kStatusEvery{1000};
+
+double CpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+std::int64_t UnixMilliseconds() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string_view NameOf(SearchKind kind) {
+  switch (kind) {
+    case SearchKind::kGenetic:
+      return "genetic";
+    case SearchKind::kRandom:
+      return "random";
+    case SearchKind::kCases:
+      return "cases";
+  }
+  return "unknown";
+}
+
+std::string HashText(std::uint64_t hash) {
+  return fmt::format("{:016x}", hash);
+}
+
+Result<Experiment> ReadExperiment(const CampaignDirectory& directory) {
+  Result<std::string> text = ReadSmallFile(directory.experiment_path());
+  if (!text) return text.error();
+  return ParseExperiment(*text, directory.experiment_path(), {});
+}
+
+// The search as it was before its first evaluation.
+Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, ResultStore& store) {
+  if (experiment.search.kind != SearchKind::kCases) return MakeSearch(experiment, kOnlySearch);
+  Result<std::vector<Individual>> individuals = store.LoadIndividuals(kOnlySearch);
+  if (!individuals) return individuals.error();
+  if (individuals->empty()) {
+    return Error{ErrorKind::kCorrupt,
+                 "the campaign was stopped before its cases were stored: evaluate them anew"};
+  }
+  std::vector<sim::TestCase> cases;
+  for (Individual& individual : *individuals) cases.push_back(std::move(individual.test_case));
+  return std::unique_ptr<SearchAlgorithm>(
+      std::make_unique<CaseListSearch>(std::move(cases), experiment.search.replicates));
+}
+
+// Golden hashes decide whether this machine computes the bits that the campaign was begun with.
+Status CheckGoldenHash(const CampaignMeta& meta, std::uint64_t golden_hash) {
+  if (meta.golden_hash == HashText(golden_hash)) return Ok{};
+  return Error{
+      ErrorKind::kVersion,
+      fmt::format("the campaign was begun by version {} with golden hash {}, this is version {} with {}: its "
+                  "simulations would not be comparable",
+                  meta.software_version, meta.golden_hash, kSoftwareVersion, HashText(golden_hash))};
+}
+
+void WriteStatus(const CampaignDirectory& directory, const CampaignProgress& progress) {
+  const nlohmann::json status = {{"generation", progress.search.generation},
+                                 {"generations", progress.search.generations},
+                                 {"runs_done", progress.runs_done},
+                                 {"runs_planned", progress.runs_planned},
+                                 {"runs_per_second", progress.runs_per_second},
+                                 {"total_failures", progress.total_failures},
+                                 {"runs_failed", progress.runs_failed},
+                                 {"workers", progress.workers.connected}};
+  if (Status written = WriteFileAtomically(directory.status_path(), status.dump() + "\n", 0644); !written) {
+    spdlog::debug("status: {}", written.error().message);
+  }
+}
+
+// The master's log, beside those of its workers. Logging is no reason to stop: without a file it is silent.
+void OpenLog(const CampaignDirectory& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory.log_path(), error);
+  try {
+    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(directory.log_path() + "/master.log");
+    auto logger = std::make_shared<spdlog::logger>("master", std::move(sink));
+    logger->flush_on(spdlog::level::info);
+    spdlog::set_default_logger(std::move(logger));
+  } catch (const spdlog::spdlog_ex&) {
+    spdlog::set_level(spdlog::level::off);
+  }
+}
+
+// Removes what only a living master may leave in the directory.
+class LivingMasterFiles {
+ public:
+  LivingMasterFiles(const CampaignDirectory& directory, std::uint64_t epoch)
+      : directory_(directory), epoch_(epoch) {}
+  LivingMasterFiles(const LivingMasterFiles&) = delete;
+  LivingMasterFiles& operator=(const LivingMasterFiles&) = delete;
+  ~LivingMasterFiles() {
+    if (Status removed = RemoveAccessFile(directory_.access_path(), epoch_); !removed) {
+      spdlog::warn("{}", removed.error().message);
+    }
+    std::error_code ignored;
+    std::filesystem::remove(directory_.status_path(), ignored);
+  }
+
+ private:
+  const CampaignDirectory& directory_;
+  std::uint64_t epoch_;
+};
+
+// Serves an owned campaign until its search has finished or it is to stop.
+Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& experiment,
+                            std::uint64_t golden_hash, const SessionOptions& options) {
+  const auto started = std::chrono::steady_clock::now();
+  const double cpu_before = CpuSeconds();
+  SqliteStore& store = *campaign.store;
+  OpenLog(campaign.directory);
+  spdlog::info("master {} of campaign {}: {} workers", campaign.epoch, store.meta().campaign_id,
+               options.workers);
+  const LivingMasterFiles living(campaign.directory, campaign.epoch);
+
+  Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(experiment, store);
+  if (!search) return search.error();
+
+  Result<std::unique_ptr<ZmqTransport>> transport = ZmqTransport::Bind();
+  if (!transport) return transport.error();
+  const AccessInfo access{store.meta().campaign_id, campaign.epoch, {(*transport)->endpoint()}};
+  if (Status written = WriteAccessFile(campaign.directory.access_path(), access); !written)
+    return written.error();
+  const SteadyClock clock;
+  LocalPoolOptions pool_options;
+  pool_options.workers = options.workers;
+  pool_options.access_file = campaign.directory.access_path();
+  pool_options.log_directory = campaign.directory.log_path();
+  Result<std::unique_ptr<LocalPool>> pool = LocalPool::Start(pool_options, clock.Now());
+  if (!pool) return pool.error();
+
+  const CampaignIdentity identity{store.meta().campaign_id, campaign.epoch, std::string(kSoftwareVersion),
+                                  golden_hash};
+  RemoteBackend backend(identity, DispatchOptions{}, **transport, clock, pool->get());
+  backend.WatchFd(store.CommitNotifier());
+  CampaignRunner runner({.experiment = experiment,
+                         .search_id = kOnlySearch,
+                         .purpose = experiment.search.kind == SearchKind::kCases ? sim::SeedPurpose::kEvaluate
+                                                                                 : sim::SeedPurpose::kSearch,
+                         .search = **search,
+                         .backend = backend,
+                         .store = store,
+                         .clock = clock});
+  if (Status restored = runner.Restore(); !restored) return restored.error();
+  store.AddEvent({UnixMilliseconds(), campaign.epoch == 1 ? "start" : "resume",
+                  fmt::format("master {} with {} workers", campaign.epoch, options.workers)});
+
+  TimePoint last_status = clock.Now() - kStatusEvery;
+  const std::uint64_t runs_before = runner.runs_done();
+  Result<CampaignEnd> end = runner.Run(options.stop_requested, [&](const CampaignProgress& progress) {
+    if (const TimePoint now = clock.Now(); now - last_status >= kStatusEvery) {
+      WriteStatus(campaign.directory, progress);
+      last_status = now;
+    }
+    options.on_progress(progress);
+  });
+  backend.Shutdown(kShutdownTime);
+  if (!end) {
+    spdlog::error("stopped: {}", end.error().message);
+    return end.error();
+  }
+  store.AddEvent({UnixMilliseconds(), *end == CampaignEnd::kFinished ? "finished" : "stop",
+                  fmt::format("{} runs stored", runner.runs_done())});
+  if (Status flushed = store.Flush(); !flushed) return flushed.error();
+
+  SessionReport report;
+  report.end = *end;
+  report.runs_this_session = runner.runs_done() - runs_before;
+  report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
+  report.master_cpu_seconds = CpuSeconds() - cpu_before;
+  Result<std::unique_ptr<SearchAlgorithm>> fresh = MakeStoredSearch(experiment, store);
+  if (!fresh) return fresh.error();
+  Result<CampaignSummary> summary = Summarise(experiment, kOnlySearch, **fresh, store);
+  if (!summary) return summary.error();
+  report.summary = std::move(*summary);
+  return report;
+}
+
+}  // namespace
+
+Result<SessionReport> StartCampaign(const std::string& dir, const Experiment& experiment,
+                                    const std::vector<sim::TestCase>& cases, const SessionOptions& options) {
+  Result<std::uint64_t> golden_hash = GoldenHashOfThisMachine();
+  if (!golden_hash) return golden_hash.error();
+  CampaignMeta meta;
+  meta.software_version = kSoftwareVersion;
+  meta.golden_hash = HashText(*golden_hash);
+  const std::string text = WriteExperiment(
+      experiment, {fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {}.",
+                               kSoftwareVersion, meta.golden_hash)});
+  Result<CampaignOwnership> campaign = CreateCampaign(dir, text, meta);
+  if (!campaign) return campaign.error();
+  SqliteStore& store = *campaign->store;
+  store.AddSearch(
+      {kOnlySearch, experiment.name, std::string(NameOf(experiment.search.kind)), experiment.seed, false});
+  if (experiment.search.kind == SearchKind::kCases) {
+    store.AddIndividuals(kOnlySearch, CaseListSearch(cases, experiment.search.replicates).Population());
+  }
+  if (Status flushed = store.Flush(); !flushed) return flushed.error();
+  return Serve(*campaign, experiment, *golden_hash, options);
+}
+
+Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOptions& options) {
+  Result<CampaignOwnership> campaign = TakeCampaign(dir);
+  if (!campaign) return campaign.error();
+  Result<Experiment> experiment = ReadExperiment(campaign->directory);
+  if (!experiment) return experiment.error();
+  Result<std::uint64_t> golden_hash = GoldenHashOfThisMachine();
+  if (!golden_hash) return golden_hash.error();
+  if (Status comparable = CheckGoldenHash(campaign->store->meta(), *golden_hash); !comparable)
+    return comparable.error();
+
+  Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
+  if (!searches) return searches.error();
+  if (searches->empty()) {  // the master died between creating the campaign and storing its search
+    campaign->store->AddSearch({kOnlySearch, experiment->name, std::string(NameOf(experiment->search.kind)),
+                                experiment->seed, false});
+  } else if (searches->front().finished) {
+    Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(*experiment, *campaign->store);
+    if (!search) return search.error();
+    Result<CampaignSummary> summary = Summarise(*experiment, kOnlySearch, **search, *campaign->store);
+    if (!summary) return summary.error();
+    SessionReport report;
+    report.summary = std::move(*summary);
+    return report;
+  }
+  return Serve(*campaign, *experiment, *golden_hash, options);
+}
+
+Result<CampaignSummary> ReadCampaign(const std::string& dir) {
+  Result<CampaignView> campaign = ViewCampaign(dir);
+  if (!campaign) return campaign.error();
+  Result<Experiment> experiment = ReadExperiment(campaign->directory);
+  if (!experiment) return experiment.error();
+  Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(*experiment, *campaign->store);
+  if (!search) return search.error();
+  return Summarise(*experiment, kOnlySearch, **search, *campaign->store);
+}
+
+Status ForEachStoredRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) {
+  Result<CampaignView> campaign = ViewCampaign(dir);
+  if (!campaign) return campaign.error();
+  return campaign->store->ForEachRun(kOnlySearch, 0, visit);
+}
+
+Result<CampaignReplay> ReplayCampaignRun(const std::string& dir, RunId run) {
+  Result<CampaignView> campaign = ViewCampaign(dir);
+  if (!campaign) return campaign.error();
+  Result<Experiment> experiment = ReadExperiment(campaign->directory);
+  if (!experiment) return experiment.error();
+  Result<ReplayReport> report = ReplayRun(*campaign->store, run);
+  if (!report) return report.error();
+  return CampaignReplay{std::move(*experiment), std::move(*report)};
+}
+
+}  // namespace gauntlet::master
