@@ -1,0 +1,81 @@
+#include "master/cli/table.h"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace gauntlet::master {
+namespace {
+
+TEST(Table, AlignsColumnsAndLeavesNoTrailingBlanks) {
+  Table table({{"name", Align::kLeft}, {"runs", Align::kRight}, {"note", Align::kLeft}});
+  table.AddRow({"first", "7", "x"});
+  table.AddRow({"a longer name", "1,234"});
+  EXPECT_EQ(table.ToText(),
+            "  name            runs  note\n"
+            "  first              7  x\n"
+            "  a longer name  1,234\n");
+}
+
+TEST(Table, WithoutHeadersThereIsNoHeaderLine) {
+  Table table({{"", Align::kLeft}, {"", Align::kRight}});
+  table.AddRow({"a", "10"});
+  table.AddRow({"bc", "9"});
+  EXPECT_EQ(table.ToText(0),
+            "a   10\n"
+            "bc   9\n");
+}
+
+TEST(Table, CountsCharactersNotBytes) {
+  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  table.AddRow({"D\u00fcsseldorf", "|"});
+  table.AddRow({"Duesseldorf", "|"});
+  EXPECT_EQ(table.ToText(0),
+            "D\u00fcsseldorf   |\n"
+            "Duesseldorf  |\n");
+}
+
+TEST(Wrapped, BreaksAtBlanksAndIndents) {
+  EXPECT_EQ(Wrapped("one two three four", 9, 2), "one two\n  three\n  four");
+  EXPECT_EQ(Wrapped("unbreakable", 4, 2), "unbreakable");
+  EXPECT_EQ(Wrapped("", 4, 2), "");
+}
+
+TEST(FormatCount, GroupsThousands) {
+  EXPECT_EQ(FormatCount(0), "0");
+  EXPECT_EQ(FormatCount(999), "999");
+  EXPECT_EQ(FormatCount(1000), "1,000");
+  EXPECT_EQ(FormatCount(1234567), "1,234,567");
+}
+
+TEST(FormatFitness, NamesNoNumberForWhatDoesNotExist) {
+  EXPECT_EQ(FormatFitness(0.25), "0.250");
+  EXPECT_EQ(FormatFitness(std::numeric_limits<double>::quiet_NaN()), "-");
+  EXPECT_EQ(FormatFitness(std::numeric_limits<double>::infinity()), "-");
+}
+
+TEST(FormatDuration, ChoosesUnitsThatAPersonThinksIn) {
+  EXPECT_EQ(FormatDuration(0.84), "0.8 s");
+  EXPECT_EQ(FormatDuration(9.94), "9.9 s");
+  EXPECT_EQ(FormatDuration(9.96), "10 s");
+  EXPECT_EQ(FormatDuration(59.4), "59 s");
+  EXPECT_EQ(FormatDuration(59.6), "1 min 00 s");
+  EXPECT_EQ(FormatDuration(185), "3 min 05 s");
+  EXPECT_EQ(FormatDuration(7800), "2 h 10 min");
+  EXPECT_EQ(FormatDuration(442800), "5 d 3 h");
+  EXPECT_EQ(FormatDuration(-1), "-");
+  EXPECT_EQ(FormatDuration(std::numeric_limits<double>::infinity()), "-");
+}
+
+TEST(ShellQuoted, QuotesOnlyWhatAShellWouldChange) {
+  EXPECT_EQ(ShellQuoted("campaigns/flocking-1"), "campaigns/flocking-1");
+  EXPECT_EQ(ShellQuoted("my runs"), "'my runs'");
+  EXPECT_EQ(ShellQuoted("it's"), "'it'\\''s'");
+  EXPECT_EQ(ShellQuoted(""), "''");
+  EXPECT_EQ(ShellQuoted("$HOME"), "'$HOME'");
+}
+
+}  // namespace
+}  // namespace gauntlet::master
