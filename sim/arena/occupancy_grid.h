@@ -36,6 +36,8 @@ class OccupancyGrid {
     return cell.column >= 0 && cell.row >= 0 && cell.column < columns_ && cell.row < rows_;
   }
   bool Free(Cell cell) const { return InGrid(cell) && blocked_[Index(cell)] == 0; }
+  // Row-major, columns() * rows(): 1 = blocked.
+  const std::vector<std::uint8_t>& blocked() const { return blocked_; }
   Vec2 CenterOf(Cell cell) const {
     return {origin_.x() + (cell.column + 0.5) * kCellSize, origin_.y() + (cell.row + 0.5) * kCellSize};
   }

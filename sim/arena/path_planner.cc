@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 namespace gauntlet::sim {
@@ -17,9 +18,11 @@ struct OpenEntry {
 };
 
 // Heap order: the least estimate on top, the lower cell index among equals.
-bool Later(const OpenEntry& a, const OpenEntry& b) {
-  return a.estimate != b.estimate ? a.estimate > b.estimate : a.node > b.node;
-}
+struct Later {
+  bool operator()(const OpenEntry& a, const OpenEntry& b) const {
+    return a.estimate != b.estimate ? a.estimate > b.estimate : a.node > b.node;
+  }
+};
 
 class ThetaStar {
  public:
@@ -37,9 +40,9 @@ class ThetaStar {
   std::vector<Vec2> Search() {
     nodes_[start_].length = 0.0;
     nodes_[start_].parent = start_;
-    Push(start_);
+    Push(start_, start_point_);
     while (!open_.empty()) {
-      std::pop_heap(open_.begin(), open_.end(), Later);
+      std::pop_heap(open_.begin(), open_.end(), Later());
       const std::size_t node = open_.back().node;
       open_.pop_back();
       if (node == goal_) return Waypoints();
@@ -58,22 +61,23 @@ class ThetaStar {
   };
 
   Cell CellOf(std::size_t node) const {
-    const auto columns = static_cast<std::size_t>(grid_.columns());
-    return {static_cast<int>(node % columns), static_cast<int>(node / columns)};
+    // The largest grid has fewer than 2^22 cells, and dividing 32 bits is several times faster than 64.
+    const auto columns = static_cast<std::uint32_t>(grid_.columns());
+    const auto index = static_cast<std::uint32_t>(node);
+    return {static_cast<int>(index % columns), static_cast<int>(index / columns)};
   }
 
-  // The ends stand at their exact points, every other node at its cell's centre. In the start cell's own
-  // neighbourhood this keeps every single step free: two cells that share a side are convex together.
+  // The ends stand at their exact points, every other node at its cell's centre.
   Vec2 PointOf(std::size_t node, Cell cell) const {
     if (node == start_) return start_point_;
     if (node == goal_) return goal_point_;
     return grid_.CenterOf(cell);
   }
 
-  void Push(std::size_t node) {
-    const double rest = (goal_point_ - PointOf(node, CellOf(node))).norm();
+  void Push(std::size_t node, const Vec2& point) {
+    const double rest = (goal_point_ - point).norm();
     open_.push_back({nodes_[node].length + rest, node});
-    std::push_heap(open_.begin(), open_.end(), Later);
+    std::push_heap(open_.begin(), open_.end(), Later());
   }
 
   void Expand(std::size_t node) {
@@ -112,7 +116,7 @@ class ThetaStar {
       target.length = by_way_of_node;
       target.parent = node;
     }
-    Push(successor);
+    Push(successor, next_point);
   }
 
   std::vector<Vec2> Waypoints() const {
@@ -137,14 +141,24 @@ class ThetaStar {
 }  // namespace
 
 bool PathIsFree(const OccupancyGrid& grid, const Vec2& a, const Vec2& b) {
-  // In units of cells, where truncation gives the index: inside the grid no coordinate is negative.
-  const Vec2 from = (a - grid.origin()) / OccupancyGrid::kCellSize;
-  const Vec2 way = (b - a) / OccupancyGrid::kCellSize;
+  if (!grid.Free(grid.CellAt(a)) || !grid.Free(grid.CellAt(b))) return false;
   const int steps = static_cast<int>(std::ceil((b - a).norm() / kPathSampleDistance));
-  const Vec2 step = steps == 0 ? Vec2::Zero() : Vec2(way / steps);
-  for (int i = 0; i <= steps; ++i) {
-    const Cell cell = {static_cast<int>(from.x() + i * step.x()), static_cast<int>(from.y() + i * step.y())};
-    if (!grid.Free(cell)) return false;
+  if (steps == 0) return true;
+  // Coordinates in units of cells with 32 binary places: exact sums, and shifting gives the index. All
+  // samples lie between two points of the grid, so none needs a check against its edges.
+  constexpr double kOne = 4294967296.0;
+  const Vec2 from = (a - grid.origin()) / OccupancyGrid::kCellSize * kOne;
+  const Vec2 step = (b - a) / OccupancyGrid::kCellSize * (kOne / steps);
+  auto x = static_cast<std::int64_t>(from.x());
+  auto y = static_cast<std::int64_t>(from.y());
+  const auto step_x = static_cast<std::int64_t>(step.x());
+  const auto step_y = static_cast<std::int64_t>(step.y());
+  const std::int64_t columns = grid.columns();
+  const std::uint8_t* blocked = grid.blocked().data();
+  for (int i = 1; i < steps; ++i) {
+    x += step_x;
+    y += step_y;
+    if (blocked[(y >> 32) * columns + (x >> 32)] != 0) return false;
   }
   return true;
 }

@@ -17,8 +17,8 @@ inline constexpr double kPathSampleDistance = 0.02;
 // shortest path from cell to neighbouring cell.
 std::vector<Vec2> PlanPath(const OccupancyGrid& grid, const Vec2& start, const Vec2& goal);
 
-// Whether every sample of the segment a-b lies in a free cell: n equal steps of at most kPathSampleDistance,
-// ends included. Both ends lie within the grid.
+// Whether every sample of the segment a-b lies in a free cell: n equal steps of at most kPathSampleDistance
+// (to 1e-8 m), ends included.
 bool PathIsFree(const OccupancyGrid& grid, const Vec2& a, const Vec2& b);
 
 }  // namespace gauntlet::sim

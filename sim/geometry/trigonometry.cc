@@ -87,6 +87,13 @@ double ArctangentSeries(double u) {
   return u + (u * z) * (low + high * (z2 * z2));
 }
 
+// Choices between results are made without branches: angles are random, so a branch would be guessed wrong
+// every other time, which costs more than the polynomial.
+double NegateIf(bool condition, double value) {
+  return std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^
+                               (static_cast<std::uint64_t>(condition) << 63));
+}
+
 // 2^n for -1022 <= n <= 1023.
 double PowerOfTwo(std::int64_t n) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52);
@@ -102,10 +109,10 @@ SinCos SineCosine(double angle) {
   const Reduced reduced = ReduceToOctant(angle);
   const double s = SineSeries(reduced.remainder);
   const double c = CosineSeries(reduced.remainder);
-  const bool swap = (reduced.quadrant & 1) != 0;
-  const double sine = swap ? c : s;
-  const double cosine = swap ? s : c;
-  return {(reduced.quadrant & 2) != 0 ? -sine : sine, ((reduced.quadrant + 1) & 2) != 0 ? -cosine : cosine};
+  const double series[2] = {s, c};
+  const auto quadrant = static_cast<std::uint64_t>(reduced.quadrant);
+  return {NegateIf((quadrant & 2) != 0, series[quadrant & 1]),
+          NegateIf(((quadrant + 1) & 2) != 0, series[(quadrant + 1) & 1])};
 }
 
 double Sin(double angle) {
@@ -117,11 +124,10 @@ double Cos(double angle) {
 }
 
 double Atan2(double y, double x) {
-  double opposite = std::fabs(y);
-  double adjacent = std::fabs(x);
-  const bool steep = opposite > adjacent;
-  double larger = steep ? opposite : adjacent;
-  double smaller = steep ? adjacent : opposite;
+  const double opposite = std::fabs(y);
+  const double adjacent = std::fabs(x);
+  double larger = opposite > adjacent ? opposite : adjacent;
+  double smaller = opposite < adjacent ? opposite : adjacent;
   if (!(larger > 1e-290 && larger < 1e290)) [[unlikely]] {
     if (larger == 0.0 && smaller == 0.0) return 0.0;
     if (!(std::isfinite(opposite) && std::isfinite(adjacent))) return kNotANumber;
@@ -138,11 +144,15 @@ double Atan2(double y, double x) {
                       static_cast<int>(eighths > 5.0 * larger) + static_cast<int>(eighths > 7.0 * larger);
   const double c = 0.25 * quarter;
   const double u = (smaller - c * larger) / (larger + c * smaller);
+  static constexpr double kZeroOrHalfPi[2] = {0.0, 0.5 * kPi};
+  static constexpr double kZeroOrPi[2] = {0.0, kPi};
+  const bool steep = opposite > adjacent;
+  const bool backward = x < 0.0;
   double angle = kArctangentOfQuarters[quarter] + ArctangentSeries(u);
-  angle = steep ? 0.5 * kPi - angle : angle;
-  angle = x < 0.0 ? kPi - angle : angle;
+  angle = kZeroOrHalfPi[steep ? 1 : 0] + NegateIf(steep, angle);
+  angle = kZeroOrPi[backward ? 1 : 0] + NegateIf(backward, angle);
   // -pi is the same direction as pi and outside the range.
-  return y < 0.0 && angle < kPi ? -angle : angle;
+  return NegateIf((y < 0.0) & (angle < kPi), angle);
 }
 
 double Exp(double x) {
@@ -189,12 +199,11 @@ double Log(double x) {
   constexpr std::uint64_t kFraction = (1ULL << 52) - 1;
   constexpr double kSqrtTwo = 1.4142135623730951;
   const auto bits = std::bit_cast<std::uint64_t>(x);
-  double mantissa = std::bit_cast<double>((bits & kFraction) | (1023ULL << 52));
-  double exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023);
-  if (mantissa > kSqrtTwo) {
-    mantissa *= 0.5;
-    exponent += 1.0;
-  }
+  static constexpr double kOneOrHalf[2] = {1.0, 0.5};
+  const double significand = std::bit_cast<double>((bits & kFraction) | (1023ULL << 52));
+  const int above = significand > kSqrtTwo ? 1 : 0;
+  const double mantissa = significand * kOneOrHalf[above];
+  const auto exponent = static_cast<double>(static_cast<std::int64_t>(bits >> 52) - 1023 + above);
   // log m = 2 artanh s with s = (m - 1) / (m + 1), |s| <= 0.1716; the first omitted term, s^22 / 23 relative
   // to the first, is below 1e-18.
   const double s = (mantissa - 1.0) / (mantissa + 1.0);
