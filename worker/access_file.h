@@ -1,0 +1,26 @@
+// access.json: where a campaign's master listens. Written by the master, atomically; read by workers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/base/result.h"
+
+namespace gauntlet::worker {
+
+struct Access {
+  std::string campaign_id;             // hexadecimal
+  std::uint64_t epoch = 0;             // number of the master's start
+  std::vector<std::string> endpoints;  // "tcp://host:port" or "ipc://path", at least one
+  bool operator==(const Access&) const = default;
+};
+
+// `place` is named in errors. Unknown keys are ignored. Errors: kInvalidInput names line and column or the
+// key; kVersion for another "format".
+Result<Access> ParseAccess(const std::string& text, const std::string& place);
+
+// Error kNotFound when there is no such file: the master may not have written it yet.
+Result<Access> ReadAccess(const std::string& path);
+
+}  // namespace gauntlet::worker

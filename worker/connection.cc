@@ -1,0 +1,82 @@
+#include "worker/connection.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <zmq.hpp>
+
+#include "worker/message_codec.h"
+
+namespace gauntlet::worker {
+namespace {
+
+constexpr int kLingerMs = 1000;
+constexpr int kReconnectMs = 100;
+constexpr int kReconnectMaxMs = 2000;
+
+}  // namespace
+
+struct Connection::Socket {
+  zmq::context_t context{1};
+  zmq::socket_t dealer;
+};
+
+Connection::Connection() : socket_(std::make_unique<Socket>()) {}
+Connection::~Connection() = default;
+
+Status Connection::Open(const std::string& endpoint) {
+  outbox_.clear();
+  try {
+    if (socket_->dealer) {
+      socket_->dealer.set(zmq::sockopt::linger, 0);
+      socket_->dealer.close();
+    }
+    zmq::socket_t dealer(socket_->context, zmq::socket_type::dealer);
+    dealer.set(zmq::sockopt::linger, kLingerMs);
+    // Only a connection that stands takes messages: nothing piles up in front of a master that is away.
+    dealer.set(zmq::sockopt::immediate, true);
+    dealer.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(kMaxMessageBytes));
+    dealer.set(zmq::sockopt::reconnect_ivl, kReconnectMs);
+    dealer.set(zmq::sockopt::reconnect_ivl_max, kReconnectMaxMs);
+    dealer.connect(endpoint);
+    socket_->dealer = std::move(dealer);
+  } catch (const zmq::error_t& error) {
+    return InvalidInput(fmt::format("cannot connect to {}: {}", endpoint, error.what()));
+  }
+  return Ok{};
+}
+
+void Connection::Send(std::string frame) {
+  outbox_.push_back(std::move(frame));
+  Flush();
+}
+
+void Connection::Flush() {
+  if (!socket_->dealer) return;
+  while (!outbox_.empty()) {
+    try {
+      if (!socket_->dealer.send(zmq::buffer(outbox_.front()), zmq::send_flags::dontwait)) return;
+    } catch (const zmq::error_t&) {
+      return;  // as if it did not go through yet: after a reconnect the state machine sends again
+    }
+    outbox_.pop_front();
+  }
+}
+
+std::optional<std::string> Connection::Receive() {
+  if (!socket_->dealer) return std::nullopt;
+  try {
+    zmq::message_t first;
+    if (!socket_->dealer.recv(first, zmq::recv_flags::dontwait)) return std::nullopt;
+    // A message of several frames is not ours: its parts arrive as messages of their own and do not decode.
+    return first.to_string();
+  } catch (const zmq::error_t&) {
+    return std::nullopt;
+  }
+}
+
+void* Connection::handle() {
+  return socket_->dealer ? socket_->dealer.handle() : nullptr;
+}
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,67 @@
+// The fork server: a small process without threads from which all runners are forked. It is itself forked
+// before its supervisor starts any thread, because a child of a threaded process may inherit locked locks.
+//
+//   supervisor --control socket--> fork server --fork--> runner (one per slot)
+//        ^------------------ pipe and output of the runner, passed by SCM_RIGHTS
+//
+// Nobody survives anybody: runners die with the fork server, the fork server dies with the supervisor
+// (PR_SET_PDEATHSIG, and the end of the sockets), and whoever is a parent reaps its children.
+#pragma once
+
+#include <sys/types.h>
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "sim/base/result.h"
+#include "worker/pipe.h"
+#include "worker/runner.h"
+
+namespace gauntlet::worker {
+
+struct RunnerStarted {
+  pid_t pid = -1;
+  UniqueFd pipe;    // jobs and reports
+  UniqueFd output;  // what the runner prints to stdout and stderr
+};
+struct RunnerExited {
+  pid_t pid = -1;
+  int wait_status = 0;
+  double cpu_seconds = 0.0;  // user and system time of the runner's whole life
+};
+struct RunnerNotStarted {
+  int error = 0;  // errno
+};
+struct ForkServerGone {};
+using ForkServerEvent = std::variant<RunnerStarted, RunnerExited, RunnerNotStarted, ForkServerGone>;
+
+// The supervisor's handle. Thread-safety: one calling thread, the one that called Start.
+class ForkServer {
+ public:
+  // Forks the server. To be called while the process has one thread only. Error: kIo.
+  static Result<std::unique_ptr<ForkServer>> Start(const RunFunction& run);
+  ForkServer(const ForkServer&) = delete;
+  ForkServer& operator=(const ForkServer&) = delete;
+  // Ends the server and with it all runners; returns when it is reaped.
+  ~ForkServer();
+
+  // Readable when Receive has something.
+  int fd() const { return control_.get(); }
+  pid_t pid() const { return pid_; }
+  // Answered by RunnerStarted or RunnerNotStarted.
+  void RequestRunner();
+  // A signal to a runner; to nobody when it has ended meanwhile.
+  void Kill(pid_t runner, int signal);
+  // Does not wait. nullopt: nothing has come. After ForkServerGone nothing follows.
+  std::optional<ForkServerEvent> Receive();
+
+ private:
+  ForkServer(pid_t pid, UniqueFd control) : pid_(pid), control_(std::move(control)) {}
+
+  pid_t pid_;
+  UniqueFd control_;
+  bool gone_ = false;
+};
+
+}  // namespace gauntlet::worker

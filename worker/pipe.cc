@@ -1,0 +1,110 @@
+#include "worker/pipe.h"
+
+#include <fmt/format.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+namespace gauntlet::worker {
+namespace {
+
+constexpr std::size_t kPrefixBytes = 4;
+
+std::array<char, kPrefixBytes> PrefixOf(std::size_t size) {
+  std::array<char, kPrefixBytes> prefix{};
+  for (std::size_t i = 0; i < kPrefixBytes; ++i) prefix[i] = static_cast<char>(size >> (8 * i));
+  return prefix;
+}
+
+std::size_t SizeIn(const char* prefix) {
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < kPrefixBytes; ++i) {
+    size |= static_cast<std::size_t>(static_cast<std::uint8_t>(prefix[i])) << (8 * i);
+  }
+  return size;
+}
+
+bool ReadExactly(int fd, char* data, std::size_t size) {
+  while (size > 0) {
+    const ssize_t got = recv(fd, data, size, 0);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    data += got;
+    size -= static_cast<std::size_t>(got);
+  }
+  return true;
+}
+
+}  // namespace
+
+void UniqueFd::Reset(int fd) {
+  if (fd_ >= 0) close(fd_);
+  fd_ = fd;
+}
+
+Result<SocketPair> MakeSocketPair(int type) {
+  std::array<int, 2> fds{};
+  if (socketpair(AF_UNIX, type | SOCK_CLOEXEC, 0, fds.data()) != 0) {
+    return Error{ErrorKind::kIo, fmt::format("socketpair: {}", std::strerror(errno))};
+  }
+  return SocketPair{UniqueFd(fds[0]), UniqueFd(fds[1])};
+}
+
+std::string MakeFrame(std::string_view payload) {
+  GAUNTLET_CHECK(payload.size() <= kMaxFrameBytes, fmt::format("a frame of {} bytes", payload.size()));
+  const auto prefix = PrefixOf(payload.size());
+  std::string frame;
+  frame.reserve(prefix.size() + payload.size());
+  frame.append(prefix.data(), prefix.size());
+  frame.append(payload);
+  return frame;
+}
+
+std::optional<std::string> ReadFrame(int fd) {
+  std::array<char, kPrefixBytes> prefix{};
+  if (!ReadExactly(fd, prefix.data(), prefix.size())) return std::nullopt;
+  const std::size_t size = SizeIn(prefix.data());
+  if (size > kMaxFrameBytes) return std::nullopt;
+  std::string payload(size, '\0');
+  if (!ReadExactly(fd, payload.data(), size)) return std::nullopt;
+  return payload;
+}
+
+bool WriteFrame(int fd, std::string_view payload) {
+  const std::string frame = MakeFrame(payload);
+  std::string_view rest = frame;
+  while (!rest.empty()) {
+    const ssize_t sent = send(fd, rest.data(), rest.size(), MSG_NOSIGNAL);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) return false;
+    rest.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  return true;
+}
+
+FrameBuffer::State FrameBuffer::ReadFrom(int fd) {
+  std::array<char, 64 * 1024> chunk;
+  while (true) {
+    const ssize_t got = recv(fd, chunk.data(), chunk.size(), MSG_DONTWAIT);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return State::kOpen;
+    if (got <= 0) return State::kEnded;
+    bytes_.append(chunk.data(), static_cast<std::size_t>(got));
+    if (bytes_.size() >= kPrefixBytes && SizeIn(bytes_.data()) > kMaxFrameBytes) return State::kDamaged;
+    if (static_cast<std::size_t>(got) < chunk.size()) return State::kOpen;
+  }
+}
+
+std::optional<std::string> FrameBuffer::Next() {
+  if (bytes_.size() < kPrefixBytes) return std::nullopt;
+  const std::size_t size = SizeIn(bytes_.data());
+  if (bytes_.size() < kPrefixBytes + size) return std::nullopt;
+  std::string payload = bytes_.substr(kPrefixBytes, size);
+  bytes_.erase(0, kPrefixBytes + size);
+  return payload;
+}
+
+}  // namespace gauntlet::worker

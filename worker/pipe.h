@@ -1,0 +1,66 @@
+// File descriptors, and length-prefixed messages over a stream socket between a supervisor and its runners.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "sim/base/result.h"
+
+namespace gauntlet::worker {
+
+// Owns a file descriptor; -1 = none.
+class UniqueFd {
+ public:
+  UniqueFd() = default;
+  explicit UniqueFd(int fd) : fd_(fd) {}
+  UniqueFd(UniqueFd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  UniqueFd& operator=(UniqueFd&& other) noexcept {
+    Reset(std::exchange(other.fd_, -1));
+    return *this;
+  }
+  ~UniqueFd() { Reset(); }
+
+  int get() const { return fd_; }
+  bool valid() const { return fd_ >= 0; }
+  void Reset(int fd = -1);
+
+ private:
+  int fd_ = -1;
+};
+
+struct SocketPair {
+  UniqueFd first;
+  UniqueFd second;
+};
+// A connected pair of Unix sockets of `type` (SOCK_STREAM, SOCK_SEQPACKET), closed on exec. Error: kIo.
+Result<SocketPair> MakeSocketPair(int type);
+
+// A frame is its payload's length (4 bytes, least significant first) and the payload.
+inline constexpr std::size_t kMaxFrameBytes = 1u << 30;
+
+std::string MakeFrame(std::string_view payload);
+
+// Blocking, for the runner: the next payload; nullopt at the end of the stream or when it is damaged.
+std::optional<std::string> ReadFrame(int fd);
+// Blocking; false when the other side is gone.
+bool WriteFrame(int fd, std::string_view payload);
+
+// Non-blocking, for the supervisor: collects bytes until a frame is complete.
+class FrameBuffer {
+ public:
+  enum class State { kOpen, kEnded, kDamaged };
+
+  // Reads what `fd` has to give without waiting. kEnded: the other side has closed; frames may be left.
+  State ReadFrom(int fd);
+  // The next complete payload.
+  std::optional<std::string> Next();
+
+ private:
+  std::string bytes_;
+};
+
+}  // namespace gauntlet::worker

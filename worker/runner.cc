@@ -1,0 +1,198 @@
+#include "worker/runner.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <exception>
+#include <new>
+
+#include "sim/base/canonical_encoder.h"
+#include "worker/pipe.h"
+#include "worker/run_codec.h"
+#include "worker/utf8.h"
+
+namespace gauntlet::worker {
+namespace {
+
+void WriteToStderr(std::string_view text) {
+  // Best effort: there is nobody else to tell.
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+}
+
+[[noreturn]] void OutOfMemory() {
+  WriteToStderr("out of memory\n");
+  _exit(kExitOutOfMemory);
+}
+
+double SecondsOf(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// Sets the soft limit only: a lowered hard limit could never be raised again.
+void SetSoftLimit(__rlimit_resource resource, rlim_t wanted) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return;
+  if (limit.rlim_max != RLIM_INFINITY && wanted > limit.rlim_max) wanted = limit.rlim_max;
+  if (limit.rlim_cur == wanted) return;
+  limit.rlim_cur = wanted;
+  setrlimit(resource, &limit);
+}
+
+void SetLimits(const RunnerJob& job) {
+  rlim_t cpu = RLIM_INFINITY;
+  if (job.cpu_limit_seconds > 0.0) {
+    cpu = static_cast<rlim_t>(std::ceil(SecondsOf(CLOCK_PROCESS_CPUTIME_ID) + job.cpu_limit_seconds));
+  }
+  SetSoftLimit(RLIMIT_CPU, cpu);
+  if (kMemoryLimitWorks) {
+    SetSoftLimit(RLIMIT_AS, job.memory_limit_bytes == 0 ? RLIM_INFINITY : job.memory_limit_bytes);
+  }
+}
+
+sim::RunResult Refuse(const Error& error) {
+  sim::RunResult refused;
+  refused.verdict = sim::Verdict::kRefused;
+  refused.message = error.message;
+  refused.hash = sim::HashOf(refused);
+  return refused;
+}
+
+RunnerReport Execute(const RunnerJob& job, const RunFunction& run) {
+  const double start = SecondsOf(CLOCK_THREAD_CPUTIME_ID);
+  const Result<sim::RunSpec> spec = DecodeRunSpec(job.spec);
+  sim::RunResult result = spec.ok() ? run(*spec) : Refuse(spec.error());
+  RunnerReport report;
+  report.cpu_seconds = SecondsOf(CLOCK_THREAD_CPUTIME_ID) - start;
+  result.cpu_seconds = report.cpu_seconds;
+  const bool record = spec.ok() && spec->record_trajectory;
+  report.result =
+      EncodeRunResult(result, record ? TrajectoryEncoding::kInclude : TrajectoryEncoding::kLeaveOut);
+  if (job.max_result_bytes > 0 && report.result.size() > job.max_result_bytes) {
+    report.result = EncodeRunResult(result, TrajectoryEncoding::kLeaveOut);
+  }
+  report.process_cpu_seconds = SecondsOf(CLOCK_PROCESS_CPUTIME_ID);
+  return report;
+}
+
+bool OnlyOthersSend(int signal) {
+  switch (signal) {
+    case SIGKILL:
+    case SIGTERM:
+    case SIGINT:
+    case SIGHUP:
+    case SIGQUIT:
+    case SIGPIPE:  // the supervisor has closed the pipe
+    case SIGUSR1:
+    case SIGUSR2:
+    case SIGPWR:
+      return true;
+    default:
+      return false;
+  }
+}
+
+}  // namespace
+
+std::string EncodeJob(const RunnerJob& job) {
+  CanonicalEncoder encoder;
+  encoder.Double(job.cpu_limit_seconds);
+  encoder.Uint(job.memory_limit_bytes);
+  encoder.Uint(job.max_result_bytes);
+  encoder.String(job.spec);
+  return encoder.Take();
+}
+
+std::optional<RunnerJob> DecodeJob(std::string_view bytes) {
+  CanonicalDecoder decoder(bytes);
+  RunnerJob job;
+  job.cpu_limit_seconds = decoder.Double();
+  job.memory_limit_bytes = decoder.Uint();
+  job.max_result_bytes = decoder.Uint();
+  job.spec = decoder.String();
+  if (!decoder.ok() || !decoder.AtEnd()) return std::nullopt;
+  return job;
+}
+
+std::string EncodeReport(const RunnerReport& report) {
+  CanonicalEncoder encoder;
+  encoder.Double(report.cpu_seconds);
+  encoder.Double(report.process_cpu_seconds);
+  encoder.String(report.result);
+  return encoder.Take();
+}
+
+std::optional<RunnerReport> DecodeReport(std::string_view bytes) {
+  CanonicalDecoder decoder(bytes);
+  RunnerReport report;
+  report.cpu_seconds = decoder.Double();
+  report.process_cpu_seconds = decoder.Double();
+  report.result = decoder.String();
+  if (!decoder.ok() || !decoder.AtEnd()) return std::nullopt;
+  return report;
+}
+
+RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail) {
+  RunnerFailure failure;
+  if (stderr_tail.size() > kStderrTailBytes) stderr_tail.remove_prefix(stderr_tail.size() - kStderrTailBytes);
+  failure.stderr_tail = ToUtf8(stderr_tail);
+  if (WIFSIGNALED(wait_status)) {
+    failure.signal = WTERMSIG(wait_status);
+    failure.kind = failure.signal == SIGXCPU        ? FailureKind::kHung
+                   : OnlyOthersSend(failure.signal) ? FailureKind::kExternal
+                                                    : FailureKind::kCrashed;
+    return failure;
+  }
+  failure.exit_code = WEXITSTATUS(wait_status);
+  failure.kind = failure.exit_code == kExitOutOfMemory ? FailureKind::kOutOfMemory : FailureKind::kCrashed;
+  return failure;
+}
+
+std::string Describe(const RunnerFailure& failure) {
+  switch (failure.kind) {
+    case FailureKind::kHung:
+      return "took more CPU time than a run may";
+    case FailureKind::kOutOfMemory:
+      return "took more memory than a run may";
+    case FailureKind::kCrashed:
+    case FailureKind::kExternal:
+      break;
+  }
+  if (failure.signal != 0) {
+    const char* name = sigabbrev_np(failure.signal);
+    return fmt::format("ended by signal {} (SIG{})", failure.signal, name != nullptr ? name : "?");
+  }
+  if (failure.exit_code == kExitException) return "threw an exception that nobody caught";
+  return fmt::format("ended by exit({})", failure.exit_code);
+}
+
+void RunnerMain(int pipe, const RunFunction& run) {
+  std::set_new_handler(OutOfMemory);
+  SetSoftLimit(RLIMIT_CORE, 0);
+  while (const std::optional<std::string> message = ReadFrame(pipe)) {
+    const std::optional<RunnerJob> job = DecodeJob(*message);
+    GAUNTLET_CHECK(job.has_value(), "a job that does not decode");
+    SetLimits(*job);
+    try {
+      if (!WriteFrame(pipe, EncodeReport(Execute(*job, run)))) break;
+    } catch (const std::bad_alloc&) {
+      OutOfMemory();
+    } catch (const std::exception& error) {
+      WriteToStderr(fmt::format("uncaught exception: {}\n", error.what()));
+      _exit(kExitException);
+    } catch (...) {
+      WriteToStderr("uncaught exception of an unknown type\n");
+      _exit(kExitException);
+    }
+  }
+  _exit(0);
+}
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,88 @@
+// The supervisor's runners, one per slot: hands them jobs, collects their reports and their output, replaces
+// those that ended. Never waits.
+#pragma once
+
+#include <poll.h>
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "worker/fork_server.h"
+#include "worker/runner.h"
+
+namespace gauntlet::worker {
+
+// A slot has a runner that waits for a job.
+struct SlotReady {
+  int slot = 0;
+};
+struct SlotFinished {
+  int slot = 0;
+  RunnerReport report;
+};
+// The slot's runner ended during its job. SlotReady follows when it is replaced.
+struct SlotFailed {
+  int slot = 0;
+  RunnerFailure failure;
+  double cpu_seconds = 0.0;  // of the job
+};
+// The slot's runner ended, but not during a job.
+struct SlotEmptied {
+  int slot = 0;
+};
+// The fork server is gone and all runners with it; nothing more will come.
+struct RunnersLost {};
+using PoolEvent = std::variant<SlotReady, SlotFinished, SlotFailed, SlotEmptied, RunnersLost>;
+
+// Thread-safety: one calling thread.
+class RunnerPool {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  // Asks for `slots` runners at once; `server` must outlive the pool.
+  RunnerPool(ForkServer& server, int slots);
+
+  // What to poll for, in an order that Process expects.
+  std::vector<pollfd> Descriptors() const;
+  // Works off what poll found in Descriptors() (same order, untouched since). `now` paces repeated starts.
+  std::vector<PoolEvent> Process(std::span<const pollfd> polled, TimePoint now);
+
+  // The slot must have been reported ready and be without a job.
+  void StartJob(int slot, const RunnerJob& job);
+  // SIGKILL; the slot is heard of again by SlotFailed or SlotEmptied (or a report that was under way).
+  void Kill(int slot);
+
+ private:
+  struct Slot {
+    pid_t pid = -1;  // -1: no runner
+    UniqueFd pipe;
+    UniqueFd output;
+    FrameBuffer reports;
+    std::string unsent;       // what is left of a job's frame
+    std::string output_tail;  // what the current job printed, its end
+    bool busy = false;
+    bool broke_protocol = false;       // was killed for it: its own fault
+    double process_cpu_seconds = 0.0;  // as of the last report
+  };
+
+  void HandleServer(std::vector<PoolEvent>& events, TimePoint now);
+  void Started(RunnerStarted started, std::vector<PoolEvent>& events);
+  void Exited(const RunnerExited& exited, std::vector<PoolEvent>& events);
+  void ReadReports(int slot, std::vector<PoolEvent>& events);
+  void ReadOutput(Slot& slot);
+  void SendRest(Slot& slot);
+  void BreakOff(Slot& slot);
+
+  ForkServer& server_;
+  std::vector<Slot> slots_;
+  bool lost_ = false;
+  std::optional<TimePoint> retry_at_;
+  int to_retry_ = 0;
+};
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,238 @@
+#include "worker/supervisor.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <spdlog/spdlog.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+#include <zmq.hpp>
+
+#include "sim/base/check.h"
+#include "worker/connection.h"
+#include "worker/message_codec.h"
+#include "worker/runner_pool.h"
+
+namespace gauntlet::worker {
+namespace {
+
+using std::chrono::milliseconds;
+
+// How many messages of the master are worked off before runners and clock get their turn.
+constexpr int kMessagesPerTurn = 256;
+// The parent is looked after at least this often.
+constexpr milliseconds kLongestWait{1000};
+
+}  // namespace
+
+class Supervisor::Loop {
+ public:
+  Loop(SupervisorOptions options, Access access, ForkServer& fork_server, int signals)
+      : options_(std::move(options)),
+        access_(std::move(access)),
+        signals_(signals),
+        pool_(fork_server, static_cast<int>(options_.state.identity.slots)),
+        state_(options_.state, std::chrono::steady_clock::now()) {}
+
+  int Run() {
+    if (!Connect()) return *exit_code_;
+    Perform(state_.Start());
+    while (!exit_code_) {
+      Wait();
+      if (options_.parent > 0 && getppid() != options_.parent) {
+        spdlog::info("the parent process is gone");
+        return kExitDone;
+      }
+      ReadSignals();
+      connection_.Flush();
+      ReadMessages();
+      HandlePoolEvents();
+      Tell(ClockTick{});
+    }
+    return *exit_code_;
+  }
+
+ private:
+  void Wait() {
+    const std::vector<pollfd> runners = pool_.Descriptors();
+    std::vector<zmq::pollitem_t> items;
+    items.reserve(2 + runners.size());
+    const int events = connection_.congested() ? ZMQ_POLLIN | ZMQ_POLLOUT : ZMQ_POLLIN;
+    items.push_back({connection_.handle(), 0, static_cast<short>(events), 0});
+    items.push_back({nullptr, signals_, ZMQ_POLLIN, 0});
+    // zmq_poll knows no ignored descriptors, so those are left out; polled_ keeps the pool's order.
+    for (const pollfd& runner : runners) {
+      if (runner.fd < 0) continue;
+      const int wanted = (runner.events & POLLOUT) != 0 ? ZMQ_POLLIN | ZMQ_POLLOUT : ZMQ_POLLIN;
+      items.push_back({nullptr, runner.fd, static_cast<short>(wanted), 0});
+    }
+    const auto until_tick =
+        std::chrono::ceil<milliseconds>(state_.NextTick() - std::chrono::steady_clock::now());
+    const milliseconds timeout = std::clamp(until_tick, milliseconds(0), kLongestWait);
+    try {
+      zmq::poll(items, timeout);
+    } catch (const zmq::error_t& error) {
+      GAUNTLET_CHECK(error.num() == EINTR, fmt::format("zmq_poll: {}", error.what()));
+      for (zmq::pollitem_t& item : items) item.revents = 0;
+    }
+    polled_ = runners;
+    std::size_t next = 2;
+    for (pollfd& runner : polled_) {
+      if (runner.fd < 0) continue;
+      const short got = items[next++].revents;
+      // zmq_poll reports hang-ups as POLLIN or POLLERR; reading tells which.
+      if ((got & (ZMQ_POLLIN | ZMQ_POLLERR)) != 0)
+        runner.revents = static_cast<short>(runner.revents | POLLIN);
+      if ((got & ZMQ_POLLOUT) != 0) runner.revents = static_cast<short>(runner.revents | POLLOUT);
+    }
+  }
+
+  void ReadSignals() {
+    signalfd_siginfo info{};
+    while (read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) {
+      const char* name = sigabbrev_np(static_cast<int>(info.ssi_signo));
+      Tell(StopRequested{fmt::format("SIG{}", name != nullptr ? name : "?")});
+    }
+  }
+
+  void ReadMessages() {
+    for (int i = 0; i < kMessagesPerTurn && !exit_code_; ++i) {
+      const std::optional<std::string> frame = connection_.Receive();
+      if (!frame) return;
+      Result<MasterMessage> message = DecodeMasterMessage(*frame);
+      if (!message.ok()) {
+        LogOnce("bad-message",
+                fmt::format("dropped: {} (further ones are not logged)", message.error().message));
+        continue;
+      }
+      const bool was_welcomed = state_.welcomed();
+      Tell(std::move(*message));
+      if (!was_welcomed && state_.welcomed()) spdlog::info("welcomed by {}", endpoint_);
+    }
+  }
+
+  void HandlePoolEvents() {
+    for (PoolEvent& event : pool_.Process(polled_, std::chrono::steady_clock::now())) {
+      if (const auto* ready = std::get_if<SlotReady>(&event)) {
+        Tell(SlotBecameReady{ready->slot});
+      } else if (auto* finished = std::get_if<SlotFinished>(&event)) {
+        Tell(RunFinished{finished->slot, std::move(finished->report.result), finished->report.cpu_seconds});
+      } else if (auto* failed = std::get_if<SlotFailed>(&event)) {
+        spdlog::warn("slot {}: the runner {}", failed->slot, Describe(failed->failure));
+        Tell(RunnerDied{failed->slot, std::move(failed->failure), failed->cpu_seconds});
+      } else if (const auto* emptied = std::get_if<SlotEmptied>(&event)) {
+        Tell(RunnerDied{emptied->slot, {}, 0.0});
+      } else {
+        spdlog::error("the fork server ended: this worker cannot simulate any more");
+        Tell(AllRunnersLost{});
+      }
+    }
+  }
+
+  void Tell(WorkerEvent event) { Perform(state_.Handle(std::move(event), std::chrono::steady_clock::now())); }
+
+  void Perform(std::vector<WorkerAction> actions) {
+    for (WorkerAction& action : actions) {
+      if (exit_code_) return;
+      std::visit([this](auto& concrete) { Do(concrete); }, action);
+    }
+  }
+
+  void Do(const Send& send) {
+    // A heartbeat that cannot leave now says nothing later.
+    if (connection_.congested() && std::holds_alternative<Heartbeat>(send.message)) return;
+    connection_.Send(EncodeWorkerMessage(send.message));
+  }
+  void Do(StartRun& start) {
+    pool_.StartJob(start.slot, {.spec = std::move(start.spec),
+                                .cpu_limit_seconds = start.cpu_limit_seconds,
+                                .memory_limit_bytes = start.memory_limit_bytes,
+                                .max_result_bytes = kMaxResultBytes});
+  }
+  void Do(const KillRunner& kill) { pool_.Kill(kill.slot); }
+  void Do(const CheckAccess&) {
+    if (RereadAccess()) Tell(MasterMoved{});
+  }
+  void Do(const Reconnect&) {
+    RereadAccess();
+    if (exit_code_) return;
+    ++attempts_;
+    Connect();
+  }
+  void Do(const Note& note) { LogOnce(note.kind, note.text); }
+  void Do(const Exit& exit) {
+    if (exit.code == kExitRefused) {
+      spdlog::error("refused by the master: {}", exit.reason);
+    } else {
+      spdlog::info("leaving: {}", exit.reason);
+    }
+    exit_code_ = exit.code;
+  }
+
+  // True when the master can now be found elsewhere.
+  bool RereadAccess() {
+    Result<Access> access = ReadAccess(options_.access_path);
+    if (!access.ok()) {
+      // While a master restarts there may be no file.
+      if (access.error().kind != ErrorKind::kNotFound) LogOnce("access", access.error().message);
+      return false;
+    }
+    if (access->campaign_id != access_.campaign_id) {
+      spdlog::error("{} belongs to campaign {} now, this worker serves {}", options_.access_path,
+                    access->campaign_id, access_.campaign_id);
+      exit_code_ = kExitRefused;
+      return false;
+    }
+    if (*access == access_) return false;
+    access_ = std::move(*access);
+    attempts_ = 0;
+    return true;
+  }
+
+  bool Connect() {
+    endpoint_ = access_.endpoints[attempts_ % access_.endpoints.size()];
+    const Status opened = connection_.Open(endpoint_);
+    if (opened.ok()) {
+      spdlog::debug("connecting to {}", endpoint_);
+      return true;
+    }
+    spdlog::error("{}: {}", options_.access_path, opened.error().message);
+    exit_code_ = kExitRefused;
+    return false;
+  }
+
+  void LogOnce(const std::string& kind, const std::string& text) {
+    if (logged_.insert(kind).second) spdlog::warn("{}", text);
+  }
+
+  SupervisorOptions options_;
+  Access access_;
+  int signals_;
+  std::size_t attempts_ = 0;  // connections made since access.json changed: picks the endpoint
+  std::string endpoint_;
+  Connection connection_;
+  RunnerPool pool_;
+  WorkerState state_;
+  std::vector<pollfd> polled_;
+  std::set<std::string> logged_;
+  std::optional<int> exit_code_;
+};
+
+Supervisor::Supervisor(SupervisorOptions options, Access access, ForkServer& fork_server, int signals)
+    : loop_(std::make_unique<Loop>(std::move(options), std::move(access), fork_server, signals)) {}
+Supervisor::~Supervisor() = default;
+
+int Supervisor::Run() {
+  return loop_->Run();
+}
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,231 @@
+#include "worker/worker_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/prctl.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "worker/access_file.h"
+#include "worker/fork_server.h"
+#include "worker/message_codec.h"
+#include "worker/run_codec.h"
+#include "worker/runner_pool.h"
+#include "worker/supervisor.h"
+
+namespace gauntlet::worker {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr milliseconds kAccessPollInterval{200};
+
+int Complain(const std::string& text, int code) {
+  fmt::print(stderr, "gauntlet-worker: {}\n", text);
+  return code;
+}
+
+// The kernel ends us with our parent, from now on; false when the parent was gone already.
+bool DieWithParent(pid_t parent) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  return getppid() == parent;
+}
+
+// A signalfd of the signals that stop a worker; they are blocked in this thread and those it starts.
+UniqueFd BlockStopSignals() {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&set, signal);
+  sigprocmask(SIG_BLOCK, &set, nullptr);
+  signal(SIGPIPE, SIG_IGN);
+  return UniqueFd(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK));
+}
+
+Status StartLogging(const WorkerOptions& options) {
+  try {
+    auto to_stderr = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+    std::vector<spdlog::sink_ptr> sinks{to_stderr};
+    if (!options.log_file.empty()) {
+      // What ends the worker stands on stderr too: whoever started it may not look into the file.
+      to_stderr->set_level(spdlog::level::err);
+      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(options.log_file));
+    }
+    auto logger = std::make_shared<spdlog::logger>("worker", sinks.begin(), sinks.end());
+    logger->set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
+    logger->flush_on(spdlog::level::info);
+    logger->set_pattern(fmt::format("%Y-%m-%d %H:%M:%S.%e worker {} %l: %v", getpid()));
+    spdlog::set_default_logger(std::move(logger));
+  } catch (const spdlog::spdlog_ex& error) {
+    return InvalidInput(error.what());
+  }
+  return Ok{};
+}
+
+// nullopt: a signal asked to stop. Error: the file is wrong, or has not come in time (kNotFound).
+Result<std::optional<Access>> WaitForAccess(const WorkerOptions& options, int signals) {
+  const auto deadline = steady_clock::now() + std::chrono::duration<double>(options.orphan_timeout_seconds);
+  bool told = false;
+  while (true) {
+    Result<Access> access = ReadAccess(options.access_path);
+    if (access.ok()) return std::optional(std::move(*access));
+    if (access.error().kind != ErrorKind::kNotFound || steady_clock::now() >= deadline) return access.error();
+    if (!std::exchange(told, true)) spdlog::info("waiting for {}", options.access_path);
+    pollfd stop{.fd = signals, .events = POLLIN, .revents = 0};
+    if (poll(&stop, 1, static_cast<int>(kAccessPollInterval.count())) > 0) return std::optional<Access>();
+  }
+}
+
+std::string HostName() {
+  // All nodes of a Slurm cluster on one machine share a host name; Slurm's name tells them apart.
+  if (const char* node = std::getenv("SLURMD_NODENAME"); node != nullptr) return node;
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) return "unknown";
+  return name.data();
+}
+
+std::uint64_t RandomId() {
+  std::random_device device;
+  while (true) {
+    const std::uint64_t id = (static_cast<std::uint64_t>(device()) << 32) | device();
+    if (id != 0) return id;
+  }
+}
+
+Result<std::string> ReadSpec(const std::string& file) {
+  const UniqueFd opened(file == "-" ? dup(STDIN_FILENO) : open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  const std::string place = file == "-" ? "stdin" : file;
+  if (!opened.valid()) return Error{ErrorKind::kIo, fmt::format("{}: {}", place, std::strerror(errno))};
+  std::string bytes;
+  std::array<char, 64 * 1024> chunk;
+  while (true) {
+    const ssize_t got = read(opened.get(), chunk.data(), chunk.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return Error{ErrorKind::kIo, fmt::format("{}: {}", place, std::strerror(errno))};
+    if (got == 0) return bytes;
+    bytes.append(chunk.data(), static_cast<std::size_t>(got));
+    if (bytes.size() > kMaxMessageBytes) {
+      return InvalidInput(fmt::format("{}: more than {} bytes, which no spec has", place, kMaxMessageBytes));
+    }
+  }
+}
+
+bool WriteToStdout(std::string_view bytes) {
+  return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() && std::fflush(stdout) == 0;
+}
+
+sim::RunResult ResultOf(const RunnerFailure& failure) {
+  sim::RunResult result;
+  result.verdict = failure.kind == FailureKind::kHung          ? sim::Verdict::kHung
+                   : failure.kind == FailureKind::kOutOfMemory ? sim::Verdict::kOutOfMemory
+                                                               : sim::Verdict::kCrashed;
+  result.message = Describe(failure);
+  result.hash = sim::HashOf(result);
+  return result;
+}
+
+// One job in one fresh runner.
+std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const RunnerJob& job) {
+  RunnerPool pool(server, 1);
+  while (true) {
+    std::vector<pollfd> polled = pool.Descriptors();
+    if (poll(polled.data(), polled.size(), 1000) < 0) {
+      for (pollfd& item : polled) item.revents = 0;
+    }
+    for (PoolEvent& event : pool.Process(polled, steady_clock::now())) {
+      if (std::holds_alternative<SlotReady>(event)) {
+        pool.StartJob(0, job);
+      } else if (auto* finished = std::get_if<SlotFinished>(&event)) {
+        return std::move(finished->report);
+      } else if (auto* failed = std::get_if<SlotFailed>(&event)) {
+        return std::move(failed->failure);
+      } else if (std::holds_alternative<RunnersLost>(event)) {
+        return RunnerFailure{.kind = FailureKind::kExternal,
+                             .signal = 0,
+                             .exit_code = 0,
+                             .stderr_tail = "the fork server ended"};
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int RunWorker(const WorkerOptions& options, const RunFunction& run) {
+  const pid_t parent = getppid();
+  if (options.die_with_parent && !DieWithParent(parent)) return kExitDone;
+  Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
+  if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
+  const UniqueFd signals = BlockStopSignals();
+  if (const Status logging = StartLogging(options); !logging.ok()) {
+    return Complain(logging.error().message, kExitRefused);
+  }
+
+  Result<std::optional<Access>> access = WaitForAccess(options, signals.get());
+  if (!access.ok()) {
+    spdlog::error("{}", access.error().message);
+    return access.error().kind == ErrorKind::kNotFound ? kExitOrphaned : kExitRefused;
+  }
+  if (!access->has_value()) return kExitDone;
+
+  SupervisorOptions supervisor_options;
+  supervisor_options.access_path = options.access_path;
+  supervisor_options.parent = options.die_with_parent ? parent : 0;
+  WorkerSettings& settings = supervisor_options.state;
+  settings.orphan_timeout =
+      std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.orphan_timeout_seconds));
+  settings.identity = Hello{.campaign_id = (*access)->campaign_id,
+                            .instance_id = RandomId(),
+                            .software_version = options.software_version,
+                            .golden_hash = options.golden_hash(),
+                            .slots = static_cast<std::uint32_t>(options.slots),
+                            .host = HostName(),
+                            .pid = getpid(),
+                            .held_leases = {}};
+  spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
+               (*access)->campaign_id, (*access)->endpoints.front());
+  Supervisor supervisor(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());
+  return supervisor.Run();
+}
+
+int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
+  if (options.die_with_parent && !DieWithParent(getppid())) return kExitDone;
+  Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
+  if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
+  Result<std::string> spec = ReadSpec(options.spec_file);
+  if (!spec.ok()) return Complain(spec.error().message, kExitRefused);
+
+  const auto outcome = RunInRunner(**fork_server, {.spec = std::move(*spec),
+                                                   .cpu_limit_seconds = options.cpu_limit_seconds,
+                                                   .memory_limit_bytes = options.memory_limit_bytes,
+                                                   .max_result_bytes = 0});
+  std::string result;
+  if (const auto* report = std::get_if<RunnerReport>(&outcome)) {
+    result = report->result;
+  } else {
+    const RunnerFailure& failure = std::get<RunnerFailure>(outcome);
+    fmt::print(stderr, "gauntlet-worker: the run {}\n{}", Describe(failure), failure.stderr_tail);
+    if (failure.kind == FailureKind::kExternal) return kExitInternal;
+    result = EncodeRunResult(ResultOf(failure), TrajectoryEncoding::kLeaveOut);
+  }
+  if (!WriteToStdout(result)) return Complain("the result cannot be written to stdout", kExitInternal);
+  return kExitDone;
+}
+
+}  // namespace gauntlet::worker

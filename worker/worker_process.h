@@ -1,0 +1,41 @@
+// What gauntlet-worker does once its command line is read: serve a master, or simulate one spec. The run
+// function comes from outside, so that tests can bring one that crashes.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "worker/runner.h"
+
+namespace gauntlet::worker {
+
+struct WorkerOptions {
+  std::string access_path;  // access.json; waited for up to orphan_timeout_seconds
+  int slots = 1;            // runs simulated at the same time
+  bool die_with_parent = false;
+  double orphan_timeout_seconds = 600.0;
+  std::string log_file;  // "": stderr
+  bool quiet = false;    // warnings and errors only
+  std::string software_version;
+  std::function<std::uint64_t()> golden_hash;
+};
+
+// Serves until the master lets it go; the exit code (worker_state.h). To be called from main(), before any
+// thread exists. Changes signal masks and dispositions of the process.
+int RunWorker(const WorkerOptions& options, const RunFunction& run);
+
+struct SpecOptions {
+  std::string spec_file = "-";  // a serialized RunSpec; "-": stdin
+  double cpu_limit_seconds = 600.0;
+  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  bool die_with_parent = false;
+};
+
+// Simulates one spec in a runner, under limits, and writes the serialized RunResult to stdout. A run that
+// ends its runner gives a result too, with the verdict and message of proto/README.md; what it printed goes
+// to stderr. Exit code 0 when a result was written, 2 when the spec could not be read, 4 when the runner was
+// ended from outside.
+int RunOneSpec(const SpecOptions& options, const RunFunction& run);
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,323 @@
+#include "worker/worker_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "sim/base/check.h"
+
+namespace gauntlet::worker {
+namespace {
+
+// Silence after which access.json is looked at, and after which the connection is given up.
+constexpr int kUneasyHeartbeats = 3;
+constexpr int kSilentHeartbeats = 10;
+constexpr int kHellosPerConnection = 10;
+constexpr int kResendHeartbeats = 10;
+// Leases beyond the slots wait here; a master that sends more is told to take them elsewhere.
+constexpr std::size_t kMaxWaiting = 4096;
+
+double Seconds(Duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+WorkerState::WorkerState(WorkerSettings settings, TimePoint now)
+    : settings_(std::move(settings)),
+      now_(now),
+      last_heard_(now),
+      connected_(now),
+      last_hello_(now),
+      last_heartbeat_(now),
+      slots_(settings_.identity.slots) {}
+
+std::vector<WorkerAction> WorkerState::Start() {
+  Greet();
+  return std::exchange(actions_, {});
+}
+
+std::vector<WorkerAction> WorkerState::Handle(WorkerEvent event, TimePoint now) {
+  if (phase_ == Phase::kExited) return {};
+  now_ = std::max(now_, now);
+  std::visit([this](auto& concrete) { On(concrete); }, event);
+  if (phase_ != Phase::kExited) StartWaitingRuns();
+  if (phase_ != Phase::kExited && drain_) ContinueDrain();
+  return std::exchange(actions_, {});
+}
+
+TimePoint WorkerState::NextTick() const {
+  TimePoint next = phase_ == Phase::kGreeting ? last_hello_ + settings_.hello_interval
+                                              : last_heartbeat_ + welcome_.heartbeat;
+  if (drain_ && drain_->drop_at && RunningCount() > 0) next = std::min(next, *drain_->drop_at);
+  if (drain_ && drain_->leave_at) next = std::min(next, *drain_->leave_at);
+  return next;
+}
+
+std::vector<Fence> WorkerState::HeldLeases() const {
+  std::vector<Fence> fences;
+  fences.reserve(finished_.size() + slots_.size() + waiting_.size());
+  for (const auto& [fence, finished] : finished_) fences.push_back(fence);
+  for (const Slot& slot : slots_) {
+    if (slot.state == SlotState::kRunning) fences.push_back(slot.lease.fence);
+  }
+  for (const Lease& lease : waiting_) fences.push_back(lease.fence);
+  std::sort(fences.begin(), fences.end());
+  return fences;
+}
+
+// --- The master's messages ---
+
+void WorkerState::On(MasterMessage& message) {
+  last_heard_ = now_;
+  std::visit([this](auto& concrete) { On(concrete); }, message);
+}
+
+void WorkerState::On(const Welcome& welcome) {
+  if (welcome.epoch < welcome_.epoch) {
+    Act(Note{"old-master", fmt::format("a master of epoch {} answered, epoch {} is known: not listened to",
+                                       welcome.epoch, welcome_.epoch)});
+    return;
+  }
+  welcome_ = welcome;
+  if (phase_ == Phase::kWelcomed) return;  // the answer to a repeated Hello
+  phase_ = Phase::kWelcomed;
+  last_heartbeat_ = now_;
+  for (auto& [fence, finished] : finished_) {
+    finished.sent = now_;
+    Act(Send{finished.result});
+  }
+  if (drain_) Act(Send{Drain{drain_->reason, true}});
+}
+
+void WorkerState::On(const Refused& refused) {
+  Leave(kExitRefused, refused.reason);
+}
+
+void WorkerState::On(Lease& lease) {
+  if (phase_ != Phase::kWelcomed) {
+    Act(Note{"early-lease", "a lease before the welcome: dropped"});
+    return;
+  }
+  if (const auto finished = finished_.find(lease.fence); finished != finished_.end()) {
+    finished->second.sent = now_;
+    Act(Send{finished->second.result});
+    return;
+  }
+  if (Holds(lease.fence)) return;
+  if (drain_) return GiveBack(lease, "the worker is leaving");
+  if (waiting_.size() >= kMaxWaiting) return GiveBack(lease, "too many leases wait here already");
+  waiting_.push_back(std::move(lease));
+}
+
+void WorkerState::On(const Acknowledge& acknowledge) {
+  for (const Fence fence : acknowledge.fences) Forget(fence);
+}
+
+void WorkerState::On(const Heartbeat&) {}
+
+void WorkerState::On(const Cancel& cancel) {
+  Forget(cancel.fence);
+}
+
+void WorkerState::On(const Drain& drain) {
+  if (!drain_)
+    drain_ = DrainPlan{.reason = drain.reason, .exit_code = kExitDone, .drop_at = {}, .leave_at = {}};
+  if (!drain.finish_current) drain_->drop_at = now_;
+}
+
+// --- Runners ---
+
+void WorkerState::On(const SlotBecameReady& ready) {
+  slots_.at(static_cast<std::size_t>(ready.slot)).state = SlotState::kIdle;
+}
+
+void WorkerState::On(RunFinished& finished) {
+  Slot& slot = slots_.at(static_cast<std::size_t>(finished.slot));
+  if (slot.state != SlotState::kRunning) return;  // its lease was given up while the report was under way
+  slot.state = SlotState::kIdle;
+  HandIn({.fence = slot.lease.fence,
+          .run_id = slot.lease.run_id,
+          .result = std::move(finished.result),
+          .failure = std::nullopt,
+          .cpu_seconds = finished.cpu_seconds});
+}
+
+void WorkerState::On(RunnerDied& died) {
+  Slot& slot = slots_.at(static_cast<std::size_t>(died.slot));
+  const bool reported = slot.state == SlotState::kRunning;
+  slot.state = SlotState::kStarting;
+  if (!reported) return;
+  HandIn({.fence = slot.lease.fence,
+          .run_id = slot.lease.run_id,
+          .result = {},
+          .failure = std::move(died.failure),
+          .cpu_seconds = died.cpu_seconds});
+}
+
+void WorkerState::On(const AllRunnersLost&) {
+  for (Slot& slot : slots_) {
+    if (slot.state == SlotState::kRunning) GiveBack(slot.lease, "the fork server ended");
+    slot.state = SlotState::kStarting;
+  }
+  const bool tell = !drain_;
+  drain_ = DrainPlan{.reason = "the fork server ended",
+                     .exit_code = kExitInternal,
+                     .drop_at = now_,
+                     .leave_at = now_ + settings_.acknowledge_wait};
+  if (tell && phase_ == Phase::kWelcomed) Act(Send{Drain{drain_->reason, false}});
+}
+
+// --- Connection, signals and time ---
+
+void WorkerState::On(const MasterMoved&) {
+  GreetAgain();
+}
+
+void WorkerState::On(const StopRequested& stop) {
+  if (!drain_) {
+    drain_ = DrainPlan{.reason = stop.reason,
+                       .exit_code = kExitDone,
+                       .drop_at = now_ + settings_.stop_finish,
+                       .leave_at = now_ + settings_.stop_leave};
+    if (phase_ == Phase::kWelcomed) Act(Send{Drain{stop.reason, true}});
+    return;
+  }
+  // The second signal: what runs is dropped; a drain of the master's becomes one with a deadline.
+  const bool hurry = drain_->drop_at && drain_->leave_at;
+  const auto earlier = [](const std::optional<TimePoint>& planned, TimePoint wanted) {
+    return planned ? std::min(*planned, wanted) : wanted;
+  };
+  drain_->drop_at = earlier(drain_->drop_at, hurry ? now_ : now_ + settings_.stop_finish);
+  drain_->leave_at =
+      earlier(drain_->leave_at, now_ + (hurry ? settings_.acknowledge_wait : settings_.stop_leave));
+}
+
+void WorkerState::On(const ClockTick&) {
+  const Duration silence = now_ - last_heard_;
+  if (phase_ == Phase::kGreeting) {
+    if (silence >= settings_.orphan_timeout) {
+      return Leave(kExitOrphaned, fmt::format("no word from a master for {:.0f} s", Seconds(silence)));
+    }
+    if (now_ - last_hello_ < settings_.hello_interval) return;
+    if (now_ - connected_ >= kHellosPerConnection * settings_.hello_interval) return GreetAgain();
+    Act(CheckAccess{});
+    return Greet();
+  }
+  if (silence >= kSilentHeartbeats * welcome_.heartbeat) {
+    Act(Note{"silence",
+             fmt::format("no word from the master for {:.1f} s: connecting again", Seconds(silence))});
+    return GreetAgain();
+  }
+  if (now_ - last_heartbeat_ < welcome_.heartbeat) return;
+  last_heartbeat_ = now_;
+  Act(Send{Heartbeat{++sequence_, HeldLeases()}});
+  ResendLateResults();
+  if (silence >= kUneasyHeartbeats * welcome_.heartbeat) Act(CheckAccess{});
+}
+
+void WorkerState::Greet() {
+  phase_ = Phase::kGreeting;
+  last_hello_ = now_;
+  Hello hello = settings_.identity;
+  hello.held_leases = HeldLeases();
+  Act(Send{std::move(hello)});
+}
+
+void WorkerState::GreetAgain() {
+  connected_ = now_;
+  Act(Reconnect{});
+  Greet();
+}
+
+void WorkerState::ResendLateResults() {
+  for (auto& [fence, finished] : finished_) {
+    if (now_ - finished.sent < kResendHeartbeats * welcome_.heartbeat) continue;
+    finished.sent = now_;
+    Act(Send{finished.result});
+  }
+}
+
+// --- Leases ---
+
+bool WorkerState::Holds(Fence fence) const {
+  const auto held = HeldLeases();
+  return std::binary_search(held.begin(), held.end(), fence);
+}
+
+void WorkerState::Forget(Fence fence) {
+  finished_.erase(fence);
+  std::erase_if(waiting_, [&](const Lease& lease) { return lease.fence == fence; });
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    if (slot.state != SlotState::kRunning || slot.lease.fence != fence) continue;
+    slot.state = SlotState::kKilling;
+    Act(KillRunner{static_cast<int>(i)});
+  }
+}
+
+void WorkerState::StartWaitingRuns() {
+  if (drain_) return;
+  for (std::size_t i = 0; i < slots_.size() && !waiting_.empty(); ++i) {
+    Slot& slot = slots_[i];
+    if (slot.state != SlotState::kIdle) continue;
+    slot.state = SlotState::kRunning;
+    slot.lease = std::move(waiting_.front());
+    waiting_.pop_front();
+    Act(StartRun{.slot = static_cast<int>(i),
+                 .spec = std::move(slot.lease.spec),
+                 .cpu_limit_seconds = welcome_.cpu_limit_seconds,
+                 .memory_limit_bytes = welcome_.memory_limit_bytes});
+  }
+}
+
+void WorkerState::HandIn(LeaseResult result) {
+  const Fence fence = result.fence;
+  if (phase_ == Phase::kWelcomed) Act(Send{result});
+  finished_.insert_or_assign(fence, Finished{std::move(result), now_});
+}
+
+void WorkerState::GiveBack(const Lease& lease, const std::string& why) {
+  HandIn({.fence = lease.fence,
+          .run_id = lease.run_id,
+          .result = {},
+          .failure =
+              RunnerFailure{.kind = FailureKind::kExternal, .signal = 0, .exit_code = 0, .stderr_tail = why},
+          .cpu_seconds = 0.0});
+}
+
+void WorkerState::DropRunning(const std::string& why) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    if (slot.state != SlotState::kRunning) continue;
+    slot.state = SlotState::kKilling;
+    Act(KillRunner{static_cast<int>(i)});
+    GiveBack(slot.lease, why);
+  }
+}
+
+std::size_t WorkerState::RunningCount() const {
+  return static_cast<std::size_t>(std::count_if(
+      slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.state == SlotState::kRunning; }));
+}
+
+// --- Leaving ---
+
+void WorkerState::ContinueDrain() {
+  for (const Lease& lease : std::exchange(waiting_, {})) GiveBack(lease, "drained before it began");
+  if (drain_->drop_at && now_ >= *drain_->drop_at) DropRunning("drained while it ran");
+  const bool runs = RunningCount() > 0;
+  if (!runs && !drain_->leave_at) drain_->leave_at = now_ + settings_.acknowledge_wait;
+  const bool handed_in = !runs && finished_.empty();
+  if (!handed_in && (!drain_->leave_at || now_ < *drain_->leave_at)) return;
+  if (phase_ == Phase::kWelcomed) Act(Send{Goodbye{drain_->reason}});
+  Leave(drain_->exit_code, drain_->reason);
+}
+
+void WorkerState::Leave(int code, const std::string& reason) {
+  phase_ = Phase::kExited;
+  Act(Exit{code, reason});
+}
+
+}  // namespace gauntlet::worker

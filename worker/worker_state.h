@@ -1,0 +1,176 @@
+// The supervisor's decisions as a pure state machine: events with a clock value in, actions out. No sockets,
+// no processes, no time of its own.
+//
+//                 Welcome                       10 heartbeats of silence
+//   greeting  ----------------->  welcomed  ------------------------------->  greeting (reconnected)
+//      | Refused: exit 2              | Drain or signal
+//      | orphan_timeout: exit 3       v
+//      +------------------------> draining: finish or drop, hand in, Goodbye, exit 0
+//
+// Invariants: a lease is held (queued, running or finished) until its result is acknowledged, it is cancelled
+// or this process ends; every held lease stands in Hello and in every heartbeat; a finished result is sent
+// after every Welcome and again after ten heartbeats without an acknowledgement.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "worker/messages.h"
+
+namespace gauntlet::worker {
+
+using TimePoint = std::chrono::steady_clock::time_point;
+using Duration = std::chrono::steady_clock::duration;
+
+// Exit codes of gauntlet-worker.
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitRefused = 2;   // by the master, or a wrong command line
+inline constexpr int kExitOrphaned = 3;  // no master within orphan_timeout
+inline constexpr int kExitInternal = 4;
+
+struct WorkerSettings {
+  Hello identity;  // all but held_leases
+  Duration orphan_timeout = std::chrono::seconds(600);
+  Duration hello_interval = std::chrono::seconds(1);
+  // After a signal: running runs are dropped, then the worker leaves, acknowledged or not. Slurm and systemd
+  // send SIGKILL 30 s after SIGTERM.
+  Duration stop_finish = std::chrono::seconds(20);
+  Duration stop_leave = std::chrono::seconds(25);
+  // When nothing runs any more, how long a draining worker waits for the last acknowledgements.
+  Duration acknowledge_wait = std::chrono::seconds(5);
+};
+
+// What happens to the worker. Messages of the master are events too.
+struct SlotBecameReady {  // its runner waits for a job
+  int slot = 0;
+};
+struct RunFinished {
+  int slot = 0;
+  std::string result;  // serialized gauntlet.v1.RunResult
+  double cpu_seconds = 0.0;
+};
+struct RunnerDied {  // with or without a job
+  int slot = 0;
+  RunnerFailure failure;
+  double cpu_seconds = 0.0;
+};
+struct AllRunnersLost {};  // the fork server is gone: this process cannot simulate any more
+struct MasterMoved {};     // access.json names another endpoint or epoch
+struct StopRequested {     // SIGTERM, SIGINT, SIGHUP; the second one does not wait for runs
+  std::string reason;
+};
+struct ClockTick {};
+using WorkerEvent = std::variant<MasterMessage, SlotBecameReady, RunFinished, RunnerDied, AllRunnersLost,
+                                 MasterMoved, StopRequested, ClockTick>;
+
+// What the driver shall do, in this order.
+struct Send {
+  WorkerMessage message;
+};
+struct StartRun {
+  int slot = 0;
+  std::string spec;
+  double cpu_limit_seconds = 0.0;
+  std::uint64_t memory_limit_bytes = 0;
+};
+struct KillRunner {
+  int slot = 0;
+};
+struct CheckAccess {};  // re-read access.json; when it changed: MasterMoved
+struct Reconnect {};    // drop the connection and all that waits to be sent; connect anew
+struct Note {           // for the log, once per kind
+  std::string kind;
+  std::string text;
+};
+struct Exit {
+  int code = 0;
+  std::string reason;
+};
+using WorkerAction = std::variant<Send, StartRun, KillRunner, CheckAccess, Reconnect, Note, Exit>;
+
+// Thread-safety: one calling thread.
+class WorkerState {
+ public:
+  WorkerState(WorkerSettings settings, TimePoint now);
+
+  // The connection stands (or is being made): the first Hello.
+  std::vector<WorkerAction> Start();
+  // After Exit, events give no actions.
+  std::vector<WorkerAction> Handle(WorkerEvent event, TimePoint now);
+  // When the next ClockTick is due at the latest.
+  TimePoint NextTick() const;
+
+  bool welcomed() const { return phase_ == Phase::kWelcomed; }
+  bool draining() const { return drain_.has_value(); }
+  std::vector<Fence> HeldLeases() const;
+
+ private:
+  enum class Phase { kGreeting, kWelcomed, kExited };
+  enum class SlotState { kStarting, kIdle, kRunning, kKilling };
+  struct Slot {
+    SlotState state = SlotState::kStarting;
+    Lease lease;  // when running
+  };
+  struct Finished {
+    LeaseResult result;
+    TimePoint sent;
+  };
+  struct DrainPlan {
+    std::string reason;
+    int exit_code = kExitDone;
+    std::optional<TimePoint> drop_at;   // running runs are given up
+    std::optional<TimePoint> leave_at;  // exit, whatever is not acknowledged
+  };
+
+  void On(MasterMessage& message);
+  void On(const Welcome& welcome);
+  void On(const Refused& refused);
+  void On(Lease& lease);
+  void On(const Acknowledge& acknowledge);
+  void On(const Heartbeat& heartbeat);
+  void On(const Cancel& cancel);
+  void On(const Drain& drain);
+  void On(const SlotBecameReady& ready);
+  void On(RunFinished& finished);
+  void On(RunnerDied& died);
+  void On(const AllRunnersLost& lost);
+  void On(const MasterMoved& moved);
+  void On(const StopRequested& stop);
+  void On(const ClockTick& tick);
+
+  void Act(WorkerAction action) { actions_.push_back(std::move(action)); }
+  void Greet();
+  void GreetAgain();
+  void ResendLateResults();
+  void Forget(Fence fence);
+  bool Holds(Fence fence) const;
+  void StartWaitingRuns();
+  void HandIn(LeaseResult result);
+  void GiveBack(const Lease& lease, const std::string& why);
+  void DropRunning(const std::string& why);
+  void ContinueDrain();
+  void Leave(int code, const std::string& reason);
+  std::size_t RunningCount() const;
+
+  WorkerSettings settings_;
+  Phase phase_ = Phase::kGreeting;
+  TimePoint now_;
+  TimePoint last_heard_;
+  TimePoint connected_;  // last (re)connect while greeting
+  TimePoint last_hello_;
+  TimePoint last_heartbeat_;
+  std::uint64_t sequence_ = 0;
+  Welcome welcome_;  // the newest; its heartbeat also paces what happens before the first
+  std::vector<Slot> slots_;
+  std::deque<Lease> waiting_;
+  std::map<Fence, Finished> finished_;
+  std::optional<DrainPlan> drain_;
+  std::vector<WorkerAction> actions_;
+};
+
+}  // namespace gauntlet::worker
