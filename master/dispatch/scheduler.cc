@@ -103,6 +103,7 @@ bool Scheduler::WorkerLeft(InstanceId id) {
   const auto found = workers_.find(id);
   if (found == workers_.end()) return false;
   Worker& worker = found->second;
+  worker.lost = true;  // gets nothing of what it gives back
   Unlist(id, worker);
   ReleaseAll(worker);
   while (!worker.loose.empty()) {

@@ -1,0 +1,418 @@
+#include "master/dispatch/scheduler.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/fake_clock.h"
+
+namespace gauntlet::master {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::minutes;
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::UnorderedElementsAre;
+
+constexpr Fence kFirstFence = 7ULL << 32;
+
+DispatchOptions Options(std::uint32_t credit = 1) {
+  DispatchOptions options;
+  options.credit = credit;
+  return options;
+}
+
+class SchedulerTest : public testing::Test {
+ protected:
+  SchedulerOrders Decide() { return scheduler_.Decide(clock_.Now()); }
+  void Join(InstanceId worker, std::uint32_t slots = 1, const std::vector<Fence>& held = {}) {
+    scheduler_.WorkerJoined(worker, slots, held, clock_.Now());
+  }
+  void SubmitRuns(RunId first, RunId last) {
+    for (RunId run = first; run <= last; ++run) scheduler_.Submit(run);
+  }
+  // Lets time pass while these workers, holding nothing in particular, send heartbeats.
+  SchedulerOrders PassTime(milliseconds time, const std::vector<InstanceId>& alive) {
+    SchedulerOrders all;
+    for (milliseconds passed{0}; passed < time; passed += milliseconds(250)) {
+      clock_.Advance(milliseconds(250));
+      for (const InstanceId worker : alive) scheduler_.WorkerHeard(worker, clock_.Now());
+      SchedulerOrders orders = Decide();
+      for (auto& lost : orders.lost) all.lost.push_back(lost);
+      for (auto& lease : orders.leases) all.leases.push_back(lease);
+      for (auto& forgotten : orders.forgotten) all.forgotten.push_back(forgotten);
+    }
+    return all;
+  }
+  static std::vector<RunId> RunsOf(const SchedulerOrders& orders) {
+    std::vector<RunId> runs;
+    for (const LeaseOrder& lease : orders.leases) runs.push_back(lease.run);
+    return runs;
+  }
+  static std::vector<Fence> FencesOf(const std::vector<FenceOrder>& orders) {
+    std::vector<Fence> fences;
+    for (const FenceOrder& order : orders) fences.push_back(order.fence);
+    return fences;
+  }
+
+  testing_support::FakeClock clock_;
+  Scheduler scheduler_{Options(), kFirstFence};
+};
+
+TEST_F(SchedulerTest, LeasesRunsInLogicalOrderWithGrowingFences) {
+  scheduler_.Submit(3);
+  scheduler_.Submit(1);
+  scheduler_.Submit(2);
+  Join(10, 2);
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(RunsOf(orders), ElementsAre(1, 2));
+  EXPECT_EQ(orders.leases[0].fence, kFirstFence);
+  EXPECT_EQ(orders.leases[1].fence, kFirstFence + 1);
+  EXPECT_EQ(orders.leases[0].worker, 10U);
+  EXPECT_EQ(orders.leases[0].attempt, 1U);
+  EXPECT_EQ(scheduler_.queued(), 1U);
+}
+
+TEST_F(SchedulerTest, FillsEverySlotBeforeItPrefetches) {
+  scheduler_ = Scheduler(Options(2), kFirstFence);
+  SubmitRuns(1, 10);
+  Join(10, 2);
+  Join(11, 1);
+  const SchedulerOrders orders = Decide();
+  ASSERT_THAT(orders.leases, SizeIs(6));
+  std::vector<InstanceId> first;
+  for (std::size_t i = 0; i < 3; ++i) first.push_back(orders.leases[i].worker);
+  EXPECT_THAT(first, UnorderedElementsAre(10, 10, 11));
+}
+
+TEST_F(SchedulerTest, AResultMakesRoomForTheNextRun) {
+  SubmitRuns(1, 2);
+  Join(10);
+  const SchedulerOrders orders = Decide();
+  EXPECT_EQ(scheduler_.Completed(10, orders.leases[0].fence, 1, 111), Answer::kAccepted);
+  EXPECT_THAT(RunsOf(Decide()), ElementsAre(2));
+}
+
+TEST_F(SchedulerTest, AcknowledgesAResultWhenItIsStoredAndForgetsTheRun) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence fence = Decide().leases[0].fence;
+  EXPECT_EQ(scheduler_.Completed(10, fence, 1, 111), Answer::kAccepted);
+  EXPECT_EQ(scheduler_.Completed(10, fence, 1, 111), Answer::kRepeated);
+  EXPECT_THAT(Decide().acknowledgements, IsEmpty());
+  scheduler_.Acknowledge(1);
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(FencesOf(orders.acknowledgements), ElementsAre(fence));
+  EXPECT_EQ(scheduler_.remembered_runs(), 0U);
+  EXPECT_EQ(scheduler_.Statistics().duplicates, 0U);
+}
+
+TEST_F(SchedulerTest, AcknowledgesAgainWhatAWorkerStillHolds) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence fence = Decide().leases[0].fence;
+  scheduler_.Completed(10, fence, 1, 111);
+  scheduler_.WorkerHeartbeat(10, {fence}, clock_.Now());
+  EXPECT_THAT(Decide().acknowledgements, IsEmpty()) << "not stored yet";
+  scheduler_.Acknowledge(1);
+  Decide();
+  scheduler_.WorkerHeartbeat(10, {fence}, clock_.Now());
+  EXPECT_THAT(FencesOf(Decide().acknowledgements), ElementsAre(fence));
+}
+
+TEST_F(SchedulerTest, LosesAWorkerAfterThreeSilentHeartbeatsAndLeasesItsRunsElsewhere) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence first = Decide().leases[0].fence;
+  Join(11);
+  EXPECT_THAT(PassTime(milliseconds(2750), {11}).lost, IsEmpty());
+  const SchedulerOrders orders = PassTime(milliseconds(500), {11});
+  ASSERT_THAT(orders.lost, SizeIs(1));
+  EXPECT_EQ(orders.lost[0].worker, 10U);
+  EXPECT_THAT(orders.lost[0].released, ElementsAre(1));
+  ASSERT_THAT(orders.leases, SizeIs(1));
+  EXPECT_EQ(orders.leases[0].worker, 11U);
+  EXPECT_EQ(orders.leases[0].attempt, 2U);
+  EXPECT_GT(orders.leases[0].fence, first);
+  const WorkerStatistics statistics = scheduler_.Statistics();
+  EXPECT_EQ(statistics.lost, 1);
+  EXPECT_EQ(statistics.releases, 1U);
+  EXPECT_EQ(statistics.connected, 1);
+}
+
+TEST_F(SchedulerTest, AMasterThatWasFrozenTakesNobodyForLost) {
+  SubmitRuns(1, 1);
+  Join(10);
+  Decide();
+  clock_.Advance(minutes(10));
+  EXPECT_THAT(Decide().lost, IsEmpty());
+  scheduler_.WorkerHeard(10, clock_.Now());
+  EXPECT_THAT(PassTime(seconds(2), {}).lost, IsEmpty());
+}
+
+TEST_F(SchedulerTest, ADeadProcessIsLostAtOnce) {
+  SubmitRuns(1, 1);
+  Join(10);
+  Decide();
+  Join(11);
+  EXPECT_TRUE(scheduler_.WorkerDied(10));
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(orders.lost, SizeIs(1));
+  EXPECT_EQ(orders.leases.at(0).worker, 11U);
+}
+
+TEST_F(SchedulerTest, ALateResultIsTakenAndTheOtherWorkerIsToldToStop) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence late = Decide().leases[0].fence;
+  Join(11);
+  scheduler_.WorkerDied(10);
+  const Fence second = Decide().leases.at(0).fence;
+  EXPECT_EQ(scheduler_.Completed(10, late, 1, 111), Answer::kAccepted);
+  SchedulerOrders orders = Decide();
+  ASSERT_THAT(FencesOf(orders.cancels), ElementsAre(second));
+  EXPECT_EQ(orders.cancels[0].worker, 11U);
+  EXPECT_EQ(scheduler_.unfinished(), 0U);
+  scheduler_.Submit(2);
+  EXPECT_EQ(Decide().leases.at(0).worker, 11U) << "the cancelled lease no longer fills its slot";
+}
+
+TEST_F(SchedulerTest, ALateResultOfAQueuedRunTakesItOutOfTheQueue) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence late = Decide().leases[0].fence;
+  scheduler_.WorkerDied(10);
+  Decide();
+  EXPECT_EQ(scheduler_.queued(), 1U);
+  EXPECT_EQ(scheduler_.Completed(10, late, 1, 111), Answer::kAccepted);
+  EXPECT_EQ(scheduler_.queued(), 0U);
+  Join(11);
+  EXPECT_THAT(Decide().leases, IsEmpty());
+}
+
+TEST_F(SchedulerTest, EqualDuplicatesAreCounted) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence first = Decide().leases[0].fence;
+  Join(11);
+  scheduler_.WorkerDied(10);
+  const Fence second = Decide().leases[0].fence;
+  scheduler_.Completed(11, second, 1, 111);
+  scheduler_.Acknowledge(1);
+  Decide();
+  EXPECT_EQ(scheduler_.Completed(10, first, 1, 111), Answer::kDuplicate);
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(orders.mismatches, IsEmpty());
+  EXPECT_THAT(FencesOf(orders.acknowledgements), ElementsAre(first));
+  EXPECT_EQ(scheduler_.Statistics().duplicates, 1U);
+  EXPECT_EQ(scheduler_.remembered_runs(), 0U);
+}
+
+TEST_F(SchedulerTest, DifferentDuplicatesNameBothWorkers) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence first = Decide().leases[0].fence;
+  Join(11);
+  scheduler_.WorkerDied(10);
+  const Fence second = Decide().leases[0].fence;
+  scheduler_.Completed(11, second, 1, 111);
+  EXPECT_EQ(scheduler_.Completed(10, first, 1, 222), Answer::kDuplicate);
+  const SchedulerOrders orders = Decide();
+  ASSERT_THAT(orders.mismatches, SizeIs(1));
+  EXPECT_EQ(orders.mismatches[0].run, 1U);
+  EXPECT_EQ(orders.mismatches[0].first_worker, 11U);
+  EXPECT_EQ(orders.mismatches[0].second_worker, 10U);
+  EXPECT_EQ(orders.mismatches[0].first_hash, 111U);
+  EXPECT_EQ(orders.mismatches[0].second_hash, 222U);
+  EXPECT_EQ(scheduler_.Statistics().nondeterministic, 1U);
+}
+
+TEST_F(SchedulerTest, ThreeOwnFailuresGiveUpTheRun) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const RunFailure crash{FailureKind::kCrashed, 11, 0};
+  for (int attempt = 1; attempt <= 2; ++attempt) {
+    const SchedulerOrders orders = Decide();
+    ASSERT_THAT(orders.leases, SizeIs(1));
+    EXPECT_THAT(orders.given_up, IsEmpty());
+    EXPECT_EQ(scheduler_.Failed(10, orders.leases[0].fence, 1, crash), Answer::kAccepted);
+  }
+  const Fence last = Decide().leases.at(0).fence;
+  scheduler_.Failed(10, last, 1, {FailureKind::kHung, 0, 0});
+  const SchedulerOrders orders = Decide();
+  ASSERT_THAT(orders.given_up, SizeIs(1));
+  EXPECT_EQ(orders.given_up[0].last.kind, FailureKind::kHung);
+  EXPECT_EQ(orders.given_up[0].of_last_kind, 1U);
+  EXPECT_EQ(orders.given_up[0].attempts, 3U);
+  EXPECT_EQ(orders.given_up[0].leases, 3U);
+  EXPECT_THAT(FencesOf(orders.acknowledgements), ElementsAre(last));
+  EXPECT_THAT(orders.leases, IsEmpty());
+  scheduler_.Acknowledge(1);
+  EXPECT_EQ(scheduler_.remembered_runs(), 0U);
+}
+
+TEST_F(SchedulerTest, ExternalFailuresAndLostWorkersAreNoAttempts) {
+  SubmitRuns(1, 1);
+  for (InstanceId worker = 10; worker < 20; ++worker) {
+    Join(worker);
+    const Fence fence = Decide().leases.at(0).fence;
+    EXPECT_EQ(scheduler_.Failed(worker, fence, 1, {FailureKind::kExternal, 15, 0}), Answer::kAccepted);
+    EXPECT_THAT(Decide().leases, SizeIs(1));
+    scheduler_.WorkerDied(worker);
+  }
+  Join(20);
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(orders.given_up, IsEmpty());
+  EXPECT_EQ(orders.leases.at(0).attempt, 21U);
+  EXPECT_EQ(scheduler_.Completed(20, orders.leases[0].fence, 1, 111), Answer::kAccepted);
+}
+
+TEST_F(SchedulerTest, AnotherWorkersLeaseOrAnotherRunIsRejected) {
+  SubmitRuns(1, 2);
+  Join(10);
+  const Fence fence = Decide().leases[0].fence;
+  Join(11);
+  Decide();
+  EXPECT_EQ(scheduler_.Completed(11, fence, 1, 111), Answer::kRejected);
+  EXPECT_EQ(scheduler_.Completed(10, fence, 2, 111), Answer::kRejected);
+  EXPECT_EQ(scheduler_.Failed(11, fence, 1, {FailureKind::kCrashed, 11, 0}), Answer::kRejected);
+  EXPECT_EQ(scheduler_.unfinished(), 2U);
+}
+
+TEST_F(SchedulerTest, AFenceThatWasNeverGivenIsUnwanted) {
+  SubmitRuns(1, 1);
+  Join(10);
+  Decide();
+  EXPECT_EQ(scheduler_.Completed(10, kFirstFence + 99, 1, 111), Answer::kUnwanted);
+  EXPECT_EQ(scheduler_.unfinished(), 1U);
+}
+
+TEST_F(SchedulerTest, AResultLeasedByAnEarlierMasterIsTaken) {
+  SubmitRuns(1, 1);
+  const Fence old = (3ULL << 32) + 5;
+  Join(10, 1, {old});
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(orders.acknowledgements, IsEmpty()) << "it may bring a result";
+  EXPECT_EQ(scheduler_.Completed(10, old, 1, 111), Answer::kAccepted);
+  EXPECT_THAT(FencesOf(Decide().cancels), ElementsAre(orders.leases.at(0).fence));
+  scheduler_.Acknowledge(1);
+  EXPECT_THAT(FencesOf(Decide().acknowledgements), ElementsAre(old));
+}
+
+TEST_F(SchedulerTest, AReturningWorkerKeepsTheRunThatNobodyElseHas) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence fence = Decide().leases[0].fence;
+  scheduler_.WorkerDied(10);
+  EXPECT_THAT(Decide().lost, SizeIs(1));
+  scheduler_.WorkerHeartbeat(10, {fence}, clock_.Now());
+  Join(11);
+  SchedulerOrders orders = Decide();
+  EXPECT_THAT(orders.leases, IsEmpty());
+  EXPECT_THAT(orders.cancels, IsEmpty());
+  EXPECT_EQ(scheduler_.Completed(10, fence, 1, 111), Answer::kAccepted);
+}
+
+TEST_F(SchedulerTest, AReturningWorkerIsToldToDropARunThatWasGivenAway) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence fence = Decide().leases[0].fence;
+  Join(11);
+  scheduler_.WorkerDied(10);
+  Decide();
+  scheduler_.WorkerHeartbeat(10, {fence}, clock_.Now());
+  const SchedulerOrders orders = Decide();
+  ASSERT_THAT(FencesOf(orders.cancels), ElementsAre(fence));
+  EXPECT_EQ(orders.cancels[0].worker, 10U);
+}
+
+TEST_F(SchedulerTest, ALeaseThatAReconnectedWorkerDoesNotHoldIsGivenAgain) {
+  SubmitRuns(1, 1);
+  Join(10);
+  const Fence fence = Decide().leases[0].fence;
+  Join(10, 1, {});
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(RunsOf(orders), ElementsAre(1));
+  EXPECT_GT(orders.leases[0].fence, fence);
+}
+
+TEST_F(SchedulerTest, ALeaseThatCrossedAHeartbeatIsNotTakenBackButALostOneIs) {
+  SubmitRuns(1, 1);
+  Join(10);
+  Decide();
+  scheduler_.WorkerHeartbeat(10, {}, clock_.Now());
+  EXPECT_THAT(Decide().leases, IsEmpty());
+  PassTime(seconds(2), {10});
+  scheduler_.WorkerHeartbeat(10, {}, clock_.Now());
+  EXPECT_THAT(RunsOf(Decide()), ElementsAre(1));
+}
+
+TEST_F(SchedulerTest, ADrainingWorkerGetsNothingNewAndMayFinish) {
+  SubmitRuns(1, 2);
+  Join(10);
+  const Fence fence = Decide().leases[0].fence;
+  scheduler_.WorkerDraining(10);
+  EXPECT_EQ(scheduler_.Completed(10, fence, 1, 111), Answer::kAccepted);
+  EXPECT_THAT(Decide().leases, IsEmpty());
+  EXPECT_EQ(scheduler_.queued(), 1U);
+}
+
+TEST_F(SchedulerTest, AGoodbyeReleasesItsRunsWithoutCountingALoss) {
+  SubmitRuns(1, 1);
+  Join(10);
+  Decide();
+  EXPECT_TRUE(scheduler_.WorkerLeft(10));
+  EXPECT_FALSE(scheduler_.WorkerHeard(10, clock_.Now()));
+  Join(11);
+  EXPECT_THAT(RunsOf(Decide()), ElementsAre(1));
+  EXPECT_EQ(scheduler_.Statistics().lost, 0);
+}
+
+TEST_F(SchedulerTest, AnUndeliveredLeaseGoesElsewhereAndIsNoAttempt) {
+  SubmitRuns(1, 1);
+  Join(10);
+  scheduler_.Undelivered(Decide().leases[0].fence);
+  EXPECT_THAT(Decide().leases, IsEmpty()) << "the worker is not tried again before it is heard of";
+  Join(11);
+  const SchedulerOrders orders = Decide();
+  EXPECT_EQ(orders.leases.at(0).worker, 11U);
+  EXPECT_EQ(orders.leases[0].attempt, 1U);
+}
+
+TEST_F(SchedulerTest, VanishedWorkersAndUnansweredLeasesAreForgottenInTime) {
+  SubmitRuns(1, 1);
+  Join(10);
+  Decide();
+  Join(11);
+  scheduler_.WorkerDied(10);
+  scheduler_.Completed(11, Decide().leases.at(0).fence, 1, 111);
+  scheduler_.Acknowledge(1);
+  EXPECT_THAT(PassTime(minutes(14), {11}).forgotten, IsEmpty());
+  EXPECT_EQ(scheduler_.remembered_runs(), 1U) << "a late result would be compared";
+  EXPECT_THAT(PassTime(minutes(2), {11}).forgotten, ElementsAre(10));
+  EXPECT_EQ(scheduler_.remembered_runs(), 0U);
+  EXPECT_FALSE(scheduler_.Known(10));
+}
+
+TEST_F(SchedulerTest, StopLeasingLeavesRunsInTheQueue) {
+  SubmitRuns(1, 1);
+  scheduler_.StopLeasing();
+  Join(10);
+  EXPECT_THAT(Decide().leases, IsEmpty());
+  EXPECT_EQ(scheduler_.queued(), 1U);
+}
+
+TEST_F(SchedulerTest, FiveHundredWorkersAreAllLeasedAtOnce) {
+  SubmitRuns(1, 2000);
+  for (InstanceId worker = 1; worker <= 512; ++worker) Join(worker);
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(orders.leases, SizeIs(512));
+  EXPECT_EQ(scheduler_.Statistics().busy, 512);
+}
+
+}  // namespace
+}  // namespace gauntlet::master
