@@ -163,26 +163,38 @@ class Reader {
   }
 
   Status UnknownKey(const Assignment& assignment) const {
-    const std::string table = assignment.path.substr(0, assignment.path.find('.') + 1);
-    // An empty table of a known name is harmless.
-    const bool known_table = std::any_of(keys_.begin(), keys_.end(), [&](const Key& key) {
-      return key.path.starts_with(assignment.path + ".") || IsParameterTable(assignment.path);
-    });
+    const bool known_table =
+        IsParameterTable(assignment.path) || std::any_of(keys_.begin(), keys_.end(), [&](const Key& key) {
+          return key.path.starts_with(assignment.path + ".");
+        });
     const auto* other = std::get_if<OtherToml>(&assignment.value);
-    if (known_table && other != nullptr && other->kind == "a table") return Ok{};
+    if (known_table && other != nullptr && other->kind == "a table") return Ok{};  // an empty one is harmless
+    return InvalidInput(
+        fmt::format("{}: unknown key '{}'; {}", assignment.where, assignment.path, HintFor(assignment.path)));
+  }
 
-    std::vector<std::string_view> known;
-    std::string siblings;
+  // "did you mean ...?", or the keys that could have been meant.
+  std::string HintFor(const std::string& path) const {
+    const std::size_t dot = path.find('.');
+    const std::string table = dot == std::string::npos ? "" : path.substr(0, dot + 1);
+    const std::string name = path.substr(table.size());
+    std::vector<std::string_view> paths;
+    std::vector<std::string_view> siblings;  // names in the same table
+    std::string siblings_text;
+    std::string same_name;  // in another table
     for (const Key& key : keys_) {
-      known.push_back(key.path);
+      paths.push_back(key.path);
+      if (key.path.ends_with("." + name)) same_name = key.path;
       if (table.empty() || !key.path.starts_with(table)) continue;
-      siblings += (siblings.empty() ? "" : ", ") + key.path;
+      siblings.push_back(std::string_view(key.path).substr(table.size()));
+      siblings_text += (siblings_text.empty() ? "known: " : ", ") + key.path;
     }
-    const std::string nearest = NearestName(assignment.path, known);
-    std::string hint = "; top-level keys: name, description, seed, scenario, controller";
-    if (!siblings.empty()) hint = "; known: " + siblings;
-    if (!nearest.empty()) hint = "; did you mean '" + nearest + "'?";
-    return InvalidInput(fmt::format("{}: unknown key '{}'{}", assignment.where, assignment.path, hint));
+    std::string nearest = same_name;
+    if (nearest.empty() && siblings.empty()) nearest = NearestName(path, paths);
+    if (const std::string sibling = NearestName(name, siblings); !sibling.empty()) nearest = table + sibling;
+    if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
+    if (!siblings_text.empty()) return siblings_text;
+    return "known at the top: name, description, seed, scenario, controller";
   }
 
   static bool IsParameterTable(std::string_view path) {

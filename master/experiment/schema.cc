@@ -306,9 +306,9 @@ std::optional<BrokenRule> CheckRules(const Experiment& experiment) {
     const std::string& message = genome.error().message;
     return BrokenRule{message.substr(0, message.find(' ')), message};
   }
-  if (experiment.arena.wall_thickness >= experiment.arena.side) {
+  if (experiment.arena.wall_thickness > experiment.arena.side / 2.0) {
     return BrokenRule{"arena.wall_thickness",
-                      fmt::format("arena.wall_thickness = {} must be less than arena.side = {}",
+                      fmt::format("arena.wall_thickness = {} must not exceed half of arena.side = {}",
                                   experiment.arena.wall_thickness, experiment.arena.side)};
   }
   if (experiment.search.kind != SearchKind::kGenetic) return std::nullopt;

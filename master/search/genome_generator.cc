@@ -82,6 +82,11 @@ std::optional<sim::Genome> GenomeGenerator::TryGenome(sim::RandomStream& random)
 }
 
 Result<sim::TestCase> GenomeGenerator::RandomTestCase(sim::RandomStream& random) const {
+  const sim::IncrementalValidity empty(arena_, requirements_);
+  if (const std::optional<sim::Violation>& violation = empty.arena_violation()) {
+    return InvalidInput(fmt::format("the arena breaks the rule {} before it has any obstacle: {}",
+                                    sim::NameOf(violation->rule), violation->message));
+  }
   for (int start = 0; start < kMaxRestarts; ++start) {
     if (std::optional<sim::Genome> genome = TryGenome(random)) return WithObstacles(std::move(*genome));
   }

@@ -26,7 +26,8 @@ class GenomeGenerator {
   // continuous, and turned by whole degrees. It may break validity rules.
   sim::ObstacleGene RandomGene(sim::RandomStream& random) const;
 
-  // A valid case. Error: none was found in kMaxRestarts starts; the message names the ranges.
+  // A valid case. Error: the arena breaks a rule without any obstacle; or no case was found in kMaxRestarts
+  // starts, and the message names the ranges.
   Result<sim::TestCase> RandomTestCase(sim::RandomStream& random) const;
 
   // The arena with these obstacles.

@@ -1,0 +1,208 @@
+// A search that is saved at any boundary and restored elsewhere goes on as if nothing had happened.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "master/search/case_list_search.h"
+#include "master/search/genetic_algorithm.h"
+#include "master/search/random_search.h"
+#include "toy_search.h"
+
+namespace gauntlet::master {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+using Factory = std::function<std::unique_ptr<SearchAlgorithm>()>;
+
+struct Kind {
+  std::string name;
+  Factory make;
+};
+
+SearchSetup GeneticSetup(ParentSelection selection) {
+  SearchSetup setup = ToySetup();
+  setup.experiment.search.parent_selection = selection;
+  setup.experiment.search.population = 8;
+  setup.experiment.search.generations = 9;
+  setup.experiment.search.crossover_probability = 0.5;
+  return setup;
+}
+
+SearchSetup RandomSetup(int cases) {
+  SearchSetup setup = ToySetup();
+  setup.experiment.search.kind = SearchKind::kRandom;
+  setup.experiment.search.cases = cases;
+  return setup;
+}
+
+Factory Genetic(ParentSelection selection) {
+  return [selection] { return std::move(GeneticAlgorithm::Create(GeneticSetup(selection))).value(); };
+}
+
+// Some evaluations fail, so that resuming them is tested too.
+EvaluationOutcome OutcomeWithFailures(const EvaluationRequest& request) {
+  EvaluationOutcome outcome = OutcomeOf(request, Noise(request));
+  outcome.completed = (request.individual + request.evaluation) % 7 != 0;
+  return outcome;
+}
+
+std::vector<EvaluationRequest> Step(SearchAlgorithm& search) {
+  std::vector<EvaluationRequest> requests = search.Ask();
+  for (const EvaluationRequest& request : requests) search.Tell(OutcomeWithFailures(request));
+  return requests;
+}
+
+class SearchResumeTest : public ::testing::TestWithParam<Kind> {};
+
+TEST_P(SearchResumeTest, RestoringAtEveryBoundaryEqualsTheUninterruptedSearch) {
+  const std::unique_ptr<SearchAlgorithm> whole = GetParam().make();
+  std::unique_ptr<SearchAlgorithm> broken = GetParam().make();
+  int boundaries = 0;
+  while (true) {
+    const std::string state = StateOf(*broken);
+    EXPECT_EQ(state, StateOf(*whole));
+    broken = GetParam().make();
+    const Status restored = RestoreState(*broken, state);
+    ASSERT_TRUE(restored.ok()) << restored.error().message;
+    EXPECT_EQ(StateOf(*broken), state);
+    EXPECT_EQ(broken->Statistics(), whole->Statistics());
+    EXPECT_EQ(broken->Progress().evaluations_done, whole->Progress().evaluations_done);
+    EXPECT_EQ(broken->Progress().finished, whole->Progress().finished);
+    ++boundaries;
+
+    const std::vector<EvaluationRequest> expected = Step(*whole);
+    EXPECT_TRUE(SameRequests(Step(*broken), expected)) << "after boundary " << boundaries;
+    const std::vector<Individual> newborns = whole->TakeNewborns();
+    const std::vector<Individual> broken_newborns = broken->TakeNewborns();
+    ASSERT_EQ(broken_newborns.size(), newborns.size());
+    for (std::size_t i = 0; i < newborns.size(); ++i) {
+      EXPECT_EQ(broken_newborns[i].id, newborns[i].id);
+      EXPECT_EQ(broken_newborns[i].parents, newborns[i].parents);
+      EXPECT_EQ(broken_newborns[i].test_case.obstacles, newborns[i].test_case.obstacles);
+    }
+    if (expected.empty()) break;
+  }
+  EXPECT_TRUE(whole->Progress().finished);
+  EXPECT_GE(boundaries, 2);
+  const std::vector<Individual> population = whole->Population();
+  const std::vector<Individual> broken_population = broken->Population();
+  ASSERT_EQ(population.size(), broken_population.size());
+  for (std::size_t i = 0; i < population.size(); ++i) {
+    EXPECT_EQ(population[i].fitness, broken_population[i].fitness);
+    EXPECT_EQ(population[i].evaluations, broken_population[i].evaluations);
+    EXPECT_EQ(population[i].failed_evaluations, broken_population[i].failed_evaluations);
+    EXPECT_EQ(population[i].birth_generation, broken_population[i].birth_generation);
+  }
+}
+
+TEST_P(SearchResumeTest, EveryCutOfAStateIsRefused) {
+  const std::unique_ptr<SearchAlgorithm> search = GetParam().make();
+  Step(*search);
+  const std::string state = StateOf(*search);
+  for (std::size_t size = 0; size < state.size(); size += 1 + state.size() / 200) {
+    const Status restored = RestoreState(*GetParam().make(), state.substr(0, size));
+    ASSERT_FALSE(restored.ok()) << size << " of " << state.size() << " bytes";
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AllSearches, SearchResumeTest,
+    ::testing::Values(Kind{"AllParentBestHalf", Genetic(ParentSelection::kAllParentBestHalf)},
+                      Kind{"TwoBest", Genetic(ParentSelection::kTwoBestParentsTwoWorseAway)},
+                      Kind{"TwoRandom", Genetic(ParentSelection::kTwoRandomParentsTwoWorseAway)},
+                      Kind{"Random",
+                           [] { return std::move(RandomSearch::Create(RandomSetup(230))).value(); }},
+                      Kind{"CaseList",
+                           [] {
+                             std::vector<sim::TestCase> cases(9);
+                             for (std::size_t i = 0; i < cases.size(); ++i) {
+                               cases[i].side_x = 6.0 + static_cast<double>(i);
+                             }
+                             return std::make_unique<CaseListSearch>(cases, 2);
+                           }}),
+    [](const auto& instance) { return instance.param.name; });
+
+std::string StateAfterOneGeneration(const SearchSetup& setup) {
+  const auto search = std::move(GeneticAlgorithm::Create(setup)).value();
+  Step(*search);
+  return StateOf(*search);
+}
+
+TEST(SearchRestoreTest, StateOfAnotherExperimentIsRefusedByTheLineThatDiffers) {
+  const SearchSetup setup = GeneticSetup(ParentSelection::kAllParentBestHalf);
+  const std::string state = StateAfterOneGeneration(setup);
+
+  SearchSetup other = setup;
+  other.experiment.search.mutation_probability = 0.07;
+  Status restored = RestoreState(*std::move(GeneticAlgorithm::Create(other)).value(), state);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_EQ(restored.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_THAT(restored.error().message, AllOf(HasSubstr("'search.mutation_probability = 0.05'"),
+                                              HasSubstr("'search.mutation_probability = 0.07'")));
+
+  other = setup;
+  other.experiment.seed = 99;
+  restored = RestoreState(*std::move(GeneticAlgorithm::Create(other)).value(), state);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_THAT(restored.error().message, AllOf(HasSubstr("'seed = 7'"), HasSubstr("'seed = 99'")));
+
+  other = setup;
+  other.experiment.scenario_parameters["birds"] = 12;
+  restored = RestoreState(*std::move(GeneticAlgorithm::Create(other)).value(), state);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_THAT(restored.error().message, HasSubstr("'scenario_parameters.birds = 12'"));
+}
+
+TEST(SearchRestoreTest, RandomSearchRefusesTheStateOfAGeneticAlgorithm) {
+  const std::string state = StateAfterOneGeneration(GeneticSetup(ParentSelection::kAllParentBestHalf));
+  const Status restored = RestoreState(*std::move(RandomSearch::Create(RandomSetup(10))).value(), state);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_THAT(restored.error().message, HasSubstr("search.algorithm"));
+}
+
+TEST(SearchRestoreTest, AFinishedSearchMayGoOnForMoreGenerationsButNotEndEarlier) {
+  SearchSetup setup = GeneticSetup(ParentSelection::kTwoBestParentsTwoWorseAway);
+  setup.experiment.search.generations = 4;
+  const auto shorter = std::move(GeneticAlgorithm::Create(setup)).value();
+  RunToEnd(*shorter, Noise);
+  const std::string state = StateOf(*shorter);
+
+  setup.experiment.search.generations = 6;
+  const auto whole = std::move(GeneticAlgorithm::Create(setup)).value();
+  RunToEnd(*whole, Noise);
+  const auto extended = std::move(GeneticAlgorithm::Create(setup)).value();
+  ASSERT_TRUE(RestoreState(*extended, state).ok());
+  EXPECT_EQ(RunToEnd(*extended, Noise).size(), 16U);
+  EXPECT_EQ(StateOf(*extended), StateOf(*whole));
+
+  setup.experiment.search.generations = 3;
+  const Status restored = RestoreState(*std::move(GeneticAlgorithm::Create(setup)).value(), state);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_THAT(restored.error().message,
+              AllOf(HasSubstr("generation 4"), HasSubstr("search.generations = 3")));
+}
+
+TEST(SearchRestoreTest, StateOfANewerFormatIsRefusedAsSuch) {
+  const SearchSetup setup = GeneticSetup(ParentSelection::kAllParentBestHalf);
+  std::string state = StateAfterOneGeneration(setup);
+  state[8] = 2;  // the format follows the eight bytes that mark a state
+  const Status restored = RestoreState(*std::move(GeneticAlgorithm::Create(setup)).value(), state);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_EQ(restored.error().kind, ErrorKind::kVersion);
+  EXPECT_THAT(restored.error().message, HasSubstr("format 2, this version reads 1"));
+}
+
+TEST(SearchRestoreTest, CaseListRefusesTheStateOfAnotherList) {
+  CaseListSearch search({sim::TestCase{}}, 2);
+  const std::string state = StateOf(search);
+  CaseListSearch other({sim::TestCase{}, sim::TestCase{}}, 2);
+  const Status restored = RestoreState(other, state);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_THAT(restored.error().message, HasSubstr("another list of cases"));
+}
+
+}  // namespace
+}  // namespace gauntlet::master
