@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -24,11 +25,12 @@ class Filler {
   Status Fill(const JsonValue& json, const std::string& path, pb::Message& message) {
     const auto* object = std::get_if<JsonValue::Object>(&json.value);
     if (object == nullptr) return WrongKind(json, path, "an object { ... }");
+    std::set<const pb::FieldDescriptor*> given;
     for (const JsonMember& member : *object) {
       const pb::FieldDescriptor* field = Find(*message.GetDescriptor(), member.key);
       if (field == nullptr) return UnknownKey(member, path, *message.GetDescriptor());
       const std::string name = path.empty() ? member.key : path + "." + member.key;
-      if (message.GetReflection()->FieldSize(message, field) > 0 && field->is_repeated()) {
+      if (!given.insert(field).second) {
         return ErrorAt(file_name_, member.place, fmt::format("{} is given under two spellings", name));
       }
       Status filled = FillField(member.value, name, field, message);

@@ -1,6 +1,7 @@
 #include "master/dispatch/run_codec.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/stubs/logging.h>
 #include <google/protobuf/util/json_util.h>
 
 #include <utility>
@@ -124,6 +125,7 @@ std::string EncodeRunSpec(const sim::RunSpec& spec) {
 }
 
 Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
+  const google::protobuf::LogSilencer silencer;  // the error says enough
   v1::RunSpec message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return Corrupt(fmt::format("the {} bytes of the run spec do not parse", bytes.size()));
@@ -192,6 +194,7 @@ std::string EncodeRunResult(const sim::RunResult& result) {
 }
 
 Result<sim::RunResult> DecodeRunResult(std::string_view bytes) {
+  const google::protobuf::LogSilencer silencer;  // the error says enough
   v1::RunResult message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return Corrupt(fmt::format("the {} bytes of the run result do not parse", bytes.size()));

@@ -1,5 +1,7 @@
 #include "master/dispatch/wire.h"
 
+#include <google/protobuf/stubs/logging.h>
+
 #include <utility>
 
 #include "proto/protocol.pb.h"
@@ -52,6 +54,7 @@ ResultMessage From(v1::LeaseResult& result) {
 }  // namespace
 
 Result<WorkerMessage> DecodeWorkerMessage(std::string_view bytes) {
+  const google::protobuf::LogSilencer silencer;  // strangers must not write to our stderr
   v1::Envelope envelope;
   if (!envelope.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return InvalidInput("does not parse as an envelope");
