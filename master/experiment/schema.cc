@@ -22,62 +22,53 @@ auto& Field(auto& experiment) {
   return experiment.*Part.*Member;
 }
 
-template <auto... Path>
-Key TextKey(std::string path, std::string description) {
-  return {.path = std::move(path),
-          .type = KeyType::kText,
-          .unit = "",
-          .min = 0.0,
-          .max = 0.0,
-          .choices = {},
-          .description = std::move(description),
-          .default_value = {},
-          .get = [](const Experiment& e) -> KeyValue { return Field<Path...>(e); },
-          .set = [](Experiment& e, const KeyValue& v) { Field<Path...>(e) = std::get<std::string>(v); }};
+// A key without access to its place yet.
+Key MakeKey(const std::string& path, KeyType type, const std::string& description) {
+  Key key;
+  key.path = path;
+  key.type = type;
+  key.description = description;
+  return key;
 }
 
 template <auto... Path>
-Key IntegerKey(std::string path, double min, double max, std::string description) {
-  return {.path = std::move(path),
-          .type = KeyType::kInteger,
-          .unit = "",
-          .min = min,
-          .max = max,
-          .choices = {},
-          .description = std::move(description),
-          .default_value = {},
-          .get = [](const Experiment& e) -> KeyValue { return std::int64_t{Field<Path...>(e)}; },
-          .set = [](Experiment& e,
-                    const KeyValue& v) { Field<Path...>(e) = static_cast<int>(std::get<std::int64_t>(v)); }};
+Key TextKey(const std::string& path, const std::string& description) {
+  Key key = MakeKey(path, KeyType::kText, description);
+  key.get = [](const Experiment& e) -> KeyValue { return Field<Path...>(e); };
+  key.set = [](Experiment& e, const KeyValue& v) { Field<Path...>(e) = std::get<std::string>(v); };
+  return key;
 }
 
 template <auto... Path>
-Key NumberKey(std::string path, std::string unit, double min, double max, std::string description) {
-  return {.path = std::move(path),
-          .type = KeyType::kNumber,
-          .unit = std::move(unit),
-          .min = min,
-          .max = max,
-          .choices = {},
-          .description = std::move(description),
-          .default_value = {},
-          .get = [](const Experiment& e) -> KeyValue { return Field<Path...>(e); },
-          .set = [](Experiment& e, const KeyValue& v) { Field<Path...>(e) = std::get<double>(v); }};
+Key IntegerKey(const std::string& path, double min, double max, const std::string& description) {
+  Key key = MakeKey(path, KeyType::kInteger, description);
+  key.min = min;
+  key.max = max;
+  key.get = [](const Experiment& e) -> KeyValue { return std::int64_t{Field<Path...>(e)}; };
+  key.set = [](Experiment& e, const KeyValue& v) {
+    Field<Path...>(e) = static_cast<int>(std::get<std::int64_t>(v));
+  };
+  return key;
+}
+
+template <auto... Path>
+Key NumberKey(const std::string& path, const std::string& unit, double min, double max,
+              const std::string& description) {
+  Key key = MakeKey(path, KeyType::kNumber, description);
+  key.unit = unit;
+  key.min = min;
+  key.max = max;
+  key.get = [](const Experiment& e) -> KeyValue { return Field<Path...>(e); };
+  key.set = [](Experiment& e, const KeyValue& v) { Field<Path...>(e) = std::get<double>(v); };
+  return key;
 }
 
 // `choices` in the order of the enumeration, which begins at 0 without gaps.
 template <auto... Path>
-Key ChoiceKey(std::string path, std::vector<std::string> choices, std::string description) {
-  Key key{.path = std::move(path),
-          .type = KeyType::kChoice,
-          .unit = "",
-          .min = 0.0,
-          .max = 0.0,
-          .choices = choices,
-          .description = std::move(description),
-          .default_value = {},
-          .get = {},
-          .set = {}};
+Key ChoiceKey(const std::string& path, const std::vector<std::string>& choices,
+              const std::string& description) {
+  Key key = MakeKey(path, KeyType::kChoice, description);
+  key.choices = choices;
   key.get = [choices](const Experiment& e) -> KeyValue {
     return choices.at(static_cast<std::size_t>(Field<Path...>(e)));
   };
@@ -90,16 +81,11 @@ Key ChoiceKey(std::string path, std::vector<std::string> choices, std::string de
 }
 
 Key SeedKey() {
-  return {.path = "seed",
-          .type = KeyType::kSeed,
-          .unit = "",
-          .min = 0.0,
-          .max = 18446744073709551615.0,
-          .choices = {},
-          .description = "all seeds of test cases, variation and runs derive from it",
-          .default_value = {},
-          .get = [](const Experiment& e) -> KeyValue { return e.seed; },
-          .set = [](Experiment& e, const KeyValue& v) { e.seed = std::get<std::uint64_t>(v); }};
+  Key key = MakeKey("seed", KeyType::kSeed, "all seeds of test cases, variation and runs derive from it");
+  key.max = 18446744073709551615.0;
+  key.get = [](const Experiment& e) -> KeyValue { return e.seed; };
+  key.set = [](Experiment& e, const KeyValue& v) { e.seed = std::get<std::uint64_t>(v); };
+  return key;
 }
 
 std::vector<Key> MakeCommonKeys() {
@@ -187,16 +173,11 @@ std::vector<Key> ParameterKeys(std::string_view table, std::span<const controlle
   for (const controllers::ParameterInfo& info : infos) {
     const std::string name(info.name);
     const KeyType type = TypeOf(info);
-    Key key{.path = fmt::format("{}.{}", table, name),
-            .type = type,
-            .unit = type == KeyType::kFlag ? "" : std::string(info.unit),
-            .min = info.min,
-            .max = info.max,
-            .choices = {},
-            .description = std::string(info.description),
-            .default_value = ParameterValue(type, info.default_value),
-            .get = {},
-            .set = {}};
+    Key key = MakeKey(fmt::format("{}.{}", table, name), type, std::string(info.description));
+    key.unit = type == KeyType::kFlag ? "" : std::string(info.unit);
+    key.min = info.min;
+    key.max = info.max;
+    key.default_value = ParameterValue(type, info.default_value);
     key.get = [name, type, otherwise = info.default_value](const Experiment& e) {
       const auto found = (e.*Member).find(name);
       return ParameterValue(type, found == (e.*Member).end() ? otherwise : found->second);
