@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
-#include <sys/pidfd.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -131,7 +131,7 @@ LocalPool::~LocalPool() {
       pollfd wait{slot.pidfd, POLLIN, 0};
       poll(&wait, 1, static_cast<int>(std::max<std::int64_t>(0, left)));
     }
-    kill(slot.pid, SIGKILL);  // no effect on one that has ended: it is not reaped yet
+    kill(-slot.pid, SIGKILL);  // it is not reaped yet, so the process group is still its own
     while (waitpid(slot.pid, nullptr, 0) < 0 && errno == EINTR) continue;
     if (slot.pidfd >= 0) close(slot.pidfd);
   }
@@ -154,7 +154,9 @@ Status LocalPool::StartWorker(Slot& slot, TimePoint now) {
                                              slot.log_file, std::strerror(failed))};
   }
   slot.pid = pid;
-  slot.pidfd = pidfd_open(pid, 0);  // closed on exec; not there before Linux 5.3: then Supervise finds out
+  // By number: the header of glibc 2.36 gives pidfd_open C++ linkage. Closed on exec; not there before
+  // Linux 5.3: then Supervise finds out.
+  slot.pidfd = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
   slot.started = now;
   return Ok{};
 }
@@ -192,9 +194,15 @@ Result<std::vector<pid_t>> LocalPool::Supervise(TimePoint now) {
   std::vector<pid_t> ended;
   for (Slot& slot : slots_) {
     if (slot.pid < 0) continue;
+    siginfo_t info{};
+    if (waitid(P_PID, static_cast<id_t>(slot.pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+        info.si_pid == 0) {
+      continue;
+    }
+    // What the worker started goes with it. Before it is reaped: the group is certainly its own.
+    kill(-slot.pid, SIGKILL);
     int status = 0;
-    const pid_t pid = waitpid(slot.pid, &status, WNOHANG);
-    if (pid == 0 || (pid < 0 && errno == EINTR)) continue;
+    while (waitpid(slot.pid, &status, 0) < 0 && errno == EINTR) continue;
     ended.push_back(slot.pid);
     Bury(slot, status, now);
   }
@@ -226,7 +234,8 @@ std::vector<pid_t> LocalPool::pids() const {
 
 void LocalPool::SignalAll(int signal) {
   for (const Slot& slot : slots_) {
-    if (slot.pid >= 0) kill(slot.pid, signal);
+    // Workers pass on what their runners should know; against SIGKILL they can do nothing.
+    if (slot.pid >= 0) kill(signal == SIGKILL ? -slot.pid : slot.pid, signal);
   }
 }
 

@@ -1,0 +1,225 @@
+// Real sockets on the loopback interface; every wait ends with its condition or at a deadline.
+#include "master/dispatch/zmq_transport.h"
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <functional>
+#include <thread>
+#include <zmq.hpp>
+
+namespace gauntlet::master {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+constexpr std::size_t kLimit = 1U << 20;
+
+class ZmqTransportTest : public testing::Test {
+ protected:
+  ZmqTransportTest() {
+    ZmqTransportOptions options;
+    options.max_message_bytes = kLimit;
+    options.peer_queue = 10;
+    Result<std::unique_ptr<ZmqTransport>> bound = ZmqTransport::Bind(options);
+    EXPECT_TRUE(bound.ok()) << bound.error().message;
+    transport_ = *std::move(bound);
+  }
+
+  zmq::socket_t Connect() {
+    zmq::socket_t dealer(context_, zmq::socket_type::dealer);
+    dealer.set(zmq::sockopt::linger, 0);
+    dealer.set(zmq::sockopt::rcvtimeo, 10000);
+    dealer.set(zmq::sockopt::rcvhwm, 10);
+    dealer.connect(transport_->endpoint());
+    return dealer;
+  }
+
+  // A TCP connection that speaks something else.
+  int ConnectRaw() const {
+    const std::string& endpoint = transport_->endpoint();
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    address.sin_port =
+        htons(static_cast<std::uint16_t>(std::atoi(endpoint.substr(endpoint.rfind(':') + 1).c_str())));
+    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    EXPECT_EQ(connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    return fd;
+  }
+
+  bool Eventually(const std::function<bool()>& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + seconds(10);
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > deadline) return false;
+      transport_->Wait(milliseconds(20), {});
+      transport_->Receive(100, received_);
+    }
+    return true;
+  }
+
+  std::unique_ptr<ZmqTransport> transport_;
+  zmq::context_t context_{1};
+  std::vector<PeerMessage> received_;
+};
+
+TEST_F(ZmqTransportTest, SaysWhereItListens) {
+  EXPECT_THAT(transport_->endpoint(), testing::MatchesRegex("tcp://127\\.0\\.0\\.1:[0-9]+"));
+}
+
+TEST_F(ZmqTransportTest, CarriesMessagesBothWays) {
+  zmq::socket_t dealer = Connect();
+  const std::string hello("hello \0 world", 13);
+  dealer.send(zmq::buffer(hello), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  EXPECT_EQ(received_[0].bytes, hello);
+  EXPECT_EQ(transport_->Send(received_[0].peer, "answer"), SendOutcome::kSent);
+  zmq::message_t answer;
+  ASSERT_TRUE(dealer.recv(answer).has_value());
+  EXPECT_EQ(answer.to_string(), "answer");
+  EXPECT_FALSE(answer.more());
+}
+
+TEST_F(ZmqTransportTest, ReceivesNoMoreThanAskedFor) {
+  zmq::socket_t dealer = Connect();
+  for (int i = 0; i < 5; ++i) dealer.send(zmq::buffer(std::to_string(i)), zmq::send_flags::none);
+  std::vector<PeerMessage> messages;
+  const auto deadline = std::chrono::steady_clock::now() + seconds(10);
+  while (messages.size() < 2 && std::chrono::steady_clock::now() < deadline) {
+    transport_->Wait(milliseconds(20), {});
+    transport_->Receive(2 - messages.size(), messages);
+  }
+  EXPECT_THAT(messages, SizeIs(2));
+  ASSERT_TRUE(Eventually([this] { return received_.size() == 3; }));
+  EXPECT_EQ(received_[2].bytes, "4");
+}
+
+TEST_F(ZmqTransportTest, UnknownPeersAreUnreachable) {
+  EXPECT_EQ(transport_->Send("nobody", "message"), SendOutcome::kUnreachable);
+  EXPECT_EQ(transport_->Send("", "message"), SendOutcome::kUnreachable);
+}
+
+TEST_F(ZmqTransportTest, APeerThatDisconnectedIsUnreachable) {
+  zmq::socket_t dealer = Connect();
+  dealer.send(zmq::str_buffer("hello"), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  dealer.close();
+  EXPECT_TRUE(Eventually(
+      [this] { return transport_->Send(received_[0].peer, "are you there") == SendOutcome::kUnreachable; }));
+}
+
+TEST_F(ZmqTransportTest, APeerThatDoesNotReadFillsABoundedQueue) {
+  zmq::socket_t dealer = Connect();
+  dealer.send(zmq::str_buffer("hello"), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  const std::string message(500000, 'x');
+  int sent = 0;
+  while (sent < 1000 && transport_->Send(received_[0].peer, message) == SendOutcome::kSent) ++sent;
+  EXPECT_LT(sent, 1000) << "nothing stopped the flood";
+  EXPECT_EQ(transport_->Send(received_[0].peer, message), SendOutcome::kFull);
+}
+
+TEST_F(ZmqTransportTest, MessagesOfSeveralFramesAreDroppedAndCounted) {
+  zmq::socket_t dealer = Connect();
+  dealer.send(zmq::str_buffer("one"), zmq::send_flags::sndmore);
+  dealer.send(zmq::str_buffer("two"), zmq::send_flags::sndmore);
+  dealer.send(zmq::str_buffer("three"), zmq::send_flags::none);
+  dealer.send(zmq::str_buffer("good"), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  EXPECT_THAT(received_, SizeIs(1));
+  EXPECT_EQ(received_[0].bytes, "good");
+  EXPECT_EQ(transport_->Rejections().malformed, 1U);
+}
+
+TEST_F(ZmqTransportTest, ATooLongMessageIsDroppedAndCounted) {
+  zmq::socket_t dealer = Connect();
+  dealer.send(zmq::buffer(std::string(kLimit + 1, 'x')), zmq::send_flags::none);
+  dealer.send(zmq::buffer(std::string(kLimit, 'y')), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  EXPECT_EQ(received_[0].bytes.front(), 'y');
+  EXPECT_EQ(transport_->Rejections().oversized, 1U);
+}
+
+TEST_F(ZmqTransportTest, AMuchTooLongMessageClosesItsConnectionOnly) {
+  zmq::socket_t good = Connect();
+  good.send(zmq::str_buffer("hello"), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  const PeerId good_peer = received_[0].peer;
+  received_.clear();
+  {
+    zmq::socket_t flooder = Connect();
+    flooder.send(zmq::str_buffer("hello"), zmq::send_flags::none);
+    ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+    const PeerId flooding_peer = received_[0].peer;
+    received_.clear();
+    flooder.send(zmq::buffer(std::string(4 * kLimit, 'x')), zmq::send_flags::none);
+    EXPECT_TRUE(Eventually(
+        [&] { return transport_->Send(flooding_peer, "still there") == SendOutcome::kUnreachable; }));
+  }
+  EXPECT_THAT(received_, IsEmpty());
+  EXPECT_EQ(transport_->Send(good_peer, "answer"), SendOutcome::kSent);
+  zmq::message_t answer;
+  EXPECT_TRUE(good.recv(answer).has_value());
+}
+
+TEST_F(ZmqTransportTest, GarbageBytesAreCountedAndDisturbNobody) {
+  zmq::socket_t good = Connect();
+  for (const std::string& garbage :
+       {std::string("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"), std::string(5000, '\xff'),
+        std::string("\xff\0\0\0\0\0\0\0\x01\x7f\x03\0garbage-mechanism", 30)}) {
+    const std::uint64_t before = transport_->Rejections().handshakes;
+    const int fd = ConnectRaw();
+    EXPECT_GT(send(fd, garbage.data(), garbage.size(), MSG_NOSIGNAL), 0);
+    shutdown(fd, SHUT_WR);
+    EXPECT_TRUE(Eventually([&] { return transport_->Rejections().handshakes > before; })) << garbage;
+    close(fd);
+  }
+  good.send(zmq::str_buffer("hello"), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  EXPECT_THAT(received_, SizeIs(1));
+  EXPECT_EQ(received_[0].bytes, "hello");
+}
+
+TEST_F(ZmqTransportTest, AnotherThreadWakesItUp) {
+  std::thread waker([this] { transport_->WakeUp(); });
+  EXPECT_TRUE(transport_->Wait(seconds(30), {}).woken);
+  waker.join();
+  EXPECT_FALSE(transport_->Wait(milliseconds(0), {}).woken) << "once per call";
+}
+
+TEST_F(ZmqTransportTest, WaitsForDescriptorsToo) {
+  int pipe_fds[2];
+  ASSERT_EQ(pipe(pipe_fds), 0);
+  const int fds[] = {pipe_fds[0]};
+  EXPECT_THAT(transport_->Wait(milliseconds(0), fds).ready_fds, IsEmpty());
+  ASSERT_EQ(write(pipe_fds[1], "x", 1), 1);
+  EXPECT_THAT(transport_->Wait(seconds(30), fds).ready_fds, testing::ElementsAre(pipe_fds[0]));
+  close(pipe_fds[0]);
+  close(pipe_fds[1]);
+}
+
+TEST_F(ZmqTransportTest, SaysWhyItCannotListen) {
+  ZmqTransportOptions options;
+  options.endpoint = transport_->endpoint();
+  Result<std::unique_ptr<ZmqTransport>> bound = ZmqTransport::Bind(options);
+  ASSERT_FALSE(bound.ok());
+  EXPECT_EQ(bound.error().kind, ErrorKind::kInUse);
+  EXPECT_THAT(bound.error().message, HasSubstr(options.endpoint));
+  options.endpoint = "nonsense";
+  bound = ZmqTransport::Bind(options);
+  ASSERT_FALSE(bound.ok());
+  EXPECT_EQ(bound.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_THAT(bound.error().message, HasSubstr("'nonsense'"));
+}
+
+}  // namespace
+}  // namespace gauntlet::master
