@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <exception>
+#include <memory>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -13,27 +15,170 @@
 namespace gauntlet::master {
 namespace {
 
+void AddRunningOptions(CLI::App& command, CommonOptions& options) {
+  command.add_option("--workers", options.workers, "worker processes on this machine (default: its cores)")
+      ->type_name("N");
+  command.add_flag("--json", options.json, "the result as one JSON document on standard output");
+  command.add_flag("--quiet", options.quiet, "no progress and no messages but errors");
+  command.add_flag("--no-progress", options.no_progress, "messages, but no progress");
+}
+
+void AddCommonOptions(CLI::App& command, CommonOptions& options) {
+  command
+      .add_option("EXPERIMENT", options.experiment,
+                  "a shipped experiment (see: gauntlet list experiments), or a TOML file")
+      ->required();
+  command
+      .add_option("--dir", options.directory,
+                  "directory of the campaign, new or empty (default: campaigns/EXPERIMENT-<UTC time>)")
+      ->type_name("DIR");
+  command.add_option("--seed", options.seed, "seed of the campaign (default: the experiment's, 1)")
+      ->type_name("S|random");
+  command
+      .add_option(
+          "--set", options.sets,
+          "change one value of the experiment, e.g. --set search.mutation_probability=0.1; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command.add_option("--generations", options.generations, "short for --set search.generations=G")
+      ->type_name("G");
+  command.add_option("--population", options.population, "short for --set search.population=P")
+      ->type_name("P");
+  AddRunningOptions(command, options);
+}
+
+// A command with its options, which live as long as its action. `run` is called when the command was chosen.
+template <typename Options>
+std::pair<CLI::App*, Options*> AddCommand(CLI::App& app, CommandAction& chosen, const char* name,
+                                          const char* description,
+                                          ExitCode (*run)(CommandContext&, const Options&)) {
+  CLI::App* command = app.add_subcommand(name, description);
+  const auto options = std::make_shared<Options>();
+  command->callback([options, run, &chosen] {
+    chosen = [options, run](CommandContext& context) { return run(context, *options); };
+  });
+  return {command, options.get()};
+}
+
+void AddSearchCommands(CLI::App& app, CommandAction& chosen) {
+  const auto [evolve, evolve_options] =
+      AddCommand(app, chosen, "evolve", "evolve test cases in which the swarm fails", RunEvolve);
+  AddCommonOptions(*evolve, *evolve_options);
+  evolve->footer(R"(
+Evolves test cases with the experiment's search on a local pool of workers, shows progress, and ends
+with a table of the toughest cases. Ctrl-C stops cleanly (exit 3); 'gauntlet resume DIR' goes on.
+Same experiment, settings and seed: same result, whatever the number of workers.
+
+Examples:
+  gauntlet evolve flocking
+  gauntlet evolve flocking --generations 100 --workers 8 --dir campaigns/long
+  gauntlet evolve flocking --seed random --set search.crossover=uniform --json > result.json
+  gauntlet evolve my-experiment.toml --set controller_parameters.bird_speed=0.1)");
+
+  const auto [random, random_options] = AddCommand(
+      app, chosen, "random", "random test cases: the baseline to hold an evolution against", RunRandom);
+  AddCommonOptions(*random, random_options->common);
+  random
+      ->add_option("--cases", random_options->cases,
+                   "how many test cases (default: the experiment's search.cases)")
+      ->type_name("N");
+  random->footer(R"(
+Generates valid random test cases by the experiment's rules and simulates each once (more often with
+--set search.replicates=K). The population that 'show' reports are all cases.
+
+Examples:
+  gauntlet random flocking --cases 200
+  gauntlet random flocking --cases 1000 --seed 7 --dir campaigns/baseline)");
+
+  const auto [evaluate, evaluate_options] = AddCommand(
+      app, chosen, "evaluate", "simulate given test cases (case JSON or .argos files)", RunEvaluate);
+  AddCommonOptions(*evaluate, evaluate_options->common);
+  evaluate->add_option("--case", evaluate_options->files, "case files, .json or .argos; several may follow")
+      ->type_name("FILE...")
+      ->required();
+  evaluate->add_option("--replicates", evaluate_options->replicates, "runs per case, each with its own seed")
+      ->type_name("K");
+  evaluate->footer(R"(
+Simulates each case and prints its fitness (mean of the replicates; lower = tougher). A case that
+breaks a validity rule is refused by the rule's name; the others go on. Exit 2 when all were refused.
+Of .argos files the arena, the boxes, the number of foot-bots and their start area are read.
+
+Examples:
+  gauntlet evaluate flocking --case one-wall.json --replicates 20
+  gauntlet evaluate flocking-improved --case cases/*.argos --json > improved.json)");
+}
+
+void AddCampaignCommands(CLI::App& app, CommandAction& chosen) {
+  const auto [resume, resume_options] =
+      AddCommand(app, chosen, "resume", "go on with a campaign that was stopped or killed", RunResume);
+  resume->add_option("DIR", resume_options->directory, "directory of the campaign")->required();
+  AddRunningOptions(*resume, *resume_options);
+  resume->footer(R"(
+Goes on where the campaign was, whatever ended it; no finished run is simulated again, and the result
+is that of an undisturbed campaign. A finished campaign is only summarised.
+
+Example:
+  gauntlet resume campaigns/flocking-20260131T120000Z --workers 4)");
+
+  const auto [show, show_options] = AddCommand(app, chosen, "show", "what came out of a campaign", RunShow);
+  show->add_option("DIR", show_options->directory, "directory of the campaign")->required();
+  show->add_flag("--json", show_options->json, "everything as one JSON document");
+  show->footer(R"(
+Sums up what is stored: runs, fitness by generation, total failures, the toughest cases with a run to
+replay, and the state hash, which is equal for equal outcomes.
+
+Examples:
+  gauntlet show campaigns/flocking-20260131T120000Z
+  gauntlet show DIR --json | jq '.population[0].genome')");
+
+  const auto [replay, replay_options] =
+      AddCommand(app, chosen, "replay", "simulate one stored run again, check its hash, draw it", RunReplay);
+  replay->add_option("DIR", replay_options->directory, "directory of the campaign")->required();
+  replay->add_option("RUN_ID", replay_options->run, "number of the run, as 'show' names it")->required();
+  replay
+      ->add_option("--svg", replay_options->svg,
+                   "write a picture: arena, every robot's way, where the swarm split")
+      ->type_name("F");
+  replay->add_option("--csv", replay_options->csv, "write every pose of every tick")->type_name("F");
+  replay->add_flag("--json", replay_options->json, "the result as one JSON document");
+  replay->footer(R"(
+Same run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying what
+differs.
+
+Example:
+  gauntlet replay campaigns/flocking-20260131T120000Z 812 --svg run-812.svg --csv run-812.csv)");
+}
+
+void AddListCommand(CLI::App& app, CommandAction& chosen) {
+  const auto [list, options] = AddCommand(
+      app, chosen, "list", "experiments, scenarios, controllers, searches; all parameters", RunList);
+  list->add_option("SECTION", options->section,
+                   "experiments, scenarios, controllers or searches (default: all)")
+      ->check(CLI::IsMember(kListSections));
+  list->add_flag("--json", options->json, "as one JSON document");
+  list->footer(R"(
+Examples:
+  gauntlet list experiments
+  gauntlet list controllers --json | jq '.controllers[].name')");
+}
+
 void Configure(CLI::App& app, CommandAction& chosen) {
   app.name("gauntlet");
   app.description(
       "Runs a swarm of robots through evolved obstacle courses until its control algorithm breaks.");
   app.set_version_flag("--version", "gauntlet " GAUNTLET_VERSION);
   app.get_formatter()->column_width(34);
-  AddEvolveCommand(app, chosen);
-  AddRandomCommand(app, chosen);
-  AddEvaluateCommand(app, chosen);
-  AddResumeCommand(app, chosen);
-  AddShowCommand(app, chosen);
-  AddReplayCommand(app, chosen);
+  AddSearchCommands(app, chosen);
+  AddCampaignCommands(app, chosen);
   AddListCommand(app, chosen);
-  app.footer(
-      "\nStart here:\n"
-      "  gauntlet evolve flocking          evolve test cases on all cores, about a minute\n"
-      "  gauntlet COMMAND --help           options and examples of a command\n"
-      "\n"
-      "Results go to standard output, progress and messages to standard error.\n"
-      "Exit codes: 0 done; 1 a check came out negative; 2 usage or configuration; 3 stopped, resumable;\n"
-      "4 internal error.");
+  app.footer(R"(
+Start here:
+  gauntlet evolve flocking          evolve test cases on all cores, about a minute
+  gauntlet COMMAND --help           options and examples of a command
+
+Results go to standard output, progress and messages to standard error.
+Exit codes: 0 done; 1 a check came out negative; 2 usage or configuration; 3 stopped, resumable;
+4 internal error.)");
 }
 
 std::vector<std::string> CommandNames(const CLI::App& app) {

@@ -1,20 +1,51 @@
-// The commands: each adds itself to the parser and, when it was chosen, puts its work into `chosen`.
+// The commands of gauntlet: each takes its options as they were typed and answers with its exit code.
 #pragma once
 
-#include "master/cli/command_context.h"
+#include <string>
+#include <vector>
 
-namespace CLI {
-class App;
-}
+#include "master/cli/command_context.h"
+#include "master/cli/common_options.h"
 
 namespace gauntlet::master {
 
-void AddListCommand(CLI::App& app, CommandAction& chosen);
-void AddEvolveCommand(CLI::App& app, CommandAction& chosen);
-void AddRandomCommand(CLI::App& app, CommandAction& chosen);
-void AddEvaluateCommand(CLI::App& app, CommandAction& chosen);
-void AddResumeCommand(CLI::App& app, CommandAction& chosen);
-void AddShowCommand(CLI::App& app, CommandAction& chosen);
-void AddReplayCommand(CLI::App& app, CommandAction& chosen);
+// A search on a local pool of workers.
+ExitCode RunEvolve(CommandContext& context, const CommonOptions& options);
+
+struct RandomOptions {
+  CommonOptions common;
+  std::string cases;
+};
+// The baseline: random test cases.
+ExitCode RunRandom(CommandContext& context, const RandomOptions& options);
+
+struct EvaluateOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  std::string replicates;
+};
+// Simulates given test cases. kExitUsage when none of them gave a fitness.
+ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options);
+
+// Of `options`, resume reads directory, workers, json, quiet and no_progress; show reads directory and json.
+ExitCode RunResume(CommandContext& context, const CommonOptions& options);
+ExitCode RunShow(CommandContext& context, const CommonOptions& options);
+
+struct ReplayOptions {
+  std::string directory;
+  std::string run;
+  std::string svg;
+  std::string csv;
+  bool json = false;
+};
+// Simulates a stored run again. kExitNegative when it is not reproduced or does not read back.
+ExitCode RunReplay(CommandContext& context, const ReplayOptions& options);
+
+struct ListOptions {
+  std::string section;  // one of kListSections, "" = all
+  bool json = false;
+};
+inline const std::vector<std::string> kListSections = {"experiments", "scenarios", "controllers", "searches"};
+ExitCode RunList(CommandContext& context, const ListOptions& options);
 
 }  // namespace gauntlet::master

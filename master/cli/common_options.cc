@@ -10,7 +10,6 @@
 #include <system_error>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "master/cli/table.h"
 #include "master/experiment/experiment_file.h"
@@ -33,40 +32,6 @@ int AvailableCores() {
 }
 
 }  // namespace
-
-void AddRunningOptions(CLI::App& command, CommonOptions& options) {
-  command.add_option("--workers", options.workers, "worker processes on this machine (default: its cores)")
-      ->type_name("N");
-  command.add_flag("--json", options.json, "the result as one JSON document on standard output");
-  command.add_flag("--quiet", options.quiet, "no progress and no messages but errors");
-  command.add_flag("--no-progress", options.no_progress, "messages, but no progress");
-}
-
-void AddCommonOptions(CLI::App& command, CommonOptions& options) {
-  command
-      .add_option("EXPERIMENT", options.experiment,
-                  "name of a shipped experiment (see: gauntlet list), or a TOML file")
-      ->required();
-  command
-      .add_option("--dir", options.directory,
-                  "directory of the campaign, new or empty (default: campaigns/EXPERIMENT-<UTC time>)")
-      ->type_name("DIR");
-  command
-      .add_option("--seed", options.seed,
-                  "seed of the campaign, a number or 'random' (default: the experiment's)")
-      ->type_name("S|random");
-  command
-      .add_option(
-          "--set", options.sets,
-          "change one value of the experiment, e.g. --set search.mutation_probability=0.1; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command.add_option("--generations", options.generations, "short for --set search.generations=G")
-      ->type_name("G");
-  command.add_option("--population", options.population, "short for --set search.population=P")
-      ->type_name("P");
-  AddRunningOptions(command, options);
-}
 
 Result<int> ParseWorkers(const std::string& text) {
   if (text.empty()) return AvailableCores();

@@ -9,10 +9,6 @@
 #include "master/experiment/experiment.h"
 #include "sim/base/result.h"
 
-namespace CLI {
-class App;
-}
-
 namespace gauntlet::master {
 
 // Texts as they were typed, "" where not given: they are judged by the functions below, whose messages say
@@ -29,11 +25,6 @@ struct CommonOptions {
   bool quiet = false;
   bool no_progress = false;
 };
-
-// EXPERIMENT and all common options.
-void AddCommonOptions(CLI::App& command, CommonOptions& options);
-// --workers, --json, --quiet and --no-progress alone.
-void AddRunningOptions(CLI::App& command, CommonOptions& options);
 
 inline constexpr int kMostWorkers = 1024;
 

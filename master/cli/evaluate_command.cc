@@ -1,10 +1,8 @@
 // gauntlet evaluate: simulate given test cases.
-#include <memory>
 #include <optional>
 #include <vector>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 
 #include "controllers/registry.h"
 #include "master/cases/case_file.h"
@@ -18,12 +16,6 @@
 
 namespace gauntlet::master {
 namespace {
-
-struct EvaluateOptions {
-  CommonOptions common;
-  std::vector<std::string> files;
-  std::string replicates;
-};
 
 // Files in the order given; those that can be simulated also stand in `cases`, with their place in `files`.
 struct CaseList {
@@ -108,7 +100,9 @@ void Print(CommandContext& context, const EvaluateOptions& options, const CaseLi
   }
 }
 
-ExitCode Evaluate(CommandContext& context, const EvaluateOptions& options) {
+}  // namespace
+
+ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
   std::vector<ExtraSet> extra = {{"evaluate", "search.algorithm=cases"}};
   if (!options.replicates.empty())
     extra.push_back({"--replicates", "search.replicates=" + options.replicates});
@@ -139,31 +133,6 @@ ExitCode Evaluate(CommandContext& context, const EvaluateOptions& options) {
   const ExitCode code = RunCampaign(context, options.common, campaign);
   const bool all_refused = !AnyFitness(list);
   return code == kExitDone && all_refused ? kExitUsage : code;
-}
-
-}  // namespace
-
-void AddEvaluateCommand(CLI::App& app, CommandAction& chosen) {
-  CLI::App* command = app.add_subcommand("evaluate", "simulate given test cases (case JSON or .argos files)");
-  const auto options = std::make_shared<EvaluateOptions>();
-  AddCommonOptions(*command, options->common);
-  command->add_option("--case", options->files, "case files, .json or .argos; several may follow")
-      ->type_name("FILE...")
-      ->required();
-  command->add_option("--replicates", options->replicates, "runs per case, each with its own seed")
-      ->type_name("K");
-  command->footer(
-      "\nSimulates each case and prints its fitness (mean of the replicates; lower = tougher). A case that\n"
-      "breaks a validity rule is refused by the rule's name; the others go on. Exit 2 when all were "
-      "refused.\n"
-      "Of .argos files the arena, the boxes, the number of foot-bots and their start area are read.\n"
-      "\n"
-      "Examples:\n"
-      "  gauntlet evaluate flocking --case one-wall.json --replicates 20\n"
-      "  gauntlet evaluate flocking-improved --case cases/*.argos --json > improved.json");
-  command->callback([options, &chosen] {
-    chosen = [options](CommandContext& context) { return Evaluate(context, *options); };
-  });
 }
 
 }  // namespace gauntlet::master

@@ -1,12 +1,10 @@
 // gauntlet list: what can be named, and every parameter with unit, default and range.
 #include <algorithm>
-#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "controllers/registry.h"
@@ -21,11 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTextWidth = 110;
-
-struct ListOptions {
-  std::string section;
-  bool json = false;
-};
 
 struct Search {
   std::string_view name;
@@ -217,7 +210,9 @@ Json SearchesJson() {
   return list;
 }
 
-ExitCode List(CommandContext& context, const ListOptions& options) {
+}  // namespace
+
+ExitCode RunList(CommandContext& context, const ListOptions& options) {
   struct Section {
     std::string_view name;
     std::string (*text)();
@@ -240,26 +235,6 @@ ExitCode List(CommandContext& context, const ListOptions& options) {
   if (options.json) text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   context.out << text << std::flush;
   return kExitDone;
-}
-
-}  // namespace
-
-void AddListCommand(CLI::App& app, CommandAction& chosen) {
-  CLI::App* command =
-      app.add_subcommand("list", "experiments, scenarios, controllers and searches with all parameters");
-  const auto options = std::make_shared<ListOptions>();
-  command
-      ->add_option("SECTION", options->section,
-                   "experiments, scenarios, controllers or searches (default: all)")
-      ->check(CLI::IsMember({"experiments", "scenarios", "controllers", "searches"}));
-  command->add_flag("--json", options->json, "as one JSON document");
-  command->footer(
-      "\nExamples:\n"
-      "  gauntlet list experiments\n"
-      "  gauntlet list controllers --json | jq '.controllers[].name'");
-  command->callback([options, &chosen] {
-    chosen = [options](CommandContext& context) { return List(context, *options); };
-  });
 }
 
 }  // namespace gauntlet::master

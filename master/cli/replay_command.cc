@@ -2,29 +2,19 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <memory>
 
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "analysis/figures/run_figure.h"
 #include "analysis/figures/trajectory_csv.h"
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
 #include "master/cli/evaluation.h"
+#include "master/cli/summary_json.h"
 #include "master/cli/table.h"
 
 namespace gauntlet::master {
 namespace {
-
-struct ReplayOptions {
-  std::string directory;
-  std::string run;
-  std::string svg;
-  std::string csv;
-  bool json = false;
-};
 
 Status WriteFile(const std::string& path, const std::string& content) {
   errno = 0;
@@ -81,19 +71,9 @@ std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure
   return text;
 }
 
-std::string JsonText(const CampaignReplay& replay) {
-  const ReplayReport& report = replay.report;
-  const nlohmann::ordered_json json = {{"run", fmt::format("{}", report.stored.id)},
-                                       {"reproduced", report.differences.empty()},
-                                       {"stored_hash", fmt::format("{:016x}", report.stored_result.hash)},
-                                       {"hash", fmt::format("{:016x}", report.replayed.hash)},
-                                       {"differences", report.differences},
-                                       {"verdict", NameOf(report.replayed.verdict)},
-                                       {"fitness", report.replayed.fitness}};
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
+}  // namespace
 
-ExitCode Replay(CommandContext& context, const ReplayOptions& options) {
+ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
   const Result<std::uint64_t> run = ParseRunId(options.run);
   if (!run) return Fail(context, run.error());
   const Result<CampaignReplay> replay = context.service.replay(options.directory, *run);
@@ -103,7 +83,7 @@ ExitCode Replay(CommandContext& context, const ReplayOptions& options) {
     return replay.error().kind == ErrorKind::kCorrupt ? kExitNegative : code;
   }
   const analysis::RunFigure figure = FigureOf(*replay);
-  context.out << (options.json ? JsonText(*replay) : Text(*replay, figure)) << std::flush;
+  context.out << (options.json ? ReplayJson(replay->report) : Text(*replay, figure)) << std::flush;
   if (!options.svg.empty()) {
     if (const Status written = WriteFile(options.svg, analysis::DrawRun(figure)); !written) {
       return Fail(context, written.error());
@@ -119,30 +99,6 @@ ExitCode Replay(CommandContext& context, const ReplayOptions& options) {
   PrintMessage(context, fmt::format("run {} of {} was not reproduced: {}", *run, options.directory,
                                     replay->report.differences.front()));
   return kExitNegative;
-}
-
-}  // namespace
-
-void AddReplayCommand(CLI::App& app, CommandAction& chosen) {
-  CLI::App* command = app.add_subcommand("replay", "simulate one stored run again, check its hash, draw it");
-  const auto options = std::make_shared<ReplayOptions>();
-  command->add_option("DIR", options->directory, "directory of the campaign")->required();
-  command->add_option("RUN_ID", options->run, "number of the run, as 'show' names it")->required();
-  command
-      ->add_option("--svg", options->svg, "write a picture: arena, every robot's way, where the swarm split")
-      ->type_name("F");
-  command->add_option("--csv", options->csv, "write every pose of every tick")->type_name("F");
-  command->add_flag("--json", options->json, "the result as one JSON document");
-  command->footer(
-      "\nSame run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying "
-      "what\n"
-      "differs.\n"
-      "\n"
-      "Example:\n"
-      "  gauntlet replay campaigns/flocking-20260131T120000Z 812 --svg run-812.svg --csv run-812.csv");
-  command->callback([options, &chosen] {
-    chosen = [options](CommandContext& context) { return Replay(context, *options); };
-  });
 }
 
 }  // namespace gauntlet::master

@@ -1,7 +1,4 @@
 // gauntlet evolve, gauntlet random: a search on a pool of workers.
-#include <memory>
-
-#include <CLI/CLI.hpp>
 
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
@@ -38,48 +35,14 @@ ExitCode RunSearch(CommandContext& context, const CommonOptions& options,
 
 }  // namespace
 
-void AddEvolveCommand(CLI::App& app, CommandAction& chosen) {
-  CLI::App* command = app.add_subcommand("evolve", "evolve test cases in which the swarm fails");
-  const auto options = std::make_shared<CommonOptions>();
-  AddCommonOptions(*command, *options);
-  command->footer(
-      "\nEvolves test cases with the experiment's search on a local pool of workers, shows progress, and "
-      "ends\n"
-      "with a table of the toughest cases. Ctrl-C stops cleanly (exit 3); 'gauntlet resume DIR' goes on.\n"
-      "Same experiment, settings and seed: same result, whatever the number of workers.\n"
-      "\n"
-      "Examples:\n"
-      "  gauntlet evolve flocking\n"
-      "  gauntlet evolve flocking --generations 100 --workers 8 --dir campaigns/long\n"
-      "  gauntlet evolve flocking --seed random --set search.crossover=uniform --json > result.json\n"
-      "  gauntlet evolve my-experiment.toml --set controller_parameters.bird_speed=0.1");
-  command->callback([options, &chosen] {
-    chosen = [options](CommandContext& context) { return RunSearch(context, *options, {}); };
-  });
+ExitCode RunEvolve(CommandContext& context, const CommonOptions& options) {
+  return RunSearch(context, options, {});
 }
 
-void AddRandomCommand(CLI::App& app, CommandAction& chosen) {
-  CLI::App* command =
-      app.add_subcommand("random", "random test cases: the baseline to hold an evolution against");
-  const auto options = std::make_shared<CommonOptions>();
-  const auto cases = std::make_shared<std::string>();
-  AddCommonOptions(*command, *options);
-  command->add_option("--cases", *cases, "how many test cases (default: the experiment's search.cases)")
-      ->type_name("N");
-  command->footer(
-      "\nGenerates valid random test cases by the experiment's rules and simulates each once (more with\n"
-      "--set search.replicates=K). The population that 'show' reports are all cases.\n"
-      "\n"
-      "Examples:\n"
-      "  gauntlet random flocking --cases 200\n"
-      "  gauntlet random flocking --cases 1000 --seed 7 --dir campaigns/baseline");
-  command->callback([options, cases, &chosen] {
-    chosen = [options, cases](CommandContext& context) {
-      std::vector<ExtraSet> extra = {{"random", "search.algorithm=random"}};
-      if (!cases->empty()) extra.push_back({"--cases", "search.cases=" + *cases});
-      return RunSearch(context, *options, extra);
-    };
-  });
+ExitCode RunRandom(CommandContext& context, const RandomOptions& options) {
+  std::vector<ExtraSet> extra = {{"random", "search.algorithm=random"}};
+  if (!options.cases.empty()) extra.push_back({"--cases", "search.cases=" + options.cases});
+  return RunSearch(context, options.common, extra);
 }
 
 }  // namespace gauntlet::master

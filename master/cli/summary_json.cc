@@ -150,4 +150,15 @@ std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const Campai
   return Dump(json);
 }
 
+std::string ReplayJson(const ReplayReport& report) {
+  const bool completed = report.replayed.verdict == sim::Verdict::kCompleted;
+  return Dump({{"run", IdJson(report.stored.id)},
+               {"reproduced", report.differences.empty()},
+               {"stored_hash", fmt::format("{:016x}", report.stored_result.hash)},
+               {"hash", fmt::format("{:016x}", report.replayed.hash)},
+               {"differences", report.differences},
+               {"verdict", NameOf(report.replayed.verdict)},
+               {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json(nullptr)}});
+}
+
 }  // namespace gauntlet::master

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "master/campaign/campaign_summary.h"
+#include "master/campaign/replay.h"
 #include "master/cli/evaluation.h"
 
 namespace gauntlet::master {
@@ -17,4 +18,7 @@ std::string SummaryJson(const CampaignSummary& summary, const std::string& direc
 // ...}. `summary` is of the campaign that simulated them; nullptr when no case could be simulated.
 std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const CampaignSummary* summary,
                            const std::string& directory);
+// {"run", "reproduced", "stored_hash", "hash", "differences": [...], "verdict", "fitness"}.
+std::string ReplayJson(const ReplayReport& report);
+
 }  // namespace gauntlet::master
