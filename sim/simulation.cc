@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/base/hash.h"
+#include "sim/base/number_text.h"
 #include "sim/physics/physics_engine.h"
 #include "sim/sensors/sensor_suite.h"
 
@@ -25,24 +26,22 @@ RunResult Refusal(std::string message) {
   return result;
 }
 
-std::string PlaceOf(const Vec2& p) {
-  return "(" + std::to_string(p.x()) + ", " + std::to_string(p.y()) + ") m";
-}
-
 // Why this robot cannot be simulated, or nothing.
 std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, const RobotSetup& setup) {
   const Vec2& p = setup.pose.position;
   if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(setup.pose.heading)) {
-    return "bad-start: " + RobotName(index) + " starts at a pose that is not finite: " + PlaceOf(p) +
-           ", heading " + std::to_string(setup.pose.heading);
+    return "bad-start: " + RobotName(index) +
+           " starts at a pose that is not finite: " + PointText(p.x(), p.y()) + " m" + ", heading " +
+           NumberText(setup.pose.heading);
   }
   if (!arena.InInterior(p)) {
-    return "bad-start: " + RobotName(index) + " starts outside the walls, at " + PlaceOf(p);
+    return "bad-start: " + RobotName(index) + " starts outside the walls, at " + PointText(p.x(), p.y()) +
+           " m";
   }
   for (std::size_t box = 0; box < arena.obstacles().size(); ++box) {
     if (Contains(arena.obstacles()[box], p)) {
       return "bad-start: " + RobotName(index) + " starts inside obstacle " + std::to_string(box) + ", at " +
-             PlaceOf(p);
+             PointText(p.x(), p.y()) + " m";
     }
   }
   if (setup.controller == nullptr) return "bad-start: " + RobotName(index) + " has no controller";
@@ -168,10 +167,9 @@ bool Loop::Act() {
       const bool left = !WithinLimit(actuators.left_wheel);
       invalid_command_ = "invalid-command: " + RobotName(i) + ", tick " +
                          std::to_string(observer_.last_tick()) + ": " + (left ? "left" : "right") +
-                         " wheel speed " +
-                         std::to_string(left ? actuators.left_wheel : actuators.right_wheel) +
+                         " wheel speed " + NumberText(left ? actuators.left_wheel : actuators.right_wheel) +
                          " m/s; a wheel turns at a finite speed of at most " +
-                         std::to_string(foot_bot::kMaxWheelSpeed) + " m/s";
+                         NumberText(foot_bot::kMaxWheelSpeed) + " m/s";
       return false;
     }
     wheels_[i] = {.left = actuators.left_wheel, .right = actuators.right_wheel};

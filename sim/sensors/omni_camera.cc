@@ -34,7 +34,7 @@ void OmniCameras::Look(std::span<const BodyFrame> robots, std::span<const Color>
       const double range = std::sqrt(offset.squaredNorm());
       const double bearing = AngleOf(offset);
       if (i_sees) Add(i, robots[i], range, bearing, beacons[j]);
-      if (j_sees) Add(j, robots[j], range, bearing + kPi, beacons[i]);
+      if (j_sees) Add(j, robots[j], range, bearing > 0.0 ? bearing - kPi : bearing + kPi, beacons[i]);
     }
   }
 }
@@ -73,8 +73,11 @@ bool OmniCameras::Hidden(const Vec2& a, const Vec2& b) const {
 
 void OmniCameras::Add(std::size_t viewer, const BodyFrame& frame, double range, double world_bearing,
                       Color color) {
+  double bearing = world_bearing - frame.heading;  // both in (-pi, pi]
+  if (bearing > kPi) bearing -= 2.0 * kPi;
+  if (bearing <= -kPi) bearing += 2.0 * kPi;
   blobs_[viewer * (ranges_.size() - 1) + counts_[viewer]++] = {
-      .range = range, .bearing = WrapAngle(world_bearing - frame.heading), .color = color};
+      .range = range, .bearing = bearing, .color = color};
 }
 
 }  // namespace gauntlet::sim

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <array>
-#include <span>
+#include <cstdint>
 
 #include "sim/geometry/oriented_box.h"
 #include "sim/robot/foot_bot.h"
@@ -20,27 +20,23 @@ double ProximityReading(double distance);
 // The readings of one robot, collected body by body. What is farther than the range costs one distance.
 class ProximityRing {
  public:
-  explicit ProximityRing(const BodyFrame& self);
+  explicit ProximityRing(const BodyFrame& self) : self_(self) {}
 
   void See(const OrientedBox& box);
   // The other robot's body and the gripper disc at its front.
   void See(const BodyFrame& robot);
 
   // Whether any ray hit something.
-  bool active() const { return active_; }
+  bool active() const { return hits_ != 0; }
   ProximityReadings Readings() const;
 
  private:
-  void PrepareRays();
-  void SeeDisc(const Vec2& center, double radius);
+  void SeeDisc(const Vec2& center, double distance_squared, double radius);
   void Hit(std::size_t sensor, double distance);
 
   const BodyFrame& self_;
-  bool active_ = false;
-  bool prepared_ = false;
-  std::array<double, foot_bot::kProximitySensors> ray_x_;  // unit vectors of the rays in the world
-  std::array<double, foot_bot::kProximitySensors> ray_y_;
-  std::array<double, foot_bot::kProximitySensors> nearest_;  // m from the surface
+  std::uint32_t hits_ = 0;                                   // bit i: ray i hit something
+  std::array<double, foot_bot::kProximitySensors> nearest_;  // m from the surface, where hits_ says so
 };
 
 }  // namespace gauntlet::sim

@@ -68,8 +68,7 @@ TEST(RunResultHash, LeavesOutTrajectoryAndCost) {
 
 TEST(RunResultHash, IsStable) {
   // Stored results carry this hash: a change of the encoding must be noticed.
-  EXPECT_EQ(HashOf(RunResult{}), HashOf(RunResult{}));
-  EXPECT_EQ(HashOf(Example()), 0u);
+  EXPECT_EQ(HashOf(Example()), 9689415943226554658u);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "sim/base/number_text.h"
 #include "tests/support/toy_scenario.h"
 
 namespace gauntlet::sim {
@@ -144,7 +145,7 @@ TEST(Simulation, RefusesCommandsThatCannotBeCarriedOut) {
     EXPECT_EQ(result.verdict, Verdict::kInvalidCommand);
     EXPECT_EQ(result.ticks, 17);
     EXPECT_THAT(result.message, AllOf(StartsWith("invalid-command: robot 1, tick 17: right wheel speed "),
-                                      HasSubstr(std::to_string(bad)), HasSubstr("at most 1.0")));
+                                      HasSubstr(NumberText(bad)), HasSubstr("at most 1 m/s")));
     EXPECT_EQ(result.hash, HashOf(result));
     EXPECT_TRUE(std::isfinite(result.robots[1].end.position.x()));
   }
@@ -159,13 +160,13 @@ TEST(Simulation, RefusesSwarmsThatCannotBeSimulated) {
   ToyRobot robot = RobotAt(7.0, 0, DriveStraight(0.1));
   RunResult result = SimulateOne(robot);
   EXPECT_EQ(result.verdict, Verdict::kRefused);
-  EXPECT_THAT(result.message, StartsWith("bad-start: robot 1 starts outside the walls, at (7.0"));
+  EXPECT_THAT(result.message, StartsWith("bad-start: robot 1 starts outside the walls, at (7, 0) m"));
 
   TestCase blocked;
   blocked.obstacles = {{.x = 1.0, .y = 0.0, .length = 0.5, .width = 0.5, .orientation_deg = 0.0}};
   robot = RobotAt(1.0, 0.1, DriveStraight(0.1));
   EXPECT_THAT(SimulateOne(robot, blocked).message,
-              StartsWith("bad-start: robot 1 starts inside obstacle 0, at (1.0"));
+              StartsWith("bad-start: robot 1 starts inside obstacle 0, at (1, 0.1) m"));
 
   robot = RobotAt(std::numeric_limits<double>::quiet_NaN(), 0, DriveStraight(0.1));
   EXPECT_THAT(SimulateOne(robot).message,

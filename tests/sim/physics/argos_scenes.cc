@@ -44,11 +44,12 @@ const std::vector<ArgosScene>& ArgosScenes() {
       {"gap_20cm", {kAhead}, {Box(0.6, 0.6, 0.4, 1), Box(0.6, -0.6, 0.4, 1)}},
       {"headon_0", {kAhead, kAhead}, {}},
       {"headon_2cm", {kAhead, kAhead}, {}},
-      {"headon_8cm", {kAhead, kAhead}, {}},
+      // Sliding around each other multiplies small differences of the first contact.
+      {"headon_8cm", {kAhead, kAhead}, {}, false, 0.025},
       {"headon_5v10", {kAhead, kSlow}, {}},
       {"push_robot_0", {kAhead, kBrake}, {}},
       {"push_robot_2cm", {kAhead, kBrake}, {}},
-      {"push_robot_8cm", {kAhead, kBrake}, {}},
+      {"push_robot_8cm", {kAhead, kBrake}, {}, false, 0.025},
       {"push_two_robots", {kAhead, kBrake, kBrake}, {}},
       {"rear_end", {kAhead, kSlow}, {}},
   };

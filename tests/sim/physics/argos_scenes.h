@@ -13,7 +13,8 @@ struct ArgosScene {
   std::string name;                   // of the file in motion/, without .csv
   std::vector<WheelSpeeds> commands;  // per robot, from the end of tick 1 on
   std::vector<OrientedBox> boxes;
-  bool free = false;  // nothing is ever touched
+  bool free = false;                  // nothing is ever touched
+  double contact_tolerance = 0.0025;  // m, over the whole file
 };
 
 const std::vector<ArgosScene>& ArgosScenes();
