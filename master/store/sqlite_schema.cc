@@ -17,8 +17,6 @@ namespace gauntlet::master {
 namespace {
 
 constexpr int kPageSize = 8192;
-// Pages in the write-ahead log before they are moved into the database: 16 MB.
-constexpr int kCheckpointPages = 2048;
 
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kHeaderSize = 100;
@@ -256,7 +254,8 @@ Result<SqliteConnection> OpenCheckedForReading(const std::string& path) {
   return opened;
 }
 
-Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs) {
+Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs,
+                                               int checkpoint_pages) {
   if (Result<SqliteConnection> checked = OpenCheckedForReading(path); !checked) return checked.error();
   Result<SqliteConnection> opened =
       SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadWrite, vfs);
@@ -267,7 +266,7 @@ Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const st
       "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
       "PRAGMA foreign_keys = ON; PRAGMA recursive_triggers = ON; PRAGMA cache_spill = OFF;"
       "PRAGMA temp_store = MEMORY; PRAGMA wal_autocheckpoint = {}; BEGIN IMMEDIATE; COMMIT",
-      kCheckpointPages);
+      checkpoint_pages);
   if (Status set = opened->Execute(sql); !set) return WithPath(path, set.error());
   if (Status format = CheckFormat(*opened, path); !format) return format.error();
   return opened;

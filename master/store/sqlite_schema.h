@@ -25,6 +25,9 @@ inline constexpr std::int64_t kStoreFormat = 1;
 // "GNTL": tells a campaign.db from any other SQLite file.
 inline constexpr std::int64_t kStoreApplicationId = 0x474E544C;
 
+// Pages in the write-ahead log before they are moved into the database: 16 MB.
+inline constexpr int kCheckpointPages = 2048;
+
 // Makes a database with empty tables. It appears under its name at once and whole, or not at all. kInUse when
 // the file exists.
 Status CreateDatabase(const std::string& path, const CampaignMeta& meta);
@@ -36,7 +39,8 @@ Result<SqliteConnection> OpenCheckedForReading(const std::string& path);
 
 // Checks as OpenCheckedForReading does, then opens for writing: exclusively locked, write-ahead log, every
 // commit synchronised. kInUse when another process holds it. `vfs`: SqliteConnection::Open.
-Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs);
+Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs,
+                                               int checkpoint_pages);
 
 Result<CampaignMeta> ReadMeta(SqliteConnection& connection);
 

@@ -15,7 +15,7 @@ Status SqliteStore::Create(const std::string& path, const CampaignMeta& meta) {
 }
 
 Result<std::unique_ptr<SqliteStore>> SqliteStore::Open(const std::string& path, Options options) {
-  Result<SqliteConnection> connection = OpenCheckedForWriting(path, options.vfs);
+  Result<SqliteConnection> connection = OpenCheckedForWriting(path, options.vfs, options.checkpoint_pages);
   if (!connection) return connection.error();
   Result<std::unique_ptr<SqliteStore>> store = Make(path, *std::move(connection), std::move(options));
   if (!store) return store;

@@ -38,6 +38,7 @@ class SqliteStore final : public ResultStore {
     // epoch check.
     std::function<Status()> guard;
     std::string vfs;  // SqliteConnection::Open
+    int checkpoint_pages = kCheckpointPages;
   };
 
   // Makes the file: CreateDatabase.
