@@ -157,20 +157,18 @@ RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail) {
 
 std::string Describe(const RunnerFailure& failure) {
   switch (failure.kind) {
-    case FailureKind::kHung:
-      return "took more CPU time than a run may";
-    case FailureKind::kOutOfMemory:
-      return "took more memory than a run may";
     case FailureKind::kCrashed:
+      return failure.signal != 0 ? fmt::format("crashed with signal {}", failure.signal)
+                                 : fmt::format("crashed with exit code {}", failure.exit_code);
+    case FailureKind::kHung:
+      return "exceeded its CPU time";
+    case FailureKind::kOutOfMemory:
+      return "exceeded its memory";
     case FailureKind::kExternal:
       break;
   }
-  if (failure.signal != 0) {
-    const char* name = sigabbrev_np(failure.signal);
-    return fmt::format("ended by signal {} (SIG{})", failure.signal, name != nullptr ? name : "?");
-  }
-  if (failure.exit_code == kExitException) return "threw an exception that nobody caught";
-  return fmt::format("ended by exit({})", failure.exit_code);
+  return failure.signal != 0 ? fmt::format("was ended from outside by signal {}", failure.signal)
+                             : "was given back";
 }
 
 void RunnerMain(int pipe, const RunFunction& run) {

@@ -62,8 +62,8 @@ std::optional<RunnerReport> DecodeReport(std::string_view bytes);
 // else sends are external.
 RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail);
 
-// One line for a person, the same for the same failure: "ended by signal 11 (SIGSEGV)". The message of a run
-// whose verdict is crashed, hung or out of memory (proto/README.md).
+// One line for a person, the same for the same failure: "crashed with signal 11". The message of a run whose
+// verdict is crashed, hung or out of memory (proto/README.md).
 std::string Describe(const RunnerFailure& failure);
 
 // The child's life: works off jobs from `pipe` until it is closed. Limits apply to this very process.

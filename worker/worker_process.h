@@ -28,7 +28,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run);
 struct SpecOptions {
   std::string spec_file = "-";  // a serialized RunSpec; "-": stdin
   double cpu_limit_seconds = 600.0;
-  std::uint64_t memory_limit_bytes = std::uint64_t{4} << 30;
+  std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;
   bool die_with_parent = false;
 };
 

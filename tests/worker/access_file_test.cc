@@ -1,0 +1,67 @@
+#include "worker/access_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/process.h"
+
+namespace gauntlet::worker {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kGood =
+    R"({"format": 1, "campaign": "c0ffee", "epoch": 3, "endpoints": ["tcp://127.0.0.1:40123", "ipc:///tmp/x"],
+        "server_key": "a later version's"})";
+
+TEST(AccessFileTest, ReadsWhatTheMasterWritesAndIgnoresLaterKeys) {
+  const Result<Access> access = ParseAccess(kGood, "access.json");
+  ASSERT_TRUE(access.ok()) << access.error().message;
+  EXPECT_EQ(*access, (Access{"c0ffee", 3, {"tcp://127.0.0.1:40123", "ipc:///tmp/x"}}));
+}
+
+struct BadAccess {
+  const char* name;
+  const char* text;
+  const char* complaint;
+};
+
+class BadAccessTest : public testing::TestWithParam<BadAccess> {};
+
+TEST_P(BadAccessTest, IsRefusedWithItsPlaceAndWhatWouldBeRight) {
+  const Result<Access> access = ParseAccess(GetParam().text, "dir/access.json");
+  ASSERT_FALSE(access.ok());
+  EXPECT_THAT(access.error().message, HasSubstr("dir/access.json"));
+  EXPECT_THAT(access.error().message, HasSubstr(GetParam().complaint));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    AccessFile, BadAccessTest,
+    testing::Values(BadAccess{"Empty", "", "line 1, column 1"},
+                    BadAccess{"Torn", "{\"format\": 1,\n \"camp", "line 2"},
+                    BadAccess{"List", "[]", "an object"}, BadAccess{"NoFormat", "{}", "\"format\""},
+                    BadAccess{"NewerFormat", R"({"format": 2})", "format 2, this version reads format 1"},
+                    BadAccess{"NoCampaign", R"({"format": 1, "campaign": ""})", "\"campaign\""},
+                    BadAccess{"NegativeEpoch", R"({"format": 1, "campaign": "a", "epoch": -1})", "\"epoch\""},
+                    BadAccess{"NoEndpoints", R"({"format": 1, "campaign": "a", "epoch": 1, "endpoints": []})",
+                              "\"endpoints\""},
+                    BadAccess{"WrongEndpoint",
+                              R"({"format": 1, "campaign": "a", "epoch": 1, "endpoints": ["udp://x"]})",
+                              "udp://x"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(AccessFileTest, NewerFormatIsAMatterOfVersions) {
+  EXPECT_EQ(ParseAccess(R"({"format": 2})", "x").error().kind, ErrorKind::kVersion);
+}
+
+TEST(AccessFileTest, MissingFileIsNotFound) {
+  const testing_support::TemporaryDirectory directory;
+  EXPECT_EQ(ReadAccess(directory / "access.json").error().kind, ErrorKind::kNotFound);
+  std::ofstream(directory / "access.json") << kGood;
+  EXPECT_TRUE(ReadAccess(directory / "access.json").ok());
+}
+
+}  // namespace
+}  // namespace gauntlet::worker

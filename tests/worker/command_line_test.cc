@@ -1,0 +1,72 @@
+// gauntlet-worker as it is shipped: its command line and the real simulation behind it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "proto/run.pb.h"
+#include "tests/support/process.h"
+
+namespace gauntlet::worker {
+namespace {
+
+using testing::HasSubstr;
+using testing::MatchesRegex;
+using testing_support::ProcessResult;
+using testing_support::RunProcess;
+
+constexpr const char* kWorker = GAUNTLET_BINARY_DIR "/gauntlet-worker";
+
+TEST(CommandLineTest, VersionAndGoldenHashAreOneLine) {
+  EXPECT_THAT(RunProcess({kWorker, "--version"}).out,
+              MatchesRegex("gauntlet-worker [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  const ProcessResult golden = RunProcess({kWorker, "--golden"});
+  EXPECT_EQ(golden.exit_code, 0);
+  EXPECT_THAT(golden.out, MatchesRegex("[0-9a-f]{16}\n"));
+  EXPECT_EQ(RunProcess({kWorker, "--golden"}).out, golden.out);
+}
+
+struct BadLine {
+  const char* name;
+  std::vector<std::string> arguments;
+  const char* complaint;
+};
+
+class BadLineTest : public testing::TestWithParam<BadLine> {};
+
+TEST_P(BadLineTest, ExitsTwoAndNamesWhatIsWrong) {
+  std::vector<std::string> line{kWorker};
+  line.insert(line.end(), GetParam().arguments.begin(), GetParam().arguments.end());
+  const ProcessResult ended = RunProcess(line);
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.err, HasSubstr(GetParam().complaint));
+  EXPECT_EQ(ended.out, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Worker, BadLineTest,
+    testing::Values(BadLine{"Nothing", {}, "--dir DIR or --access FILE"},
+                    BadLine{"Unknown", {"--fast"}, "--fast"},
+                    BadLine{"NoSlots", {"--dir", "x", "--slots", "0"}, "--slots"},
+                    BadLine{"AbsurdSlots", {"--dir", "x", "--slots", "100000"}, "--slots"},
+                    BadLine{"BothPlaces", {"--dir", "x", "--access", "y"}, "--access"},
+                    BadLine{"NegativeTimeout", {"--dir", "x", "--orphan-timeout", "-1"}, "--orphan-timeout"},
+                    BadLine{"LimitWithoutSpec", {"--dir", "x", "--cpu-limit", "3"}, "--run-spec"},
+                    BadLine{"LogNowhere", {"--dir", "x", "--log", "/proc/none/x"}, "/proc/none/x"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST(CommandLineTest, UnknownScenarioIsRefusedByNameInTheResult) {
+  const testing_support::TemporaryDirectory directory;
+  v1::RunSpec spec;
+  spec.set_scenario("floking");
+  std::ofstream(directory / "spec", std::ios::binary) << spec.SerializeAsString();
+  const ProcessResult ended = RunProcess({kWorker, "--run-spec", directory / "spec"});
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  v1::RunResult result;
+  ASSERT_TRUE(result.ParseFromString(ended.out));
+  EXPECT_EQ(result.verdict(), v1::VERDICT_REFUSED);
+  EXPECT_THAT(result.message(), HasSubstr("floking"));
+}
+
+}  // namespace
+}  // namespace gauntlet::worker

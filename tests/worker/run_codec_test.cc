@@ -1,0 +1,257 @@
+#include "worker/run_codec.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "proto/run.pb.h"
+
+namespace gauntlet::worker {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+rc::Gen<double> FiniteDouble() {
+  return rc::gen::suchThat(rc::gen::map(rc::gen::arbitrary<std::uint64_t>(),
+                                        [](std::uint64_t bits) { return std::bit_cast<double>(bits); }),
+                           [](double value) { return std::isfinite(value); });
+}
+
+rc::Gen<std::string> Name() {
+  return rc::gen::nonEmpty(rc::gen::container<std::string>(rc::gen::inRange('a', 'z')));
+}
+
+// The wire form of a spec and the same spec as a struct, made side by side.
+struct SpecPair {
+  v1::RunSpec wire;
+  sim::RunSpec spec;
+};
+
+sim::Parameters ArbitraryParameters() {
+  return *rc::gen::container<std::map<std::string, double>>(Name(), FiniteDouble());
+}
+
+template <typename List>
+void Write(const sim::Parameters& parameters, List* wire) {
+  for (const auto& [name, value] : parameters) {
+    v1::Parameter& parameter = *wire->Add();
+    parameter.set_name(name);
+    parameter.set_value(value);
+  }
+}
+
+SpecPair ArbitrarySpec() {
+  SpecPair pair;
+  sim::TestCase& test_case = pair.spec.test_case;
+  v1::TestCase& wire = *pair.wire.mutable_test_case();
+  test_case.name = *Name();
+  wire.set_name(test_case.name);
+  if (*rc::gen::arbitrary<bool>()) wire.set_side_x(test_case.side_x = *FiniteDouble());
+  if (*rc::gen::arbitrary<bool>()) wire.set_side_y(test_case.side_y = *FiniteDouble());
+  if (*rc::gen::arbitrary<bool>()) wire.set_wall_thickness(test_case.wall_thickness = *FiniteDouble());
+  const int obstacles = *rc::gen::inRange(0, 12);
+  for (int i = 0; i < obstacles; ++i) {
+    const sim::ObstacleGene gene{*FiniteDouble(), *FiniteDouble(), *FiniteDouble(), *FiniteDouble(),
+                                 *FiniteDouble()};
+    test_case.obstacles.push_back(gene);
+    v1::Obstacle& obstacle = *wire.add_obstacles();
+    obstacle.set_x(gene.x);
+    obstacle.set_y(gene.y);
+    obstacle.set_length(gene.length);
+    obstacle.set_width(gene.width);
+    obstacle.set_orientation_deg(gene.orientation_deg);
+  }
+  if (*rc::gen::arbitrary<bool>()) {
+    test_case.spawn_area = sim::Rectangle{.min = {1.0, 2.0}, .max = {*FiniteDouble(), 4.0}};
+    wire.mutable_spawn_area()->set_min_x(1.0);
+    wire.mutable_spawn_area()->set_min_y(2.0);
+    wire.mutable_spawn_area()->set_max_x(test_case.spawn_area->max.x());
+    wire.mutable_spawn_area()->set_max_y(4.0);
+  }
+  if (*rc::gen::arbitrary<bool>()) wire.set_robots(*(test_case.robots = *rc::gen::arbitrary<int>()));
+  pair.wire.set_scenario(pair.spec.scenario = *Name());
+  pair.wire.set_controller(pair.spec.controller = *Name());
+  Write(pair.spec.scenario_parameters = ArbitraryParameters(), pair.wire.mutable_scenario_parameters());
+  Write(pair.spec.controller_parameters = ArbitraryParameters(), pair.wire.mutable_controller_parameters());
+  pair.wire.set_seed(pair.spec.seed = *rc::gen::arbitrary<std::uint64_t>());
+  pair.wire.set_record_trajectory(pair.spec.record_trajectory = *rc::gen::arbitrary<bool>());
+  return pair;
+}
+
+RC_GTEST_PROP(RunCodecProperty, SpecsDecodeToWhatWasSent, ()) {
+  const SpecPair pair = ArbitrarySpec();
+  const Result<sim::RunSpec> decoded = DecodeRunSpec(pair.wire.SerializeAsString());
+  RC_ASSERT(decoded.ok());
+  const sim::TestCase& expected = pair.spec.test_case;
+  const sim::TestCase& actual = decoded->test_case;
+  RC_ASSERT(actual.name == expected.name);
+  RC_ASSERT(actual.side_x == expected.side_x);
+  RC_ASSERT(actual.side_y == expected.side_y);
+  RC_ASSERT(actual.wall_thickness == expected.wall_thickness);
+  RC_ASSERT(actual.obstacles == expected.obstacles);
+  RC_ASSERT(actual.robots == expected.robots);
+  RC_ASSERT(actual.spawn_area.has_value() == expected.spawn_area.has_value());
+  if (expected.spawn_area) {
+    RC_ASSERT(actual.spawn_area->min == expected.spawn_area->min);
+    RC_ASSERT(actual.spawn_area->max == expected.spawn_area->max);
+  }
+  RC_ASSERT(decoded->scenario == pair.spec.scenario);
+  RC_ASSERT(decoded->controller == pair.spec.controller);
+  RC_ASSERT(decoded->scenario_parameters == pair.spec.scenario_parameters);
+  RC_ASSERT(decoded->controller_parameters == pair.spec.controller_parameters);
+  RC_ASSERT(decoded->seed == pair.spec.seed);
+  RC_ASSERT(decoded->record_trajectory == pair.spec.record_trajectory);
+}
+
+RC_GTEST_PROP(RunCodecProperty, GarbageIsAnErrorNeverACrash, (const std::string& bytes)) {
+  const Result<sim::RunSpec> decoded = DecodeRunSpec(bytes);
+  if (!decoded.ok()) RC_ASSERT(decoded.error().message.starts_with("spec: "));
+}
+
+TEST(RunCodecTest, AbsentSidesAreTheThesisArena) {
+  const Result<sim::RunSpec> decoded = DecodeRunSpec(v1::RunSpec().SerializeAsString());
+  ASSERT_TRUE(decoded.ok());
+  EXPECT_EQ(decoded->test_case.side_x, 6.0);
+  EXPECT_EQ(decoded->test_case.wall_thickness, 0.1);
+  EXPECT_FALSE(decoded->test_case.robots.has_value());
+}
+
+std::string ErrorOf(const v1::RunSpec& wire) {
+  const Result<sim::RunSpec> decoded = DecodeRunSpec(wire.SerializeAsString());
+  return decoded.ok() ? "" : decoded.error().message;
+}
+
+TEST(RunCodecTest, RefusesMoreObstaclesThanAnArenaMayHave) {
+  v1::RunSpec wire;
+  for (int i = 0; i < kMaxObstacles; ++i) wire.mutable_test_case()->add_obstacles()->set_length(1.0);
+  EXPECT_EQ(ErrorOf(wire), "");
+  wire.mutable_test_case()->add_obstacles();
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("10001 obstacles, 10000 are possible"));
+}
+
+TEST(RunCodecTest, RefusesMoreParametersThanThereCanBe) {
+  v1::RunSpec wire;
+  for (int i = 0; i <= kMaxParameters; ++i) wire.add_controller_parameters()->set_name(std::to_string(i));
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("1001 parameters"));
+}
+
+TEST(RunCodecTest, RefusesNumbersThatAreNotFiniteByName) {
+  v1::RunSpec wire;
+  wire.mutable_test_case()->add_obstacles()->set_width(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("an obstacle's width is nan"));
+  wire.Clear();
+  wire.mutable_test_case()->set_side_x(std::numeric_limits<double>::infinity());
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("side_x is inf"));
+  wire.Clear();
+  wire.add_scenario_parameters()->set_name("duration");
+  wire.mutable_scenario_parameters(0)->set_value(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("duration is nan"));
+}
+
+TEST(RunCodecTest, RefusesAParameterThatIsGivenTwice) {
+  v1::RunSpec wire;
+  wire.add_controller_parameters()->set_name("speed");
+  wire.add_controller_parameters()->set_name("speed");
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("controller parameter 'speed' is given twice"));
+}
+
+TEST(RunCodecTest, RefusesNamesBeyondReason) {
+  v1::RunSpec wire;
+  wire.set_scenario(std::string(kMaxNameBytes + 1, 'x'));
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("a scenario's name of 4097 bytes"));
+}
+
+TEST(RunCodecTest, RefusesFieldsOfALaterVersion) {
+  v1::RunSpec wire;
+  v1::TestCase& test_case = *wire.mutable_test_case();
+  test_case.GetReflection()->MutableUnknownFields(&test_case)->AddVarint(77, 1);
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("test_case has fields that this version does not know"));
+}
+
+sim::RunResult ExampleResult() {
+  sim::RunResult result;
+  result.fitness = 0.25;
+  result.metrics = {{"proportion_left", 0.9}, {"angular_order", -0.0}};
+  result.failure = {.total = true, .type = 7, .label = "split at the wall"};
+  result.ticks = 2;
+  result.robots = {{.start = {.position = {1.0, 2.0}, .heading = 0.5},
+                    .end = {.position = {3.0, 4.0}, .heading = -0.5},
+                    .path_length = 5.0,
+                    .lost = true,
+                    .waypoints = {{1.0, 2.0}, {3.0, 4.0}}}};
+  result.annotations = {
+      {.kind = "disc", .label = "goal", .points = {{5.0, 6.0}}, .radius = 0.3, .tick = 1, .robots = {0}}};
+  result.trajectory_hash = 11;
+  result.hash = 12;
+  result.trajectory = {{{1.0, 2.0, 0.5, 0.0}}, {{3.0, 4.0, -0.5, 0.1}}};
+  result.cpu_seconds = 0.125;
+  return result;
+}
+
+TEST(RunCodecTest, ResultCarriesEveryField) {
+  v1::RunResult wire;
+  ASSERT_TRUE(wire.ParseFromString(EncodeRunResult(ExampleResult(), TrajectoryEncoding::kInclude)));
+  EXPECT_EQ(wire.verdict(), v1::VERDICT_COMPLETED);
+  EXPECT_EQ(wire.fitness(), 0.25);
+  ASSERT_EQ(wire.metrics_size(), 2);
+  EXPECT_EQ(wire.metrics(0).name(), "proportion_left");
+  EXPECT_TRUE(std::signbit(wire.metrics(1).value())) << "the sign of a zero survives";
+  EXPECT_TRUE(wire.failure().total());
+  EXPECT_EQ(wire.failure().type(), 7);
+  EXPECT_EQ(wire.failure().label(), "split at the wall");
+  EXPECT_EQ(wire.ticks(), 2);
+  ASSERT_EQ(wire.robots_size(), 1);
+  EXPECT_EQ(wire.robots(0).end().heading(), -0.5);
+  EXPECT_EQ(wire.robots(0).path_length(), 5.0);
+  EXPECT_TRUE(wire.robots(0).lost());
+  EXPECT_THAT(wire.robots(0).waypoints(), ElementsAre(1.0, 2.0, 3.0, 4.0));
+  ASSERT_EQ(wire.annotations_size(), 1);
+  EXPECT_EQ(wire.annotations(0).kind(), "disc");
+  EXPECT_THAT(wire.annotations(0).points(), ElementsAre(5.0, 6.0));
+  EXPECT_EQ(wire.annotations(0).tick(), 1);
+  EXPECT_THAT(wire.annotations(0).robots(), ElementsAre(0));
+  EXPECT_EQ(wire.trajectory_hash(), 11u);
+  EXPECT_EQ(wire.hash(), 12u);
+  EXPECT_EQ(wire.trajectory().robots(), 1);
+  EXPECT_THAT(wire.trajectory().states(), ElementsAre(1.0, 2.0, 0.5, 0.0, 3.0, 4.0, -0.5, 0.1));
+  EXPECT_EQ(wire.cpu_seconds(), 0.125);
+}
+
+TEST(RunCodecTest, TrajectoryIsLeftOutUnlessAskedFor) {
+  v1::RunResult wire;
+  ASSERT_TRUE(wire.ParseFromString(EncodeRunResult(ExampleResult(), TrajectoryEncoding::kLeaveOut)));
+  EXPECT_FALSE(wire.has_trajectory());
+}
+
+TEST(RunCodecTest, EveryVerdictHasItsOwnNumberOnTheWire) {
+  for (const auto& [verdict, expected] : {std::pair{sim::Verdict::kCompleted, v1::VERDICT_COMPLETED},
+                                          {sim::Verdict::kRefused, v1::VERDICT_REFUSED},
+                                          {sim::Verdict::kCrashed, v1::VERDICT_CRASHED},
+                                          {sim::Verdict::kHung, v1::VERDICT_HUNG},
+                                          {sim::Verdict::kOutOfMemory, v1::VERDICT_OUT_OF_MEMORY},
+                                          {sim::Verdict::kInvalidCommand, v1::VERDICT_INVALID_COMMAND}}) {
+    sim::RunResult result;
+    result.verdict = verdict;
+    v1::RunResult wire;
+    ASSERT_TRUE(wire.ParseFromString(EncodeRunResult(result, TrajectoryEncoding::kLeaveOut)));
+    EXPECT_EQ(wire.verdict(), expected);
+  }
+}
+
+TEST(RunCodecTest, EqualResultsGiveEqualBytes) {
+  EXPECT_EQ(EncodeRunResult(ExampleResult(), TrajectoryEncoding::kInclude),
+            EncodeRunResult(ExampleResult(), TrajectoryEncoding::kInclude));
+}
+
+TEST(RunCodecDeathTest, TextThatNoReaderWouldAcceptEndsTheProcess) {
+  sim::RunResult result;
+  result.message = "\xff";
+  EXPECT_DEATH(EncodeRunResult(result, TrajectoryEncoding::kLeaveOut), "not UTF-8");
+}
+
+}  // namespace
+}  // namespace gauntlet::worker
