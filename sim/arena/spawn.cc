@@ -79,18 +79,20 @@ class Spawner {
   const Rectangle& area() const { return area_; }
 
  private:
-  // The smallest rectangle around all reachable cells.
+  // The smallest rectangle around all reachable cells; without area when there is none.
   void FindBounds() {
+    Cell first = {grid_.columns(), grid_.rows()};
+    Cell last = {-1, -1};
     for (int row = 0; row < grid_.rows(); ++row) {
       for (int column = 0; column < grid_.columns(); ++column) {
         if (reachable_[grid_.Index({column, row})] == 0) continue;
-        const Vec2 center = grid_.CenterOf({column, row});
-        const Vec2 half(OccupancyGrid::kCellSize / 2.0, OccupancyGrid::kCellSize / 2.0);
-        const bool first = !AnythingReachable();
-        bounds_.min = first ? Vec2(center - half) : Vec2(bounds_.min.cwiseMin(center - half));
-        bounds_.max = first ? Vec2(center + half) : Vec2(bounds_.max.cwiseMax(center + half));
+        first = {std::min(first.column, column), std::min(first.row, row)};
+        last = {std::max(last.column, column), std::max(last.row, row)};
       }
     }
+    if (last.row < 0) return;
+    const Vec2 half(OccupancyGrid::kCellSize / 2.0, OccupancyGrid::kCellSize / 2.0);
+    bounds_ = {grid_.CenterOf(first) - half, grid_.CenterOf(last) + half};
   }
 
   void Enlarge(double factor) {

@@ -127,7 +127,8 @@ double Atan2(double y, double x) {
   const double opposite = std::fabs(y);
   const double adjacent = std::fabs(x);
   double larger = opposite > adjacent ? opposite : adjacent;
-  double smaller = opposite < adjacent ? opposite : adjacent;
+  // Written so that a NaN on either side survives in one of the two.
+  double smaller = adjacent < opposite ? adjacent : opposite;
   if (!(larger > 1e-290 && larger < 1e290)) [[unlikely]] {
     if (larger == 0.0 && smaller == 0.0) return 0.0;
     if (!(std::isfinite(opposite) && std::isfinite(adjacent))) return kNotANumber;

@@ -1,0 +1,264 @@
+#include "sim/arena/validity.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <set>
+#include <string>
+
+#include "sim/arena/path_planner.h"
+#include "tests/sim/arena/random_arenas.h"
+
+namespace gauntlet::sim {
+namespace {
+
+using testing::CornerToCorner;
+using ::testing::HasSubstr;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TestCase WithObstacles(const Genome& genome) {
+  TestCase test_case;
+  test_case.obstacles = genome;
+  return test_case;
+}
+
+void ExpectViolation(const TestCase& test_case, const ArenaRequirements& requirements, ValidityRule rule,
+                     int gene, const std::string& text) {
+  const std::optional<Violation> violation = CheckValidity(test_case, requirements);
+  ASSERT_TRUE(violation.has_value()) << "want " << NameOf(rule);
+  EXPECT_EQ(NameOf(violation->rule), NameOf(rule)) << violation->message;
+  EXPECT_EQ(violation->gene, gene) << violation->message;
+  EXPECT_THAT(violation->message, HasSubstr(text));
+}
+
+TEST(ValidityTest, RuleNamesAreTheCommandLinesContract) {
+  const std::map<ValidityRule, std::string> names = {{ValidityRule::kFiniteNumbers, "finite-numbers"},
+                                                     {ValidityRule::kPositiveSize, "positive-size"},
+                                                     {ValidityRule::kGeneRange, "gene-range"},
+                                                     {ValidityRule::kContainedObstacle, "contained-obstacle"},
+                                                     {ValidityRule::kStartBlocked, "start-blocked"},
+                                                     {ValidityRule::kGoalBlocked, "goal-blocked"},
+                                                     {ValidityRule::kClearance, "clearance"},
+                                                     {ValidityRule::kNoPath, "no-path"},
+                                                     {ValidityRule::kNoRoomToSpawn, "no-room-to-spawn"},
+                                                     {ValidityRule::kLimits, "limits"}};
+  for (const auto& [rule, name] : names) EXPECT_EQ(NameOf(rule), name);
+}
+
+TEST(ValidityTest, AnEmptyArenaAndOneWithAFewObstaclesAreValid) {
+  EXPECT_FALSE(CheckValidity(TestCase{}, CornerToCorner()));
+  const TestCase test_case = WithObstacles({{0.0, 0.0, 2.0, 0.4, 45.0}, {1.0, -1.0, 1.0, 0.1, 300.0}});
+  EXPECT_FALSE(CheckValidity(test_case, CornerToCorner()));
+}
+
+TEST(ValidityTest, NumbersThatAreNotFiniteAreRefused) {
+  for (const double bad : {kInfinity, -kInfinity, kNan}) {
+    for (const auto& field : {&ObstacleGene::x, &ObstacleGene::y, &ObstacleGene::length, &ObstacleGene::width,
+                              &ObstacleGene::orientation_deg}) {
+      ObstacleGene gene = {0.8, 2.4, 1.4, 0.4, 100.0};
+      gene.*field = bad;
+      ExpectViolation(WithObstacles({{0.0, 0.0, 1.0, 0.4, 0.0}, gene}), CornerToCorner(),
+                      ValidityRule::kFiniteNumbers, 1, std::isnan(bad) ? "nan" : "inf");
+    }
+    for (const auto& field : {&TestCase::side_x, &TestCase::side_y, &TestCase::wall_thickness}) {
+      TestCase test_case;
+      test_case.*field = bad;
+      ExpectViolation(test_case, CornerToCorner(), ValidityRule::kFiniteNumbers, -1, "the arena");
+    }
+    TestCase test_case;
+    test_case.spawn_area = Rectangle{{2.0, bad}, {3.0, 3.0}};
+    ExpectViolation(test_case, CornerToCorner(), ValidityRule::kFiniteNumbers, -1, "the spawn area");
+  }
+}
+
+TEST(ValidityTest, SizesMustBePositive) {
+  for (const double bad : {0.0, -0.0, -1.0, -1e308}) {
+    ExpectViolation(WithObstacles({{0.0, 0.0, bad, 0.4, 0.0}}), CornerToCorner(), ValidityRule::kPositiveSize,
+                    0, "obstacle 1");
+    ExpectViolation(WithObstacles({{0.0, 0.0, 0.4, bad, 0.0}}), CornerToCorner(), ValidityRule::kPositiveSize,
+                    0, "must have a positive length and width");
+    TestCase test_case;
+    test_case.side_y = bad;
+    ExpectViolation(test_case, CornerToCorner(), ValidityRule::kPositiveSize, -1, "positive sides");
+  }
+  TestCase test_case;
+  test_case.spawn_area = Rectangle{{2.0, 2.0}, {1.0, 3.0}};
+  ExpectViolation(test_case, CornerToCorner(), ValidityRule::kPositiveSize, -1, "from (2, 2) to (1, 3)");
+}
+
+TEST(ValidityTest, AbsurdNumbersAreRefusedAtOnce) {
+  for (const ObstacleGene& gene : {ObstacleGene{1e308, 0, 1, 1, 0}, ObstacleGene{0, -1000.5, 1, 1, 0},
+                                   ObstacleGene{0, 0, 200.5, 1, 0}, ObstacleGene{0, 0, 1, 1e300, 0},
+                                   ObstacleGene{0, 0, 1e-300, 1, 0}, ObstacleGene{0, 0, 1, 0.0009, 0}}) {
+    ExpectViolation(WithObstacles({gene}), CornerToCorner(), ValidityRule::kLimits, 0, "obstacle 1");
+  }
+  const auto refuse = [](const std::function<void(TestCase&)>& change, const std::string& text) {
+    TestCase test_case;
+    change(test_case);
+    ExpectViolation(test_case, CornerToCorner(), ValidityRule::kLimits, -1, text);
+  };
+  refuse([](TestCase& t) { t.side_x = 1e308; }, "sides of 1 to 100 m");
+  refuse([](TestCase& t) { t.side_x = 100.001; }, "sides of 1 to 100 m");
+  refuse([](TestCase& t) { t.side_y = 0.999; }, "sides of 1 to 100 m");
+  refuse([](TestCase& t) { t.wall_thickness = 1e-9; }, "walls of 0.001 m");
+  refuse([](TestCase& t) { t.wall_thickness = 3.5; }, "half of its shorter side");
+  refuse([](TestCase& t) { t.spawn_area = Rectangle{{-1e300, 0}, {0, 0}}; }, "within 1000 m");
+  refuse([](TestCase& t) { t.robots = 0; }, "0 robots; want 1 to 1000");
+  refuse([](TestCase& t) { t.robots = 1'000'000'000; }, "1000000000 robots");
+  refuse([](TestCase& t) { t.obstacles.resize(1001, {0, 0, 1, 1, 0}); }, "1001 obstacles; want at most 1000");
+}
+
+TEST(ValidityTest, TheLimitsThemselvesAreAllowed) {
+  TestCase large;
+  large.side_x = 100.0;
+  large.side_y = 1.0;
+  large.robots = 1000;
+  large.obstacles = {{1000.0, -1000.0, 200.0, 200.0, 7.0}, {0.0, 1.0, 0.001, 0.001, 1e9}};
+  ArenaRequirements requirements;
+  requirements.start = {-49.0, 0.0};
+  requirements.goal = {49.0, 0.0};
+  EXPECT_FALSE(CheckValidity(large, requirements));
+}
+
+TEST(ValidityTest, AnObstacleInsideAnEarlierOneIsRefusedInThatOrderOnly) {
+  const ObstacleGene outer = {0.0, 0.0, 2.0, 0.4, 30.0};
+  const ObstacleGene other = {1.5, -1.5, 1.0, 0.4, 0.0};
+  const ObstacleGene inner = {0.1, 0.05, 0.5, 0.1, 30.0};
+  ExpectViolation(WithObstacles({other, outer, inner}), CornerToCorner(), ValidityRule::kContainedObstacle, 2,
+                  "obstacle 3 (x 0.1 m, y 0.05 m, 0.5 x 0.1 m at 30 degrees) lies wholly inside obstacle 2");
+  ExpectViolation(WithObstacles({outer, outer}), CornerToCorner(), ValidityRule::kContainedObstacle, 1,
+                  "inside obstacle 1");
+  EXPECT_FALSE(CheckValidity(WithObstacles({inner, outer}), CornerToCorner()));
+}
+
+TEST(ValidityTest, AnObstacleCoveredOnlyByTwoTogetherIsAllowed) {
+  const TestCase test_case =
+      WithObstacles({{-0.5, 0.0, 1.0, 0.4, 0.0}, {0.5, 0.0, 1.0, 0.4, 0.0}, {0.0, 0.0, 0.6, 0.2, 0.0}});
+  EXPECT_FALSE(CheckValidity(test_case, CornerToCorner()));
+}
+
+TEST(ValidityTest, ObstaclesKeepTheirClearanceFromStartAndGoal) {
+  ArenaRequirements requirements;
+  requirements.start = {0.0, -2.0};
+  requirements.goal = {0.0, 2.0};
+  requirements.clearance = 0.30;
+  ExpectViolation(WithObstacles({{0.4, -2.0, 0.4, 0.4, 0.0}}), requirements, ValidityRule::kClearance, 0,
+                  "from the start (0, -2); want at least 0.3 m");
+  ExpectViolation(WithObstacles({{0.0, 2.45, 1.0, 0.4, 0.0}}), requirements, ValidityRule::kClearance, 0,
+                  "from the goal (0, 2)");
+  EXPECT_FALSE(CheckValidity(WithObstacles({{0.51, -2.0, 0.4, 0.4, 0.0}}), requirements));
+}
+
+TEST(ValidityTest, StartAndGoalMustBeFree) {
+  ExpectViolation(WithObstacles({{2.5, 2.4, 1.0, 0.1, 0.0}}), CornerToCorner(), ValidityRule::kStartBlocked,
+                  0, "blocks the start (2.5, 2.5); a robot's centre needs 0.1 m of room there");
+  ExpectViolation(WithObstacles({{-2.5, -2.5, 0.1, 0.1, 0.0}}), CornerToCorner(), ValidityRule::kGoalBlocked,
+                  0, "blocks the goal (-2.5, -2.5)");
+  ArenaRequirements requirements = CornerToCorner();
+  requirements.goal = {5.0, 0.0};
+  ExpectViolation(TestCase{}, requirements, ValidityRule::kGoalBlocked, -1,
+                  "the wall blocks the goal (5, 0)");
+  requirements.goal = {kNan, 0.0};
+  ExpectViolation(TestCase{}, requirements, ValidityRule::kGoalBlocked, -1, "nan");
+}
+
+TEST(ValidityTest, AnObstacleThatClosesTheLastWayIsNamed) {
+  const TestCase test_case =
+      WithObstacles({{0.0, -0.5, 5.0, 0.2, 90.0}, {-2.0, 2.0, 0.5, 0.2, 0.0}, {0.0, 2.4, 1.4, 0.4, 100.0}});
+  ExpectViolation(test_case, CornerToCorner(), ValidityRule::kNoPath, 2,
+                  "obstacle 3 (x 0 m, y 2.4 m, 1.4 x 0.4 m at 100 degrees) leaves no path from (2.5, 2.5) to "
+                  "(-2.5, -2.5) for a robot's body");
+}
+
+TEST(ValidityTest, AGapCountsOnlyWhenTheBodyFits) {
+  // Two walls across the whole arena with a gap in the middle.
+  const auto with_gap = [](double gap) {
+    const double length = 3.0 - gap / 2.0;
+    const double middle = (3.0 + gap / 2.0) / 2.0;
+    return WithObstacles({{0.0, middle, 0.2, length, 0.0}, {0.0, -middle, 0.2, length, 0.0}});
+  };
+  EXPECT_FALSE(CheckValidity(with_gap(0.30), CornerToCorner()));
+  EXPECT_TRUE(CheckValidity(with_gap(0.15), CornerToCorner()));
+  ArenaRequirements point_robot = CornerToCorner();
+  point_robot.inflation = 0.0;
+  EXPECT_FALSE(CheckValidity(with_gap(0.15), point_robot));
+}
+
+TEST(IncrementalValidityTest, AgreesWithCheckValidityGeneByGene) {
+  RandomStream random(51, StreamPurpose::kTest);
+  ArenaRequirements requirements = CornerToCorner();
+  requirements.clearance = 0.3;
+  std::set<ValidityRule> seen;
+  for (int i = 0; i < 60; ++i) {
+    IncrementalValidity validity(TestCase{}, requirements);
+    TestCase test_case;
+    for (int j = 0; j < 25; ++j) {
+      ObstacleGene gene = testing::RandomGene(random, 3.0);
+      if (random.Chance(0.1)) gene.width = gene.length = 0.15;
+      test_case.obstacles.push_back(gene);
+      const std::optional<Violation> whole = CheckValidity(test_case, requirements);
+      const std::optional<Violation> step = validity.TryAppend(gene);
+      ASSERT_EQ(whole.has_value(), step.has_value());
+      if (!step) continue;
+      seen.insert(step->rule);
+      ASSERT_EQ(whole->rule, step->rule);
+      ASSERT_EQ(whole->gene, step->gene);
+      ASSERT_EQ(whole->message, step->message);
+      test_case.obstacles.pop_back();
+    }
+    ASSERT_EQ(validity.size(), test_case.obstacles.size());
+    // Refused genes have left no trace.
+    ASSERT_EQ(validity.grid().blocked(), OccupancyGrid(Arena(test_case), requirements.inflation).blocked());
+  }
+  EXPECT_TRUE(seen.contains(ValidityRule::kNoPath));
+  EXPECT_TRUE(seen.contains(ValidityRule::kClearance));
+  EXPECT_TRUE(seen.contains(ValidityRule::kContainedObstacle));
+}
+
+TEST(IncrementalValidityTest, ValidMeansThatThePlannerFindsAPathAndNoPathThatItFindsNone) {
+  RandomStream random(52, StreamPurpose::kTest);
+  const ArenaRequirements requirements = CornerToCorner();
+  int no_path = 0;
+  for (int i = 0; i < 150; ++i) {
+    const TestCase test_case = testing::AnyTestCase(random, 10, 4.0);
+    const std::optional<Violation> violation = CheckValidity(test_case, requirements);
+    const OccupancyGrid grid(Arena(test_case), requirements.inflation);
+    const bool found = !PlanPath(grid, requirements.start, requirements.goal).empty();
+    if (!violation) {
+      ASSERT_TRUE(found);
+    } else if (violation->rule == ValidityRule::kNoPath) {
+      ASSERT_FALSE(found);
+      ++no_path;
+    }
+  }
+  EXPECT_GT(no_path, 10);
+}
+
+TEST(IncrementalValidityTest, CopiesContinueIndependently) {
+  IncrementalValidity validity(TestCase{}, CornerToCorner());
+  ASSERT_FALSE(validity.TryAppend({0.0, 0.0, 1.0, 0.2, 0.0}));
+  IncrementalValidity copy = validity;
+  ASSERT_FALSE(copy.TryAppend({1.0, -1.0, 1.0, 0.2, 0.0}));
+  EXPECT_EQ(validity.size(), 1u);
+  EXPECT_EQ(copy.size(), 2u);
+  EXPECT_NE(validity.grid().blocked(), copy.grid().blocked());
+}
+
+TEST(IncrementalValidityTest, AnImpossibleArenaTakesNoGene) {
+  TestCase test_case;
+  test_case.side_x = kNan;
+  IncrementalValidity validity(test_case, CornerToCorner());
+  ASSERT_TRUE(validity.arena_violation());
+  const std::optional<Violation> violation = validity.TryAppend({0.0, 0.0, 1.0, 0.2, 0.0});
+  ASSERT_TRUE(violation);
+  EXPECT_EQ(violation->rule, ValidityRule::kFiniteNumbers);
+}
+
+}  // namespace
+}  // namespace gauntlet::sim
