@@ -210,7 +210,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"MissingCaseFile",
                             {"evaluate", "flocking", "--case", "/nonexistent.json"},
                             {"/nonexistent.json"}}),
-    [](const testing::TestParamInfo<Refusal>& info) { return info.param.name; });
+    [](const testing::TestParamInfo<Refusal>& parameter) { return parameter.param.name; });
 
 TEST(EvaluateTest, SimulatesValidCasesAndRefusesTheOthersByRule) {
   const TemporaryDirectory scratch;

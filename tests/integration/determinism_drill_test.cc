@@ -43,8 +43,8 @@ TEST_P(WorkerCountTest, StateHashDoesNotDependOnIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Workers, WorkerCountTest, testing::Values(2, 5),
-                         [](const testing::TestParamInfo<int>& info) {
-                           return fmt::format("{}", info.param);
+                         [](const testing::TestParamInfo<int>& parameter) {
+                           return fmt::format("{}", parameter.param);
                          });
 
 TEST(DeterminismDrill, AnotherSeedGivesAnotherStateHash) {

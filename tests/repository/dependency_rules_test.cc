@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -125,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "sim/robot/foot_bot.h", "controllers/registry.h"},
                   {"box2d"}},
         LayerRule{"slurm", {"slurm/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
-    [](const testing::TestParamInfo<LayerRule>& info) { return info.param.layer; });
+    [](const testing::TestParamInfo<LayerRule>& parameter) { return parameter.param.layer; });
 
 // Libraries that stay behind one door.
 struct Door {
@@ -164,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(DependencyRules, DoorTest,
                                          Door{"Protobuf", "google/protobuf", {"worker/", "master/dispatch/"}},
                                          Door{"ProtobufTypes", "proto/", {"worker/", "master/dispatch/"}},
                                          Door{"ZeroMq", "zmq", {"worker/", "master/dispatch/"}}),
-                         [](const testing::TestParamInfo<Door>& info) { return info.param.name; });
+                         [](const testing::TestParamInfo<Door>& parameter) { return parameter.param.name; });
 
 TEST(DependencyRules, HeavyLibrariesStayOutOfHeaders) {
   for (const std::string& layer : Layers()) {

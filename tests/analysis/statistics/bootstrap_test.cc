@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::analysis {
