@@ -28,30 +28,39 @@ bool IsRobot(const sim::Blob& blob) {
   return blob.color == BirdController::kBirdColor || blob.color == BirdController::kPreyColor;
 }
 
-// Unit vector of the prey's bearing, else of the mean position of the visible birds; zero when nobody is
-// visible.
-struct Goal {
-  Vec2 direction = Vec2::Zero();
-  bool prey = false;
-  bool known = false;
-};
+// Where a bird wants to go: to the prey, else to the mean position of the visible birds, else nowhere.
+class Goal {
+ public:
+  explicit Goal(std::span<const sim::Blob> blobs) {
+    for (const sim::Blob& blob : blobs) {
+      if (blob.color != BirdController::kPreyColor) continue;
+      rule_ = BirdRule::kChase;
+      prey_bearing_ = blob.bearing;
+      return;
+    }
+    for (const sim::Blob& blob : blobs) {
+      if (blob.color != BirdController::kBirdColor) continue;
+      rule_ = BirdRule::kFlock;
+      flock_sum_ += blob.range * sim::UnitVector(blob.bearing);
+    }
+  }
 
-Goal FindGoal(std::span<const sim::Blob> blobs) {
-  for (const sim::Blob& blob : blobs) {
-    if (blob.color == BirdController::kPreyColor) return {sim::UnitVector(blob.bearing), true, true};
+  // kChase, kFlock, or kWander when nobody is visible.
+  BirdRule rule() const { return rule_; }
+  bool known() const { return rule_ != BirdRule::kWander; }
+  double Bearing() const { return rule_ == BirdRule::kChase ? prey_bearing_ : sim::AngleOf(flock_sum_); }
+  // Unit vector; straight ahead when nobody is visible, or when birds evenly around leave no direction.
+  Vec2 Direction() const {
+    if (rule_ == BirdRule::kChase) return sim::UnitVector(prey_bearing_);
+    const double length = std::sqrt(flock_sum_.dot(flock_sum_));
+    return length > 0.0 ? Vec2(flock_sum_ / length) : Vec2(1.0, 0.0);
   }
-  Goal goal;
-  Vec2 sum = Vec2::Zero();
-  for (const sim::Blob& blob : blobs) {
-    if (blob.color != BirdController::kBirdColor) continue;
-    sum += blob.range * sim::UnitVector(blob.bearing);
-    goal.known = true;
-  }
-  const double length = std::sqrt(sum.dot(sum));
-  // Birds evenly around: their mean position is here, so straight on is as good as any way.
-  if (goal.known) goal.direction = length > 0.0 ? Vec2(sum / length) : Vec2(1.0, 0.0);
-  return goal;
-}
+
+ private:
+  BirdRule rule_ = BirdRule::kWander;
+  double prey_bearing_ = 0.0;
+  Vec2 flock_sum_ = Vec2::Zero();
+};
 
 // Positions of the robots near enough to be what a proximity ray hits, in the robot's frame.
 class NearRobots {
@@ -102,7 +111,7 @@ ObstaclePush FindObstacles(const sim::SensorReadings& readings, double least_rea
 double ObstacleBearing(const Vec2& away_sum, const Goal& goal) {
   const double length = std::sqrt(away_sum.dot(away_sum));
   const Vec2 away = length > kNoDirection ? Vec2(away_sum / length) : Vec2(Vec2::Zero());
-  const Vec2 sum = (goal.known ? goal.direction : Vec2(1.0, 0.0)) + away;
+  const Vec2 sum = goal.Direction() + away;
   return sim::AngleOf(sum.dot(sum) < kNoDirection * kNoDirection ? sim::LeftOf(away) : sum);
 }
 
@@ -112,7 +121,7 @@ const sim::Blob* FindTooNear(std::span<const sim::Blob> blobs, double distance, 
   for (const sim::Blob& blob : blobs) {
     if (blob.range >= distance || std::fabs(blob.bearing) > kFrontOfSeparation || !IsRobot(blob)) continue;
     if (nearest != nullptr && blob.range >= nearest->range) continue;
-    if (goal.known && sim::UnitVector(blob.bearing).dot(goal.direction) < 0.0) continue;
+    if (goal.known() && sim::UnitVector(blob.bearing).dot(goal.Direction()) < 0.0) continue;
     nearest = &blob;
   }
   return nearest;
@@ -153,7 +162,7 @@ void BirdController::Step(const sim::ControlStep& step) {
     reactions.turn_rate *= settings_.catch_up->gain;
   }
 
-  const Goal goal = FindGoal(blobs);
+  const Goal goal(blobs);
   const ObstaclePush obstacles = FindObstacles(step.readings, least_obstacle_reading_);
   DriveCommand command;
   if (obstacles.ahead) {
@@ -166,9 +175,9 @@ void BirdController::Step(const sim::ControlStep& step) {
     if (std::fabs(near->bearing) > kStopWhenAhead) {
       command.forward = reactions.speed * reactions.turning_speed_factor;
     }
-  } else if (goal.known) {
-    last_rule_ = goal.prey ? BirdRule::kChase : BirdRule::kFlock;
-    command = React(sim::AngleOf(goal.direction), reactions);
+  } else if (goal.known()) {
+    last_rule_ = goal.rule();
+    command = React(goal.Bearing(), reactions);
   } else {
     last_rule_ = BirdRule::kWander;
     command = React(wander_.Next(step.random), reactions);

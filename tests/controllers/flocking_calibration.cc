@@ -4,7 +4,9 @@
 //
 //   flocking_calibration [name=value ...]
 //     cases=200 seeds=100 threads=2 genes=8        how much
-//     l_max=2 bird_speed=0.08 prey_speed=0.05      knobs; lists like bird_speed=0.07,0.08 make a grid
+//     first=0                                      number of the first case and seed
+//     l_max=2 bird_speed=0.06 prey_speed=0.05      knobs; lists like bird_speed=0.07,0.08 make a grid
+//     original=0                                   leaves the original bird out
 //     any other name                               a parameter of the scenario or of the controllers
 #include <algorithm>
 #include <atomic>
@@ -28,8 +30,9 @@ namespace {
 using Options = std::map<std::string, std::vector<double>>;
 
 Options ParseOptions(int argc, char** argv) {
-  Options options = {{"cases", {200}}, {"seeds", {100}},       {"threads", {2}},      {"genes", {8}},
-                     {"l_max", {2.0}}, {"bird_speed", {0.08}}, {"prey_speed", {0.05}}};
+  Options options = {{"cases", {200}},       {"seeds", {100}}, {"threads", {2}},
+                     {"genes", {8}},         {"l_max", {2.0}}, {"bird_speed", {0.06}},
+                     {"prey_speed", {0.05}}, {"first", {0}},   {"original", {1}}};
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     const std::size_t equals = argument.find('=');
@@ -146,6 +149,7 @@ int Main(int argc, char** argv) {
     for (const double prey_speed : options.at("prey_speed")) {
       for (const double bird_speed : options.at("bird_speed")) {
         for (const char* name : {"flocking", "flocking-improved"}) {
+          if (number("original") == 0 && std::string(name) == "flocking") continue;
           sim::RunSpec spec;
           spec.scenario = "flocking";
           spec.controller = name;
@@ -162,16 +166,17 @@ int Main(int argc, char** argv) {
           spec.scenario_parameters["prey_speed"] = prey_speed;
           spec.controller_parameters["bird_speed"] = bird_speed;
 
+          const auto first = static_cast<std::size_t>(number("first"));
           std::vector<sim::RunSpec> empty(static_cast<std::size_t>(number("seeds")), spec);
-          for (std::size_t i = 0; i < empty.size(); ++i) empty[i].seed = 1 + i;
+          for (std::size_t i = 0; i < empty.size(); ++i) empty[i].seed = 1 + first + i;
           std::vector<sim::RunSpec> random(static_cast<std::size_t>(number("cases")), spec);
           const auto parameters =
               controllers::ResolveParameters(scenario->parameters, spec.scenario_parameters);
           const auto requirements = scenario->requirements(*parameters, spec.test_case);
           for (std::size_t i = 0; i < random.size(); ++i) {
-            random[i].seed = 10'001 + i;
+            random[i].seed = 10'001 + first + i;
             random[i].test_case =
-                RandomCase(static_cast<std::uint32_t>(i), number("genes"), l_max, requirements);
+                RandomCase(static_cast<std::uint32_t>(first + i), number("genes"), l_max, requirements);
           }
           const Figures e = Measure(empty, number("threads"));
           const Figures r = Measure(random, number("threads"));
