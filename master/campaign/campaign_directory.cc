@@ -61,11 +61,13 @@ Result<std::uint64_t> ReadEpoch(const std::string& path) {
 
 }  // namespace
 
-Result<CampaignDirectory> CampaignDirectory::Create(const std::string& dir) {
-  CampaignDirectory directory(WithoutSlash(dir));
+Status CampaignDirectory::CheckCreatable(const std::string& dir) {
+  const CampaignDirectory directory(WithoutSlash(dir));
   std::error_code error;
-  fs::create_directories(directory.path_, error);
-  if (error) return SystemError(fmt::format("cannot make the directory {}", directory.path_), error.value());
+  if (!fs::exists(directory.path_, error)) return Ok{};
+  if (!fs::is_directory(directory.path_, error)) {
+    return InvalidInput(fmt::format("{} is a file; a campaign needs a directory", directory.path_));
+  }
   if (fs::exists(directory.database_path(), error)) {
     return InvalidInput(
         fmt::format("{0} holds a campaign already; go on with it by `gauntlet resume {0}`, or choose another "
@@ -80,6 +82,15 @@ Result<CampaignDirectory> CampaignDirectory::Create(const std::string& dir) {
         "with; choose a directory that is empty or does not exist",
         directory.path_));
   }
+  return Ok{};
+}
+
+Result<CampaignDirectory> CampaignDirectory::Create(const std::string& dir) {
+  if (Status creatable = CheckCreatable(dir); !creatable) return creatable.error();
+  CampaignDirectory directory(WithoutSlash(dir));
+  std::error_code error;
+  fs::create_directories(directory.path_, error);
+  if (error) return SystemError(fmt::format("cannot make the directory {}", directory.path_), error.value());
   return directory;
 }
 

@@ -11,6 +11,8 @@ namespace gauntlet::master {
 
 class CampaignDirectory {
  public:
+  // Whether Create would take `dir`; makes nothing.
+  static Status CheckCreatable(const std::string& dir);
   // Makes `dir`, and the directories above it. kInvalidInput, naming `gauntlet resume`, when it holds a
   // campaign, and when it holds anything else but what a creation that was killed has left.
   static Result<CampaignDirectory> Create(const std::string& dir);

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "master/campaign/campaign_directory.h"
 #include "master/cli/table.h"
 #include "master/experiment/experiment_file.h"
 
@@ -105,19 +106,10 @@ std::string DefaultDirectory(const std::string& experiment_name, std::time_t now
   return directory;
 }
 
-Result<std::string> NewDirectory(const CommonOptions& options, const Experiment& experiment,
-                                 const std::string& program) {
+Result<std::string> NewDirectory(const CommonOptions& options, const Experiment& experiment) {
   if (options.directory.empty()) return DefaultDirectory(experiment.name, std::time(nullptr));
-  const std::filesystem::path path(options.directory);
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return options.directory;
-  if (!std::filesystem::is_directory(path, error)) {
-    return InvalidInput(fmt::format("--dir {}: that is a file", options.directory));
-  }
-  if (!std::filesystem::is_empty(path, error) || error) {
-    return InvalidInput(fmt::format("--dir {}: not empty; give a new directory, or go on with '{} resume {}'",
-                                    options.directory, program, ShellQuoted(options.directory)));
-  }
+  if (Status creatable = CampaignDirectory::CheckCreatable(options.directory); !creatable)
+    return creatable.error();
   return options.directory;
 }
 

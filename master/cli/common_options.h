@@ -46,7 +46,6 @@ Result<Experiment> LoadExperimentWith(const CommonOptions& options, const std::v
 // "campaigns/flocking-20260131T235959Z", with "-2", "-3", ... when that exists.
 std::string DefaultDirectory(const std::string& experiment_name, std::time_t now);
 // The campaign's directory: --dir or the default. Error: it holds something already.
-Result<std::string> NewDirectory(const CommonOptions& options, const Experiment& experiment,
-                                 const std::string& program);
+Result<std::string> NewDirectory(const CommonOptions& options, const Experiment& experiment);
 
 }  // namespace gauntlet::master

@@ -110,7 +110,7 @@ ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
   if (!experiment) return Fail(context, experiment.error());
   const Result<int> workers = ParseWorkers(options.common.workers);
   if (!workers) return Fail(context, workers.error());
-  const Result<std::string> directory = NewDirectory(options.common, *experiment, context.program);
+  const Result<std::string> directory = NewDirectory(options.common, *experiment);
   if (!directory) return Fail(context, directory.error());
 
   CaseList list = LoadCases(context, options, *experiment);

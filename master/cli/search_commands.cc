@@ -16,7 +16,7 @@ ExitCode RunSearch(CommandContext& context, const CommonOptions& options,
   }
   const Result<int> workers = ParseWorkers(options.workers);
   if (!workers) return Fail(context, workers.error());
-  const Result<std::string> directory = NewDirectory(options, *experiment, context.program);
+  const Result<std::string> directory = NewDirectory(options, *experiment);
   if (!directory) return Fail(context, directory.error());
 
   CampaignRun campaign;

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
+#include <fstream>
+
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::testing_support {
@@ -20,6 +23,23 @@ std::vector<std::string> WithProgram(const std::vector<std::string>& arguments) 
   std::vector<std::string> argv = {GauntletPath()};
   argv.insert(argv.end(), arguments.begin(), arguments.end());
   return argv;
+}
+
+// pid, state, parent and command line of those that live.
+std::string Describe(const std::vector<pid_t>& pids) {
+  std::string text;
+  for (const pid_t pid : pids) {
+    if (!Alive(pid)) continue;
+    const std::string folder = "/proc/" + std::to_string(pid);
+    std::ifstream stat(folder + "/stat");
+    std::string line;
+    std::getline(stat, line);
+    std::ifstream cmdline(folder + "/cmdline");
+    std::string command((std::istreambuf_iterator<char>(cmdline)), {});
+    std::replace(command.begin(), command.end(), '\0', ' ');
+    text += "\n  " + line.substr(0, 60) + " | " + command;
+  }
+  return text;
 }
 
 std::chrono::milliseconds RandomTime(sim::RandomStream& random, std::chrono::milliseconds longest) {
@@ -73,7 +93,7 @@ int EvolveThroughMasterKills(const SmallCampaign& campaign, const std::string& d
       master->Wait();
       EXPECT_TRUE(Eventually([&] { return std::none_of(family.begin(), family.end(), Alive); },
                              std::chrono::seconds(10)))
-          << "workers outlived their killed master";
+          << "outlived their killed master: " << Describe(family);
     }
     // A master killed before it had created its campaign leaves nothing to resume: then the same command is
     // given again.

@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <filesystem>
+
 #include "tests/integration/campaign_driver.h"
 
 namespace gauntlet {
 namespace {
 
-using testing_support::ChildrenOf;
 using testing_support::Eventually;
 using testing_support::EvolveArguments;
 using testing_support::Gauntlet;
@@ -74,7 +75,8 @@ TEST(DeterminismDrill, InterruptedCampaignExitsWith3AndResumesToTheSameStateHash
   SmallCampaign campaign;
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 2));
-  ASSERT_TRUE(Eventually([&] { return !ChildrenOf(master->pid()).empty(); }, std::chrono::seconds(20)));
+  ASSERT_TRUE(
+      Eventually([&] { return std::filesystem::exists(dir + "/access.json"); }, std::chrono::seconds(20)));
   master->Signal(SIGINT);
   const ProcessResult stopped = master->Wait();
   EXPECT_EQ(stopped.exit_code, 3) << stopped.err;

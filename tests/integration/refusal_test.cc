@@ -19,7 +19,6 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using testing_support::ChildrenOf;
 using testing_support::Eventually;
 using testing_support::EvolveArguments;
 using testing_support::Gauntlet;
@@ -49,7 +48,8 @@ TEST(RefusalTest, ACampaignInUseIsRefusedWithItsOwner) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(LongerCampaign(), dir, 2));
-  ASSERT_TRUE(Eventually([&] { return !ChildrenOf(master->pid()).empty(); }, std::chrono::seconds(20)));
+  ASSERT_TRUE(
+      Eventually([&] { return std::filesystem::exists(dir + "/access.json"); }, std::chrono::seconds(20)));
   const ProcessResult second = Gauntlet({"resume", dir, "--quiet"});
   EXPECT_EQ(second.exit_code, 2);
   char host[256] = {};

@@ -218,8 +218,8 @@ TEST_F(CommandLine, DirectoryThatHoldsSomethingIsRefusedNamingResume) {
   Write("campaign.db", "precious");
   ExpectUsageError(
       {"evolve", "flocking", "--dir", directory_.string()},
-      HasSubstr("not empty; give a new directory, or go on with 'gauntlet resume " + directory_.string()));
-  ExpectUsageError({"evolve", "flocking", "--dir", Path("campaign.db")}, HasSubstr("that is a file"));
+      HasSubstr("holds a campaign already; go on with it by `gauntlet resume " + directory_.string()));
+  ExpectUsageError({"evolve", "flocking", "--dir", Path("campaign.db")}, HasSubstr("is a file"));
   EXPECT_EQ(Read(Path("campaign.db")), "precious");
 }
 
