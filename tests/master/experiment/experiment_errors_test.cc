@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "toy_catalogue.h"
+#include "tests/master/experiment/toy_catalogue.h"
 
 namespace gauntlet::master {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <set>
 
-#include "toy_catalogue.h"
+#include "tests/master/experiment/toy_catalogue.h"
 
 namespace gauntlet::master {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "toy_search.h"
+#include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
 namespace {

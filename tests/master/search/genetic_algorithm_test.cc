@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "toy_search.h"
+#include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
 namespace {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <set>
 
-#include "toy_search.h"
+#include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
 namespace {

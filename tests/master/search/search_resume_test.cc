@@ -7,7 +7,7 @@
 #include "master/search/case_list_search.h"
 #include "master/search/genetic_algorithm.h"
 #include "master/search/random_search.h"
-#include "toy_search.h"
+#include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
 namespace {

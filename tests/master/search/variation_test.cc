@@ -4,7 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "master/search/mutation.h"
-#include "toy_search.h"
+#include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
 namespace {
