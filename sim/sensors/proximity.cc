@@ -38,6 +38,12 @@ double SensorAngle(const Vec2& v) {
   return (v.y() >= 0.0 ? upper : 4.0 - upper) * (kSensors / 4) - 0.5;
 }
 
+// From the distance `apart` on, a disc spans less than `half_width` sensors to either side of its centre:
+// asin(radius / apart) / 15 degrees, and 0.28 for the error of SensorAngle.
+constexpr ProximityRing::Disc kBody = {.radius = foot_bot::kRadius, .apart = 0.16, .half_width = 2.14 + 0.28};
+constexpr ProximityRing::Disc kGripper = {
+    .radius = foot_bot::kGripperRadius, .apart = 0.07, .half_width = 0.55 + 0.28};
+
 // Where a ray from the box's frame enters it: distance from `origin`, or kNothing.
 double EnterBox(const Vec2& half_extents, const Vec2& origin, const Vec2& direction) {
   double enter = -kNothing;
@@ -95,35 +101,30 @@ void ProximityRing::See(const OrientedBox& box) {
 void ProximityRing::See(const BodyFrame& robot) {
   constexpr double kBodyReach = kReach + foot_bot::kRadius + foot_bot::kGripperRadius;
   const Vec2 offset = robot.position - self_.position;
-  const double distance_squared = offset.squaredNorm();
-  if (distance_squared >= kBodyReach * kBodyReach) return;
+  if (offset.squaredNorm() >= kBodyReach * kBodyReach) return;
   const Vec2 body(self_.direction.dot(offset), Cross(self_.direction, offset));
-  SeeDisc(body, distance_squared, foot_bot::kRadius);
-
+  SeeDisc(body, kBody);
   const Vec2 front(self_.direction.dot(robot.direction), Cross(self_.direction, robot.direction));
-  const Vec2 gripper = body + foot_bot::kRadius * front;
-  SeeDisc(gripper, gripper.squaredNorm(), foot_bot::kGripperRadius);
+  SeeDisc(body + foot_bot::kRadius * front, kGripper);
 }
 
 // `center` in the frame of this robot. Only the sensors that look near the disc are asked.
-void ProximityRing::SeeDisc(const Vec2& center, double distance_squared, double radius) {
-  if (distance_squared >= (kReach + radius) * (kReach + radius)) return;
+void ProximityRing::SeeDisc(const Vec2& center, const Disc& disc) {
+  const double distance_squared = center.squaredNorm();
+  if (distance_squared >= (kReach + disc.radius) * (kReach + disc.radius)) return;
   const std::array<Vec2, kSensors>& rays = RestRays();
   std::size_t first = 0;
   std::size_t last = kSensors - 1;
-  if (distance_squared > radius * radius) {
-    // A disc spans asin(radius / distance) <= pi / 2 * radius / distance to either side of its centre, and
-    // SensorAngle is less than 0.28 sensors off. Counted around the ring twice, so that the window does not
-    // end at the seam.
-    const double half_width = (kSensors / 4) * radius / std::sqrt(distance_squared) + 0.28;
+  if (distance_squared >= disc.apart * disc.apart) {
+    // Counted around the ring twice, so that the window does not end at the seam.
     const double middle = SensorAngle(center) + kSensors;
-    first = static_cast<std::size_t>(middle - half_width) + 1;
-    last = static_cast<std::size_t>(middle + half_width);
+    first = static_cast<std::size_t>(middle - disc.half_width) + 1;
+    last = static_cast<std::size_t>(middle + disc.half_width);
   }
   for (std::size_t i = first; i <= last; ++i) {
     const std::size_t sensor = i % kSensors;
     const double across = Cross(rays[sensor], center);
-    const double half_chord_squared = radius * radius - across * across;
+    const double half_chord_squared = disc.radius * disc.radius - across * across;
     if (half_chord_squared <= 0.0) continue;
     const double along = rays[sensor].dot(center);
     const double half_chord = std::sqrt(half_chord_squared);

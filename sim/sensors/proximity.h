@@ -20,6 +20,13 @@ double ProximityReading(double distance);
 // The readings of one robot, collected body by body. What is farther than the range costs one distance.
 class ProximityRing {
  public:
+  // Something round, and how many sensors can look at it (see proximity.cc).
+  struct Disc {
+    double radius;      // m
+    double apart;       // m
+    double half_width;  // sensors
+  };
+
   explicit ProximityRing(const BodyFrame& self) : self_(self) {}
 
   void See(const OrientedBox& box);
@@ -31,7 +38,7 @@ class ProximityRing {
   ProximityReadings Readings() const;
 
  private:
-  void SeeDisc(const Vec2& center, double distance_squared, double radius);
+  void SeeDisc(const Vec2& center, const Disc& disc);
   void Hit(std::size_t sensor, double distance);
 
   const BodyFrame& self_;
