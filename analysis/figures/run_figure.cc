@@ -1,6 +1,6 @@
 #include "analysis/figures/run_figure.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -46,7 +46,7 @@ std::string StyleSheet() {
       ".start {{ fill: #ffffff; stroke-width: 1.5; }}\n"
       ".robot {{ stroke: #ffffff; stroke-width: 1.4; }}\n"
       ".nose {{ stroke-width: 2.6; stroke-linecap: round; }}\n"
-      ".ring {{ fill: none; stroke-width: 2; }}\n"
+      ".ring {{ fill-opacity: 0.18; stroke-width: 1.6; stroke-opacity: 0.85; }}\n"
       ".number {{ font-size: 9.5px; font-weight: bold; fill: #ffffff; text-anchor: middle; }}\n"
       ".split {{ fill: {split}; fill-opacity: 0.12; stroke: {split}; stroke-width: 2.2; stroke-dasharray: 4 "
       "3; }}\n"
@@ -179,13 +179,27 @@ void DrawPlans(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& fr
   }
 }
 
+// "0-3, 5, 7-9".
+std::string Ranges(std::vector<sim::RobotIndex> robots) {
+  std::sort(robots.begin(), robots.end());
+  std::string text;
+  for (std::size_t begin = 0; begin < robots.size();) {
+    std::size_t end = begin;
+    while (end + 1 < robots.size() && robots[end + 1] == robots[end] + 1) ++end;
+    if (!text.empty()) text += ", ";
+    text += fmt::format("{}", robots[begin]);
+    if (end > begin) text += fmt::format("{}{}", end == begin + 1 ? ", " : "-", robots[end]);
+    begin = end + 1;
+  }
+  return text;
+}
+
 std::string SplitLabel(const RunFigure& figure, const sim::Annotation& split) {
   std::string text =
       split.tick >= 0 ? fmt::format("split at {:.0f} s", split.tick * sim::kTickSeconds) : "split";
   if (!split.robots.empty()) {
-    text += fmt::format(": {}{} {}", figure.member, split.robots.size() == 1 ? "" : "s",
-                        fmt::join(split.robots, ", "));
-    text += " left";
+    text += fmt::format(": {}{} {} left the swarm", figure.member, split.robots.size() == 1 ? "" : "s",
+                        Ranges(split.robots));
   }
   return text;
 }
@@ -225,23 +239,31 @@ Pixel PlaceCallout(const FigureFrame& frame, Pixel place, double width, double h
   return best;
 }
 
-// Where those who left at the last split were at that moment.
-void DrawSplitRobots(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {
-  const sim::Annotation* split = LatestAnnotation(figure, "split");
-  if (split == nullptr) return;
-  for (const sim::RobotIndex robot : split->robots) {
-    const auto position = PositionAt(figure, robot, split->tick);
+double SplitRadius(const FigureFrame& frame) {
+  return std::max(14.0, 0.2 * frame.scale());
+}
+
+// The place of the last split, and where those who left were at that moment.
+void DrawSplitPlace(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,
+                    const sim::Annotation& split) {
+  canvas.Circle(frame.At(split.points.front()), SplitRadius(frame), "class=\"split\" id=\"split\"");
+  for (const sim::RobotIndex robot : split.robots) {
+    const auto position = PositionAt(figure, robot, split.tick);
     if (!position) continue;
     const Pixel p = frame.At(*position);
     canvas.Polygon({{p.x, p.y - 6}, {p.x + 6, p.y}, {p.x, p.y + 6}, {p.x - 6, p.y}}, "class=\"split-robot\"");
   }
 }
 
-void DrawSplit(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame, const sim::Arena& arena,
-               const std::vector<Track>& tracks) {
-  const sim::Annotation* split = LatestAnnotation(figure, "split");
-  if (split == nullptr) return;
-  const Pixel place = frame.At(split->points.front());
+struct Callout {
+  std::string label;
+  Pixel corner;
+  double width = 0.0;
+  static constexpr double kHeight = 25;
+};
+
+Callout SplitCallout(const RunFigure& figure, const sim::Annotation& split, const FigureFrame& frame,
+                     const sim::Arena& arena, const std::vector<Track>& tracks) {
   std::vector<Pixel> keep_free;
   for (std::size_t i = 0; i < arena.obstacles().size(); ++i) {
     if (const sim::Polygon polygon = arena.VisiblePart(i); !polygon.empty()) {
@@ -249,20 +271,29 @@ void DrawSplit(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& fr
     }
   }
   for (const Track& track : tracks) keep_free.push_back(frame.At(track.start.position));
+  Callout callout;
+  callout.label = SplitLabel(figure, split);
+  callout.width = 6.7 * static_cast<double>(callout.label.size()) + 18;
+  callout.corner =
+      PlaceCallout(frame, frame.At(split.points.front()), callout.width, Callout::kHeight, tracks, keep_free);
+  return callout;
+}
 
-  const std::string label = SplitLabel(figure, *split);
-  const double width = 6.7 * static_cast<double>(label.size()) + 18;
-  constexpr double kHeight = 25;
-  const Pixel corner = PlaceCallout(frame, place, width, kHeight, tracks, keep_free);
-  const Pixel anchor{std::clamp(place.x, corner.x, corner.x + width),
-                     std::clamp(place.y, corner.y, corner.y + kHeight)};
+void DrawCalloutLine(SvgCanvas& canvas, const FigureFrame& frame, const sim::Annotation& split,
+                     const Callout& callout) {
+  const Pixel place = frame.At(split.points.front());
+  const Pixel anchor{std::clamp(place.x, callout.corner.x, callout.corner.x + callout.width),
+                     std::clamp(place.y, callout.corner.y, callout.corner.y + Callout::kHeight)};
+  const double distance = std::hypot(anchor.x - place.x, anchor.y - place.y);
+  if (distance <= SplitRadius(frame)) return;
+  const double share = SplitRadius(frame) / distance;
+  const Pixel edge{place.x + share * (anchor.x - place.x), place.y + share * (anchor.y - place.y)};
+  canvas.Line(edge, anchor, "class=\"callout-line\"");
+}
 
-  canvas.OpenGroup("id=\"split\"");
-  canvas.Circle(place, std::max(14.0, 0.2 * frame.scale()), "class=\"split\"");
-  canvas.Line(place, anchor, "class=\"callout-line\"");
-  canvas.Rectangle(corner, width, kHeight, "class=\"callout\" rx=\"5\"");
-  canvas.Text({corner.x + 9, corner.y + 17}, label, "class=\"callout-text\"");
-  canvas.CloseGroup();
+void DrawCalloutBox(SvgCanvas& canvas, const Callout& callout) {
+  canvas.Rectangle(callout.corner, callout.width, Callout::kHeight, "class=\"callout\" rx=\"5\"");
+  canvas.Text({callout.corner.x + 9, callout.corner.y + 17}, callout.label, "class=\"callout-text\"");
 }
 
 }  // namespace
@@ -291,14 +322,16 @@ std::string DrawRun(const RunFigure& figure) {
   }
   DrawPlans(canvas, figure, frame);
   DrawObstacleNumbers(canvas, frame, arena);
-  DrawSplitRobots(canvas, figure, frame);
-  for (const Track& track : tracks) DrawStart(canvas, frame, track);
-  for (const TrackKind kind : {TrackKind::kKept, TrackKind::kPrey, TrackKind::kLost}) {
-    for (const Track& track : tracks) {
-      if (track.kind == kind) DrawEnd(canvas, frame, track);
-    }
+  const sim::Annotation* split = LatestAnnotation(figure, "split");
+  Callout callout;
+  if (split != nullptr) {
+    callout = SplitCallout(figure, *split, frame, arena, tracks);
+    DrawSplitPlace(canvas, figure, frame, *split);
+    DrawCalloutLine(canvas, frame, *split, callout);
   }
-  DrawSplit(canvas, figure, frame, arena, tracks);
+  for (const Track& track : tracks) DrawStart(canvas, frame, track);
+  DrawEnds(canvas, frame, tracks);
+  if (split != nullptr) DrawCalloutBox(canvas, callout);
   DrawAxes(canvas, frame, step);
   DrawTitle(canvas, figure, frame);
   DrawPanel(canvas, figure, frame, tracks);

@@ -100,11 +100,13 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
       canvas.Circle(p, 3.6, fmt::format("class=\"start\" stroke=\"{}\"", kKeptColor));
     });
     panel.Row("end, with heading and number",
-              [&](Pixel p) { DrawRobot(canvas, p, 8.0, 0.0, TrackKind::kKept, kKeptColor, "3"); });
+              [&](Pixel p) { DrawRobot(canvas, p, 8.0, 0.0, kKeptColor, "3"); });
   }
   if (lost > 0) {
-    panel.Row(fmt::format("end of a lost {}", figure.member),
-              [&](Pixel p) { DrawRobot(canvas, p, 8.0, 0.0, TrackKind::kLost, kLostColor, "7"); });
+    panel.Row(fmt::format("end of a lost {}", figure.member), [&](Pixel p) {
+      DrawLostRing(canvas, p, 8.0, kLostColor);
+      DrawRobot(canvas, p, 8.0, 0.0, kLostColor, "7");
+    });
   }
   if (LatestAnnotation(figure, "split") != nullptr) {
     panel.Row("last split, and who left then", [&](Pixel p) {

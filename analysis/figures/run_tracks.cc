@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kLeastStep = 1.2;     // pixels between points that are drawn
 constexpr int kFadeSteps = 8;          // pieces of growing strength per way
-constexpr double kArrowEvery = 110.0;  // pixels of way between two arrowheads
+constexpr double kPreyArrows = 110.0;  // pixels of way between two arrowheads
+constexpr double kLostArrows = 210.0;
 
 struct Rgb {
   int red;
@@ -95,14 +96,15 @@ void DrawArrow(SvgCanvas& canvas, Pixel tip, double dx, double dy, double size, 
 
 // Arrowheads along the way, the first half a distance from the start.
 void DrawArrows(SvgCanvas& canvas, const Track& track) {
-  double way = kArrowEvery / 2;
-  const double size = track.kind == TrackKind::kPrey ? 11.0 : 8.5;
+  const double every = track.kind == TrackKind::kPrey ? kPreyArrows : kLostArrows;
+  double way = every / 2;
+  const double size = track.kind == TrackKind::kPrey ? 11.0 : 8.0;
   for (std::size_t i = 3; i < track.points.size(); ++i) {
     const Pixel a = track.points[i - 1];
     const Pixel b = track.points[i];
     const double step = std::hypot(b.x - a.x, b.y - a.y);
     way += step;
-    if (way < kArrowEvery || step == 0.0) continue;
+    if (way < every || step == 0.0) continue;
     way = 0.0;
     // The direction over the last few points: steadier than that of one step.
     const Pixel before = track.points[i - 3];
@@ -208,11 +210,12 @@ void DrawStart(SvgCanvas& canvas, const FigureFrame& frame, const Track& track) 
   canvas.Circle(center, kRadius, fmt::format("class=\"start\" stroke=\"{}\"", track.color));
 }
 
-void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, TrackKind kind,
-               std::string_view color, std::string_view label) {
-  if (kind == TrackKind::kLost) {
-    canvas.Circle(center, 1.62 * radius, fmt::format("class=\"ring\" stroke=\"{}\"", color));
-  }
+void DrawLostRing(SvgCanvas& canvas, Pixel center, double radius, std::string_view color) {
+  canvas.Circle(center, 1.6 * radius, fmt::format("class=\"ring\" fill=\"{}\" stroke=\"{}\"", color, color));
+}
+
+void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, std::string_view color,
+               std::string_view label) {
   const sim::Vec2 nose = sim::UnitVector(heading);
   canvas.Line({center.x + nose.x() * radius, center.y - nose.y() * radius},
               {center.x + nose.x() * radius * 1.85, center.y - nose.y() * radius * 1.85},
@@ -221,10 +224,17 @@ void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, T
   if (!label.empty()) canvas.Text({center.x, center.y + 3.4}, label, "class=\"number\"");
 }
 
-void DrawEnd(SvgCanvas& canvas, const FigureFrame& frame, const Track& track) {
+void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Track>& tracks) {
   const double radius = std::max(6.5, sim::foot_bot::kRadius * frame.scale());
-  DrawRobot(canvas, frame.At(track.end.position), radius, track.end.heading, track.kind, track.color,
-            track.kind == TrackKind::kPrey ? std::string("P") : fmt::format("{}", track.robot));
+  for (const Track& track : tracks) {
+    if (track.kind == TrackKind::kLost) {
+      DrawLostRing(canvas, frame.At(track.end.position), radius, track.color);
+    }
+  }
+  for (const Track& track : tracks) {
+    DrawRobot(canvas, frame.At(track.end.position), radius, track.end.heading, track.color,
+              track.kind == TrackKind::kPrey ? std::string("P") : fmt::format("{}", track.robot));
+  }
 }
 
 }  // namespace gauntlet::analysis

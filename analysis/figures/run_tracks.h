@@ -31,9 +31,11 @@ std::optional<sim::Vec2> PositionAt(const RunFigure& figure, int robot, sim::Tic
 
 void DrawWay(SvgCanvas& canvas, const Track& track);
 void DrawStart(SvgCanvas& canvas, const FigureFrame& frame, const Track& track);
-void DrawEnd(SvgCanvas& canvas, const FigureFrame& frame, const Track& track);
-// The mark of a robot at its end, also used by the legend. `radius` in pixels, heading in rad.
-void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, TrackKind kind,
-               std::string_view color, std::string_view label);
+// All robots at their ends, the lost ones ringed.
+void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Track>& tracks);
+// The marks of one robot, also used by the legend. `radius` in pixels, heading in rad.
+void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, std::string_view color,
+               std::string_view label);
+void DrawLostRing(SvgCanvas& canvas, Pixel center, double radius, std::string_view color);
 
 }  // namespace gauntlet::analysis

@@ -216,18 +216,21 @@ std::string Explain(const CLI::App& app, const CLI::ParseError& error,
   const std::string place = used.empty() ? "" : command.get_name() + ": ";
   const std::string help =
       fmt::format("(try 'gauntlet {}--help')", used.empty() ? "" : command.get_name() + " ");
-  if (error.get_name() == "ExtrasError") {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) {
     std::vector<std::string> options;
     for (const CLI::Option* option : command.get_options()) {
       for (const std::string& long_name : option->get_lnames()) options.push_back("--" + long_name);
     }
-    for (const std::string& argument : app.remaining(true)) {
-      if (!argument.starts_with("--"))
-        return fmt::format("{}unexpected argument '{}' {}", place, argument, help);
-      const std::string unknown = argument.substr(0, argument.find('='));
+    // The parser lists an option's value before the option.
+    const std::vector<std::string> extras = app.remaining(true);
+    const auto option = std::find_if(extras.begin(), extras.end(),
+                                     [](const std::string& extra) { return extra.starts_with("--"); });
+    if (option != extras.end()) {
+      const std::string unknown = option->substr(0, option->find('='));
       return fmt::format("{}unknown option {}{} {}", place, unknown, Suggestion(Nearest(unknown, options)),
                          help);
     }
+    if (!extras.empty()) return fmt::format("{}unexpected argument '{}' {}", place, extras.front(), help);
   }
   return fmt::format("{}{} {}", place, error.what(), help);
 }

@@ -171,9 +171,17 @@ TEST(RunFigure, WayBeginsAndEndsWhereTheRobotDid) {
 
 TEST(RunFigure, OnlyTheLastSplitIsMarkedAndNamed) {
   const pugi::xml_document document = Parse(DrawRun(ThreeBirds()));
-  EXPECT_THAT(Texts(document), HasSubstr("split at 15 s: bird 1 left\n"));
+  EXPECT_THAT(Texts(document), HasSubstr("split at 15 s: bird 1 left the swarm\n"));
   EXPECT_THAT(Texts(document), Not(HasSubstr("split at 4 s")));
-  EXPECT_EQ(Find(document, "//g[@id='split']/circle").size(), 1U);
+  EXPECT_EQ(Find(document, "//circle[@id='split']").size(), 1U);
+}
+
+TEST(RunFigure, ManyRobotsThatLeftAreNamedByRanges) {
+  RunFigure figure = ThreeBirds();
+  figure.result.annotations.back().robots = {9, 0, 1, 2, 5, 7, 8};
+  EXPECT_THAT(Texts(Parse(DrawRun(figure))), HasSubstr("birds 0-2, 5, 7-9 left the swarm\n"));
+  figure.result.annotations.back().robots = {3, 4};
+  EXPECT_THAT(Texts(Parse(DrawRun(figure))), HasSubstr("birds 3, 4 left the swarm\n"));
 }
 
 TEST(RunFigure, WithoutSplitNothingIsMarked) {

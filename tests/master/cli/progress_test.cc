@@ -29,7 +29,7 @@ CampaignProgress Halfway() {
   progress.runs_planned = 2480;
   progress.runs_per_second = 23.4;
   progress.best_fitness = 0.0;
-  progress.mean_fitness = 0.4125;
+  progress.mean_fitness = 0.413;
   progress.total_failures = 37;
   progress.workers.connected = 2;
   progress.workers.busy = 1;
