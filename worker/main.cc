@@ -59,8 +59,11 @@ int Main(int argc, char** argv) {
                             ->capture_default_str()
                             ->check(CLI::Range(0.0, 1e9));
   auto* die_option =
-      app.add_flag("--die-with-parent", worker.die_with_parent,
-                   "End at once when the process that started this one ends (its thread, to be exact)");
+      app.add_option(
+             "--die-with-parent", worker.parent,
+             "End at once when the process PID, which started this one, ends (its thread, to be exact)")
+          ->type_name("PID")
+          ->check(CLI::PositiveNumber);
   auto* log_option =
       app.add_option("--log", worker.log_file, "Log to this file, errors to stderr too")->type_name("FILE");
   auto* quiet_option = app.add_flag("--quiet", worker.quiet, "Log warnings and errors only");
@@ -102,7 +105,7 @@ int Main(int argc, char** argv) {
   }
   if (*spec_option) {
     spec.spec_file = run_spec;
-    spec.die_with_parent = worker.die_with_parent;
+    spec.parent = worker.parent;
     return RunOneSpec(spec, Run);
   }
   if (!*dir_option && !*access_option) {

@@ -42,7 +42,8 @@ int Complain(const std::string& text, int code) {
   return code;
 }
 
-// The kernel ends us with our parent, from now on; false when the parent was gone already.
+// The kernel ends us with our parent, from now on; false when the parent was gone already. Its pid must come
+// from itself: whoever asks for it only now may get that of the process that took its orphans over.
 bool DieWithParent(pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   return getppid() == parent;
@@ -168,8 +169,7 @@ std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const 
 }  // namespace
 
 int RunWorker(const WorkerOptions& options, const RunFunction& run) {
-  const pid_t parent = getppid();
-  if (options.die_with_parent && !DieWithParent(parent)) return kExitDone;
+  if (options.parent > 0 && !DieWithParent(options.parent)) return kExitDone;
   Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
   if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
   const UniqueFd signals = BlockStopSignals();
@@ -186,7 +186,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
 
   SupervisorOptions supervisor_options;
   supervisor_options.access_path = options.access_path;
-  supervisor_options.parent = options.die_with_parent ? parent : 0;
+  supervisor_options.parent = options.parent;
   WorkerSettings& settings = supervisor_options.state;
   settings.orphan_timeout =
       std::chrono::duration_cast<Duration>(std::chrono::duration<double>(options.orphan_timeout_seconds));
@@ -205,7 +205,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
 }
 
 int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
-  if (options.die_with_parent && !DieWithParent(getppid())) return kExitDone;
+  if (options.parent > 0 && !DieWithParent(options.parent)) return kExitDone;
   Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
   if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
   Result<std::string> spec = ReadSpec(options.spec_file);

@@ -2,6 +2,8 @@
 // function comes from outside, so that tests can bring one that crashes.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -13,7 +15,7 @@ namespace gauntlet::worker {
 struct WorkerOptions {
   std::string access_path;  // access.json; waited for up to orphan_timeout_seconds
   int slots = 1;            // runs simulated at the same time
-  bool die_with_parent = false;
+  pid_t parent = 0;         // > 0: end with this process, which started us
   double orphan_timeout_seconds = 600.0;
   std::string log_file;  // "": stderr
   bool quiet = false;    // warnings and errors only
@@ -29,7 +31,7 @@ struct SpecOptions {
   std::string spec_file = "-";  // a serialized RunSpec; "-": stdin
   double cpu_limit_seconds = 600.0;
   std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;
-  bool die_with_parent = false;
+  pid_t parent = 0;  // > 0: end with this process, which started us
 };
 
 // Simulates one spec in a runner, under limits, and writes the serialized RunResult to stdout. A run that

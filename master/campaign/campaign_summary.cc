@@ -6,7 +6,6 @@
 #include <map>
 
 #include "master/campaign/state_digest.h"
-#include "master/experiment/experiment_file.h"
 #include "sim/run_result.h"
 
 namespace gauntlet::master {
@@ -49,6 +48,23 @@ void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
   } else {
     ++summary.unclassified_failures;
   }
+}
+
+// What every run of the campaign depends on; how test cases are found is part of the search's own state.
+std::string EncodeExperiment(const Experiment& experiment) {
+  CanonicalEncoder encoder;
+  encoder.Uint(experiment.seed);
+  encoder.String(experiment.scenario);
+  encoder.String(experiment.controller);
+  for (const sim::Parameters* parameters :
+       {&experiment.scenario_parameters, &experiment.controller_parameters}) {
+    encoder.Uint(parameters->size());
+    for (const auto& [name, value] : *parameters) {
+      encoder.String(name);
+      encoder.Double(value);
+    }
+  }
+  return encoder.Take();
 }
 
 std::string EncodePopulation(const std::vector<Individual>& population) {
@@ -123,7 +139,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   if (counted > 0.0) summary.mean_fitness = sum / counted;
 
   summary.state_hash =
-      StateHash(WriteExperiment(experiment, {}), digest, EncodePopulation(population), search_state);
+      StateHash(EncodeExperiment(experiment), digest, EncodePopulation(population), search_state);
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
   for (const StoredSearch& stored : *searches) {

@@ -138,9 +138,9 @@ LocalPool::~LocalPool() {
 }
 
 Status LocalPool::StartWorker(Slot& slot, TimePoint now) {
-  std::vector<std::string> arguments = {options_.program,    "--access", options_.access_file,
-                                        "--die-with-parent", "--quiet",  "--log",
-                                        slot.log_file};
+  std::vector<std::string> arguments = {
+      options_.program, "--access", options_.access_file, "--die-with-parent", std::to_string(getpid()),
+      "--quiet",        "--log",    slot.log_file};
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);

@@ -80,13 +80,13 @@ int Main(const std::vector<std::string>& arguments) {
     return RunOneSpec({.spec_file = arguments[1],
                        .cpu_limit_seconds = std::stod(arguments[2]),
                        .memory_limit_bytes = std::stoull(arguments[3]),
-                       .die_with_parent = true},
+                       .parent = getppid()},
                       FaultyRunFunction);
   }
   if (arguments.size() < 3) return 2;
   return RunWorker({.access_path = arguments[0],
                     .slots = std::stoi(arguments[1]),
-                    .die_with_parent = arguments.size() > 3,
+                    .parent = arguments.size() > 3 ? getppid() : 0,
                     .orphan_timeout_seconds = std::stod(arguments[2]),
                     .log_file = "",
                     .quiet = false,

@@ -87,8 +87,8 @@ TEST_F(LocalPoolTest, StartsItsWorkersWithTheirArgumentsInSessionsOfTheirOwn) {
   for (const pid_t pid : pool->pids()) EXPECT_EQ(getsid(pid), pid) << "a Ctrl-C must not reach it";
   const std::string log = directory_ + "/worker-2.log";
   EXPECT_TRUE(Eventually([&] { return ContentOf(log).find("complaint") != std::string::npos; }));
-  EXPECT_EQ(ContentOf(log),
-            "--access " + options_.access_file + " --die-with-parent --quiet --log " + log + "\ncomplaint\n");
+  EXPECT_EQ(ContentOf(log), "--access " + options_.access_file + " --die-with-parent " +
+                                std::to_string(getpid()) + " --quiet --log " + log + "\ncomplaint\n");
 }
 
 TEST_F(LocalPoolTest, ReplacesAWorkerThatDiedAndReportsIt) {
