@@ -23,8 +23,8 @@ enum class Device : std::uint32_t {
 class DeviceSet {
  public:
   constexpr DeviceSet() = default;
-  constexpr DeviceSet(Device device)
-      : bits_(static_cast<std::uint32_t>(device)) {}  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor): a device is a set of one.
+  constexpr DeviceSet(Device device) : bits_(static_cast<std::uint32_t>(device)) {}
   constexpr DeviceSet operator|(DeviceSet other) const {
     DeviceSet result;
     result.bits_ = bits_ | other.bits_;

@@ -26,6 +26,7 @@ extern "C" void* malloc(std::size_t size) noexcept {
   ++allocations;
   return __libc_malloc(size);
 }
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): glibc uses reserved names.
 extern "C" void* realloc(void* pointer, std::size_t size) noexcept {
   ++allocations;
   return __libc_realloc(pointer, size);

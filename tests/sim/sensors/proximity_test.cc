@@ -16,7 +16,6 @@
 namespace gauntlet::sim {
 namespace {
 
-using testing::DoubleNear;
 using testing::Each;
 
 constexpr double kGapStep = 0.001;  // m, of both sweeps
