@@ -32,16 +32,8 @@ using Clusters = std::vector<std::vector<double>>;
 std::vector<std::string> WriteCases(const json& population, const std::string& prefix) {
   std::vector<std::string> paths;
   for (const json& member : population) {
-    json obstacles = json::array();
-    for (const json& gene : member["genome"]) {
-      obstacles.push_back({{"x", gene["x"]},
-                           {"y", gene["y"]},
-                           {"length", gene["length"]},
-                           {"width", gene["width"]},
-                           {"orientationDeg", gene["orientation_deg"]}});
-    }
     paths.push_back(fmt::format("{}-{:04}.json", prefix, paths.size()));
-    std::ofstream(paths.back()) << json{{"obstacles", obstacles}};
+    std::ofstream(paths.back()) << json::object({{"obstacles", member.at("genome")}});
   }
   return paths;
 }
