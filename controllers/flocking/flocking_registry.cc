@@ -43,7 +43,7 @@ constexpr std::array kScenarioParameters = std::to_array<ParameterInfo>({
 });
 
 constexpr std::array kBirdParameters = std::to_array<ParameterInfo>({
-    {"bird_speed", "m/s", 0.06, 0.005, 0.3, false,
+    {"bird_speed", "m/s", 0.055, 0.005, 0.3, false,
      "forward speed (calibrated; released controller at most 0.10)"},
     {"turn_rate", "rad/s", 45.0 * kDegree, 0.05, 2.0, false, "turn rate of the turning reactions (chosen)"},
     {"straight_within", "rad", 10.0 * kDegree, 0.0, kPi / 2.0, false,

@@ -5,7 +5,7 @@
 //   flocking_calibration [name=value ...]
 //     cases=200 seeds=100 threads=2 genes=8        how much
 //     first=0                                      number of the first case and seed
-//     l_max=2 bird_speed=0.06 prey_speed=0.05      knobs; lists like bird_speed=0.07,0.08 make a grid
+//     l_max=2 bird_speed=0.055 prey_speed=0.05      knobs; lists like bird_speed=0.05,0.06 make a grid
 //     original=0                                   leaves the original bird out
 //     any other name                               a parameter of the scenario or of the controllers
 #include <algorithm>
@@ -31,7 +31,7 @@ using Options = std::map<std::string, std::vector<double>>;
 
 Options ParseOptions(int argc, char** argv) {
   Options options = {{"cases", {200}},       {"seeds", {100}}, {"threads", {2}},
-                     {"genes", {8}},         {"l_max", {2.0}}, {"bird_speed", {0.06}},
+                     {"genes", {8}},         {"l_max", {2.0}}, {"bird_speed", {0.055}},
                      {"prey_speed", {0.05}}, {"first", {0}},   {"original", {1}}};
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
