@@ -5,6 +5,7 @@
 #include <utility>
 #include <zmq.hpp>
 
+#include "sim/base/thread_sanitizer.h"
 #include "worker/message_codec.h"
 
 namespace gauntlet::worker {

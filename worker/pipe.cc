@@ -27,17 +27,6 @@ std::size_t SizeIn(const char* prefix) {
   return size;
 }
 
-bool ReadExactly(int fd, char* data, std::size_t size) {
-  while (size > 0) {
-    const ssize_t got = recv(fd, data, size, 0);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    data += got;
-    size -= static_cast<std::size_t>(got);
-  }
-  return true;
-}
-
 }  // namespace
 
 void UniqueFd::Reset(int fd) {
@@ -63,16 +52,6 @@ std::string MakeFrame(std::string_view payload) {
   return frame;
 }
 
-std::optional<std::string> ReadFrame(int fd) {
-  std::array<char, kPrefixBytes> prefix{};
-  if (!ReadExactly(fd, prefix.data(), prefix.size())) return std::nullopt;
-  const std::size_t size = SizeIn(prefix.data());
-  if (size > kMaxFrameBytes) return std::nullopt;
-  std::string payload(size, '\0');
-  if (!ReadExactly(fd, payload.data(), size)) return std::nullopt;
-  return payload;
-}
-
 bool WriteFrame(int fd, std::string_view payload) {
   const std::string frame = MakeFrame(payload);
   std::string_view rest = frame;
@@ -85,16 +64,18 @@ bool WriteFrame(int fd, std::string_view payload) {
   return true;
 }
 
-FrameBuffer::State FrameBuffer::ReadFrom(int fd) {
+FrameBuffer::State FrameBuffer::ReadFrom(int fd, Wait wait) {
   std::array<char, 64 * 1024> chunk;
+  int flags = wait == Wait::kYes ? 0 : MSG_DONTWAIT;
   while (true) {
-    const ssize_t got = recv(fd, chunk.data(), chunk.size(), MSG_DONTWAIT);
+    const ssize_t got = recv(fd, chunk.data(), chunk.size(), flags);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return State::kOpen;
     if (got <= 0) return State::kEnded;
     bytes_.append(chunk.data(), static_cast<std::size_t>(got));
     if (bytes_.size() >= kPrefixBytes && SizeIn(bytes_.data()) > kMaxFrameBytes) return State::kDamaged;
     if (static_cast<std::size_t>(got) < chunk.size()) return State::kOpen;
+    flags = MSG_DONTWAIT;
   }
 }
 

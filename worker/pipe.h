@@ -44,18 +44,19 @@ inline constexpr std::size_t kMaxFrameBytes = 1u << 30;
 
 std::string MakeFrame(std::string_view payload);
 
-// Blocking, for the runner: the next payload; nullopt at the end of the stream or when it is damaged.
-std::optional<std::string> ReadFrame(int fd);
 // Blocking; false when the other side is gone.
 bool WriteFrame(int fd, std::string_view payload);
 
-// Non-blocking, for the supervisor: collects bytes until a frame is complete.
+// Collects bytes until a frame is complete.
 class FrameBuffer {
  public:
   enum class State { kOpen, kEnded, kDamaged };
 
-  // Reads what `fd` has to give without waiting. kEnded: the other side has closed; frames may be left.
-  State ReadFrom(int fd);
+  enum class Wait { kNo, kYes };
+
+  // Reads what `fd` has to give; kYes: and waits until it has something. kEnded: the other side has closed;
+  // frames may be left.
+  State ReadFrom(int fd, Wait wait = Wait::kNo);
   // The next complete payload.
   std::optional<std::string> Next();
 

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -36,26 +37,37 @@ double SecondsOf(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Sets the soft limit only: a lowered hard limit could never be raised again.
-void SetSoftLimit(__rlimit_resource resource, rlim_t wanted) {
-  rlimit limit{};
-  if (getrlimit(resource, &limit) != 0) return;
-  if (limit.rlim_max != RLIM_INFINITY && wanted > limit.rlim_max) wanted = limit.rlim_max;
-  if (limit.rlim_cur == wanted) return;
-  limit.rlim_cur = wanted;
-  setrlimit(resource, &limit);
-}
+// The soft limits of this process: a lowered hard limit could never be raised again. Remembers what is set,
+// so that most runs cost no system call.
+class Limits {
+ public:
+  void Set(const RunnerJob& job) {
+    rlim_t cpu = RLIM_INFINITY;
+    if (job.cpu_limit_seconds > 0.0) {
+      cpu = static_cast<rlim_t>(std::ceil(SecondsOf(CLOCK_PROCESS_CPUTIME_ID) + job.cpu_limit_seconds));
+    }
+    Set(RLIMIT_CPU, cpu, cpu_);
+    if (!kMemoryLimitWorks) return;
+    Set(RLIMIT_AS, job.memory_limit_bytes == 0 ? RLIM_INFINITY : rlim_t{job.memory_limit_bytes}, memory_);
+  }
+  static void ForbidCoreDumps() {
+    std::optional<rlim_t> unknown;
+    Set(RLIMIT_CORE, 0, unknown);
+  }
 
-void SetLimits(const RunnerJob& job) {
-  rlim_t cpu = RLIM_INFINITY;
-  if (job.cpu_limit_seconds > 0.0) {
-    cpu = static_cast<rlim_t>(std::ceil(SecondsOf(CLOCK_PROCESS_CPUTIME_ID) + job.cpu_limit_seconds));
+ private:
+  static void Set(__rlimit_resource resource, rlim_t wanted, std::optional<rlim_t>& now) {
+    if (now == wanted) return;
+    now = wanted;
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0) return;
+    limit.rlim_cur = std::min(wanted, limit.rlim_max);
+    setrlimit(resource, &limit);
   }
-  SetSoftLimit(RLIMIT_CPU, cpu);
-  if (kMemoryLimitWorks) {
-    SetSoftLimit(RLIMIT_AS, job.memory_limit_bytes == 0 ? RLIM_INFINITY : job.memory_limit_bytes);
-  }
-}
+
+  std::optional<rlim_t> cpu_;
+  std::optional<rlim_t> memory_;
+};
 
 sim::RunResult Refuse(const Error& error) {
   sim::RunResult refused;
@@ -173,13 +185,20 @@ std::string Describe(const RunnerFailure& failure) {
 
 void RunnerMain(int pipe, const RunFunction& run) {
   std::set_new_handler(OutOfMemory);
-  SetSoftLimit(RLIMIT_CORE, 0);
-  while (const std::optional<std::string> message = ReadFrame(pipe)) {
+  Limits::ForbidCoreDumps();
+  Limits limits;
+  FrameBuffer messages;
+  while (true) {
+    const std::optional<std::string> message = messages.Next();
+    if (!message) {
+      if (messages.ReadFrom(pipe, FrameBuffer::Wait::kYes) != FrameBuffer::State::kOpen) _exit(0);
+      continue;
+    }
     const std::optional<RunnerJob> job = DecodeJob(*message);
     GAUNTLET_CHECK(job.has_value(), "a job that does not decode");
-    SetLimits(*job);
+    limits.Set(*job);
     try {
-      if (!WriteFrame(pipe, EncodeReport(Execute(*job, run)))) break;
+      if (!WriteFrame(pipe, EncodeReport(Execute(*job, run)))) _exit(0);
     } catch (const std::bad_alloc&) {
       OutOfMemory();
     } catch (const std::exception& error) {
@@ -190,7 +209,6 @@ void RunnerMain(int pipe, const RunFunction& run) {
       _exit(kExitException);
     }
   }
-  _exit(0);
 }
 
 }  // namespace gauntlet::worker

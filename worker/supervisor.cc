@@ -78,12 +78,16 @@ class Supervisor::Loop {
     const auto until_tick =
         std::chrono::ceil<milliseconds>(state_.NextTick() - std::chrono::steady_clock::now());
     const milliseconds timeout = std::clamp(until_tick, milliseconds(0), kLongestWait);
+    bool interrupted = false;
     try {
       zmq::poll(items, timeout);
     } catch (const zmq::error_t& error) {
       GAUNTLET_CHECK(error.num() == EINTR, fmt::format("zmq_poll: {}", error.what()));
+      interrupted = true;
       for (zmq::pollitem_t& item : items) item.revents = 0;
     }
+    message_came_ = interrupted || items[0].revents != 0;
+    signal_came_ = interrupted || items[1].revents != 0;
     polled_ = runners;
     std::size_t next = 2;
     for (pollfd& runner : polled_) {
@@ -97,6 +101,7 @@ class Supervisor::Loop {
   }
 
   void ReadSignals() {
+    if (!signal_came_) return;
     signalfd_siginfo info{};
     while (read(signals_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) {
       const char* name = sigabbrev_np(static_cast<int>(info.ssi_signo));
@@ -105,6 +110,7 @@ class Supervisor::Loop {
   }
 
   void ReadMessages() {
+    if (!message_came_) return;
     for (int i = 0; i < kMessagesPerTurn && !exit_code_; ++i) {
       const std::optional<std::string> frame = connection_.Receive();
       if (!frame) return;
@@ -222,6 +228,8 @@ class Supervisor::Loop {
   Connection connection_;
   RunnerPool pool_;
   WorkerState state_;
+  bool message_came_ = false;
+  bool signal_came_ = false;
   std::vector<pollfd> polled_;
   std::set<std::string> logged_;
   std::optional<int> exit_code_;

@@ -8,6 +8,7 @@
 #include <zmq.hpp>
 
 #include "proto/run.pb.h"
+#include "sim/base/thread_sanitizer.h"
 
 namespace gauntlet::worker {
 
