@@ -167,7 +167,11 @@ void LocalPool::Bury(Slot& slot, int status, TimePoint now) {
   slot.pid = slot.pidfd = -1;
   if (!replacing_) return;
 
-  slot.failed_starts = now - slot.started < options_.start_time ? slot.failed_starts + 1 : 0;
+  // An end from outside says nothing about whether the program can start.
+  const bool from_outside =
+      WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGTERM);
+  const bool failed_start = !from_outside && now - slot.started < options_.start_time;
+  slot.failed_starts = failed_start ? slot.failed_starts + 1 : 0;
   if (slot.failed_starts > options_.start_attempts) {
     const std::string tail = TailOf(slot.log_file);
     error_ = Error{

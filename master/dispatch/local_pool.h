@@ -20,8 +20,9 @@ struct LocalPoolOptions {
   std::string program = WorkerProgramPath();
   std::string access_file;    // how workers find the master
   std::string log_directory;  // must exist; worker K writes to worker-K.log in it
-  // A worker that ends sooner than this after its start has failed to start; after more than `start_attempts`
-  // such ends in a row the pool gives up.
+  // A worker that ends of itself sooner than this after its start has failed to start; after more than
+  // `start_attempts` such ends in a row the pool gives up. SIGKILL and SIGTERM come from outside and do not
+  // count.
   std::chrono::milliseconds start_time{2000};
   int start_attempts = 5;
 };
