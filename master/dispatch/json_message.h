@@ -2,11 +2,13 @@
 // error names file, line and column.
 #pragma once
 
-#include <google/protobuf/message.h>
-
 #include <string>
 
 #include "master/dispatch/json_document.h"
+
+namespace google::protobuf {
+class Message;
+}
 
 namespace gauntlet::master {
 
