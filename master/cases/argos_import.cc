@@ -274,7 +274,7 @@ class Importer {
     }
     if (!ignored_.empty()) parts.push_back(fmt::format("ignored: {}", fmt::join(ignored_, ", ")));
     if (parts.empty()) return {};
-    return fmt::format("{}: {}", file_name_, fmt::join(parts, "; "));
+    return fmt::format("{}", fmt::join(parts, "; "));
   }
 
   const std::string& text_;

@@ -11,7 +11,7 @@ namespace gauntlet::master {
 
 struct ImportedCase {
   sim::TestCase test_case;
-  std::string notice;  // one line: what was taken and what was ignored; "" when all of the file counts
+  std::string notice;  // one line, without the file's name: what was changed and ignored; "" when nothing
 };
 
 // `file_name` stands in messages and becomes the case's name.

@@ -11,7 +11,7 @@ namespace gauntlet::master {
 
 struct LoadedCase {
   sim::TestCase test_case;
-  std::string notice;  // what was ignored, one line; "" when nothing
+  std::string notice;  // one line: what was changed and ignored; "" when nothing
 };
 
 // Reads a case file: .json (proto/README.md) or .argos by its extension, any other by its content. A case

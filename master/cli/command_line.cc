@@ -64,8 +64,8 @@ void AddSearchCommands(CLI::App& app, CommandAction& chosen) {
   const auto [evolve, evolve_options] =
       AddCommand(app, chosen, "evolve", "evolve test cases in which the swarm fails", RunEvolve);
   AddCommonOptions(*evolve, *evolve_options);
-  evolve->footer(R"(
-Evolves test cases with the experiment's search on a local pool of workers, shows progress, and ends
+  evolve->footer(
+      R"(Evolves test cases with the experiment's search on a local pool of workers, shows progress, and ends
 with a table of the toughest cases. Ctrl-C stops cleanly (exit 3); 'gauntlet resume DIR' goes on.
 Same experiment, settings and seed: same result, whatever the number of workers.
 
@@ -82,8 +82,8 @@ Examples:
       ->add_option("--cases", random_options->cases,
                    "how many test cases (default: the experiment's search.cases)")
       ->type_name("N");
-  random->footer(R"(
-Generates valid random test cases by the experiment's rules and simulates each once (more often with
+  random->footer(
+      R"(Generates valid random test cases by the experiment's rules and simulates each once (more often with
 --set search.replicates=K). The population that 'show' reports are all cases.
 
 Examples:
@@ -98,8 +98,8 @@ Examples:
       ->required();
   evaluate->add_option("--replicates", evaluate_options->replicates, "runs per case, each with its own seed")
       ->type_name("K");
-  evaluate->footer(R"(
-Simulates each case and prints its fitness (mean of the replicates; lower = tougher). A case that
+  evaluate->footer(
+      R"(Simulates each case and prints its fitness (mean of the replicates; lower = tougher). A case that
 breaks a validity rule is refused by the rule's name; the others go on. Exit 2 when all were refused.
 Of .argos files the arena, the boxes, the number of foot-bots and their start area are read.
 
@@ -113,8 +113,8 @@ void AddCampaignCommands(CLI::App& app, CommandAction& chosen) {
       AddCommand(app, chosen, "resume", "go on with a campaign that was stopped or killed", RunResume);
   resume->add_option("DIR", resume_options->directory, "directory of the campaign")->required();
   AddRunningOptions(*resume, *resume_options);
-  resume->footer(R"(
-Goes on where the campaign was, whatever ended it; no finished run is simulated again, and the result
+  resume->footer(
+      R"(Goes on where the campaign was, whatever ended it; no finished run is simulated again, and the result
 is that of an undisturbed campaign. A finished campaign is only summarised.
 
 Example:
@@ -123,8 +123,8 @@ Example:
   const auto [show, show_options] = AddCommand(app, chosen, "show", "what came out of a campaign", RunShow);
   show->add_option("DIR", show_options->directory, "directory of the campaign")->required();
   show->add_flag("--json", show_options->json, "everything as one JSON document");
-  show->footer(R"(
-Sums up what is stored: runs, fitness by generation, total failures, the toughest cases with a run to
+  show->footer(
+      R"(Sums up what is stored: runs, fitness by generation, total failures, the toughest cases with a run to
 replay, and the state hash, which is equal for equal outcomes.
 
 Examples:
@@ -141,8 +141,8 @@ Examples:
       ->type_name("F");
   replay->add_option("--csv", replay_options->csv, "write every pose of every tick")->type_name("F");
   replay->add_flag("--json", replay_options->json, "the result as one JSON document");
-  replay->footer(R"(
-Same run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying what
+  replay->footer(
+      R"(Same run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying what
 differs.
 
 Example:
@@ -156,8 +156,7 @@ void AddListCommand(CLI::App& app, CommandAction& chosen) {
                    "experiments, scenarios, controllers or searches (default: all)")
       ->check(CLI::IsMember(kListSections));
   list->add_flag("--json", options->json, "as one JSON document");
-  list->footer(R"(
-Examples:
+  list->footer(R"(Examples:
   gauntlet list experiments
   gauntlet list controllers --json | jq '.controllers[].name')");
 }
@@ -171,8 +170,7 @@ void Configure(CLI::App& app, CommandAction& chosen) {
   AddSearchCommands(app, chosen);
   AddCampaignCommands(app, chosen);
   AddListCommand(app, chosen);
-  app.footer(R"(
-Start here:
+  app.footer(R"(Start here:
   gauntlet evolve flocking          evolve test cases on all cores, about a minute
   gauntlet COMMAND --help           options and examples of a command
 

@@ -1,5 +1,7 @@
 // gauntlet evaluate: simulate given test cases.
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -27,6 +29,7 @@ struct CaseList {
 CaseList LoadCases(CommandContext& context, const EvaluateOptions& options, const Experiment& experiment) {
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
   CaseList list;
+  std::map<std::string, std::vector<std::string>> notices;  // and the files they are about
   for (const std::string& file : options.files) {
     EvaluatedCase& evaluated = list.files.emplace_back();
     evaluated.file = file;
@@ -35,7 +38,7 @@ CaseList LoadCases(CommandContext& context, const EvaluateOptions& options, cons
       evaluated.error = loaded.error().message;
       continue;
     }
-    if (!options.common.quiet && !loaded->notice.empty()) PrintMessage(context, loaded->notice);
+    if (!loaded->notice.empty()) notices[loaded->notice].push_back(file);
     if (scenario != nullptr) {
       const auto requirements = scenario->requirements(experiment.scenario_parameters, loaded->test_case);
       if (const auto violation = sim::CheckValidity(loaded->test_case, requirements)) {
@@ -46,6 +49,11 @@ CaseList LoadCases(CommandContext& context, const EvaluateOptions& options, cons
     }
     list.cases.push_back(std::move(loaded->test_case));
     list.file_of_case.push_back(list.files.size() - 1);
+  }
+  if (options.common.quiet) return list;
+  for (const auto& [notice, files] : notices) {
+    const std::string others = files.size() > 1 ? fmt::format(" and {} more", files.size() - 1) : "";
+    PrintMessage(context, fmt::format("{}{}: {}", files.front(), others, notice));
   }
   return list;
 }
@@ -93,10 +101,15 @@ void Print(CommandContext& context, const EvaluateOptions& options, const CaseLi
               << std::flush;
   for (const EvaluatedCase& evaluated : list.files) {
     if (evaluated.error.empty()) continue;
-    // Messages of unreadable files begin with the file.
-    PrintMessage(context, evaluated.error.starts_with(evaluated.file)
-                              ? evaluated.error
-                              : fmt::format("{}: {}", evaluated.file, evaluated.error));
+    std::string message = evaluated.error;
+    if (!evaluated.refused_rule.empty()) {
+      const std::string rule = evaluated.refused_rule + ": ";
+      message =
+          fmt::format("{}: refused, {}{}", evaluated.file, message.starts_with(rule) ? "" : rule, message);
+    } else if (!message.starts_with(evaluated.file)) {
+      message = fmt::format("{}: {}", evaluated.file, message);
+    }
+    PrintMessage(context, message);
   }
 }
 

@@ -60,10 +60,20 @@ std::string RangeOf(double min, double max) {
 }
 
 std::string RangeOf(const Key& key) {
-  if (key.type == KeyType::kChoice) return fmt::format("{}", fmt::join(key.choices, " | "));
-  if (key.type == KeyType::kFlag) return "true | false";
+  if (key.type == KeyType::kChoice) return "a choice";
+  if (key.type == KeyType::kFlag) return "true, false";
   if (key.type == KeyType::kText) return "text";
   return RangeOf(key.min, key.max);
+}
+
+std::string DescriptionOf(const Key& key) {
+  if (key.type != KeyType::kChoice) return key.description;
+  return fmt::format("{} ({})", fmt::join(key.choices, " | "), key.description);
+}
+
+std::string DefaultOf(const Key& key) {
+  const auto* text = std::get_if<std::string>(&key.default_value);
+  return text != nullptr ? *text : ToToml(key.default_value);
 }
 
 std::vector<Table::Column> ParameterColumns() {
@@ -119,7 +129,7 @@ std::string SearchesText() {
     text += fmt::format("\n  {}: {}\n\n", search.name, search.description);
     Table table(ParameterColumns());
     for (const Key* key : KeysOf(search)) {
-      table.AddRow({key->path, ToToml(key->default_value), key->unit, RangeOf(*key), key->description});
+      table.AddRow({key->path, DefaultOf(*key), key->unit, RangeOf(*key), DescriptionOf(*key)});
     }
     text += table.ToText(4);
   }

@@ -194,9 +194,6 @@ std::string EvaluationText(const std::vector<EvaluatedCase>& cases, const HintCo
                   FormatCount(failures), fmt::format("{}", evaluated.runs.front().id), remark});
   }
   std::string text = table.ToText();
-  for (const EvaluatedCase& evaluated : cases) {
-    if (!evaluated.error.empty()) text += fmt::format("\n  {}: {}\n", evaluated.file, evaluated.error);
-  }
   if (toughest != nullptr) {
     const std::string directory = ShellQuoted(context.directory);
     text +=

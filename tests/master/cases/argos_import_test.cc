@@ -67,7 +67,7 @@ TEST(ArgosImport, SaysInOneLineWhatWasIgnored) {
   const auto imported = ParseArgos(
       Document(std::string(kWalls) + "<light id=\"l\" position=\"0,0,1\"/>" + kTenRobots), "case.argos");
   ASSERT_TRUE(imported.ok()) << imported.error().message;
-  EXPECT_EQ(imported->notice, "case.argos: ignored: framework, media, light, start orientations");
+  EXPECT_EQ(imported->notice, "ignored: framework, media, light, start orientations");
 }
 
 TEST(ArgosImport, BoxesNearTheEdgeThatAreNoWallsStayObstacles) {

@@ -355,7 +355,20 @@ TEST_F(CommandLine, EvaluateRefusesByRuleAndSimulatesTheRest) {
   EXPECT_EQ(cases[1].at("runs").at(1).at("seed"), "41");
   EXPECT_TRUE(cases[2].at("refused").is_null());
   EXPECT_THAT(cases[2].at("error").get<std::string>(), HasSubstr("broken.json:1:"));
-  EXPECT_THAT(err_.str(), AllOf(HasSubstr("blocked.json"), HasSubstr("broken.json:1:")));
+  EXPECT_THAT(err_.str(),
+              AllOf(HasSubstr("blocked.json: refused, start-blocked: "), HasSubstr("broken.json:1:")));
+}
+
+TEST_F(CommandLine, NoticesOfManyFilesAreGivenOnce) {
+  const std::string argos = R"(<argos-configuration><framework/><arena size="6,6,1"/></argos-configuration>)";
+  const std::vector<std::string> files = {Write("a.argos", argos), Write("b.argos", argos),
+                                          Write("c.argos", argos)};
+  EXPECT_EQ(Run({"evaluate", "flocking", "--case", files[0], files[1], files[2], "--dir", Path("c")}),
+            kExitUsage)
+      << "the campaign of this test simulates nothing";
+  const std::string text = err_.str();
+  EXPECT_THAT(text, HasSubstr(files[0] + " and 2 more: 0 of 4 walls are in the file"));
+  EXPECT_EQ(text.find("0 of 4 walls"), text.rfind("0 of 4 walls"));
 }
 
 TEST_F(CommandLine, EvaluateExitsTwoWhenNothingCouldBeSimulated) {
