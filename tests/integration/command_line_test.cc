@@ -239,7 +239,7 @@ TEST(EvaluateTest, AMissingFileIsNamed) {
   const ProcessResult result =
       Gauntlet({"evaluate", "flocking", "--case", "/nonexistent.json", "--dir", scratch / "c"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.out, HasSubstr("/nonexistent.json: no such file"));
+  EXPECT_THAT(result.err, testing::AllOf(HasSubstr("/nonexistent.json"), HasSubstr("no such file")));
 }
 
 TEST(EvaluateTest, ExitsWith2WhenEveryCaseIsRefused) {
