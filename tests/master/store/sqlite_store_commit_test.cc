@@ -63,6 +63,7 @@ class StoreCommitTest : public testing::Test {
   ScratchDirectory scratch_;
   std::string path_ = scratch_ / "campaign.db";
   FaultVfs vfs_;
+  Gate gate_;  // before the store, whose end commits once more
   std::unique_ptr<SqliteStore> store_;
 };
 
@@ -109,12 +110,11 @@ TEST_F(StoreCommitTest, OneCommitIsOneSync) {
 }
 
 TEST_F(StoreCommitTest, WhatArrivesDuringACommitSharesTheNextUpTo512Runs) {
-  Gate gate;
-  Open([&gate] { return gate.Pass(); });
+  Open([this] { return gate_.Pass(); });
   store_->AddRun(MakeRun(1));
-  gate.WaitForArrival();
+  gate_.WaitForArrival();
   for (RunId id = 2; id <= 1501; ++id) store_->AddRun(MakeRun(id));
-  gate.Open();
+  gate_.Open();
   ASSERT_TRUE(store_->Flush().ok());
   EXPECT_EQ(store_->Commits(), 1u + 3u) << "1 run, then 512 + 512 + 476";
   Result<std::vector<RunId>> committed = store_->Committed();
@@ -123,14 +123,13 @@ TEST_F(StoreCommitTest, WhatArrivesDuringACommitSharesTheNextUpTo512Runs) {
 }
 
 TEST_F(StoreCommitTest, NothingIsAcknowledgedBeforeItsCommit) {
-  Gate gate;
-  Open([&gate] { return gate.Pass(); });
+  Open([this] { return gate_.Pass(); });
   store_->AddRun(MakeRun(1));
-  gate.WaitForArrival();
+  gate_.WaitForArrival();
   Result<std::vector<RunId>> committed = store_->Committed();
   ASSERT_TRUE(committed.ok());
   EXPECT_THAT(*committed, testing::IsEmpty());
-  gate.Open();
+  gate_.Open();
   ASSERT_TRUE(store_->Flush().ok());
   committed = store_->Committed();
   ASSERT_TRUE(committed.ok());
@@ -138,10 +137,9 @@ TEST_F(StoreCommitTest, NothingIsAcknowledgedBeforeItsCommit) {
 }
 
 TEST_F(StoreCommitTest, AFullQueueHoldsUpWhoeverFillsIt) {
-  Gate gate;
-  Open([&gate] { return gate.Pass(); });
+  Open([this] { return gate_.Pass(); });
   store_->AddRun(MakeRun(1));
-  gate.WaitForArrival();
+  gate_.WaitForArrival();
   constexpr RunId kMore = SqliteStore::kLargestQueue + 100;
   std::atomic<std::size_t> added = 0;
   std::thread adding([this, &added] {
@@ -153,7 +151,7 @@ TEST_F(StoreCommitTest, AFullQueueHoldsUpWhoeverFillsIt) {
   while (added < SqliteStore::kLargestQueue) std::this_thread::yield();
   EXPECT_FALSE(Notified(std::chrono::milliseconds(50))) << "nothing can be committed behind a closed gate";
   EXPECT_EQ(added, SqliteStore::kLargestQueue);
-  gate.Open();
+  gate_.Open();
   adding.join();
   ASSERT_TRUE(store_->Flush().ok());
   Result<std::vector<RunId>> committed = store_->Committed();
