@@ -275,12 +275,13 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
   FinishedRun run;
   run.id = order.run;
   run.result.verdict = VerdictOf(order.last.kind);
-  run.result.message =
-      fmt::format("{} in {} of {} attempts", DescribeFailure(order.last), order.of_last_kind, order.attempts);
+  // Hashed, so nothing that depends on how often workers were lost on the way.
+  run.result.message = DescribeFailure(order.last);
   run.result.hash = sim::HashOf(run.result);
   run.worker = LabelOf(order.worker);
   run.attempt = order.leases;
-  Report("run-given-up", fmt::format("run {} {}", order.run, run.result.message));
+  Report("run-given-up", fmt::format("run {} {} in {} of {} attempts", order.run, run.result.message,
+                                     order.of_last_kind, order.attempts));
   finished_.push_back(std::move(run));
   specs_.erase(order.run);
 }

@@ -9,6 +9,8 @@
 #include <utility>
 #include <zmq.hpp>
 
+#include "sim/base/thread_sanitizer.h"
+
 namespace gauntlet::master {
 namespace {
 
