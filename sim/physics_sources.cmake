@@ -5,6 +5,7 @@ target_sources(
           physics/box2d_engine.cc
           physics/differential_drive.cc
           physics/nearby_boxes.cc
+          physics/neighbour_pairs.cc
           robot/controller.cc
           robot/devices.cc
           run_result.cc

@@ -5,6 +5,7 @@
 #include <box2d/box2d.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "sim/geometry/trigonometry.h"
 #include "sim/physics/differential_drive.h"
 #include "sim/physics/nearby_boxes.h"
+#include "sim/physics/neighbour_pairs.h"
 #include "sim/physics/physics_engine.h"
 
 namespace gauntlet::sim {
@@ -26,12 +28,16 @@ constexpr int kPositionIterations = 3;
 
 // In one step of ours the motor may give a contact the impulse that it gives in one substep of ARGoS. All
 // motors being equal, who pushes whom does not depend on the limit; a larger one keeps the solver from
-// settling and lets jammed robots overlap (measured: 11 mm with the whole 15 N, 8 mm so).
-constexpr double kMotorForce = foot_bot::kMaxForce * (kTickSeconds / foot_bot::kSubstepsPerTick) / kStep;
+// settling and lets jammed robots overlap (measured: 11 mm with the whole 15 N, 8 mm so). The ground under
+// movable boxes is weakened likewise.
+constexpr double kForceShare = kTickSeconds / foot_bot::kSubstepsPerTick / kStep;
+constexpr double kMotorForce = foot_bot::kMaxForce * kForceShare;
 
 // Box2D mixes the friction of a pair as sqrt(a * b), ARGoS as a * b.
 constexpr double kRobotFriction = foot_bot::kFriction * foot_bot::kFriction;
 constexpr double kStaticFriction = foot_bot::kStaticFriction * foot_bot::kStaticFriction;
+constexpr double kMovableFriction = movable_box::kFriction * movable_box::kFriction;
+constexpr double kRestSpeed = 1e-6;  // m/s and rad/s; below, a movable box stands
 
 // Beyond what both can move in a tick, robots this near (m) are given to the solver: position correction of
 // a crowd moves robots a little further than they drive.
@@ -61,6 +67,37 @@ struct Robot {
   bool held = false;     // by a contact in this step
 };
 
+struct MovingBox {
+  OrientedBox box;
+  double heading = 0.0;
+  b2Body* body = nullptr;
+  b2PolygonShape* shape = nullptr;
+  bool kinematic = false;
+  double reach = 0.0;        // m, furthest that a point of it can get in this tick by itself
+  Vec2 move = Vec2::Zero();  // m, of a kinematic box in this tick
+  double turn = 0.0;         // rad, likewise
+};
+
+// The turned corners are given directly: a turned body would go through sinf and cosf, and
+// b2PolygonShape::Set refuses thin boxes.
+void SetCorners(const OrientedBox& box, b2PolygonShape& shape) {
+  const std::array<Vec2, 4> corners = Corners(box);
+  const std::array<Vec2, 4> normals = {-LeftOf(box.axis), box.axis, LeftOf(box.axis), -box.axis};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    shape.m_vertices[i] = ToBox2d(corners[i] - box.center);
+    shape.m_normals[i] = {static_cast<float>(normals[i].x()), static_cast<float>(normals[i].y())};
+  }
+}
+
+// Box2D's body stays unturned; its shape turns.
+void Place(MovingBox& moving, const Vec2& center, double heading) {
+  moving.heading = WrapAngle(heading);
+  moving.box.center = center;
+  moving.box.axis = UnitVector(moving.heading);
+  SetCorners(moving.box, *moving.shape);
+  moving.body->SetTransform(ToBox2d(center), 0.0f);
+}
+
 Vec2 ClosestPoint(const OrientedBox& box, const Vec2& p) {
   const Vec2 local = ToLocal(box, p).cwiseMax(-box.half_extents).cwiseMin(box.half_extents);
   return box.center + local.x() * box.axis + local.y() * LeftOf(box.axis);
@@ -83,48 +120,103 @@ class Box2dEngine final : public PhysicsEngine {
   }
 
   void AddBox(const OrientedBox& box) override;
+  BoxIndex AddMovableBox(const OrientedBox& box, double mass) override;
+  BoxIndex AddKinematicBox(const OrientedBox& box) override;
   RobotIndex AddRobot(const Pose& pose) override;
+  void MoveBox(BoxIndex box, const Pose& end) override;
   void Step(std::span<const WheelSpeeds> commands) override;
   Pose PoseOf(RobotIndex robot) const override { return robots_[static_cast<std::size_t>(robot)].pose; }
+  const OrientedBox& BoxAt(BoxIndex box) const override { return moving_[static_cast<std::size_t>(box)].box; }
 
  private:
+  b2Fixture* AddFixture(b2Body& body, const OrientedBox& box, double friction);
   void Prepare();
   void FindNear(double longest_move);
   bool MoveIntoSolver();
   void Solve();
   void StepBackToContact();
+  void MoveBoxes(std::size_t step);
+  bool BoxesAct() const;
   void StepBackFromBoxes(std::size_t index);
+  static Vec2 WayBack(const OrientedBox& box, const Robot& robot);
   static void StepBack(Robot& a, Robot& b);
   static void PutBack(Robot& robot, const Vec2& move);
 
   b2World world_;
   b2Body* ground_;
   NearbyBoxes nearby_;
+  NeighbourPairs neighbours_;
   std::vector<Robot> robots_;
+  std::vector<Vec2> positions_;                  // of the robots when the tick begins
+  std::span<const NeighbourPairs::Pair> pairs_;  // those that could meet in this tick, and some more
+  std::vector<MovingBox> moving_;
   bool prepared_ = false;
 };
 
-void Box2dEngine::AddBox(const OrientedBox& box) {
-  b2BodyDef body;
-  body.position = ToBox2d(box.center);
-  // The turned corners are given directly: a turned body would go through sinf and cosf, and
-  // b2PolygonShape::Set refuses thin boxes.
+b2Fixture* Box2dEngine::AddFixture(b2Body& body, const OrientedBox& box, double friction) {
   b2PolygonShape shape;
   shape.m_count = 4;
-  const std::array<Vec2, 4> corners = Corners(box);
-  const std::array<Vec2, 4> normals = {-LeftOf(box.axis), box.axis, LeftOf(box.axis), -box.axis};
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    shape.m_vertices[i] = ToBox2d(corners[i] - box.center);
-    shape.m_normals[i] = {static_cast<float>(normals[i].x()), static_cast<float>(normals[i].y())};
-  }
+  SetCorners(box, shape);
   shape.m_centroid.SetZero();
   // Without Box2D's skin of 1 mm around polygons: a gap of a body's width stays passable, as in ARGoS.
   shape.m_radius = 0.0f;
   b2FixtureDef fixture;
   fixture.shape = &shape;
-  fixture.friction = static_cast<float>(kStaticFriction);
-  world_.CreateBody(&body)->CreateFixture(&fixture);
+  fixture.friction = static_cast<float>(friction);
+  return body.CreateFixture(&fixture);
+}
+
+void Box2dEngine::AddBox(const OrientedBox& box) {
+  b2BodyDef body;
+  body.position = ToBox2d(box.center);
+  AddFixture(*world_.CreateBody(&body), box, kStaticFriction);
   nearby_.AddBox(box);
+}
+
+BoxIndex Box2dEngine::AddMovableBox(const OrientedBox& box, double mass) {
+  GAUNTLET_CHECK(mass > 0.0, "a movable box has a mass");
+  MovingBox moving = {.box = box, .heading = AngleOf(box.axis)};
+  b2BodyDef body;
+  body.type = b2_dynamicBody;
+  body.position = ToBox2d(box.center);
+  moving.body = world_.CreateBody(&body);
+  moving.shape = static_cast<b2PolygonShape*>(AddFixture(*moving.body, box, kMovableFriction)->GetShape());
+  b2MassData data;
+  data.mass = static_cast<float>(mass);
+  data.center.SetZero();
+  data.I = static_cast<float>(mass * (box.half_extents * kScale).squaredNorm() / 3.0);
+  moving.body->SetMassData(&data);
+
+  b2FrictionJointDef ground;
+  ground.bodyA = ground_;
+  ground.bodyB = moving.body;
+  ground.collideConnected = true;
+  ground.maxForce = static_cast<float>(movable_box::kGroundForce * kForceShare * kScale);
+  ground.maxTorque = static_cast<float>(movable_box::kGroundTorque * kForceShare * kScale * kScale);
+  world_.CreateJoint(&ground);
+  moving_.push_back(moving);
+  return static_cast<BoxIndex>(moving_.size()) - 1;
+}
+
+BoxIndex Box2dEngine::AddKinematicBox(const OrientedBox& box) {
+  MovingBox moving = {.box = box, .heading = AngleOf(box.axis), .kinematic = true};
+  b2BodyDef body;
+  body.type = b2_kinematicBody;
+  body.position = ToBox2d(box.center);
+  moving.body = world_.CreateBody(&body);
+  moving.shape = static_cast<b2PolygonShape*>(AddFixture(*moving.body, box, kStaticFriction)->GetShape());
+  moving_.push_back(moving);
+  return static_cast<BoxIndex>(moving_.size()) - 1;
+}
+
+void Box2dEngine::MoveBox(BoxIndex box, const Pose& end) {
+  MovingBox& moving = moving_[static_cast<std::size_t>(box)];
+  moving.move = end.position - moving.box.center;
+  moving.turn = WrapAngle(end.heading - moving.heading);
+  GAUNTLET_CHECK(moving.kinematic, "only kinematic boxes are moved");
+  GAUNTLET_CHECK(moving.move.squaredNorm() <= kMaxBoxMove * kMaxBoxMove * (1.0 + 1e-9) &&
+                     std::abs(moving.turn) <= kMaxBoxTurn * (1.0 + 1e-9),
+                 "a kinematic box goes too far in a tick");
 }
 
 RobotIndex Box2dEngine::AddRobot(const Pose& pose) {
@@ -157,6 +249,8 @@ RobotIndex Box2dEngine::AddRobot(const Pose& pose) {
 
   robots_.push_back(robot);
   nearby_.SetRobots(static_cast<int>(robots_.size()));
+  neighbours_.SetRobots(robots_.size());
+  positions_.resize(robots_.size());
   return static_cast<RobotIndex>(robots_.size()) - 1;
 }
 
@@ -166,12 +260,21 @@ void Box2dEngine::Step(std::span<const WheelSpeeds> commands) {
   double longest_move = 0.0;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     Robot& robot = robots_[i];
+    positions_[i] = robot.pose.position;
     robot.motion = Drive(robot.drive, commands[i], UnitVector(robot.pose.heading));
     const Vec2 move = robot.motion.halves[0] + robot.motion.halves[1];
     longest_move = std::max(longest_move, move.squaredNorm());
   }
   FindNear(std::sqrt(longest_move));
-  if (MoveIntoSolver()) Solve();
+  if (MoveIntoSolver() || BoxesAct()) {
+    Solve();
+  } else {
+    for (std::size_t step = 0; step < kSteps; ++step) MoveBoxes(step);
+  }
+  for (MovingBox& moving : moving_) {
+    moving.move = Vec2::Zero();
+    moving.turn = 0.0;
+  }
 
   for (Robot& robot : robots_) {
     if (robot.touched) {
@@ -205,21 +308,30 @@ void Box2dEngine::FindNear(double longest_move) {
   const double box_reach = foot_bot::kRadius + longest_move + kMargin;
   const double robot_reach = 2.0 * (foot_bot::kRadius + longest_move) + kMargin;
   for (Robot& robot : robots_) robot.near = false;
-  for (std::size_t i = 0; i < robots_.size(); ++i) {
-    Robot& a = robots_[i];
-    for (std::size_t j = i + 1; j < robots_.size(); ++j) {
-      Robot& b = robots_[j];
-      if ((a.pose.position - b.pose.position).squaredNorm() < robot_reach * robot_reach) {
-        a.near = true;
-        b.near = true;
-      }
+  pairs_ = neighbours_.Find(positions_, robot_reach);
+  for (const auto& [i, j] : pairs_) {
+    if ((positions_[i] - positions_[j]).squaredNorm() < robot_reach * robot_reach) {
+      robots_[i].near = true;
+      robots_[j].near = true;
     }
-    if (a.near) continue;
-    for (const std::size_t index : nearby_.Near(static_cast<RobotIndex>(i), a.pose.position)) {
-      if (Distance(nearby_.box(index), a.pose.position) < box_reach) {
-        a.near = true;
+  }
+  for (MovingBox& moving : moving_) {
+    moving.reach = moving.kinematic
+                       ? moving.move.norm() + std::abs(moving.turn) * moving.box.half_extents.norm()
+                       : longest_move + kTickSeconds * FromBox2d(moving.body->GetLinearVelocity()).norm();
+  }
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    Robot& robot = robots_[i];
+    if (robot.near) continue;
+    const Vec2& position = robot.pose.position;
+    for (const std::size_t index : nearby_.Near(static_cast<RobotIndex>(i), position)) {
+      if (Distance(nearby_.box(index), position) < box_reach) {
+        robot.near = true;
         break;
       }
+    }
+    for (const MovingBox& moving : moving_) {
+      robot.near = robot.near || Distance(moving.box, position) < box_reach + moving.reach;
     }
   }
 }
@@ -239,8 +351,56 @@ bool Box2dEngine::MoveIntoSolver() {
   return any;
 }
 
+// Do the movable boxes need the solver although no robot is near anything?
+bool Box2dEngine::BoxesAct() const {
+  bool kinematic = false;
+  bool movable = false;
+  for (const MovingBox& moving : moving_) {
+    if (moving.kinematic) {
+      kinematic = kinematic || moving.move != Vec2::Zero() || moving.turn != 0.0;
+    } else {
+      movable = true;
+      if (moving.body->GetLinearVelocity().LengthSquared() > 0.0f ||
+          moving.body->GetAngularVelocity() != 0.0f)
+        return true;
+    }
+  }
+  return kinematic && movable;
+}
+
+// After a step: kinematic boxes go where they are sent, movable ones are where the solver brought them.
+void Box2dEngine::MoveBoxes(std::size_t step) {
+  for (MovingBox& moving : moving_) {
+    if (moving.kinematic) {
+      if (moving.move == Vec2::Zero() && moving.turn == 0.0) continue;
+      // The rest of the way, so that the end is exact to rounding.
+      const double share = 1.0 / static_cast<double>(kSteps - step);
+      const Vec2 move = share * moving.move;
+      const double turn = share * moving.turn;
+      Place(moving, moving.box.center + move, moving.heading + turn);
+      moving.move -= move;
+      moving.turn -= turn;
+    } else {
+      Place(moving, FromBox2d(moving.body->GetPosition()),
+            moving.heading + static_cast<double>(moving.body->GetAngle()));
+      const b2Vec2 velocity = moving.body->GetLinearVelocity();
+      if (FromBox2d(velocity).squaredNorm() < kRestSpeed * kRestSpeed &&
+          std::abs(static_cast<double>(moving.body->GetAngularVelocity())) < kRestSpeed) {
+        moving.body->SetLinearVelocity({0.0f, 0.0f});
+        moving.body->SetAngularVelocity(0.0f);
+      }
+    }
+  }
+}
+
 void Box2dEngine::Solve() {
   for (std::size_t step = 0; step < kSteps; ++step) {
+    for (MovingBox& moving : moving_) {
+      if (!moving.kinematic) continue;
+      const double share = 1.0 / (kStep * static_cast<double>(kSteps - step));
+      moving.body->SetLinearVelocity(ToBox2d(share * moving.move));
+      moving.body->SetAngularVelocity(static_cast<float>(share * moving.turn));
+    }
     for (Robot& robot : robots_) {
       if (!robot.in_solver) continue;
       // Untouched robots aim at the exact place, so that rounding to float does not add up.
@@ -251,6 +411,7 @@ void Box2dEngine::Solve() {
       robot.body->SetAngularVelocity(static_cast<float>(robot.motion.turn / kTickSeconds));
     }
     world_.Step(static_cast<float>(kStep), kVelocityIterations, kPositionIterations);
+    MoveBoxes(step);
     for (Robot& robot : robots_) {
       if (!robot.in_solver) continue;
       robot.held = Touching(*robot.body);
@@ -265,11 +426,12 @@ void Box2dEngine::Solve() {
 // inside it by the step's whole way. It is put back to where they met, with the velocity it has; the contact
 // acts from the next step on. Robots in other contacts stay, there may be somebody behind them.
 void Box2dEngine::StepBackToContact() {
+  auto pair = pairs_.begin();
   for (std::size_t i = 0; i < robots_.size(); ++i) {
-    if (!robots_[i].in_solver) continue;
-    if (!robots_[i].held) StepBackFromBoxes(i);
-    for (std::size_t j = i + 1; j < robots_.size(); ++j) {
-      if (robots_[j].in_solver) StepBack(robots_[i], robots_[j]);
+    const bool in_solver = robots_[i].in_solver;
+    if (in_solver && !robots_[i].held) StepBackFromBoxes(i);
+    for (; pair != pairs_.end() && pair->first == i; ++pair) {
+      if (in_solver && robots_[pair->second].in_solver) StepBack(robots_[i], robots_[pair->second]);
     }
   }
 }
@@ -277,17 +439,32 @@ void Box2dEngine::StepBackToContact() {
 void Box2dEngine::StepBackFromBoxes(std::size_t index) {
   Robot& robot = robots_[index];
   for (const std::size_t i : nearby_.Near(static_cast<RobotIndex>(index), robot.from)) {
-    const OrientedBox& box = nearby_.box(i);
-    const Vec2 outward = robot.to - ClosestPoint(box, robot.to);
-    const double distance_squared = outward.squaredNorm();
-    constexpr double kContact = foot_bot::kRadius;
-    if (distance_squared >= (kContact - kBite) * (kContact - kBite) || distance_squared == 0.0 ||
-        Distance(box, robot.from) <= kContact) {
-      continue;
-    }
-    const double distance = std::sqrt(distance_squared);
-    PutBack(robot, (kContact - kBite - distance) / distance * outward);
+    const Vec2 back = WayBack(nearby_.box(i), robot);
+    if (back != Vec2::Zero()) PutBack(robot, back);
   }
+  for (MovingBox& moving : moving_) {
+    const Vec2 back = WayBack(moving.box, robot);
+    if (back == Vec2::Zero()) continue;
+    if (moving.kinematic) {
+      PutBack(robot, back);
+    } else {  // it gives way
+      robot.touched = true;
+      Place(moving, moving.box.center - back, moving.heading);
+    }
+  }
+}
+
+// From where a robot is after a step to where it met the box in it; zero when it did not.
+Vec2 Box2dEngine::WayBack(const OrientedBox& box, const Robot& robot) {
+  const Vec2 outward = robot.to - ClosestPoint(box, robot.to);
+  const double distance_squared = outward.squaredNorm();
+  constexpr double kContact = foot_bot::kRadius;
+  if (distance_squared >= (kContact - kBite) * (kContact - kBite) || distance_squared == 0.0 ||
+      Distance(box, robot.from) <= kContact) {
+    return Vec2::Zero();
+  }
+  const double distance = std::sqrt(distance_squared);
+  return (kContact - kBite - distance) / distance * outward;
 }
 
 void Box2dEngine::StepBack(Robot& a, Robot& b) {

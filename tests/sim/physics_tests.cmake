@@ -6,7 +6,9 @@ gauntlet_test(
           physics/argos_scenes.cc
           physics/box2d_engine_test.cc
           physics/differential_drive_test.cc
+          physics/moving_boxes_test.cc
           physics/nearby_boxes_test.cc
+          physics/neighbour_pairs_test.cc
   LIBRARIES gauntlet_sim)
 
 gauntlet_test(
