@@ -9,8 +9,13 @@ target_sources(
           robot/controller.cc
           robot/devices.cc
           run_result.cc
+          sensors/light_sensor.cc
+          sensors/neighbour_grid.cc
+          sensors/occluders.cc
           sensors/omni_camera.cc
           sensors/proximity.cc
+          sensors/range_and_bearing.cc
+          sensors/robot_pairs.cc
           sensors/sensor_suite.cc
           simulation.cc)
 target_link_libraries(gauntlet_sim PRIVATE box2d::box2d)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@
 #include "sim/headquarters.h"
 #include "sim/observer.h"
 #include "sim/robot/controller.h"
+#include "sim/robot/grippers.h"
+#include "sim/robot/signals.h"
+#include "sim/robot/surroundings.h"
 #include "sim/run_result.h"
 
 namespace gauntlet::sim {
@@ -23,6 +27,9 @@ struct RobotSetup {
   // tan(aperture)).
   double camera_range = 0.0;
   std::unique_ptr<Controller> controller;
+  double radio_range = foot_bot::kRangeAndBearingRange;  // m, how far its messages are heard
+  bool bodies_block_radio = true;     // it hears no message through another robot, as in ARGoS
+  DeviceSet equipment = kAllDevices;  // its controller must not ask for more
 };
 
 // Fitness, metrics, failure, robots' `lost` flags and annotations of a finished run.
@@ -34,15 +41,23 @@ struct Outcome {
   std::vector<Annotation> annotations;
 };
 
-class Scenario {
+// What a scenario sees and moves between physics and sensing.
+struct Interaction {
+  const Observer& observer;          // its newest tick has the poses that will be sensed
+  std::span<const Signals> signals;  // per robot, as in action in this tick
+  Grippers& grippers;
+};
+
+class Scenario : public Surroundings {
  public:
-  virtual ~Scenario() = default;
   virtual const Arena& arena() const = 0;
   // The run ends at this tick at the latest.
   virtual Tick tick_limit() const = 0;
   // The swarm in robot order. `headquarters` outlives the robots. Error: refused, the message begins with the
   // rule's name and a colon.
   virtual Result<std::vector<RobotSetup>> CreateSwarm(const Headquarters& headquarters) = 0;
+  // In every tick after physics, before sensing: hand items over, change lights and radio beacons.
+  virtual void Interact(const Interaction& /*interaction*/) {}
   // After every tick: has the run come to its end?
   virtual bool Finished(const Observer& observer) = 0;
   virtual Outcome Evaluate(const Observer& observer) = 0;

@@ -44,14 +44,19 @@ std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, co
              PointText(p.x(), p.y()) + " m";
     }
   }
+  for (const double range : {setup.camera_range, setup.radio_range}) {
+    if (!std::isfinite(range) || range < 0.0) {
+      return "bad-range: " + RobotName(index) + " has a camera or radio range of " + NumberText(range) +
+             " m; a range is finite and not negative";
+    }
+  }
   if (setup.controller == nullptr) return "bad-start: " + RobotName(index) + " has no controller";
   const DeviceSet devices = setup.controller->Devices();
   for (std::uint32_t bit = 0; bit < 32; ++bit) {
     const Device device = static_cast<Device>(1u << bit);
-    if (devices.Has(device) && !kSupportedDevices.Has(device)) {
-      return "unsupported-device: " + RobotName(index) + " asks for " + std::string(NameOf(device)) +
-             ", which this simulator does not have";
-    }
+    if (!devices.Has(device) || (kSupportedDevices.Has(device) && setup.equipment.Has(device))) continue;
+    return "unsupported-device: " + RobotName(index) + " asks in tick 0 for " + std::string(NameOf(device)) +
+           ", which it does not have";
   }
   return std::nullopt;
 }
@@ -75,7 +80,7 @@ bool WithinLimit(double wheel_speed) {
 // One run: the swarm between two ticks.
 class Loop {
  public:
-  Loop(const Arena& arena, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
+  Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
        PhaseProbe* probe);
 
   // Records the start poses as tick 0.
@@ -93,16 +98,18 @@ class Loop {
     if (probe_ != nullptr) probe_->Begin(phase);
   }
 
+  Scenario& scenario_;
   std::vector<RobotSetup> swarm_;
   std::uint64_t seed_;
   Observer& observer_;
   PhaseProbe* probe_;
   std::unique_ptr<PhysicsEngine> physics_ = MakeBox2dEngine();
   SensorSuite sensors_;
+  Grippers grippers_;
   std::vector<DeviceSet> devices_;
   std::vector<Actuators> actuators_;  // as the controllers left them
   std::vector<WheelSpeeds> wheels_;   // in action
-  std::vector<Color> beacons_;        // in action
+  std::vector<Signals> signals_;      // in action
   std::vector<Pose> poses_;
   std::vector<RobotState> states_;
   Fnv1a64 trajectory_hash_;
@@ -111,26 +118,39 @@ class Loop {
 
 std::vector<SensorSuite::RobotSensors> SensorsOf(const std::vector<RobotSetup>& swarm) {
   std::vector<SensorSuite::RobotSensors> sensors;
-  for (const RobotSetup& robot : swarm) sensors.push_back({robot.controller->Devices(), robot.camera_range});
+  for (const RobotSetup& robot : swarm) {
+    sensors.push_back({.devices = robot.controller->Devices(),
+                       .camera_range = robot.camera_range,
+                       .radio_range = robot.radio_range,
+                       .bodies_block_radio = robot.bodies_block_radio});
+  }
   return sensors;
 }
 
-Loop::Loop(const Arena& arena, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
+std::vector<bool> Equipped(const std::vector<RobotSetup>& swarm, Device device) {
+  std::vector<bool> equipped;
+  for (const RobotSetup& robot : swarm) equipped.push_back(robot.controller->Devices().Has(device));
+  return equipped;
+}
+
+Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
            PhaseProbe* probe)
-    : swarm_(std::move(swarm)),
+    : scenario_(scenario),
+      swarm_(std::move(swarm)),
       seed_(seed),
       observer_(observer),
       probe_(probe),
-      sensors_(arena, SensorsOf(swarm_)),
+      sensors_(scenario.arena(), SensorsOf(swarm_)),
+      grippers_(Equipped(swarm_, Device::kGripper)),
       actuators_(swarm_.size()),
       wheels_(swarm_.size()),
       poses_(swarm_.size()),
       states_(swarm_.size()) {
-  for (const OrientedBox& box : arena.boxes()) physics_->AddBox(box);
+  for (const OrientedBox& box : scenario.arena().boxes()) physics_->AddBox(box);
   for (std::size_t i = 0; i < swarm_.size(); ++i) {
     physics_->AddRobot(swarm_[i].pose);
     devices_.push_back(swarm_[i].controller->Devices());
-    beacons_.push_back(swarm_[i].beacon);
+    signals_.push_back({.beacon = swarm_[i].beacon});
     actuators_[i].beacon = swarm_[i].beacon;
     poses_[i] = swarm_[i].pose;
   }
@@ -150,7 +170,8 @@ bool Loop::Tick() {
   Enter(Phase::kObserve);
   Observe();
   Enter(Phase::kSense);
-  sensors_.Sense(poses_, beacons_);
+  scenario_.Interact({.observer = observer_, .signals = signals_, .grippers = grippers_});
+  sensors_.Sense({.poses = poses_, .signals = signals_, .surroundings = scenario_, .grippers = grippers_});
   Enter(Phase::kControl);
   Control();
   if (probe_ != nullptr) probe_->EndTick();
@@ -161,7 +182,14 @@ bool Loop::Tick() {
 bool Loop::Act() {
   for (std::size_t i = 0; i < swarm_.size(); ++i) {
     const Actuators& actuators = actuators_[i];
-    if (devices_[i].Has(Device::kLeds)) beacons_[i] = actuators.beacon;
+    if (devices_[i].Has(Device::kLeds)) {
+      signals_[i].beacon = actuators.beacon;
+      signals_[i].ring = actuators.ring;
+    }
+    if (devices_[i].Has(Device::kRangeAndBearing)) signals_[i].message = actuators.message;
+    if (devices_[i].Has(Device::kGripper)) {
+      grippers_.SetClosed(static_cast<RobotIndex>(i), actuators.gripper_closed);
+    }
     if (!devices_[i].Has(Device::kWheels)) continue;
     if (!WithinLimit(actuators.left_wheel) || !WithinLimit(actuators.right_wheel)) [[unlikely]] {
       const bool left = !WithinLimit(actuators.left_wheel);
@@ -244,7 +272,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
 
   const std::size_t robots = swarm->size();
   observer = Observer(static_cast<int>(robots), scenario.tick_limit());
-  Loop loop(scenario.arena(), *std::move(swarm), seed, observer, probe);
+  Loop loop(scenario, *std::move(swarm), seed, observer, probe);
   loop.Start();
 
   RunResult result;

@@ -32,12 +32,48 @@ struct Blob {
   Color color = Color::kBlack;
 };
 
+// What a robot says over range-and-bearing.
+using Payload = std::array<std::uint8_t, 10>;
+
+// A message heard by range-and-bearing. Who sent it is not told, unless the payload tells.
+struct Message {
+  double range = 0.0;    // m, horizontal
+  double bearing = 0.0;  // rad from the heading, (-pi, pi]
+  Payload payload{};
+};
+
+// What one ray of the distance scanner meets.
+struct ScannerReading {
+  static constexpr double kTooNear = -1.0;  // only of long range: nearer than 0.12 m
+  static constexpr double kNothing = -2.0;  // nothing within the range
+
+  double bearing = 0.0;        // rad from the heading, (-pi, pi]
+  double distance = kNothing;  // m from the body's surface, or kTooNear, kNothing
+};
+
 // One tick's readings; only the members of requested devices are filled, the others stay empty or zero.
 struct SensorReadings {
   // Reading of sensor i, bearing (i + 1/2) * 15 degrees; 0 = nothing within 0.10 m of the body, 1 = touching.
   std::array<double, foot_bot::kProximitySensors> proximity{};
   bool proximity_active = false;  // some proximity reading is not zero
-  std::span<const Blob> blobs;    // omnidirectional camera; in robot order
+  std::span<const Blob> blobs;  // omnidirectional camera; of robots in robot order, then of lights in theirs
+  // Messages in robot order, then those of the scenario's radio beacons in theirs.
+  std::span<const Message> range_and_bearing;
+  // Brightness in [0, 1]; the bearings are those of the proximity sensors.
+  std::array<double, foot_bot::kLightSensors> light{};
+  std::array<double, foot_bot::kMotorGroundSensors> motor_ground{};  // grey, 0 = black, 1 = white
+  std::array<bool, foot_bot::kBaseGroundSensors> base_ground{};      // grey of at least 0.5
+  std::span<const ScannerReading> scanner_short;  // 0 to 0.26 m; one ray in the other's back
+  std::span<const ScannerReading> scanner_long;   // 0.12 to 1.42 m; across the short ones
+  bool holding_item = false;                      // the gripper has something in it
+};
+
+// How the distance scanner is driven. Off, it reads nothing.
+struct ScannerCommand {
+  enum class Mode : std::uint8_t { kOff, kAngle, kSpeed };
+
+  Mode mode = Mode::kOff;
+  double value = 0.0;  // kAngle: rad from the heading; kSpeed: rad/s counter-clockwise
 };
 
 // Commands hold until changed. Set in tick t, they act in tick t + 1.
@@ -45,6 +81,10 @@ struct Actuators {
   double left_wheel = 0.0;   // m/s
   double right_wheel = 0.0;  // m/s
   Color beacon = Color::kBlack;
+  std::array<Color, foot_bot::kRingLeds> ring{};  // LED i at (i + 1/2) * 30 degrees from the heading
+  Payload message{};                              // heard by the others in every tick from t + 1 on
+  ScannerCommand scanner;
+  bool gripper_closed = false;
 
   // Forward speed (m/s) and turn rate (rad/s, counter-clockwise) as wheel speeds.
   void Drive(double forward, double turn) {

@@ -40,6 +40,12 @@ constexpr DeviceSet operator|(Device a, Device b) {
   return DeviceSet(a) | DeviceSet(b);
 }
 
+// Everything a foot-bot can have (thesis 3.3.2).
+inline constexpr DeviceSet kAllDevices = Device::kWheels | Device::kLeds | Device::kProximity |
+                                         Device::kOmnidirectionalCamera | Device::kRangeAndBearing |
+                                         Device::kLight | Device::kMotorGround | Device::kBaseGround |
+                                         Device::kDistanceScanner | Device::kGripper;
+
 std::string_view NameOf(Device device);
 
 }  // namespace gauntlet::sim

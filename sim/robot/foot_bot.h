@@ -31,6 +31,14 @@ inline constexpr int kProximitySensors = 24;           // sensor i at (i + 1/2) 
 inline constexpr double kCameraHeight = 0.288699733;   // m
 inline constexpr double kBeaconHeight = 0.174249733;   // m
 inline constexpr double kRangeAndBearingHeight = 0.1;  // m
+inline constexpr double kRangeAndBearingRange = 3.0;   // m, default of ARGoS
+inline constexpr int kLightSensors = 24;               // at the bearings of the proximity sensors
+inline constexpr int kMotorGroundSensors = 4;
+inline constexpr int kBaseGroundSensors = 8;
+inline constexpr int kRingLeds = 12;                   // LED i at (i + 1/2) * 30 degrees from the heading
+inline constexpr double kRingRadius = 0.090036758;     // m
+inline constexpr double kRingHeight = 0.085;           // m
+inline constexpr double kScannerHeight = 0.123199866;  // m
 inline constexpr double kGripperRadius = 0.01;         // m, disc at the front that rays of others hit
 
 }  // namespace foot_bot

@@ -14,6 +14,12 @@ struct BodyFrame {
   BodyFrame() = default;
   explicit BodyFrame(const Pose& pose)
       : position(pose.position), heading(pose.heading), direction(UnitVector(pose.heading)) {}
+
+  // A point given in the robot's frame (x forward, y left), in the world's.
+  Vec2 ToWorld(const Vec2& point) const {
+    return {position.x() + direction.x() * point.x() - direction.y() * point.y(),
+            position.y() + direction.y() * point.x() + direction.x() * point.y()};
+  }
 };
 
 }  // namespace gauntlet::sim

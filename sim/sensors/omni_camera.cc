@@ -1,83 +1,107 @@
 #include "sim/sensors/omni_camera.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "sim/geometry/ray_cast.h"
-
 namespace gauntlet::sim {
+namespace {
 
-OmniCameras::OmniCameras(const Arena& arena, std::span<const double> ranges)
-    : ranges_(ranges.begin(), ranges.end()),
-      blobs_(ranges.empty() ? 0 : ranges.size() * (ranges.size() - 1)),
-      counts_(ranges.size()) {
-  for (const OrientedBox& box : arena.boxes()) {
-    Occluder occluder{.box = box, .min = box.center, .max = box.center};
-    for (const Vec2& corner : Corners(box)) {
-      occluder.min = occluder.min.cwiseMin(corner);
-      occluder.max = occluder.max.cwiseMax(corner);
+constexpr std::size_t kManyBlobs = 64 * (1 + foot_bot::kRingLeds);
+constexpr double kHighestLight = 2.0 * foot_bot::kCameraHeight;
+
+// Of a robot with heading 0, from its centre.
+const std::array<Vec2, foot_bot::kRingLeds>& RestRing() {
+  static const std::array<Vec2, foot_bot::kRingLeds> ring = [] {
+    std::array<Vec2, foot_bot::kRingLeds> result;
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      result[i] = foot_bot::kRingRadius * UnitVector((static_cast<double>(i) + 0.5) * (kPi / 6.0));
     }
-    obstacles_.push_back(occluder);
-  }
-  occluders_.reserve(obstacles_.size());
+    return result;
+  }();
+  return ring;
 }
 
-void OmniCameras::Look(std::span<const BodyFrame> robots, std::span<const Color> beacons) {
-  FindOccluders(robots);
-  for (std::size_t& count : counts_) count = 0;
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    for (std::size_t j = i + 1; j < robots.size(); ++j) {
-      const Vec2 offset = robots[j].position - robots[i].position;
-      const double side = std::max(std::abs(offset.x()), std::abs(offset.y()));
-      const bool i_sees = side < ranges_[i] && beacons[j] != Color::kBlack;
-      const bool j_sees = side < ranges_[j] && beacons[i] != Color::kBlack;
-      if ((!i_sees && !j_sees) || Hidden(robots[i].position, robots[j].position)) continue;
-      const double range = std::sqrt(offset.squaredNorm());
-      const double bearing = AngleOf(offset);
-      if (i_sees) Add(i, robots[i], range, bearing, beacons[j]);
-      if (j_sees) Add(j, robots[j], range, bearing > 0.0 ? bearing - kPi : bearing + kPi, beacons[i]);
+double Side(const Vec2& offset) {
+  return std::max(std::abs(offset.x()), std::abs(offset.y()));
+}
+
+bool HiddenByLowBox(const OmniCameras::Scene& scene, const BodyFrame& viewer,
+                    const RobotPairs::Neighbour& other) {
+  return !scene.occluders.all_high() &&
+         scene.occluders.BoxBetween({viewer.position, foot_bot::kCameraHeight},
+                                    {viewer.position + other.offset, foot_bot::kBeaconHeight});
+}
+
+}  // namespace
+
+double RelativeBearing(double world_bearing, double heading) {
+  const double bearing = world_bearing - heading;  // both in (-pi, pi]
+  if (bearing > kPi) return bearing - 2.0 * kPi;
+  if (bearing <= -kPi) return bearing + 2.0 * kPi;
+  return bearing;
+}
+
+OmniCameras::OmniCameras(std::span<const double> ranges)
+    : ranges_(ranges.begin(), ranges.end()), first_(ranges.size() + 1) {
+  blobs_.reserve(ranges.size() * std::min(kManyBlobs, ranges.size() * (1 + foot_bot::kRingLeds)));
+}
+
+void OmniCameras::Look(const Scene& scene) {
+  blobs_.clear();
+  for (std::size_t i = 0; i < ranges_.size(); ++i) {
+    const RobotIndex viewer = static_cast<RobotIndex>(i);
+    first_[i] = blobs_.size();
+    if (ranges_[i] <= 0.0) continue;
+    for (const RobotPairs::Neighbour& other : scene.pairs.NeighboursOf(viewer)) {
+      const Signals& signals = scene.signals[static_cast<std::size_t>(other.robot)];
+      if (signals.beacon != Color::kBlack && other.clear && Side(other.offset) < ranges_[i] &&
+          !HiddenByLowBox(scene, scene.robots[i], other)) {
+        Add(scene.robots[i], other.distance, other.bearing, signals.beacon);
+      }
+      if (scene.any_ring_lit) AddRing(scene, viewer, other.robot);
     }
+    if (!scene.lights.empty()) AddLights(scene, viewer);
+  }
+  first_.back() = blobs_.size();
+}
+
+void OmniCameras::AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other) {
+  const BodyFrame& self = scene.robots[static_cast<std::size_t>(viewer)];
+  const BodyFrame& carrier = scene.robots[static_cast<std::size_t>(other)];
+  const Signals& signals = scene.signals[static_cast<std::size_t>(other)];
+  const double range = ranges_[static_cast<std::size_t>(viewer)];
+  const Point3 camera = {self.position, foot_bot::kCameraHeight};
+  for (std::size_t led = 0; led < signals.ring.size(); ++led) {
+    if (signals.ring[led] == Color::kBlack) continue;
+    const Vec2 place = carrier.ToWorld(RestRing()[led]);
+    const Vec2 offset = place - self.position;
+    if (!(Side(offset) < range)) continue;
+    const Point3 lamp = {place, foot_bot::kRingHeight};
+    if (scene.occluders.BoxBetween(camera, lamp)) continue;
+    if (BodyBetween(scene.robots, camera, lamp, viewer, -1)) continue;
+    Add(self, std::sqrt(offset.squaredNorm()), AngleOf(offset), signals.ring[led]);
   }
 }
 
-// Lines of sight stay inside the rectangle around all robots; a box outside it hides nobody.
-void OmniCameras::FindOccluders(std::span<const BodyFrame> robots) {
-  occluders_.clear();
-  if (robots.empty()) return;
-  Vec2 min = robots[0].position;
-  Vec2 max = min;
-  for (const BodyFrame& robot : robots) {
-    min = min.cwiseMin(robot.position);
-    max = max.cwiseMax(robot.position);
-  }
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    const Occluder& obstacle = obstacles_[i];
-    if ((obstacle.min.array() <= max.array()).all() && (obstacle.max.array() >= min.array()).all()) {
-      occluders_.push_back(i);
+void OmniCameras::AddLights(const Scene& scene, RobotIndex viewer) {
+  const BodyFrame& self = scene.robots[static_cast<std::size_t>(viewer)];
+  const Point3 camera = {self.position, foot_bot::kCameraHeight};
+  for (const Light& light : scene.lights) {
+    if (light.color == Color::kBlack || light.height >= kHighestLight) continue;
+    const Vec2 offset = light.position - self.position;
+    if (!(Side(offset) < ranges_[static_cast<std::size_t>(viewer)])) continue;
+    if (light.occludable) {
+      const Point3 lamp = {light.position, light.height};
+      if (scene.occluders.BoxBetween(camera, lamp)) continue;
+      if (BodyBetween(scene.robots, camera, lamp, viewer, -1)) continue;
     }
+    Add(self, std::sqrt(offset.squaredNorm()), AngleOf(offset), light.color);
   }
 }
 
-bool OmniCameras::Hidden(const Vec2& a, const Vec2& b) const {
-  const Vec2 min = a.cwiseMin(b);
-  const Vec2 max = a.cwiseMax(b);
-  for (const std::size_t index : occluders_) {
-    const Occluder& obstacle = obstacles_[index];
-    if (obstacle.min.x() > max.x() || obstacle.max.x() < min.x() || obstacle.min.y() > max.y() ||
-        obstacle.max.y() < min.y()) {
-      continue;
-    }
-    if (SegmentTouches(obstacle.box, a, b)) return true;
-  }
-  return false;
-}
-
-void OmniCameras::Add(std::size_t viewer, const BodyFrame& frame, double range, double world_bearing,
-                      Color color) {
-  double bearing = world_bearing - frame.heading;  // both in (-pi, pi]
-  if (bearing > kPi) bearing -= 2.0 * kPi;
-  if (bearing <= -kPi) bearing += 2.0 * kPi;
-  blobs_[viewer * (ranges_.size() - 1) + counts_[viewer]++] = {
-      .range = range, .bearing = bearing, .color = color};
+void OmniCameras::Add(const BodyFrame& viewer, double range, double world_bearing, Color color) {
+  blobs_.push_back(
+      {.range = range, .bearing = RelativeBearing(world_bearing, viewer.heading), .color = color});
 }
 
 }  // namespace gauntlet::sim

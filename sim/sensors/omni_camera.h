@@ -1,49 +1,56 @@
-// The foot-bot's omnidirectional camera and the beacons it sees (ARGoS
-// colored_blob_omnidirectional_camera; measured in tests/golden/argos/sensors/cam_beacon_*.csv).
+// The foot-bot's omnidirectional camera and the LEDs and lamps it sees (ARGoS
+// colored_blob_omnidirectional_camera; measured in tests/golden/argos/sensors/cam_*.csv).
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "sim/arena/arena.h"
-#include "sim/robot/controller.h"
+#include "sim/robot/signals.h"
+#include "sim/robot/surroundings.h"
 #include "sim/sensors/body_frame.h"
+#include "sim/sensors/occluders.h"
+#include "sim/sensors/robot_pairs.h"
 
 namespace gauntlet::sim {
 
-// The cameras of a whole swarm, because a line of sight serves both its ends.
+// The cameras of a whole swarm.
 class OmniCameras {
  public:
   // ranges[i] is the half side (m) of the world-aligned square that robot i's camera sees, 0 = no camera.
-  OmniCameras(const Arena& arena, std::span<const double> ranges);
+  explicit OmniCameras(std::span<const double> ranges);
 
-  // What every camera sees of the robots' beacons: a blob for each beacon that is not black, stands strictly
-  // inside the square and is not hidden by an obstacle (they are 1 m high; robots are lower than the line to
-  // a beacon and hide none). A robot does not see its own beacon. Allocates nothing.
-  void Look(std::span<const BodyFrame> robots, std::span<const Color> beacons);
+  // What the tick offers to be seen.
+  struct Scene {
+    std::span<const BodyFrame> robots;
+    const Occluders& occluders;
+    const RobotPairs& pairs;
+    std::span<const Signals> signals;
+    bool any_ring_lit;
+    std::span<const Light> lights;
+  };
+  // What every camera sees: a blob for each beacon, ring LED and lamp that is not black, strictly inside the
+  // square and not hidden. Robots are lower than the line to a beacon and hide none; a ring LED may be hidden
+  // by a robot, by its own too. A robot does not see its own LEDs. Lamps 0.577 m (twice the camera's height)
+  // or more above the floor are not seen. Allocates nothing unless a robot sees more than 64 robots.
+  void Look(const Scene& scene);
 
-  // Of the last Look, in robot order. Valid until the next Look.
+  // Of the last Look: robots in robot order, of each the beacon, then its ring; then lights in their order.
   std::span<const Blob> BlobsOf(RobotIndex robot) const {
     const std::size_t index = static_cast<std::size_t>(robot);
-    return std::span(blobs_).subspan(index * (ranges_.size() - 1), counts_[index]);
+    return std::span(blobs_).subspan(first_[index], first_[index + 1] - first_[index]);
   }
 
  private:
-  struct Occluder {
-    OrientedBox box;
-    Vec2 min;  // m, axis-aligned bounds
-    Vec2 max;
-  };
+  void AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other);
+  void AddLights(const Scene& scene, RobotIndex viewer);
+  void Add(const BodyFrame& viewer, double range, double world_bearing, Color color);
 
-  void FindOccluders(std::span<const BodyFrame> robots);
-  bool Hidden(const Vec2& a, const Vec2& b) const;
-  void Add(std::size_t viewer, const BodyFrame& frame, double range, double world_bearing, Color color);
-
-  std::vector<Occluder> obstacles_;
-  std::vector<std::size_t> occluders_;  // indices of obstacles_ between some of the robots
   std::vector<double> ranges_;
-  std::vector<Blob> blobs_;  // [robot][robots - 1]
-  std::vector<std::size_t> counts_;
+  std::vector<Blob> blobs_;
+  std::vector<std::size_t> first_;
 };
+
+// `world_bearing` (rad, (-pi, pi], from the x axis) as a robot with this heading has it.
+double RelativeBearing(double world_bearing, double heading);
 
 }  // namespace gauntlet::sim

@@ -1,16 +1,49 @@
 #include "sim/sensors/sensor_suite.h"
 
+#include <algorithm>
+
+#include "sim/sensors/ground_sensor.h"
+#include "sim/sensors/light_sensor.h"
 #include "sim/sensors/proximity.h"
 
 namespace gauntlet::sim {
 namespace {
 
-std::vector<double> CameraRanges(std::span<const SensorSuite::RobotSensors> robots) {
+using RobotSensors = SensorSuite::RobotSensors;
+
+// Up to this many robots it costs less to ask every robot than to keep a grid.
+constexpr std::size_t kFewRobots = 40;
+constexpr double kBodyReach =
+    2.0 * foot_bot::kRadius + foot_bot::kProximityRange + foot_bot::kGripperRadius;  // m, centre to centre
+
+double CameraRange(const RobotSensors& robot) {
+  return robot.devices.Has(Device::kOmnidirectionalCamera) ? robot.camera_range : 0.0;
+}
+
+double RadioRange(const RobotSensors& robot) {
+  return robot.devices.Has(Device::kRangeAndBearing) ? robot.radio_range : 0.0;
+}
+
+std::vector<double> CameraRanges(std::span<const RobotSensors> robots) {
   std::vector<double> ranges;
-  for (const SensorSuite::RobotSensors& robot : robots) {
-    ranges.push_back(robot.devices.Has(Device::kOmnidirectionalCamera) ? robot.camera_range : 0.0);
-  }
+  for (const RobotSensors& robot : robots) ranges.push_back(CameraRange(robot));
   return ranges;
+}
+
+std::vector<RobotPairs::Reach> Reaches(std::span<const RobotSensors> robots) {
+  std::vector<RobotPairs::Reach> reaches;
+  for (const RobotSensors& robot : robots) {
+    reaches.push_back({.camera = CameraRange(robot), .radio = RadioRange(robot)});
+  }
+  return reaches;
+}
+
+std::vector<Radios::Radio> RadiosOf(std::span<const RobotSensors> robots) {
+  std::vector<Radios::Radio> radios;
+  for (const RobotSensors& robot : robots) {
+    radios.push_back({.range = RadioRange(robot), .bodies_block = robot.bodies_block_radio});
+  }
+  return radios;
 }
 
 }  // namespace
@@ -20,21 +53,59 @@ SensorSuite::SensorSuite(const Arena& arena, std::span<const RobotSensors> robot
       frames_(robots.size()),
       readings_(robots.size()),
       nearby_(foot_bot::kRadius + foot_bot::kProximityRange),
-      cameras_(arena, CameraRanges(robots)) {
+      proximity_grid_(kBodyReach, robots.size()),
+      occluders_(arena),
+      pairs_(Reaches(robots)),
+      cameras_(CameraRanges(robots)),
+      radios_(RadiosOf(robots)) {
   for (const OrientedBox& box : arena.boxes()) nearby_.AddBox(box);
   nearby_.SetRobots(static_cast<int>(robots.size()));
-  for (const RobotSensors& robot : robots) {
-    any_camera_ = any_camera_ || robot.devices.Has(Device::kOmnidirectionalCamera);
+  for (const RobotSensors& robot : robots) anybodys_devices_ = anybodys_devices_ | robot.devices;
+}
+
+void SensorSuite::Sense(const World& world) {
+  for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i] = BodyFrame(world.poses[i]);
+  SenseOthers(world);
+  if (anybodys_devices_.Has(Device::kProximity) && frames_.size() > kFewRobots)
+    proximity_grid_.Update(frames_);
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const RobotIndex robot = static_cast<RobotIndex>(i);
+    if (sensors_[i].devices.Has(Device::kProximity)) SenseProximity(robot);
+    SenseRest(world, robot);
   }
 }
 
-void SensorSuite::Sense(std::span<const Pose> poses, std::span<const Color> beacons) {
-  for (std::size_t i = 0; i < poses.size(); ++i) frames_[i] = BodyFrame(poses[i]);
-  if (any_camera_) cameras_.Look(frames_, beacons);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
+// What needs to know where robots are from each other.
+void SensorSuite::SenseOthers(const World& world) {
+  const bool camera = anybodys_devices_.Has(Device::kOmnidirectionalCamera);
+  const bool radio = anybodys_devices_.Has(Device::kRangeAndBearing);
+  if (!camera && !radio) return;
+  bool any_ring_lit = false;
+  if (camera && anybodys_devices_.Has(Device::kLeds)) {
+    any_ring_lit = std::any_of(world.signals.begin(), world.signals.end(),
+                               [](const Signals& signals) { return signals.RingLit(); });
+  }
+  occluders_.Frame(frames_);
+  pairs_.Update(frames_, occluders_, any_ring_lit);
+  if (camera) {
+    cameras_.Look({.robots = frames_,
+                   .occluders = occluders_,
+                   .pairs = pairs_,
+                   .signals = world.signals,
+                   .any_ring_lit = any_ring_lit,
+                   .lights = world.surroundings.lights()});
+  }
+  if (radio) {
+    radios_.Listen({.robots = frames_,
+                    .occluders = occluders_,
+                    .pairs = pairs_,
+                    .signals = world.signals,
+                    .beacons = world.surroundings.radio_beacons()});
+  }
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
     const RobotIndex robot = static_cast<RobotIndex>(i);
-    if (sensors_[i].devices.Has(Device::kProximity)) SenseProximity(robot);
-    if (any_camera_) readings_[i].blobs = cameras_.BlobsOf(robot);
+    if (camera) readings_[i].blobs = cameras_.BlobsOf(robot);
+    if (radio) readings_[i].range_and_bearing = radios_.MessagesOf(robot);
   }
 }
 
@@ -43,13 +114,38 @@ void SensorSuite::SenseProximity(RobotIndex robot) {
   const BodyFrame& self = frames_[index];
   ProximityRing ring(self);
   for (const std::size_t box : nearby_.Near(robot, self.position)) ring.See(nearby_.box(box));
-  for (std::size_t other = 0; other < frames_.size(); ++other) {
-    if (other != index) ring.See(frames_[other]);
+  if (frames_.size() <= kFewRobots) {
+    for (std::size_t other = 0; other < frames_.size(); ++other) {
+      if (other != index) ring.See(frames_[other]);
+    }
+  } else {
+    for (const std::size_t other : proximity_grid_.Near(self.position)) {
+      if (other != index) ring.See(frames_[other]);
+    }
   }
   SensorReadings& readings = readings_[index];
   if (!ring.active() && !readings.proximity_active) return;
   readings.proximity = ring.Readings();
   readings.proximity_active = ring.active();
+}
+
+void SensorSuite::SenseRest(const World& world, RobotIndex robot) {
+  const std::size_t index = static_cast<std::size_t>(robot);
+  const DeviceSet& devices = sensors_[index].devices;
+  const BodyFrame& self = frames_[index];
+  SensorReadings& readings = readings_[index];
+  if (devices.Has(Device::kLight)) {
+    readings.light = SenseLight(frames_, robot, world.surroundings.lights(), occluders_);
+  }
+  if (devices.Has(Device::kMotorGround)) {
+    readings.motor_ground = SenseGround(self, kMotorGroundPlaces, world.surroundings);
+  }
+  if (devices.Has(Device::kBaseGround)) {
+    const auto grey = SenseGround(self, kBaseGroundPlaces, world.surroundings);
+    std::transform(grey.begin(), grey.end(), readings.base_ground.begin(),
+                   [](double value) { return value >= 0.5; });
+  }
+  if (devices.Has(Device::kGripper)) readings.holding_item = world.grippers.Holds(robot);
 }
 
 }  // namespace gauntlet::sim

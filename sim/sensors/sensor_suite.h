@@ -8,39 +8,62 @@
 #include "sim/arena/arena.h"
 #include "sim/physics/nearby_boxes.h"
 #include "sim/robot/controller.h"
+#include "sim/robot/grippers.h"
+#include "sim/robot/signals.h"
+#include "sim/robot/surroundings.h"
 #include "sim/sensors/body_frame.h"
+#include "sim/sensors/neighbour_grid.h"
+#include "sim/sensors/occluders.h"
 #include "sim/sensors/omni_camera.h"
+#include "sim/sensors/range_and_bearing.h"
+#include "sim/sensors/robot_pairs.h"
 
 namespace gauntlet::sim {
 
 // The devices that this simulator has.
 inline constexpr DeviceSet kSupportedDevices =
-    Device::kWheels | Device::kLeds | Device::kProximity | Device::kOmnidirectionalCamera;
+    Device::kWheels | Device::kLeds | Device::kProximity | Device::kOmnidirectionalCamera |
+    Device::kRangeAndBearing | Device::kLight | Device::kMotorGround | Device::kBaseGround | Device::kGripper;
 
 class SensorSuite {
  public:
   struct RobotSensors {
     DeviceSet devices;
-    double camera_range = 0.0;  // m, see OmniCameras
+    double camera_range = 0.0;                             // m, see OmniCameras
+    double radio_range = foot_bot::kRangeAndBearingRange;  // m, see Radios
+    bool bodies_block_radio = true;
   };
   SensorSuite(const Arena& arena, std::span<const RobotSensors> robots);
 
-  // Reads every sensor at these poses while the beacons show these colours. Allocates nothing.
-  void Sense(std::span<const Pose> poses, std::span<const Color> beacons);
+  // What there is to be sensed in a tick.
+  struct World {
+    std::span<const Pose> poses;
+    std::span<const Signals> signals;
+    const Surroundings& surroundings;
+    const Grippers& grippers;
+  };
+  // Reads every sensor. Allocates nothing, except in crowds where a robot sees or hears more than 64 others.
+  void Sense(const World& world);
   // Of the last Sense; valid until the next.
   const SensorReadings& ReadingsOf(RobotIndex robot) const {
     return readings_[static_cast<std::size_t>(robot)];
   }
 
  private:
+  void SenseOthers(const World& world);
   void SenseProximity(RobotIndex robot);
+  void SenseRest(const World& world, RobotIndex robot);
 
   std::vector<RobotSensors> sensors_;
+  DeviceSet anybodys_devices_;
   std::vector<BodyFrame> frames_;
   std::vector<SensorReadings> readings_;
   NearbyBoxes nearby_;
+  NeighbourGrid proximity_grid_;
+  Occluders occluders_;
+  RobotPairs pairs_;
   OmniCameras cameras_;
-  bool any_camera_ = false;
+  Radios radios_;
 };
 
 }  // namespace gauntlet::sim

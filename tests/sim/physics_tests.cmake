@@ -15,14 +15,18 @@ gauntlet_test(
   sim_sensors_test
   SOURCES argos_csv.cc
           robot/devices_test.cc
+          sensors/ground_sensor_test.cc
+          sensors/light_sensor_test.cc
           sensors/omni_camera_test.cc
           sensors/proximity_test.cc
+          sensors/range_and_bearing_test.cc
+          sensors/robot_pairs_test.cc
           sensors/sensor_suite_test.cc
   LIBRARIES gauntlet_sim)
 
 gauntlet_test(
   sim_simulation_test
-  SOURCES observer_test.cc run_result_test.cc simulation_test.cc
+  SOURCES interaction_test.cc observer_test.cc run_result_test.cc simulation_test.cc
   LIBRARIES gauntlet_sim)
 
 # An executable of its own, because it replaces the allocation functions.

@@ -174,7 +174,14 @@ TEST(Simulation, RefusesSwarmsThatCannotBeSimulated) {
 
   robot = RobotAt(1, 0, DriveStraight(0.1));
   robot.devices = Device::kWheels | Device::kGripper;
-  EXPECT_THAT(SimulateOne(robot).message, StartsWith("unsupported-device: robot 1 asks for gripper"));
+  robot.equipment = kToyDevices;
+  EXPECT_THAT(SimulateOne(robot).message,
+              StartsWith("unsupported-device: robot 1 asks in tick 0 for gripper, which it does not have"));
+
+  robot = RobotAt(1, 0, DriveStraight(0.1));
+  robot.camera_range = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(SimulateOne(robot).message,
+              StartsWith("bad-range: robot 1 has a camera or radio range of inf m"));
 
   ToyScenario empty(TestCase{}, {}, 10);
   EXPECT_THAT(Simulate(empty, 1, false).message, StartsWith("swarm-size: 0 robots"));

@@ -36,6 +36,9 @@ struct ToyRobot {
   DeviceSet devices = kToyDevices;
   Color beacon = Color::kRed;
   double camera_range = 1.637;  // m
+  double radio_range = foot_bot::kRangeAndBearingRange;
+  bool bodies_block_radio = true;
+  DeviceSet equipment = kAllDevices;
 };
 
 // Ends at the tick limit, or after the tick at which `finished` says so. Fitness: mean distance of the robots
@@ -46,6 +49,10 @@ class ToyScenario final : public Scenario {
       : arena_(test_case), robots_(std::move(robots)), tick_limit_(tick_limit) {}
 
   std::function<bool(const Observer&)> finished = [](const Observer&) { return false; };
+  std::function<void(const Interaction&)> interact = [](const Interaction&) {};
+  std::function<double(const Vec2&)> floor = [](const Vec2&) { return 1.0; };
+  std::vector<Light> lamps;
+  std::vector<RadioBeacon> radios;
 
   const Arena& arena() const override { return arena_; }
   Tick tick_limit() const override { return tick_limit_; }
@@ -55,10 +62,17 @@ class ToyScenario final : public Scenario {
       swarm.push_back({.pose = robot.pose,
                        .beacon = robot.beacon,
                        .camera_range = robot.camera_range,
-                       .controller = std::make_unique<ToyController>(robot.devices, robot.behaviour)});
+                       .controller = std::make_unique<ToyController>(robot.devices, robot.behaviour),
+                       .radio_range = robot.radio_range,
+                       .bodies_block_radio = robot.bodies_block_radio,
+                       .equipment = robot.equipment});
     }
     return swarm;
   }
+  std::span<const Light> lights() const override { return lamps; }
+  std::span<const RadioBeacon> radio_beacons() const override { return radios; }
+  double FloorGrey(const Vec2& point) const override { return floor(point); }
+  void Interact(const Interaction& interaction) override { interact(interaction); }
   bool Finished(const Observer& observer) override { return finished(observer); }
   Outcome Evaluate(const Observer& observer) override {
     Outcome outcome;

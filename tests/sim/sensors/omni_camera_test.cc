@@ -36,8 +36,21 @@ struct Seen {
 
 Seen Look(const Arena& arena, const std::vector<BodyFrame>& robots, const std::vector<Color>& beacons,
           const std::vector<double>& ranges) {
-  OmniCameras cameras(arena, ranges);
-  cameras.Look(robots, beacons);
+  std::vector<RobotPairs::Reach> reaches;
+  for (const double range : ranges) reaches.push_back({.camera = range});
+  std::vector<Signals> signals;
+  for (const Color beacon : beacons) signals.push_back({.beacon = beacon});
+  Occluders occluders(arena);
+  occluders.Frame(robots);
+  RobotPairs pairs(reaches);
+  pairs.Update(robots, occluders, false);
+  OmniCameras cameras(ranges);
+  cameras.Look({.robots = robots,
+                .occluders = occluders,
+                .pairs = pairs,
+                .signals = signals,
+                .any_ring_lit = false,
+                .lights = {}});
   Seen seen;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const auto blobs = cameras.BlobsOf(static_cast<RobotIndex>(i));

@@ -9,14 +9,23 @@ namespace {
 using testing::Each;
 using testing::IsEmpty;
 
+const Surroundings kNothingAround;
+
+void Sense(SensorSuite& suite, const std::vector<Pose>& poses) {
+  const std::vector<Signals> signals(poses.size(), {.beacon = Color::kRed});
+  const Grippers grippers(std::vector<bool>(poses.size(), false));
+  suite.Sense({.poses = poses, .signals = signals, .surroundings = kNothingAround, .grippers = grippers});
+}
+
 TEST(SensorSuite, FillsOnlyRequestedDevices) {
   const Arena arena{TestCase{}};
   const std::vector<SensorSuite::RobotSensors> robots = {
-      {Device::kProximity, 1.6}, {Device::kOmnidirectionalCamera, 1.6}, {Device::kWheels, 1.6}};
+      {.devices = Device::kProximity, .camera_range = 1.6},
+      {.devices = Device::kOmnidirectionalCamera, .camera_range = 1.6},
+      {.devices = Device::kWheels, .camera_range = 1.6}};
   SensorSuite suite(arena, robots);
   const std::vector<Pose> poses = {{{0.0, 0.0}, 0.0}, {{0.2, 0.0}, 0.0}, {{0.4, 0.0}, 0.0}};
-  const std::vector<Color> beacons(3, Color::kRed);
-  suite.Sense(poses, beacons);
+  Sense(suite, poses);
 
   EXPECT_TRUE(suite.ReadingsOf(0).proximity_active);
   EXPECT_THAT(suite.ReadingsOf(0).blobs, IsEmpty());
@@ -30,13 +39,13 @@ TEST(SensorSuite, FillsOnlyRequestedDevices) {
 TEST(SensorSuite, ForgetsReadingsOfTheLastTick) {
   const Arena arena{TestCase{}};
   const std::vector<SensorSuite::RobotSensors> robots = {
-      {Device::kProximity | Device::kOmnidirectionalCamera, 0.8}, {Device::kWheels, 0.0}};
+      {.devices = Device::kProximity | Device::kOmnidirectionalCamera, .camera_range = 0.8},
+      {.devices = Device::kWheels}};
   SensorSuite suite(arena, robots);
-  const std::vector<Color> beacons(2, Color::kRed);
-  suite.Sense(std::vector<Pose>{{{0.0, 0.0}, 0.0}, {{0.2, 0.0}, 0.0}}, beacons);
+  Sense(suite, {{{0.0, 0.0}, 0.0}, {{0.2, 0.0}, 0.0}});
   EXPECT_TRUE(suite.ReadingsOf(0).proximity_active);
   EXPECT_EQ(suite.ReadingsOf(0).blobs.size(), 1u);
-  suite.Sense(std::vector<Pose>{{{0.0, 0.0}, 0.0}, {{1.0, 0.0}, 0.0}}, beacons);
+  Sense(suite, {{{0.0, 0.0}, 0.0}, {{1.0, 0.0}, 0.0}});
   EXPECT_FALSE(suite.ReadingsOf(0).proximity_active);
   EXPECT_THAT(suite.ReadingsOf(0).proximity, Each(0.0));
   EXPECT_THAT(suite.ReadingsOf(0).blobs, IsEmpty());
@@ -45,14 +54,13 @@ TEST(SensorSuite, ForgetsReadingsOfTheLastTick) {
 // The list of nearby boxes is renewed only now and then; the readings must not show it.
 TEST(SensorSuite, SeesEveryWallOnTheWayThroughTheArena) {
   const Arena arena{TestCase{}};
-  const std::vector<SensorSuite::RobotSensors> robots = {{Device::kProximity, 0.0}};
-  const std::vector<Color> beacons = {Color::kBlack};
+  const std::vector<SensorSuite::RobotSensors> robots = {{.devices = Device::kProximity}};
   SensorSuite walking(arena, robots);
   for (double x = -2.86; x <= 2.86; x += 0.01) {
     const std::vector<Pose> pose = {{{x, 0.5 * x}, 0.3}};
-    walking.Sense(pose, beacons);
+    Sense(walking, pose);
     SensorSuite fresh(arena, robots);
-    fresh.Sense(pose, beacons);
+    Sense(fresh, pose);
     ASSERT_EQ(walking.ReadingsOf(0).proximity, fresh.ReadingsOf(0).proximity) << "x = " << x;
     ASSERT_EQ(walking.ReadingsOf(0).proximity_active, std::abs(x) > 2.95 - 0.185) << "x = " << x;
   }

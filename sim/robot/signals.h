@@ -1,0 +1,21 @@
+// What a robot shows and says to others, as in action during a tick.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "sim/robot/controller.h"
+
+namespace gauntlet::sim {
+
+struct Signals {
+  Color beacon = Color::kBlack;
+  std::array<Color, foot_bot::kRingLeds> ring{};
+  Payload message{};
+
+  bool RingLit() const {
+    return std::any_of(ring.begin(), ring.end(), [](Color color) { return color != Color::kBlack; });
+  }
+};
+
+}  // namespace gauntlet::sim

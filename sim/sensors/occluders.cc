@@ -1,0 +1,110 @@
+#include "sim/sensors/occluders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/geometry/ray_cast.h"
+
+namespace gauntlet::sim {
+namespace {
+
+constexpr double kHighestDevice = 0.9;  // m; nothing that sees or is seen is higher
+
+// Shortens the segment a-b, seen from above, to its part at or below `height`. False when none is left.
+bool CutBelow(double height, const Point3& a, const Point3& b, Vec2& from, Vec2& to) {
+  from = a.position;
+  to = b.position;
+  if (a.height <= height && b.height <= height) return true;
+  if (a.height > height && b.height > height) return false;
+  const double share = (height - a.height) / (b.height - a.height);  // of the way from a
+  const Vec2 crossing = a.position + share * (b.position - a.position);
+  (a.height > height ? from : to) = crossing;
+  return true;
+}
+
+}  // namespace
+
+Occluders::Occluders(const Arena& arena) {
+  for (const OrientedBox& box : arena.boxes()) AddBox(box);
+}
+
+void Occluders::AddBox(const OrientedBox& box, double height) {
+  boxes_.push_back({.box = box, .height = height, .min = box.center, .max = box.center});
+  MoveBox(boxes_.size() - 1, box);
+  framed_.reserve(boxes_.size());
+  all_high_ = all_high_ && height >= kHighestDevice;
+}
+
+void Occluders::MoveBox(std::size_t index, const OrientedBox& box) {
+  Box& moved = boxes_[index];
+  moved.box = box;
+  moved.min = box.center;
+  moved.max = box.center;
+  for (const Vec2& corner : Corners(box)) {
+    moved.min = moved.min.cwiseMin(corner);
+    moved.max = moved.max.cwiseMax(corner);
+  }
+}
+
+void Occluders::Frame(std::span<const BodyFrame> robots) {
+  framed_.clear();
+  if (robots.empty()) return;
+  Vec2 min = robots[0].position;
+  Vec2 max = min;
+  for (const BodyFrame& robot : robots) {
+    min = min.cwiseMin(robot.position);
+    max = max.cwiseMax(robot.position);
+  }
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    const Box& box = boxes_[i];
+    if (box.height < kHighestDevice) continue;
+    if ((box.min.array() <= max.array()).all() && (box.max.array() >= min.array()).all())
+      framed_.push_back(i);
+  }
+}
+
+bool Occluders::BoxBetweenRobots(const Vec2& a, const Vec2& b) const {
+  const Vec2 min = a.cwiseMin(b);
+  const Vec2 max = a.cwiseMax(b);
+  for (const std::size_t index : framed_) {
+    const Box& box = boxes_[index];
+    if (box.min.x() > max.x() || box.max.x() < min.x() || box.min.y() > max.y() || box.max.y() < min.y()) {
+      continue;
+    }
+    if (SegmentTouches(box.box, a, b)) return true;
+  }
+  return false;
+}
+
+bool Occluders::BoxBetween(const Point3& a, const Point3& b) const {
+  for (const Box& box : boxes_) {
+    Vec2 from;
+    Vec2 to;
+    if (!CutBelow(box.height, a, b, from, to)) continue;
+    if (box.min.x() > std::max(from.x(), to.x()) || box.max.x() < std::min(from.x(), to.x()) ||
+        box.min.y() > std::max(from.y(), to.y()) || box.max.y() < std::min(from.y(), to.y())) {
+      continue;
+    }
+    if (SegmentTouches(box.box, from, to)) return true;
+  }
+  return false;
+}
+
+bool BodyBetween(std::span<const BodyFrame> robots, const Point3& a, const Point3& b, RobotIndex self,
+                 RobotIndex other) {
+  Vec2 from;
+  Vec2 to;
+  if (!CutBelow(foot_bot::kHeight, a, b, from, to)) return false;
+  const Vec2 middle = (from + to) / 2.0;
+  const double reach = std::sqrt((to - from).squaredNorm()) / 2.0 + foot_bot::kRadius;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (std::cmp_equal(i, self) || std::cmp_equal(i, other)) continue;
+    const Vec2& body = robots[i].position;
+    if ((body - middle).squaredNorm() > reach * reach) continue;
+    if (SegmentTouches(body, foot_bot::kRadius, from, to)) return true;
+  }
+  return false;
+}
+
+}  // namespace gauntlet::sim

@@ -1,0 +1,61 @@
+// What can stand between two points: boxes and robots' bodies, all of limited height, so that a rising or
+// falling ray may pass above them (facts measured in ARGoS: tests/golden/argos/sensors/*_occ*.csv).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sim/arena/arena.h"
+#include "sim/geometry/oriented_box.h"
+#include "sim/robot/foot_bot.h"
+#include "sim/sensors/body_frame.h"
+
+namespace gauntlet::sim {
+
+// A point above the floor.
+struct Point3 {
+  Vec2 position;
+  double height;  // m
+};
+
+// Walls and obstacles of an arena are this high (spec 1).
+inline constexpr double kBoxHeight = 1.0;
+
+class Occluders {
+ public:
+  Occluders() = default;
+  explicit Occluders(const Arena& arena);
+
+  void AddBox(const OrientedBox& box, double height = kBoxHeight);
+  // Box `index`, in the order they were added, has moved.
+  void MoveBox(std::size_t index, const OrientedBox& box);
+  // Every box is higher than any device or lamp, so BoxBetweenRobots says it all.
+  bool all_high() const { return all_high_; }
+
+  // Until the next call, only lines inside the rectangle around these robots are asked for in
+  // BoxBetweenRobots. Allocates nothing.
+  void Frame(std::span<const BodyFrame> robots);
+  // Whether a box higher than any device stands on the line between two of the robots of Frame. The answer is
+  // the same in both directions. Boundary counts.
+  bool BoxBetweenRobots(const Vec2& a, const Vec2& b) const;
+  // Whether the straight line from a to b meets a box, at or below the box's height.
+  bool BoxBetween(const Point3& a, const Point3& b) const;
+
+ private:
+  struct Box {
+    OrientedBox box;
+    double height;
+    Vec2 min;  // m, axis-aligned bounds
+    Vec2 max;
+  };
+
+  std::vector<Box> boxes_;
+  std::vector<std::size_t> framed_;  // indices of boxes_
+  bool all_high_ = true;
+};
+
+// Whether the line from a to b meets the body of a robot other than `self` and `other` (-1 = none).
+bool BodyBetween(std::span<const BodyFrame> robots, const Point3& a, const Point3& b, RobotIndex self,
+                 RobotIndex other);
+
+}  // namespace gauntlet::sim
