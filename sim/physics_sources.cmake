@@ -9,6 +9,7 @@ target_sources(
           robot/controller.cc
           robot/devices.cc
           run_result.cc
+          sensors/distance_scanner.cc
           sensors/light_sensor.cc
           sensors/neighbour_grid.cc
           sensors/occluders.cc

@@ -54,7 +54,7 @@ std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, co
   const DeviceSet devices = setup.controller->Devices();
   for (std::uint32_t bit = 0; bit < 32; ++bit) {
     const Device device = static_cast<Device>(1u << bit);
-    if (!devices.Has(device) || (kSupportedDevices.Has(device) && setup.equipment.Has(device))) continue;
+    if (!devices.Has(device) || (kAllDevices.Has(device) && setup.equipment.Has(device))) continue;
     return "unsupported-device: " + RobotName(index) + " asks in tick 0 for " + std::string(NameOf(device)) +
            ", which it does not have";
   }
@@ -171,7 +171,11 @@ bool Loop::Tick() {
   Observe();
   Enter(Phase::kSense);
   scenario_.Interact({.observer = observer_, .signals = signals_, .grippers = grippers_});
-  sensors_.Sense({.poses = poses_, .signals = signals_, .surroundings = scenario_, .grippers = grippers_});
+  sensors_.Sense({.poses = poses_,
+                  .signals = signals_,
+                  .actuators = actuators_,
+                  .surroundings = scenario_,
+                  .grippers = grippers_});
   Enter(Phase::kControl);
   Control();
   if (probe_ != nullptr) probe_->EndTick();
@@ -189,6 +193,12 @@ bool Loop::Act() {
     if (devices_[i].Has(Device::kRangeAndBearing)) signals_[i].message = actuators.message;
     if (devices_[i].Has(Device::kGripper)) {
       grippers_.SetClosed(static_cast<RobotIndex>(i), actuators.gripper_closed);
+    }
+    if (devices_[i].Has(Device::kDistanceScanner) && !std::isfinite(actuators.scanner.value)) [[unlikely]] {
+      invalid_command_ = "invalid-command: " + RobotName(i) + ", tick " +
+                         std::to_string(observer_.last_tick()) + ": distance scanner command " +
+                         NumberText(actuators.scanner.value) + "; an angle or a speed is finite";
+      return false;
     }
     if (!devices_[i].Has(Device::kWheels)) continue;
     if (!WithinLimit(actuators.left_wheel) || !WithinLimit(actuators.right_wheel)) [[unlikely]] {

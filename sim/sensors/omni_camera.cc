@@ -77,8 +77,10 @@ void OmniCameras::AddRing(const Scene& scene, RobotIndex viewer, RobotIndex othe
     const Vec2 offset = place - self.position;
     if (!(Side(offset) < range)) continue;
     const Point3 lamp = {place, foot_bot::kRingHeight};
+    // Half of a ring is hidden by its own robot: that is the cheapest to ask.
+    if (BodyBetween(std::span(&carrier, 1), camera, lamp, -1, -1)) continue;
     if (scene.occluders.BoxBetween(camera, lamp)) continue;
-    if (BodyBetween(scene.robots, camera, lamp, viewer, -1)) continue;
+    if (BodyBetween(scene.robots, camera, lamp, viewer, other)) continue;
     Add(self, std::sqrt(offset.squaredNorm()), AngleOf(offset), signals.ring[led]);
   }
 }

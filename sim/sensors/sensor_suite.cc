@@ -57,10 +57,12 @@ SensorSuite::SensorSuite(const Arena& arena, std::span<const RobotSensors> robot
       occluders_(arena),
       pairs_(Reaches(robots)),
       cameras_(CameraRanges(robots)),
-      radios_(RadiosOf(robots)) {
+      radios_(RadiosOf(robots)),
+      boxes_(arena.boxes()) {
   for (const OrientedBox& box : arena.boxes()) nearby_.AddBox(box);
   nearby_.SetRobots(static_cast<int>(robots.size()));
   for (const RobotSensors& robot : robots) anybodys_devices_ = anybodys_devices_ | robot.devices;
+  if (anybodys_devices_.Has(Device::kDistanceScanner)) scanners_.resize(robots.size());
 }
 
 void SensorSuite::Sense(const World& world) {
@@ -144,6 +146,11 @@ void SensorSuite::SenseRest(const World& world, RobotIndex robot) {
     const auto grey = SenseGround(self, kBaseGroundPlaces, world.surroundings);
     std::transform(grey.begin(), grey.end(), readings.base_ground.begin(),
                    [](double value) { return value >= 0.5; });
+  }
+  if (devices.Has(Device::kDistanceScanner)) {
+    scanners_[index].Scan(world.actuators[index].scanner, frames_, robot, boxes_);
+    readings.scanner_short = scanners_[index].short_range();
+    readings.scanner_long = scanners_[index].long_range();
   }
   if (devices.Has(Device::kGripper)) readings.holding_item = world.grippers.Holds(robot);
 }

@@ -12,6 +12,7 @@
 #include "sim/robot/signals.h"
 #include "sim/robot/surroundings.h"
 #include "sim/sensors/body_frame.h"
+#include "sim/sensors/distance_scanner.h"
 #include "sim/sensors/neighbour_grid.h"
 #include "sim/sensors/occluders.h"
 #include "sim/sensors/omni_camera.h"
@@ -19,11 +20,6 @@
 #include "sim/sensors/robot_pairs.h"
 
 namespace gauntlet::sim {
-
-// The devices that this simulator has.
-inline constexpr DeviceSet kSupportedDevices =
-    Device::kWheels | Device::kLeds | Device::kProximity | Device::kOmnidirectionalCamera |
-    Device::kRangeAndBearing | Device::kLight | Device::kMotorGround | Device::kBaseGround | Device::kGripper;
 
 class SensorSuite {
  public:
@@ -39,6 +35,7 @@ class SensorSuite {
   struct World {
     std::span<const Pose> poses;
     std::span<const Signals> signals;
+    std::span<const Actuators> actuators;  // as in action: drives the scanners
     const Surroundings& surroundings;
     const Grippers& grippers;
   };
@@ -64,6 +61,8 @@ class SensorSuite {
   RobotPairs pairs_;
   OmniCameras cameras_;
   Radios radios_;
+  std::vector<OrientedBox> boxes_;
+  std::vector<DistanceScanner> scanners_;  // per robot; empty when nobody has one
 };
 
 }  // namespace gauntlet::sim

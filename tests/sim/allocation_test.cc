@@ -50,6 +50,42 @@ class AllocationProbe final : public PhaseProbe {
   std::vector<long> per_tick_;
 };
 
+std::vector<long> AllocationsPerTick(ToyScenario& scenario, Tick ticks) {
+  AllocationProbe probe(ticks);
+  const long before = allocations;
+  Simulate(scenario, 1, false, &probe);
+  EXPECT_GT(allocations, before) << "the counter does not count";
+  EXPECT_EQ(probe.per_tick().size(), static_cast<std::size_t>(ticks));
+  return probe.per_tick();
+}
+
+void ExpectNoneAfterTheFirst(const std::vector<long>& per_tick) {
+  for (std::size_t tick = 1; tick < per_tick.size(); ++tick)
+    EXPECT_EQ(per_tick[tick], 0) << "in tick " << tick + 1;
+}
+
+TEST(Simulation, AllocatesNothingWithEveryDevice) {
+  if (GAUNTLET_SANITIZED) GTEST_SKIP() << "sanitizers bring their own malloc";
+  for (const int count : {20, 50}) {  // few robots are asked pair by pair, more of them through a grid
+    RandomStream random(2, StreamPurpose::kTest);
+    TestCase test_case;
+    test_case.obstacles = RandomObstacles(8, random);
+    const Behaviour use_everything = [walk = Huddle(0.1)](const ControlStep& step) mutable {
+      walk(step);
+      step.actuators.ring.fill(step.tick % 3 == 0 ? Color::kBlack : Color::kGreen);
+      step.actuators.message[0] = static_cast<std::uint8_t>(step.tick);
+      step.actuators.scanner = {.mode = ScannerCommand::Mode::kSpeed, .value = 3.0};
+      step.actuators.gripper_closed = step.tick % 2 == 0;
+    };
+    std::vector<ToyRobot> robots = RandomRobots(count, test_case, Vec2::Zero(), 2.9, use_everything, random);
+    for (ToyRobot& robot : robots) robot.devices = kAllDevices;
+    ToyScenario scenario(test_case, robots, 60);
+    scenario.lamps = {{.position = {1.0, 1.0}, .intensity = 3.0, .color = Color::kYellow}};
+    scenario.radios = {{.position = {-1.0, 1.0}}};
+    ExpectNoneAfterTheFirst(AllocationsPerTick(scenario, 60));
+  }
+}
+
 TEST(Simulation, AllocatesNothingAfterTheFirstTick) {
   if (GAUNTLET_SANITIZED) GTEST_SKIP() << "sanitizers bring their own malloc";
   constexpr Tick kTicks = 2000;
@@ -58,14 +94,7 @@ TEST(Simulation, AllocatesNothingAfterTheFirstTick) {
   test_case.obstacles = RandomObstacles(8, random);
   ToyScenario scenario(test_case, RandomRobots(20, test_case, Vec2::Zero(), 2.9, Huddle(0.1), random),
                        kTicks);
-  AllocationProbe probe(kTicks);
-  const long before = allocations;
-  Simulate(scenario, 1, false, &probe);
-  EXPECT_GT(allocations, before) << "the counter does not count";
-  ASSERT_EQ(probe.per_tick().size(), static_cast<std::size_t>(kTicks));
-  for (std::size_t tick = 1; tick < probe.per_tick().size(); ++tick) {
-    EXPECT_EQ(probe.per_tick()[tick], 0) << "in tick " << tick + 1;
-  }
+  ExpectNoneAfterTheFirst(AllocationsPerTick(scenario, kTicks));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ gauntlet_test(
   sim_sensors_test
   SOURCES argos_csv.cc
           robot/devices_test.cc
+          sensors/box2d_oracle_test.cc
           sensors/ground_sensor_test.cc
           sensors/light_sensor_test.cc
           sensors/omni_camera_test.cc
@@ -22,7 +23,7 @@ gauntlet_test(
           sensors/range_and_bearing_test.cc
           sensors/robot_pairs_test.cc
           sensors/sensor_suite_test.cc
-  LIBRARIES gauntlet_sim)
+  LIBRARIES gauntlet_sim box2d::box2d)
 
 gauntlet_test(
   sim_simulation_test

@@ -212,5 +212,16 @@ TEST(Simulation, SurvivesObstaclesOfAnySize) {
   EXPECT_TRUE(std::isfinite(result.fitness));
 }
 
+TEST(Simulation, EndsAtAScannerCommandThatIsNotFinite) {
+  ToyRobot robot = RobotAt(0, 0, [](const ControlStep& step) {
+    if (step.tick == 2) step.actuators.scanner.value = std::numeric_limits<double>::quiet_NaN();
+  });
+  robot.devices = Device::kDistanceScanner;
+  ToyScenario scenario(TestCase{}, {robot}, 5);
+  const RunResult result = Simulate(scenario, 1, false);
+  EXPECT_EQ(result.verdict, Verdict::kInvalidCommand);
+  EXPECT_THAT(result.message, StartsWith("invalid-command: robot 0, tick 2: distance scanner command nan"));
+}
+
 }  // namespace
 }  // namespace gauntlet::sim

@@ -14,7 +14,12 @@ const Surroundings kNothingAround;
 void Sense(SensorSuite& suite, const std::vector<Pose>& poses) {
   const std::vector<Signals> signals(poses.size(), {.beacon = Color::kRed});
   const Grippers grippers(std::vector<bool>(poses.size(), false));
-  suite.Sense({.poses = poses, .signals = signals, .surroundings = kNothingAround, .grippers = grippers});
+  const std::vector<Actuators> actuators(poses.size());
+  suite.Sense({.poses = poses,
+               .signals = signals,
+               .actuators = actuators,
+               .surroundings = kNothingAround,
+               .grippers = grippers});
 }
 
 TEST(SensorSuite, FillsOnlyRequestedDevices) {

@@ -1,0 +1,68 @@
+#include "sim/sensors/distance_scanner.h"
+
+#include "sim/geometry/ray_cast.h"
+#include "sim/geometry/trigonometry.h"
+
+namespace gauntlet::sim {
+namespace {
+
+constexpr double kShortRange = 0.26;    // m beyond the body
+constexpr double kLongNearest = 0.12;   // m beyond the body
+constexpr double kLongFarthest = 1.42;  // m beyond the body
+
+// Distance from the surface of robot `self` to the first thing in this direction, or kNoHit beyond `range`.
+double FirstHit(std::span<const BodyFrame> robots, std::size_t self, std::span<const OrientedBox> boxes,
+                const Vec2& direction, double range) {
+  const Vec2 origin = robots[self].position + foot_bot::kRadius * direction;
+  double nearest = kNoHit;
+  const auto see = [&nearest](double hit) {
+    if (hit != kNoHit && (nearest == kNoHit || hit < nearest)) nearest = hit;
+  };
+  for (const OrientedBox& box : boxes) see(RayHit(box, origin, direction, range));
+  const double reach = range + foot_bot::kRadius + foot_bot::kGripperRadius;
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (i == self || (robots[i].position - origin).squaredNorm() > reach * reach) continue;
+    see(RayHit(robots[i].position, foot_bot::kRadius, origin, direction, range));
+    const Vec2 gripper = robots[i].position + foot_bot::kRadius * robots[i].direction;
+    see(RayHit(gripper, foot_bot::kGripperRadius, origin, direction, range));
+  }
+  return nearest;
+}
+
+double ShortReading(double hit) {
+  return hit == kNoHit ? ScannerReading::kNothing : hit;
+}
+
+double LongReading(double hit) {
+  if (hit == kNoHit) return ScannerReading::kNothing;
+  return hit < kLongNearest ? ScannerReading::kTooNear : hit;
+}
+
+}  // namespace
+
+void DistanceScanner::Scan(const ScannerCommand& command, std::span<const BodyFrame> robots, RobotIndex self,
+                           std::span<const OrientedBox> boxes) {
+  count_ = 0;
+  if (command.mode == ScannerCommand::Mode::kOff) return;
+  const bool turning = command.mode == ScannerCommand::Mode::kSpeed;
+  if (!turning) rotation_ = WrapAngle(command.value);
+  const std::size_t rays = turning ? kRaysPerTick : 1;
+  const double swept = turning ? command.value * kTickSeconds : 0.0;  // rad
+  const std::size_t index = static_cast<std::size_t>(self);
+  for (const double side : {0.0, kPi}) {
+    for (std::size_t ray = 0; ray < rays; ++ray) {
+      const double angle =
+          rotation_ + side + swept * static_cast<double>(ray) / static_cast<double>(kRaysPerTick);
+      const auto look = [&](double bearing, double range) {
+        return FirstHit(robots, index, boxes, UnitVector(robots[index].heading + bearing), range);
+      };
+      const double across = angle + kPi / 2.0;
+      short_[count_] = {.bearing = WrapAngle(angle), .distance = ShortReading(look(angle, kShortRange))};
+      long_[count_] = {.bearing = WrapAngle(across), .distance = LongReading(look(across, kLongFarthest))};
+      ++count_;
+    }
+  }
+  rotation_ = WrapAngle(rotation_ + swept);
+}
+
+}  // namespace gauntlet::sim
