@@ -61,8 +61,12 @@ std::string Converse(FileDescriptor& to_child, std::string_view input, const Fil
   return output;
 }
 
-// stdout of gauntlet-worker with these arguments; its stderr is ours.
-Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::string_view input) {
+// A kill comes from outside (a memory killer, an operator): the pure question may be asked again this often.
+constexpr int kTries = 3;
+
+// stdout of gauntlet-worker with these arguments; its stderr is ours. `killed`: SIGKILL ended it.
+Result<std::string> RunWorkerProgramOnce(std::vector<std::string> arguments, std::string_view input,
+                                         bool& killed) {
   const std::string program = WorkerProgramPath();
   std::array<int, 2> in{};
   std::array<int, 2> out{};
@@ -101,12 +105,21 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
   int status = 0;
   while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
   }
+  killed = WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     return Error{ErrorKind::kInternal,
                  fmt::format("{} ended {} {}", program, WIFSIGNALED(status) ? "by signal" : "with status",
                              WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status))};
   }
   return output;
+}
+
+Result<std::string> RunWorkerProgram(const std::vector<std::string>& arguments, std::string_view input) {
+  for (int attempt = 1;; ++attempt) {
+    bool killed = false;
+    Result<std::string> output = RunWorkerProgramOnce(arguments, input, killed);
+    if (!killed || attempt == kTries) return output;
+  }
 }
 
 }  // namespace
