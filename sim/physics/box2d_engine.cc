@@ -42,8 +42,12 @@ constexpr double kRestSpeed = 1e-6;  // m/s and rad/s; below, a movable box stan
 // Beyond what both can move in a tick, robots this near (m) are given to the solver: position correction of
 // a crowd moves robots a little further than they drive.
 constexpr double kMargin = 0.005;
-constexpr double kBite = 0.0003;   // m, how deep a first contact may be
-constexpr double kBoxReach = 0.4;  // m; > radius + margin + what a robot can move in a tick
+// ARGoS notices a contact at the end of the first of its substeps in which bodies overlap and then stops the
+// approach only, so a contact stays as deep as it was found: up to a substep's travel. Deeper ones than
+// Box2D's slop are cut, the solver would push them out.
+constexpr int kSubsteps = foot_bot::kSubstepsPerTick / kSteps;
+constexpr double kDeepestBite = 0.0005;  // m
+constexpr double kBoxReach = 0.4;        // m; > radius + margin + what a robot can move in a tick
 
 b2Vec2 ToBox2d(const Vec2& v) {
   return {static_cast<float>(v.x() * kScale), static_cast<float>(v.y() * kScale)};
@@ -96,6 +100,15 @@ void Place(MovingBox& moving, const Vec2& center, double heading) {
   moving.box.axis = UnitVector(moving.heading);
   SetCorners(moving.box, *moving.shape);
   moving.body->SetTransform(ToBox2d(center), 0.0f);
+}
+
+// The first positive overlap at the ends of the substeps of a step, at most kDeepestBite. `overlap_at` tells
+// the overlap (m) after a share of the step; it is positive at the end.
+template <typename OverlapAt>
+double DepthWhenNoticed(const OverlapAt& overlap_at) {
+  int substep = 1;
+  while (substep < kSubsteps && overlap_at(static_cast<double>(substep) / kSubsteps) <= 0.0) ++substep;
+  return std::min(overlap_at(static_cast<double>(substep) / kSubsteps), kDeepestBite);
 }
 
 Vec2 ClosestPoint(const OrientedBox& box, const Vec2& p) {
@@ -459,20 +472,23 @@ Vec2 Box2dEngine::WayBack(const OrientedBox& box, const Robot& robot) {
   const Vec2 outward = robot.to - ClosestPoint(box, robot.to);
   const double distance_squared = outward.squaredNorm();
   constexpr double kContact = foot_bot::kRadius;
-  if (distance_squared >= (kContact - kBite) * (kContact - kBite) || distance_squared == 0.0 ||
+  if (distance_squared >= kContact * kContact || distance_squared == 0.0 ||
       Distance(box, robot.from) <= kContact) {
     return Vec2::Zero();
   }
   const double distance = std::sqrt(distance_squared);
-  return (kContact - kBite - distance) / distance * outward;
+  const double bite = DepthWhenNoticed(
+      [&](double share) { return kContact - Distance(box, robot.from + share * (robot.to - robot.from)); });
+  return (kContact - bite - distance) / distance * outward;
 }
 
 void Box2dEngine::StepBack(Robot& a, Robot& b) {
   const Vec2 apart = a.to - b.to;
   const double distance_squared = apart.squaredNorm();
   constexpr double kContact = 2.0 * foot_bot::kRadius;
-  if (distance_squared >= (kContact - kBite) * (kContact - kBite) || distance_squared == 0.0 ||
-      (a.from - b.from).squaredNorm() <= kContact * kContact) {
+  const Vec2 apart_before = a.from - b.from;
+  if (distance_squared >= kContact * kContact || distance_squared == 0.0 ||
+      apart_before.squaredNorm() <= kContact * kContact) {
     return;
   }
   const double distance = std::sqrt(distance_squared);
@@ -480,7 +496,10 @@ void Box2dEngine::StepBack(Robot& a, Robot& b) {
   const double a_closing = a.held ? 0.0 : std::max(normal.dot(a.from - a.to), 0.0);
   const double b_closing = b.held ? 0.0 : std::max(normal.dot(b.to - b.from), 0.0);
   if (a_closing + b_closing == 0.0) return;
-  const Vec2 excess = (kContact - kBite - distance) / (a_closing + b_closing) * normal;
+  const double bite = DepthWhenNoticed([&](double share) {
+    return kContact - std::sqrt((apart_before + share * (apart - apart_before)).squaredNorm());
+  });
+  const Vec2 excess = (kContact - bite - distance) / (a_closing + b_closing) * normal;
   PutBack(a, a_closing * excess);
   PutBack(b, -b_closing * excess);
 }
