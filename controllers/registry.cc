@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "controllers/examples/light_flocking_registry.h"
 #include "controllers/flocking/flocking_registry.h"
 #include "sim/base/nearest_name.h"
 #include "sim/base/number_text.h"
@@ -52,12 +53,17 @@ Status CheckRange(const ParameterInfo& info, double value) {
 }  // namespace
 
 std::span<const ScenarioInfo> Scenarios() {
-  static const std::array<ScenarioInfo, 1> scenarios = {FlockingScenarioInfo()};
+  static const std::array scenarios = {FlockingScenarioInfo(), LightFlockingScenarioInfo()};
   return scenarios;
 }
 
 std::span<const ControllerInfo> Controllers() {
-  return FlockingControllerInfos();
+  static const std::vector<ControllerInfo> controllers = [] {
+    std::vector<ControllerInfo> all(FlockingControllerInfos().begin(), FlockingControllerInfos().end());
+    all.push_back(LightFlockingControllerInfo());
+    return all;
+  }();
+  return controllers;
 }
 
 const ScenarioInfo* FindScenario(std::string_view name) {

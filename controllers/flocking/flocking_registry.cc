@@ -1,10 +1,8 @@
 #include "controllers/flocking/flocking_registry.h"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 
-#include "sim/base/check.h"
+#include "controllers/common/parameters.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -75,18 +73,8 @@ constexpr auto kImprovedBirdParameters = [] {
   return all;
 }();
 
-double Get(const sim::Parameters& parameters, const char* name) {
-  const auto found = parameters.find(name);
-  GAUNTLET_CHECK(found != parameters.end(), std::string("unresolved parameter ") + name);
-  return found->second;
-}
-
-sim::Tick Ticks(double seconds) {
-  return static_cast<sim::Tick>(std::floor(seconds * sim::kTicksPerSecond + 0.5));
-}
-
 sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& test_case) {
-  const double corner_distance = Get(parameters, "corner_distance");
+  const double corner_distance = GetParameter(parameters, "corner_distance");
   sim::ArenaRequirements requirements;
   requirements.start = FlockingStart(test_case, corner_distance);
   requirements.goal = FlockingGoal(test_case, corner_distance);
@@ -102,38 +90,39 @@ std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec) {
 
 FlockingSettings FlockingSettingsFrom(const sim::Parameters& parameters) {
   FlockingSettings settings;
-  settings.birds = static_cast<int>(Get(parameters, "birds"));
-  settings.min_swarm = static_cast<int>(Get(parameters, "min_swarm"));
-  settings.tick_limit = Ticks(Get(parameters, "time_limit"));
-  settings.corner_distance = Get(parameters, "corner_distance");
-  settings.spawn_side = Get(parameters, "spawn_side");
-  settings.goal_radius = Get(parameters, "goal_radius");
-  settings.camera_range = Get(parameters, "camera_range");
-  settings.prey.speed = Get(parameters, "prey_speed");
-  settings.prey.turn_rate = Get(parameters, "prey_turn_rate");
-  settings.prey.drive_within = Get(parameters, "prey_drive_within");
-  settings.prey.waypoint_radius = Get(parameters, "prey_waypoint_radius");
-  settings.prey.inflation = Get(parameters, "prey_inflation");
-  settings.split.link.range = Get(parameters, "link_range");
-  settings.split.link.memory = Ticks(Get(parameters, "link_memory"));
-  settings.split.rejoin = Ticks(Get(parameters, "rejoin_time"));
-  settings.split.half_window = Ticks(Get(parameters, "split_window") / 2.0);
+  settings.birds = static_cast<int>(GetParameter(parameters, "birds"));
+  settings.min_swarm = static_cast<int>(GetParameter(parameters, "min_swarm"));
+  settings.tick_limit = ToTicks(GetParameter(parameters, "time_limit"));
+  settings.corner_distance = GetParameter(parameters, "corner_distance");
+  settings.spawn_side = GetParameter(parameters, "spawn_side");
+  settings.goal_radius = GetParameter(parameters, "goal_radius");
+  settings.camera_range = GetParameter(parameters, "camera_range");
+  settings.prey.speed = GetParameter(parameters, "prey_speed");
+  settings.prey.turn_rate = GetParameter(parameters, "prey_turn_rate");
+  settings.prey.drive_within = GetParameter(parameters, "prey_drive_within");
+  settings.prey.waypoint_radius = GetParameter(parameters, "prey_waypoint_radius");
+  settings.prey.inflation = GetParameter(parameters, "prey_inflation");
+  settings.split.link.range = GetParameter(parameters, "link_range");
+  settings.split.link.memory = ToTicks(GetParameter(parameters, "link_memory"));
+  settings.split.rejoin = ToTicks(GetParameter(parameters, "rejoin_time"));
+  settings.split.half_window = ToTicks(GetParameter(parameters, "split_window") / 2.0);
   return settings;
 }
 
 BirdSettings BirdSettingsFrom(const sim::Parameters& parameters) {
   BirdSettings settings;
-  settings.speed = Get(parameters, "bird_speed");
-  settings.turn_rate = Get(parameters, "turn_rate");
-  settings.straight_within = Get(parameters, "straight_within");
-  settings.turning_speed_factor = Get(parameters, "turning_speed_factor");
-  settings.obstacle_distance = Get(parameters, "obstacle_distance");
-  settings.obstacle_speed_factor = Get(parameters, "obstacle_speed_factor");
-  settings.separation_distance = Get(parameters, "separation_distance");
-  settings.wander.turn_probability = Get(parameters, "wander_turn_probability");
-  settings.wander.turn_limit = Get(parameters, "wander_turn_limit");
+  settings.speed = GetParameter(parameters, "bird_speed");
+  settings.turn_rate = GetParameter(parameters, "turn_rate");
+  settings.straight_within = GetParameter(parameters, "straight_within");
+  settings.turning_speed_factor = GetParameter(parameters, "turning_speed_factor");
+  settings.obstacle_distance = GetParameter(parameters, "obstacle_distance");
+  settings.obstacle_speed_factor = GetParameter(parameters, "obstacle_speed_factor");
+  settings.separation_distance = GetParameter(parameters, "separation_distance");
+  settings.wander.turn_probability = GetParameter(parameters, "wander_turn_probability");
+  settings.wander.turn_limit = GetParameter(parameters, "wander_turn_limit");
   if (parameters.contains("catch_up_gain")) {
-    settings.catch_up = CatchUp{Get(parameters, "catch_up_distance"), Get(parameters, "catch_up_gain")};
+    settings.catch_up =
+        CatchUp{GetParameter(parameters, "catch_up_distance"), GetParameter(parameters, "catch_up_gain")};
   }
   return settings;
 }

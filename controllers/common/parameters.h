@@ -1,0 +1,25 @@
+// Reading resolved parameters.
+#pragma once
+
+#include <cmath>
+#include <string>
+
+#include "sim/base/check.h"
+#include "sim/robot/foot_bot.h"
+#include "sim/run_spec.h"
+
+namespace gauntlet::controllers {
+
+// The value of a parameter that the registry has resolved; aborts when it is missing.
+inline double GetParameter(const sim::Parameters& parameters, const char* name) {
+  const auto found = parameters.find(name);
+  GAUNTLET_CHECK(found != parameters.end(), std::string("unresolved parameter ") + name);
+  return found->second;
+}
+
+// Seconds as the nearest number of ticks.
+inline sim::Tick ToTicks(double seconds) {
+  return static_cast<sim::Tick>(std::floor(seconds * sim::kTicksPerSecond + 0.5));
+}
+
+}  // namespace gauntlet::controllers

@@ -1,0 +1,59 @@
+// An example to copy: robots start in the corner (+,+) and flock to a light in the corner (-,-).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "controllers/examples/light_flocking_controller.h"
+#include "sim/scenario.h"
+
+namespace gauntlet::controllers {
+
+struct LightFlockingScenarioSettings {
+  int robots = 0;
+  sim::Tick tick_limit = 0;      // the run ends then
+  double corner_distance = 0.0;  // m from the walls' centre lines to the middle of the start and to the light
+  double spawn_side = 0.0;       // m, side of the square in the corner that robots start in
+  double camera_range = 0.0;     // m, half side of the square a robot sees
+  double light_height = 0.0;     // m
+  double light_intensity = 0.0;  // of ARGoS' light model
+};
+
+class LightFlockingScenario : public sim::Scenario {
+ public:
+  static constexpr double kStopped = 0.02;              // m; who moved less has stopped
+  static constexpr sim::Tick kStoppedTicks = 300;       // over these last ticks
+  static constexpr sim::Tick kStoppedSampleTicks = 20;  // looked at this often
+
+  // `test_case` is valid for the scenario; its number of robots and its spawn area override the settings.
+  // `seed` decides the start poses.
+  LightFlockingScenario(const sim::TestCase& test_case, const LightFlockingScenarioSettings& settings,
+                        const LightFlockingSettings& robot, std::uint64_t seed);
+  // From these start poses instead; for comparisons with recorded swarms.
+  LightFlockingScenario(const sim::TestCase& test_case, const LightFlockingScenarioSettings& settings,
+                        const LightFlockingSettings& robot, std::vector<sim::Pose> start_poses);
+
+  const sim::Arena& arena() const override { return arena_; }
+  sim::Tick tick_limit() const override { return settings_.tick_limit; }
+  std::span<const sim::Light> lights() const override { return {&light_, 1}; }
+  Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters& headquarters) override;
+  bool Finished(const sim::Observer&) override { return false; }
+  // Fitness: how much nearer to the light the mean robot is at the end than it was at the start, relative to
+  // the start; 0 when it is farther. A total failure is a swarm that did not come half the way.
+  sim::Outcome Evaluate(const sim::Observer& observer) override;
+
+ private:
+  Result<std::vector<sim::Pose>> StartPoses() const;
+
+  sim::Arena arena_;
+  LightFlockingScenarioSettings settings_;
+  LightFlockingSettings robot_;
+  std::uint64_t seed_ = 0;
+  sim::Vec2 start_;
+  sim::Light light_;
+  sim::Rectangle spawn_area_;
+  std::vector<sim::Pose> given_poses_;
+};
+
+}  // namespace gauntlet::controllers
