@@ -1,7 +1,6 @@
 // What a robot shows and says to others, as in action during a tick.
 #pragma once
 
-#include <algorithm>
 #include <array>
 
 #include "sim/robot/controller.h"
@@ -13,9 +12,7 @@ struct Signals {
   std::array<Color, foot_bot::kRingLeds> ring{};
   Payload message{};
 
-  bool RingLit() const {
-    return std::any_of(ring.begin(), ring.end(), [](Color color) { return color != Color::kBlack; });
-  }
+  bool RingLit() const { return ring != std::array<Color, foot_bot::kRingLeds>{}; }
 };
 
 }  // namespace gauntlet::sim

@@ -25,62 +25,88 @@ RobotPairs::RobotPairs(std::span<const Reach> reaches)
     : reaches_(reaches.begin(), reaches.end()),
       largest_reach_(LargestReach(reaches)),
       grid_(largest_reach_, reaches.size()),
-      first_(reaches.size() + 1),
-      next_(reaches.size()) {
-  const std::size_t neighbours = reaches.empty() ? 0 : std::min(reaches.size() - 1, kManyNeighbours);
-  pairs_.reserve(reaches.size() * neighbours / 2 + 1);
-  neighbours_.reserve(reaches.size() * neighbours);
+      first_(reaches.size()),
+      count_(reaches.size()) {
+  const std::size_t robots = reaches.size();
+  if (robots > kFewRobots) {
+    pairs_.reserve(robots * kManyNeighbours / 2);
+    neighbours_.reserve(robots * kManyNeighbours);
+  } else if (robots > 0) {
+    neighbours_.resize(robots * (robots - 1));
+    for (std::size_t i = 0; i < robots; ++i) first_[i] = i * (robots - 1);
+  }
 }
 
-void RobotPairs::TryPair(std::span<const BodyFrame> robots, const Occluders& occluders, double extra,
-                         std::size_t a, std::size_t b) {
+bool RobotPairs::Find(std::span<const BodyFrame> robots, const Occluders& occluders, double extra,
+                      std::size_t a, std::size_t b, Neighbour& view) const {
   const Vec2 offset = robots[b].position - robots[a].position;
   const double side = std::max(std::abs(offset.x()), std::abs(offset.y()));
   const double camera = std::max(reaches_[a].camera, reaches_[b].camera);
   const double radio = std::max(reaches_[a].radio, reaches_[b].radio);
-  if (!(camera > 0.0 && side < camera + extra) && !(offset.squaredNorm() < radio * radio)) return;
-  Pair pair{.a = a, .b = b, .view = {.robot = static_cast<RobotIndex>(b), .offset = offset}};
-  pair.view.clear = !occluders.BoxBetweenRobots(robots[a].position, robots[b].position);
-  if (pair.view.clear) {
-    pair.view.distance = std::sqrt(offset.squaredNorm());
-    pair.view.bearing = AngleOf(offset);
+  const double squared = offset.squaredNorm();
+  if (!(camera > 0.0 && side < camera + extra) && !(squared < radio * radio)) return false;
+  view.robot = static_cast<RobotIndex>(b);
+  view.offset = offset;
+  view.clear = !occluders.BoxBetweenRobots(robots[a].position, robots[b].position);
+  if (view.clear) {
+    view.distance = std::sqrt(squared);
+    view.bearing = AngleOf(offset);
   }
-  pairs_.push_back(pair);
+  return true;
+}
+
+// The same pair as b has it.
+RobotPairs::Neighbour RobotPairs::Back(const Neighbour& view, std::size_t a) {
+  return {.robot = static_cast<RobotIndex>(a),
+          .offset = -view.offset,
+          .clear = view.clear,
+          .distance = view.distance,
+          .bearing = view.bearing > 0.0 ? view.bearing - kPi : view.bearing + kPi};
 }
 
 void RobotPairs::Update(std::span<const BodyFrame> robots, const Occluders& occluders, bool ring_seen) {
   const double extra = ring_seen ? foot_bot::kRingRadius : 0.0;
-  pairs_.clear();
+  std::fill(count_.begin(), count_.end(), std::size_t{0});
   if (robots.size() <= kFewRobots) {
-    for (std::size_t a = 0; a < robots.size(); ++a) {
-      for (std::size_t b = a + 1; b < robots.size(); ++b) TryPair(robots, occluders, extra, a, b);
-    }
+    UpdateFew(robots, occluders, extra);
   } else {
-    grid_.Update(robots);
-    for (std::size_t a = 0; a < robots.size(); ++a) {
-      for (const std::size_t b : grid_.Near(robots[a].position)) {
-        if (b > a) TryPair(robots, occluders, extra, a, b);
-      }
+    UpdateMany(robots, occluders, extra);
+  }
+}
+
+void RobotPairs::UpdateFew(std::span<const BodyFrame> robots, const Occluders& occluders, double extra) {
+  for (std::size_t a = 0; a < robots.size(); ++a) {
+    for (std::size_t b = a + 1; b < robots.size(); ++b) {
+      Neighbour& view = neighbours_[first_[a] + count_[a]];
+      if (!Find(robots, occluders, extra, a, b, view)) continue;
+      ++count_[a];
+      neighbours_[first_[b] + count_[b]++] = Back(view, a);
     }
   }
+}
 
-  std::fill(first_.begin(), first_.end(), std::size_t{0});
-  for (const Pair& pair : pairs_) {
-    ++first_[pair.a + 1];
-    ++first_[pair.b + 1];
+void RobotPairs::UpdateMany(std::span<const BodyFrame> robots, const Occluders& occluders, double extra) {
+  pairs_.clear();
+  grid_.Update(robots);
+  for (std::size_t a = 0; a < robots.size(); ++a) {
+    for (const std::size_t b : grid_.Near(robots[a].position)) {
+      Neighbour view;
+      if (b <= a || !Find(robots, occluders, extra, a, b, view)) continue;
+      pairs_.push_back({.a = a, .b = b, .view = view});
+      ++count_[a];
+      ++count_[b];
+    }
   }
-  for (std::size_t i = 0; i < next_.size(); ++i) {
-    first_[i + 1] += first_[i];
-    next_[i] = first_[i];
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < count_.size(); ++i) {
+    first_[i] = end;
+    end += count_[i];
+    count_[i] = 0;
   }
-  neighbours_.resize(2 * pairs_.size());
+  neighbours_.resize(end);
   for (const Pair& pair : pairs_) {
-    neighbours_[next_[pair.a]++] = pair.view;
-    Neighbour back = pair.view;
-    back.robot = static_cast<RobotIndex>(pair.a);
-    back.offset = -back.offset;
-    back.bearing = back.bearing > 0.0 ? back.bearing - kPi : back.bearing + kPi;
-    neighbours_[next_[pair.b]++] = back;
+    neighbours_[first_[pair.a] + count_[pair.a]++] = pair.view;
+    neighbours_[first_[pair.b] + count_[pair.b]++] = Back(pair.view, pair.a);
   }
 }
 

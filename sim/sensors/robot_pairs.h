@@ -36,7 +36,7 @@ class RobotPairs {
   // Of the last Update, in robot order.
   std::span<const Neighbour> NeighboursOf(RobotIndex robot) const {
     const std::size_t index = static_cast<std::size_t>(robot);
-    return std::span(neighbours_).subspan(first_[index], first_[index + 1] - first_[index]);
+    return std::span(neighbours_).subspan(first_[index], count_[index]);
   }
 
  private:
@@ -46,15 +46,19 @@ class RobotPairs {
     Neighbour view;  // of b by a
   };
 
-  void TryPair(std::span<const BodyFrame> robots, const Occluders& occluders, double extra, std::size_t a,
-               std::size_t b);
+  // Whether a pair counts; then `view` is b as a has it.
+  bool Find(std::span<const BodyFrame> robots, const Occluders& occluders, double extra, std::size_t a,
+            std::size_t b, Neighbour& view) const;
+  static Neighbour Back(const Neighbour& view, std::size_t a);
+  void UpdateFew(std::span<const BodyFrame> robots, const Occluders& occluders, double extra);
+  void UpdateMany(std::span<const BodyFrame> robots, const Occluders& occluders, double extra);
 
   std::vector<Reach> reaches_;
   double largest_reach_ = 0.0;  // m, radius around a centre
   NeighbourGrid grid_;
-  std::vector<Pair> pairs_;  // a < b, ordered by a, then b
+  std::vector<Pair> pairs_;  // only of many robots; a < b, ordered by a, then b
   std::vector<std::size_t> first_;
-  std::vector<std::size_t> next_;
+  std::vector<std::size_t> count_;
   std::vector<Neighbour> neighbours_;
 };
 
