@@ -6,6 +6,7 @@
 
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/flocking/flocking_registry.h"
+#include "controllers/foraging/foraging_registry.h"
 #include "sim/base/nearest_name.h"
 #include "sim/base/number_text.h"
 
@@ -53,13 +54,15 @@ Status CheckRange(const ParameterInfo& info, double value) {
 }  // namespace
 
 std::span<const ScenarioInfo> Scenarios() {
-  static const std::array scenarios = {FlockingScenarioInfo(), LightFlockingScenarioInfo()};
+  static const std::array scenarios = {FlockingScenarioInfo(), ForagingScenarioInfo(),
+                                       LightFlockingScenarioInfo()};
   return scenarios;
 }
 
 std::span<const ControllerInfo> Controllers() {
   static const std::vector<ControllerInfo> controllers = [] {
     std::vector<ControllerInfo> all(FlockingControllerInfos().begin(), FlockingControllerInfos().end());
+    all.insert(all.end(), ForagingControllerInfos().begin(), ForagingControllerInfos().end());
     all.push_back(LightFlockingControllerInfo());
     return all;
   }();

@@ -1,11 +1,30 @@
 #include "controllers/common/proximity.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "sim/geometry/trigonometry.h"
-#include "sim/robot/controller.h"
 
 namespace gauntlet::controllers {
+namespace {
+
+// ARGoS footbot_proximity_default.
+constexpr double kSaturated = 0.009889556;  // m
+constexpr double kScale = 0.0100527;
+constexpr double kOffset = 0.000163144;
+
+constexpr double kBodyReach =
+    0.30;  // m between centres; a robot's body is beyond the ring's range farther off
+constexpr double kBodyAside = 0.10;  // m, a ray that passes a robot's centre nearer than this hits it
+
+bool LooksAt(const sim::Vec2& direction, double range, const sim::Vec2& body_direction) {
+  const double along = direction.dot(body_direction);
+  const double aside = std::fabs(sim::Cross(direction, body_direction)) * range;
+  return along > 0.0 && aside <= kBodyAside;
+}
+
+}  // namespace
 
 const std::array<sim::Vec2, sim::foot_bot::kProximitySensors>& ProximityDirections() {
   static const auto directions = [] {
@@ -19,8 +38,34 @@ const std::array<sim::Vec2, sim::foot_bot::kProximitySensors>& ProximityDirectio
 }
 
 double ProximityReadingAt(double distance) {
-  constexpr double kSaturated = 0.009889556;  // m
-  return distance < kSaturated ? 1.0 : 0.0100527 / (distance + 0.000163144);
+  return distance < kSaturated ? 1.0 : kScale / (distance + kOffset);
+}
+
+double ProximityDistanceOf(double reading) {
+  return std::max(0.0, kScale / reading - kOffset);
+}
+
+double FrontReading(const ProximityReadings& readings, double half_angle) {
+  double largest = 0.0;
+  for (int i = 0; i < sim::foot_bot::kProximitySensors; ++i) {
+    if (std::fabs(sim::ProximityBearing(i)) > half_angle) continue;
+    largest = std::max(largest, readings[static_cast<std::size_t>(i)]);
+  }
+  return largest;
+}
+
+ProximitySum SumProximity(const ProximityReadings& readings, const std::optional<SeenBody>& ignored) {
+  const auto& directions = ProximityDirections();
+  const bool ignore = ignored && ignored->range < kBodyReach;
+  const sim::Vec2 body_direction = ignore ? sim::UnitVector(ignored->bearing) : sim::Vec2(sim::Vec2::Zero());
+  ProximitySum result;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    if (readings[i] == 0.0) continue;
+    if (ignore && LooksAt(directions[i], ignored->range, body_direction)) continue;
+    result.sum += readings[i] * directions[i];
+    result.largest = std::max(result.largest, readings[i]);
+  }
+  return result;
 }
 
 }  // namespace gauntlet::controllers

@@ -18,6 +18,8 @@ class RandomWalk {
 
   // The bearing to take in this tick, rad. Draws once or twice from `random`.
   double Next(sim::RandomStream& random);
+  // Takes a heading that differs by `angle` rad from the present one.
+  void TurnBy(double angle) { remaining_ = angle; }
   // The controller commanded a turn of `angle` rad for the coming tick.
   void Turned(double angle) { remaining_ -= angle; }
   // The way is straight on from here: after the bearing was reached, or after something else steered.

@@ -11,7 +11,8 @@ namespace gauntlet::controllers {
 DriveCommand Steer(double bearing, double speed, const SteeringThresholds& thresholds) {
   const double angle = std::fabs(bearing);
   if (angle <= thresholds.straight) return {speed, 0.0};
-  const double fastest_turn = 2.0 * speed / sim::foot_bot::kWheelDistance;
+  const double fastest_turn =
+      thresholds.turn_rate > 0.0 ? thresholds.turn_rate : 2.0 * speed / sim::foot_bot::kWheelDistance;
   if (angle > thresholds.hard) return {0.0, std::copysign(fastest_turn, bearing)};
   const double share = angle / thresholds.hard;
   const double turn = std::min(angle / sim::kTickSeconds, fastest_turn * share);

@@ -11,12 +11,13 @@ struct DriveCommand {
 
 // ARGoS' wheel turning parameters: below `straight` drive on, beyond `hard` rotate on the spot.
 struct SteeringThresholds {
-  double straight = 0.0;  // rad
-  double hard = 0.0;      // rad, > straight
+  double straight = 0.0;   // rad
+  double hard = 0.0;       // rad, > straight
+  double turn_rate = 0.0;  // rad/s on the spot; 0 = 2 * speed / wheel distance, one wheel each way at `speed`
 };
 
 // The common steering primitive (spec section 1): straight at `speed`, an arc that is slower and tighter the
-// larger the bearing, or a turn on the spot at 2 * speed / wheel distance. Never turns past the bearing
+// larger the bearing, or a turn on the spot at the turn rate. Never turns past the bearing
 // within one tick while it drives an arc.
 DriveCommand Steer(double bearing, double speed, const SteeringThresholds& thresholds);
 

@@ -68,6 +68,25 @@ TEST_F(ShippedExperimentsTest, FlockingHasTheParametersOfTable41) {
   EXPECT_EQ(LoadExperiment("flocking-improved", {})->controller, "flocking-improved");
 }
 
+TEST_F(ShippedExperimentsTest, ForagingHasTheParametersOfTable51AndSelectableVariants) {
+  const Result<Experiment> experiment = LoadExperiment("foraging", {});
+  ASSERT_TRUE(experiment.ok()) << experiment.error().message;
+  EXPECT_EQ(experiment->genome.genes, 8);
+  EXPECT_EQ(experiment->search.population, 20);
+  EXPECT_EQ(experiment->search.generations, 30);
+  EXPECT_EQ(experiment->search.parent_selection, ParentSelection::kAllParentBestHalf);
+  EXPECT_EQ(experiment->search.crossover, CrossoverKind::kDoublePoint);
+  EXPECT_EQ(experiment->search.crossover_probability, 0.2);
+  EXPECT_EQ(experiment->search.mutation_probability, 0.05);
+  for (const char* variant : {"foraging-improved", "foraging-random-side", "foraging-basic"}) {
+    const auto chosen = LoadExperiment("foraging", {std::string("controller=") + variant});
+    ASSERT_TRUE(chosen.ok()) << chosen.error().message;
+    EXPECT_EQ(chosen->controller, variant);
+  }
+  EXPECT_THAT(LoadExperiment("foraging", {"controller=foraging-improve"}).error().message,
+              HasSubstr("foraging-improved"));
+}
+
 TEST_F(ShippedExperimentsTest, WrittenResolvedFlockingReadsBackEqual) {
   const Experiment experiment = *LoadExperiment("flocking", {"seed=5", "search.generations=3"});
   const std::string text = WriteExperiment(experiment, {"resolved"});

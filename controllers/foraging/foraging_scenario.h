@@ -1,0 +1,89 @@
+// The foraging scenario (thesis 5.1 to 5.4.1; spec 3.1, 3.6): robots start around the nest, take items from a
+// source of food 4 m away and drop them in the nest until the time is over. Fitness is the number of items
+// dropped there (equation 5.1).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "controllers/foraging/beacon_chain.h"
+#include "controllers/foraging/food_source.h"
+#include "controllers/foraging/foraging_controller.h"
+#include "sim/scenario.h"
+
+namespace gauntlet::controllers {
+
+struct ForagingSettings {
+  int robots = 0;
+  sim::Tick tick_limit = 0;
+  double nest_radius = 0.0;          // m
+  double food_radius = 0.0;          // m; for pictures, and part of the pick-up distance
+  double nest_food_distance = 0.0;   // m between the centres, which lie on the y axis, the nest below
+  double spawn_radius = 0.0;         // m around the nest
+  double camera_range = 0.0;         // m, half side of the square in which a robot sees the food
+  double communication_range = 0.0;  // m, of range-and-bearing
+  bool bodies_block_radio = false;
+  double pickup_distance = 0.0;  // m from the food's centre to a robot's
+  sim::Tick pickup = 0;
+  sim::Tick serving_interval = 0;
+  sim::Tick trapped_window = 0;  // a robot is trapped when it kept within trapped_radius for this long
+  double trapped_radius = 0.0;   // m around its mean position
+};
+
+sim::Vec2 NestOf(const ForagingSettings& settings);
+sim::Vec2 FoodOf(const ForagingSettings& settings);
+
+class ForagingScenario : public sim::Scenario {
+ public:
+  // `test_case` is valid for the requirements of the scenario; its number of robots and its spawn area
+  // override the settings. `seed` decides the start poses.
+  ForagingScenario(const sim::TestCase& test_case, const ForagingSettings& settings,
+                   const ForagerSettings& forager, std::uint64_t seed);
+
+  const sim::Arena& arena() const override { return arena_; }
+  sim::Tick tick_limit() const override { return settings_.tick_limit; }
+  std::span<const sim::Light> lights() const override { return {&food_light_, 1}; }
+  std::span<const sim::RadioBeacon> radio_beacons() const override { return {&nest_beacon_, 1}; }
+  double FloorGrey(const sim::Vec2& point) const override;
+  Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters& headquarters) override;
+  void Interact(const sim::Interaction& interaction) override;
+  bool Finished(const sim::Observer& observer) override;
+  sim::Outcome Evaluate(const sim::Observer& observer) override;
+
+ private:
+  bool InNest(const sim::Vec2& point) const;
+  void DropItems(const sim::Interaction& interaction);
+  void RecordStates(const sim::Interaction& interaction);
+  ForagingState StateOf(sim::RobotIndex robot, sim::Tick tick) const;
+  std::vector<sim::Vec2> BeaconsAt(const sim::Observer& observer, sim::Tick tick) const;
+  void FindFirstPath(const sim::Observer& observer);
+  bool Trapped(const sim::Observer& observer, sim::RobotIndex robot) const;
+  std::vector<sim::Annotation> Annotate(const sim::Observer& observer,
+                                        const std::vector<bool>& trapped) const;
+  void AnnotateStates(std::vector<sim::Annotation>& annotations) const;
+  std::vector<std::pair<std::string, double>> Metrics(const sim::Observer& observer, int trapped) const;
+
+  sim::Arena arena_;
+  ForagingSettings settings_;
+  ForagerSettings forager_;
+  std::uint64_t seed_;
+  ChainEnds ends_;
+  sim::Rectangle spawn_area_;
+  bool spawn_disc_;
+  sim::Light food_light_;
+  sim::RadioBeacon nest_beacon_;
+  FoodSource source_;
+
+  std::vector<std::uint8_t> states_;     // [tick * robots + robot], from tick 0
+  std::vector<sim::Tick> last_at_rest_;  // per robot: newest tick as a beacon or in the source's queue
+  std::vector<std::uint8_t> carrying_;   // per robot
+  std::vector<int> dropped_in_window_;   // items per kWindow
+  int taken_ = 0;
+  int dropped_ = 0;
+  int lost_items_ = 0;
+  sim::Tick first_item_ = -1;
+  sim::Tick first_path_ = -1;
+  std::vector<sim::Vec2> first_chain_;
+};
+
+}  // namespace gauntlet::controllers

@@ -1,0 +1,176 @@
+#include "controllers/foraging/foraging_scenario.h"
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "controllers/foraging/foraging_registry.h"
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "sim/simulation.h"
+#include "worker/run_executor.h"
+
+namespace gauntlet {
+namespace {
+
+using ::testing::StartsWith;
+
+sim::RunSpec Spec(const std::string& controller, std::uint64_t seed) {
+  sim::RunSpec spec;
+  spec.scenario = "foraging";
+  spec.controller = controller;
+  spec.seed = seed;
+  return spec;
+}
+
+double Metric(const sim::RunResult& result, std::string_view name) {
+  const auto found = std::find_if(result.metrics.begin(), result.metrics.end(),
+                                  [&](const auto& metric) { return metric.first == name; });
+  EXPECT_NE(found, result.metrics.end()) << name;
+  return found == result.metrics.end() ? 0.0 : found->second;
+}
+
+double SumOfMetrics(const sim::RunResult& result, std::string_view prefix) {
+  double sum = 0.0;
+  for (const auto& [name, value] : result.metrics) sum += name.starts_with(prefix) ? value : 0.0;
+  return sum;
+}
+
+sim::TestCase RandomCase(std::uint32_t index) {
+  const auto parameters = controllers::ResolveParameters(controllers::ForagingScenarioInfo().parameters, {});
+  sim::TestCase test_case;
+  const auto requirements = controllers::ForagingScenarioInfo().requirements(*parameters, test_case);
+  sim::RandomStream random(77, sim::StreamPurpose::kTest, index);
+  sim::IncrementalValidity validity(test_case, requirements);
+  for (int tries = 0; tries < 500 && test_case.obstacles.size() < 8; ++tries) {
+    sim::ObstacleGene gene;
+    gene.x = random.Uniform(-3.0, 3.0);
+    gene.y = random.Uniform(-3.0, 3.0);
+    gene.length = random.Uniform(0.4, 2.0);
+    gene.width = random.Uniform(0.1, 0.4);
+    gene.orientation_deg = random.Below(360);
+    if (!validity.TryAppend(gene)) test_case.obstacles.push_back(gene);
+  }
+  return test_case;
+}
+
+// Whatever the arena and the variant: every item that was taken is in the nest or in a gripper, once.
+TEST(ForagingScenario, NoItemAppearsOrVanishesInRandomArenas) {
+  double taken = 0.0;
+  std::uint32_t index = 0;
+  for (const controllers::ControllerInfo& controller : controllers::ForagingControllerInfos()) {
+    for (int i = 0; i < 4; ++i, ++index) {
+      sim::RunSpec spec = Spec(std::string(controller.name), 100 + index);
+      spec.test_case = RandomCase(index);
+      const sim::RunResult result = worker::Run(spec);
+      SCOPED_TRACE(std::string(controller.name) + ", case " + std::to_string(index));
+      ASSERT_EQ(result.verdict, sim::Verdict::kCompleted) << result.message;
+      EXPECT_EQ(result.ticks, 8000);
+      EXPECT_EQ(Metric(result, "food_taken"),
+                result.fitness + Metric(result, "food_carried") + Metric(result, "food_lost"));
+      EXPECT_EQ(Metric(result, "food_lost"), 0.0);
+      EXPECT_EQ(SumOfMetrics(result, "food_window_"), result.fitness);
+      EXPECT_NEAR(SumOfMetrics(result, "mean_robots_"), 20.0, 1e-9);
+      EXPECT_EQ(Metric(result, "condition_2"), result.fitness == 0.0 ? 1.0 : 0.0);
+      EXPECT_EQ(Metric(result, "first_item_time") < 0.0, result.fitness == 0.0);
+      EXPECT_LE(Metric(result, "food_taken"), 14.0) << "one item per 60 s";
+      taken += Metric(result, "food_taken");
+    }
+  }
+  EXPECT_GT(taken, 16.0);
+}
+
+TEST(ForagingScenario, RobotsStartAroundTheNest) {
+  const sim::RunResult result = worker::Run(Spec("foraging", 3));
+  ASSERT_EQ(result.robots.size(), 20u);
+  for (const sim::RobotSummary& robot : result.robots) {
+    EXPECT_LE((robot.start.position - sim::Vec2(0.0, -2.0)).norm(), 0.8);
+  }
+}
+
+TEST(ForagingScenario, SaysWhyItIsATotalFailure) {
+  sim::RunSpec spec = Spec("foraging", 1);
+  spec.scenario_parameters["time_limit"] = 5.0;
+  const sim::RunResult early = worker::Run(spec);
+  EXPECT_EQ(early.fitness, 0.0);
+  EXPECT_TRUE(early.failure.total);
+  EXPECT_EQ(early.failure.type, 3);
+  EXPECT_EQ(early.failure.label, "no path, no food");
+  spec.controller = "foraging-basic";
+  const sim::RunResult basic = worker::Run(spec);
+  EXPECT_EQ(basic.failure.type, 2) << "the basic algorithm builds no paths";
+  EXPECT_EQ(Metric(basic, "condition_1"), 0.0);
+}
+
+TEST(ForagingScenario, ShowsNestAndFood) {
+  const sim::RunResult result = worker::Run(Spec("foraging", 1));
+  ASSERT_GE(result.annotations.size(), 2u);
+  EXPECT_EQ(result.annotations[0].label, "nest");
+  EXPECT_EQ(result.annotations[0].points[0], sim::Vec2(0.0, -2.0));
+  EXPECT_EQ(result.annotations[1].label, "food");
+  EXPECT_EQ(result.annotations[1].points[0], sim::Vec2(0.0, 2.0));
+}
+
+TEST(ForagingScenario, RunsAgainBitByBit) {
+  const sim::RunSpec spec = [] {
+    sim::RunSpec s = Spec("foraging-improved", 9);
+    s.test_case = RandomCase(5);
+    return s;
+  }();
+  EXPECT_EQ(worker::Run(spec).hash, worker::Run(spec).hash);
+}
+
+// --- Bad input ---
+
+std::string RefusalOf(const sim::RunSpec& spec) {
+  const sim::RunResult result = worker::Run(spec);
+  EXPECT_EQ(result.verdict, sim::Verdict::kRefused);
+  return result.message;
+}
+
+TEST(ForagingRefusals, ABlockedNestOrFoodIsNamed) {
+  sim::RunSpec spec = Spec("foraging", 1);
+  spec.test_case.obstacles = {{0.1, -2.1, 0.5, 0.3, 20.0}};
+  EXPECT_THAT(RefusalOf(spec), StartsWith("clearance: "));
+  spec.test_case.obstacles = {{0.0, 2.0, 0.5, 0.3, 20.0}};
+  EXPECT_THAT(RefusalOf(spec), StartsWith("clearance: "));
+  spec.scenario_parameters["clearance"] = 0.0;
+  EXPECT_THAT(RefusalOf(spec), StartsWith("goal-blocked: "));
+  spec.test_case.obstacles = {{0.0, -2.0, 0.5, 0.3, 20.0}};
+  EXPECT_THAT(RefusalOf(spec), StartsWith("start-blocked: "));
+  spec.test_case.obstacles = {{0.0, 0.0, 7.0, 0.2, 0.0}};
+  EXPECT_THAT(RefusalOf(spec), StartsWith("no-path: "));
+}
+
+TEST(ForagingRefusals, PlacesOutsideTheArenaAreNamed) {
+  sim::RunSpec spec = Spec("foraging", 1);
+  spec.scenario_parameters["nest_food_distance"] = 8.0;
+  EXPECT_THAT(RefusalOf(spec), StartsWith("start-blocked: "));
+}
+
+TEST(ForagingRefusals, CommunicationRangeOfZeroAndNegativeDecayAreOutOfRange) {
+  sim::RunSpec spec = Spec("foraging", 1);
+  spec.scenario_parameters["communication_range"] = 0.0;
+  EXPECT_THAT(RefusalOf(spec), StartsWith("parameter 'communication_range' = 0 m is out of range"));
+  spec = Spec("foraging", 1);
+  spec.controller_parameters["pheromone_decay_time"] = -300.0;
+  EXPECT_THAT(RefusalOf(spec), StartsWith("parameter 'pheromone_decay_time' = -300 s is out of range"));
+}
+
+TEST(ForagingRefusals, ASwarmThatDoesNotFitIsNamed) {
+  sim::RunSpec spec = Spec("foraging", 1);
+  spec.scenario_parameters = {{"robots", 100.0}, {"spawn_radius", 0.4}};
+  EXPECT_THAT(RefusalOf(spec), StartsWith("no-room-to-spawn: "));
+  spec.test_case.robots = 101;
+  EXPECT_THAT(RefusalOf(spec), StartsWith("swarm-size: 101 robots"));
+}
+
+TEST(ForagingRefusals, AnUnknownVariantIsNamedWithTheNearestKnownOne) {
+  EXPECT_EQ(RefusalOf(Spec("foraging-improve", 1)),
+            "unknown controller 'foraging-improve'; did you mean 'foraging-improved'?");
+  EXPECT_THAT(RefusalOf(Spec("flocking", 1)),
+              StartsWith("controller 'flocking' is written for the scenario"));
+}
+
+}  // namespace
+}  // namespace gauntlet
