@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "sim/random/", "sim/run_spec.h", "sim/run_result.h", "sim/observer.h",
                    "sim/robot/foot_bot.h", "controllers/registry.h"},
                   {"box2d"}},
-        LayerRule{"slurm", {"slurm/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
+        LayerRule{"slurm", {"slurm/", "sim/base/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
     [](const testing::TestParamInfo<LayerRule>& parameter) { return parameter.param.layer; });
 
 // Libraries that stay behind one door.

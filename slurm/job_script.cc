@@ -1,0 +1,132 @@
+#include "slurm/job_script.h"
+
+#include <algorithm>
+
+namespace gauntlet::slurm {
+namespace {
+
+using Values = std::map<std::string, std::string, std::less<>>;
+
+bool IsNameCharacter(char c) {
+  return (c >= 'A' && c <= 'Z') || c == '_';
+}
+
+// Replaces each @NAME@ that is known; "@" in other places (--signal=B:TERM@120) stands.
+Result<std::string> Fill(std::string_view text, const Values& values) {
+  std::string result;
+  std::map<std::string_view, bool> used;
+  for (const auto& [name, value] : values) used[name] = false;
+  while (!text.empty()) {
+    const std::size_t at = text.find('@');
+    result += text.substr(0, at);
+    if (at == std::string_view::npos) break;
+    text.remove_prefix(at + 1);
+    const auto end =
+        static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), IsNameCharacter) - text.begin());
+    const std::string_view name = text.substr(0, end);
+    if (end == 0 || end == text.size() || text[end] != '@') {
+      result += '@';
+      continue;
+    }
+    const auto value = values.find(name);
+    if (value == values.end())
+      return InvalidInput("the job template names @" + std::string(name) + "@, which is not known");
+    result += value->second;
+    used[value->first] = true;
+    text.remove_prefix(end + 1);
+  }
+  for (const auto& [name, was_used] : used) {
+    if (!was_used) return InvalidInput("the job template lacks @" + std::string(name) + "@");
+  }
+  return result;
+}
+
+Result<std::string> Directives(const JobRequest& request) {
+  std::string lines;
+  const auto add = [&](const std::string& option, const std::string& value) {
+    if (!value.empty()) lines += "#SBATCH --" + option + "=" + value + "\n";
+  };
+  add("partition", request.partition);
+  add("account", request.account);
+  add("qos", request.qos);
+  add("constraint", request.constraint);
+  add("mem", request.memory);
+  for (const std::string& option : request.extra) {
+    if (!option.starts_with("-"))
+      return InvalidInput("slurm.extra has '" + option +
+                          "': give sbatch options as on its command line, --exclusive");
+    lines += "#SBATCH " + option + "\n";
+  }
+  if (!lines.empty()) lines.pop_back();
+  return lines;
+}
+
+Status CheckOneLine(const Values& values) {
+  for (const auto& [name, value] : values) {
+    if (name != "SETUP" && name != "DIRECTIVES" && value.find('\n') != std::string::npos)
+      return InvalidInput("a job script cannot hold a line break: '" + value + "'");
+  }
+  return Ok{};
+}
+
+Status CheckRequest(const JobRequest& request) {
+  const auto broken = [](const std::string& text) { return text.find('\n') != std::string::npos; };
+  for (const std::string* value : {&request.partition, &request.account, &request.qos, &request.constraint,
+                                   &request.memory, &request.time_limit}) {
+    if (broken(*value)) return InvalidInput("a Slurm option cannot hold a line break: '" + *value + "'");
+  }
+  if (std::any_of(request.extra.begin(), request.extra.end(), broken))
+    return InvalidInput("slurm.extra: an option cannot hold a line break");
+  return Ok{};
+}
+
+Result<std::string> Script(std::string_view job_template, Values values, const JobRequest& request) {
+  if (const Status checked = CheckRequest(request); !checked) return checked.error();
+  const Result<std::string> directives = Directives(request);
+  if (!directives) return directives.error();
+  values["DIRECTIVES"] = *directives;
+  values["SETUP"] = request.setup;
+  values["TIME"] = request.time_limit;
+  if (const Status checked = CheckOneLine(values); !checked) return checked.error();
+  return Fill(job_template, values);
+}
+
+}  // namespace
+
+std::string ShellQuoted(std::string_view text) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=+,%@";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) return std::string(text);
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') {
+      quoted += "'\\''";
+    } else {
+      quoted += c;
+    }
+  }
+  return quoted + "'";
+}
+
+Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob& job,
+                                 const JobRequest& request) {
+  // In the log's name %j is the job's id, %A_%a an array's and the task's; it is not for the shell.
+  return Script(job_template,
+                {{"JOB_NAME", job.name},
+                 {"CPUS", std::to_string(job.slots)},
+                 {"SLOTS", std::to_string(job.slots)},
+                 {"LOG", job.log_directory + "/worker-%j.log"},
+                 {"ACCESS", ShellQuoted(job.access_file)},
+                 {"WORKER", job.worker}},
+                request);
+}
+
+Result<std::string> MasterScript(std::string_view job_template, const MasterJob& job,
+                                 const JobRequest& request) {
+  std::string command;
+  for (const std::string& argument : job.command)
+    command += (command.empty() ? "" : " ") + ShellQuoted(argument);
+  return Script(job_template, {{"JOB_NAME", job.name}, {"LOG", job.log_file}, {"MASTER", command}}, request);
+}
+
+}  // namespace gauntlet::slurm

@@ -1,0 +1,53 @@
+// The batch scripts that are handed to sbatch.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/base/result.h"
+
+namespace gauntlet::slurm {
+
+// What a site or a user wants of their jobs; empty = Slurm's default.
+struct JobRequest {
+  std::string partition;
+  std::string account;
+  std::string qos;
+  std::string constraint;
+  std::string memory;                   // per job, "2G"
+  std::string time_limit = "01:00:00";  // of one allocation
+  std::vector<std::string> extra;       // further sbatch options, "--exclusive"
+  std::string setup;                    // shell lines before the program, "module load zeromq"
+};
+
+struct WorkerJob {
+  std::string name;           // of the job
+  std::string worker;         // command line of gauntlet-worker, already quoted where it needs to be
+  std::string access_file;    // absolute
+  std::string log_directory;  // absolute
+  int slots = 1;
+};
+
+struct MasterJob {
+  std::string name;
+  std::vector<std::string> command;  // arguments
+  std::string log_file;              // absolute
+};
+
+// The shipped templates slurm/worker.sbatch and slurm/master.sbatch.
+extern const std::string_view kWorkerTemplate;
+extern const std::string_view kMasterTemplate;
+
+// Errors: a value that cannot stand in a directive (a line break), a template without a name that is needed
+// or with one that is not known.
+Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob& job,
+                                 const JobRequest& request);
+Result<std::string> MasterScript(std::string_view job_template, const MasterJob& job,
+                                 const JobRequest& request);
+
+// In single quotes where the shell would change it.
+std::string ShellQuoted(std::string_view text);
+
+}  // namespace gauntlet::slurm

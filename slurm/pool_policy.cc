@@ -1,0 +1,228 @@
+#include "slurm/pool_policy.h"
+
+#include <algorithm>
+
+namespace gauntlet::slurm {
+namespace {
+
+using std::chrono::duration_cast;
+using std::chrono::seconds;
+
+// A job that squeue has not shown this often in a row is gone: once may be a hiccup of a controller that has
+// just been restarted.
+constexpr int kMissingBeforeEnd = 2;
+
+std::string JobName(const Allocation& allocation) {
+  std::string name = "job " + allocation.job;
+  if (!allocation.nodes.empty()) name += " on " + allocation.nodes;
+  return name;
+}
+
+}  // namespace
+
+void PoolPolicy::Submitted(const std::string& job, TimePoint now) {
+  Entry entry;
+  entry.allocation.job = job;
+  entry.allocation.state = "PENDING";
+  entries_.try_emplace(job, std::move(entry));
+  query_error_.clear();
+  // Not seen by a query that was under way.
+  last_query_ = now;
+}
+
+void PoolPolicy::SubmissionFailed(const std::string& message, TimePoint now) {
+  Entry none;
+  none.allocation.job = "(none)";
+  StartFailed(none, message, now);
+}
+
+void PoolPolicy::Adopt(const JobStatus& job, TimePoint now) {
+  Submitted(job.id, now);
+  Entry& entry = entries_.at(job.id);
+  entry.allocation.phase = job.phase;
+  entry.allocation.state = job.state;
+  entry.allocation.reason = job.reason;
+  entry.allocation.nodes = job.nodes;
+  if (job.phase == JobPhase::kRunning) entry.allocation.running_since = now;
+}
+
+void PoolPolicy::Observed(const std::vector<JobStatus>& jobs, TimePoint now) {
+  query_running_ = false;
+  query_error_.clear();
+  for (auto& [id, entry] : entries_) ++entry.missing;
+  for (const JobStatus& job : jobs) {
+    const auto found = entries_.find(job.id);
+    if (found == entries_.end()) continue;
+    Entry& entry = found->second;
+    entry.missing = 0;
+    Allocation& allocation = entry.allocation;
+    allocation.phase = job.phase;
+    allocation.state = job.state;
+    allocation.reason = job.reason;
+    if (!job.nodes.empty()) allocation.nodes = job.nodes;
+    if (job.phase == JobPhase::kRunning && !allocation.running_since) allocation.running_since = now;
+  }
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const auto next = std::next(entry);
+    if (entry->second.allocation.phase == JobPhase::kEnded || entry->second.missing >= kMissingBeforeEnd)
+      End(entry, now);
+    entry = next;
+  }
+}
+
+void PoolPolicy::QueryFailed(const std::string& message, TimePoint now) {
+  query_running_ = false;
+  query_error_ = message;
+  last_query_ = now;
+}
+
+void PoolPolicy::Workers(const std::string& job, int connected, int busy, TimePoint now) {
+  const auto found = entries_.find(job);
+  if (found == entries_.end()) return;
+  Entry& entry = found->second;
+  Allocation& allocation = entry.allocation;
+  const int before = allocation.workers;
+  allocation.workers = connected;
+  if (connected > 0) {
+    // A hello is faster than squeue.
+    if (!allocation.running_since) allocation.running_since = now;
+    if (allocation.phase == JobPhase::kQueued) allocation.phase = JobPhase::kRunning;
+    if (!allocation.first_hello) {
+      allocation.first_hello = now;
+      failures_in_a_row_ = 0;
+      not_before_.reset();
+      failures_of_node_.erase(allocation.nodes);
+      banned_.erase(allocation.nodes);
+    }
+  } else if (before > 0 && !allocation.cancelled && now - *allocation.first_hello < limits_.early_loss) {
+    StartFailed(entry, JobName(allocation) + ": its worker was lost soon after its start", now);
+  }
+  if (busy > 0) {
+    allocation.idle_since.reset();
+  } else if (!allocation.idle_since && connected > 0) {
+    allocation.idle_since = now;
+  }
+}
+
+void PoolPolicy::End(std::map<std::string, Entry>::iterator entry, TimePoint now) {
+  const Allocation& allocation = entry->second.allocation;
+  if (!allocation.cancelled && !allocation.first_hello) {
+    std::string how = allocation.state;
+    if (!allocation.reason.empty()) how += ", " + allocation.reason;
+    StartFailed(entry->second, JobName(allocation) + " ended (" + how + ") before its worker said hello",
+                now);
+  }
+  entries_.erase(entry);
+}
+
+void PoolPolicy::StartFailed(Entry& entry, const std::string& what, TimePoint now) {
+  last_failure_ = what;
+  if (entry.counted) return;
+  entry.counted = true;
+  ++failures_in_a_row_;
+  constexpr int kMostDoublings = 20;
+  const auto back_off = limits_.first_back_off * (1 << std::min(failures_in_a_row_ - 1, kMostDoublings));
+  not_before_ = now + std::min<seconds>(back_off, limits_.longest_back_off);
+  const std::string& node = entry.allocation.nodes;
+  if (!node.empty() && ++failures_of_node_[node] >= limits_.failures_before_ban) banned_.insert(node);
+}
+
+void PoolPolicy::CancelLost(TimePoint now, Decisions& decisions) {
+  for (auto& [job, entry] : entries_) {
+    Allocation& allocation = entry.allocation;
+    if (allocation.cancelled) continue;
+    if (stopping_) {
+      allocation.cancelled = true;
+      decisions.cancel.push_back(job);
+    } else if (allocation.phase == JobPhase::kQueued && NeverStarts(allocation.reason)) {
+      StartFailed(entry, "job " + job + " would never start: " + allocation.reason, now);
+      allocation.cancelled = true;
+      decisions.cancel.push_back(job);
+    } else if (allocation.running_since && !allocation.first_hello &&
+               now - *allocation.running_since >= limits_.start_timeout) {
+      StartFailed(entry,
+                  JobName(allocation) + " has run for " +
+                      std::to_string(duration_cast<seconds>(now - *allocation.running_since).count()) +
+                      " s without a word from its worker",
+                  now);
+      allocation.cancelled = true;
+      decisions.cancel.push_back(job);
+    }
+  }
+}
+
+void PoolPolicy::CancelIdle(const Demand& demand, TimePoint now, Decisions& decisions) {
+  for (auto& [job, entry] : entries_) {
+    Allocation& allocation = entry.allocation;
+    if (allocation.cancelled) continue;
+    const bool idle_too_long = allocation.idle_since && now - *allocation.idle_since >= limits_.idle_timeout;
+    const bool not_wanted = allocation.phase == JobPhase::kQueued && demand.unfinished_runs == 0;
+    if (!idle_too_long && !not_wanted) continue;
+    allocation.cancelled = true;
+    decisions.cancel.push_back(job);
+  }
+}
+
+Decisions PoolPolicy::Decide(const Demand& demand, TimePoint now) {
+  Decisions decisions;
+  CancelLost(now, decisions);
+  CancelIdle(demand, now, decisions);
+
+  if (!entries_.empty() && !query_running_ &&
+      (!last_query_ || now - *last_query_ >= limits_.query_interval)) {
+    decisions.query = true;
+    query_running_ = true;
+    last_query_ = now;
+  }
+  if (stopping_ || (not_before_ && now < *not_before_)) return decisions;
+
+  int living = 0;
+  int queued = 0;
+  int unproven = 0;
+  for (const auto& [job, entry] : entries_) {
+    if (entry.allocation.cancelled || entry.allocation.phase == JobPhase::kEnding) continue;
+    ++living;
+    if (entry.allocation.phase == JobPhase::kQueued) ++queued;
+    if (!entry.allocation.first_hello) ++unproven;
+  }
+  const int per_allocation = std::max(1, limits_.workers_per_allocation);
+  const int useful = (demand.unfinished_runs + per_allocation - 1) / per_allocation;
+  const int wanted = std::min(useful, limits_.max_allocations) - living;
+  decisions.submit = std::clamp(wanted, 0, std::max(0, limits_.max_queued - queued));
+  // After a failed start one allocation at a time shows whether the cause is gone.
+  if (failures_in_a_row_ > 0) decisions.submit = unproven == 0 ? std::min(decisions.submit, 1) : 0;
+  if (decisions.submit > 0) decisions.exclude_nodes.assign(banned_.begin(), banned_.end());
+  return decisions;
+}
+
+std::vector<Allocation> PoolPolicy::allocations() const {
+  std::vector<Allocation> result;
+  for (const auto& [job, entry] : entries_) result.push_back(entry.allocation);
+  return result;
+}
+
+std::string PoolPolicy::Trouble(TimePoint now) const {
+  if (!query_error_.empty()) return "Slurm does not answer: " + query_error_;
+  if (failures_in_a_row_ > 0) {
+    std::string text = std::to_string(failures_in_a_row_) +
+                       (failures_in_a_row_ == 1 ? " start has failed: " : " starts in a row have failed: ") +
+                       last_failure_;
+    if (not_before_ && now < *not_before_) {
+      text += "; the next try is in " +
+              std::to_string(duration_cast<seconds>(*not_before_ - now).count() + 1) + " s";
+    }
+    return text;
+  }
+  int connected = 0;
+  std::string waiting;
+  for (const auto& [job, entry] : entries_) {
+    connected += entry.allocation.workers;
+    if (entry.allocation.phase == JobPhase::kQueued && !entry.allocation.cancelled && waiting.empty()) {
+      waiting = "job " + job + " waits in the queue";
+      if (!entry.allocation.reason.empty()) waiting += " (" + entry.allocation.reason + ")";
+    }
+  }
+  return connected == 0 ? waiting : "";
+}
+
+}  // namespace gauntlet::slurm

@@ -1,0 +1,112 @@
+// How many worker allocations a campaign should have in Slurm, and which of them should go: decisions only.
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "slurm/job_status.h"
+
+namespace gauntlet::slurm {
+
+using TimePoint = std::chrono::steady_clock::time_point;
+using Duration = std::chrono::steady_clock::duration;
+
+struct PoolLimits {
+  int max_allocations = 8;                  // waiting and running together
+  int max_queued = 2;                       // waiting in the queue at one time (the backlog)
+  int workers_per_allocation = 1;           // runs simulated at the same time in one allocation
+  std::chrono::seconds idle_timeout{300};   // without a run to do, an allocation is given back after this
+  std::chrono::seconds start_timeout{120};  // from the job's start to its worker's hello
+  std::chrono::seconds early_loss{60};      // a worker lost sooner than this after its hello failed to start
+  std::chrono::seconds query_interval{10};  // at most one squeue in this time
+  std::chrono::seconds first_back_off{15};  // after a failed start; doubled with each further one in a row
+  std::chrono::seconds longest_back_off{900};
+  int failures_before_ban = 2;  // of starts on one node, after which the node is left out
+};
+
+// What the search could use.
+struct Demand {
+  int unfinished_runs = 0;  // asked for and not finished, leased or not
+};
+
+struct Decisions {
+  int submit = 0;                          // allocations to ask for
+  std::vector<std::string> cancel;         // job ids
+  std::vector<std::string> exclude_nodes;  // of what is submitted now
+  bool query = false;                      // ask squeue
+};
+
+// One allocation as the pool sees it.
+struct Allocation {
+  std::string job;
+  JobPhase phase = JobPhase::kQueued;
+  std::string state;   // Slurm's word
+  std::string reason;  // Slurm's word
+  std::string nodes;
+  int workers = 0;                         // connected now
+  std::optional<TimePoint> running_since;  // first seen running
+  std::optional<TimePoint> first_hello;    // of its first worker
+  std::optional<TimePoint> idle_since;     // none of its workers has had a run since
+  bool cancelled = false;                  // by us
+};
+
+// Fed with events and a clock, asked for decisions; pure, so that years of a cluster's moods run in a test in
+// milliseconds. An allocation counts as coming capacity until its worker connects, it ends or its start times
+// out. A start has failed when the job ended, or ran for `start_timeout`, without a worker's hello, or when
+// its worker was lost within `early_loss` of it; failures in a row delay the next submission, and a node with
+// several is left out until a worker has said hello from it. Thread-safety: one thread.
+class PoolPolicy {
+ public:
+  explicit PoolPolicy(const PoolLimits& limits) : limits_(limits) {}
+
+  void Submitted(const std::string& job, TimePoint now);
+  // Slurm refused, or did not answer.
+  void SubmissionFailed(const std::string& message, TimePoint now);
+  // A job of an earlier master that is still there.
+  void Adopt(const JobStatus& job, TimePoint now);
+  // All jobs of this pool that Slurm knows. One that is missing twice in a row has ended.
+  void Observed(const std::vector<JobStatus>& jobs, TimePoint now);
+  // Slurm did not answer: what was known stands.
+  void QueryFailed(const std::string& message, TimePoint now);
+  // How many workers of the allocation are connected, and how many of them have a run.
+  void Workers(const std::string& job, int connected, int busy, TimePoint now);
+  // From now on nothing is submitted, and everything is cancelled.
+  void Stop() { stopping_ = true; }
+
+  Decisions Decide(const Demand& demand, TimePoint now);
+
+  std::vector<Allocation> allocations() const;
+  // Why there are fewer workers than could be used, in a sentence with Slurm's own words; "" when all is
+  // well.
+  std::string Trouble(TimePoint now) const;
+
+ private:
+  struct Entry {
+    Allocation allocation;
+    int missing = 0;       // queries in a row that did not show it
+    bool counted = false;  // its start has been judged
+  };
+
+  void End(std::map<std::string, Entry>::iterator entry, TimePoint now);
+  void StartFailed(Entry& entry, const std::string& what, TimePoint now);
+  void CancelLost(TimePoint now, Decisions& decisions);
+  void CancelIdle(const Demand& demand, TimePoint now, Decisions& decisions);
+
+  PoolLimits limits_;
+  std::map<std::string, Entry> entries_;  // by job id
+  std::map<std::string, int> failures_of_node_;
+  std::set<std::string> banned_;
+  int failures_in_a_row_ = 0;
+  std::string last_failure_;
+  std::string query_error_;
+  std::optional<TimePoint> not_before_;  // back-off
+  std::optional<TimePoint> last_query_;
+  bool query_running_ = false;
+  bool stopping_ = false;
+};
+
+}  // namespace gauntlet::slurm

@@ -1,0 +1,183 @@
+#include "slurm/process_call.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+extern char** environ;
+
+namespace gauntlet::slurm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostOutput = std::size_t{16} << 20;
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() { Close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  void Reset(int fd) {
+    Close();
+    fd_ = fd;
+  }
+  void Close() {
+    if (fd_ >= 0) close(fd_);
+    fd_ = -1;
+  }
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+struct Pipe {
+  Descriptor read;
+  Descriptor write;
+  bool Open() {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) return false;
+    read.Reset(ends[0]);
+    write.Reset(ends[1]);
+    return true;
+  }
+};
+
+std::vector<char*> CleanEnvironment() {
+  std::vector<char*> result;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text = *entry;
+    const bool inherited = text.starts_with("SLURM_") || text.starts_with("SBATCH_");
+    if (!inherited || text.starts_with("SLURM_CONF=")) result.push_back(*entry);
+  }
+  result.push_back(nullptr);
+  return result;
+}
+
+Error Failure(const std::string& program, const std::string& what) {
+  return {ErrorKind::kIo, "cannot call " + program + ": " + what};
+}
+
+// False at its end.
+bool ReadSome(int fd, std::string& into) {
+  std::array<char, 65536> buffer{};
+  const ssize_t count = read(fd, buffer.data(), buffer.size());
+  if (count < 0) return errno == EINTR || errno == EAGAIN;
+  if (count == 0) return false;
+  into.append(buffer.data(),
+              std::min(static_cast<std::size_t>(count), kMostOutput - std::min(kMostOutput, into.size())));
+  return true;
+}
+
+// False when all is written or nobody reads.
+bool WriteSome(int fd, std::string_view& rest) {
+  const ssize_t count = write(fd, rest.data(), rest.size());
+  if (count < 0) return errno == EINTR || errno == EAGAIN;
+  rest.remove_prefix(static_cast<std::size_t>(count));
+  return !rest.empty();
+}
+
+// Serves the three pipes until both outputs are at their end. False at the deadline.
+bool Converse(Pipe& in, Pipe& out, Pipe& err, std::string_view input, CallOutput& result,
+              Clock::time_point deadline) {
+  if (input.empty()) in.write.Close();
+  while (out.read.get() >= 0 || err.read.get() >= 0) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return false;
+    std::array<pollfd, 3> waiting = {pollfd{in.write.get(), POLLOUT, 0}, pollfd{out.read.get(), POLLIN, 0},
+                                     pollfd{err.read.get(), POLLIN, 0}};
+    if (poll(waiting.data(), waiting.size(), static_cast<int>(std::min<long>(left, 1000))) < 0 &&
+        errno != EINTR)
+      return false;
+    if (waiting[0].revents != 0 && !WriteSome(in.write.get(), input)) in.write.Close();
+    if (waiting[1].revents != 0 && !ReadSome(out.read.get(), result.out)) out.read.Close();
+    if (waiting[2].revents != 0 && !ReadSome(err.read.get(), result.err)) err.read.Close();
+  }
+  return true;
+}
+
+// Waits for the child until the deadline, then kills it. False when it had to be killed.
+bool Reap(pid_t child, Clock::time_point deadline, int& status) {
+  constexpr int kPollMilliseconds = 5;
+  while (true) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child || (ended < 0 && errno != EINTR)) return true;
+    if (Clock::now() >= deadline) break;
+    poll(nullptr, 0, kPollMilliseconds);
+  }
+  kill(child, SIGKILL);
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  return false;
+}
+
+}  // namespace
+
+Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, const std::string& input,
+                               std::chrono::milliseconds deadline) {
+  const std::string& program = arguments.at(0);
+  const Clock::time_point end = Clock::now() + deadline;
+  Pipe in;
+  Pipe out;
+  Pipe err;
+  if (!in.Open() || !out.Open() || !err.Open()) return Failure(program, std::strerror(errno));
+  fcntl(in.write.get(), F_SETFL, O_NONBLOCK);
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, in.read.get(), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, out.write.get(), STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, err.write.get(), STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  sigset_t defaults;
+  sigemptyset(&defaults);
+  sigaddset(&defaults, SIGPIPE);
+  sigaddset(&defaults, SIGINT);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  // A group of its own: Ctrl-C is the master's to handle.
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
+  std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  std::vector<char*> environment = CleanEnvironment();
+  pid_t child = -1;
+  const int failed =
+      posix_spawnp(&child, program.c_str(), &actions, &attributes, argv.data(), environment.data());
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  if (failed == ENOENT)
+    return Error{ErrorKind::kNotFound,
+                 "there is no " + program + " in PATH: is Slurm installed on this machine?"};
+  if (failed != 0) return Failure(program, std::strerror(failed));
+  in.read.Close();
+  out.write.Close();
+  err.write.Close();
+
+  CallOutput result;
+  const bool spoken = Converse(in, out, err, input, result, end);
+  int status = 0;
+  const bool ended = Reap(child, spoken ? end : Clock::now(), status);
+  if (!spoken || !ended)
+    return Failure(program, "no answer within " + std::to_string(deadline.count()) + " ms");
+  constexpr int kSignalBase = 128;
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : kSignalBase + WTERMSIG(status);
+  return result;
+}
+
+}  // namespace gauntlet::slurm

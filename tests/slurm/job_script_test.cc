@@ -1,0 +1,78 @@
+#include "slurm/job_script.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace gauntlet::slurm {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+WorkerJob AWorkerJob() {
+  return {.name = "gauntlet-ab12-w1",
+          .worker = "/opt/gauntlet/gauntlet-worker",
+          .access_file = "/work/my campaign/access.json",
+          .log_directory = "/work/my campaign/log",
+          .slots = 4};
+}
+
+TEST(WorkerScript, SaysWhatTheSiteAsksFor) {
+  JobRequest request;
+  request.partition = "main";
+  request.account = "swarm";
+  request.memory = "2G";
+  request.time_limit = "00:30:00";
+  request.extra = {"--exclusive", "--mail-type=FAIL"};
+  request.setup = "module load zeromq";
+  const Result<std::string> script = WorkerScript(kWorkerTemplate, AWorkerJob(), request);
+  ASSERT_TRUE(script.ok()) << script.error().message;
+  EXPECT_THAT(*script, testing::StartsWith("#!/bin/bash\n"));
+  for (const char* line :
+       {"#SBATCH --job-name=gauntlet-ab12-w1\n", "--cpus-per-task=4\n", "#SBATCH --time=00:30:00\n",
+        "#SBATCH --no-requeue\n", "#SBATCH --partition=main\n", "#SBATCH --account=swarm\n",
+        "#SBATCH --mem=2G\n", "#SBATCH --exclusive\n", "#SBATCH --mail-type=FAIL\n", "\nmodule load zeromq\n",
+        "#SBATCH --output=\"/work/my campaign/log/worker-%j.log\"\n",
+        "--access '/work/my campaign/access.json'"})
+    EXPECT_THAT(*script, HasSubstr(line));
+  EXPECT_THAT(*script, Not(HasSubstr("--qos"))) << "not asked for";
+  EXPECT_THAT(*script, Not(testing::ContainsRegex("@[A-Z]+@")));
+}
+
+TEST(MasterScript, QuotesItsCommand) {
+  const Result<std::string> script =
+      MasterScript(kMasterTemplate,
+                   {.name = "m", .command = {"/opt/g", "resume", "it's here"}, .log_file = "/l/m.log"}, {});
+  ASSERT_TRUE(script.ok());
+  EXPECT_THAT(*script, HasSubstr("exec /opt/g resume 'it'\\''s here'\n"));
+  EXPECT_THAT(*script, HasSubstr("#SBATCH --requeue --open-mode=append\n"));
+}
+
+TEST(WorkerScript, RefusesWhatWouldSmuggleInALine) {
+  JobRequest request;
+  request.account = "swarm\n#SBATCH --nodes=100";
+  const Result<std::string> script = WorkerScript(kWorkerTemplate, AWorkerJob(), request);
+  ASSERT_FALSE(script.ok());
+  EXPECT_THAT(script.error().message, HasSubstr("line break"));
+  WorkerJob job = AWorkerJob();
+  job.name = "a\nb";
+  EXPECT_FALSE(WorkerScript(kWorkerTemplate, job, {}).ok());
+}
+
+TEST(WorkerScript, NamesWhatAnEditedTemplateLacksOrInvents) {
+  Result<std::string> script = WorkerScript("#!/bin/bash\nexec @WORKER@", AWorkerJob(), {});
+  ASSERT_FALSE(script.ok());
+  EXPECT_THAT(script.error().message, HasSubstr("lacks @ACCESS@"));
+  script = WorkerScript("@NODES@", AWorkerJob(), {});
+  ASSERT_FALSE(script.ok());
+  EXPECT_THAT(script.error().message, HasSubstr("@NODES@"));
+}
+
+TEST(WorkerScript, RefusesAnExtraThatIsNoOption) {
+  JobRequest request;
+  request.extra = {"exclusive"};
+  EXPECT_FALSE(WorkerScript(kWorkerTemplate, AWorkerJob(), request).ok());
+}
+
+}  // namespace
+}  // namespace gauntlet::slurm
