@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <string>
 #include <vector>
 
 #include "master/dispatch/clock.h"
@@ -10,6 +11,16 @@
 #include "sim/base/result.h"
 
 namespace gauntlet::master {
+
+// What the master knows of its workers and its work, for pools that grow and shrink.
+struct PoolView {
+  struct Worker {
+    std::string allocation;  // as the worker was told at its start, "" for none
+    bool busy = false;       // has a lease
+  };
+  int unfinished_runs = 0;
+  std::vector<Worker> workers;  // connected ones
+};
 
 // Thread-safety: one thread.
 class WorkerPool {
@@ -25,6 +36,10 @@ class WorkerPool {
   virtual void StopReplacing() = 0;
   virtual void SignalAll(int signal) = 0;
   virtual std::vector<DispatchEvent> TakeEvents() = 0;
+  // Comes before each Supervise.
+  virtual void Observe(const PoolView& /*view*/, TimePoint /*now*/) {}
+  // Why there are fewer workers than could be used, in a sentence; "" when all is well.
+  virtual std::string Trouble(TimePoint /*now*/) const { return ""; }
 };
 
 }  // namespace gauntlet::master

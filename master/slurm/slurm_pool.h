@@ -1,0 +1,90 @@
+// A pool of worker allocations in Slurm: carries out what slurm::PoolPolicy decides.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "master/dispatch/worker_pool.h"
+#include "slurm/job_script.h"
+#include "slurm/pool_policy.h"
+#include "slurm/slurm_client.h"
+
+namespace gauntlet::master {
+
+struct SlurmPoolOptions {
+  slurm::PoolLimits limits;
+  slurm::JobRequest request;
+  std::string job_template;  // of workers
+  // `job.name` is the prefix of the jobs' names, unique to the campaign: whatever bears it is this
+  // campaign's, also after a crash and when the answer of a submission was lost.
+  slurm::WorkerJob job;
+};
+
+// Slurm's commands take from milliseconds to many seconds, so a thread of the pool's own calls them; all
+// methods return at once and belong to one thread. Jobs with the campaign's name that this pool did not
+// submit (of an earlier master, or of a submission whose answer was lost) are adopted.
+class SlurmPool final : public WorkerPool {
+ public:
+  SlurmPool(SlurmPoolOptions options, std::unique_ptr<slurm::SlurmClient> client);
+  // Cancels what is still there.
+  ~SlurmPool() override;
+  SlurmPool(const SlurmPool&) = delete;
+  SlurmPool& operator=(const SlurmPool&) = delete;
+
+  // Never an error: a cluster that starts nothing today may do so tomorrow; Trouble says what is wrong.
+  Result<std::vector<pid_t>> Supervise(TimePoint now) override;
+  void AppendWaitFds(std::vector<int>& fds) const override;
+  // Allocations that are not yet cancelled or ended.
+  int running() const override;
+  void StopReplacing() override { stopped_growing_ = true; }
+  // Any signal: cancels all allocations; Slurm sends SIGTERM, then SIGKILL.
+  void SignalAll(int signal) override;
+  std::vector<DispatchEvent> TakeEvents() override;
+  void Observe(const PoolView& view, TimePoint now) override;
+  std::string Trouble(TimePoint now) const override { return policy_.Trouble(now); }
+
+  std::vector<slurm::Allocation> allocations() const { return policy_.allocations(); }
+
+ private:
+  using Task = std::function<std::function<void(TimePoint)>()>;  // a call; then what its answer means
+
+  void Post(Task task);
+  void CallSlurm();
+  void TakeAnswers(TimePoint now);
+  void CarryOut(const slurm::Decisions& decisions);
+  void PostSubmit(const std::vector<std::string>& excluded_nodes);
+  void PostQuery();
+  void PostCancel(const std::vector<std::string>& jobs);
+  void OnQueue(const std::vector<slurm::JobStatus>& jobs, TimePoint now);
+  void Report(std::string kind, std::string text);
+
+  SlurmPoolOptions options_;
+  std::unique_ptr<slurm::SlurmClient> client_;  // of the calling thread alone
+  slurm::PoolPolicy policy_;
+  slurm::Demand demand_;
+  bool stopped_growing_ = false;
+  bool adopted_ = false;  // the queue has been looked through: until then nothing is submitted
+  bool adopting_ = false;
+  int submitting_ = 0;  // submissions under way
+  std::uint64_t next_number_ = 1;
+  std::vector<std::string> cancelled_;  // still shown by Slurm for a while
+  std::string reported_trouble_;
+  std::vector<DispatchEvent> events_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable work_;
+  std::deque<Task> tasks_;
+  std::vector<std::function<void(TimePoint)>> answers_;
+  bool leaving_ = false;
+  int answer_fd_ = -1;  // eventfd, readable while there are answers
+  std::thread thread_;
+};
+
+}  // namespace gauntlet::master
