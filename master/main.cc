@@ -1,13 +1,18 @@
 // gauntlet: the master and the command line.
 #include <unistd.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
+#include <cstring>
 #include <iostream>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "master/cli/command_line.h"
+#include "master/cli/standard_output.h"
 
 namespace {
 
@@ -21,11 +26,21 @@ std::string ProgramName(const char* first_argument) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  gauntlet::master::CommandContext context{.out = std::cout,
+  gauntlet::master::ReserveStandardDescriptors();
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not end a campaign
+  gauntlet::master::DescriptorBuffer buffer(STDOUT_FILENO);
+  std::ostream out(&buffer);
+  gauntlet::master::CommandContext context{.out = out,
                                            .err = std::cerr,
                                            .err_is_terminal = isatty(STDERR_FILENO) == 1,
                                            .program = ProgramName(argc > 0 ? argv[0] : "gauntlet"),
                                            .service = {}};
-  return gauntlet::master::RunCommandLine(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc),
-                                          context);
+  const int code = gauntlet::master::RunCommandLine(
+      std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc), context);
+  out.flush();
+  // A reader that has seen enough (head) is no failure.
+  if (buffer.error() == 0 || buffer.error() == EPIPE) return code;
+  gauntlet::master::PrintMessage(
+      context, std::string("standard output: cannot be written: ") + std::strerror(buffer.error()));
+  return gauntlet::master::kExitInternal;
 }

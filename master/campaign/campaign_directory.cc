@@ -101,6 +101,13 @@ Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
     return Error{ErrorKind::kNotFound, fmt::format("there is no directory {}", directory.path_)};
   }
   if (!fs::exists(directory.database_path(), error)) {
+    if (IsUnfinished(directory.path_)) {
+      return Error{
+          ErrorKind::kNotFound,
+          fmt::format("{0} is no campaign yet: its master was killed before it had made campaign.db, and "
+                      "nothing was simulated. The same command with --dir {0} starts anew there",
+                      directory.path_)};
+    }
     return Error{ErrorKind::kNotFound,
                  fmt::format("{} is not a campaign: it holds no campaign.db", directory.path_)};
   }

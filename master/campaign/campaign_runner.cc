@@ -19,6 +19,10 @@ constexpr std::chrono::seconds kRateWindow{5};
 
 }  // namespace
 
+sim::SeedPurpose PurposeOf(SearchKind kind) {
+  return kind == SearchKind::kCases ? sim::SeedPurpose::kEvaluate : sim::SeedPurpose::kSearch;
+}
+
 std::uint64_t SpecHash(std::string_view spec) {
   Fnv1a64 hash;
   hash.AddBytes(spec);

@@ -40,6 +40,9 @@ struct CampaignProgress {
 // depend on which search was faster.
 RunId RunIdOf(SearchId search, std::uint64_t sequence);
 
+// What the seeds of a campaign's runs are derived for.
+sim::SeedPurpose PurposeOf(SearchKind kind);
+
 // StoredRun::spec_hash.
 std::uint64_t SpecHash(std::string_view spec);
 

@@ -13,6 +13,7 @@
 #include "master/campaign/access_file.h"
 #include "master/campaign/atomic_file.h"
 #include "master/campaign/campaign_ownership.h"
+#include "master/campaign/stored_check.h"
 #include "master/campaign/worker_program.h"
 #include "master/dispatch/local_pool.h"
 #include "master/dispatch/remote_backend.h"
@@ -172,8 +173,7 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& exper
   backend.WatchFd(store.CommitNotifier());
   CampaignRunner runner({.experiment = experiment,
                          .search_id = kOnlySearch,
-                         .purpose = experiment.search.kind == SearchKind::kCases ? sim::SeedPurpose::kEvaluate
-                                                                                 : sim::SeedPurpose::kSearch,
+                         .purpose = PurposeOf(experiment.search.kind),
                          .search = **search,
                          .backend = backend,
                          .store = store,
@@ -247,6 +247,8 @@ Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOption
   if (Status comparable = CheckGoldenHash(campaign->store->meta(), *golden_hash); !comparable)
     return comparable.error();
 
+  if (Status whole = CheckStored(*experiment, kOnlySearch, *campaign->store); !whole) return whole.error();
+
   Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
   if (!searches) return searches.error();
   if (searches->empty()) {  // the master died between creating the campaign and storing its search
@@ -271,6 +273,7 @@ Result<CampaignSummary> ReadCampaign(const std::string& dir) {
   if (!experiment) return experiment.error();
   Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(*experiment, *campaign->store);
   if (!search) return search.error();
+  if (Status whole = CheckStored(*experiment, kOnlySearch, *campaign->store); !whole) return whole.error();
   return Summarise(*experiment, kOnlySearch, **search, *campaign->store);
 }
 
@@ -287,6 +290,9 @@ Result<CampaignReplay> ReplayCampaignRun(const std::string& dir, RunId run) {
   if (!experiment) return experiment.error();
   Result<ReplayReport> report = ReplayRun(*campaign->store, run);
   if (!report) return report.error();
+  if (report->damage.empty()) {
+    if (Status belongs = CheckSeed(*experiment, report->stored); !belongs) return belongs.error();
+  }
   return CampaignReplay{std::move(*experiment), std::move(*report)};
 }
 

@@ -6,6 +6,8 @@
 #include <map>
 
 #include "master/campaign/state_digest.h"
+#include "master/campaign/verdict_text.h"
+#include "master/dispatch/run_codec.h"
 #include "sim/run_result.h"
 
 namespace gauntlet::master {
@@ -48,6 +50,19 @@ void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
   } else {
     ++summary.unclassified_failures;
   }
+}
+
+void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
+  if (run.verdict == static_cast<int>(sim::Verdict::kCompleted)) return;
+  const Result<sim::RunResult> result = DecodeRunResult(run.result);
+  const std::string message = result ? result->message : result.error().message;
+  const auto verdict = static_cast<sim::Verdict>(run.verdict);
+  const std::string rule = RuleOf(message);
+  auto group = std::find_if(groups.begin(), groups.end(), [&](const RunsWithoutResult& one) {
+    return one.verdict == verdict && one.rule == rule && (!rule.empty() || one.message == message);
+  });
+  if (group == groups.end()) group = groups.insert(groups.end(), {verdict, rule, message, 0});
+  ++group->runs;
 }
 
 // What every run of the campaign depends on; how test cases are found is part of the search's own state.
@@ -110,9 +125,12 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
     ++summary.runs_done;
     runs_of[run.individual].push_back(run.id);
     AddToFailures(run, summary);
+    AddToRunsWithoutResult(run, summary.runs_without_result);
     AddToGeneration(run, generations);
   });
   if (!read) return read.error();
+  std::stable_sort(summary.runs_without_result.begin(), summary.runs_without_result.end(),
+                   [](const RunsWithoutResult& a, const RunsWithoutResult& b) { return a.runs > b.runs; });
   for (const auto& [number, generation] : generations) summary.generations.push_back(generation);
 
   summary.progress = search.Progress();

@@ -10,6 +10,7 @@
 #include "master/search/search_algorithm.h"
 #include "master/store/result_store.h"
 #include "sim/base/result.h"
+#include "sim/run_result.h"
 
 namespace gauntlet::master {
 
@@ -32,13 +33,22 @@ struct GenerationSummary {
   std::uint64_t total_failures = 0;
 };
 
+// Runs that ended alike without a result: the same verdict and, of refusals, the same rule.
+struct RunsWithoutResult {
+  sim::Verdict verdict = sim::Verdict::kRefused;
+  std::string rule;     // "no-room-to-spawn"; "" when the messages do not begin with one
+  std::string message;  // of the first of them
+  std::uint64_t runs = 0;
+};
+
 struct CampaignSummary {
   std::string experiment;
   std::string search;  // "genetic", "random", "cases"
   std::uint64_t seed = 0;
   SearchProgress progress;
-  std::uint64_t runs_done = 0;    // stored
-  std::uint64_t runs_failed = 0;  // verdict other than completed
+  std::uint64_t runs_done = 0;                         // stored
+  std::uint64_t runs_failed = 0;                       // verdict other than completed
+  std::vector<RunsWithoutResult> runs_without_result;  // most frequent first
   std::uint64_t distinct_individuals = 0;
   double best_fitness = 0.0;  // of the population; lower = tougher
   double mean_fitness = 0.0;

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "master/campaign/campaign_runner.h"
+#include "master/campaign/stored_check.h"
+#include "master/campaign/verdict_text.h"
 #include "master/campaign/worker_program.h"
 #include "master/dispatch/run_codec.h"
 
@@ -31,7 +33,10 @@ std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::
   if (stored.hash == replayed.hash) return differences;
   CompareHash("hash", stored.hash, replayed.hash, differences);
   CompareHash("trajectory hash", stored.trajectory_hash, replayed.trajectory_hash, differences);
-  Compare("verdict", static_cast<int>(stored.verdict), static_cast<int>(replayed.verdict), differences);
+  if (stored.verdict != replayed.verdict) {
+    differences.push_back(fmt::format("verdict differs: stored {}, replayed {}", NameOf(stored.verdict),
+                                      NameOf(replayed.verdict)));
+  }
   if (stored.message != replayed.message) {
     differences.push_back(
         fmt::format("message differs: stored '{}', replayed '{}'", stored.message, replayed.message));
@@ -61,16 +66,19 @@ Result<ReplayReport> ReplayRun(ResultStore& store, RunId run) {
   ReplayReport report;
   report.stored = std::move(**loaded);
   Result<sim::RunSpec> spec = DecodeRunSpec(report.stored.spec);
-  if (!spec)
-    return Error{ErrorKind::kCorrupt,
-                 fmt::format("the stored spec of run {} is damaged: {}", run, spec.error().message)};
+  if (!spec) {
+    report.damage = fmt::format("the stored spec of run {} is damaged: {}", run, spec.error().message);
+    return report;
+  }
   report.spec = std::move(*spec);
   Result<sim::RunResult> stored_result = DecodeRunResult(report.stored.result);
   if (!stored_result) {
-    return Error{ErrorKind::kCorrupt, fmt::format("the stored result of run {} is damaged: {}", run,
-                                                  stored_result.error().message)};
+    report.damage =
+        fmt::format("the stored result of run {} is damaged: {}", run, stored_result.error().message);
+    return report;
   }
   report.stored_result = std::move(*stored_result);
+  if (Status same = CheckCopies(report.stored, report.stored_result); !same) return same.error();
 
   sim::RunSpec recorded = report.spec;
   recorded.record_trajectory = true;

@@ -18,9 +18,12 @@ struct ReplayReport {
   sim::RunResult stored_result;
   sim::RunResult replayed;               // with the whole trajectory
   std::vector<std::string> differences;  // one sentence each; empty = reproduced bit for bit
+  // Why nothing could be compared: the stored spec or result does not even decode. What stands above from
+  // `spec` on is then empty. "" = it was compared.
+  std::string damage;
 };
 
-// Error: the run is not there (kNotFound), or its stored spec or result does not even decode (kCorrupt).
+// Error: the run is not there (kNotFound), or its row contradicts the result stored in it (kCorrupt).
 Result<ReplayReport> ReplayRun(ResultStore& store, RunId run);
 
 // What differs between two results of one spec, field by field; empty when the hashes are equal.

@@ -51,6 +51,12 @@ class Importer {
     if (std::string_view(root.name()) != "argos-configuration") {
       return Fail(root, fmt::format("the root element is <{}>, expected <argos-configuration>", root.name()));
     }
+    for (const pugi::xml_node more : document.children()) {
+      if (more.type() == pugi::node_element && more != root) {
+        return Fail(more, fmt::format("<{}> follows the end of <{}>: a file holds one document", more.name(),
+                                      root.name()));
+      }
+    }
     const pugi::xml_node arena = root.child("arena");
     if (!arena) return Fail(root, "<argos-configuration> has no <arena>");
     for (const pugi::xml_node child : root.children()) {
@@ -187,9 +193,10 @@ class Importer {
       }
       const pugi::xml_attribute quantity = entity.attribute("quantity");
       const std::optional<std::int32_t> count = ParseNumber<std::int32_t>(quantity.value());
-      if (!count || *count < 0) {
-        return Fail(entity, fmt::format("<entity> of {} has quantity=\"{}\", expected a whole number",
-                                        Called(robot), quantity.value()));
+      if (!count || *count < 1) {
+        return Fail(entity,
+                    fmt::format("<entity> of {} has quantity=\"{}\", expected a whole number from 1 on",
+                                Called(robot), quantity.value()));
       }
       robots_here += *count;
     }

@@ -1,7 +1,9 @@
 #include "master/cases/case_file.h"
 
+#include <array>
+#include <cstddef>
 #include <fstream>
-#include <iterator>
+#include <string>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -12,7 +14,7 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = 16U << 20;
+constexpr std::size_t kMostBytes = 16U << 20;
 
 Result<std::string> ReadFile(const std::filesystem::path& path) {
   std::error_code error;
@@ -24,14 +26,19 @@ Result<std::string> ReadFile(const std::filesystem::path& path) {
     return InvalidInput(
         fmt::format("{} is a directory, expected a case file (.json or .argos)", path.string()));
   }
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kMostBytes) {
-    return InvalidInput(
-        fmt::format("{} has {} bytes; a case file has at most {}", path.string(), size, kMostBytes));
-  }
+  // The size that the file system tells is no bound: that of a device or a pipe is 0.
   std::ifstream stream(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream) return Error{ErrorKind::kIo, fmt::format("{}: cannot be read", path.string())};
+  std::string text;
+  std::array<char, 1U << 16> part{};
+  while (stream && text.size() <= kMostBytes) {
+    stream.read(part.data(), part.size());
+    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (text.size() > kMostBytes) {
+    return InvalidInput(
+        fmt::format("{} has more than {} bytes, the most for a case file", path.string(), kMostBytes));
+  }
+  if (!stream.eof()) return Error{ErrorKind::kIo, fmt::format("{}: cannot be read", path.string())};
   return text;
 }
 

@@ -1,13 +1,11 @@
 #include "master/cli/command_context.h"
 
-#include <algorithm>
+#include "master/cli/table.h"
 
 namespace gauntlet::master {
 
 void PrintMessage(CommandContext& context, std::string_view message) {
-  std::string line(message);
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  context.err << "gauntlet: " << line << std::endl;
+  context.err << "gauntlet: " << Printable(message) << std::endl;
 }
 
 ExitCode Fail(CommandContext& context, const Error& error) {

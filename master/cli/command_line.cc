@@ -170,13 +170,25 @@ void Configure(CLI::App& app, CommandAction& chosen) {
   AddSearchCommands(app, chosen);
   AddCampaignCommands(app, chosen);
   AddListCommand(app, chosen);
+  const CLI::Validator given(
+      [](const std::string& value) {
+        return value.empty() ? std::string("must not be empty") : std::string();
+      },
+      "");
+  for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    for (CLI::Option* option : command->get_options()) {
+      if (option->get_expected_max() > 0) option->check(given);  // takes a value
+    }
+  }
   app.footer(R"(Start here:
   gauntlet evolve flocking          evolve test cases on all cores, about a minute
   gauntlet COMMAND --help           options and examples of a command
 
-Results go to standard output, progress and messages to standard error.
+Results go to standard output, progress and messages to standard error. An error leaves standard output
+empty, also with --json: look at the exit code first. Outcomes that are negative (a run not reproduced, every
+case refused) are results and are printed.
 Exit codes: 0 done; 1 a check came out negative; 2 usage or configuration; 3 stopped, resumable;
-4 internal error.)");
+4 internal error, or standard output cannot be written.)");
 }
 
 std::vector<std::string> CommandNames(const CLI::App& app) {
@@ -255,12 +267,20 @@ ExitCode Parse(const std::vector<std::string>& arguments, CommandContext& contex
   return kExitDone;
 }
 
+// "help evolve" as "evolve --help".
+std::vector<std::string> WithHelpAsOption(std::vector<std::string> arguments) {
+  arguments.erase(arguments.begin());
+  arguments.emplace_back("--help");
+  return arguments;
+}
+
 }  // namespace
 
 ExitCode RunCommandLine(const std::vector<std::string>& arguments, CommandContext& context) {
   try {
     CommandAction chosen;
-    const ExitCode parsed = Parse(arguments, context, chosen);
+    const bool asks_help = !arguments.empty() && arguments.front() == "help";
+    const ExitCode parsed = Parse(asks_help ? WithHelpAsOption(arguments) : arguments, context, chosen);
     return chosen ? chosen(context) : parsed;
   } catch (const std::exception& error) {
     PrintMessage(context, fmt::format("internal error: {}", error.what()));

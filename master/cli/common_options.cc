@@ -81,10 +81,10 @@ Result<Experiment> LoadExperimentWith(const CommonOptions& options, const std::v
     // The person typed --generations 0, not --set search.generations=0.
     Error error = experiment.error();
     for (const ExtraSet& one : all) {
-      const std::string place = "--set " + one.set;
+      const std::string place = "--set " + one.set + ":";
       if (error.message.starts_with(place)) {
         const std::string value = one.set.substr(one.set.find('=') + 1);
-        error.message = one.option + " " + value + error.message.substr(place.size());
+        error.message = one.option + " " + value + ":" + error.message.substr(place.size());
         break;
       }
     }

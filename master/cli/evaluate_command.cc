@@ -2,6 +2,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -116,6 +117,13 @@ void Print(CommandContext& context, const EvaluateOptions& options, const CaseLi
 }  // namespace
 
 ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
+  for (const auto& [option, value] : {std::pair("--generations", options.common.generations),
+                                      std::pair("--population", options.common.population)}) {
+    if (value.empty()) continue;
+    return Fail(context, InvalidInput(fmt::format(
+                             "{} {}: 'evaluate' searches nothing; the runs per case are --replicates K",
+                             option, value)));
+  }
   std::vector<ExtraSet> extra = {{"evaluate", "search.algorithm=cases"}};
   if (!options.replicates.empty())
     extra.push_back({"--replicates", "search.replicates=" + options.replicates});

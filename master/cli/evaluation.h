@@ -3,9 +3,9 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "master/campaign/verdict_text.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "sim/run_result.h"
 
@@ -26,9 +26,5 @@ struct EvaluatedCase {
 
 // Mean over the completed runs; nothing when there is none.
 std::optional<double> MeanFitness(const EvaluatedCase& evaluated);
-// The rule's name in front of "no-path: there is ..."; "" when the message does not begin with one.
-std::string RuleOf(std::string_view message);
-// "completed", "refused", "crashed", "hung", "out-of-memory", "invalid-command".
-std::string_view NameOf(sim::Verdict verdict);
 
 }  // namespace gauntlet::master

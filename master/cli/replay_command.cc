@@ -1,7 +1,9 @@
 // gauntlet replay: one stored run again, checked against its hash, and drawn.
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -23,6 +25,13 @@ Status WriteFile(const std::string& path, const std::string& content) {
   stream.close();
   if (stream) return Ok{};
   return Error{ErrorKind::kIo, fmt::format("{}: cannot be written: {}", path, std::strerror(errno))};
+}
+
+bool SameFile(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  return fs::absolute(a, error).lexically_normal() == fs::absolute(b, error).lexically_normal();
 }
 
 std::string NounOf(const std::string& scenario) {
@@ -76,11 +85,15 @@ std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure
 ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
   const Result<std::uint64_t> run = ParseRunId(options.run);
   if (!run) return Fail(context, run.error());
+  if (!options.svg.empty() && SameFile(options.svg, options.csv)) {
+    return Fail(context, InvalidInput(fmt::format("--svg and --csv are both {}: give each its own file",
+                                                  options.svg)));
+  }
   const Result<CampaignReplay> replay = context.service.replay(options.directory, *run);
-  if (!replay) {
-    const ExitCode code = Fail(context, replay.error());
-    // A stored run that does not read back did not reproduce.
-    return replay.error().kind == ErrorKind::kCorrupt ? kExitNegative : code;
+  if (!replay) return Fail(context, replay.error());
+  if (!replay->report.damage.empty()) {  // what does not read back did not reproduce
+    PrintMessage(context, replay->report.damage);
+    return kExitNegative;
   }
   const analysis::RunFigure figure = FigureOf(*replay);
   context.out << (options.json ? ReplayJson(replay->report) : Text(*replay, figure)) << std::flush;

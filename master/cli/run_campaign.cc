@@ -70,6 +70,15 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
                                       ResumeHint(context, campaign.directory)));
     return kExitStopped;
   }
+  // `evaluate` judges its cases itself.
+  const CampaignSummary& summary = report->summary;
+  if (summary.search != "cases" && summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
+    const std::string why =
+        summary.runs_without_result.empty() ? "" : ", most often: " + summary.runs_without_result[0].message;
+    PrintMessage(context,
+                 fmt::format("none of the {} runs gave a result{}", FormatCount(summary.runs_done), why));
+    return kExitNegative;
+  }
   return kExitDone;
 }
 

@@ -18,8 +18,8 @@ struct CampaignRun {
   std::function<Status(const SessionReport&)> report;
 };
 
-// Runs it with progress on context.err; SIGINT and SIGTERM stop it cleanly. Exit 0, or 3 when it was stopped
-// and can be resumed, or as the error demands.
+// Runs it with progress on context.err; SIGINT and SIGTERM stop it cleanly. Exit 0; 1 when a search ended and
+// none of its runs gave a result; 3 when it was stopped and can be resumed; or as the error demands.
 ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, const CampaignRun& campaign);
 
 // The summary as text or JSON.

@@ -1,5 +1,9 @@
 // gauntlet evolve, gauntlet random: a search on a pool of workers.
 
+#include <utility>
+
+#include <fmt/format.h>
+
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
 #include "master/cli/run_campaign.h"
@@ -7,12 +11,29 @@
 namespace gauntlet::master {
 namespace {
 
+// Options that only a genetic search reads.
+Status CheckRandomOptions(const CommonOptions& options) {
+  for (const auto& [option, value] :
+       {std::pair("--generations", options.generations), std::pair("--population", options.population)}) {
+    if (value.empty()) continue;
+    return InvalidInput(
+        fmt::format("{} {}: a random search has neither generations nor a population; its number of test "
+                    "cases is 'random "
+                    "--cases N', or --set search.cases=N",
+                    option, value));
+  }
+  return Ok{};
+}
+
 ExitCode RunSearch(CommandContext& context, const CommonOptions& options,
                    const std::vector<ExtraSet>& extra) {
   const Result<Experiment> experiment = LoadExperimentWith(options, extra);
   if (!experiment) return Fail(context, experiment.error());
   if (experiment->search.kind == SearchKind::kCases) {
     return Fail(context, InvalidInput("search.algorithm = cases needs a list of cases: use 'evaluate'"));
+  }
+  if (experiment->search.kind == SearchKind::kRandom) {
+    if (Status meant = CheckRandomOptions(options); !meant) return Fail(context, meant.error());
   }
   const Result<int> workers = ParseWorkers(options.workers);
   if (!workers) return Fail(context, workers.error());

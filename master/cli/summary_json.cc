@@ -100,6 +100,14 @@ std::string SummaryJson(const CampaignSummary& summary, const std::string& direc
                           {"runs", IdsJson(member.runs)}});
   }
 
+  Json without_result = Json::array();
+  for (const RunsWithoutResult& group : summary.runs_without_result) {
+    without_result.push_back({{"verdict", NameOf(group.verdict)},
+                              {"rule", TextOrNull(group.rule)},
+                              {"message", group.message},
+                              {"runs", group.runs}});
+  }
+
   const Json json = {{"experiment", summary.experiment},
                      {"directory", directory},
                      {"search", summary.search},
@@ -110,6 +118,7 @@ std::string SummaryJson(const CampaignSummary& summary, const std::string& direc
                      {"evaluations_planned", summary.progress.evaluations_planned},
                      {"runs_done", summary.runs_done},
                      {"runs_failed", summary.runs_failed},
+                     {"runs_without_result", std::move(without_result)},
                      {"distinct_individuals", summary.distinct_individuals},
                      {"best_fitness", FitnessJson(summary.best_fitness)},
                      {"mean_fitness", FitnessJson(summary.mean_fitness)},
@@ -158,6 +167,7 @@ std::string ReplayJson(const ReplayReport& report) {
                {"hash", fmt::format("{:016x}", report.replayed.hash)},
                {"differences", report.differences},
                {"verdict", NameOf(report.replayed.verdict)},
+               {"message", TextOrNull(report.replayed.message)},
                {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json(nullptr)}});
 }
 

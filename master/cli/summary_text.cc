@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "master/campaign/verdict_text.h"
 #include "master/cli/table.h"
 
 namespace gauntlet::master {
@@ -58,6 +59,21 @@ std::string Overview(const CampaignSummary& summary) {
   }
   table.AddRow({"state hash", summary.state_hash});
   return table.ToText();
+}
+
+// "6 of 8 refused: no-room-to-spawn: ...", the most frequent first.
+std::string RunsWithoutAResult(const CampaignSummary& summary) {
+  if (summary.runs_without_result.empty()) return {};
+  constexpr std::size_t kMostGroups = 8;
+  const auto& groups = summary.runs_without_result;
+  std::string text = "\nRuns without a result\n";
+  for (std::size_t i = 0; i < std::min(kMostGroups, groups.size()); ++i) {
+    text += fmt::format("  {} of {} {}: {}\n", FormatCount(groups[i].runs), FormatCount(summary.runs_done),
+                        NameOf(groups[i].verdict), Printable(groups[i].message));
+  }
+  if (groups.size() > kMostGroups)
+    text += fmt::format("  and {} more reasons; see show --json\n", groups.size() - kMostGroups);
+  return text;
 }
 
 // Rows of the first, the last and generations at even distances between them.
@@ -135,14 +151,19 @@ std::string Hints(const std::vector<Hint>& hints) {
 
 std::string SummaryText(const CampaignSummary& summary, const HintContext& context) {
   const std::string directory = ShellQuoted(context.directory);
-  std::string text = fmt::format("{}: {}, seed {}, {}\n\n", summary.experiment, NameOfSearch(summary),
-                                 summary.seed, summary.finished ? "finished" : "not finished");
+  std::string text =
+      fmt::format("{}: {}, seed {}, {}\n\n", Printable(summary.experiment), NameOfSearch(summary),
+                  summary.seed, summary.finished ? "finished" : "not finished");
   if (summary.nondeterministic) {
     text +=
         "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
         "figures.\n\n";
   }
-  text += Overview(summary) + Generations(summary) + Members(summary);
+  if (summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
+    text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
+                        FormatCount(summary.runs_done));
+  }
+  text += Overview(summary) + RunsWithoutAResult(summary) + Generations(summary) + Members(summary);
 
   std::vector<Hint> hints;
   if (!summary.finished) {

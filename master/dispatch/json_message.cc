@@ -54,8 +54,8 @@ class Filler {
     std::vector<std::string_view> names;
     std::string list;
     for (int i = 0; i < descriptor.field_count(); ++i) {
-      names.emplace_back(descriptor.field(i)->name());
-      list += (i == 0 ? "" : ", ") + descriptor.field(i)->name();
+      names.emplace_back(descriptor.field(i)->json_name());
+      list += (i == 0 ? "" : ", ") + descriptor.field(i)->json_name();
     }
     const std::string nearest = NearestName(member.key, names);
     return ErrorAt(file_name_, member.place,

@@ -22,6 +22,18 @@ std::string KindOf(const TomlValue& value) {
   return std::holds_alternative<double>(value) ? "a number that is not whole" : "true or false";
 }
 
+// The same of an assignment to `key`, closer where the kind alone would puzzle.
+std::string KindFor(const Key& key, const Assignment& assignment) {
+  const std::string_view digits =
+      std::string_view(assignment.text).substr(assignment.text.starts_with('-') ? 1 : 0);
+  const bool is_text = std::holds_alternative<std::string>(assignment.value);
+  if (is_text && !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos)
+    return "a number beyond 64 bits";
+  if (key.type == KeyType::kSeed && std::holds_alternative<std::int64_t>(assignment.value))
+    return "a negative number";
+  return KindOf(assignment.value);
+}
+
 std::string ExpectationOf(const Key& key) {
   switch (key.type) {
     case KeyType::kText:
@@ -152,7 +164,7 @@ class Reader {
     const std::optional<KeyValue> value = Convert(*key, assignment);
     if (!value.has_value()) {
       return InvalidInput(fmt::format("{}: {} is {}, expected {}", assignment.where, assignment.path,
-                                      KindOf(assignment.value), ExpectationOf(*key)));
+                                      KindFor(*key, assignment), ExpectationOf(*key)));
     }
     if (const std::optional<std::string> wrong = CheckValue(*key, *value)) {
       return InvalidInput(fmt::format("{}: {}", assignment.where, *wrong));
@@ -169,8 +181,20 @@ class Reader {
         });
     const auto* other = std::get_if<OtherToml>(&assignment.value);
     if (known_table && other != nullptr && other->kind == "a table") return Ok{};  // an empty one is harmless
+    if (known_table) {
+      return InvalidInput(fmt::format("{}: {} is a table of keys such as {}, not {}", assignment.where,
+                                      assignment.path, FirstKeyOf(assignment.path),
+                                      KindOf(assignment.value)));
+    }
     return InvalidInput(
         fmt::format("{}: unknown key '{}'; {}", assignment.where, assignment.path, HintFor(assignment.path)));
+  }
+
+  // "search.algorithm" of "search".
+  std::string FirstKeyOf(const std::string& table) const {
+    const auto key = std::find_if(keys_.begin(), keys_.end(),
+                                  [&](const Key& one) { return one.path.starts_with(table + "."); });
+    return key == keys_.end() ? table + ".NAME" : key->path;
   }
 
   // "did you mean ...?", or the keys that could have been meant.

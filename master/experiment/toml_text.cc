@@ -20,6 +20,79 @@ TomlValue ValueOf(const toml::node& node) {
   return OtherToml{"a date or time"};
 }
 
+// The library recurses once per part of a key when it parses, and again when a table goes: a key of many
+// thousand parts would exhaust the stack. With its own limit of 256 nested values, this bound keeps the depth
+// below 5,000. No key of an experiment has more than two parts.
+constexpr int kMostKeyParts = 16;
+
+// Finds the first run of more than kMostKeyParts parts joined by dots, before the library sees it. Texts and
+// comments are skipped, so dots in them do not count; whether all else is TOML is the library's to say.
+class KeyDepthScan {
+ public:
+  explicit KeyDepthScan(std::string_view text) : text_(text) {}
+
+  // Offset of the key's beginning; nothing when no key is too deep.
+  std::optional<std::size_t> Find() {
+    while (at_ < text_.size()) {
+      const char c = text_[at_];
+      if (c == '#') {
+        at_ = std::min(text_.find('\n', at_), text_.size());
+      } else if (c == '"' || c == '\'') {
+        BeginKey();
+        SkipText(c);
+      } else if (c == '.') {
+        if (++dots_ >= kMostKeyParts) return begin_.value_or(at_);
+        ++at_;
+      } else if (c == ' ' || c == '\t') {
+        ++at_;
+      } else {
+        const bool ends = std::string_view("=[]{},\r\n").find(c) != std::string_view::npos;
+        if (ends) {
+          begin_.reset();
+          dots_ = 0;
+        } else {
+          BeginKey();
+        }
+        ++at_;
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  void BeginKey() {
+    if (!begin_) begin_ = at_;
+  }
+
+  // From an opening quote to behind its closing one; an open text ends with its line, or with the file.
+  void SkipText(char quote) {
+    const std::string fence(3, quote);
+    const bool multi_line = text_.substr(at_).starts_with(fence);
+    const std::string_view end = multi_line ? std::string_view(fence) : std::string_view(fence).substr(0, 1);
+    for (at_ += end.size(); at_ < text_.size(); ++at_) {
+      if (text_.substr(at_).starts_with(end)) {
+        at_ += end.size();
+        // Up to two quotes may stand before the closing three.
+        for (int extra = 0; multi_line && extra < 2 && at_ < text_.size() && text_[at_] == quote; ++extra)
+          ++at_;
+        return;
+      }
+      if (!multi_line && text_[at_] == '\n') return;
+      if (quote == '"' && text_[at_] == '\\') ++at_;
+    }
+    at_ = text_.size();
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::optional<std::size_t> begin_;
+  int dots_ = 0;
+};
+
+std::string DepthMessage() {
+  return fmt::format("a key of more than {} parts; those of an experiment have at most 2", kMostKeyParts);
+}
+
 struct Located {
   toml::source_position position;
   Assignment assignment;
@@ -45,6 +118,7 @@ void Flatten(const toml::table& table, const std::string& prefix, const std::str
 
 // The one value of "v = text", or nothing when that is not valid TOML.
 std::optional<TomlValue> ParseValue(const std::string& text) {
+  if (KeyDepthScan(text).Find()) return std::nullopt;
   try {
     const toml::table table = toml::parse("v = " + text);
     const toml::node* node = table.get("v");
@@ -58,6 +132,15 @@ std::optional<TomlValue> ParseValue(const std::string& text) {
 }  // namespace
 
 Result<std::vector<Assignment>> ReadToml(std::string_view text, const std::string& file_name) {
+  if (const std::optional<std::size_t> deep = KeyDepthScan(text).Find()) {
+    const std::string_view before = text.substr(0, *deep);
+    const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+    const std::string_view in_line = before.substr(before.rfind('\n') + 1);  // npos + 1 is the beginning
+    const auto column = 1 + std::count_if(in_line.begin(), in_line.end(), [](char c) {
+                          return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+                        });
+    return InvalidInput(fmt::format("{}:{}:{}: {}", file_name, line, column, DepthMessage()));
+  }
   std::vector<Located> located;
   try {
     Flatten(toml::parse(text), "", file_name, located);

@@ -31,6 +31,15 @@ TEST(CampaignDirectoryTest, ACampaignIsNotMadeTwiceAndResumeIsNamed) {
   EXPECT_THAT(made.error().message, HasSubstr("gauntlet resume " + scratch.path()));
 }
 
+TEST(CampaignDirectoryTest, AnUnfinishedBeginningSaysHowToStartAnew) {
+  const ScratchDirectory scratch;
+  WriteFile(scratch / "lock", "");
+  WriteFile(scratch / "campaign.db.new", "x");
+  Result<CampaignDirectory> opened = CampaignDirectory::Open(scratch.path());
+  ASSERT_FALSE(opened.ok());
+  EXPECT_THAT(opened.error().message, HasSubstr("--dir " + scratch.path() + " starts anew"));
+}
+
 TEST(CampaignDirectoryTest, ADirectoryWithOtherFilesIsRefused) {
   for (const std::string name : {"notes.txt", "experiment.toml", "lock.txt"}) {
     const ScratchDirectory scratch;

@@ -227,6 +227,18 @@ TEST_F(CaseFile, FormatFollowsFromExtensionOrContent) {
   }
 }
 
+TEST_F(CaseFile, AnEndlessFileIsReadToTheLimitOnly) {
+  EXPECT_THAT(LoadCase("/dev/zero").error().message, HasSubstr("/dev/zero has more than 16777216 bytes"));
+}
+
+TEST(ArgosImport, NoFootBotsAreNotTenAndOneDocumentIsEnough) {
+  std::string none = kTenRobots;
+  none.replace(none.find("\"10\""), 4, "\"0\"");
+  EXPECT_THAT(ErrorOf(Document(none)), HasSubstr("quantity=\"0\", expected a whole number from 1 on"));
+  EXPECT_THAT(ErrorOf(Document("") + "<argos-configuration/>"),
+              HasSubstr("follows the end of <argos-configuration>"));
+}
+
 TEST_F(CaseFile, ErrorsNameTheFile) {
   EXPECT_THAT(LoadCase(directory_ / "none.json").error().message, HasSubstr("none.json: no such file"));
   EXPECT_THAT(LoadCase(directory_).error().message, HasSubstr("is a directory"));

@@ -208,6 +208,56 @@ TEST_F(CommandLine, BadSettingsNameTheOptionThatWasTyped) {
   ExpectUsageError({"random", "flocking", "--cases", "none"}, HasSubstr("--cases none"));
 }
 
+TEST_F(CommandLine, EmptyValuesAreNotDefaults) {
+  for (const std::string option :
+       {"--generations", "--population", "--seed", "--workers", "--dir", "--set"}) {
+    ExpectUsageError({"evolve", "flocking", option, ""}, HasSubstr(option));
+    ExpectUsageError({"evolve", "flocking", option + "="}, HasSubstr(option));
+  }
+  ExpectUsageError({"random", "flocking", "--cases", ""}, HasSubstr("--cases"));
+  ExpectUsageError({"evaluate", "flocking", "--case", ""}, HasSubstr("--case"));
+  ExpectUsageError({"replay", "d", "1", "--svg", ""}, HasSubstr("--svg"));
+  ExpectUsageError({"show", ""}, HasSubstr("DIR"));
+}
+
+TEST_F(CommandLine, OptionsOfAnotherSearchAreRefused) {
+  ExpectUsageError({"random", "flocking", "--generations", "3"},
+                   AllOf(HasSubstr("--generations 3"), HasSubstr("--cases")));
+  ExpectUsageError({"random", "flocking", "--population", "4"},
+                   AllOf(HasSubstr("--population 4"), HasSubstr("--cases")));
+  ExpectUsageError({"evolve", "flocking", "--set", "search.algorithm=random", "--generations", "3"},
+                   AllOf(HasSubstr("--generations 3"), HasSubstr("search.cases")));
+  ExpectUsageError({"evolve", "flocking", "--generations", "1", "--set", "search.generations=1e3"},
+                   HasSubstr("--set search.generations=1e3: "));
+}
+
+TEST_F(CommandLine, HelpIsACommandToo) {
+  EXPECT_EQ(Run({"help"}), kExitDone);
+  const std::string help = out_.str();
+  EXPECT_EQ(Run({"--help"}), kExitDone);
+  EXPECT_EQ(help, out_.str());
+  EXPECT_EQ(Run({"help", "evolve"}), kExitDone);
+  EXPECT_THAT(out_.str(), HasSubstr("--generations"));
+}
+
+TEST_F(CommandLine, ControlCharactersOfNamesDoNotReachTheTerminal) {
+  EXPECT_EQ(Run({"evaluate", "flocking", "--case", "a\nb\x1b[31m.json", "--dir", Path("c")}), kExitUsage);
+  EXPECT_THAT(out_.str() + err_.str(), AllOf(HasSubstr("a\\nb\\x1b[31m.json"), Not(HasSubstr("\x1b"))));
+}
+
+TEST_F(CommandLine, SearchWithoutAnyResultExitsOne) {
+  report_.summary.runs_done = report_.summary.runs_failed = 8;
+  report_.summary.runs_without_result = {{sim::Verdict::kRefused, "no-path", "no-path: walled in", 8}};
+  EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), kExitNegative);
+  EXPECT_THAT(err_.str(), HasSubstr("none of the 8 runs gave a result, most often: no-path: walled in"));
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("NO RUN GAVE A RESULT"), HasSubstr("8 of 8 refused: no-path: walled in")));
+  report_.summary.runs_failed = 7;
+  report_.summary.runs_without_result[0].runs = 7;
+  EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("d")}), kExitDone);
+  EXPECT_THAT(out_.str(), HasSubstr("7 of 8 refused: no-path: walled in"));
+}
+
 TEST_F(CommandLine, RandomSearchesAtRandom) {
   EXPECT_EQ(Run({"random", "flocking", "--cases", "33", "--dir", Path("c")}), kExitDone);
   EXPECT_EQ(started_.search.kind, SearchKind::kRandom);
@@ -420,9 +470,32 @@ TEST_F(Replay, DifferenceExitsOneAndSaysWhatDiffers) {
 }
 
 TEST_F(Replay, DamagedRunExitsOne) {
-  error_ = Error{ErrorKind::kCorrupt, "the stored spec of run 12 is damaged"};
+  replay_.report.damage = "the stored spec of run 12 is damaged";
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitNegative);
   EXPECT_THAT(err_.str(), HasSubstr("the stored spec of run 12 is damaged"));
+  EXPECT_THAT(out_.str(), IsEmpty());
+}
+
+TEST_F(Replay, DamagedDatabaseExitsTwoBecauseNothingWasCompared) {
+  error_ = Error{ErrorKind::kCorrupt, "campaign.db is damaged"};
+  EXPECT_EQ(Run({"replay", "d", "12"}), kExitUsage);
+}
+
+TEST_F(Replay, RefusedRunIsReproducedWithItsRule) {
+  replay_.report.stored_result.verdict = replay_.report.replayed.verdict = sim::Verdict::kRefused;
+  replay_.report.replayed.message = "no-room-to-spawn: 3 of 100 robots placed";
+  replay_.report.replayed.trajectory.clear();
+  replay_.report.replayed.robots.clear();
+  EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("r.svg")}), kExitDone);
+  EXPECT_THAT(out_.str(), HasSubstr("no-room-to-spawn: 3 of 100 robots placed"));
+  pugi::xml_document svg;
+  EXPECT_TRUE(svg.load_file(Path("r.svg").c_str()));
+}
+
+TEST_F(Replay, OneFileForTwoOutputsIsRefused) {
+  ExpectUsageError({"replay", "d", "12", "--svg", Path("a"), "--csv", Path("./a")},
+                   AllOf(HasSubstr("--svg"), HasSubstr("--csv")));
+  EXPECT_FALSE(std::filesystem::exists(Path("a")));
 }
 
 TEST_F(Replay, BadRunIdsAndFilesAreUsageErrors) {

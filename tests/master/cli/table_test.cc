@@ -37,6 +37,15 @@ TEST(Table, CountsCharactersNotBytes) {
             "Duesseldorf  |\n");
 }
 
+TEST(Printable, EscapesWhatATerminalWouldObey) {
+  EXPECT_EQ(Printable("plain \u00fcber"), "plain \u00fcber");
+  EXPECT_EQ(Printable("a\nb\tc\x1b[31m\x7f"), "a\\nb\\tc\\x1b[31m\\x7f");
+  EXPECT_EQ(Printable("\xc2\x9b"
+                      "31m"),
+            "\\x9b31m");
+  EXPECT_EQ(Printable("\u00a0"), "\u00a0");
+}
+
 TEST(Wrapped, BreaksAtBlanksAndIndents) {
   EXPECT_EQ(Wrapped("one two three four", 9, 2), "one two\n  three\n  four");
   EXPECT_EQ(Wrapped("unbreakable", 4, 2), "unbreakable");

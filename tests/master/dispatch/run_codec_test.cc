@@ -93,6 +93,18 @@ TEST(RunCodecTest, AResultWhoseHashDoesNotMatchIsCorrupt) {
   EXPECT_THAT(decoded.error().message, HasSubstr("hash"));
 }
 
+TEST(RunCodecTest, ARefusedRunMayHaveATrajectoryOfNoRobots) {
+  sim::RunResult refused;
+  refused.verdict = sim::Verdict::kRefused;
+  refused.message = "no-room-to-spawn: 3 of 100 robots placed";
+  refused.hash = sim::HashOf(refused);
+  const std::string empty_trajectory("\x5a\x00", 2);  // field 11, no bytes
+  const Result<sim::RunResult> decoded = DecodeRunResult(EncodeRunResult(refused) + empty_trajectory);
+  ASSERT_TRUE(decoded.ok()) << decoded.error().message;
+  EXPECT_EQ(decoded->verdict, sim::Verdict::kRefused);
+  EXPECT_TRUE(decoded->trajectory.empty());
+}
+
 TEST(RunCodecTest, UnreadableBytesAreCorrupt) {
   EXPECT_EQ(DecodeRunSpec("\xff\xff\xff").error().kind, ErrorKind::kCorrupt);
   EXPECT_EQ(DecodeRunResult("\xff\xff\xff").error().kind, ErrorKind::kCorrupt);
@@ -173,8 +185,8 @@ TEST(CaseJsonTest, AnUnknownKeyIsRefusedWithTheNearestKnownOne) {
   EXPECT_EQ(CaseError("{\"obstacles\": [{\"x\": 1},\n  {\"lenght\": 2}]}"),
             "case.json:2:4: unknown key 'lenght' in obstacles[1]; did you mean 'length'?");
   EXPECT_EQ(CaseError("{\"quux\": 1}"),
-            "case.json:1:2: unknown key 'quux'; known: name, side_x, side_y, wall_thickness, obstacles, "
-            "spawn_area, robots");
+            "case.json:1:2: unknown key 'quux'; known: name, sideX, sideY, wallThickness, obstacles, "
+            "spawnArea, robots");
 }
 
 TEST(CaseJsonTest, AWrongTypeIsRefusedWhereItStands) {

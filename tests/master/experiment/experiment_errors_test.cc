@@ -50,6 +50,44 @@ TEST(ExperimentErrorsTest, UnknownTablesAreRefusedEvenWhenEmpty) {
   EXPECT_EQ(ErrorOf("scenario = 'waiting'\n[controller_parameters]\n"), "");
 }
 
+TEST(ExperimentErrorsTest, KeysOfManyPartsAreRefusedBeforeTheyExhaustTheStack) {
+  std::string deep;
+  for (int i = 0; i < 50000; ++i) deep += "a.";
+  const std::string said = "a key of more than 16 parts";
+  EXPECT_THAT(ErrorOf(deep + "b = 1"), StartsWith("toy.toml:1:1: " + said));
+  EXPECT_THAT(ErrorOf(Marching("[" + deep + "b]")), StartsWith("toy.toml:2:2: " + said));
+  EXPECT_THAT(ErrorOf(Marching("x = { y = 1, " + deep + "b = 1 }")), StartsWith("toy.toml:2:14: " + said));
+  std::string spaced;
+  for (int i = 0; i < 50; ++i) spaced += "'a' . \"b.c\" .";
+  EXPECT_THAT(ErrorOf(spaced + "b = 1"), StartsWith("toy.toml:1:1: " + said));
+  EXPECT_THAT(ErrorOf(kMarching, {"seed={" + deep + "b=1}"}), HasSubstr("seed is text"));
+}
+
+TEST(ExperimentErrorsTest, DotsInTextsNumbersAndCommentsAreNoKeys) {
+  const std::string dots = "1.2.3.4.5.6.7.8.9.0.1.2.3.4.5.6.7.8.9.0";
+  const std::string fence = R"(""")";
+  for (const std::string& text : {
+           "description = \"" + dots + "\"",
+           "description = \"\\\"" + dots + "\" # " + dots,
+           "description = '" + dots + "'",
+           "description = " + fence + "\n" + dots + "\n\\" + fence + dots + fence + "\"",
+           "description = '''\n'" + dots + "'''",
+           "# " + dots,
+       }) {
+    EXPECT_THAT(ErrorOf(Marching(text)), testing::Not(HasSubstr("parts"))) << text;
+  }
+}
+
+TEST(ExperimentErrorsTest, KindsThatWouldPuzzleAreNamedMoreClosely) {
+  EXPECT_THAT(ErrorOf(kMarching, {"search.generations=99999999999999999999999"}),
+              HasSubstr("search.generations is a number beyond 64 bits, expected a whole number"));
+  EXPECT_THAT(ErrorOf(Marching("seed = -5")),
+              HasSubstr("seed is a negative number, expected a whole number, 0 to"));
+  EXPECT_THAT(ErrorOf(Marching("[[search]]\npopulation = 4")),
+              HasSubstr("search is a table of keys such as search."));
+  EXPECT_THAT(ErrorOf(kMarching, {"search=3"}), HasSubstr("not a whole number"));
+}
+
 TEST(ExperimentErrorsTest, ValuesOutOfRangeComeWithTheRange) {
   EXPECT_EQ(ErrorOf(Marching("[search]\n  crossover_probability = 1.5\n")),
             "toy.toml:3:3: search.crossover_probability = 1.5 is out of range, allowed 0 to 1");
