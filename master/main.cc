@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   gauntlet::master::CommandContext context{.out = std::cout,
                                            .err = std::cerr,
                                            .err_is_terminal = isatty(STDERR_FILENO) == 1,
+                                           .out_is_terminal = isatty(STDOUT_FILENO) == 1,
                                            .program = ProgramName(argc > 0 ? argv[0] : "gauntlet"),
                                            .service = {}};
   return gauntlet::master::RunCommandLine(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc),
