@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   gauntlet::master::CommandContext context{.out = out,
                                            .err = std::cerr,
                                            .err_is_terminal = isatty(STDERR_FILENO) == 1,
+                                           .out_is_terminal = isatty(STDOUT_FILENO) == 1,
                                            .program = ProgramName(argc > 0 ? argv[0] : "gauntlet"),
                                            .service = {}};
   const int code = gauntlet::master::RunCommandLine(

@@ -1,6 +1,7 @@
 #include "worker/access_file.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cerrno>
 #include <cstring>
@@ -12,6 +13,7 @@ namespace gauntlet::worker {
 namespace {
 
 constexpr int kFormat = 1;
+constexpr std::size_t kKeyCharacters = 40;
 
 bool IsEndpoint(const std::string& text) {
   return (text.starts_with("tcp://") || text.starts_with("ipc://")) && text.size() > 6;
@@ -57,6 +59,20 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
     }
     access.endpoints.push_back(endpoint.get<std::string>());
   }
+  if (const auto curve = json.find("curve"); curve != json.end()) {
+    CurveKeys keys;
+    for (const auto& [name, key] :
+         {std::pair{"server_public", &keys.server_public}, std::pair{"worker_public", &keys.worker_public},
+          std::pair{"worker_secret", &keys.worker_secret}}) {
+      // What stands there is not repeated: messages end in logs.
+      const bool is_text = curve->is_object() && curve->contains(name) && (*curve)[name].is_string();
+      if (is_text) *key = (*curve)[name].get<std::string>();
+      if (key->size() != kKeyCharacters) {
+        return wrong(fmt::format("\"curve\".\"{}\" must be a key of {} characters", name, kKeyCharacters));
+      }
+    }
+    access.curve = std::move(keys);
+  }
   return access;
 }
 
@@ -70,7 +86,15 @@ Result<Access> ReadAccess(const std::string& path) {
   }
   const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
   if (in.bad()) return Error{ErrorKind::kIo, fmt::format("{}: cannot be read", path)};
-  return ParseAccess(text, path);
+  Result<Access> access = ParseAccess(text, path);
+  struct stat status {};
+  if (access.ok() && access->curve && stat(path.c_str(), &status) == 0 && (status.st_mode & 077) != 0) {
+    return InvalidInput(fmt::format(
+        "{} holds keys and has mode {:03o}: others may read it; make it 600 (chmod 600), or better "
+        "let a new master write new keys",
+        path, status.st_mode & 0777));
+  }
+  return access;
 }
 
 }  // namespace gauntlet::worker

@@ -25,7 +25,7 @@ struct Connection::Socket {
 Connection::Connection() : socket_(std::make_unique<Socket>()) {}
 Connection::~Connection() = default;
 
-Status Connection::Open(const std::string& endpoint) {
+Status Connection::Open(const std::string& endpoint, const std::optional<CurveKeys>& curve) {
   outbox_.clear();
   try {
     if (socket_->dealer) {
@@ -39,7 +39,13 @@ Status Connection::Open(const std::string& endpoint) {
     dealer.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(kMaxMessageBytes));
     dealer.set(zmq::sockopt::reconnect_ivl, kReconnectMs);
     dealer.set(zmq::sockopt::reconnect_ivl_max, kReconnectMaxMs);
+    if (curve) {
+      dealer.set(zmq::sockopt::curve_serverkey, curve->server_public);
+      dealer.set(zmq::sockopt::curve_publickey, curve->worker_public);
+      dealer.set(zmq::sockopt::curve_secretkey, curve->worker_secret);
+    }
     dealer.connect(endpoint);
+    fd_ = dealer.get(zmq::sockopt::fd);
     socket_->dealer = std::move(dealer);
   } catch (const zmq::error_t& error) {
     return InvalidInput(fmt::format("cannot connect to {}: {}", endpoint, error.what()));
@@ -76,8 +82,12 @@ std::optional<std::string> Connection::Receive() {
   }
 }
 
-void* Connection::handle() {
-  return socket_->dealer ? socket_->dealer.handle() : nullptr;
+bool Connection::Readable() {
+  try {
+    return socket_->dealer && (socket_->dealer.get(zmq::sockopt::events) & ZMQ_POLLIN) != 0;
+  } catch (const zmq::error_t&) {
+    return true;  // interrupted by a signal: Receive will tell
+  }
 }
 
 }  // namespace gauntlet::worker

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sim/base/result.h"
+#include "worker/access_file.h"
 
 namespace gauntlet::worker {
 
@@ -21,20 +22,24 @@ class Connection {
   ~Connection();
 
   // Drops the old connection with everything that waits, and begins a new one.
-  Status Open(const std::string& endpoint);
+  Status Open(const std::string& endpoint, const std::optional<CurveKeys>& curve);
   void Send(std::string frame);
   // True when Send would have to keep a message back.
   bool congested() const { return !outbox_.empty(); }
   // Sends what waits, as far as possible.
   void Flush();
   std::optional<std::string> Receive();
-  // The socket for zmq_poll, nullptr before Open.
-  void* handle();
+  // Whether Receive has something.
+  bool Readable();
+  // Readable when the state of the connection may have changed: ask Readable() and Flush() before sleeping on
+  // it, for a change is announced once. -1 before Open.
+  int fd() const { return fd_; }
 
  private:
   struct Socket;
   std::unique_ptr<Socket> socket_;
   std::deque<std::string> outbox_;
+  int fd_ = -1;
 };
 
 }  // namespace gauntlet::worker

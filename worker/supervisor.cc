@@ -15,7 +15,6 @@
 #include <set>
 #include <utility>
 #include <vector>
-#include <zmq.hpp>
 
 #include "sim/base/check.h"
 #include "worker/connection.h"
@@ -63,41 +62,25 @@ class Supervisor::Loop {
 
  private:
   void Wait() {
-    const std::vector<pollfd> runners = pool_.Descriptors();
-    std::vector<zmq::pollitem_t> items;
-    items.reserve(2 + runners.size());
-    const int events = connection_.congested() ? ZMQ_POLLIN | ZMQ_POLLOUT : ZMQ_POLLIN;
-    items.push_back({connection_.handle(), 0, static_cast<short>(events), 0});
-    items.push_back({nullptr, signals_, ZMQ_POLLIN, 0});
-    // zmq_poll knows no ignored descriptors, so those are left out; polled_ keeps the pool's order.
-    for (const pollfd& runner : runners) {
-      if (runner.fd < 0) continue;
-      const int wanted = (runner.events & POLLOUT) != 0 ? ZMQ_POLLIN | ZMQ_POLLOUT : ZMQ_POLLIN;
-      items.push_back({nullptr, runner.fd, static_cast<short>(wanted), 0});
-    }
+    polled_ = pool_.Descriptors();
+    polled_.push_back({.fd = signals_, .events = POLLIN, .revents = 0});
+    polled_.push_back({.fd = connection_.fd(), .events = POLLIN, .revents = 0});
+    message_came_ = connection_.Readable();
+    connection_.Flush();
     const auto until_tick =
         std::chrono::ceil<milliseconds>(state_.NextTick() - std::chrono::steady_clock::now());
-    const milliseconds timeout = std::clamp(until_tick, milliseconds(0), kLongestWait);
-    bool interrupted = false;
-    try {
-      zmq::poll(items, timeout);
-    } catch (const zmq::error_t& error) {
-      GAUNTLET_CHECK(error.num() == EINTR, fmt::format("zmq_poll: {}", error.what()));
-      interrupted = true;
-      for (zmq::pollitem_t& item : items) item.revents = 0;
+    const milliseconds timeout =
+        message_came_ ? milliseconds(0) : std::clamp(until_tick, milliseconds(0), kLongestWait);
+    const bool interrupted = poll(polled_.data(), polled_.size(), static_cast<int>(timeout.count())) < 0;
+    GAUNTLET_CHECK(!interrupted || errno == EINTR, fmt::format("poll: {}", std::strerror(errno)));
+    if (interrupted) {
+      for (pollfd& item : polled_) item.revents = 0;
     }
-    message_came_ = interrupted || items[0].revents != 0;
-    signal_came_ = interrupted || items[1].revents != 0;
-    polled_ = runners;
-    std::size_t next = 2;
-    for (pollfd& runner : polled_) {
-      if (runner.fd < 0) continue;
-      const short got = items[next++].revents;
-      // zmq_poll reports hang-ups as POLLIN or POLLERR; reading tells which.
-      if ((got & (ZMQ_POLLIN | ZMQ_POLLERR)) != 0)
-        runner.revents = static_cast<short>(runner.revents | POLLIN);
-      if ((got & ZMQ_POLLOUT) != 0) runner.revents = static_cast<short>(runner.revents | POLLOUT);
-    }
+    const bool connection_changed = polled_.back().revents != 0;
+    polled_.pop_back();
+    signal_came_ = interrupted || polled_.back().revents != 0;
+    polled_.pop_back();
+    message_came_ = message_came_ || interrupted || (connection_changed && connection_.Readable());
   }
 
   void ReadSignals() {
@@ -206,7 +189,7 @@ class Supervisor::Loop {
 
   bool Connect() {
     endpoint_ = access_.endpoints[attempts_ % access_.endpoints.size()];
-    const Status opened = connection_.Open(endpoint_);
+    const Status opened = connection_.Open(endpoint_, access_.curve);
     if (opened.ok()) {
       spdlog::debug("connecting to {}", endpoint_);
       return true;

@@ -18,6 +18,12 @@ constexpr int kResendHeartbeats = 10;
 // Leases beyond the slots wait here; a master that sends more is told to take them elsewhere.
 constexpr std::size_t kMaxWaiting = 4096;
 
+// A run that sleeps or waits uses no CPU time, so its limit never ends it. This does: so late that a run at
+// work on a crowded machine has met its CPU limit long before.
+constexpr double kWallPerCpu = 20.0;
+// Ticks come at least every heartbeat; whatever lies further apart, this process was frozen in between.
+constexpr Duration kLongestStep = std::chrono::seconds(5);
+
 double Seconds(Duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
@@ -40,6 +46,7 @@ std::vector<WorkerAction> WorkerState::Start() {
 
 std::vector<WorkerAction> WorkerState::Handle(WorkerEvent event, TimePoint now) {
   if (phase_ == Phase::kExited) return {};
+  awake_ += std::clamp<Duration>(now - now_, Duration::zero(), kLongestStep);
   now_ = std::max(now_, now);
   std::visit([this](auto& concrete) { On(concrete); }, event);
   if (phase_ != Phase::kExited) StartWaitingRuns();
@@ -194,7 +201,27 @@ void WorkerState::On(const StopRequested& stop) {
       earlier(drain_->leave_at, now_ + (hurry ? settings_.acknowledge_wait : settings_.stop_leave));
 }
 
+void WorkerState::EndBlockedRuns() {
+  if (welcome_.cpu_limit_seconds <= 0.0) return;
+  const double limit = kWallPerCpu * welcome_.cpu_limit_seconds;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    Slot& slot = slots_[i];
+    if (slot.state != SlotState::kRunning || Seconds(awake_ - slot.begun) < limit) continue;
+    slot.state = SlotState::kKilling;
+    Act(KillRunner{static_cast<int>(i)});
+    HandIn({.fence = slot.lease.fence,
+            .run_id = slot.lease.run_id,
+            .result = {},
+            .failure = RunnerFailure{.kind = FailureKind::kHung,
+                                     .signal = 0,
+                                     .exit_code = 0,
+                                     .stderr_tail = fmt::format("no end after {:.0f} s: it waits", limit)},
+            .cpu_seconds = 0.0});
+  }
+}
+
 void WorkerState::On(const ClockTick&) {
+  EndBlockedRuns();
   const Duration silence = now_ - last_heard_;
   if (phase_ == Phase::kGreeting) {
     if (silence >= settings_.orphan_timeout) {
@@ -263,6 +290,7 @@ void WorkerState::StartWaitingRuns() {
     Slot& slot = slots_[i];
     if (slot.state != SlotState::kIdle) continue;
     slot.state = SlotState::kRunning;
+    slot.begun = awake_;
     slot.lease = std::move(waiting_.front());
     waiting_.pop_front();
     Act(StartRun{.slot = static_cast<int>(i),

@@ -114,7 +114,8 @@ class WorkerState {
   enum class SlotState { kStarting, kIdle, kRunning, kKilling };
   struct Slot {
     SlotState state = SlotState::kStarting;
-    Lease lease;  // when running
+    Lease lease;       // when running
+    Duration begun{};  // value of awake_ then
   };
   struct Finished {
     LeaseResult result;
@@ -147,6 +148,7 @@ class WorkerState {
   void Greet();
   void GreetAgain();
   void ResendLateResults();
+  void EndBlockedRuns();
   void Forget(Fence fence);
   bool Holds(Fence fence) const;
   void StartWaitingRuns();
@@ -160,6 +162,7 @@ class WorkerState {
   WorkerSettings settings_;
   Phase phase_ = Phase::kGreeting;
   TimePoint now_;
+  Duration awake_{};  // time that passed, without what passed while this process was frozen
   TimePoint last_heard_;
   TimePoint connected_;  // last (re)connect while greeting
   TimePoint last_hello_;

@@ -17,8 +17,13 @@ constexpr mode_t kOwnerOnly = 0600;
 }  // namespace
 
 Status WriteAccessFile(const std::string& path, const AccessInfo& info) {
-  const nlohmann::ordered_json json = {
+  nlohmann::ordered_json json = {
       {"format", kFormat}, {"campaign", info.campaign}, {"epoch", info.epoch}, {"endpoints", info.endpoints}};
+  if (info.curve) {
+    json["curve"] = {{"server_public", info.curve->server_public},
+                     {"worker_public", info.curve->worker_public},
+                     {"worker_secret", info.curve->worker_secret}};
+  }
   return WriteFileAtomically(path, json.dump(2) + "\n", kOwnerOnly);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,18 @@
 
 namespace gauntlet::master {
 
+// What a worker needs of the keys; Z85.
+struct AccessKeys {
+  std::string server_public;
+  std::string worker_public;
+  std::string worker_secret;
+};
+
 struct AccessInfo {
-  std::string campaign;                // id, hex
-  std::uint64_t epoch = 0;             // the master's start number
-  std::vector<std::string> endpoints;  // ZeroMQ addresses, "tcp://127.0.0.1:41234"
+  std::string campaign;                            // id, hex
+  std::uint64_t epoch = 0;                         // the master's start number
+  std::vector<std::string> endpoints;              // ZeroMQ addresses, "tcp://127.0.0.1:41234"
+  std::optional<AccessKeys> curve = std::nullopt;  // none: plaintext
 };
 
 // Writes the file for its owner alone (0600), at once and whole.

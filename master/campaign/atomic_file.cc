@@ -50,23 +50,35 @@ Error SystemError(const std::string& what, int error_number) {
   return {kind, fmt::format("{}{}: {}", hint, what, std::strerror(error_number))};
 }
 
-Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode_t mode) {
+namespace {
+
+Status Replace(const std::string& path, std::string_view bytes, mode_t mode, bool durable) {
   const std::string directory = DirectoryOf(path);
   std::string temporary = path + ".XXXXXX";
   const int fd = mkostemp(temporary.data(), O_CLOEXEC);
   if (fd < 0) return SystemError(fmt::format("cannot create a file in {}", directory), errno);
   int error = WriteAll(fd, bytes);
   if (error == 0 && fchmod(fd, mode) != 0) error = errno;
-  if (error == 0 && fsync(fd) != 0) error = errno;
+  if (error == 0 && durable && fsync(fd) != 0) error = errno;
   if (close(fd) != 0 && error == 0) error = errno;
   if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) {
     unlink(temporary.c_str());
     return SystemError(fmt::format("cannot write {}", path), error);
   }
-  error = SyncDirectory(directory);
+  if (durable) error = SyncDirectory(directory);
   if (error != 0) return SystemError(fmt::format("cannot synchronise {}", directory), error);
   return Ok{};
+}
+
+}  // namespace
+
+Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode_t mode) {
+  return Replace(path, bytes, mode, /*durable=*/true);
+}
+
+Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode) {
+  return Replace(path, bytes, mode, /*durable=*/false);
 }
 
 Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit) {

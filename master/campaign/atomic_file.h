@@ -15,6 +15,9 @@ namespace gauntlet::master {
 // directory, fsync, rename, fsync of the directory. `mode`: permissions of the new file. Errors: kNoSpace,
 // kIo; the old content then stands (only when nothing but the last fsync failed, the new one may).
 Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode_t mode);
+// The same without fsync, for what is worthless after a loss of power: readers see the old or the new
+// content.
+Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode);
 
 // A whole file of at most `limit` bytes. Errors: kNotFound, kIo, kCorrupt when it is longer.
 Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit = 1 << 20);

@@ -19,8 +19,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr mode_t kReadableByAll = 0644;
-constexpr std::array<std::string_view, 7> kOwnNames = {"access.json",     "campaign.db", "epoch",      "lock",
-                                                       "experiment.toml", "log",         "status.json"};
+constexpr std::array<std::string_view, 9> kOwnNames = {"access.json", "campaign.db",     "epoch",
+                                                       "lock",        "experiment.toml", "log",
+                                                       "status.json", "master.key",      "stop"};
 
 std::string WithoutSlash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();

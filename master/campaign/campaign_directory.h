@@ -29,6 +29,10 @@ class CampaignDirectory {
   std::string access_path() const { return path_ + "/access.json"; }
   // What a living master says of its progress, for those who may not read the database meanwhile.
   std::string status_path() const { return path_ + "/status.json"; }
+  // Secret keys, 0600; only when the master is reachable from other machines.
+  std::string key_path() const { return path_ + "/master.key"; }
+  // `gauntlet stop` was here; the master removes it.
+  std::string stop_path() const { return path_ + "/stop"; }
   std::string log_path() const { return path_ + "/log"; }
 
   // Counts one more start of a master, durably, and returns its number (1, 2, ...). Only under the campaign's

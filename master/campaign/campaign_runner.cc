@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -106,6 +107,7 @@ Status CampaignRunner::AskSearch() {
     evaluation.request = std::move(request);
     pending_.push_back(std::move(evaluation));
   }
+  at_backend_ += submissions.size();
   if (!submissions.empty()) parts_.backend.Submit(std::move(submissions));
   return Ok{};
 }
@@ -138,7 +140,8 @@ void CampaignRunner::Store(FinishedRun finished) {
   PendingRun* pending = Find(finished.id);
   GAUNTLET_CHECK(pending != nullptr && !pending->durable, fmt::format("run {} finished twice", finished.id));
   StoredRun& run = pending->run;
-  run.result = EncodeRunResult(finished.result);
+  --at_backend_;
+  run.result = std::move(finished.encoded);
   run.hash = finished.result.hash;
   run.worker = std::move(finished.worker);
   run.attempt = finished.attempt;
@@ -168,13 +171,18 @@ Status CampaignRunner::ApplyCommits() {
 void CampaignRunner::TellCompleted() {
   while (!pending_.empty()) {
     const PendingEvaluation& evaluation = pending_.front();
+    // From the end, where what is missing usually stands: evaluations of thousands of runs are looked at
+    // often.
+    if (std::any_of(evaluation.runs.rbegin(), evaluation.runs.rend(),
+                    [](const PendingRun& pending) { return !pending.durable; })) {
+      return;
+    }
     EvaluationOutcome outcome;
     outcome.individual = evaluation.request.individual;
     outcome.evaluation = evaluation.request.evaluation;
     double sum = 0.0;
     std::uint32_t completed = 0;
     for (const PendingRun& pending : evaluation.runs) {
-      if (!pending.durable) return;
       if (pending.run.verdict == static_cast<int>(sim::Verdict::kCompleted)) {
         sum += pending.run.fitness;
         ++completed;
@@ -244,7 +252,7 @@ CampaignProgress CampaignRunner::Progress(TimePoint started) {
   return progress;
 }
 
-Result<CampaignEnd> CampaignRunner::Run(const std::function<bool()>& stop_requested,
+Result<CampaignEnd> CampaignRunner::Run(const std::function<StopWish()>& stop,
                                         const std::function<void(const CampaignProgress&)>& on_progress) {
   const TimePoint started = parts_.clock.Now();
   TimePoint last_report = started - kPollTime;
@@ -258,7 +266,9 @@ Result<CampaignEnd> CampaignRunner::Run(const std::function<bool()>& stop_reques
       last_report = now;
     }
     if (pending_.empty() && parts_.search.Progress().finished) break;
-    if (stop_requested()) {
+    const StopWish wish = stop();
+    if (wish == StopWish::kAfterRuns) parts_.backend.StopLeasing();
+    if (wish == StopWish::kNow || (wish == StopWish::kAfterRuns && parts_.backend.Statistics().busy == 0)) {
       if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();
       if (Status applied = ApplyCommits(); !applied) return applied.error();
       TellCompleted();
@@ -272,6 +282,8 @@ Result<CampaignEnd> CampaignRunner::Run(const std::function<bool()>& stop_reques
       return finished.error();
     }
     for (FinishedRun& run : *finished) Store(std::move(run));
+    // The search cannot go on before these are durable.
+    if (!finished->empty() && at_backend_ == 0) parts_.store.Hurry();
     StoreEvents();
   }
   parts_.store.MarkFinished(parts_.search_id);

@@ -19,6 +19,12 @@
 
 namespace gauntlet::master {
 
+enum class StopWish {
+  kNone,
+  kAfterRuns,  // let the runs that have begun end
+  kNow,        // what runs is simulated again some day
+};
+
 enum class CampaignEnd { kFinished, kStopped };
 
 // What a person wants to see while it runs.
@@ -63,9 +69,10 @@ class CampaignRunner {
   // Run. Error: what is stored does not fit the experiment (kCorrupt) or cannot be read.
   Status Restore();
 
-  // Until the search has finished or `stop_requested` answers true. `on_progress` is called about ten times a
-  // second. Error: the store or the backend failed; whatever was acknowledged is stored.
-  Result<CampaignEnd> Run(const std::function<bool()>& stop_requested,
+  // Until the search has finished, `stop` answers kNow, or it has answered kAfterRuns and what was running
+  // has ended. `on_progress` is called about ten times a second. Error: the store or the backend failed;
+  // whatever was acknowledged is stored.
+  Result<CampaignEnd> Run(const std::function<StopWish()>& stop,
                           const std::function<void(const CampaignProgress&)>& on_progress);
 
   // Runs stored, earlier sessions included.
@@ -95,7 +102,8 @@ class CampaignRunner {
   Parts parts_;
   std::deque<PendingEvaluation> pending_;
   std::map<RunId, StoredRun>
-      stored_ahead_;  // results that a former session stored and the saved state has not seen
+      stored_ahead_;              // results that a former session stored and the saved state has not seen
+  std::uint64_t at_backend_ = 0;  // submitted and not finished
   RunId last_asked_ = 0;
   RunId last_told_ = 0;
   RunId saved_until_ = 0;

@@ -4,15 +4,19 @@
 #include <spdlog/sinks/basic_file_sink.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "master/campaign/access_file.h"
 #include "master/campaign/atomic_file.h"
+#include "master/campaign/campaign_keys.h"
 #include "master/campaign/campaign_ownership.h"
+#include "master/campaign/campaign_status.h"
+#include "master/campaign/process_identity.h"
+#include "master/campaign/reachable_endpoints.h"
 #include "master/campaign/stored_check.h"
 #include "master/campaign/worker_program.h"
 #include "master/dispatch/local_pool.h"
@@ -29,6 +33,7 @@ constexpr std::string_view kSoftwareVersion = GAUNTLET_VERSION;
 constexpr SearchId kOnlySearch = 1;
 constexpr std::chrono::milliseconds kShutdownTime{2000};
 constexpr std::chrono::milliseconds kStatusEvery{1000};
+constexpr mode_t kReadableByAll = 0644;
 
 double CpuSeconds() {
   rusage usage{};
@@ -92,18 +97,29 @@ Status CheckGoldenHash(const CampaignMeta& meta, std::uint64_t golden_hash) {
                   meta.software_version, meta.golden_hash, kSoftwareVersion, HashText(golden_hash))};
 }
 
-void WriteStatus(const CampaignDirectory& directory, const CampaignProgress& progress) {
-  const nlohmann::json status = {{"generation", progress.search.generation},
-                                 {"generations", progress.search.generations},
-                                 {"runs_done", progress.runs_done},
-                                 {"runs_planned", progress.runs_planned},
-                                 {"runs_per_second", progress.runs_per_second},
-                                 {"total_failures", progress.total_failures},
-                                 {"runs_failed", progress.runs_failed},
-                                 {"workers", progress.workers.connected}};
-  if (Status written = WriteFileAtomically(directory.status_path(), status.dump() + "\n", 0644); !written) {
-    spdlog::debug("status: {}", written.error().message);
+// A socket for workers, with keys when others than this machine can reach it.
+struct Serving {
+  std::unique_ptr<ZmqTransport> transport;
+  AccessInfo access;
+};
+Result<Serving> Listen(const CampaignOwnership& campaign, const SessionOptions& options) {
+  AccessInfo access;
+  access.campaign = campaign.store->meta().campaign_id;
+  access.epoch = campaign.epoch;
+  ZmqTransportOptions transport_options;
+  transport_options.endpoint = options.bind;
+  if (!IsLocalEndpoint(options.bind) && !options.insecure) {
+    Result<CampaignKeys> keys = LoadOrMakeKeys(campaign.directory.key_path());
+    if (!keys) return keys.error();
+    access.curve = AccessKeys{keys->master.public_key, keys->worker.public_key, keys->worker.secret_key};
+    transport_options.curve = CurveServer{keys->master, {keys->worker.public_key}};
   }
+  Result<std::unique_ptr<ZmqTransport>> transport = ZmqTransport::Bind(transport_options);
+  if (!transport) return transport.error();
+  access.endpoints = ReachableEndpoints((*transport)->endpoint());
+  if (Status written = WriteAccessFile(campaign.directory.access_path(), access); !written)
+    return written.error();
+  return Serving{*std::move(transport), std::move(access)};
 }
 
 // The master's log, beside those of its workers. Logging is no reason to stop: without a file it is silent.
@@ -124,7 +140,10 @@ void OpenLog(const CampaignDirectory& directory) {
 class LivingMasterFiles {
  public:
   LivingMasterFiles(const CampaignDirectory& directory, std::uint64_t epoch)
-      : directory_(directory), epoch_(epoch) {}
+      : directory_(directory), epoch_(epoch) {
+    std::error_code ignored;
+    std::filesystem::remove(directory.stop_path(), ignored);  // meant for a former master
+  }
   LivingMasterFiles(const LivingMasterFiles&) = delete;
   LivingMasterFiles& operator=(const LivingMasterFiles&) = delete;
   ~LivingMasterFiles() {
@@ -133,6 +152,7 @@ class LivingMasterFiles {
     }
     std::error_code ignored;
     std::filesystem::remove(directory_.status_path(), ignored);
+    std::filesystem::remove(directory_.stop_path(), ignored);
   }
 
  private:
@@ -154,22 +174,23 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& exper
   Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(experiment, store);
   if (!search) return search.error();
 
-  Result<std::unique_ptr<ZmqTransport>> transport = ZmqTransport::Bind();
-  if (!transport) return transport.error();
-  const AccessInfo access{store.meta().campaign_id, campaign.epoch, {(*transport)->endpoint()}};
-  if (Status written = WriteAccessFile(campaign.directory.access_path(), access); !written)
-    return written.error();
+  Result<Serving> serving = Listen(campaign, options);
+  if (!serving) return serving.error();
   const SteadyClock clock;
-  LocalPoolOptions pool_options;
-  pool_options.workers = options.workers;
-  pool_options.access_file = campaign.directory.access_path();
-  pool_options.log_directory = campaign.directory.log_path();
-  Result<std::unique_ptr<LocalPool>> pool = LocalPool::Start(pool_options, clock.Now());
-  if (!pool) return pool.error();
+  std::unique_ptr<LocalPool> pool;
+  if (options.workers > 0) {
+    LocalPoolOptions pool_options;
+    pool_options.workers = options.workers;
+    pool_options.access_file = campaign.directory.access_path();
+    pool_options.log_directory = campaign.directory.log_path();
+    Result<std::unique_ptr<LocalPool>> started_pool = LocalPool::Start(pool_options, clock.Now());
+    if (!started_pool) return started_pool.error();
+    pool = *std::move(started_pool);
+  }
 
   const CampaignIdentity identity{store.meta().campaign_id, campaign.epoch, std::string(kSoftwareVersion),
                                   golden_hash};
-  RemoteBackend backend(identity, DispatchOptions{}, **transport, clock, pool->get());
+  RemoteBackend backend(identity, DispatchOptions{}, *serving->transport, clock, pool.get());
   backend.WatchFd(store.CommitNotifier());
   CampaignRunner runner({.experiment = experiment,
                          .search_id = kOnlySearch,
@@ -182,16 +203,46 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& exper
   store.AddEvent({UnixMilliseconds(), campaign.epoch == 1 ? "start" : "resume",
                   fmt::format("master {} with {} workers", campaign.epoch, options.workers)});
 
+  MasterView view;
+  view.campaign_id = store.meta().campaign_id;
+  view.experiment = experiment.name;
+  view.host = IdentifyThisProcess().host;
+  view.pid = getpid();
+  view.epoch = campaign.epoch;
+  view.started_unix_ms = UnixMilliseconds();
+  view.endpoints = serving->access.endpoints;
+  view.encrypted = serving->access.curve.has_value();
+  options.on_serving({view.endpoints, view.encrypted});
+
   TimePoint last_status = clock.Now() - kStatusEvery;
   const std::uint64_t runs_before = runner.runs_done();
-  Result<CampaignEnd> end = runner.Run(options.stop_requested, [&](const CampaignProgress& progress) {
+  const auto stop = [&] {
+    if (options.stop_requested()) return StopWish::kNow;
+    return view.stopping ? StopWish::kAfterRuns : StopWish::kNone;
+  };
+  Result<CampaignEnd> end = runner.Run(stop, [&](const CampaignProgress& progress) {
     if (const TimePoint now = clock.Now(); now - last_status >= kStatusEvery) {
-      WriteStatus(campaign.directory, progress);
+      std::error_code ignored;
+      if (!view.stopping && std::filesystem::exists(campaign.directory.stop_path(), ignored)) {
+        view.stopping = true;
+        spdlog::info("asked to stop");
+      }
+      view.now_unix_ms = UnixMilliseconds();
+      const Status written = ReplaceFile(campaign.directory.status_path(),
+                                         StatusJson(view, progress, backend.Describe()), kReadableByAll);
+      if (!written) spdlog::debug("status: {}", written.error().message);
       last_status = now;
     }
     options.on_progress(progress);
   });
-  backend.Shutdown(kShutdownTime);
+  // Workers from elsewhere outlive this master unless there is nothing left to do, or no more is wanted.
+  const bool workers_stay = pool == nullptr && !view.stopping && (!end || *end == CampaignEnd::kStopped);
+  if (workers_stay) {
+    backend.StopLeasing();
+    (void)backend.Poll(std::chrono::milliseconds(0));  // sends the last acknowledgements
+  } else {
+    backend.Shutdown(kShutdownTime);
+  }
   if (!end) {
     spdlog::error("stopped: {}", end.error().message);
     return end.error();

@@ -14,8 +14,20 @@
 
 namespace gauntlet::master {
 
+// What a master says of itself once workers can reach it.
+struct ServingNotice {
+  std::vector<std::string> endpoints;
+  bool encrypted = false;
+};
+
 struct SessionOptions {
-  int workers = 1;  // processes of the local pool
+  int workers = 1;  // processes of the local pool; 0: workers come from elsewhere
+  // Where workers connect. Reachable from other machines: encrypted, for known keys only, unless `insecure`.
+  std::string bind = "tcp://127.0.0.1:*";
+  bool insecure = false;
+  std::function<void(const ServingNotice&)> on_serving = [](const ServingNotice&) {};
+  // Asks for a clean stop at once. Workers from elsewhere stay and look for the campaign's next master; when
+  // `gauntlet stop` asks, runs that have begun are waited for and all workers are let go.
   std::function<bool()> stop_requested = [] { return false; };
   std::function<void(const CampaignProgress&)> on_progress = [](const CampaignProgress&) {};
 };

@@ -158,6 +158,11 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
 
   summary.state_hash =
       StateHash(EncodeExperiment(experiment), digest, EncodePopulation(population), search_state);
+  Result<std::vector<StoredEvent>> events = store.LoadEvents();
+  if (!events) return events.error();
+  summary.nondeterministic = std::any_of(events->begin(), events->end(), [](const StoredEvent& event) {
+    return event.kind == "nondeterministic";
+  });
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
   for (const StoredSearch& stored : *searches) {

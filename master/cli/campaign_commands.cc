@@ -8,9 +8,13 @@
 
 namespace gauntlet::master {
 ExitCode RunResume(CommandContext& context, const CommonOptions& options) {
-  const Result<int> workers = ParseWorkers(options.workers);
+  // With --bind workers come from elsewhere, unless some are asked for.
+  const bool none = !options.bind.empty() && options.workers.empty();
+  const Result<int> workers = none ? Result<int>(0) : ParseWorkers(options.workers);
   if (!workers) return Fail(context, workers.error());
   CampaignRun campaign;
+  campaign.bind = options.bind;
+  campaign.insecure = options.insecure;
   campaign.directory = options.directory;
   campaign.workers = *workers;
   campaign.run = [&](const SessionOptions& session) {

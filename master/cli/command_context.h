@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "master/campaign/campaign_session.h"
+#include "master/campaign/campaign_status.h"
 #include "sim/base/result.h"
 
 namespace gauntlet::master {
@@ -30,6 +31,9 @@ struct CampaignService {
   std::function<Result<CampaignSummary>(const std::string& directory)> read = ReadCampaign;
   std::function<Status(const std::string& directory, const std::function<void(const StoredRun&)>& visit)>
       for_each_run = ForEachStoredRun;
+  std::function<Result<std::string>(const std::string& directory)> status = ReadStatus;
+  std::function<Result<bool>(const std::string& directory)> lives = MasterLives;
+  std::function<Status(const std::string& directory)> stop = RequestStop;
   std::function<Result<CampaignReplay>(const std::string& directory, RunId run)> replay = ReplayCampaignRun;
 };
 
@@ -37,6 +41,7 @@ struct CommandContext {
   std::ostream& out;  // results
   std::ostream& err;  // progress and messages
   bool err_is_terminal = false;
+  bool out_is_terminal = false;
   std::string program = "gauntlet";  // how hints begin
   CampaignService service;
 };

@@ -15,15 +15,28 @@
 namespace gauntlet::master {
 namespace {
 
-void AddRunningOptions(CLI::App& command, CommonOptions& options) {
-  command.add_option("--workers", options.workers, "worker processes on this machine (default: its cores)")
-      ->type_name("N");
+void AddMessageOptions(CLI::App& command, CommonOptions& options) {
   command.add_flag("--json", options.json, "the result as one JSON document on standard output");
   command.add_flag("--quiet", options.quiet, "no progress and no messages but errors");
   command.add_flag("--no-progress", options.no_progress, "messages, but no progress");
 }
 
-void AddCommonOptions(CLI::App& command, CommonOptions& options) {
+void AddRunningOptions(CLI::App& command, CommonOptions& options) {
+  command.add_option("--workers", options.workers, "worker processes on this machine (default: its cores)")
+      ->type_name("N");
+  AddMessageOptions(command, options);
+}
+
+void AddBindOptions(CLI::App& command, CommonOptions& options) {
+  command
+      .add_option("--bind", options.bind,
+                  "where workers connect, e.g. tcp://0.0.0.0:5555 (port *: any free one)")
+      ->type_name("ENDPOINT");
+  command.add_flag("--insecure", options.insecure,
+                   "plaintext, open to everybody, also on an address that other machines can reach");
+}
+
+void AddExperimentOptions(CLI::App& command, CommonOptions& options) {
   command
       .add_option("EXPERIMENT", options.experiment,
                   "a shipped experiment (see: gauntlet list experiments), or a TOML file")
@@ -44,6 +57,10 @@ void AddCommonOptions(CLI::App& command, CommonOptions& options) {
       ->type_name("G");
   command.add_option("--population", options.population, "short for --set search.population=P")
       ->type_name("P");
+}
+
+void AddCommonOptions(CLI::App& command, CommonOptions& options) {
+  AddExperimentOptions(command, options);
   AddRunningOptions(command, options);
 }
 
@@ -113,12 +130,16 @@ void AddCampaignCommands(CLI::App& app, CommandAction& chosen) {
       AddCommand(app, chosen, "resume", "go on with a campaign that was stopped or killed", RunResume);
   resume->add_option("DIR", resume_options->directory, "directory of the campaign")->required();
   AddRunningOptions(*resume, *resume_options);
+  AddBindOptions(*resume, *resume_options);
   resume->footer(
       R"(Goes on where the campaign was, whatever ended it; no finished run is simulated again, and the result
 is that of an undisturbed campaign. A finished campaign is only summarised.
 
-Example:
-  gauntlet resume campaigns/flocking-20260131T120000Z --workers 4)");
+With --bind, workers come from elsewhere, as with 'gauntlet master'.
+
+Examples:
+  gauntlet resume campaigns/flocking-20260131T120000Z --workers 4
+  gauntlet resume DIR --bind 'tcp://0.0.0.0:*')");
 
   const auto [show, show_options] = AddCommand(app, chosen, "show", "what came out of a campaign", RunShow);
   show->add_option("DIR", show_options->directory, "directory of the campaign")->required();
@@ -149,6 +170,50 @@ Example:
   gauntlet replay campaigns/flocking-20260131T120000Z 812 --svg run-812.svg --csv run-812.csv)");
 }
 
+void AddServiceCommands(CLI::App& app, CommandAction& chosen) {
+  const auto [master, master_options] =
+      AddCommand(app, chosen, "master", "a search whose workers come from elsewhere", RunMaster);
+  AddExperimentOptions(*master, master_options->common);
+  AddMessageOptions(*master, master_options->common);
+  AddBindOptions(*master, master_options->common);
+  master->get_option("--bind")->required();
+  master->add_flag("--resume", master_options->resume, "go on with the campaign in --dir when there is one");
+  master->footer(
+      R"(Evolves like 'evolve', but starts no workers: they find the master through access.json in the campaign's
+directory ('gauntlet-worker --dir DIR' on any machine that sees it). On an address that other machines can
+reach, everything is encrypted and only workers with the keys in access.json are let in. Ctrl-C or SIGTERM
+stops the master alone (exit 3): workers finish, keep their results and wait 10 minutes for a successor.
+'gauntlet stop DIR' lets the workers go too.
+
+Examples:
+  gauntlet master flocking --bind 'tcp://0.0.0.0:*' --dir /shared/flocking-1
+  gauntlet master flocking --bind 'tcp://0.0.0.0:*' --dir /shared/flocking-1 --resume)");
+
+  const auto [status, status_options] =
+      AddCommand(app, chosen, "status", "what runs where, since when, and why nothing runs", RunStatus);
+  const auto [watch, watch_options] =
+      AddCommand(app, chosen, "watch", "the status every second, until the campaign's master ends", RunWatch);
+  const auto [stop, stop_options] =
+      AddCommand(app, chosen, "stop", "let a campaign end what has begun, and stop it", RunStop);
+  for (const auto& [command, options] :
+       {std::pair{status, status_options}, std::pair{watch, watch_options}, std::pair{stop, stop_options}}) {
+    command->add_option("DIR", options->directory, "directory of the campaign")->required();
+  }
+  status->add_flag("--json", status_options->json, "everything as one JSON document");
+  status->footer(R"(Read from what the living master writes every second; without one, from what is stored.
+
+Examples:
+  gauntlet status DIR
+  gauntlet status DIR --json | jq -r .why_nothing_runs)");
+  watch->footer("Example:\n  gauntlet watch DIR");
+  stop->footer(
+      R"(No more runs are given away; those that have begun end and are stored, workers leave, the master ends
+(exit 3). Returns when it is gone. Works from any machine that sees the directory.
+
+Example:
+  gauntlet stop DIR)");
+}
+
 void AddListCommand(CLI::App& app, CommandAction& chosen) {
   const auto [list, options] = AddCommand(
       app, chosen, "list", "experiments, scenarios, controllers, searches; all parameters", RunList);
@@ -169,6 +234,7 @@ void Configure(CLI::App& app, CommandAction& chosen) {
   app.get_formatter()->column_width(34);
   AddSearchCommands(app, chosen);
   AddCampaignCommands(app, chosen);
+  AddServiceCommands(app, chosen);
   AddListCommand(app, chosen);
   const CLI::Validator given(
       [](const std::string& value) {

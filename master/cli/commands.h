@@ -27,9 +27,27 @@ struct EvaluateOptions {
 // Simulates given test cases. kExitUsage when none of them gave a fitness.
 ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options);
 
-// Of `options`, resume reads directory, workers, json, quiet and no_progress; show reads directory and json.
+// Of `options`, resume reads directory, workers, bind, insecure, json, quiet and no_progress; show reads
+// directory and json.
 ExitCode RunResume(CommandContext& context, const CommonOptions& options);
 ExitCode RunShow(CommandContext& context, const CommonOptions& options);
+
+struct MasterOptions {
+  CommonOptions common;
+  bool resume = false;  // go on with the campaign in the directory when there is one
+};
+// A master whose workers come from elsewhere.
+ExitCode RunMaster(CommandContext& context, const MasterOptions& options);
+
+struct StatusOptions {
+  std::string directory;
+  bool json = false;
+};
+ExitCode RunStatus(CommandContext& context, const StatusOptions& options);
+// The status every second, until there is no master any more.
+ExitCode RunWatch(CommandContext& context, const StatusOptions& options);
+// Lets a campaign end what has begun and stop; returns when its master is gone.
+ExitCode RunStop(CommandContext& context, const StatusOptions& options);
 
 struct ReplayOptions {
   std::string directory;

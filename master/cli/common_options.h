@@ -21,6 +21,8 @@ struct CommonOptions {
   std::vector<std::string> sets;
   std::string generations;
   std::string population;
+  std::string bind;  // where workers connect; only master and resume
+  bool insecure = false;
   bool json = false;
   bool quiet = false;
   bool no_progress = false;

@@ -9,6 +9,7 @@
 #include "master/cli/summary_json.h"
 #include "master/cli/summary_text.h"
 #include "master/cli/table.h"
+#include "master/dispatch/curve_keys.h"
 
 namespace gauntlet::master {
 namespace {
@@ -42,6 +43,24 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
 
   SessionOptions session;
   session.workers = campaign.workers;
+  session.insecure = campaign.insecure;
+  if (!campaign.bind.empty()) session.bind = campaign.bind;
+  session.on_serving = [&](const ServingNotice& notice) {
+    if (campaign.bind.empty()) return;
+    if (!notice.encrypted && !IsLocalEndpoint(campaign.bind)) {
+      // Said even with --quiet.
+      const char* red = context.err_is_terminal ? "\x1b[1;31m" : "";
+      const char* plain = context.err_is_terminal ? "\x1b[0m" : "";
+      PrintMessage(context,
+                   fmt::format("{}INSECURE: whoever reaches {} can read this campaign and feed it results; "
+                               "nothing is encrypted or checked{}",
+                               red, notice.endpoints.front(), plain));
+    }
+    if (options.quiet) return;
+    PrintMessage(context, fmt::format("workers connect to {}{}; start them with: gauntlet-worker --dir {}",
+                                      notice.endpoints.front(), notice.encrypted ? ", encrypted" : "",
+                                      ShellQuoted(campaign.directory)));
+  };
   session.stop_requested = StopSignal::Requested;
   session.on_progress = [&](const CampaignProgress& now) {
     began = true;

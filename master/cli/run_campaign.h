@@ -13,6 +13,8 @@ struct CampaignRun {
   std::string directory;
   std::string announcement;  // one line before it begins, without "gauntlet: "; "" = none
   int workers = 1;
+  std::string bind;  // "": this machine only
+  bool insecure = false;
   std::function<Result<SessionReport>(const SessionOptions&)> run;
   // Prints the result to context.out.
   std::function<Status(const SessionReport&)> report;

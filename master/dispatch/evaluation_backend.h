@@ -22,6 +22,7 @@ struct RunRequest {
 struct FinishedRun {
   RunId id = 0;
   sim::RunResult result;
+  std::string encoded;        // `result` as it is stored: a serialized gauntlet.v1.RunResult, no trajectory
   std::string worker;         // instance id and host, for the log
   std::uint32_t attempt = 1;  // how many leases it took
 };
@@ -34,6 +35,28 @@ struct WorkerStatistics {
   std::uint64_t duplicates = 0;
   std::uint64_t rejected_messages = 0;
   std::uint64_t nondeterministic = 0;  // duplicates whose result differed from the first one
+};
+
+// One worker, for people.
+struct WorkerView {
+  struct Lease {
+    RunId run = 0;
+    std::uint32_t lease = 1;  // 1 = the run's first
+    double seconds = 0.0;     // since it was given
+  };
+  std::string label;  // instance id and host
+  std::int64_t pid = 0;
+  std::uint32_t slots = 1;
+  bool lost = false;            // silent: its runs wait for others, late results are taken
+  bool leaving = false;         // finishes what it has, wants nothing new
+  double silent_seconds = 0.0;  // since it was heard
+  std::vector<Lease> leases;    // in the order in which they were given
+};
+
+// What a backend does right now, for people.
+struct BackendView {
+  std::vector<WorkerView> workers;
+  std::uint64_t queued = 0;  // runs that wait for a worker
 };
 
 // Something a person or the store's event table should know of.
@@ -55,6 +78,9 @@ class EvaluationBackend {
   // Lets workers go; returns when they are gone or the deadline has passed.
   virtual void Shutdown(std::chrono::milliseconds deadline) = 0;
   virtual WorkerStatistics Statistics() const = 0;
+  virtual BackendView Describe() const { return {}; }
+  // From now on no run begins; those that run end as usual.
+  virtual void StopLeasing() = 0;
   // What happened since the last call, oldest first.
   virtual std::vector<DispatchEvent> TakeEvents() { return {}; }
 };

@@ -33,6 +33,11 @@ Fence FirstFence(std::uint64_t epoch) {
   return epoch << 32;
 }
 
+std::string EncodeStoredResult(sim::RunResult& result) {
+  result.trajectory.clear();
+  return EncodeRunResult(result);
+}
+
 milliseconds RoundUp(Duration duration) {
   return std::chrono::ceil<milliseconds>(std::max(duration, Duration::zero()));
 }
@@ -224,9 +229,13 @@ void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
 
   switch (scheduler_.Completed(worker, message.fence, message.run, result->hash)) {
     case Answer::kAccepted: {
-      if (result->cpu_seconds == 0.0) result->cpu_seconds = message.cpu_seconds;
       const std::uint32_t attempt = std::max(1U, scheduler_.LeasesOf(message.run));
-      finished_.push_back({message.run, std::move(*result), LabelOf(worker), attempt});
+      // What arrived is stored as it came: decoding has checked it against its hash.
+      const bool as_it_came = result->trajectory.empty() && result->cpu_seconds > 0.0;
+      if (result->cpu_seconds == 0.0) result->cpu_seconds = message.cpu_seconds;
+      finished_.push_back({message.run, std::move(*result), {}, LabelOf(worker), attempt});
+      FinishedRun& finished = finished_.back();
+      finished.encoded = as_it_came ? std::move(message.result) : EncodeStoredResult(finished.result);
       specs_.erase(message.run);
       break;
     }
@@ -278,6 +287,7 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
   // Hashed, so nothing that depends on how often workers were lost on the way.
   run.result.message = DescribeFailure(order.last);
   run.result.hash = sim::HashOf(run.result);
+  run.encoded = EncodeStoredResult(run.result);
   run.worker = LabelOf(order.worker);
   run.attempt = order.leases;
   Report("run-given-up", fmt::format("run {} {} in {} of {} attempts", order.run, run.result.message,
@@ -374,6 +384,18 @@ WorkerStatistics RemoteBackend::Statistics() const {
   WorkerStatistics statistics = scheduler_.Statistics();
   statistics.rejected_messages = rejected_;
   return statistics;
+}
+
+BackendView RemoteBackend::Describe() const {
+  BackendView view;
+  view.queued = scheduler_.queued();
+  for (auto& [worker, described] : scheduler_.DescribeWorkers()) {
+    const auto connection = connections_.find(worker);
+    described.label = LabelOf(worker);
+    if (connection != connections_.end()) described.pid = connection->second.pid;
+    view.workers.push_back(std::move(described));
+  }
+  return view;
 }
 
 std::vector<DispatchEvent> RemoteBackend::TakeEvents() {

@@ -38,6 +38,8 @@ class RemoteBackend final : public EvaluationBackend {
   // SIGTERM, after three quarters SIGKILL to the pool. What finished meanwhile comes with the next Poll.
   void Shutdown(std::chrono::milliseconds deadline) override;
   WorkerStatistics Statistics() const override;
+  BackendView Describe() const override;
+  void StopLeasing() override { scheduler_.StopLeasing(); }
   std::vector<DispatchEvent> TakeEvents() override;
 
  private:

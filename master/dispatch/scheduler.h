@@ -131,6 +131,9 @@ class Scheduler {
   std::size_t unfinished() const { return unfinished_; }
   std::size_t remembered_runs() const { return runs_.size(); }  // all that takes memory
   WorkerStatistics Statistics() const;
+  // Without labels and pids, in the order of the ids; times as of the last event. Runs that several workers
+  // do are named with each.
+  std::vector<std::pair<InstanceId, WorkerView>> DescribeWorkers() const;
 
  private:
   enum class LeaseState { kLive, kOrphaned, kCancelled, kAnswered };

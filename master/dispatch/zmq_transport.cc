@@ -1,11 +1,14 @@
 #include "master/dispatch/zmq_transport.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <set>
 #include <utility>
 #include <zmq.hpp>
 
@@ -26,13 +29,64 @@ constexpr int kMonitoredEvents = ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVEN
 
 struct ZmqTransport::Sockets {
   zmq::context_t context{1};
+  std::optional<zmq::socket_t> zap;  // asked by libzmq about every key that connects
   zmq::socket_t router{context, zmq::socket_type::router};
   zmq::socket_t monitor{context, zmq::socket_type::pair};
   int wake_up = -1;
+  int zap_fd = -1;                 // -1: no keys, nobody asks
+  std::set<std::string> admitted;  // public keys, 32 bytes
   std::size_t max_message_bytes = 0;
   std::string endpoint;
   TransportRejections rejections;
-  std::vector<zmq::pollitem_t> poll_items;
+  int router_fd = -1;
+  int monitor_fd = -1;
+  std::vector<pollfd> poll_items;
+
+  void UseCurve(const CurveServer& curve) {
+    for (const std::string& key : curve.admitted_keys) {
+      std::string bytes(32, '\0');
+      if (zmq_z85_decode(reinterpret_cast<std::uint8_t*>(bytes.data()), key.c_str()) != nullptr) {
+        admitted.insert(std::move(bytes));
+      }
+    }
+    zap.emplace(context, zmq::socket_type::rep);
+    zap->set(zmq::sockopt::linger, 0);
+    zap->bind("inproc://zeromq.zap.01");  // the address that ZAP (RFC 27) names
+    zap_fd = zap->get(zmq::sockopt::fd);
+    AnswerZap();
+    router.set(zmq::sockopt::curve_server, true);
+    router.set(zmq::sockopt::curve_secretkey, curve.keys.secret_key);
+    router.set(zmq::sockopt::zap_domain, "gauntlet");
+  }
+
+  // ZAP 1.0 (RFC 27): version, request id, domain, address, identity, mechanism, credentials.
+  void AnswerZap() {
+    std::vector<std::string> request;
+    zmq::message_t frame;
+    while (zap->recv(frame, zmq::recv_flags::dontwait)) {
+      request.assign(1, frame.to_string());
+      while (frame.more() && zap->recv(frame, zmq::recv_flags::dontwait))
+        request.push_back(frame.to_string());
+      const bool known = request.size() == 7 && request[5] == "CURVE" && admitted.contains(request[6]);
+      const std::string id = request.size() > 1 ? request[1] : "";
+      const std::array<std::string, 6> reply{"1.0", id, known ? "200" : "400", known ? "OK" : "unknown key",
+                                             "",    ""};
+      for (std::size_t i = 0; i < reply.size(); ++i) {
+        const bool last = i + 1 == reply.size();
+        zap->send(zmq::buffer(reply[i]), last ? zmq::send_flags::none : zmq::send_flags::sndmore);
+      }
+    }
+  }
+
+  // Reads the monitor until it is empty: only then its descriptor announces the next event.
+  void CountHandshakes() {
+    zmq::message_t event;
+    zmq::message_t address;
+    while (monitor.recv(event, zmq::recv_flags::dontwait)) {
+      ++rejections.handshakes;
+      if (event.more()) (void)monitor.recv(address, zmq::recv_flags::dontwait);
+    }
+  }
 
   ~Sockets() {
     if (wake_up >= 0) close(wake_up);
@@ -57,7 +111,11 @@ Result<std::unique_ptr<ZmqTransport>> ZmqTransport::Bind(const ZmqTransportOptio
     if (zmq_socket_monitor(router.handle(), kMonitorAddress, kMonitoredEvents) != 0) throw zmq::error_t();
     sockets->monitor.set(zmq::sockopt::linger, 0);
     sockets->monitor.connect(kMonitorAddress);
+    sockets->CountHandshakes();
+    if (options.curve) sockets->UseCurve(*options.curve);
     router.bind(options.endpoint);
+    sockets->router_fd = router.get(zmq::sockopt::fd);
+    sockets->monitor_fd = sockets->monitor.get(zmq::sockopt::fd);
     sockets->endpoint = router.get(zmq::sockopt::last_endpoint);
     sockets->max_message_bytes = options.max_message_bytes;
     sockets->wake_up = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
@@ -121,39 +179,38 @@ void ZmqTransport::Receive(std::size_t limit, std::vector<PeerMessage>& messages
   }
 }
 
+// Our own poll over libzmq's descriptors: zmq_poll asks every socket for its state before and after, some ten
+// system calls each time. ZMQ_FD says only that something may have changed, so the state is asked before
+// sleeping (what was left when Receive stopped is not announced again) and after.
 WaitOutcome ZmqTransport::Wait(std::chrono::milliseconds timeout, std::span<const int> fds) {
   WaitOutcome outcome;
-  std::vector<zmq::pollitem_t>& items = sockets_->poll_items;
-  items.clear();
-  items.push_back({sockets_->router.handle(), 0, ZMQ_POLLIN, 0});
-  items.push_back({sockets_->monitor.handle(), 0, ZMQ_POLLIN, 0});
-  items.push_back({nullptr, sockets_->wake_up, ZMQ_POLLIN, 0});
-  for (const int fd : fds) items.push_back({nullptr, fd, ZMQ_POLLIN, 0});
+  const auto readable = [this] { return (sockets_->router.get(zmq::sockopt::events) & ZMQ_POLLIN) != 0; };
   try {
-    zmq::poll(items, timeout);
-  } catch (const zmq::error_t&) {
-    outcome.woken = true;
-    return outcome;
-  }
-  outcome.messages = items[0].revents != 0;
-  if (items[1].revents != 0) {
-    zmq::message_t event;
-    zmq::message_t address;
-    try {
-      while (sockets_->monitor.recv(event, zmq::recv_flags::dontwait)) {
-        ++sockets_->rejections.handshakes;
-        if (event.more()) (void)sockets_->monitor.recv(address, zmq::recv_flags::dontwait);
-      }
-    } catch (const zmq::error_t&) {
+    outcome.messages = readable();
+    std::vector<pollfd>& items = sockets_->poll_items;
+    items.clear();
+    items.push_back({sockets_->router_fd, POLLIN, 0});
+    items.push_back({sockets_->monitor_fd, POLLIN, 0});
+    items.push_back({sockets_->wake_up, POLLIN, 0});
+    items.push_back({sockets_->zap_fd, POLLIN, 0});
+    for (const int fd : fds) items.push_back({fd, POLLIN, 0});
+    const int wait = outcome.messages ? 0 : static_cast<int>(timeout.count());
+    if (poll(items.data(), items.size(), wait) < 0) {
       outcome.woken = true;
+      return outcome;
     }
-  }
-  if (items[2].revents != 0) {
-    std::uint64_t count = 0;
-    outcome.woken = read(sockets_->wake_up, &count, sizeof count) == sizeof count;
-  }
-  for (std::size_t i = 0; i < fds.size(); ++i) {
-    if (items[i + 3].revents != 0) outcome.ready_fds.push_back(fds[i]);
+    if (!outcome.messages && items[0].revents != 0) outcome.messages = readable();
+    if (items[1].revents != 0) sockets_->CountHandshakes();
+    if (items[2].revents != 0) {
+      std::uint64_t count = 0;
+      outcome.woken = read(sockets_->wake_up, &count, sizeof count) == sizeof count;
+    }
+    if (items[3].revents != 0) sockets_->AnswerZap();
+    for (std::size_t i = 0; i < fds.size(); ++i) {
+      if (items[i + 4].revents != 0) outcome.ready_fds.push_back(fds[i]);
+    }
+  } catch (const zmq::error_t&) {
+    outcome.woken = true;  // interrupted by a signal
   }
   return outcome;
 }

@@ -2,12 +2,22 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "master/dispatch/curve_keys.h"
 #include "master/dispatch/transport.h"
 #include "sim/base/result.h"
 
 namespace gauntlet::master {
+
+// CURVE for everybody who connects.
+struct CurveServer {
+  CurveKeyPair keys;  // the master's
+  std::vector<std::string>
+      admitted_keys;  // public keys of those who may connect; others end in the handshake
+};
 
 struct ZmqTransportOptions {
   std::string endpoint = "tcp://127.0.0.1:*";  // "*" as port: any free one
@@ -15,6 +25,7 @@ struct ZmqTransportOptions {
   // is closed before its bytes are read.
   std::size_t max_message_bytes = 16U << 20;
   int peer_queue = 1000;  // messages per peer and direction before it counts as not reading
+  std::optional<CurveServer> curve = std::nullopt;  // none: plaintext, open to whoever reaches the endpoint
 };
 
 class ZmqTransport final : public Transport {

@@ -78,6 +78,8 @@ class ResultStore {
   // acknowledged.
   virtual Result<std::vector<RunId>> Committed() = 0;
   virtual Status Flush() = 0;
+  // Commit what waits without waiting for more: somebody needs it to go on. Does not block.
+  virtual void Hurry() = 0;
   // A file descriptor that becomes readable when Committed() has news; -1 when there is none to wait for.
   virtual int CommitNotifier() const = 0;
 

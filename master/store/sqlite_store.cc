@@ -89,14 +89,20 @@ void SqliteStore::AddEvent(const StoredEvent& event) {
 
 void SqliteStore::Add(Record record) {
   GAUNTLET_CHECK(writer_.joinable(), fmt::format("{} was opened for reading", path_));
+  bool first = false;
+  bool full = false;
   {
     std::unique_lock lock(mutex_);
     records_written_.wait(lock, [this] { return queue_.size() < kLargestQueue || failure_.has_value(); });
     if (failure_) return;  // never acknowledged; the caller learns of it from Committed()
     if (std::holds_alternative<StoredRun>(record)) ++queued_runs_;
+    first = queue_.empty();
+    if (first) first_queued_ = std::chrono::steady_clock::now();
     queue_.push_back(std::move(record));
+    full = queued_runs_ == kLargestGroup || queue_.size() == kLargestQueue;
   }
-  records_waiting_.notify_one();
+  // The writer sleeps between: one wake-up for a group, not for every record.
+  if (first || full) records_waiting_.notify_one();
 }
 
 void SqliteStore::WriteLoop() {
@@ -113,9 +119,11 @@ bool SqliteStore::TakeGroup(Group& group) {
   group.clear();
   std::unique_lock lock(mutex_);
   records_waiting_.wait(lock, [this] { return !queue_.empty() || closing_; });
-  records_waiting_.wait_until(lock, last_commit_ + kLongestWait, [this] {
-    return queued_runs_ >= kLargestGroup || queue_.size() >= kLargestQueue || in_a_hurry_ || closing_;
+  records_waiting_.wait_until(lock, first_queued_ + options_.longest_wait, [this] {
+    return queued_runs_ >= kLargestGroup || queue_.size() >= kLargestQueue || flushing_ || in_a_hurry_ ||
+           closing_;
   });
+  in_a_hurry_ = false;
   std::size_t runs = 0;
   while (!queue_.empty()) {
     const bool is_run = std::holds_alternative<StoredRun>(queue_.front());
@@ -125,7 +133,7 @@ bool SqliteStore::TakeGroup(Group& group) {
     queue_.pop_front();
   }
   queued_runs_ -= runs;
-  last_commit_ = std::chrono::steady_clock::now();
+  first_queued_ = std::chrono::steady_clock::now();
   writing_ = !group.empty();
   return writing_;
 }
@@ -215,12 +223,21 @@ Result<std::vector<RunId>> SqliteStore::Committed() {
 
 Status SqliteStore::Flush() {
   std::unique_lock lock(mutex_);
-  in_a_hurry_ = true;
+  flushing_ = true;
   records_waiting_.notify_one();
   records_written_.wait(lock, [this] { return (queue_.empty() && !writing_) || failure_.has_value(); });
-  in_a_hurry_ = false;
+  flushing_ = false;
   if (failure_) return *failure_;
   return Ok{};
+}
+
+void SqliteStore::Hurry() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (queue_.empty()) return;
+    in_a_hurry_ = true;
+  }
+  records_waiting_.notify_one();
 }
 
 Error SqliteStore::WithPath(const Error& error) const {

@@ -21,11 +21,11 @@
 
 namespace gauntlet::master {
 
-// A commit begins at once when the store was idle, and at most kLongestWait after the one before when it was
-// not; a group holds at most kLargestGroup runs. One commit costs one fsync. When writing fails, or the guard
-// answers with an error, nothing is committed any more, and every later Committed() and Flush() says so; what
-// was durable stays durable and readable. Thread-safety: one calling thread, as for every ResultStore. The
-// store must not be open twice.
+// A commit begins kLongestWait after its first record was handed over, or earlier by Flush, Hurry or when
+// kLargestGroup runs wait, which is as many as a group holds. One commit costs one fsync. When writing fails,
+// or the guard answers with an error, nothing is committed any more, and every later Committed() and Flush()
+// says so; what was durable stays durable and readable. Thread-safety: one calling thread, as for every
+// ResultStore. The store must not be open twice.
 class SqliteStore final : public ResultStore {
  public:
   static constexpr std::chrono::milliseconds kLongestWait{20};
@@ -39,6 +39,7 @@ class SqliteStore final : public ResultStore {
     std::function<Status()> guard;
     std::string vfs;  // SqliteConnection::Open
     int checkpoint_pages = kCheckpointPages;
+    std::chrono::milliseconds longest_wait = kLongestWait;  // another one is for tests
   };
 
   // Makes the file: CreateDatabase.
@@ -68,6 +69,7 @@ class SqliteStore final : public ResultStore {
   // After a failure, runs that became durable before it are still reported once; from then on the error.
   Result<std::vector<RunId>> Committed() override;
   Status Flush() override;
+  void Hurry() override;
   int CommitNotifier() const override { return notifier_; }
 
   Result<std::vector<StoredSearch>> LoadSearches() override;
@@ -120,12 +122,13 @@ class SqliteStore final : public ResultStore {
   std::deque<Record> queue_;
   std::size_t queued_runs_ = 0;
   bool writing_ = false;     // a group has left the queue and is not committed yet
-  bool in_a_hurry_ = false;  // Flush waits
+  bool flushing_ = false;    // Flush waits
+  bool in_a_hurry_ = false;  // the next group is to be committed at once
   bool closing_ = false;
   std::vector<RunId> committed_;
   std::optional<Error> failure_;
   std::uint64_t commits_ = 0;
-  std::chrono::steady_clock::time_point last_commit_{};
+  std::chrono::steady_clock::time_point first_queued_{};  // when the queue was last empty before an Add
 
   int notifier_ = -1;  // eventfd
   std::thread writer_;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 
 #include "tests/support/process.h"
@@ -20,6 +21,24 @@ TEST(AccessFileTest, ReadsWhatTheMasterWritesAndIgnoresLaterKeys) {
   const Result<Access> access = ParseAccess(kGood, "access.json");
   ASSERT_TRUE(access.ok()) << access.error().message;
   EXPECT_EQ(*access, (Access{"c0ffee", 3, {"tcp://127.0.0.1:40123", "ipc:///tmp/x"}}));
+}
+
+TEST(AccessFileTest, ReadsKeysAndRefusesAFileThatOthersMayRead) {
+  const testing_support::TemporaryDirectory scratch;
+  const std::string path = scratch / "access.json";
+  const std::string key(40, 'k');
+  std::ofstream(path) << R"({"format": 1, "campaign": "c", "epoch": 1, "endpoints": ["tcp://10.0.0.1:5"],)"
+                      << R"("curve": {"server_public": ")" << key << R"(", "worker_public": ")" << key
+                      << R"(", "worker_secret": ")" << key << R"("}})";
+  std::filesystem::permissions(path, std::filesystem::perms(0600));
+  Result<Access> access = ReadAccess(path);
+  ASSERT_TRUE(access.ok()) << access.error().message;
+  EXPECT_EQ(access->curve, (CurveKeys{key, key, key}));
+  std::filesystem::permissions(path, std::filesystem::perms(0640));
+  access = ReadAccess(path);
+  ASSERT_FALSE(access.ok());
+  EXPECT_THAT(access.error().message, testing::AllOf(HasSubstr("mode 640"), HasSubstr("chmod 600")));
+  EXPECT_THAT(access.error().message, testing::Not(HasSubstr(key)));
 }
 
 struct BadAccess {

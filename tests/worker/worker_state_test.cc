@@ -54,6 +54,11 @@ class Worker {
     }
     return all;
   }
+  // Nothing is heard of time while it passes, as when the process is frozen.
+  std::vector<WorkerAction> Jump(Duration time) {
+    now_ += time;
+    return Do(ClockTick{});
+  }
   void Welcome(std::uint64_t epoch = 1) {
     Hear(worker::Welcome{.heartbeat = milliseconds(1000),
                          .epoch = epoch,
@@ -149,6 +154,33 @@ TEST(WorkerStateTest, StartsALeaseWithTheMastersLimits) {
   EXPECT_EQ(starts[0].spec, "spec5");
   EXPECT_EQ(starts[0].cpu_limit_seconds, 60.0);
   EXPECT_EQ(starts[0].memory_limit_bytes, 1u << 30);
+}
+
+TEST(WorkerStateTest, ARunThatOnlyWaitsIsEndedAfterTwentyTimesItsCpuTime) {
+  Worker worker = WelcomedWorker();
+  worker.Lease(5);
+  const auto pass = [&worker](int minutes) {
+    std::vector<WorkerAction> all;
+    for (int second = 0; second < 60 * minutes; ++second) {
+      for (WorkerAction& action : worker.Pass(seconds(1))) all.push_back(std::move(action));
+      worker.Hear(Heartbeat{});
+    }
+    return all;
+  };
+  EXPECT_THAT(Only<KillRunner>(pass(19)), IsEmpty()) << "60 s of CPU time may take long on a crowded machine";
+  const auto actions = pass(2);
+  EXPECT_EQ(Only<KillRunner>(actions).size(), 1u);
+  const auto results = Sent<LeaseResult>(actions);
+  ASSERT_GE(results.size(), 1u);
+  ASSERT_TRUE(results[0].failure.has_value());
+  EXPECT_EQ(results[0].failure->kind, FailureKind::kHung);
+  EXPECT_THAT(results[0].failure->stderr_tail, testing::HasSubstr("1200 s"));
+}
+
+TEST(WorkerStateTest, AFrozenWorkerDoesNotHoldTheTimeAgainstItsRun) {
+  Worker worker = WelcomedWorker();
+  worker.Lease(5);
+  EXPECT_THAT(Only<KillRunner>(worker.Jump(std::chrono::hours(2))), IsEmpty());
 }
 
 TEST(WorkerStateTest, LeaseWaitsUntilARunnerIsReady) {

@@ -103,6 +103,88 @@ TEST_F(ZmqTransportTest, ReceivesNoMoreThanAskedFor) {
   EXPECT_EQ(received_[2].bytes, "4");
 }
 
+// A transport with keys, and dealers that try to get in.
+class CurveTransportTest : public ZmqTransportTest {
+ protected:
+  void SetUp() override {
+    ZmqTransportOptions options;
+    options.curve = CurveServer{server_, {known_.public_key}};
+    transport_.reset();
+    Result<std::unique_ptr<ZmqTransport>> transport = ZmqTransport::Bind(options);
+    ASSERT_TRUE(transport.ok()) << transport.error().message;
+    transport_ = *std::move(transport);
+  }
+  zmq::socket_t ConnectWith(const CurveKeyPair& own, const std::string& server_key) {
+    zmq::socket_t dealer(context_, zmq::socket_type::dealer);
+    dealer.set(zmq::sockopt::linger, 0);
+    dealer.set(zmq::sockopt::curve_serverkey, server_key);
+    dealer.set(zmq::sockopt::curve_publickey, own.public_key);
+    dealer.set(zmq::sockopt::curve_secretkey, own.secret_key);
+    dealer.connect(transport_->endpoint());
+    return dealer;
+  }
+
+  const CurveKeyPair server_ = NewCurveKeyPair();
+  const CurveKeyPair known_ = NewCurveKeyPair();
+};
+
+TEST_F(CurveTransportTest, AKnownKeyIsLetIn) {
+  zmq::socket_t dealer = ConnectWith(known_, server_.public_key);
+  dealer.send(zmq::str_buffer("hello"), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  EXPECT_EQ(received_[0].bytes, "hello");
+  EXPECT_EQ(transport_->Send(received_[0].peer, "answer"), SendOutcome::kSent);
+}
+
+TEST_F(CurveTransportTest, UnknownKeysAnotherServersKeyAndPlaintextAreKeptOutAndCounted) {
+  const auto tries = [this](const char* what) {
+    const std::uint64_t before = transport_->Rejections().handshakes;
+    EXPECT_TRUE(Eventually([&] { return transport_->Rejections().handshakes > before; })) << what;
+  };
+  {
+    zmq::socket_t stranger = ConnectWith(NewCurveKeyPair(), server_.public_key);
+    stranger.send(zmq::str_buffer("stranger"), zmq::send_flags::none);
+    tries("unknown key");
+  }
+  {
+    zmq::socket_t misled = ConnectWith(known_, NewCurveKeyPair().public_key);
+    misled.send(zmq::str_buffer("misled"), zmq::send_flags::none);
+    tries("another server's key");
+  }
+  {
+    zmq::socket_t plain = Connect();
+    plain.send(zmq::str_buffer("plain"), zmq::send_flags::none);
+    tries("plaintext");
+  }
+  zmq::socket_t dealer = ConnectWith(known_, server_.public_key);
+  dealer.send(zmq::str_buffer("known"), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  ASSERT_THAT(received_, SizeIs(1));
+  EXPECT_EQ(received_[0].bytes, "known");
+}
+
+TEST(CurveKeysTest, KnowsWhichEndpointsOnlyThisMachineReaches) {
+  for (const char* local : {"tcp://127.0.0.1:*", "tcp://127.1.2.3:5555", "tcp://localhost:1",
+                            "tcp://[::1]:80", "ipc:///tmp/socket", "inproc://x"}) {
+    EXPECT_TRUE(IsLocalEndpoint(local)) << local;
+  }
+  for (const char* outer : {"tcp://0.0.0.0:*", "tcp://*:5555", "tcp://10.0.0.7:1", "tcp://[::]:80",
+                            "tcp://node1:5555", "tcp://eth0:1", "udp://127.0.0.1:5", "", "127.0.0.1:5"}) {
+    EXPECT_FALSE(IsLocalEndpoint(outer)) << outer;
+  }
+}
+
+TEST(CurveKeysTest, KeysAreFreshAndHaveTheirForm) {
+  const CurveKeyPair keys = NewCurveKeyPair();
+  EXPECT_TRUE(IsCurveKey(keys.public_key));
+  EXPECT_TRUE(IsCurveKey(keys.secret_key));
+  EXPECT_NE(NewCurveKeyPair(), keys);
+  for (const char* wrong : {"", "short", "0123456789012345678901234567890123456789x",
+                            "\"123456789012345678901234567890123456789"}) {
+    EXPECT_FALSE(IsCurveKey(wrong)) << wrong;
+  }
+}
+
 TEST_F(ZmqTransportTest, UnknownPeersAreUnreachable) {
   EXPECT_EQ(transport_->Send("nobody", "message"), SendOutcome::kUnreachable);
   EXPECT_EQ(transport_->Send("", "message"), SendOutcome::kUnreachable);

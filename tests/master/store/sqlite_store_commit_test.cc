@@ -122,6 +122,23 @@ TEST_F(StoreCommitTest, WhatArrivesDuringACommitSharesTheNextUpTo512Runs) {
   EXPECT_EQ(committed->size(), 1501u);
 }
 
+TEST_F(StoreCommitTest, AGroupIsWaitedForUnlessSomebodyIsInAHurry) {
+  SqliteStore::Options options;
+  options.longest_wait = std::chrono::hours(1);
+  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::Open(path_, std::move(options));
+  ASSERT_TRUE(store.ok()) << store.error().message;
+  store_ = *std::move(store);
+  for (RunId id = 1; id <= 3; ++id) store_->AddRun(MakeRun(id));
+  EXPECT_FALSE(Notified(std::chrono::milliseconds(50)));
+  store_->Hurry();
+  ASSERT_TRUE(Notified(std::chrono::seconds(20)));
+  EXPECT_EQ(store_->Commits(), 1u);
+  for (RunId id = 4; id <= 3 + SqliteStore::kLargestGroup; ++id) store_->AddRun(MakeRun(id, 10));
+  ASSERT_TRUE(store_->Committed().ok());
+  ASSERT_TRUE(Notified(std::chrono::seconds(20))) << "a full group does not wait";
+  EXPECT_EQ(store_->Commits(), 2u);
+}
+
 TEST_F(StoreCommitTest, NothingIsAcknowledgedBeforeItsCommit) {
   Open([this] { return gate_.Pass(); });
   store_->AddRun(MakeRun(1));

@@ -1,0 +1,177 @@
+#include "master/campaign/campaign_status.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "master/campaign/atomic_file.h"
+#include "master/campaign/campaign_lock.h"
+#include "master/campaign/campaign_session.h"
+
+namespace gauntlet::master {
+namespace {
+
+using nlohmann::ordered_json;
+
+std::int64_t UnixMilliseconds() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::size_t RunsOf(const BackendView& backend) {
+  std::size_t runs = 0;
+  for (const WorkerView& worker : backend.workers) runs += worker.leases.size();
+  return runs;
+}
+
+std::string_view StateOf(const WorkerView& worker) {
+  if (worker.lost) return "lost";
+  if (worker.leaving) return "leaving";
+  return worker.leases.empty() ? "idle" : "running";
+}
+
+ordered_json Json(const WorkerView& worker) {
+  ordered_json runs = ordered_json::array();
+  for (const WorkerView::Lease& lease : worker.leases) {
+    runs.push_back({{"run", lease.run}, {"lease", lease.lease}, {"seconds", lease.seconds}});
+  }
+  return {{"worker", worker.label},
+          {"pid", worker.pid},
+          {"slots", worker.slots},
+          {"state", StateOf(worker)},
+          {"silent_seconds", worker.silent_seconds},
+          {"runs", std::move(runs)}};
+}
+
+}  // namespace
+
+std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
+                           const BackendView& backend) {
+  if (RunsOf(backend) > 0) return "";
+  if (progress.search.finished) return "the search has finished";
+  if (master.stopping) return "the campaign is stopping: no more runs are given away";
+  int connected = 0;
+  int leaving = 0;
+  int lost = 0;
+  for (const WorkerView& worker : backend.workers) {
+    if (worker.lost) {
+      ++lost;
+    } else {
+      ++connected;
+      if (worker.leaving) ++leaving;
+    }
+  }
+  if (connected == 0) {
+    const std::string gone = lost > 0 ? fmt::format(" ({} were, and are silent now)", lost) : "";
+    return fmt::format("no worker is connected{}: start some with `gauntlet-worker --dir DIR`", gone);
+  }
+  if (leaving == connected) return fmt::format("all {} connected workers are leaving", connected);
+  if (backend.queued == 0)
+    return "all runs that were asked for are done; the master stores them and asks for more";
+  return fmt::format("{} runs wait and are about to be given to {} workers", backend.queued,
+                     connected - leaving);
+}
+
+std::string StatusJson(const MasterView& master, const CampaignProgress& progress,
+                       const BackendView& backend) {
+  ordered_json workers = ordered_json::array();
+  for (const WorkerView& worker : backend.workers) workers.push_back(Json(worker));
+  const std::string why = WhyNothingRuns(master, progress, backend);
+  ordered_json json = {
+      {"state", master.stopping ? "stopping" : "running"},
+      {"campaign", master.campaign_id},
+      {"experiment", master.experiment},
+      {"master",
+       {{"host", master.host},
+        {"pid", master.pid},
+        {"epoch", master.epoch},
+        {"started_unix_ms", master.started_unix_ms},
+        {"endpoints", master.endpoints},
+        {"encrypted", master.encrypted}}},
+      {"unix_ms", master.now_unix_ms},
+      {"generation", progress.search.generation},
+      {"generations", progress.search.generations},
+      {"runs_done", progress.runs_done},
+      {"runs_planned", progress.runs_planned},
+      {"runs_running", RunsOf(backend)},
+      {"runs_queued", backend.queued},
+      {"runs_per_second", progress.runs_per_second},
+      {"remaining_seconds", progress.remaining_seconds ? ordered_json(*progress.remaining_seconds) : nullptr},
+      {"total_failures", progress.total_failures},
+      {"runs_failed", progress.runs_failed},
+      {"workers", progress.workers.connected},
+      {"workers_busy", progress.workers.busy},
+      {"workers_lost", progress.workers.lost},
+      {"leased_again", progress.workers.releases},
+      {"duplicates", progress.workers.duplicates},
+      {"nondeterministic", progress.workers.nondeterministic},
+      {"rejected_messages", progress.workers.rejected_messages},
+      {"why_nothing_runs", why.empty() ? ordered_json(nullptr) : ordered_json(why)},
+      {"worker_list", std::move(workers)}};
+  return json.dump(2) + "\n";
+}
+
+Result<bool> MasterLives(const std::string& dir) {
+  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  CampaignLock::Options options;
+  options.patience = std::chrono::milliseconds(0);
+  const Result<std::unique_ptr<CampaignLock>> lock =
+      CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), options);
+  if (lock) return false;
+  if (lock.error().kind == ErrorKind::kInUse) return true;
+  return lock.error();
+}
+
+Result<std::string> ReadStatus(const std::string& dir) {
+  Result<bool> lives = MasterLives(dir);
+  if (!lives) return lives.error();
+  const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  if (*lives) {
+    const Result<std::string> text = ReadSmallFile(directory->status_path(), 16U << 20);
+    if (!text) {
+      if (text.error().kind != ErrorKind::kNotFound) return text.error();
+      return ordered_json{{"state", "starting"},
+                          {"why_nothing_runs", "the master has just started, or is about to end"},
+                          {"worker_list", ordered_json::array()}}
+                 .dump(2) +
+             "\n";
+    }
+    ordered_json json = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
+    if (!json.is_object()) {
+      return Error{ErrorKind::kCorrupt, fmt::format("{} does not parse", directory->status_path())};
+    }
+    json["status_age_seconds"] =
+        static_cast<double>(UnixMilliseconds() - json.value("unix_ms", std::int64_t{0})) / 1000.0;
+    return json.dump(2) + "\n";
+  }
+  const Result<CampaignSummary> summary = ReadCampaign(dir);
+  if (!summary) return summary.error();
+  const ordered_json json = {
+      {"state", summary->finished ? "finished" : "stopped"},
+      {"experiment", summary->experiment},
+      {"master", nullptr},
+      {"generation", summary->progress.generation},
+      {"generations", summary->progress.generations},
+      {"runs_done", summary->runs_done},
+      {"total_failures", summary->total_failures},
+      {"runs_failed", summary->runs_failed},
+      {"workers", 0},
+      {"nondeterministic", summary->nondeterministic ? 1 : 0},
+      {"why_nothing_runs", summary->finished
+                               ? "the search has finished"
+                               : "no master serves the campaign: go on with `gauntlet resume DIR`"},
+      {"worker_list", ordered_json::array()}};
+  return json.dump(2) + "\n";
+}
+
+Status RequestStop(const std::string& dir) {
+  const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  return ReplaceFile(directory->stop_path(), "stop\n", 0644);
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,26 @@
+// Keys of CurveZMQ (RFC 26): who may speak to a campaign's master, and how it is kept from others' ears.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace gauntlet::master {
+
+// Curve25519 keys as ZeroMQ writes them: 40 characters of Z85.
+struct CurveKeyPair {
+  std::string public_key;
+  std::string secret_key;
+  bool operator==(const CurveKeyPair&) const = default;
+};
+
+// From the operating system's random numbers.
+CurveKeyPair NewCurveKeyPair();
+
+// Whether `key` has the form of a key.
+bool IsCurveKey(std::string_view key);
+
+// Whether nobody but this machine's processes can reach an endpoint: ipc, inproc, or tcp on a loopback
+// address (127.0.0.0/8, ::1, localhost).
+bool IsLocalEndpoint(std::string_view endpoint);
+
+}  // namespace gauntlet::master
