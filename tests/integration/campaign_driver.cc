@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 
 #include "sim/random/random_stream.h"
@@ -109,6 +110,9 @@ int EvolveThroughWorkerKills(const SmallCampaign& campaign, const std::string& d
                              std::uint64_t seed, std::chrono::milliseconds between_kills) {
   sim::RandomStream random(seed, sim::StreamPurpose::kTest);
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, workers));
+  // Before there are workers the only child is the one that tells the golden hash.
+  EXPECT_TRUE(Eventually([&] { return std::filesystem::exists(dir + "/access.json") || !master->Running(); },
+                         std::chrono::seconds(60)));
   int hits = 0;
   while (hits < kills && !Eventually([&] { return !master->Running(); }, RandomTime(random, between_kills))) {
     const std::vector<pid_t> family = DescendantsOf(master->pid());
