@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -46,7 +47,16 @@ struct Pipe {
   Descriptor write;
   bool Open() {
     std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0) return false;
+    return pipe2(ends.data(), O_CLOEXEC) == 0 && Take(ends);
+  }
+  // Writing to a socket whose other end is gone is an error, to a pipe a signal that ends the process.
+  bool OpenSockets() {
+    std::array<int, 2> ends{};
+    return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0 && Take(ends);
+  }
+
+ private:
+  bool Take(const std::array<int, 2>& ends) {
     read.Reset(ends[0]);
     write.Reset(ends[1]);
     return true;
@@ -81,7 +91,7 @@ bool ReadSome(int fd, std::string& into) {
 
 // False when all is written or nobody reads.
 bool WriteSome(int fd, std::string_view& rest) {
-  const ssize_t count = write(fd, rest.data(), rest.size());
+  const ssize_t count = send(fd, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   if (count < 0) return errno == EINTR || errno == EAGAIN;
   rest.remove_prefix(static_cast<std::size_t>(count));
   return !rest.empty();
@@ -129,8 +139,7 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, const 
   Pipe in;
   Pipe out;
   Pipe err;
-  if (!in.Open() || !out.Open() || !err.Open()) return Failure(program, std::strerror(errno));
-  fcntl(in.write.get(), F_SETFL, O_NONBLOCK);
+  if (!in.OpenSockets() || !out.Open() || !err.Open()) return Failure(program, std::strerror(errno));
 
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
