@@ -9,23 +9,23 @@
 //     original=0                                   leaves the original bird out
 //     any other name                               a parameter of the scenario or of the controllers
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <map>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "controllers/registry.h"
-#include "sim/arena/validity.h"
-#include "sim/random/random_stream.h"
-#include "worker/run_executor.h"
+#include "tests/controllers/calibration_support.h"
 
 namespace gauntlet {
 namespace {
+
+using calibration::MakeSpecs;
+using calibration::Metric;
+using calibration::RunAll;
+using calibration::Specs;
 
 using Options = std::map<std::string, std::vector<double>>;
 
@@ -52,30 +52,6 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
-double RoundTo(double value, double step) {
-  return std::floor(value / step + 0.5) * step;
-}
-
-// Genes by spec 1.1, redrawn one by one until valid.
-sim::TestCase RandomCase(std::uint32_t index, int genes, double l_max,
-                         const sim::ArenaRequirements& requirements) {
-  sim::RandomStream random(1, sim::StreamPurpose::kTest, index);
-  for (;;) {
-    sim::TestCase test_case;
-    sim::IncrementalValidity validity(test_case, requirements);
-    for (int tries = 0; tries < 500 && static_cast<int>(test_case.obstacles.size()) < genes; ++tries) {
-      sim::ObstacleGene gene;
-      gene.x = RoundTo(random.Uniform(-3.0, 3.0), 0.1);
-      gene.y = RoundTo(random.Uniform(-3.0, 3.0), 0.1);
-      gene.length = RoundTo(random.Uniform(0.4, l_max), 0.1);
-      gene.width = RoundTo(random.Uniform(0.1, 0.4), 0.1);
-      gene.orientation_deg = random.Below(360);
-      if (!validity.TryAppend(gene)) test_case.obstacles.push_back(gene);
-    }
-    if (static_cast<int>(test_case.obstacles.size()) == genes) return test_case;
-  }
-}
-
 struct Figures {
   double mean = 0.0, sd = 0.0, zeros = 0.0, birds_left = 0.0, order = 0.0, timeouts = 0.0, seconds = 0.0;
   double cpu_ms = 0.0;
@@ -84,34 +60,8 @@ struct Figures {
   std::size_t runs = 0;
 };
 
-double Metric(const sim::RunResult& result, std::string_view name) {
-  for (const auto& [key, value] : result.metrics) {
-    if (key == name) return value;
-  }
-  return 0.0;
-}
-
-double ThreadSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 Figures Measure(const std::vector<sim::RunSpec>& specs, int threads) {
-  std::vector<sim::RunResult> results(specs.size());
-  std::atomic<std::size_t> next = 0;
-  std::vector<std::thread> pool;
-  for (int i = 0; i < threads; ++i) {
-    pool.emplace_back([&] {
-      for (std::size_t job = next++; job < specs.size(); job = next++) {
-        const double begin = ThreadSeconds();
-        results[job] = worker::Run(specs[job]);
-        results[job].cpu_seconds = ThreadSeconds() - begin;
-      }
-    });
-  }
-  for (std::thread& thread : pool) thread.join();
-
+  const std::vector<sim::RunResult> results = RunAll(specs, threads);
   Figures figures;
   double squares = 0.0;
   for (const sim::RunResult& result : results) {
@@ -166,20 +116,13 @@ int Main(int argc, char** argv) {
           spec.scenario_parameters["prey_speed"] = prey_speed;
           spec.controller_parameters["bird_speed"] = bird_speed;
 
-          const auto first = static_cast<std::size_t>(number("first"));
-          std::vector<sim::RunSpec> empty(static_cast<std::size_t>(number("seeds")), spec);
-          for (std::size_t i = 0; i < empty.size(); ++i) empty[i].seed = 1 + first + i;
-          std::vector<sim::RunSpec> random(static_cast<std::size_t>(number("cases")), spec);
-          const auto parameters =
-              controllers::ResolveParameters(scenario->parameters, spec.scenario_parameters);
-          const auto requirements = scenario->requirements(*parameters, spec.test_case);
-          for (std::size_t i = 0; i < random.size(); ++i) {
-            random[i].seed = 10'001 + first + i;
-            random[i].test_case =
-                RandomCase(static_cast<std::uint32_t>(first + i), number("genes"), l_max, requirements);
-          }
-          const Figures e = Measure(empty, number("threads"));
-          const Figures r = Measure(random, number("threads"));
+          const Specs specs = MakeSpecs(spec, {.seeds = number("seeds"),
+                                               .cases = number("cases"),
+                                               .first = number("first"),
+                                               .genes = number("genes"),
+                                               .l_max = l_max});
+          const Figures e = Measure(specs.empty, number("threads"));
+          const Figures r = Measure(specs.random, number("threads"));
           std::printf(
               "%-18s %5.2f %6.3f %6.3f | %11d %7.4f %5.3f | %15.4f %5.3f %5.1f%% %6.2f %5.3f %6.1f%% "
               "%7.1f %7d | %5.1f %5.1f\n",

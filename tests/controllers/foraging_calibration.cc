@@ -9,23 +9,23 @@
 //                                                     turn_rate=0.5,0.714 make a grid
 //     a word without '='                              a controller; "foraging" when none is named
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <map>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "controllers/registry.h"
-#include "sim/arena/validity.h"
-#include "sim/random/random_stream.h"
-#include "worker/run_executor.h"
+#include "tests/controllers/calibration_support.h"
 
 namespace gauntlet {
 namespace {
+
+using calibration::MakeSpecs;
+using calibration::Metric;
+using calibration::RunAll;
+using calibration::Specs;
 
 struct Options {
   std::map<std::string, double> amounts = {{"cases", 200}, {"seeds", 100}, {"threads", 2},
@@ -67,58 +67,8 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
-double RoundTo(double value, double step) {
-  return std::floor(value / step + 0.5) * step;
-}
-
-// Genes by spec 1.1, redrawn one by one until valid.
-sim::TestCase RandomCase(std::uint32_t index, int genes, double l_max,
-                         const sim::ArenaRequirements& requirements) {
-  sim::RandomStream random(1, sim::StreamPurpose::kTest, index);
-  for (;;) {
-    sim::TestCase test_case;
-    sim::IncrementalValidity validity(test_case, requirements);
-    for (int tries = 0; tries < 500 && static_cast<int>(test_case.obstacles.size()) < genes; ++tries) {
-      sim::ObstacleGene gene;
-      gene.x = RoundTo(random.Uniform(-3.0, 3.0), 0.1);
-      gene.y = RoundTo(random.Uniform(-3.0, 3.0), 0.1);
-      gene.length = RoundTo(random.Uniform(0.4, l_max), 0.1);
-      gene.width = RoundTo(random.Uniform(0.1, 0.4), 0.1);
-      gene.orientation_deg = random.Below(360);
-      if (!validity.TryAppend(gene)) test_case.obstacles.push_back(gene);
-    }
-    if (static_cast<int>(test_case.obstacles.size()) == genes) return test_case;
-  }
-}
-
-double Metric(const sim::RunResult& result, std::string_view name) {
-  for (const auto& [key, value] : result.metrics) {
-    if (key == name) return value;
-  }
-  return 0.0;
-}
-
-double ThreadSeconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
 void Measure(const std::vector<sim::RunSpec>& specs, int threads) {
-  std::vector<sim::RunResult> results(specs.size());
-  std::atomic<std::size_t> next = 0;
-  std::vector<std::thread> pool;
-  for (int i = 0; i < threads; ++i) {
-    pool.emplace_back([&] {
-      for (std::size_t job = next++; job < specs.size(); job = next++) {
-        const double begin = ThreadSeconds();
-        results[job] = worker::Run(specs[job]);
-        results[job].cpu_seconds = ThreadSeconds() - begin;
-      }
-    });
-  }
-  for (std::thread& thread : pool) thread.join();
-
+  const std::vector<sim::RunResult> results = RunAll(specs, threads);
   double mean = 0.0, squares = 0.0, zeros = 0.0, no_path = 0.0, trapped = 0.0, beacons = 0.0, lost = 0.0;
   double cpu_ms = 0.0, n = 0.0;
   int refused = 0;
@@ -162,19 +112,13 @@ void MeasureSettings(const Options& options, sim::RunSpec spec,
     if (Has(controller->parameters, name)) spec.controller_parameters[name] = value;
     std::printf(" %s=%g", name.c_str(), value);
   }
-  const auto first = static_cast<std::size_t>(options.Count("first"));
-  std::vector<sim::RunSpec> empty(static_cast<std::size_t>(options.Count("seeds")), spec);
-  for (std::size_t i = 0; i < empty.size(); ++i) empty[i].seed = 1 + first + i;
-  std::vector<sim::RunSpec> random(static_cast<std::size_t>(options.Count("cases")), spec);
-  const auto parameters = controllers::ResolveParameters(scenario->parameters, spec.scenario_parameters);
-  const auto requirements = scenario->requirements(*parameters, spec.test_case);
-  for (std::size_t i = 0; i < random.size(); ++i) {
-    random[i].seed = 10'001 + first + i;
-    random[i].test_case = RandomCase(static_cast<std::uint32_t>(first + i), options.Count("genes"),
-                                     options.amounts.at("l_max"), requirements);
-  }
-  Measure(empty, options.Count("threads"));
-  Measure(random, options.Count("threads"));
+  const Specs specs = MakeSpecs(spec, {.seeds = options.Count("seeds"),
+                                       .cases = options.Count("cases"),
+                                       .first = options.Count("first"),
+                                       .genes = options.Count("genes"),
+                                       .l_max = options.amounts.at("l_max")});
+  Measure(specs.empty, options.Count("threads"));
+  Measure(specs.random, options.Count("threads"));
   std::printf("\n");
   std::fflush(stdout);
 }
