@@ -112,7 +112,7 @@ class Loop {
   std::vector<Signals> signals_;      // in action
   std::vector<Pose> poses_;
   std::vector<RobotState> states_;
-  Fnv1a64 trajectory_hash_;
+  WordHash64 trajectory_hash_;
   std::string invalid_command_;
 };
 

@@ -34,7 +34,7 @@ Vec2 FlockingVelocity(std::span<const sim::Blob> blobs, const LightFlockingSetti
   for (const sim::Blob& blob : blobs) {
     if (blob.color != LightFlockingController::kColor) continue;
     if (blob.range >= settings.cutoff * settings.target_distance) continue;
-    sum += Attraction(blob.range, settings) * sim::UnitVector(blob.bearing);
+    if (blob.range > 0.0) sum += Attraction(blob.range, settings) / blob.range * blob.position;
     ++count;
   }
   if (count == 0) return Vec2::Zero();

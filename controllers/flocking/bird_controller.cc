@@ -7,6 +7,7 @@
 
 #include "controllers/common/proximity.h"
 #include "controllers/common/steering.h"
+#include "sim/base/bits.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -17,12 +18,10 @@ using sim::Vec2;
 // A proximity ray that passes a beacon nearer than this, within this distance of it, hit that robot's body
 // and not an obstacle (spec 2.3 rule 1). A fixed window of angles would turn touching neighbours, who subtend
 // 60 degrees, into obstacles and freeze pairs.
-constexpr double kBodyMiss = 0.10;      // m from the ray to the beacon
-constexpr double kBodyDistance = 0.30;  // m from centre to centre
-constexpr double kFrontOfCatchUp = 60.0 * sim::kDegree;
-constexpr double kFrontOfSeparation = sim::kPi / 2.0;
-constexpr double kStopWhenAhead = 45.0 * sim::kDegree;
-constexpr double kNoDirection = 1e-3;  // a shorter sum of unit vectors or of readings points nowhere
+constexpr double kBodyMiss = 0.10;          // m from the ray to the beacon
+constexpr double kBodyDistance = 0.30;      // m from centre to centre
+constexpr double kCosFrontOfCatchUp = 0.5;  // of 60 degrees
+constexpr double kNoDirection = 1e-3;       // a shorter sum of unit vectors or of readings points nowhere
 
 bool IsRobot(const sim::Blob& blob) {
   return blob.color == BirdController::kBirdColor || blob.color == BirdController::kPreyColor;
@@ -35,31 +34,30 @@ class Goal {
     for (const sim::Blob& blob : blobs) {
       if (blob.color != BirdController::kPreyColor) continue;
       rule_ = BirdRule::kChase;
-      prey_bearing_ = blob.bearing;
+      sum_ = blob.position;
       return;
     }
     for (const sim::Blob& blob : blobs) {
       if (blob.color != BirdController::kBirdColor) continue;
       rule_ = BirdRule::kFlock;
-      flock_sum_ += blob.range * sim::UnitVector(blob.bearing);
+      sum_ += blob.position;
     }
   }
 
   // kChase, kFlock, or kWander when nobody is visible.
   BirdRule rule() const { return rule_; }
   bool known() const { return rule_ != BirdRule::kWander; }
-  double Bearing() const { return rule_ == BirdRule::kChase ? prey_bearing_ : sim::AngleOf(flock_sum_); }
+  double Bearing() const { return sim::AngleOf(sum_); }
+  bool InFront(const sim::Blob& blob) const { return !known() || blob.position.dot(sum_) >= 0.0; }
   // Unit vector; straight ahead when nobody is visible, or when birds evenly around leave no direction.
   Vec2 Direction() const {
-    if (rule_ == BirdRule::kChase) return sim::UnitVector(prey_bearing_);
-    const double length = std::sqrt(flock_sum_.dot(flock_sum_));
-    return length > 0.0 ? Vec2(flock_sum_ / length) : Vec2(1.0, 0.0);
+    const double length = std::sqrt(sum_.dot(sum_));
+    return length > 0.0 ? Vec2(sum_ / length) : Vec2(1.0, 0.0);
   }
 
  private:
   BirdRule rule_ = BirdRule::kWander;
-  double prey_bearing_ = 0.0;
-  Vec2 flock_sum_ = Vec2::Zero();
+  Vec2 sum_ = Vec2::Zero();  // of the positions that it aims at
 };
 
 // Positions of the robots near enough to be what a proximity ray hits, in the robot's frame.
@@ -69,7 +67,7 @@ class NearRobots {
     for (const sim::Blob& blob : blobs) {
       if (count_ == positions_.size()) break;
       if (blob.range < kBodyDistance && IsRobot(blob)) {
-        positions_[count_++] = blob.range * sim::UnitVector(blob.bearing);
+        positions_[count_++] = blob.position;
       }
     }
   }
@@ -96,15 +94,15 @@ struct ObstaclePush {
 
 ObstaclePush FindObstacles(const sim::SensorReadings& readings, double least_reading) {
   ObstaclePush push;
-  if (!readings.proximity_active) return push;
+  if (readings.proximity_hits == 0) return push;
   const NearRobots robots(readings.blobs);
   const auto& directions = ProximityDirections();
-  for (std::size_t i = 0; i < directions.size(); ++i) {
+  ForEachBit(readings.proximity_hits, [&](std::size_t i) {
     const double reading = readings.proximity[i];
-    if (reading <= 0.0 || reading < least_reading || robots.HitBy(directions[i])) continue;
+    if (reading < least_reading || robots.HitBy(directions[i])) return;
     push.away -= reading * directions[i];
     push.ahead = push.ahead || directions[i].x() > 0.0;
-  }
+  });
   return push;
 }
 
@@ -119,9 +117,9 @@ double ObstacleBearing(const Vec2& away_sum, const Goal& goal) {
 const sim::Blob* FindTooNear(std::span<const sim::Blob> blobs, double distance, const Goal& goal) {
   const sim::Blob* nearest = nullptr;
   for (const sim::Blob& blob : blobs) {
-    if (blob.range >= distance || std::fabs(blob.bearing) > kFrontOfSeparation || !IsRobot(blob)) continue;
+    if (blob.range >= distance || blob.position.x() < 0.0 || !IsRobot(blob)) continue;
     if (nearest != nullptr && blob.range >= nearest->range) continue;
-    if (goal.known() && sim::UnitVector(blob.bearing).dot(goal.Direction()) < 0.0) continue;
+    if (!goal.InFront(blob)) continue;
     nearest = &blob;
   }
   return nearest;
@@ -131,7 +129,7 @@ const sim::Blob* FindTooNear(std::span<const sim::Blob> blobs, double distance, 
 bool IsBehind(std::span<const sim::Blob> blobs, double distance) {
   bool somebody = false;
   for (const sim::Blob& blob : blobs) {
-    if (std::fabs(blob.bearing) > kFrontOfCatchUp || !IsRobot(blob)) continue;
+    if (blob.position.x() < kCosFrontOfCatchUp * blob.range || !IsRobot(blob)) continue;
     if (blob.range <= distance) return false;
     somebody = true;
   }
@@ -171,8 +169,8 @@ void BirdController::Step(const sim::ControlStep& step) {
     command.forward *= settings_.obstacle_speed_factor;
   } else if (const sim::Blob* near = FindTooNear(blobs, settings_.separation_distance, goal)) {
     last_rule_ = BirdRule::kSeparate;
-    command = React(sim::WrapAngle(near->bearing + sim::kPi), reactions);
-    if (std::fabs(near->bearing) > kStopWhenAhead) {
+    command = React(sim::AngleOf(-near->position), reactions);
+    if (std::fabs(near->position.y()) > near->position.x()) {
       command.forward = reactions.speed * reactions.turning_speed_factor;
     }
   } else if (goal.known()) {

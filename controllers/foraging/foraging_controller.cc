@@ -32,22 +32,22 @@ ForagingController::View ForagingController::Look(const sim::SensorReadings& rea
   View view;
   for (const sim::Blob& blob : readings.blobs) {
     if (blob.color == kFoodColor && (!view.food || blob.range < view.food->range)) {
-      view.food = SeenBody{blob.range, blob.bearing};
+      view.food = SeenBody{blob.range, blob.Bearing()};
     }
   }
   for (const sim::Message& message : readings.range_and_bearing) {
     if (ComesFromForager(message.payload)) continue;
     const RadioMessage said = Decode(message.payload);
     if (said.sender == RadioMessage::Sender::kNest) {
-      view.nest = SeenBody{message.range, message.bearing};
+      view.nest = SeenBody{message.range, message.Bearing()};
       ++view.beacons;
     } else if (ComesFromBeacon(message.payload)) {
       ++view.beacons;
       if (!view.nest_beacon || said.first < view.nest_beacon->staleness) {
-        view.nest_beacon = Target{message.range, message.bearing, said.first};
+        view.nest_beacon = Target{message.range, message.Bearing(), said.first};
       }
       if (!view.food_beacon || said.second < view.food_beacon->staleness) {
-        view.food_beacon = Target{message.range, message.bearing, said.second};
+        view.food_beacon = Target{message.range, message.Bearing(), said.second};
       }
     }
   }

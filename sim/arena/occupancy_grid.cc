@@ -130,13 +130,14 @@ OccupancyGrid::OccupancyGrid(const Arena& arena, double inflation)
 
 void OccupancyGrid::BlockWalls() {
   for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const Vec2 center = CenterOf({column, row});
-      const bool free =
-          center.x() - interior_min_.x() >= inflation_ && interior_max_.x() - center.x() >= inflation_ &&
-          center.y() - interior_min_.y() >= inflation_ && interior_max_.y() - center.y() >= inflation_;
-      if (!free) blocked_[Index({column, row})] = 1;
-    }
+    const double y = CenterOf({0, row}).y();
+    const bool free = y - interior_min_.y() >= inflation_ && interior_max_.y() - y >= inflation_;
+    if (!free) std::fill_n(blocked_.begin() + row * columns_, columns_, std::uint8_t{1});
+  }
+  for (int column = 0; column < columns_; ++column) {
+    const double x = CenterOf({column, 0}).x();
+    if (x - interior_min_.x() >= inflation_ && interior_max_.x() - x >= inflation_) continue;
+    for (int row = 0; row < rows_; ++row) blocked_[Index({column, row})] = 1;
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "sim/geometry/trigonometry.h"
 #include "sim/geometry/vec2.h"
 #include "sim/random/random_stream.h"
 #include "sim/robot/devices.h"
@@ -25,11 +26,17 @@ enum class Color : std::uint8_t {
   kOrange
 };
 
-// A light source seen by the omnidirectional camera.
+// A light source seen by the omnidirectional camera. Most rules need its place only, so its bearing is worked
+// out when asked for.
 struct Blob {
-  double range = 0.0;    // m, horizontal
-  double bearing = 0.0;  // rad from the heading, (-pi, pi]
+  Vec2 position = Vec2::Zero();  // m in the robot's frame: x ahead, y left
+  double range = 0.0;            // m, horizontal: the length of `position`
   Color color = Color::kBlack;
+
+  double Bearing() const { return AngleOf(position); }  // rad from the heading, (-pi, pi]
+  static Blob At(double range, double bearing, Color color) {
+    return {range * UnitVector(bearing), range, color};
+  }
 };
 
 // What a robot says over range-and-bearing.
@@ -37,9 +44,14 @@ using Payload = std::array<std::uint8_t, 10>;
 
 // A message heard by range-and-bearing. Who sent it is not told, unless the payload tells.
 struct Message {
-  double range = 0.0;    // m, horizontal
-  double bearing = 0.0;  // rad from the heading, (-pi, pi]
+  Vec2 position = Vec2::Zero();  // m, of the sender in the robot's frame: x ahead, y left
+  double range = 0.0;            // m, horizontal: the length of `position`
   Payload payload{};
+
+  double Bearing() const { return AngleOf(position); }  // rad from the heading, (-pi, pi]
+  static Message At(double range, double bearing, const Payload& payload) {
+    return {range * UnitVector(bearing), range, payload};
+  }
 };
 
 // What one ray of the distance scanner meets.
@@ -55,7 +67,7 @@ struct ScannerReading {
 struct SensorReadings {
   // Reading of sensor i, bearing (i + 1/2) * 15 degrees; 0 = nothing within 0.10 m of the body, 1 = touching.
   std::array<double, foot_bot::kProximitySensors> proximity{};
-  bool proximity_active = false;  // some proximity reading is not zero
+  std::uint32_t proximity_hits = 0;  // bit i: reading i of `proximity` is not zero
   std::span<const Blob> blobs;  // omnidirectional camera; of robots in robot order, then of lights in theirs
   // Messages in robot order, then those of the scenario's radio beacons in theirs.
   std::span<const Message> range_and_bearing;

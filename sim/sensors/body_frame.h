@@ -20,6 +20,8 @@ struct BodyFrame {
     return {position.x() + direction.x() * point.x() - direction.y() * point.y(),
             position.y() + direction.y() * point.x() + direction.x() * point.y()};
   }
+  // A way given in the world's frame, in the robot's.
+  Vec2 FromWorld(const Vec2& way) const { return {direction.dot(way), Cross(direction, way)}; }
 };
 
 }  // namespace gauntlet::sim

@@ -34,13 +34,6 @@ bool HiddenByLowBox(const OmniCameras::Scene& scene, const BodyFrame& viewer,
 
 }  // namespace
 
-double RelativeBearing(double world_bearing, double heading) {
-  const double bearing = world_bearing - heading;  // both in (-pi, pi]
-  if (bearing > kPi) return bearing - 2.0 * kPi;
-  if (bearing <= -kPi) return bearing + 2.0 * kPi;
-  return bearing;
-}
-
 OmniCameras::OmniCameras(std::span<const double> ranges)
     : ranges_(ranges.begin(), ranges.end()), first_(ranges.size() + 1) {
   blobs_.reserve(ranges.size() * std::min(kManyBlobs, ranges.size() * (1 + foot_bot::kRingLeds)));
@@ -56,7 +49,7 @@ void OmniCameras::Look(const Scene& scene) {
       const Signals& signals = scene.signals[static_cast<std::size_t>(other.robot)];
       if (signals.beacon != Color::kBlack && other.clear && Side(other.offset) < ranges_[i] &&
           !HiddenByLowBox(scene, scene.robots[i], other)) {
-        Add(scene.robots[i], other.distance, other.bearing, signals.beacon);
+        Add(scene.robots[i], other.offset, other.distance, signals.beacon);
       }
       if (scene.any_ring_lit) AddRing(scene, viewer, other.robot);
     }
@@ -81,7 +74,7 @@ void OmniCameras::AddRing(const Scene& scene, RobotIndex viewer, RobotIndex othe
     if (BodyBetween(std::span(&carrier, 1), camera, lamp, -1, -1)) continue;
     if (scene.occluders.BoxBetween(camera, lamp)) continue;
     if (BodyBetween(scene.robots, camera, lamp, viewer, other)) continue;
-    Add(self, std::sqrt(offset.squaredNorm()), AngleOf(offset), signals.ring[led]);
+    Add(self, offset, std::sqrt(offset.squaredNorm()), signals.ring[led]);
   }
 }
 
@@ -97,13 +90,12 @@ void OmniCameras::AddLights(const Scene& scene, RobotIndex viewer) {
       if (scene.occluders.BoxBetween(camera, lamp)) continue;
       if (BodyBetween(scene.robots, camera, lamp, viewer, -1)) continue;
     }
-    Add(self, std::sqrt(offset.squaredNorm()), AngleOf(offset), light.color);
+    Add(self, offset, std::sqrt(offset.squaredNorm()), light.color);
   }
 }
 
-void OmniCameras::Add(const BodyFrame& viewer, double range, double world_bearing, Color color) {
-  blobs_.push_back(
-      {.range = range, .bearing = RelativeBearing(world_bearing, viewer.heading), .color = color});
+void OmniCameras::Add(const BodyFrame& viewer, const Vec2& offset, double range, Color color) {
+  blobs_.push_back({.position = viewer.FromWorld(offset), .range = range, .color = color});
 }
 
 }  // namespace gauntlet::sim

@@ -43,14 +43,11 @@ class OmniCameras {
  private:
   void AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other);
   void AddLights(const Scene& scene, RobotIndex viewer);
-  void Add(const BodyFrame& viewer, double range, double world_bearing, Color color);
+  void Add(const BodyFrame& viewer, const Vec2& offset, double range, Color color);
 
   std::vector<double> ranges_;
   std::vector<Blob> blobs_;
   std::vector<std::size_t> first_;
 };
-
-// `world_bearing` (rad, (-pi, pi], from the x axis) as a robot with this heading has it.
-double RelativeBearing(double world_bearing, double heading);
 
 }  // namespace gauntlet::sim

@@ -1,9 +1,9 @@
 #include "sim/sensors/proximity.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "sim/base/bits.h"
 #include "sim/robot/controller.h"
 
 namespace gauntlet::sim {
@@ -14,12 +14,14 @@ constexpr double kReach = foot_bot::kRadius + foot_bot::kProximityRange;  // m f
 constexpr double kNothing = 2.0 * kReach;
 
 // Rays of a robot with heading 0.
+std::array<Vec2, kSensors> MakeRestRays() {
+  std::array<Vec2, kSensors> rays;
+  for (std::size_t i = 0; i < kSensors; ++i) rays[i] = UnitVector(ProximityBearing(static_cast<int>(i)));
+  return rays;
+}
+
 const std::array<Vec2, kSensors>& RestRays() {
-  static const std::array<Vec2, kSensors> rays = [] {
-    std::array<Vec2, kSensors> result;
-    for (std::size_t i = 0; i < kSensors; ++i) result[i] = UnitVector(ProximityBearing(static_cast<int>(i)));
-    return result;
-  }();
+  static const std::array<Vec2, kSensors> rays = MakeRestRays();
   return rays;
 }
 
@@ -29,7 +31,7 @@ Vec2 Turned(const Vec2& v, const Vec2& by) {
 }
 
 // Bearing of `v` in sensors: sensor i looks in direction i, v = (1, 0) is at -0.5. Each quadrant is taken as
-// linear in y / (x + y), which is less than 4.1 degrees off. In [-0.5, 23.5].
+// linear in y / (x + y), which is less than 4.1 degrees (0.28 sensors) off. In [-0.5, 23.5].
 double SensorAngle(const Vec2& v) {
   const double x = std::abs(v.x());
   const double y = std::abs(v.y());
@@ -37,12 +39,6 @@ double SensorAngle(const Vec2& v) {
   const double upper = v.x() >= 0.0 ? quarter : 2.0 - quarter;
   return (v.y() >= 0.0 ? upper : 4.0 - upper) * (kSensors / 4) - 0.5;
 }
-
-// From the distance `apart` on, a disc spans less than `half_width` sensors to either side of its centre:
-// asin(radius / apart) / 15 degrees, and 0.28 for the error of SensorAngle.
-constexpr ProximityRing::Disc kBody = {.radius = foot_bot::kRadius, .apart = 0.16, .half_width = 2.14 + 0.28};
-constexpr ProximityRing::Disc kGripper = {
-    .radius = foot_bot::kGripperRadius, .apart = 0.07, .half_width = 0.55 + 0.28};
 
 // Where a ray from the box's frame enters it: distance from `origin`, or kNothing.
 double EnterBox(const Vec2& half_extents, const Vec2& origin, const Vec2& direction) {
@@ -103,28 +99,49 @@ void ProximityRing::See(const BodyFrame& robot) {
   const Vec2 offset = robot.position - self_.position;
   if (offset.squaredNorm() >= kBodyReach * kBodyReach) return;
   const Vec2 body(self_.direction.dot(offset), Cross(self_.direction, offset));
-  SeeDisc(body, kBody);
+  // From 0.16 m on, a body spans asin(0.085 / 0.16) = 2.14 sensors to either side of its centre, from 0.07 m
+  // on a gripper 0.55. The sensor that looks nearest to the centre is up to 0.28 + 0.5 beside it.
+  SeeDisc<2>(body, foot_bot::kRadius, 0.16);
   const Vec2 front(self_.direction.dot(robot.direction), Cross(self_.direction, robot.direction));
-  SeeDisc(body + foot_bot::kRadius * front, kGripper);
+  SeeDisc<1>(body + foot_bot::kRadius * front, foot_bot::kGripperRadius, 0.07);
 }
 
-// `center` in the frame of this robot. Only the sensors that look near the disc are asked.
-void ProximityRing::SeeDisc(const Vec2& center, const Disc& disc) {
+// `center` in the frame of this robot. From the distance `apart` on, only `kWindow` sensors to either side of
+// the one that looks nearest to the disc can see it.
+template <int kWindow>
+void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
   const double distance_squared = center.squaredNorm();
-  if (distance_squared >= (kReach + disc.radius) * (kReach + disc.radius)) return;
-  const std::array<Vec2, kSensors>& rays = RestRays();
-  std::size_t first = 0;
-  std::size_t last = kSensors - 1;
-  if (distance_squared >= disc.apart * disc.apart) {
-    // Counted around the ring twice, so that the window does not end at the seam.
-    const double middle = SensorAngle(center) + kSensors;
-    first = static_cast<std::size_t>(middle - disc.half_width) + 1;
-    last = static_cast<std::size_t>(middle + disc.half_width);
+  if (distance_squared >= (kReach + radius) * (kReach + radius)) return;
+  if (distance_squared < apart * apart) {
+    SeeNearDisc(center, radius);
+    return;
   }
-  for (std::size_t i = first; i <= last; ++i) {
-    const std::size_t sensor = i % kSensors;
+  const std::array<Vec2, kSensors>& rays = RestRays();
+  const int middle = static_cast<int>(SensorAngle(center) + 0.5);
+  // A ray that is kReach long ends in the disc or has passed through it when it lies more than this along the
+  // way to the centre: while the tangents are longer than the ray, its end must be in the disc (law of
+  // cosines), else it must lie between them.
+  const double power = distance_squared - radius * radius;  // square of the tangents' length
+  const double least_along =
+      power > kReach * kReach ? (power + kReach * kReach) / (2.0 * kReach) : std::sqrt(power);
+  for (int i = -kWindow; i <= kWindow; ++i) {
+    int sensor = middle + i;
+    sensor += sensor < 0 ? static_cast<int>(kSensors) : 0;
+    sensor -= sensor >= static_cast<int>(kSensors) ? static_cast<int>(kSensors) : 0;
+    const double along = rays[static_cast<std::size_t>(sensor)].dot(center);
+    if (along <= least_along) continue;
+    const double half_chord = std::sqrt(along * along - power);
+    if (along + half_chord < foot_bot::kRadius) continue;  // ends before the ray begins
+    Hit(static_cast<std::size_t>(sensor), along - half_chord - foot_bot::kRadius);
+  }
+}
+
+// A disc so near, or overlapped, that any sensor may see it.
+void ProximityRing::SeeNearDisc(const Vec2& center, double radius) {
+  const std::array<Vec2, kSensors>& rays = RestRays();
+  for (std::size_t sensor = 0; sensor < kSensors; ++sensor) {
     const double across = Cross(rays[sensor], center);
-    const double half_chord_squared = disc.radius * disc.radius - across * across;
+    const double half_chord_squared = radius * radius - across * across;
     if (half_chord_squared <= 0.0) continue;
     const double along = rays[sensor].dot(center);
     const double half_chord = std::sqrt(half_chord_squared);
@@ -135,10 +152,7 @@ void ProximityRing::SeeDisc(const Vec2& center, const Disc& disc) {
 
 ProximityReadings ProximityRing::Readings() const {
   ProximityReadings readings{};
-  for (std::uint32_t hits = hits_; hits != 0; hits &= hits - 1) {
-    const std::size_t sensor = static_cast<std::size_t>(std::countr_zero(hits));
-    readings[sensor] = ProximityReading(nearest_[sensor]);
-  }
+  ForEachBit(hits_, [&](std::size_t sensor) { readings[sensor] = Reading(sensor); });
   return readings;
 }
 

@@ -20,29 +20,26 @@ double ProximityReading(double distance);
 // The readings of one robot, collected body by body. What is farther than the range costs one distance.
 class ProximityRing {
  public:
-  // Something round, and how many sensors can look at it (see proximity.cc).
-  struct Disc {
-    double radius;      // m
-    double apart;       // m
-    double half_width;  // sensors
-  };
-
   explicit ProximityRing(const BodyFrame& self) : self_(self) {}
 
   void See(const OrientedBox& box);
   // The other robot's body and the gripper disc at its front.
   void See(const BodyFrame& robot);
 
-  // Whether any ray hit something.
-  bool active() const { return hits_ != 0; }
+  // Bit i: ray i hit something.
+  std::uint32_t hits() const { return hits_; }
+  // Of a sensor whose ray hit something.
+  double Reading(std::size_t sensor) const { return ProximityReading(nearest_[sensor]); }
   ProximityReadings Readings() const;
 
  private:
-  void SeeDisc(const Vec2& center, const Disc& disc);
+  template <int kWindow>
+  void SeeDisc(const Vec2& center, double radius, double apart);
+  void SeeNearDisc(const Vec2& center, double radius);
   void Hit(std::size_t sensor, double distance);
 
   const BodyFrame& self_;
-  std::uint32_t hits_ = 0;                                   // bit i: ray i hit something
+  std::uint32_t hits_ = 0;
   std::array<double, foot_bot::kProximitySensors> nearest_;  // m from the surface, where hits_ says so
 };
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/sensors/omni_camera.h"
-
 namespace gauntlet::sim {
 namespace {
 
@@ -47,8 +45,8 @@ void Radios::HearRobots(const Scene& scene, std::size_t listener) {
                     other.robot)) {
       continue;
     }
-    messages_.push_back({.range = other.distance,
-                         .bearing = RelativeBearing(other.bearing, self.heading),
+    messages_.push_back({.position = self.FromWorld(other.offset),
+                         .range = other.distance,
                          .payload = scene.signals[sender].message});
   }
 }
@@ -65,8 +63,8 @@ void Radios::HearBeacons(const Scene& scene, std::size_t listener) {
         BodyBetween(scene.robots, antenna, source, static_cast<RobotIndex>(listener), -1)) {
       continue;
     }
-    messages_.push_back({.range = std::sqrt(offset.squaredNorm()),
-                         .bearing = RelativeBearing(AngleOf(offset), self.heading),
+    messages_.push_back({.position = self.FromWorld(offset),
+                         .range = std::sqrt(offset.squaredNorm()),
                          .payload = beacon.payload});
   }
 }

@@ -48,10 +48,7 @@ bool RobotPairs::Find(std::span<const BodyFrame> robots, const Occluders& occlud
   view.robot = static_cast<RobotIndex>(b);
   view.offset = offset;
   view.clear = !occluders.BoxBetweenRobots(robots[a].position, robots[b].position);
-  if (view.clear) {
-    view.distance = std::sqrt(squared);
-    view.bearing = AngleOf(offset);
-  }
+  if (view.clear) view.distance = std::sqrt(squared);
   return true;
 }
 
@@ -60,8 +57,7 @@ RobotPairs::Neighbour RobotPairs::Back(const Neighbour& view, std::size_t a) {
   return {.robot = static_cast<RobotIndex>(a),
           .offset = -view.offset,
           .clear = view.clear,
-          .distance = view.distance,
-          .bearing = view.bearing > 0.0 ? view.bearing - kPi : view.bearing + kPi};
+          .distance = view.distance};
 }
 
 void RobotPairs::Update(std::span<const BodyFrame> robots, const Occluders& occluders, bool ring_seen) {

@@ -27,7 +27,6 @@ class RobotPairs {
     Vec2 offset = Vec2::Zero();  // m, from this robot's centre to the other's
     bool clear = false;          // no box between the centres
     double distance = 0.0;       // m, horizontal; only when clear
-    double bearing = 0.0;        // rad, (-pi, pi], from the x axis; only when clear
   };
 
   // `ring_seen`: lights up to kRingRadius off the other's centre can be seen. Allocates nothing while every

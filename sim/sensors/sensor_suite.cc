@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim/base/bits.h"
 #include "sim/sensors/ground_sensor.h"
 #include "sim/sensors/light_sensor.h"
 #include "sim/sensors/proximity.h"
@@ -126,9 +127,10 @@ void SensorSuite::SenseProximity(RobotIndex robot) {
     }
   }
   SensorReadings& readings = readings_[index];
-  if (!ring.active() && !readings.proximity_active) return;
-  readings.proximity = ring.Readings();
-  readings.proximity_active = ring.active();
+  ForEachBit(readings.proximity_hits & ~ring.hits(),
+             [&](std::size_t sensor) { readings.proximity[sensor] = 0.0; });
+  ForEachBit(ring.hits(), [&](std::size_t sensor) { readings.proximity[sensor] = ring.Reading(sensor); });
+  readings.proximity_hits = ring.hits();
 }
 
 void SensorSuite::SenseRest(const World& world, RobotIndex robot) {

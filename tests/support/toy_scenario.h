@@ -92,7 +92,7 @@ class ToyScenario final : public Scenario {
 // Straight at `speed`, turning at random now and then and away from what the proximity ring sees.
 inline Behaviour RandomWalk(double speed) {
   return [speed, turn_ticks = 0, turn_rate = 0.0](const ControlStep& step) mutable {
-    if (step.readings.proximity_active) {
+    if (step.readings.proximity_hits != 0) {
       Vec2 away = Vec2::Zero();
       for (int i = 0; i < foot_bot::kProximitySensors; ++i) {
         away -= step.readings.proximity[static_cast<std::size_t>(i)] * UnitVector(ProximityBearing(i));
@@ -115,7 +115,7 @@ inline Behaviour Huddle(double speed) {
   return [speed, wander = RandomWalk(speed)](const ControlStep& step) mutable {
     if (step.readings.blobs.empty()) return wander(step);
     Vec2 mean = Vec2::Zero();
-    for (const Blob& blob : step.readings.blobs) mean += blob.range * UnitVector(blob.bearing);
+    for (const Blob& blob : step.readings.blobs) mean += blob.range * UnitVector(blob.Bearing());
     const double bearing = AngleOf(mean);
     step.actuators.Drive(std::abs(bearing) < 0.5 ? speed : 0.0, bearing > 0 ? 0.8 : -0.8);
   };

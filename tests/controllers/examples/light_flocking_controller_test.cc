@@ -21,7 +21,7 @@ LightFlockingSettings Defaults() {
 }
 
 double ForceAhead(double range) {
-  return FlockingVelocity(std::vector<Blob>{{range, 0.0, Color::kRed}}, Defaults()).x();
+  return FlockingVelocity(std::vector<Blob>{Blob::At(range, 0.0, Color::kRed)}, Defaults()).x();
 }
 
 TEST(FlockingVelocity, VanishesAtTheTargetRepelsNearerAndAttractsFarther) {
@@ -34,13 +34,14 @@ TEST(FlockingVelocity, VanishesAtTheTargetRepelsNearerAndAttractsFarther) {
 TEST(FlockingVelocity, OnlyRedBlobsWithinTheCutoffCount) {
   EXPECT_EQ(ForceAhead(1.35), 0.0);
   EXPECT_GT(ForceAhead(1.349), 0.0);
-  EXPECT_TRUE(FlockingVelocity(std::vector<Blob>{{0.3, 0.0, Color::kYellow}}, Defaults()).isZero(0.0));
+  EXPECT_TRUE(
+      FlockingVelocity(std::vector<Blob>{Blob::At(0.3, 0.0, Color::kYellow)}, Defaults()).isZero(0.0));
   EXPECT_TRUE(FlockingVelocity({}, Defaults()).isZero(0.0));
 }
 
 TEST(FlockingVelocity, IsTheMeanOfTheForcesBeforeItIsClamped) {
-  const std::vector<Blob> blobs = {
-      {1.0, 0.0, Color::kRed}, {1.0, sim::kPi / 2, Color::kRed}, {2.0, 1.0, Color::kRed}};
+  const std::vector<Blob> blobs = {Blob::At(1.0, 0.0, Color::kRed), Blob::At(1.0, sim::kPi / 2, Color::kRed),
+                                   Blob::At(2.0, 1.0, Color::kRed)};
   const sim::Vec2 velocity = FlockingVelocity(blobs, Defaults());
   EXPECT_NEAR(velocity.x(), 0.024609375 / 2.0, 1e-12);
   EXPECT_NEAR(velocity.y(), 0.024609375 / 2.0, 1e-12);
@@ -60,7 +61,7 @@ TEST(LightVelocity, HasAQuarterOfTheMaximumSpeedWhateverTheBrightness) {
 class Robot {
  public:
   void See(double bearing_deg) {
-    blobs_ = {{1.0, bearing_deg * kDegree, Color::kRed}};
+    blobs_ = {Blob::At(1.0, bearing_deg * kDegree, Color::kRed)};
     sim::SensorReadings readings;
     readings.blobs = blobs_;
     sim::RandomStream random(1, sim::StreamPurpose::kController, 0, 0);

@@ -39,10 +39,10 @@ BirdSettings Improved() {
 }
 
 Blob Bird(double range, double bearing_deg) {
-  return {range, bearing_deg * kDegree, Color::kRed};
+  return Blob::At(range, bearing_deg * kDegree, Color::kRed);
 }
 Blob Prey(double range, double bearing_deg) {
-  return {range, bearing_deg * kDegree, Color::kBlue};
+  return Blob::At(range, bearing_deg * kDegree, Color::kBlue);
 }
 // The sensor that looks at `bearing_deg`, one of +-7.5, +-22.5, ...
 int SensorAt(double bearing_deg) {
@@ -67,9 +67,9 @@ Decision Decide(const BirdSettings& settings, const std::vector<Blob>& blobs,
   sim::SensorReadings readings;
   readings.blobs = blobs;
   for (const Hit& hit : hits) {
-    readings.proximity[static_cast<std::size_t>(SensorAt(hit.bearing_deg))] =
-        ProximityReadingAt(hit.distance);
-    readings.proximity_active = true;
+    const int sensor = SensorAt(hit.bearing_deg);
+    readings.proximity[static_cast<std::size_t>(sensor)] = ProximityReadingAt(hit.distance);
+    readings.proximity_hits |= 1u << sensor;
   }
   sim::Actuators actuators;
   sim::RandomStream random(1, sim::StreamPurpose::kTest);
@@ -129,7 +129,7 @@ TEST(BirdController, WanderingTurnsAsFarAsItDrew) {
 }
 
 TEST(BirdController, IgnoresLightsThatAreNoRobots) {
-  const Blob lamp{0.2, 0.0, Color::kYellow};
+  const Blob lamp = Blob::At(0.2, 0.0, Color::kYellow);
   EXPECT_EQ(Decide(Original(), {lamp}).rule, BirdRule::kWander);
 }
 

@@ -39,11 +39,11 @@ struct Scene {
 
   Scene() { readings.motor_ground.fill(1.0); }
   Scene& Food(double range, double bearing_deg = 0.0) {
-    blobs.push_back({range, bearing_deg * kDegree, ForagingController::kFoodColor});
+    blobs.push_back(sim::Blob::At(range, bearing_deg * kDegree, ForagingController::kFoodColor));
     return *this;
   }
   Scene& Hear(double range, double bearing_deg, const RadioMessage& message) {
-    messages.push_back({range, bearing_deg * kDegree, Encode(message)});
+    messages.push_back(sim::Message::At(range, bearing_deg * kDegree, Encode(message)));
     return *this;
   }
   Scene& Nest(double range, double bearing_deg = 0.0) {
@@ -81,7 +81,7 @@ struct Scene {
   Scene& Hit(double bearing_deg, double distance) {
     const auto sensor = (std::lround((bearing_deg - 7.5) / 15.0) + 24) % 24;
     readings.proximity[static_cast<std::size_t>(sensor)] = ProximityReadingAt(distance);
-    readings.proximity_active = true;
+    readings.proximity_hits |= 1u << sensor;
     return *this;
   }
 };

@@ -203,13 +203,12 @@ std::vector<ValidationRow> Camera(const Sweep& sweep, const std::string& file) {
     const Vec2 argos = argos_range * sim::UnitVector(argos_bearing);
     const sim::Blob& match =
         *std::min_element(seen[row].begin(), seen[row].end(), [&](const sim::Blob& a, const sim::Blob& b) {
-          return (a.range * sim::UnitVector(a.bearing) - argos).norm() <
-                 (b.range * sim::UnitVector(b.bearing) - argos).norm();
+          return (a.position - argos).norm() < (b.position - argos).norm();
         });
     ++range.values;
     ++bearing.values;
     range.error = std::max(range.error, std::abs(match.range - argos_range) / half_side);
-    bearing.error = std::max(bearing.error, std::abs(sim::WrapAngle(match.bearing - argos_bearing)) / kPi);
+    bearing.error = std::max(bearing.error, std::abs(sim::WrapAngle(match.Bearing() - argos_bearing)) / kPi);
   }
   results.push_back(range);
   results.push_back(bearing);
@@ -274,7 +273,7 @@ std::vector<ValidationRow> RangeAndBearing(const Sweep& sweep) {
   Compare(
       sweep, "range_cm", 300.0, [&](std::size_t row) { return 100.0 * first(row).range; }, range);
   Compare(
-      sweep, "hbearing_deg", 180.0, [&](std::size_t row) { return first(row).bearing / kDegree; }, bearing);
+      sweep, "hbearing_deg", 180.0, [&](std::size_t row) { return first(row).Bearing() / kDegree; }, bearing);
   return {count, range, bearing};
 }
 

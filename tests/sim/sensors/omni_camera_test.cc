@@ -76,8 +76,8 @@ void CompareSweep(const std::string& file, double aperture_deg) {
     ++visible;
     range_error =
         std::max(range_error, std::abs(seen.blobs[0][0].range - table.At(row, "first_dist_cm") / 100.0));
-    bearing_error = std::max(bearing_error,
-                             std::abs(seen.blobs[0][0].bearing / kDegree - table.At(row, "first_angle_deg")));
+    bearing_error = std::max(
+        bearing_error, std::abs(seen.blobs[0][0].Bearing() / kDegree - table.At(row, "first_angle_deg")));
   }
   std::printf("%s: %d of %zu places seen, as in ARGoS; largest errors %.1e m, %.1e degrees\n", file.c_str(),
               visible, table.rows.size(), range_error, bearing_error);
@@ -97,10 +97,10 @@ TEST(OmniCameras, MeasureBearingFromTheHeading) {
   const Seen seen = Look(ArenaWith({}), {FrameAt(0, 0, kPi / 2), FrameAt(0.5, 0, kPi)},
                          {Color::kBlue, Color::kRed}, {1.6, 1.6});
   ASSERT_EQ(seen.blobs[0].size(), 1u);
-  EXPECT_NEAR(seen.blobs[0][0].bearing, -kPi / 2, 1e-12);
+  EXPECT_NEAR(seen.blobs[0][0].Bearing(), -kPi / 2, 1e-12);
   EXPECT_EQ(seen.blobs[0][0].color, Color::kRed);
   ASSERT_EQ(seen.blobs[1].size(), 1u);
-  EXPECT_NEAR(seen.blobs[1][0].bearing, 0.0, 1e-12);
+  EXPECT_NEAR(seen.blobs[1][0].Bearing(), 0.0, 1e-12);
   EXPECT_EQ(seen.blobs[1][0].color, Color::kBlue);
 }
 

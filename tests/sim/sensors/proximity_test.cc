@@ -105,7 +105,7 @@ TEST(ProximityRing, SeesNothingInTheOpen) {
   ProximityRing ring(self);
   ring.See(MakeBox({0.5, 0.0}, 0.2, 6.0, 0.0));
   ring.See(FrameAt(0.0, 0.29, 0.0));
-  EXPECT_FALSE(ring.active());
+  EXPECT_EQ(ring.hits(), 0u);
   EXPECT_THAT(ring.Readings(), Each(0.0));
 }
 
@@ -113,7 +113,7 @@ TEST(ProximityRing, ReadsOneWhereABodyIsTouchedOrOverlapped) {
   const BodyFrame self = FrameAt(0.0, 0.0, -7.5);  // sensor 0 looks along +x
   ProximityRing ring(self);
   ring.See(FrameAt(2.0 * foot_bot::kRadius - 0.005, 0.0, 0.0));
-  EXPECT_TRUE(ring.active());
+  EXPECT_NE(ring.hits(), 0u);
   EXPECT_EQ(ring.Readings()[0], 1.0);
   EXPECT_EQ(ring.Readings()[12], 0.0);
 }
@@ -126,7 +126,7 @@ TEST(ProximityRing, SeesTheFrontOfAnotherRobotOneCentimetreEarlier) {
   EXPECT_NEAR(facing.Readings()[0], ProximityReading(0.095), 1e-9);
   ProximityRing averted(self);
   averted.See(FrameAt(distance, 0.0, 0.0));
-  EXPECT_FALSE(averted.active());
+  EXPECT_EQ(averted.hits(), 0u);
 }
 
 // The ring culls and shares work between rays; the plain ray cast of each sensor is its oracle.

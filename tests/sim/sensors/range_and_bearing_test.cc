@@ -42,10 +42,10 @@ TEST(Radios, TellRangeBearingAndPayload) {
   const auto heard = Listen({At(0, 0, kPi / 2), At(1, 0)}, {{.range = 3.0}, {.range = 3.0}});
   ASSERT_THAT(heard[0], SizeIs(1));
   EXPECT_DOUBLE_EQ(heard[0][0].range, 1.0);
-  EXPECT_NEAR(heard[0][0].bearing, -kPi / 2, 1e-12);
+  EXPECT_NEAR(heard[0][0].Bearing(), -kPi / 2, 1e-12);
   EXPECT_EQ(heard[0][0].payload[0], 1);
   ASSERT_THAT(heard[1], SizeIs(1));
-  EXPECT_NEAR(heard[1][0].bearing, kPi, 1e-12);
+  EXPECT_NEAR(heard[1][0].Bearing(), kPi, 1e-12);
   EXPECT_EQ(heard[1][0].payload[0], 0);
 }
 

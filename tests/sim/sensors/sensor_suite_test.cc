@@ -32,12 +32,12 @@ TEST(SensorSuite, FillsOnlyRequestedDevices) {
   const std::vector<Pose> poses = {{{0.0, 0.0}, 0.0}, {{0.2, 0.0}, 0.0}, {{0.4, 0.0}, 0.0}};
   Sense(suite, poses);
 
-  EXPECT_TRUE(suite.ReadingsOf(0).proximity_active);
+  EXPECT_NE(suite.ReadingsOf(0).proximity_hits, 0u);
   EXPECT_THAT(suite.ReadingsOf(0).blobs, IsEmpty());
-  EXPECT_FALSE(suite.ReadingsOf(1).proximity_active);
+  EXPECT_EQ(suite.ReadingsOf(1).proximity_hits, 0u);
   EXPECT_THAT(suite.ReadingsOf(1).proximity, Each(0.0));
   EXPECT_EQ(suite.ReadingsOf(1).blobs.size(), 2u);
-  EXPECT_FALSE(suite.ReadingsOf(2).proximity_active);
+  EXPECT_EQ(suite.ReadingsOf(2).proximity_hits, 0u);
   EXPECT_THAT(suite.ReadingsOf(2).blobs, IsEmpty());
 }
 
@@ -48,10 +48,10 @@ TEST(SensorSuite, ForgetsReadingsOfTheLastTick) {
       {.devices = Device::kWheels}};
   SensorSuite suite(arena, robots);
   Sense(suite, {{{0.0, 0.0}, 0.0}, {{0.2, 0.0}, 0.0}});
-  EXPECT_TRUE(suite.ReadingsOf(0).proximity_active);
+  EXPECT_NE(suite.ReadingsOf(0).proximity_hits, 0u);
   EXPECT_EQ(suite.ReadingsOf(0).blobs.size(), 1u);
   Sense(suite, {{{0.0, 0.0}, 0.0}, {{1.0, 0.0}, 0.0}});
-  EXPECT_FALSE(suite.ReadingsOf(0).proximity_active);
+  EXPECT_EQ(suite.ReadingsOf(0).proximity_hits, 0u);
   EXPECT_THAT(suite.ReadingsOf(0).proximity, Each(0.0));
   EXPECT_THAT(suite.ReadingsOf(0).blobs, IsEmpty());
 }
@@ -67,7 +67,7 @@ TEST(SensorSuite, SeesEveryWallOnTheWayThroughTheArena) {
     SensorSuite fresh(arena, robots);
     Sense(fresh, pose);
     ASSERT_EQ(walking.ReadingsOf(0).proximity, fresh.ReadingsOf(0).proximity) << "x = " << x;
-    ASSERT_EQ(walking.ReadingsOf(0).proximity_active, std::abs(x) > 2.95 - 0.185) << "x = " << x;
+    ASSERT_EQ(walking.ReadingsOf(0).proximity_hits != 0, std::abs(x) > 2.95 - 0.185) << "x = " << x;
   }
 }
 
