@@ -11,14 +11,15 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr int kFormat = 1;
-constexpr mode_t kOwnerOnly = 0600;
+constexpr int kAccessFormat = 1;
 
 }  // namespace
 
 Status WriteAccessFile(const std::string& path, const AccessInfo& info) {
-  nlohmann::ordered_json json = {
-      {"format", kFormat}, {"campaign", info.campaign}, {"epoch", info.epoch}, {"endpoints", info.endpoints}};
+  nlohmann::ordered_json json = {{"format", kAccessFormat},
+                                 {"campaign", info.campaign},
+                                 {"epoch", info.epoch},
+                                 {"endpoints", info.endpoints}};
   if (info.curve) {
     json["curve"] = {{"server_public", info.curve->server_public},
                      {"worker_public", info.curve->worker_public},

@@ -11,6 +11,10 @@
 
 namespace gauntlet::master {
 
+// Permissions of the files of a campaign.
+inline constexpr mode_t kReadableByAll = 0644;
+inline constexpr mode_t kOwnerOnly = 0600;
+
 // Readers see the old content or the new one, also after a loss of power: temporary file in the same
 // directory, fsync, rename, fsync of the directory. `mode`: permissions of the new file. Errors: kNoSpace,
 // kIo; the old content then stands (only when nothing but the last fsync failed, the new one may).

@@ -18,7 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kReadableByAll = 0644;
 constexpr std::array<std::string_view, 9> kOwnNames = {"access.json", "campaign.db",     "epoch",
                                                        "lock",        "experiment.toml", "log",
                                                        "status.json", "master.key",      "stop"};

@@ -10,13 +10,12 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr int kFormat = 1;
-constexpr mode_t kOwnerOnly = 0600;
+constexpr int kKeysFormat = 1;
 constexpr mode_t kOthers = 077;
 
 Result<CampaignKeys> Make(const std::string& path) {
   const CampaignKeys keys{NewCurveKeyPair(), NewCurveKeyPair()};
-  const nlohmann::ordered_json json = {{"format", kFormat},
+  const nlohmann::ordered_json json = {{"format", kKeysFormat},
                                        {"server_public", keys.master.public_key},
                                        {"server_secret", keys.master.secret_key},
                                        {"worker_public", keys.worker.public_key},

@@ -15,7 +15,7 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr int kFormat = 1;
+constexpr int kLockFormat = 1;
 // An owner is always written in one piece of this size, so that nobody reads half of one.
 constexpr std::size_t kContentSize = 1024;
 constexpr std::chrono::milliseconds kRetryAfter{20};
@@ -26,7 +26,7 @@ std::int64_t SystemUnixTime() {
 }
 
 std::string WriteContent(const ProcessIdentity& process, std::int64_t heartbeat) {
-  const nlohmann::ordered_json json = {{"format", kFormat},          {"host", process.host},
+  const nlohmann::ordered_json json = {{"format", kLockFormat},      {"host", process.host},
                                        {"boot_id", process.boot_id}, {"pid_namespace", process.pid_namespace},
                                        {"pid", process.pid},         {"start_time", process.start_time},
                                        {"heartbeat", heartbeat}};

@@ -10,8 +10,6 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr mode_t kReadableByAll = 0644;
-
 // The epoch is counted before the database is opened: from then on no former master commits anything that we
 // might not have read.
 Status OpenStore(CampaignOwnership& ownership) {

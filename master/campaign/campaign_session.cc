@@ -33,7 +33,6 @@ constexpr std::string_view kSoftwareVersion = GAUNTLET_VERSION;
 constexpr SearchId kOnlySearch = 1;
 constexpr std::chrono::milliseconds kShutdownTime{2000};
 constexpr std::chrono::milliseconds kStatusEvery{1000};
-constexpr mode_t kReadableByAll = 0644;
 
 double CpuSeconds() {
   rusage usage{};
@@ -42,24 +41,6 @@ double CpuSeconds() {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
   };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
-std::int64_t UnixMilliseconds() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
-std::string_view NameOf(SearchKind kind) {
-  switch (kind) {
-    case SearchKind::kGenetic:
-      return "genetic";
-    case SearchKind::kRandom:
-      return "random";
-    case SearchKind::kCases:
-      return "cases";
-  }
-  return "unknown";
 }
 
 std::string HashText(std::uint64_t hash) {

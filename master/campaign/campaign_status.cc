@@ -14,12 +14,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::int64_t UnixMilliseconds() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
-
 std::size_t RunsOf(const BackendView& backend) {
   std::size_t runs = 0;
   for (const WorkerView& worker : backend.workers) runs += worker.leases.size();
@@ -46,6 +40,12 @@ ordered_json Json(const WorkerView& worker) {
 }
 
 }  // namespace
+
+std::int64_t UnixMilliseconds() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
 
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
                            const BackendView& backend) {

@@ -13,6 +13,9 @@
 
 namespace gauntlet::master {
 
+// The wall clock, ms since 1970: only ever shown, nothing is decided by it.
+std::int64_t UnixMilliseconds();
+
 struct MasterView {
   std::string campaign_id;
   std::string experiment;

@@ -15,18 +15,6 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-std::string_view NameOf(SearchKind kind) {
-  switch (kind) {
-    case SearchKind::kGenetic:
-      return "genetic";
-    case SearchKind::kRandom:
-      return "random";
-    case SearchKind::kCases:
-      return "cases";
-  }
-  return "unknown";
-}
-
 void AddToGeneration(const StoredRun& run, std::map<std::uint32_t, GenerationSummary>& generations) {
   GenerationSummary& generation = generations[run.generation];
   generation.generation = run.generation;

@@ -11,7 +11,7 @@ namespace gauntlet::master {
 namespace {
 
 // Changes whenever the encoding does. Do not reuse a number.
-constexpr std::uint64_t kFormat = 1;
+constexpr std::uint64_t kDigestFormat = 1;
 
 using Digest = std::array<unsigned char, 32>;
 
@@ -57,7 +57,7 @@ void ResultsDigest::Add(const StoredRun& run) {
 std::string StateHash(std::string_view experiment, const ResultsDigest& results, std::string_view population,
                       std::string_view search_state) {
   CanonicalEncoder encoder;
-  encoder.Uint(kFormat);
+  encoder.Uint(kDigestFormat);
   encoder.String(experiment);
   encoder.String(results.bytes());
   encoder.String(population);

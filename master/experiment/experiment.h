@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "sim/run_spec.h"
 
@@ -23,6 +24,7 @@ struct GenomeSpec {
 };
 
 enum class SearchKind { kGenetic, kRandom, kCases };
+std::string_view NameOf(SearchKind kind);  // as in the key search.algorithm
 enum class ParentSelection { kAllParentBestHalf, kTwoBestParentsTwoWorseAway, kTwoRandomParentsTwoWorseAway };
 enum class CrossoverKind { kSinglePoint, kDoublePoint, kUniform };
 // Who is simulated in a generation: everybody with new seeds, or the newborn only. kScheme = as

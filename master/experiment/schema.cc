@@ -202,6 +202,18 @@ bool IsName(std::string_view name) {
 
 }  // namespace
 
+std::string_view NameOf(SearchKind kind) {
+  switch (kind) {
+    case SearchKind::kGenetic:
+      return "genetic";
+    case SearchKind::kRandom:
+      return "random";
+    case SearchKind::kCases:
+      return "cases";
+  }
+  return "unknown";
+}
+
 std::string_view NameOf(KeyType type) {
   switch (type) {
     case KeyType::kText:

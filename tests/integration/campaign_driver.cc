@@ -75,6 +75,11 @@ nlohmann::json Show(const std::string& dir) {
   return parsed.is_discarded() ? nlohmann::json() : parsed;
 }
 
+std::string ReadFile(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(in)), {});
+}
+
 std::string StateHash(const std::string& dir) {
   return Show(dir).value("state_hash", "");
 }

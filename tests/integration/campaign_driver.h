@@ -20,6 +20,9 @@ ProcessResult Gauntlet(const std::vector<std::string>& arguments,
                        std::chrono::seconds deadline = std::chrono::seconds(300));
 std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments);
 
+// A whole file; "" when it cannot be read.
+std::string ReadFile(const std::string& path);
+
 // A campaign small enough for a test: a few dozen to a few hundred runs.
 struct SmallCampaign {
   int population = 8;

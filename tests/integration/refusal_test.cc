@@ -25,17 +25,13 @@ using testing_support::Gauntlet;
 using testing_support::GauntletPath;
 using testing_support::Process;
 using testing_support::ProcessResult;
+using testing_support::ReadFile;
 using testing_support::RunProcess;
 using testing_support::Show;
 using testing_support::SmallCampaign;
 using testing_support::StartGauntlet;
 using testing_support::StateHash;
 using testing_support::TemporaryDirectory;
-
-std::string ReadFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return std::string((std::istreambuf_iterator<char>(in)), {});
-}
 
 SmallCampaign LongerCampaign() {
   SmallCampaign campaign;

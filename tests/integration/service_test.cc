@@ -22,6 +22,7 @@ using testing_support::EvolveArguments;
 using testing_support::Gauntlet;
 using testing_support::Process;
 using testing_support::ProcessResult;
+using testing_support::ReadFile;
 using testing_support::SmallCampaign;
 using testing_support::StartGauntlet;
 using testing_support::StateHash;
@@ -58,11 +59,6 @@ bool StatusBecomes(const std::string& dir, const std::function<bool(const json&)
         return status.is_object() && condition(status);
       },
       kPatience);
-}
-
-std::string ReadFile(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return std::string((std::istreambuf_iterator<char>(in)), {});
 }
 
 mode_t ModeOf(const std::string& path) {

@@ -47,6 +47,10 @@ struct BadAccess {
   const char* complaint;
 };
 
+void PrintTo(const BadAccess& param, std::ostream* out) {
+  *out << param.name;
+}
+
 class BadAccessTest : public testing::TestWithParam<BadAccess> {};
 
 TEST_P(BadAccessTest, IsRefusedWithItsPlaceAndWhatWouldBeRight) {

@@ -32,6 +32,10 @@ struct BadLine {
   const char* complaint;
 };
 
+void PrintTo(const BadLine& param, std::ostream* out) {
+  *out << param.name;
+}
+
 class BadLineTest : public testing::TestWithParam<BadLine> {};
 
 TEST_P(BadLineTest, ExitsTwoAndNamesWhatIsWrong) {

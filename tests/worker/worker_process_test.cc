@@ -103,6 +103,10 @@ struct BrokenRun {
   const char* tail;
 };
 
+void PrintTo(const BrokenRun& param, std::ostream* out) {
+  *out << param.name;
+}
+
 class BrokenRunTest : public WorkerProcessTest, public testing::WithParamInterface<BrokenRun> {};
 
 TEST_P(BrokenRunTest, CostsItselfAloneAndIsReportedAsWhatItIs) {

@@ -9,9 +9,8 @@ namespace {
 
 TEST(ProximityDirections, StartJustLeftOfTheHeadingAndGoCounterClockwise) {
   const auto& directions = ProximityDirections();
-  constexpr double kDegree = 3.14159265358979323846 / 180.0;
   for (std::size_t i = 0; i < directions.size(); ++i) {
-    const double bearing = (7.5 + 15.0 * static_cast<double>(i)) * kDegree;
+    const double bearing = (7.5 + 15.0 * static_cast<double>(i)) * sim::kDegree;
     EXPECT_NEAR(directions[i].x(), std::cos(bearing), 1e-13);
     EXPECT_NEAR(directions[i].y(), std::sin(bearing), 1e-13);
   }

@@ -160,6 +160,10 @@ struct RefusalCase {
   std::string reason;
 };
 
+void PrintTo(const RefusalCase& param, std::ostream* out) {
+  *out << param.name;
+}
+
 class RefusalTest : public RemoteBackendTest, public testing::WithParamInterface<RefusalCase> {};
 
 TEST_P(RefusalTest, SaysWhatDiffers) {

@@ -17,12 +17,12 @@ SearchSetup SetupOf(int cases) {
   return setup;
 }
 
-std::unique_ptr<RandomSearch> Make(const SearchSetup& setup) {
+std::unique_ptr<RandomSearch> MakeRandom(const SearchSetup& setup) {
   return std::move(RandomSearch::Create(setup)).value();
 }
 
 TEST(RandomSearchTest, EvaluatesEveryCaseOnce) {
-  const auto search = Make(SetupOf(250));
+  const auto search = MakeRandom(SetupOf(250));
   EXPECT_EQ(search->Progress().evaluations_planned, 250U);
   const std::vector<EvaluationRequest> requests = RunToEnd(*search, Noise);
   ASSERT_EQ(requests.size(), 250U);
@@ -39,15 +39,15 @@ TEST(RandomSearchTest, EvaluatesEveryCaseOnce) {
 }
 
 TEST(RandomSearchTest, CaseKIsTheSameHoweverManyCasesThereAre) {
-  const std::vector<EvaluationRequest> few = RunToEnd(*Make(SetupOf(30)), Noise);
-  std::vector<EvaluationRequest> many = RunToEnd(*Make(SetupOf(150)), Noise);
+  const std::vector<EvaluationRequest> few = RunToEnd(*MakeRandom(SetupOf(30)), Noise);
+  std::vector<EvaluationRequest> many = RunToEnd(*MakeRandom(SetupOf(150)), Noise);
   many.resize(few.size());
   EXPECT_TRUE(SameRequests(few, many));
 }
 
 TEST(RandomSearchTest, RequestsDoNotDependOnWhenOutcomesArrive) {
-  const std::vector<EvaluationRequest> expected = RunToEnd(*Make(SetupOf(450)), Noise);
-  const auto search = Make(SetupOf(450));
+  const std::vector<EvaluationRequest> expected = RunToEnd(*MakeRandom(SetupOf(450)), Noise);
+  const auto search = MakeRandom(SetupOf(450));
   std::vector<EvaluationRequest> requests;
   while (true) {
     const std::vector<EvaluationRequest> more = search->Ask();
@@ -62,7 +62,7 @@ TEST(RandomSearchTest, RequestsDoNotDependOnWhenOutcomesArrive) {
 }
 
 TEST(RandomSearchTest, AsksNoMoreThanTheLookaheadAheadOfTheOutcomes) {
-  const auto search = Make(SetupOf(3000));
+  const auto search = MakeRandom(SetupOf(3000));
   std::size_t asked = 0;
   while (true) {
     const std::size_t more = search->Ask().size();
@@ -78,7 +78,7 @@ TEST(RandomSearchTest, SharesNoCaseWithAnEvolutionOfTheSameSeed) {
 }
 
 TEST(RandomSearchTest, NewbornsAreTakenOnce) {
-  const auto search = Make(SetupOf(10));
+  const auto search = MakeRandom(SetupOf(10));
   search->Ask();
   EXPECT_EQ(search->TakeNewborns().size(), 10U);
   EXPECT_TRUE(search->TakeNewborns().empty());
@@ -87,7 +87,7 @@ TEST(RandomSearchTest, NewbornsAreTakenOnce) {
 TEST(RandomSearchTest, EmptyCasesAreAllowed) {
   SearchSetup setup = SetupOf(3);
   setup.experiment.genome.genes = 0;
-  for (const EvaluationRequest& request : RunToEnd(*Make(setup), Noise)) {
+  for (const EvaluationRequest& request : RunToEnd(*MakeRandom(setup), Noise)) {
     EXPECT_TRUE(request.test_case.obstacles.empty());
   }
 }

@@ -22,6 +22,10 @@ struct Kind {
   Factory make;
 };
 
+void PrintTo(const Kind& param, std::ostream* out) {
+  *out << param.name;
+}
+
 SearchSetup GeneticSetup(ParentSelection selection) {
   SearchSetup setup = ToySetup();
   setup.experiment.search.parent_selection = selection;

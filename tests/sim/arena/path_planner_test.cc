@@ -11,6 +11,8 @@
 namespace gauntlet::sim {
 namespace {
 
+using testing::GridWith;
+
 const Vec2 kStart(2.5, 2.5);
 const Vec2 kGoal(-2.5, -2.5);
 
@@ -18,12 +20,6 @@ double LengthOf(const std::vector<Vec2>& path) {
   double length = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) length += (path[i] - path[i - 1]).norm();
   return length;
-}
-
-OccupancyGrid GridWith(const Genome& genome, double inflation = OccupancyGrid::kDefaultInflation) {
-  TestCase test_case;
-  test_case.obstacles = genome;
-  return OccupancyGrid(Arena(test_case), inflation);
 }
 
 // Whether p is in a free cell; a point within 1e-6 m of a cell's edge may count for either side.

@@ -1,6 +1,7 @@
 // Random test cases for the tests of the arena, as the default generator makes them (spec 1.1).
 #pragma once
 
+#include "sim/arena/occupancy_grid.h"
 #include "sim/arena/validity.h"
 #include "sim/random/random_stream.h"
 
@@ -40,6 +41,13 @@ inline TestCase ValidTestCase(RandomStream& random, int obstacles, const ArenaRe
     if (!validity.TryAppend(gene)) test_case.obstacles.push_back(gene);
   }
   return test_case;
+}
+
+// A square arena of 6 m with these obstacles.
+inline OccupancyGrid GridWith(const Genome& genome, double inflation = OccupancyGrid::kDefaultInflation) {
+  TestCase test_case;
+  test_case.obstacles = genome;
+  return OccupancyGrid(Arena(test_case), inflation);
 }
 
 }  // namespace gauntlet::sim::testing

@@ -15,11 +15,11 @@ namespace gauntlet::sim {
 namespace {
 
 using ::testing::AllOf;
+using testing::GridWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 constexpr double kRadius = 0.085036758;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // The flocking scenario's birds.
 SpawnRequest Birds() {
@@ -29,12 +29,6 @@ SpawnRequest Birds() {
   request.robot_radius = kRadius;
   request.start = {2.5, 2.5};
   return request;
-}
-
-OccupancyGrid GridWith(const Genome& genome) {
-  TestCase test_case;
-  test_case.obstacles = genome;
-  return OccupancyGrid(Arena(test_case), OccupancyGrid::kDefaultInflation);
 }
 
 RandomStream SpawnStream(std::uint64_t seed) {
@@ -206,15 +200,15 @@ TEST(SpawnTest, SenselessRequestsAreRefusedAtOnce) {
   };
   refuse([](SpawnRequest& r) { r.count = -1; }, "-1 robots; want 0 to 1000");
   refuse([](SpawnRequest& r) { r.count = 1'000'000'000; }, "1000000000 robots");
-  refuse([](SpawnRequest& r) { r.area.max.x() = kNan; }, "nan");
+  refuse([](SpawnRequest& r) { r.area.max.x() = std::nan(""); }, "nan");
   refuse([](SpawnRequest& r) { r.area.max.y() = 1.0; }, "must go from its least to its greatest corner");
   refuse([](SpawnRequest& r) { r.robot_radius = 0.0; }, "robot radius 0 m");
-  refuse([](SpawnRequest& r) { r.robot_radius = kNan; }, "robot radius nan m");
+  refuse([](SpawnRequest& r) { r.robot_radius = std::nan(""); }, "robot radius nan m");
   refuse([](SpawnRequest& r) { r.gap = -0.1; }, "gap -0.1 m");
   refuse([](SpawnRequest& r) { r.tries_per_robot = 0; }, "0 tries per robot");
   refuse([](SpawnRequest& r) { r.max_enlargement = 0.5; }, "enlargement up to 0.5");
   refuse([](SpawnRequest& r) { r.max_enlargement = 1e308; }, "enlargement up to 1e+308");
-  refuse([](SpawnRequest& r) { r.start = {kNan, 0.0}; }, "the start (nan, 0)");
+  refuse([](SpawnRequest& r) { r.start = {std::nan(""), 0.0}; }, "the start (nan, 0)");
   refuse([](SpawnRequest& r) { r.area = {{900.0, 900.0}, {901.0, 901.0}}; }, "only 0 of 10 robots fit");
   SpawnRequest none = Birds();
   none.count = 0;

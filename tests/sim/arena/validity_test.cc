@@ -20,7 +20,6 @@ using testing::CornerToCorner;
 using ::testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 TestCase WithObstacles(const Genome& genome) {
   TestCase test_case;
@@ -58,7 +57,7 @@ TEST(ValidityTest, AnEmptyArenaAndOneWithAFewObstaclesAreValid) {
 }
 
 TEST(ValidityTest, NumbersThatAreNotFiniteAreRefused) {
-  for (const double bad : {kInfinity, -kInfinity, kNan}) {
+  for (const double bad : {kInfinity, -kInfinity, std::nan("")}) {
     for (const auto& field : {&ObstacleGene::x, &ObstacleGene::y, &ObstacleGene::length, &ObstacleGene::width,
                               &ObstacleGene::orientation_deg}) {
       ObstacleGene gene = {0.8, 2.4, 1.4, 0.4, 100.0};
@@ -164,7 +163,7 @@ TEST(ValidityTest, StartAndGoalMustBeFree) {
   requirements.goal = {5.0, 0.0};
   ExpectViolation(TestCase{}, requirements, ValidityRule::kGoalBlocked, -1,
                   "the wall blocks the goal (5, 0)");
-  requirements.goal = {kNan, 0.0};
+  requirements.goal = {std::nan(""), 0.0};
   ExpectViolation(TestCase{}, requirements, ValidityRule::kGoalBlocked, -1, "nan");
 }
 
@@ -252,7 +251,7 @@ TEST(IncrementalValidityTest, CopiesContinueIndependently) {
 
 TEST(IncrementalValidityTest, AnImpossibleArenaTakesNoGene) {
   TestCase test_case;
-  test_case.side_x = kNan;
+  test_case.side_x = std::nan("");
   IncrementalValidity validity(test_case, CornerToCorner());
   ASSERT_TRUE(validity.arena_violation());
   const std::optional<Violation> violation = validity.TryAppend({0.0, 0.0, 1.0, 0.2, 0.0});

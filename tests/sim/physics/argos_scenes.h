@@ -1,6 +1,7 @@
 // The scenes behind tests/golden/argos/motion, and our engine run through them.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,10 @@ struct ArgosScene {
   double contact_tolerance = 0.0025;      // m, over the whole file
   std::vector<OrientedBox> movable = {};  // of 1 kg; in the file they follow the robots
 };
+
+inline void PrintTo(const ArgosScene& scene, std::ostream* out) {
+  *out << scene.name;
+}
 
 const std::vector<ArgosScene>& ArgosScenes();
 const ArgosScene& FindArgosScene(const std::string& name);
