@@ -94,16 +94,12 @@ void ProximityRing::See(const OrientedBox& box) {
   }
 }
 
-void ProximityRing::See(const BodyFrame& robot) {
-  constexpr double kBodyReach = kReach + foot_bot::kRadius + foot_bot::kGripperRadius;
-  const Vec2 offset = robot.position - self_.position;
-  if (offset.squaredNorm() >= kBodyReach * kBodyReach) return;
-  const Vec2 body(self_.direction.dot(offset), Cross(self_.direction, offset));
+void ProximityRing::SeeBody(const BodyFrame& robot, const Vec2& offset) {
+  const Vec2 body = self_.FromWorld(offset);
   // From 0.16 m on, a body spans asin(0.085 / 0.16) = 2.14 sensors to either side of its centre, from 0.07 m
   // on a gripper 0.55. The sensor that looks nearest to the centre is up to 0.28 + 0.5 beside it.
   SeeDisc<2>(body, foot_bot::kRadius, 0.16);
-  const Vec2 front(self_.direction.dot(robot.direction), Cross(self_.direction, robot.direction));
-  SeeDisc<1>(body + foot_bot::kRadius * front, foot_bot::kGripperRadius, 0.07);
+  SeeDisc<1>(body + foot_bot::kRadius * self_.FromWorld(robot.direction), foot_bot::kGripperRadius, 0.07);
 }
 
 // `center` in the frame of this robot. From the distance `apart` on, only `kWindow` sensors to either side of
