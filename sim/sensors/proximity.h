@@ -40,7 +40,6 @@ class ProximityRing {
       2.0 * foot_bot::kRadius + foot_bot::kProximityRange + foot_bot::kGripperRadius;  // m, centre to centre
 
   void SeeBody(const BodyFrame& robot, const Vec2& offset);
-  template <int kWindow>
   void SeeDisc(const Vec2& center, double radius, double apart);
   void SeeNearDisc(const Vec2& center, double radius);
   void Hit(std::size_t sensor, double distance);
