@@ -16,7 +16,7 @@
 namespace gauntlet::master {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr int kWatchMilliseconds = 1000;
 constexpr int kStopPollMilliseconds = 100;
@@ -32,9 +32,9 @@ std::string Seconds(double seconds) {
   return fmt::format("{:.1f} s", seconds);
 }
 
-std::string RunsOf(const json& worker) {
+std::string RunsOf(const Json& worker) {
   std::string text;
-  for (const json& run : worker["runs"]) {
+  for (const Json& run : worker["runs"]) {
     text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", run["run"].get<std::uint64_t>(),
                         Seconds(run["seconds"]),
                         run["lease"] > 1 ? fmt::format(", lease {}", run["lease"].get<int>()) : "");
@@ -42,9 +42,9 @@ std::string RunsOf(const json& worker) {
   return text.empty() ? "-" : text;
 }
 
-std::string StatusText(const json& status, const std::string& directory) {
+std::string StatusText(const Json& status, const std::string& directory) {
   std::string text = fmt::format("{}: {}", directory, status.value("state", "unknown"));
-  if (const json& master = status.value("master", json()); master.is_object()) {
+  if (const Json& master = status.value("master", Json()); master.is_object()) {
     text += fmt::format(", master {} on {} (start number {}), {}", master["pid"].get<std::int64_t>(),
                         master["host"].get<std::string>(), master["epoch"].get<std::uint64_t>(),
                         master["encrypted"] == true ? "encrypted" : "plaintext");
@@ -61,16 +61,16 @@ std::string StatusText(const json& status, const std::string& directory) {
     text += fmt::format("NONDETERMINISTIC: {} runs ended differently on two workers, see log/master.log\n",
                         status["nondeterministic"].get<std::uint64_t>());
   }
-  if (const json& why = status.value("why_nothing_runs", json()); why.is_string())
+  if (const Json& why = status.value("why_nothing_runs", Json()); why.is_string())
     text += "nothing runs: " + why.get<std::string>() + "\n";
   if (const double age = status.value("status_age_seconds", 0.0); age > 5.0)
     text += fmt::format("the master has said nothing for {:.0f} s: frozen, or its disk is slow\n", age);
-  const json& workers = status["worker_list"];
+  const Json& workers = status["worker_list"];
   if (workers.empty()) return text;
   Table table(
       {{"worker", Align::kLeft}, {"state", Align::kLeft}, {"heard", Align::kRight}, {"runs", Align::kLeft}});
   for (std::size_t i = 0; i < std::min(kShownWorkers, workers.size()); ++i) {
-    const json& worker = workers[i];
+    const Json& worker = workers[i];
     table.AddRow({worker["worker"].get<std::string>(), worker["state"].get<std::string>(),
                   Seconds(worker["silent_seconds"]), RunsOf(worker)});
   }
@@ -83,7 +83,7 @@ std::string StatusText(const json& status, const std::string& directory) {
 Result<std::string> Read(CommandContext& context, const StatusOptions& options) {
   Result<std::string> text = context.service.status(options.directory);
   if (!text || options.json) return text;
-  const json status = json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  const Json status = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (!status.is_object()) return Error{ErrorKind::kCorrupt, "the status does not parse"};
   return StatusText(status, options.directory);
 }
