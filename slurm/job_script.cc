@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "slurm/job_status.h"
+
 namespace gauntlet::slurm {
 namespace {
 
@@ -10,6 +12,9 @@ using Values = std::map<std::string, std::string, std::less<>>;
 bool IsNameCharacter(char c) {
   return (c >= 'A' && c <= 'Z') || c == '_';
 }
+
+// What a template need not name.
+constexpr std::string_view kOptionalName = "MARGIN";
 
 // Replaces each @NAME@ that is known; "@" in other places (--signal=B:TERM@120) stands.
 Result<std::string> Fill(std::string_view text, const Values& values) {
@@ -36,7 +41,8 @@ Result<std::string> Fill(std::string_view text, const Values& values) {
     text.remove_prefix(end + 1);
   }
   for (const auto& [name, was_used] : used) {
-    if (!was_used) return InvalidInput("the job template lacks @" + std::string(name) + "@");
+    if (!was_used && name != kOptionalName)
+      return InvalidInput("the job template lacks @" + std::string(name) + "@");
   }
   return result;
 }
@@ -80,6 +86,15 @@ Status CheckRequest(const JobRequest& request) {
   return Ok{};
 }
 
+// Seconds before the time limit at which Slurm shall send its signal: two minutes, of a short limit a
+// quarter.
+long SignalMargin(const std::string& time_limit) {
+  constexpr long kMargin = 120;
+  constexpr long kShare = 4;
+  const Result<long> seconds = ParseTimeLimit(time_limit);
+  return seconds ? std::min(kMargin, *seconds / kShare) : kMargin;
+}
+
 Result<std::string> Script(std::string_view job_template, Values values, const JobRequest& request) {
   if (const Status checked = CheckRequest(request); !checked) return checked.error();
   const Result<std::string> directives = Directives(request);
@@ -87,6 +102,7 @@ Result<std::string> Script(std::string_view job_template, Values values, const J
   values["DIRECTIVES"] = *directives;
   values["SETUP"] = request.setup;
   values["TIME"] = request.time_limit;
+  values["MARGIN"] = std::to_string(SignalMargin(request.time_limit));
   if (const Status checked = CheckOneLine(values); !checked) return checked.error();
   return Fill(job_template, values);
 }
@@ -111,14 +127,16 @@ std::string ShellQuoted(std::string_view text) {
 Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob& job,
                                  const JobRequest& request) {
   // In the log's name %j is the job's id, %A_%a an array's and the task's; it is not for the shell.
+  JobRequest all = request;
+  if (job.array > 1) all.extra.push_back("--array=1-" + std::to_string(job.array));
   return Script(job_template,
                 {{"JOB_NAME", job.name},
                  {"CPUS", std::to_string(job.slots)},
                  {"SLOTS", std::to_string(job.slots)},
-                 {"LOG", job.log_directory + "/worker-%j.log"},
+                 {"LOG", job.log_directory + (job.array > 1 ? "/worker-%A_%a.log" : "/worker-%j.log")},
                  {"ACCESS", ShellQuoted(job.access_file)},
                  {"WORKER", job.worker}},
-                request);
+                all);
 }
 
 Result<std::string> MasterScript(std::string_view job_template, const MasterJob& job,

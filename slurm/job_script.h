@@ -28,6 +28,7 @@ struct WorkerJob {
   std::string access_file;    // absolute
   std::string log_directory;  // absolute
   int slots = 1;
+  int array = 1;  // equal allocations, as the tasks of one array job when more than one
 };
 
 struct MasterJob {

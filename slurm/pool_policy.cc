@@ -12,6 +12,16 @@ using std::chrono::seconds;
 // just been restarted.
 constexpr int kMissingBeforeEnd = 2;
 
+// What to look at when a job ends before its worker has spoken.
+constexpr const char* kWhereToLook =
+    ": its log is log/worker-JOB.log in the campaign's directory; when there is none, the node does not see "
+    "that directory, which must be on a file system shared with the compute nodes (--dir)";
+
+// Ends that are the job's or the node's fault, unlike a drain, a preemption or the time limit.
+bool IsFailure(std::string_view state) {
+  return state == "FAILED" || state == "NODE_FAIL" || state == "OUT_OF_MEMORY" || state == "BOOT_FAIL";
+}
+
 std::string JobName(const Allocation& allocation) {
   std::string name = "job " + allocation.job;
   if (!allocation.nodes.empty()) name += " on " + allocation.nodes;
@@ -43,12 +53,13 @@ void PoolPolicy::Adopt(const JobStatus& job, TimePoint now) {
   entry.allocation.state = job.state;
   entry.allocation.reason = job.reason;
   entry.allocation.nodes = job.nodes;
-  if (job.phase == JobPhase::kRunning) entry.allocation.running_since = now;
+  if (job.phase == JobPhase::kRunning) entry.allocation.running_since = entry.allocation.silent_since = now;
 }
 
 void PoolPolicy::Observed(const std::vector<JobStatus>& jobs, TimePoint now) {
   query_running_ = false;
   query_error_.clear();
+  last_query_ = now;
   for (auto& [id, entry] : entries_) ++entry.missing;
   for (const JobStatus& job : jobs) {
     const auto found = entries_.find(job.id);
@@ -60,7 +71,8 @@ void PoolPolicy::Observed(const std::vector<JobStatus>& jobs, TimePoint now) {
     allocation.state = job.state;
     allocation.reason = job.reason;
     if (!job.nodes.empty()) allocation.nodes = job.nodes;
-    if (job.phase == JobPhase::kRunning && !allocation.running_since) allocation.running_since = now;
+    if (job.phase == JobPhase::kRunning && !allocation.running_since)
+      allocation.running_since = allocation.silent_since = now;
   }
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     const auto next = std::next(entry);
@@ -81,12 +93,16 @@ void PoolPolicy::Workers(const std::string& job, int connected, int busy, TimePo
   if (found == entries_.end()) return;
   Entry& entry = found->second;
   Allocation& allocation = entry.allocation;
-  const int before = allocation.workers;
   allocation.workers = connected;
   if (connected > 0) {
     // A hello is faster than squeue.
     if (!allocation.running_since) allocation.running_since = now;
-    if (allocation.phase == JobPhase::kQueued) allocation.phase = JobPhase::kRunning;
+    if (allocation.phase == JobPhase::kQueued) {
+      allocation.phase = JobPhase::kRunning;
+      allocation.state = "RUNNING";
+      allocation.reason.clear();
+    }
+    allocation.silent_since.reset();
     if (!allocation.first_hello) {
       allocation.first_hello = now;
       failures_in_a_row_ = 0;
@@ -94,8 +110,8 @@ void PoolPolicy::Workers(const std::string& job, int connected, int busy, TimePo
       failures_of_node_.erase(allocation.nodes);
       banned_.erase(allocation.nodes);
     }
-  } else if (before > 0 && !allocation.cancelled && now - *allocation.first_hello < limits_.early_loss) {
-    StartFailed(entry, JobName(allocation) + ": its worker was lost soon after its start", now);
+  } else if (allocation.running_since && !allocation.silent_since) {
+    allocation.silent_since = now;
   }
   if (busy > 0) {
     allocation.idle_since.reset();
@@ -106,11 +122,15 @@ void PoolPolicy::Workers(const std::string& job, int connected, int busy, TimePo
 
 void PoolPolicy::End(std::map<std::string, Entry>::iterator entry, TimePoint now) {
   const Allocation& allocation = entry->second.allocation;
+  std::string how = allocation.state;
+  if (!allocation.reason.empty()) how += ", " + allocation.reason;
   if (!allocation.cancelled && !allocation.first_hello) {
-    std::string how = allocation.state;
-    if (!allocation.reason.empty()) how += ", " + allocation.reason;
-    StartFailed(entry->second, JobName(allocation) + " ended (" + how + ") before its worker said hello",
+    StartFailed(entry->second,
+                JobName(allocation) + " ended (" + how + ") before its worker said hello" + kWhereToLook,
                 now);
+  } else if (!allocation.cancelled && IsFailure(allocation.state) &&
+             now - *allocation.first_hello < limits_.early_loss) {
+    StartFailed(entry->second, JobName(allocation) + " ended (" + how + ") soon after its start", now);
   }
   entries_.erase(entry);
 }
@@ -138,11 +158,10 @@ void PoolPolicy::CancelLost(TimePoint now, Decisions& decisions) {
       StartFailed(entry, "job " + job + " would never start: " + allocation.reason, now);
       allocation.cancelled = true;
       decisions.cancel.push_back(job);
-    } else if (allocation.running_since && !allocation.first_hello &&
-               now - *allocation.running_since >= limits_.start_timeout) {
+    } else if (allocation.silent_since && now - *allocation.silent_since >= limits_.start_timeout) {
       StartFailed(entry,
                   JobName(allocation) + " has run for " +
-                      std::to_string(duration_cast<seconds>(now - *allocation.running_since).count()) +
+                      std::to_string(duration_cast<seconds>(now - *allocation.silent_since).count()) +
                       " s without a word from its worker",
                   now);
       allocation.cancelled = true;
@@ -152,11 +171,15 @@ void PoolPolicy::CancelLost(TimePoint now, Decisions& decisions) {
 }
 
 void PoolPolicy::CancelIdle(const Demand& demand, TimePoint now, Decisions& decisions) {
+  // Between two generations there is no demand for a moment.
+  if (demand.unfinished_runs > 0) unwanted_since_.reset();
+  if (demand.unfinished_runs == 0 && !unwanted_since_) unwanted_since_ = now;
+  const bool unwanted = unwanted_since_ && now - *unwanted_since_ >= limits_.idle_timeout;
   for (auto& [job, entry] : entries_) {
     Allocation& allocation = entry.allocation;
     if (allocation.cancelled) continue;
     const bool idle_too_long = allocation.idle_since && now - *allocation.idle_since >= limits_.idle_timeout;
-    const bool not_wanted = allocation.phase == JobPhase::kQueued && demand.unfinished_runs == 0;
+    const bool not_wanted = allocation.phase == JobPhase::kQueued && unwanted;
     if (!idle_too_long && !not_wanted) continue;
     allocation.cancelled = true;
     decisions.cancel.push_back(job);

@@ -20,8 +20,8 @@ struct PoolLimits {
   int max_queued = 2;                       // waiting in the queue at one time (the backlog)
   int workers_per_allocation = 1;           // runs simulated at the same time in one allocation
   std::chrono::seconds idle_timeout{300};   // without a run to do, an allocation is given back after this
-  std::chrono::seconds start_timeout{120};  // from the job's start to its worker's hello
-  std::chrono::seconds early_loss{60};      // a worker lost sooner than this after its hello failed to start
+  std::chrono::seconds start_timeout{120};  // a job may run so long without a connected worker
+  std::chrono::seconds early_loss{60};  // a job that failed sooner than this after a hello failed to start
   std::chrono::seconds query_interval{10};  // at most one squeue in this time
   std::chrono::seconds first_back_off{15};  // after a failed start; doubled with each further one in a row
   std::chrono::seconds longest_back_off{900};
@@ -50,6 +50,7 @@ struct Allocation {
   int workers = 0;                         // connected now
   std::optional<TimePoint> running_since;  // first seen running
   std::optional<TimePoint> first_hello;    // of its first worker
+  std::optional<TimePoint> silent_since;   // it runs, and none of its workers has been connected since
   std::optional<TimePoint> idle_since;     // none of its workers has had a run since
   bool cancelled = false;                  // by us
 };
@@ -57,8 +58,9 @@ struct Allocation {
 // Fed with events and a clock, asked for decisions; pure, so that years of a cluster's moods run in a test in
 // milliseconds. An allocation counts as coming capacity until its worker connects, it ends or its start times
 // out. A start has failed when the job ended, or ran for `start_timeout`, without a worker's hello, or when
-// its worker was lost within `early_loss` of it; failures in a row delay the next submission, and a node with
-// several is left out until a worker has said hello from it. Thread-safety: one thread.
+// it failed (Slurm's FAILED, NODE_FAIL, OUT_OF_MEMORY, BOOT_FAIL) within `early_loss` of it; failures in a
+// row delay the next submission, and a node with several is left out until a worker has said hello from it.
+// Drained, preempted and timed out jobs are replaced at once. Thread-safety: one thread.
 class PoolPolicy {
  public:
   explicit PoolPolicy(const PoolLimits& limits) : limits_(limits) {}
@@ -105,6 +107,7 @@ class PoolPolicy {
   std::string query_error_;
   std::optional<TimePoint> not_before_;  // back-off
   std::optional<TimePoint> last_query_;
+  std::optional<TimePoint> unwanted_since_;  // no run has been unfinished since
   bool query_running_ = false;
   bool stopping_ = false;
 };

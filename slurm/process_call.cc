@@ -78,6 +78,13 @@ Error Failure(const std::string& program, const std::string& what) {
   return {ErrorKind::kIo, "cannot call " + program + ": " + what};
 }
 
+std::string LastLine(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  constexpr std::size_t kMost = 300;
+  const std::size_t begin = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+  return text.substr(begin, kMost);
+}
+
 // False at its end.
 bool ReadSome(int fd, std::string& into) {
   std::array<char, 65536> buffer{};
@@ -182,8 +189,11 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, const 
   const bool spoken = Converse(in, out, err, input, result, end);
   int status = 0;
   const bool ended = Reap(child, spoken ? end : Clock::now(), status);
-  if (!spoken || !ended)
-    return Failure(program, "no answer within " + std::to_string(deadline.count()) + " ms");
+  if (!spoken || !ended) {
+    // A full queue makes sbatch wait and say so.
+    const std::string said = result.err.empty() ? "" : "; so far it said: " + LastLine(result.err);
+    return Failure(program, "no answer within " + std::to_string(deadline.count()) + " ms" + said);
+  }
   constexpr int kSignalBase = 128;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : kSignalBase + WTERMSIG(status);
   return result;

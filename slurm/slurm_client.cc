@@ -1,6 +1,7 @@
 #include "slurm/slurm_client.h"
 
 #include <algorithm>
+#include <array>
 
 #include "slurm/process_call.h"
 
@@ -36,7 +37,46 @@ std::vector<std::string> Sbatch(const std::vector<std::string>& own,
   return arguments;
 }
 
+struct Advice {
+  std::string_view words;
+  std::string_view step;
+};
+// Words of Slurm 22.05 to 23.11 (slurm_errno.c, squeue(1) "JOB REASON CODES").
+constexpr std::array kAdvice = {
+    Advice{"no sbatch", "run this on a login node of the cluster, or put Slurm's commands into PATH"},
+    Advice{"nvalid account",
+           "name yours: --slurm account=NAME (`sacctmgr show associations user=$USER` lists them)"},
+    Advice{"InvalidAccount",
+           "name yours: --slurm account=NAME (`sacctmgr show associations user=$USER` lists them)"},
+    Advice{"nvalid partition", "choose another: --slurm partition=NAME (`sinfo -s` lists them)"},
+    Advice{"nvalid qos", "choose another: --slurm qos=NAME (`sacctmgr show qos` lists them)"},
+    Advice{"time limit is invalid",
+           "ask for less: --slurm time_limit=HH:MM:SS (`sinfo -o '%P %l'` shows the limits)"},
+    Advice{"PartitionTimeLimit",
+           "ask for less: --slurm time_limit=HH:MM:SS (`sinfo -o '%P %l'` shows the limits)"},
+    Advice{"nvalid feature", "correct --slurm constraint=FEATURES (`sinfo -o '%N %f'` lists them)"},
+    Advice{"node configuration is not available",
+           "no node has what is asked for: lower memory, workers_per_allocation or constraint (`sinfo -o '%P "
+           "%c %m %f'`)"},
+    Advice{"PartitionNodeLimit", "no node of the partition has what is asked for (`sinfo -o '%P %c %m %f'`)"},
+    Advice{"PartitionConfig", "no node of the partition has what is asked for (`sinfo -o '%P %c %m %f'`)"},
+    Advice{"BadConstraints", "no node has what is asked for: correct --slurm constraint=FEATURES"},
+    Advice{"accounting/QOS policy",
+           "a limit of the site: lower --slurm max_allocations and max_queued, or wait"},
+    Advice{"SubmitJob", "a limit of the site: lower --slurm max_allocations and max_queued, or wait"},
+    Advice{"temporarily unable to accept job",
+           "the cluster's queue is full: wait, or lower --slurm max_queued"},
+    Advice{"contact slurm controller", "what runs goes on; `scontrol ping` says when it is back"},
+};
+
 }  // namespace
+
+std::string NextStep(std::string_view words) {
+  for (const Advice& advice : kAdvice) {
+    if (words.find(advice.words) != std::string_view::npos) return "; " + std::string(advice.step);
+  }
+  return "";
+}
 
 Result<std::string> CommandLineSlurm::Submit(const std::string& script,
                                              const std::vector<std::string>& options) {

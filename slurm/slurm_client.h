@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sim/base/result.h"
@@ -24,6 +25,9 @@ class SlurmClient {
   // Jobs that are gone already are no error. An empty list does nothing.
   virtual Status Cancel(const std::vector<std::string>& jobs) = 0;
 };
+
+// What a person can do about Slurm's words, as "; do this"; "" when nothing is known.
+std::string NextStep(std::string_view words);
 
 class CommandLineSlurm final : public SlurmClient {
  public:

@@ -67,6 +67,10 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
           ->check(CLI::PositiveNumber);
   auto* log_option =
       app.add_option("--log", worker.log_file, "Log to this file, errors to stderr too")->type_name("FILE");
+  auto* allocation_option =
+      app.add_option("--allocation", worker.allocation,
+                     "Batch job that holds this worker, told to the master: JOB:RESTARTS:NODE")
+          ->type_name("TEXT");
   auto* quiet_option = app.add_flag("--quiet", worker.quiet, "Log warnings and errors only");
 
   auto* golden_option =
@@ -89,8 +93,8 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
   dir_option->excludes(access_option);
   cpu_option->needs(spec_option);
   memory_option->needs(spec_option);
-  for (CLI::Option* serving :
-       {dir_option, access_option, slots_option, orphan_option, log_option, quiet_option}) {
+  for (CLI::Option* serving : {dir_option, access_option, slots_option, orphan_option, log_option,
+                               quiet_option, allocation_option}) {
     serving->excludes(golden_option)->excludes(spec_option);
   }
   golden_option->excludes(spec_option)->excludes(die_option);

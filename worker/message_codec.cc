@@ -44,6 +44,7 @@ struct ToWire {
     wire.set_host(hello.host);
     wire.set_pid(hello.pid);
     wire.mutable_held_leases()->Add(hello.held_leases.begin(), hello.held_leases.end());
+    wire.set_allocation(hello.allocation);
   }
   void operator()(const LeaseResult& result) const {
     v1::LeaseResult& wire = *envelope.mutable_lease_result();

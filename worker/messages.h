@@ -26,6 +26,7 @@ struct Hello {
   std::string host;
   std::int64_t pid = 0;
   std::vector<Fence> held_leases;
+  std::string allocation;  // the batch job that holds the worker, as its script says; "" for none
   bool operator==(const Hello&) const = default;
 };
 

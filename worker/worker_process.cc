@@ -197,7 +197,8 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
                             .slots = static_cast<std::uint32_t>(options.slots),
                             .host = HostName(),
                             .pid = getpid(),
-                            .held_leases = {}};
+                            .held_leases = {},
+                            .allocation = options.allocation};
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
   Supervisor supervisor(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());

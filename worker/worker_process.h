@@ -17,8 +17,9 @@ struct WorkerOptions {
   int slots = 1;            // runs simulated at the same time
   pid_t parent = 0;         // > 0: end with this process, which started us
   double orphan_timeout_seconds = 600.0;
-  std::string log_file;  // "": stderr
-  bool quiet = false;    // warnings and errors only
+  std::string log_file;    // "": stderr
+  bool quiet = false;      // warnings and errors only
+  std::string allocation;  // told to the master, which may keep a pool of batch jobs
   std::string software_version;
   std::function<std::uint64_t()> golden_hash;
 };

@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 9> kOwnNames = {"access.json", "campaign.db",     "epoch",
-                                                       "lock",        "experiment.toml", "log",
-                                                       "status.json", "master.key",      "stop"};
+constexpr std::array<std::string_view, 11> kOwnNames = {
+    "access.json", "campaign.db", "epoch", "lock",       "experiment.toml", "log",
+    "status.json", "master.key",  "stop",  "slurm.toml", "searches.json"};
 
 std::string WithoutSlash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();

@@ -29,6 +29,10 @@ class CampaignDirectory {
   std::string access_path() const { return path_ + "/access.json"; }
   // What a living master says of its progress, for those who may not read the database meanwhile.
   std::string status_path() const { return path_ + "/status.json"; }
+  // How the campaign uses Slurm; only when it was submitted.
+  std::string slurm_path() const { return path_ + "/slurm.toml"; }
+  // The searches of a sweep; only when there are several.
+  std::string searches_path() const { return path_ + "/searches.json"; }
   // Secret keys, 0600; only when the master is reachable from other machines.
   std::string key_path() const { return path_ + "/master.key"; }
   // `gauntlet stop` was here; the master removes it.

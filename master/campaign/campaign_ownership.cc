@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <thread>
 #include <utility>
 
 #include "master/campaign/atomic_file.h"
@@ -28,7 +29,7 @@ Status OpenStore(CampaignOwnership& ownership) {
 
 }  // namespace
 
-Result<CampaignOwnership> CreateCampaign(const std::string& dir, const std::string& experiment,
+Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignTexts& texts,
                                          CampaignMeta meta) {
   Result<CampaignDirectory> directory = CampaignDirectory::Create(dir);
   if (!directory) return directory.error();
@@ -45,8 +46,12 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const std::stri
   meta.created_unix_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
                              std::chrono::system_clock::now().time_since_epoch())
                              .count();
-  Status written = WriteFileAtomically(directory->experiment_path(), experiment, kReadableByAll);
-  if (!written) return written.error();
+  for (const auto& [path, text] : {std::pair(directory->experiment_path(), texts.experiment),
+                                   std::pair(directory->searches_path(), texts.searches),
+                                   std::pair(directory->slurm_path(), texts.slurm)}) {
+    if (text.empty()) continue;
+    if (Status written = WriteFileAtomically(path, text, kReadableByAll); !written) return written.error();
+  }
   Result<std::uint64_t> epoch = directory->StartEpoch();
   if (!epoch) return epoch.error();
   if (Status created = SqliteStore::Create(directory->database_path(), meta); !created)
@@ -57,11 +62,20 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const std::stri
   return ownership;
 }
 
-Result<CampaignOwnership> TakeCampaign(const std::string& dir) {
+Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
   Result<std::unique_ptr<CampaignLock>> lock =
       CampaignLock::Acquire(directory->lock_path(), directory->path());
+  if (!lock && lock.error().kind == ErrorKind::kInUse && other == LivingMaster::kFence) {
+    if (Result<std::uint64_t> fence = directory->StartEpoch(); !fence) return fence.error();
+    const auto deadline =
+        std::chrono::steady_clock::now() + CampaignLock::kStaleAfter + std::chrono::seconds(10);
+    while (!lock && lock.error().kind == ErrorKind::kInUse && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      lock = CampaignLock::Acquire(directory->lock_path(), directory->path());
+    }
+  }
   if (!lock) return lock.error();
   Result<std::uint64_t> epoch = directory->StartEpoch();
   if (!epoch) return epoch.error();

@@ -22,16 +22,28 @@ struct CampaignOwnership {
   std::unique_ptr<SqliteStore> store;
 };
 
-// Makes a campaign in `dir` and takes it. `experiment`: the text of experiment.toml. `meta.campaign_id` and
+// Files of a campaign that never change; "" = there is none.
+struct CampaignTexts {
+  std::string experiment;     // experiment.toml
+  std::string searches = "";  // searches.json
+  std::string slurm = "";     // slurm.toml
+};
+
+// Makes a campaign in `dir` and takes it. `meta.campaign_id` and
 // `meta.created_unix_ms` are filled in. A master that is killed in here leaves nothing that keeps the next
 // one from doing the same again. Errors: those of CampaignDirectory::Create and CampaignLock::Acquire;
 // kNoSpace, kIo.
-Result<CampaignOwnership> CreateCampaign(const std::string& dir, const std::string& experiment,
+Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignTexts& texts,
                                          CampaignMeta meta);
+
+enum class LivingMaster {
+  kRespect,  // kInUse
+  kFence,    // its epoch becomes outdated, which makes it stop; waited for until its lock is stale
+};
 
 // Takes an existing campaign. Errors: those of CampaignDirectory::Open, CampaignLock::Acquire and
 // SqliteStore::Open.
-Result<CampaignOwnership> TakeCampaign(const std::string& dir);
+Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other = LivingMaster::kRespect);
 
 // A campaign without a living master, to look at; masters wait meanwhile. Changes no byte of the directory,
 // which may be read-only.

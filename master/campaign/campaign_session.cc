@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <deque>
 #include <filesystem>
 #include <memory>
 
@@ -24,13 +25,11 @@
 #include "master/dispatch/zmq_transport.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/case_list_search.h"
-#include "master/search/make_search.h"
 
 namespace gauntlet::master {
 namespace {
 
 constexpr std::string_view kSoftwareVersion = GAUNTLET_VERSION;
-constexpr SearchId kOnlySearch = 1;
 constexpr std::chrono::milliseconds kShutdownTime{2000};
 constexpr std::chrono::milliseconds kStatusEvery{1000};
 
@@ -47,27 +46,6 @@ std::string HashText(std::uint64_t hash) {
   return fmt::format("{:016x}", hash);
 }
 
-Result<Experiment> ReadExperiment(const CampaignDirectory& directory) {
-  Result<std::string> text = ReadSmallFile(directory.experiment_path());
-  if (!text) return text.error();
-  return ParseExperiment(*text, directory.experiment_path(), {});
-}
-
-// The search as it was before its first evaluation.
-Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, ResultStore& store) {
-  if (experiment.search.kind != SearchKind::kCases) return MakeSearch(experiment, kOnlySearch);
-  Result<std::vector<Individual>> individuals = store.LoadIndividuals(kOnlySearch);
-  if (!individuals) return individuals.error();
-  if (individuals->empty()) {
-    return Error{ErrorKind::kCorrupt,
-                 "the campaign was stopped before its cases were stored: evaluate them anew"};
-  }
-  std::vector<sim::TestCase> cases;
-  for (Individual& individual : *individuals) cases.push_back(std::move(individual.test_case));
-  return std::unique_ptr<SearchAlgorithm>(
-      std::make_unique<CaseListSearch>(std::move(cases), experiment.search.replicates));
-}
-
 // Golden hashes decide whether this machine computes the bits that the campaign was begun with.
 Status CheckGoldenHash(const CampaignMeta& meta, std::uint64_t golden_hash) {
   if (meta.golden_hash == HashText(golden_hash)) return Ok{};
@@ -76,6 +54,14 @@ Status CheckGoldenHash(const CampaignMeta& meta, std::uint64_t golden_hash) {
       fmt::format("the campaign was begun by version {} with golden hash {}, this is version {} with {}: its "
                   "simulations would not be comparable",
                   meta.software_version, meta.golden_hash, kSoftwareVersion, HashText(golden_hash))};
+}
+
+std::vector<SearchId> FinishedOf(const std::vector<StoredSearch>& searches) {
+  std::vector<SearchId> finished;
+  for (const StoredSearch& search : searches) {
+    if (search.finished) finished.push_back(search.id);
+  }
+  return finished;
 }
 
 // A socket for workers, with keys when others than this machine can reach it.
@@ -117,6 +103,14 @@ void OpenLog(const CampaignDirectory& directory) {
   }
 }
 
+Status CheckAllStored(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const Status whole = CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store);
+    if (!whole) return whole;
+  }
+  return Ok{};
+}
+
 // Removes what only a living master may leave in the directory.
 class LivingMasterFiles {
  public:
@@ -141,64 +135,92 @@ class LivingMasterFiles {
   std::uint64_t epoch_;
 };
 
+Result<std::unique_ptr<WorkerPool>> MakePool(const CampaignDirectory& directory,
+                                             const SessionOptions& options, const Clock& clock) {
+  if (options.make_pool) {
+    std::error_code error;
+    const std::filesystem::path absolute = std::filesystem::absolute(directory.path(), error);
+    if (error) return SystemError(fmt::format("cannot find {}", directory.path()), error.value());
+    return options.make_pool({absolute / "access.json", absolute / "log"});
+  }
+  if (options.workers == 0) return std::unique_ptr<WorkerPool>();
+  LocalPoolOptions pool_options;
+  pool_options.workers = options.workers;
+  pool_options.access_file = directory.access_path();
+  pool_options.log_directory = directory.log_path();
+  Result<std::unique_ptr<LocalPool>> pool = LocalPool::Start(pool_options, clock.Now());
+  if (!pool) return pool.error();
+  return std::unique_ptr<WorkerPool>(*std::move(pool));
+}
+
+std::string DescribePool(const SessionOptions& options) {
+  return options.make_pool ? "an elastic pool" : fmt::format("{} workers", options.workers);
+}
+
 // Serves an owned campaign until its search has finished or it is to stop.
-Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& experiment,
+Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<SearchPlan>& plans,
                             std::uint64_t golden_hash, const SessionOptions& options) {
   const auto started = std::chrono::steady_clock::now();
   const double cpu_before = CpuSeconds();
   SqliteStore& store = *campaign.store;
   OpenLog(campaign.directory);
-  spdlog::info("master {} of campaign {}: {} workers", campaign.epoch, store.meta().campaign_id,
-               options.workers);
+  spdlog::info("master {} of campaign {} with {}", campaign.epoch, store.meta().campaign_id,
+               DescribePool(options));
   const LivingMasterFiles living(campaign.directory, campaign.epoch);
 
-  Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(experiment, store);
-  if (!search) return search.error();
+  const Result<std::vector<StoredSearch>> known = AddSearches(plans, store);
+  if (!known) return known.error();
+  std::vector<std::unique_ptr<SearchAlgorithm>> searches;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    Result<std::unique_ptr<SearchAlgorithm>> search =
+        MakeStoredSearch(plans[i].experiment, static_cast<SearchId>(i + 1), store);
+    if (!search) return search.error();
+    searches.push_back(*std::move(search));
+  }
 
   Result<Serving> serving = Listen(campaign, options);
   if (!serving) return serving.error();
   const SteadyClock clock;
-  std::unique_ptr<LocalPool> pool;
-  if (options.workers > 0) {
-    LocalPoolOptions pool_options;
-    pool_options.workers = options.workers;
-    pool_options.access_file = campaign.directory.access_path();
-    pool_options.log_directory = campaign.directory.log_path();
-    Result<std::unique_ptr<LocalPool>> started_pool = LocalPool::Start(pool_options, clock.Now());
-    if (!started_pool) return started_pool.error();
-    pool = *std::move(started_pool);
-  }
+  Result<std::unique_ptr<WorkerPool>> made_pool = MakePool(campaign.directory, options, clock);
+  if (!made_pool) return made_pool.error();
+  const std::unique_ptr<WorkerPool> pool = *std::move(made_pool);
 
   const CampaignIdentity identity{store.meta().campaign_id, campaign.epoch, std::string(kSoftwareVersion),
                                   golden_hash};
   RemoteBackend backend(identity, DispatchOptions{}, *serving->transport, clock, pool.get());
   backend.WatchFd(store.CommitNotifier());
-  CampaignRunner runner({.experiment = experiment,
-                         .search_id = kOnlySearch,
-                         .purpose = PurposeOf(experiment.search.kind),
-                         .search = **search,
-                         .backend = backend,
-                         .store = store,
-                         .clock = clock});
-  if (Status restored = runner.Restore(); !restored) return restored.error();
+  std::deque<SearchDriver> drivers;
+  CampaignRunner::Parts parts{{}, backend, store, clock};
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    drivers.emplace_back(SearchDriver::Parts{.experiment = plans[i].experiment,
+                                             .search_id = static_cast<SearchId>(i + 1),
+                                             .search = *searches[i],
+                                             .backend = backend,
+                                             .store = store});
+    parts.searches.push_back(&drivers.back());
+  }
+  CampaignRunner runner(parts);
+  if (Status restored = runner.Restore(FinishedOf(*known)); !restored) return restored.error();
   store.AddEvent({UnixMilliseconds(), campaign.epoch == 1 ? "start" : "resume",
-                  fmt::format("master {} with {} workers", campaign.epoch, options.workers)});
+                  fmt::format("master {} with {}", campaign.epoch, DescribePool(options))});
 
   MasterView view;
   view.campaign_id = store.meta().campaign_id;
-  view.experiment = experiment.name;
+  view.experiment = plans.front().experiment.name;
   view.host = IdentifyThisProcess().host;
   view.pid = getpid();
   view.epoch = campaign.epoch;
   view.started_unix_ms = UnixMilliseconds();
   view.endpoints = serving->access.endpoints;
   view.encrypted = serving->access.curve.has_value();
+  view.batch_job = options.batch_job;
   options.on_serving({view.endpoints, view.encrypted});
 
   TimePoint last_status = clock.Now() - kStatusEvery;
   const std::uint64_t runs_before = runner.runs_done();
+  bool outdated = false;  // a newer master has begun
   const auto stop = [&] {
-    if (options.stop_requested()) return StopWish::kNow;
+    if (outdated || options.stop_requested()) return StopWish::kNow;
     return view.stopping ? StopWish::kAfterRuns : StopWish::kNone;
   };
   Result<CampaignEnd> end = runner.Run(stop, [&](const CampaignProgress& progress) {
@@ -208,6 +230,8 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& exper
         view.stopping = true;
         spdlog::info("asked to stop");
       }
+      const Status newest = campaign.directory.CheckEpoch(campaign.epoch);
+      outdated = !newest && newest.error().kind == ErrorKind::kInUse;
       view.now_unix_ms = UnixMilliseconds();
       const Status written = ReplaceFile(campaign.directory.status_path(),
                                          StatusJson(view, progress, backend.Describe()), kReadableByAll);
@@ -216,9 +240,12 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& exper
     }
     options.on_progress(progress);
   });
+  if (outdated && end) end = campaign.directory.CheckEpoch(campaign.epoch).error();
+  outdated = outdated || (!end && end.error().kind == ErrorKind::kInUse);
   // Workers from elsewhere outlive this master unless there is nothing left to do, or no more is wanted.
-  const bool workers_stay = pool == nullptr && !view.stopping && (!end || *end == CampaignEnd::kStopped);
-  if (workers_stay) {
+  const bool unfinished = !view.stopping && (!end || *end == CampaignEnd::kStopped);
+  const bool to_successor = outdated || (unfinished && !options.batch_job.empty());
+  if (pool == nullptr ? unfinished : to_successor && pool->Release()) {
     backend.StopLeasing();
     (void)backend.Poll(std::chrono::milliseconds(0));  // sends the last acknowledgements
   } else {
@@ -237,9 +264,7 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& exper
   report.runs_this_session = runner.runs_done() - runs_before;
   report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   report.master_cpu_seconds = CpuSeconds() - cpu_before;
-  Result<std::unique_ptr<SearchAlgorithm>> fresh = MakeStoredSearch(experiment, store);
-  if (!fresh) return fresh.error();
-  Result<CampaignSummary> summary = Summarise(experiment, kOnlySearch, **fresh, store);
+  Result<CampaignSummary> summary = SummariseAll(plans, store);
   if (!summary) return summary.error();
   report.summary = std::move(*summary);
   return report;
@@ -247,66 +272,86 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const Experiment& exper
 
 }  // namespace
 
-Result<SessionReport> StartCampaign(const std::string& dir, const Experiment& experiment,
-                                    const std::vector<sim::TestCase>& cases, const SessionOptions& options) {
+namespace {
+
+struct NewCampaign {
+  CampaignOwnership ownership;
+  std::uint64_t golden_hash = 0;
+};
+
+Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
+                           const std::vector<sim::TestCase>& cases, const std::string& slurm) {
   Result<std::uint64_t> golden_hash = GoldenHashOfThisMachine();
   if (!golden_hash) return golden_hash.error();
   CampaignMeta meta;
   meta.software_version = kSoftwareVersion;
   meta.golden_hash = HashText(*golden_hash);
-  const std::string text = WriteExperiment(
-      experiment, {fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {}.",
-                               kSoftwareVersion, meta.golden_hash)});
-  Result<CampaignOwnership> campaign = CreateCampaign(dir, text, meta);
+  const Experiment& experiment = plans.front().experiment;
+  std::vector<std::string> header = {
+      fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {}.",
+                  kSoftwareVersion, meta.golden_hash)};
+  if (plans.size() > 1) header.emplace_back("It is the first of several: searches.json has all.");
+  const CampaignTexts texts{WriteExperiment(experiment, header),
+                            plans.size() > 1 ? WriteSearchPlans(plans) : "", slurm};
+  Result<CampaignOwnership> campaign = CreateCampaign(dir, texts, meta);
   if (!campaign) return campaign.error();
   SqliteStore& store = *campaign->store;
-  store.AddSearch(
-      {kOnlySearch, experiment.name, std::string(NameOf(experiment.search.kind)), experiment.seed, false});
+  if (const auto added = AddSearches(plans, store); !added) return added.error();
   if (experiment.search.kind == SearchKind::kCases) {
     store.AddIndividuals(kOnlySearch, CaseListSearch(cases, experiment.search.replicates).Population());
   }
   if (Status flushed = store.Flush(); !flushed) return flushed.error();
-  return Serve(*campaign, experiment, *golden_hash, options);
+  return NewCampaign{*std::move(campaign), *golden_hash};
+}
+
+}  // namespace
+
+Result<SessionReport> StartCampaign(const std::string& dir, const Experiment& experiment,
+                                    const std::vector<sim::TestCase>& cases, const SessionOptions& options) {
+  const std::vector<SearchPlan> plans = {{"", experiment}};
+  Result<NewCampaign> created = Create(dir, plans, cases, "");
+  if (!created) return created.error();
+  return Serve(created->ownership, plans, created->golden_hash, options);
+}
+
+Status PrepareCampaign(const std::string& dir, const std::vector<SearchPlan>& searches,
+                       const std::string& slurm) {
+  const Result<NewCampaign> created = Create(dir, searches, {}, slurm);
+  if (!created) return created.error();
+  return Ok{};
 }
 
 Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOptions& options) {
-  Result<CampaignOwnership> campaign = TakeCampaign(dir);
+  Result<CampaignOwnership> campaign =
+      TakeCampaign(dir, options.batch_job.empty() ? LivingMaster::kRespect : LivingMaster::kFence);
   if (!campaign) return campaign.error();
-  Result<Experiment> experiment = ReadExperiment(campaign->directory);
-  if (!experiment) return experiment.error();
+  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
+  if (!plans) return plans.error();
   Result<std::uint64_t> golden_hash = GoldenHashOfThisMachine();
   if (!golden_hash) return golden_hash.error();
   if (Status comparable = CheckGoldenHash(campaign->store->meta(), *golden_hash); !comparable)
     return comparable.error();
 
-  if (Status whole = CheckStored(*experiment, kOnlySearch, *campaign->store); !whole) return whole.error();
-
-  Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
+  if (Status whole = CheckAllStored(*plans, *campaign->store); !whole) return whole.error();
+  const Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
   if (!searches) return searches.error();
-  if (searches->empty()) {  // the master died between creating the campaign and storing its search
-    campaign->store->AddSearch({kOnlySearch, experiment->name, std::string(NameOf(experiment->search.kind)),
-                                experiment->seed, false});
-  } else if (searches->front().finished) {
-    Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(*experiment, *campaign->store);
-    if (!search) return search.error();
-    Result<CampaignSummary> summary = Summarise(*experiment, kOnlySearch, **search, *campaign->store);
+  if (FinishedOf(*searches).size() == plans->size()) {
+    Result<CampaignSummary> summary = SummariseAll(*plans, *campaign->store);
     if (!summary) return summary.error();
     SessionReport report;
     report.summary = std::move(*summary);
     return report;
   }
-  return Serve(*campaign, *experiment, *golden_hash, options);
+  return Serve(*campaign, *plans, *golden_hash, options);
 }
 
 Result<CampaignSummary> ReadCampaign(const std::string& dir) {
   Result<CampaignView> campaign = ViewCampaign(dir);
   if (!campaign) return campaign.error();
-  Result<Experiment> experiment = ReadExperiment(campaign->directory);
-  if (!experiment) return experiment.error();
-  Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(*experiment, *campaign->store);
-  if (!search) return search.error();
-  if (Status whole = CheckStored(*experiment, kOnlySearch, *campaign->store); !whole) return whole.error();
-  return Summarise(*experiment, kOnlySearch, **search, *campaign->store);
+  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
+  if (!plans) return plans.error();
+  if (Status whole = CheckAllStored(*plans, *campaign->store); !whole) return whole.error();
+  return SummariseAll(*plans, *campaign->store);
 }
 
 Status ForEachStoredRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) {
@@ -318,14 +363,19 @@ Status ForEachStoredRun(const std::string& dir, const std::function<void(const S
 Result<CampaignReplay> ReplayCampaignRun(const std::string& dir, RunId run) {
   Result<CampaignView> campaign = ViewCampaign(dir);
   if (!campaign) return campaign.error();
-  Result<Experiment> experiment = ReadExperiment(campaign->directory);
-  if (!experiment) return experiment.error();
+  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
+  if (!plans) return plans.error();
   Result<ReplayReport> report = ReplayRun(*campaign->store, run);
   if (!report) return report.error();
+  const std::size_t search = SearchOf(run) - 1;
+  if (search >= plans->size())
+    return Error{ErrorKind::kCorrupt,
+                 fmt::format("run {} is of a search that the campaign does not have", run)};
+  const Experiment& experiment = (*plans)[search].experiment;
   if (report->damage.empty()) {
-    if (Status belongs = CheckSeed(*experiment, report->stored); !belongs) return belongs.error();
+    if (Status belongs = CheckSeed(experiment, report->stored); !belongs) return belongs.error();
   }
-  return CampaignReplay{std::move(*experiment), std::move(*report)};
+  return CampaignReplay{experiment, std::move(*report)};
 }
 
 }  // namespace gauntlet::master

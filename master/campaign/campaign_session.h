@@ -3,12 +3,15 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "master/campaign/campaign_runner.h"
+#include "master/campaign/campaign_searches.h"
 #include "master/campaign/campaign_summary.h"
 #include "master/campaign/replay.h"
+#include "master/dispatch/worker_pool.h"
 #include "master/experiment/experiment.h"
 #include "sim/arena/test_case.h"
 
@@ -20,8 +23,19 @@ struct ServingNotice {
   bool encrypted = false;
 };
 
+// Where the workers of a pool find what they need; absolute paths.
+struct PoolSite {
+  std::string access_file;
+  std::string log_directory;
+};
+
 struct SessionOptions {
   int workers = 1;  // processes of the local pool; 0: workers come from elsewhere
+  // Makes another pool than the local one.
+  std::function<Result<std::unique_ptr<WorkerPool>>(const PoolSite&)> make_pool;
+  // For a master that is a batch job: a living master is a twin that a lost node has left behind, and is made
+  // to stop; and when a signal ends this one, its pool is left to the next.
+  std::string batch_job;  // its id; "" = no such master
   // Where workers connect. Reachable from other machines: encrypted, for known keys only, unless `insecure`.
   std::string bind = "tcp://127.0.0.1:*";
   bool insecure = false;
@@ -45,6 +59,11 @@ struct SessionReport {
 // when the campaign stopped and can be resumed.
 Result<SessionReport> StartCampaign(const std::string& dir, const Experiment& experiment,
                                     const std::vector<sim::TestCase>& cases, const SessionOptions& options);
+
+// Creates the campaign without running it: ResumeCampaign does. `searches`: one, or those of a sweep;
+// `slurm`: the text of its slurm.toml.
+Status PrepareCampaign(const std::string& dir, const std::vector<SearchPlan>& searches,
+                       const std::string& slurm);
 
 // Goes on where the campaign in `dir` was; a finished one is only summarised.
 Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOptions& options);

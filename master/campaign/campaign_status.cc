@@ -31,12 +31,15 @@ ordered_json Json(const WorkerView& worker) {
   for (const WorkerView::Lease& lease : worker.leases) {
     runs.push_back({{"run", lease.run}, {"lease", lease.lease}, {"seconds", lease.seconds}});
   }
-  return {{"worker", worker.label},
-          {"pid", worker.pid},
-          {"slots", worker.slots},
-          {"state", StateOf(worker)},
-          {"silent_seconds", worker.silent_seconds},
+  return {{"worker", worker.label},   {"pid", worker.pid},
+          {"slots", worker.slots},    {"allocation", worker.allocation},
+          {"state", StateOf(worker)}, {"silent_seconds", worker.silent_seconds},
           {"runs", std::move(runs)}};
+}
+
+ordered_json Json(const AllocationView& allocation) {
+  return {{"job", allocation.job},     {"state", allocation.state},     {"reason", allocation.reason},
+          {"nodes", allocation.nodes}, {"workers", allocation.workers}, {"cancelled", allocation.cancelled}};
 }
 
 }  // namespace
@@ -65,6 +68,11 @@ std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& pro
   }
   if (connected == 0) {
     const std::string gone = lost > 0 ? fmt::format(" ({} were, and are silent now)", lost) : "";
+    if (!backend.pool_trouble.empty())
+      return fmt::format("no worker is connected{}: {}", gone, backend.pool_trouble);
+    if (!backend.allocations.empty())
+      return fmt::format("no worker is connected{}: {} allocations are starting or ending", gone,
+                         backend.allocations.size());
     return fmt::format("no worker is connected{}: start some with `gauntlet-worker --dir DIR`", gone);
   }
   if (leaving == connected) return fmt::format("all {} connected workers are leaving", connected);
@@ -78,6 +86,8 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
                        const BackendView& backend) {
   ordered_json workers = ordered_json::array();
   for (const WorkerView& worker : backend.workers) workers.push_back(Json(worker));
+  ordered_json allocations = ordered_json::array();
+  for (const AllocationView& allocation : backend.allocations) allocations.push_back(Json(allocation));
   const std::string why = WhyNothingRuns(master, progress, backend);
   ordered_json json = {
       {"state", master.stopping ? "stopping" : "running"},
@@ -89,10 +99,13 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
         {"epoch", master.epoch},
         {"started_unix_ms", master.started_unix_ms},
         {"endpoints", master.endpoints},
-        {"encrypted", master.encrypted}}},
+        {"encrypted", master.encrypted},
+        {"batch_job", master.batch_job}}},
       {"unix_ms", master.now_unix_ms},
       {"generation", progress.search.generation},
       {"generations", progress.search.generations},
+      {"searches", progress.searches},
+      {"searches_finished", progress.searches_finished},
       {"runs_done", progress.runs_done},
       {"runs_planned", progress.runs_planned},
       {"runs_running", RunsOf(backend)},
@@ -109,6 +122,9 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
       {"nondeterministic", progress.workers.nondeterministic},
       {"rejected_messages", progress.workers.rejected_messages},
       {"why_nothing_runs", why.empty() ? ordered_json(nullptr) : ordered_json(why)},
+      {"pool_trouble",
+       backend.pool_trouble.empty() ? ordered_json(nullptr) : ordered_json(backend.pool_trouble)},
+      {"allocations", std::move(allocations)},
       {"worker_list", std::move(workers)}};
   return json.dump(2) + "\n";
 }

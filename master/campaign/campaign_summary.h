@@ -42,8 +42,9 @@ struct RunsWithoutResult {
 };
 
 struct CampaignSummary {
+  std::string settings;  // of a search in a sweep, what tells it from the others
   std::string experiment;
-  std::string search;  // "genetic", "random", "cases"
+  std::string search;  // "genetic", "random", "cases"; "sweep" of several
   std::uint64_t seed = 0;
   SearchProgress progress;
   std::uint64_t runs_done = 0;                         // stored
@@ -62,6 +63,9 @@ struct CampaignSummary {
   std::string state_hash;
   bool nondeterministic = false;  // two results of one spec differed
   bool finished = false;
+  // Of a sweep, one for each search, in the order of their numbers; the rest are then totals, and what has no
+  // meaning over several searches is empty.
+  std::vector<CampaignSummary> searches;
 };
 
 // Gathers the summary of a search from what is stored. `search` is freshly made for the experiment; it is

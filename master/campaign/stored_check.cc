@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "master/campaign/campaign_runner.h"
+#include "master/campaign/search_driver.h"
 #include "master/campaign/verdict_text.h"
 #include "master/dispatch/run_codec.h"
 #include "sim/random/random_stream.h"
@@ -70,7 +70,7 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
 }
 
 Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
-  const std::uint64_t seed = sim::DeriveSeed(experiment.seed, PurposeOf(experiment.search.kind), run.search,
+  const std::uint64_t seed = sim::DeriveSeed(experiment.seed, PurposeOf(experiment.search.kind), kOnlySearch,
                                              run.individual, run.evaluation, run.replicate);
   if (seed == run.seed) return Ok{};
   return Damaged(fmt::format(

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "master/campaign/campaign_session.h"
 #include "master/campaign/campaign_status.h"
 #include "sim/base/result.h"
+#include "slurm/slurm_client.h"
 
 namespace gauntlet::master {
 
@@ -26,6 +28,9 @@ struct CampaignService {
   std::function<Result<SessionReport>(const std::string& directory, const Experiment& experiment,
                                       const std::vector<sim::TestCase>& cases, const SessionOptions& options)>
       start = StartCampaign;
+  std::function<Status(const std::string& directory, const std::vector<SearchPlan>& searches,
+                       const std::string& slurm)>
+      prepare = PrepareCampaign;
   std::function<Result<SessionReport>(const std::string& directory, const SessionOptions& options)> resume =
       ResumeCampaign;
   std::function<Result<CampaignSummary>(const std::string& directory)> read = ReadCampaign;
@@ -44,6 +49,9 @@ struct CommandContext {
   bool out_is_terminal = false;
   std::string program = "gauntlet";  // how hints begin
   CampaignService service;
+  std::function<std::unique_ptr<slurm::SlurmClient>()> slurm = [] {
+    return std::make_unique<slurm::CommandLineSlurm>();
+  };
 };
 
 using CommandAction = std::function<ExitCode(CommandContext&)>;

@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "master/cli/commands.h"
+#include "master/slurm/slurm_settings.h"
 #include "sim/base/nearest_name.h"
 
 namespace gauntlet::master {
@@ -131,11 +132,15 @@ void AddCampaignCommands(CLI::App& app, CommandAction& chosen) {
   resume->add_option("DIR", resume_options->directory, "directory of the campaign")->required();
   AddRunningOptions(*resume, *resume_options);
   AddBindOptions(*resume, *resume_options);
+  resume->add_flag(
+      "--as-job", resume_options->as_job,
+      "for the master's job of a submitted campaign: replaces a twin, leaves workers to its successor");
   resume->footer(
       R"(Goes on where the campaign was, whatever ended it; no finished run is simulated again, and the result
 is that of an undisturbed campaign. A finished campaign is only summarised.
 
-With --bind, workers come from elsewhere, as with 'gauntlet master'.
+With --bind, workers come from elsewhere, as with 'gauntlet master'. A campaign that was submitted to Slurm
+goes on there, unless --workers or --bind is given; jobs of it that are left are used.
 
 Examples:
   gauntlet resume campaigns/flocking-20260131T120000Z --workers 4
@@ -170,6 +175,54 @@ Example:
   gauntlet replay campaigns/flocking-20260131T120000Z 812 --svg run-812.svg --csv run-812.csv)");
 }
 
+void AddSubmitCommand(CLI::App& app, CommandAction& chosen) {
+  const auto [submit, options] =
+      AddCommand(app, chosen, "submit", "a search as jobs of a Slurm cluster", RunSubmit);
+  AddExperimentOptions(*submit, options->common);
+  AddMessageOptions(*submit, options->common);
+  submit
+      ->add_option("--master", options->master,
+                   "job (default): the master is a job too; here: it runs in this process")
+      ->type_name("job|here")
+      ->check(CLI::IsMember({"job", "here"}));
+  submit
+      ->add_option("--slurm", options->slurm,
+                   "one setting of the jobs or the pool, e.g. --slurm partition=short; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  submit
+      ->add_option(
+          "--sweep", options->sweeps,
+          "one search for each value, e.g. --sweep search.population=10,20,40; repeatable: all combinations")
+      ->type_name("KEY=A,B,...")
+      ->allow_extra_args(false);
+  submit->add_option("--seeds", options->seeds, "one search for each seed (and each combination of --sweep)")
+      ->type_name("1..20|1,5,9");
+  submit->add_flag("--dry-run", options->dry_run,
+                   "submit nothing: print the scripts and what sbatch --test-only says of them");
+  std::string settings;
+  for (const SlurmKeyInfo& key : SlurmKeys()) {
+    settings += fmt::format("  {:24}{}{}\n", key.name, key.description,
+                            key.default_value.empty() ? "" : fmt::format(" (default {})", key.default_value));
+  }
+  submit->footer(
+      R"(Submits the master as a job and returns; the master submits workers as there is work for them, replaces those
+that are lost, and cancels them when the search has ended. The campaign's directory must be on a file system
+that the compute nodes share. Same experiment and seed: same result as with 'evolve'.
+
+With --sweep and --seeds the campaign holds many searches, which share one pool; each ends like 'evolve' with its
+--set and --seed. 'show' tells them apart.
+
+Settings for --slurm, also in the experiment's [slurm] table and in ~/.config/gauntlet/slurm.toml:
+)" + settings +
+      R"(
+Examples:
+  gauntlet submit flocking --dir $WORK/flocking-1 --slurm partition=short --slurm max_allocations=20
+  gauntlet submit flocking --dry-run
+  gauntlet submit flocking --sweep search.mutation_probability=0.02,0.05,0.1 --seeds 1..20
+  gauntlet submit flocking --master here --generations 100)");
+}
+
 void AddServiceCommands(CLI::App& app, CommandAction& chosen) {
   const auto [master, master_options] =
       AddCommand(app, chosen, "master", "a search whose workers come from elsewhere", RunMaster);
@@ -200,7 +253,9 @@ Examples:
     command->add_option("DIR", options->directory, "directory of the campaign")->required();
   }
   status->add_flag("--json", status_options->json, "everything as one JSON document");
-  status->footer(R"(Read from what the living master writes every second; without one, from what is stored.
+  status->footer(
+      R"(Read from what the living master writes every second; without one, from what is stored. Of a submitted campaign
+it lists the jobs with Slurm's state and reason.
 
 Examples:
   gauntlet status DIR
@@ -208,7 +263,8 @@ Examples:
   watch->footer("Example:\n  gauntlet watch DIR");
   stop->footer(
       R"(No more runs are given away; those that have begun end and are stored, workers leave, the master ends
-(exit 3). Returns when it is gone. Works from any machine that sees the directory.
+(exit 3). Returns when it is gone. Works from any machine that sees the directory. Of a submitted campaign
+all jobs are cancelled, and no others.
 
 Example:
   gauntlet stop DIR)");
@@ -234,6 +290,7 @@ void Configure(CLI::App& app, CommandAction& chosen) {
   app.get_formatter()->column_width(34);
   AddSearchCommands(app, chosen);
   AddCampaignCommands(app, chosen);
+  AddSubmitCommand(app, chosen);
   AddServiceCommands(app, chosen);
   AddListCommand(app, chosen);
   const CLI::Validator given(

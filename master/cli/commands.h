@@ -27,8 +27,8 @@ struct EvaluateOptions {
 // Simulates given test cases. kExitUsage when none of them gave a fitness.
 ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options);
 
-// Of `options`, resume reads directory, workers, bind, insecure, json, quiet and no_progress; show reads
-// directory and json.
+// Of `options`, resume reads directory, workers, bind, insecure, as_job, json, quiet and no_progress; show
+// reads directory and json.
 ExitCode RunResume(CommandContext& context, const CommonOptions& options);
 ExitCode RunShow(CommandContext& context, const CommonOptions& options);
 
@@ -38,6 +38,17 @@ struct MasterOptions {
 };
 // A master whose workers come from elsewhere.
 ExitCode RunMaster(CommandContext& context, const MasterOptions& options);
+
+struct SubmitOptions {
+  CommonOptions common;
+  std::string master;               // "job" or "here"; "" = as the settings say
+  std::vector<std::string> slurm;   // "key=value"
+  std::vector<std::string> sweeps;  // "key=a,b,c"
+  std::string seeds;                // "1..20" or "1,5,9"
+  bool dry_run = false;
+};
+// A search whose master and workers are jobs of a Slurm cluster.
+ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options);
 
 struct StatusOptions {
   std::string directory;

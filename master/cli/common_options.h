@@ -23,6 +23,7 @@ struct CommonOptions {
   std::string population;
   std::string bind;  // where workers connect; only master and resume
   bool insecure = false;
+  bool as_job = false;  // only resume: the master's job of a submitted campaign
   bool json = false;
   bool quiet = false;
   bool no_progress = false;

@@ -44,6 +44,8 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
   SessionOptions session;
   session.workers = campaign.workers;
   session.insecure = campaign.insecure;
+  session.batch_job = campaign.batch_job;
+  session.make_pool = campaign.make_pool;
   if (!campaign.bind.empty()) session.bind = campaign.bind;
   session.on_serving = [&](const ServingNotice& notice) {
     if (campaign.bind.empty()) return;
@@ -57,6 +59,11 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
                                red, notice.endpoints.front(), plain));
     }
     if (options.quiet) return;
+    if (campaign.make_pool) {
+      PrintMessage(context, fmt::format("workers connect to {}{}", notice.endpoints.front(),
+                                        notice.encrypted ? ", encrypted" : ""));
+      return;
+    }
     PrintMessage(context, fmt::format("workers connect to {}{}; start them with: gauntlet-worker --dir {}",
                                       notice.endpoints.front(), notice.encrypted ? ", encrypted" : "",
                                       ShellQuoted(campaign.directory)));

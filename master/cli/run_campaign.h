@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "master/cli/command_context.h"
@@ -15,6 +16,8 @@ struct CampaignRun {
   int workers = 1;
   std::string bind;  // "": this machine only
   bool insecure = false;
+  std::string batch_job;                                                          // SessionOptions::batch_job
+  std::function<Result<std::unique_ptr<WorkerPool>>(const PoolSite&)> make_pool;  // nothing: the local pool
   std::function<Result<SessionReport>(const SessionOptions&)> run;
   // Prints the result to context.out.
   std::function<Status(const SessionReport&)> report;

@@ -11,12 +11,14 @@
 #include "master/cli/common_options.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/stop_signal.h"
+#include "master/cli/submitted_campaign.h"
 #include "master/cli/table.h"
 
 namespace gauntlet::master {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::json;
+using nlohmann::ordered_json;
 
 constexpr int kWatchMilliseconds = 1000;
 constexpr int kStopPollMilliseconds = 100;
@@ -32,9 +34,9 @@ std::string Seconds(double seconds) {
   return fmt::format("{:.1f} s", seconds);
 }
 
-std::string RunsOf(const Json& worker) {
+std::string RunsOf(const json& worker) {
   std::string text;
-  for (const Json& run : worker["runs"]) {
+  for (const json& run : worker["runs"]) {
     text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", run["run"].get<std::uint64_t>(),
                         Seconds(run["seconds"]),
                         run["lease"] > 1 ? fmt::format(", lease {}", run["lease"].get<int>()) : "");
@@ -42,9 +44,28 @@ std::string RunsOf(const Json& worker) {
   return text.empty() ? "-" : text;
 }
 
-std::string StatusText(const Json& status, const std::string& directory) {
+// The jobs of a submitted campaign.
+std::string JobsText(const json& status) {
+  const json allocations = status.value("allocations", json::array());
+  if (allocations.empty()) return "";
+  Table table({{"job", Align::kLeft},
+               {"state", Align::kLeft},
+               {"reason", Align::kLeft},
+               {"node", Align::kLeft},
+               {"workers", Align::kRight}});
+  for (const json& allocation : allocations) {
+    const std::string state = allocation["state"];
+    const std::string name = allocation.value("role", "");
+    table.AddRow({allocation["job"].get<std::string>() + (name.empty() ? "" : " " + name),
+                  state + (allocation["cancelled"] == true ? ", cancelled" : ""), allocation["reason"],
+                  allocation["nodes"], fmt::format("{}", allocation["workers"].get<int>())});
+  }
+  return "\n" + table.ToText();
+}
+
+std::string StatusText(const json& status, const std::string& directory) {
   std::string text = fmt::format("{}: {}", directory, status.value("state", "unknown"));
-  if (const Json& master = status.value("master", Json()); master.is_object()) {
+  if (const json& master = status.value("master", json()); master.is_object()) {
     text += fmt::format(", master {} on {} (start number {}), {}", master["pid"].get<std::int64_t>(),
                         master["host"].get<std::string>(), master["epoch"].get<std::uint64_t>(),
                         master["encrypted"] == true ? "encrypted" : "plaintext");
@@ -61,16 +82,20 @@ std::string StatusText(const Json& status, const std::string& directory) {
     text += fmt::format("NONDETERMINISTIC: {} runs ended differently on two workers, see log/master.log\n",
                         status["nondeterministic"].get<std::uint64_t>());
   }
-  if (const Json& why = status.value("why_nothing_runs", Json()); why.is_string())
+  if (const json& why = status.value("why_nothing_runs", json()); why.is_string())
     text += "nothing runs: " + why.get<std::string>() + "\n";
+  if (const json& trouble = status.value("pool_trouble", json());
+      trouble.is_string() && !status.value("why_nothing_runs", json()).is_string())
+    text += "fewer workers than could be used: " + trouble.get<std::string>() + "\n";
   if (const double age = status.value("status_age_seconds", 0.0); age > 5.0)
     text += fmt::format("the master has said nothing for {:.0f} s: frozen, or its disk is slow\n", age);
-  const Json& workers = status["worker_list"];
+  text += JobsText(status);
+  const json& workers = status["worker_list"];
   if (workers.empty()) return text;
   Table table(
       {{"worker", Align::kLeft}, {"state", Align::kLeft}, {"heard", Align::kRight}, {"runs", Align::kLeft}});
   for (std::size_t i = 0; i < std::min(kShownWorkers, workers.size()); ++i) {
-    const Json& worker = workers[i];
+    const json& worker = workers[i];
     table.AddRow({worker["worker"].get<std::string>(), worker["state"].get<std::string>(),
                   Seconds(worker["silent_seconds"]), RunsOf(worker)});
   }
@@ -80,12 +105,61 @@ std::string StatusText(const Json& status, const std::string& directory) {
   return text;
 }
 
+// What Slurm has of a campaign that no master serves.
+std::string WithJobs(CommandContext& context, const SlurmCampaign& campaign, ordered_json status) {
+  const Result<std::vector<slurm::JobStatus>> jobs = LivingJobs(*context.slurm(), campaign);
+  if (!jobs) {
+    status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message);
+    return status.dump(2) + "\n";
+  }
+  status["allocations"] = ordered_json::array();
+  for (const slurm::JobStatus& job : *jobs) {
+    const bool master = job.name == campaign.master_job_name();
+    status["allocations"].push_back({{"job", job.id},
+                                     {"role", master ? "master" : "workers"},
+                                     {"state", job.state},
+                                     {"reason", job.reason},
+                                     {"nodes", job.nodes},
+                                     {"workers", 0},
+                                     {"cancelled", false}});
+    if (!master || status.value("state", "") == "finished") continue;
+    status["why_nothing_runs"] = fmt::format("job {}, which is to be the master, is {}{}", job.id, job.state,
+                                             job.reason.empty() ? "" : " (" + job.reason + ")");
+  }
+  return status.dump(2) + "\n";
+}
+
 Result<std::string> Read(CommandContext& context, const StatusOptions& options) {
   Result<std::string> text = context.service.status(options.directory);
-  if (!text || options.json) return text;
-  const Json status = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  if (!text) return text;
+  ordered_json status = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (!status.is_object()) return Error{ErrorKind::kCorrupt, "the status does not parse"};
-  return StatusText(status, options.directory);
+  const std::string state = status.value("state", "");
+  if (state == "stopped" || state == "finished") {
+    const Result<std::optional<SlurmCampaign>> submitted = FindSubmitted(options.directory);
+    if (!submitted) return submitted.error();
+    if (submitted->has_value()) text = WithJobs(context, **submitted, std::move(status));
+  }
+  if (options.json) return text;
+  return StatusText(json::parse(*text), options.directory);
+}
+
+// What Slurm still has of a campaign without a master. False when Slurm did not answer.
+bool CancelLeftovers(CommandContext& context, const StatusOptions& options) {
+  const Result<std::optional<SlurmCampaign>> submitted = FindSubmitted(options.directory);
+  if (submitted && !submitted->has_value()) return true;
+  const Result<std::vector<std::string>> cancelled =
+      submitted ? CancelJobs(context, **submitted) : Result<std::vector<std::string>>(submitted.error());
+  if (!cancelled) {
+    PrintMessage(context,
+                 fmt::format("{}; jobs of the campaign may be left: try again",
+                             cancelled.error().message + slurm::NextStep(cancelled.error().message)));
+    return false;
+  }
+  if (!cancelled->empty())
+    PrintMessage(context, fmt::format("cancelled job{} {}", cancelled->size() == 1 ? "" : "s",
+                                      fmt::join(*cancelled, ", ")));
+  return true;
 }
 
 }  // namespace
@@ -144,7 +218,7 @@ ExitCode RunStop(CommandContext& context, const StatusOptions& options) {
   if (!lives) return Fail(context, lives.error());
   if (!*lives) {
     PrintMessage(context, fmt::format("no master serves {}: there is nothing to stop", options.directory));
-    return kExitDone;
+    return CancelLeftovers(context, options) ? kExitDone : kExitUsage;
   }
   if (const Status asked = context.service.stop(options.directory); !asked)
     return Fail(context, asked.error());
@@ -155,8 +229,9 @@ ExitCode RunStop(CommandContext& context, const StatusOptions& options) {
     lives = context.service.lives(options.directory);
     if (!lives) return Fail(context, lives.error());
   }
+  const bool clean = CancelLeftovers(context, options);
   PrintMessage(context, "stopped");
-  return kExitDone;
+  return clean ? kExitDone : kExitUsage;
 }
 
 }  // namespace gauntlet::master

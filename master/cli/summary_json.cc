@@ -75,7 +75,9 @@ Json TextOrNull(const std::string& text) {
 
 }  // namespace
 
-std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
+namespace {
+
+Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
   Json statistics = Json::object();
   for (const auto& [name, value] : summary.statistics) statistics[name] = FitnessJson(value);
 
@@ -108,31 +110,51 @@ std::string SummaryJson(const CampaignSummary& summary, const std::string& direc
                               {"runs", group.runs}});
   }
 
-  const Json json = {{"experiment", summary.experiment},
-                     {"directory", directory},
-                     {"search", summary.search},
-                     {"seed", fmt::format("{}", summary.seed)},
-                     {"generation", summary.progress.generation},
-                     {"generations", summary.progress.generations},
-                     {"evaluations_done", summary.progress.evaluations_done},
-                     {"evaluations_planned", summary.progress.evaluations_planned},
-                     {"runs_done", summary.runs_done},
-                     {"runs_failed", summary.runs_failed},
-                     {"runs_without_result", std::move(without_result)},
-                     {"distinct_individuals", summary.distinct_individuals},
-                     {"best_fitness", FitnessJson(summary.best_fitness)},
-                     {"mean_fitness", FitnessJson(summary.mean_fitness)},
-                     {"worst_fitness", FitnessJson(summary.worst_fitness)},
-                     {"total_failures", summary.total_failures},
-                     {"failure_types", summary.failure_types},
-                     {"unclassified_failures", summary.unclassified_failures},
-                     {"statistics", std::move(statistics)},
-                     {"history", std::move(generations)},
-                     {"population", std::move(population)},
-                     {"state_hash", summary.state_hash},
-                     {"nondeterministic", summary.nondeterministic},
-                     {"finished", summary.finished}};
-  return Dump(json);
+  return {{"experiment", summary.experiment},
+          {"directory", directory},
+          {"search", summary.search},
+          {"seed", fmt::format("{}", summary.seed)},
+          {"generation", summary.progress.generation},
+          {"generations", summary.progress.generations},
+          {"evaluations_done", summary.progress.evaluations_done},
+          {"evaluations_planned", summary.progress.evaluations_planned},
+          {"runs_done", summary.runs_done},
+          {"runs_failed", summary.runs_failed},
+          {"runs_without_result", std::move(without_result)},
+          {"distinct_individuals", summary.distinct_individuals},
+          {"best_fitness", FitnessJson(summary.best_fitness)},
+          {"mean_fitness", FitnessJson(summary.mean_fitness)},
+          {"worst_fitness", FitnessJson(summary.worst_fitness)},
+          {"total_failures", summary.total_failures},
+          {"failure_types", summary.failure_types},
+          {"unclassified_failures", summary.unclassified_failures},
+          {"statistics", std::move(statistics)},
+          {"history", std::move(generations)},
+          {"population", std::move(population)},
+          {"state_hash", summary.state_hash},
+          {"nondeterministic", summary.nondeterministic},
+          {"finished", summary.finished}};
+}
+
+}  // namespace
+
+std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
+  if (summary.searches.empty()) return Dump(OneSearch(summary, directory));
+  Json searches = Json::array();
+  for (std::size_t i = 0; i < summary.searches.size(); ++i) {
+    Json search = {{"number", i + 1}, {"settings", summary.searches[i].settings}};
+    search.update(OneSearch(summary.searches[i], directory));
+    searches.push_back(std::move(search));
+  }
+  return Dump({{"experiment", summary.experiment},
+               {"directory", directory},
+               {"search", summary.search},
+               {"runs_done", summary.runs_done},
+               {"runs_failed", summary.runs_failed},
+               {"total_failures", summary.total_failures},
+               {"nondeterministic", summary.nondeterministic},
+               {"finished", summary.finished},
+               {"searches", std::move(searches)}});
 }
 
 std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const CampaignSummary* summary,

@@ -149,16 +149,54 @@ std::string Hints(const std::vector<Hint>& hints) {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* kNotReproducible =
+    "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
+    "figures.\n\n";
+
+std::string SweepText(const CampaignSummary& summary, const HintContext& context) {
+  const auto finished = std::count_if(summary.searches.begin(), summary.searches.end(),
+                                      [](const CampaignSummary& one) { return one.finished; });
+  std::string text = fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
+                                 Printable(summary.experiment), summary.searches.size(), finished,
+                                 FormatCount(summary.runs_done), FormatCount(summary.total_failures));
+  if (summary.nondeterministic) text += kNotReproducible;
+  Table table({{"search", Align::kRight},
+               {"settings", Align::kLeft},
+               {"generation", Align::kRight},
+               {"runs", Align::kRight},
+               {"best", Align::kRight},
+               {"mean", Align::kRight},
+               {"total failures", Align::kRight},
+               {"state hash", Align::kLeft}});
+  constexpr std::size_t kShownDigits = 16;
+  for (std::size_t i = 0; i < summary.searches.size(); ++i) {
+    const CampaignSummary& one = summary.searches[i];
+    table.AddRow({fmt::format("{}", i + 1), Printable(one.settings),
+                  fmt::format("{}/{}", one.progress.generation, one.progress.generations),
+                  FormatCount(one.runs_done), FormatFitness(one.best_fitness),
+                  FormatFitness(one.mean_fitness), FormatCount(one.total_failures),
+                  one.state_hash.substr(0, kShownDigits)});
+  }
+  text += table.ToText();
+  std::vector<Hint> hints;
+  const std::string directory = ShellQuoted(context.directory);
+  if (!summary.finished)
+    hints.push_back({fmt::format("{} resume {}", context.program, directory), "go on where it stopped"});
+  hints.push_back({fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"});
+  return text + Hints(hints);
+}
+
+}  // namespace
+
 std::string SummaryText(const CampaignSummary& summary, const HintContext& context) {
+  if (!summary.searches.empty()) return SweepText(summary, context);
   const std::string directory = ShellQuoted(context.directory);
   std::string text =
       fmt::format("{}: {}, seed {}, {}\n\n", Printable(summary.experiment), NameOfSearch(summary),
                   summary.seed, summary.finished ? "finished" : "not finished");
-  if (summary.nondeterministic) {
-    text +=
-        "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
-        "figures.\n\n";
-  }
+  if (summary.nondeterministic) text += kNotReproducible;
   if (summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
                         FormatCount(summary.runs_done));

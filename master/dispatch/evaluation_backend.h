@@ -46,6 +46,7 @@ struct WorkerView {
   };
   std::string label;  // instance id and host
   std::int64_t pid = 0;
+  std::string allocation;  // as the worker said it, "" for none
   std::uint32_t slots = 1;
   bool lost = false;            // silent: its runs wait for others, late results are taken
   bool leaving = false;         // finishes what it has, wants nothing new
@@ -53,10 +54,22 @@ struct WorkerView {
   std::vector<Lease> leases;    // in the order in which they were given
 };
 
+// One batch job of an elastic pool, for people; words are the batch system's.
+struct AllocationView {
+  std::string job;
+  std::string state;   // "RUNNING"
+  std::string reason;  // why it waits, "Resources"; "" for none
+  std::string nodes;   // "" while it waits
+  int workers = 0;     // connected now
+  bool cancelled = false;
+};
+
 // What a backend does right now, for people.
 struct BackendView {
   std::vector<WorkerView> workers;
   std::uint64_t queued = 0;  // runs that wait for a worker
+  std::vector<AllocationView> allocations;
+  std::string pool_trouble;  // why there are fewer workers than could be used; "" when all is well
 };
 
 // Something a person or the store's event table should know of.

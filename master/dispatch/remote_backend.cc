@@ -92,6 +92,7 @@ Status RemoteBackend::Step() {
 Status RemoteBackend::SupervisePool(TimePoint now) {
   if (pool_ == nullptr || now < next_supervision_) return Ok{};
   next_supervision_ = now + kLongestWait;
+  pool_->Observe(ViewForPool(), now);
   Result<std::vector<pid_t>> ended = pool_->Supervise(now);
   for (DispatchEvent& event : pool_->TakeEvents()) Report(std::move(event.kind), std::move(event.text));
   if (!ended) return ended.error();
@@ -102,6 +103,18 @@ Status RemoteBackend::SupervisePool(TimePoint now) {
     }
   }
   return Ok{};
+}
+
+PoolView RemoteBackend::ViewForPool() const {
+  PoolView view;
+  view.unfinished_runs = shutting_down_ ? 0 : static_cast<int>(scheduler_.unfinished());
+  for (const auto& [worker, described] : scheduler_.DescribeWorkers()) {
+    if (described.lost) continue;
+    const auto connection = connections_.find(worker);
+    if (connection == connections_.end()) continue;
+    view.workers.push_back({connection->second.allocation, !described.leases.empty()});
+  }
+  return view;
 }
 
 bool RemoteBackend::ReceiveMessages(TimePoint now) {
@@ -188,7 +201,7 @@ void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimeP
   const bool known = connections_.contains(hello.instance_id);
   Connection& connection = connections_[hello.instance_id];
   if (known && connection.peer != peer) instances_.erase(connection.peer);
-  connection = {peer, label, hello.pid, 0};
+  connection = {peer, label, hello.pid, Shorten(hello.allocation), 0};
   instances_[peer] = hello.instance_id;
   transport_.Send(peer, EncodeWelcome(options_, identity_.epoch));
   scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held, now);
@@ -392,8 +405,15 @@ BackendView RemoteBackend::Describe() const {
   for (auto& [worker, described] : scheduler_.DescribeWorkers()) {
     const auto connection = connections_.find(worker);
     described.label = LabelOf(worker);
-    if (connection != connections_.end()) described.pid = connection->second.pid;
+    if (connection != connections_.end()) {
+      described.pid = connection->second.pid;
+      described.allocation = connection->second.allocation;
+    }
     view.workers.push_back(std::move(described));
+  }
+  if (pool_ != nullptr) {
+    view.allocations = pool_->Allocations();
+    view.pool_trouble = pool_->Trouble(clock_.Now());
   }
   return view;
 }

@@ -47,11 +47,13 @@ class RemoteBackend final : public EvaluationBackend {
     PeerId peer;
     std::string label;  // instance id and host
     std::int64_t pid = 0;
+    std::string allocation;
     int unreachable = 0;  // heartbeats in a row that found no connection
   };
 
   Status Step();
   Status SupervisePool(TimePoint now);
+  PoolView ViewForPool() const;
   bool ReceiveMessages(TimePoint now);
   void Handle(const PeerMessage& message, TimePoint now);
   void OnHello(const PeerId& peer, const HelloMessage& hello, TimePoint now);

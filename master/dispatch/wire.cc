@@ -34,6 +34,7 @@ HelloMessage From(v1::Hello& hello) {
   message.host = std::move(*hello.mutable_host());
   message.pid = hello.pid();
   message.held.assign(hello.held_leases().begin(), hello.held_leases().end());
+  message.allocation = std::move(*hello.mutable_allocation());
   return message;
 }
 

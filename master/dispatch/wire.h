@@ -26,6 +26,7 @@ struct HelloMessage {
   std::string host;
   std::int64_t pid = 0;
   std::vector<Fence> held;
+  std::string allocation;  // "" for none
 };
 
 struct HeartbeatMessage {

@@ -38,6 +38,10 @@ class WorkerPool {
   virtual std::vector<DispatchEvent> TakeEvents() = 0;
   // Comes before each Supervise.
   virtual void Observe(const PoolView& /*view*/, TimePoint /*now*/) {}
+  // The batch jobs of an elastic pool.
+  virtual std::vector<AllocationView> Allocations() const { return {}; }
+  // This master leaves to a successor: what runs is left to it. False when workers end with their master.
+  virtual bool Release() { return false; }
   // Why there are fewer workers than could be used, in a sentence; "" when all is well.
   virtual std::string Trouble(TimePoint /*now*/) const { return ""; }
 };

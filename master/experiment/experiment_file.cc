@@ -175,6 +175,12 @@ class Reader {
   }
 
   Status UnknownKey(const Assignment& assignment) const {
+    if (assignment.path == "slurm" || assignment.path.starts_with("slurm.")) {
+      // How a cluster is used changes no result: `submit` reads this table.
+      if (assignment.text.empty()) return Ok{};
+      return InvalidInput(
+          fmt::format("{}: settings of Slurm are given with --slurm KEY=VALUE", assignment.where));
+    }
     const bool known_table =
         IsParameterTable(assignment.path) || std::any_of(keys_.begin(), keys_.end(), [&](const Key& key) {
           return key.path.starts_with(assignment.path + ".");

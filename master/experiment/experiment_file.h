@@ -13,10 +13,11 @@
 
 namespace gauntlet::master {
 
-// Reads an experiment. `sets` are "key=value" and win over the file, the last of one key over the earlier.
-// Whatever is not given has its default, so all parameters of scenario and controller are resolved; the name
-// defaults to the file's. Errors begin with the place, "file:line:column" or "--set key=value", and name key,
-// value and what is allowed; an unknown key comes with the nearest known one.
+// Reads an experiment; its [slurm] table is left to master/slurm/slurm_settings.h. `sets` are "key=value" and
+// win over the file, the last of one key over the earlier. Whatever is not given has its default, so all
+// parameters of scenario and controller are resolved; the name defaults to the file's. Errors begin with the
+// place, "file:line:column" or "--set key=value", and name key, value and what is allowed; an unknown key
+// comes with the nearest known one.
 Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
                                    const std::vector<std::string>& sets);
 Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
@@ -25,6 +26,13 @@ Result<Experiment> ParseExperiment(std::string_view text, const std::string& fil
 // Reads a shipped experiment by its name, or a file by its path (with a '/' or ending in ".toml"). Errors as
 // above, or kNotFound with the nearest shipped name, or kIo.
 Result<Experiment> LoadExperiment(const std::string& name_or_path, const std::vector<std::string>& sets);
+
+struct ExperimentText {
+  std::string text;
+  std::string file_name;
+};
+// The text that LoadExperiment would read.
+Result<ExperimentText> ReadExperimentText(const std::string& name_or_path);
 
 // The resolved experiment, every default written out, with what each key means. ParseExperiment gives back an
 // equal one. `header` are comment lines for the top, without '#'.

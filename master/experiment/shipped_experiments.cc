@@ -93,11 +93,21 @@ std::vector<ShippedExperiment> ListExperiments() {
 }
 
 Result<Experiment> LoadExperiment(const std::string& name_or_path, const std::vector<std::string>& sets) {
-  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml")) {
-    return LoadFile(name_or_path, sets);
-  }
+  const Result<ExperimentText> source = ReadExperimentText(name_or_path);
+  if (!source) return source.error();
+  return ParseExperiment(source->text, source->file_name, sets);
+}
+
+Result<ExperimentText> ReadExperimentText(const std::string& name_or_path) {
+  const auto read = [](const fs::path& path) -> Result<ExperimentText> {
+    Result<std::string> text = ReadFile(path);
+    if (!text) return text.error();
+    return ExperimentText{*std::move(text), path.string()};
+  };
+  if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
+    return read(name_or_path);
   const std::map<std::string, fs::path> files = ShippedFiles();
-  if (const auto found = files.find(name_or_path); found != files.end()) return LoadFile(found->second, sets);
+  if (const auto found = files.find(name_or_path); found != files.end()) return read(found->second);
   std::vector<std::string_view> names;
   for (const auto& [name, path] : files) names.push_back(name);
   const std::string nearest = NearestName(name_or_path, names);

@@ -23,7 +23,19 @@ SlurmPool::SlurmPool(SlurmPoolOptions options, std::unique_ptr<slurm::SlurmClien
 
 SlurmPool::~SlurmPool() {
   StopReplacing();
-  // By name, so that a submission whose answer was lost goes too.
+  if (!released_) PostCancelAll();
+  {
+    const std::lock_guard lock(mutex_);
+    leaving_ = true;
+    if (released_) tasks_.clear();
+  }
+  work_.notify_all();
+  thread_.join();
+  close(answer_fd_);
+}
+
+// By name, so that a submission whose answer was lost goes too.
+void SlurmPool::PostCancelAll() {
   Post([this]() -> std::function<void(TimePoint)> {
     const Result<std::vector<slurm::JobStatus>> jobs = client_->Queue(options_.job.name);
     if (!jobs) return [](TimePoint) {};
@@ -34,13 +46,6 @@ SlurmPool::~SlurmPool() {
     (void)client_->Cancel(living).ok();
     return [](TimePoint) {};
   });
-  {
-    const std::lock_guard lock(mutex_);
-    leaving_ = true;
-  }
-  work_.notify_all();
-  thread_.join();
-  close(answer_fd_);
 }
 
 void SlurmPool::Post(Task task) {
@@ -83,13 +88,20 @@ void SlurmPool::TakeAnswers(TimePoint now) {
 
 Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
   TakeAnswers(now);
+  if (released_) return std::vector<pid_t>{};
   if (!adopted_) {
-    if (!adopting_) PostQuery();
-    adopting_ = true;
+    const bool may_ask = !last_query_ || now - *last_query_ >= options_.limits.query_interval;
+    if (!adopting_ && may_ask) {
+      adopting_ = true;
+      last_query_ = now;
+      PostQuery();
+    }
   } else if (!stopped_growing_) {
-    CarryOut(policy_.Decide(demand_, now));
+    const slurm::Decisions decisions = policy_.Decide(demand_, now);
+    if (decisions.query) last_query_ = now;
+    CarryOut(decisions);
   }
-  if (std::string trouble = policy_.Trouble(now); trouble != reported_trouble_) {
+  if (std::string trouble = Trouble(now); trouble != reported_trouble_) {
     // The seconds to the next try change all the time: the words before them are the news.
     const auto words = [](const std::string& text) { return text.substr(0, text.find("; the next try")); };
     if (!trouble.empty() && words(trouble) != words(reported_trouble_)) Report("slurm", trouble);
@@ -100,25 +112,29 @@ Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
 
 void SlurmPool::CarryOut(const slurm::Decisions& decisions) {
   PostCancel(decisions.cancel);
-  for (int i = submitting_; i < decisions.submit; ++i) PostSubmit(decisions.exclude_nodes);
+  if (decisions.submit > submitting_) PostSubmit(decisions.submit - submitting_, decisions.exclude_nodes);
   if (decisions.query) PostQuery();
 }
 
-void SlurmPool::PostSubmit(const std::vector<std::string>& excluded_nodes) {
+void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excluded_nodes) {
   slurm::WorkerJob job = options_.job;
   job.name += fmt::format("{}", next_number_++);
+  job.array = allocations;
   const Result<std::string> script = slurm::WorkerScript(options_.job_template, job, options_.request);
   GAUNTLET_CHECK(script.ok(), "the worker script was checked when the campaign began");
   std::vector<std::string> arguments;
   if (!excluded_nodes.empty())
     arguments.push_back(fmt::format("--exclude={}", fmt::join(excluded_nodes, ",")));
-  ++submitting_;
-  Post([this, text = *script, arguments]() -> std::function<void(TimePoint)> {
-    return [this, id = client_->Submit(text, arguments)](TimePoint now) {
-      --submitting_;
+  submitting_ += allocations;
+  Post([this, text = *script, arguments, allocations]() -> std::function<void(TimePoint)> {
+    return [this, id = client_->Submit(text, arguments), allocations](TimePoint now) {
+      submitting_ -= allocations;
       if (id) {
-        policy_.Submitted(*id, now);
-        Report("slurm", fmt::format("job {} submitted for {} worker{}", *id, options_.job.slots,
+        if (allocations == 1) policy_.Submitted(*id, now);
+        for (int task = 1; allocations > 1 && task <= allocations; ++task)
+          policy_.Submitted(fmt::format("{}_{}", *id, task), now);
+        Report("slurm", fmt::format("job {} submitted: {} allocation{} of {} slot{}", *id, allocations,
+                                    allocations == 1 ? "" : "s", options_.job.slots,
                                     options_.job.slots == 1 ? "" : "s"));
       } else {
         policy_.SubmissionFailed(id.error().message, now);
@@ -144,7 +160,9 @@ void SlurmPool::PostQuery() {
 
 void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
   if (jobs.empty()) return;
-  cancelled_.insert(cancelled_.end(), jobs.begin(), jobs.end());
+  for (const std::string& job : jobs) {
+    if (std::find(cancelled_.begin(), cancelled_.end(), job) == cancelled_.end()) cancelled_.push_back(job);
+  }
   Report("slurm", fmt::format("cancelled job{} {}", jobs.size() == 1 ? "" : "s", fmt::join(jobs, ", ")));
   Post([this, jobs]() -> std::function<void(TimePoint)> {
     return [this, done = client_->Cancel(jobs)](TimePoint now) {
@@ -155,15 +173,20 @@ void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
 
 void SlurmPool::OnQueue(const std::vector<slurm::JobStatus>& jobs, TimePoint now) {
   adopted_ = true;
-  std::set<std::string> known(cancelled_.begin(), cancelled_.end());
+  const std::set<std::string> cancelled(cancelled_.begin(), cancelled_.end());
+  std::set<std::string> known = cancelled;
+  std::vector<std::string> undead;
   for (const slurm::Allocation& allocation : policy_.allocations()) known.insert(allocation.job);
   for (const slurm::JobStatus& job : jobs) {
     const bool lives = job.phase == slurm::JobPhase::kQueued || job.phase == slurm::JobPhase::kRunning;
+    // A cancellation that the controller never got.
+    if (lives && cancelled.contains(job.id)) undead.push_back(job.id);
     // While a submission is under way its job may be in the queue before its answer is here.
     if (!lives || submitting_ > 0 || known.contains(job.id)) continue;
     policy_.Adopt(job, now);
     Report("slurm", fmt::format("adopted job {} ({})", job.id, job.state));
   }
+  if (!undead.empty()) PostCancel(undead);
   policy_.Observed(jobs, now);
 }
 
@@ -182,6 +205,20 @@ void SlurmPool::Observe(const PoolView& view, TimePoint now) {
   }
 }
 
+std::string SlurmPool::Trouble(TimePoint now) const {
+  const std::string trouble = policy_.Trouble(now);
+  return trouble.empty() ? "" : trouble + slurm::NextStep(trouble);
+}
+
+std::vector<AllocationView> SlurmPool::Allocations() const {
+  std::vector<AllocationView> views;
+  for (const slurm::Allocation& allocation : policy_.allocations()) {
+    views.push_back({allocation.job, allocation.state, allocation.reason, allocation.nodes,
+                     allocation.workers, allocation.cancelled});
+  }
+  return views;
+}
+
 void SlurmPool::AppendWaitFds(std::vector<int>& fds) const {
   fds.push_back(answer_fd_);
 }
@@ -193,6 +230,7 @@ int SlurmPool::running() const {
 }
 
 void SlurmPool::SignalAll(int /*signal*/) {
+  if (released_) return;
   policy_.Stop();
   CarryOut(policy_.Decide({}, {}));
 }

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -32,8 +33,9 @@ struct SlurmPoolOptions {
 // submit (of an earlier master, or of a submission whose answer was lost) are adopted.
 class SlurmPool final : public WorkerPool {
  public:
+  // `job` and `job_template` have given a script once: that they do is checked when a campaign begins.
   SlurmPool(SlurmPoolOptions options, std::unique_ptr<slurm::SlurmClient> client);
-  // Cancels what is still there.
+  // Cancels what is still there, unless it was released.
   ~SlurmPool() override;
   SlurmPool(const SlurmPool&) = delete;
   SlurmPool& operator=(const SlurmPool&) = delete;
@@ -48,9 +50,10 @@ class SlurmPool final : public WorkerPool {
   void SignalAll(int signal) override;
   std::vector<DispatchEvent> TakeEvents() override;
   void Observe(const PoolView& view, TimePoint now) override;
-  std::string Trouble(TimePoint now) const override { return policy_.Trouble(now); }
-
-  std::vector<slurm::Allocation> allocations() const { return policy_.allocations(); }
+  std::string Trouble(TimePoint now) const override;
+  std::vector<AllocationView> Allocations() const override;
+  // Nothing is submitted or cancelled any more.
+  bool Release() override { return released_ = true; }
 
  private:
   using Task = std::function<std::function<void(TimePoint)>()>;  // a call; then what its answer means
@@ -59,8 +62,9 @@ class SlurmPool final : public WorkerPool {
   void CallSlurm();
   void TakeAnswers(TimePoint now);
   void CarryOut(const slurm::Decisions& decisions);
-  void PostSubmit(const std::vector<std::string>& excluded_nodes);
+  void PostSubmit(int allocations, const std::vector<std::string>& excluded_nodes);
   void PostQuery();
+  void PostCancelAll();
   void PostCancel(const std::vector<std::string>& jobs);
   void OnQueue(const std::vector<slurm::JobStatus>& jobs, TimePoint now);
   void Report(std::string kind, std::string text);
@@ -72,6 +76,8 @@ class SlurmPool final : public WorkerPool {
   bool stopped_growing_ = false;
   bool adopted_ = false;  // the queue has been looked through: until then nothing is submitted
   bool adopting_ = false;
+  bool released_ = false;
+  std::optional<TimePoint> last_query_;
   int submitting_ = 0;  // submissions under way
   std::uint64_t next_number_ = 1;
   std::vector<std::string> cancelled_;  // still shown by Slurm for a while

@@ -110,9 +110,16 @@ const std::vector<SlurmKey>& Keys() {
                 [](S& s) -> std::string& { return s.master_time_limit; }),
       Text("master_partition", "partition of the master's job; default: that of the workers",
            [](S& s) -> std::string& { return s.master_partition; }),
+      Text("bind", "where the master listens to its workers; encrypted unless only this machine reaches it",
+           [](S& s) -> std::string& { return s.bind; }),
+      Text("tag", "part of the jobs' names, drawn when the campaign is submitted",
+           [](S& s) -> std::string& { return s.tag; }),
   };
   return keys;
 }
+
+constexpr std::string_view kMaster = "master";
+constexpr std::string_view kMasterDescription = "where the master runs: \"job\" of its own, or \"here\"";
 
 constexpr std::string_view kExtra = "extra";
 constexpr std::string_view kExtraDescription = "further sbatch options, \"--exclusive --mail-type=FAIL\"";
@@ -141,7 +148,7 @@ std::string JoinOptions(const std::vector<std::string>& options) {
 }
 
 Error UnknownKey(const Assignment& assignment, std::string_view name) {
-  std::vector<std::string_view> known = {kExtra};
+  std::vector<std::string_view> known = {kExtra, kMaster};
   for (const SlurmKey& key : Keys()) known.push_back(key.name);
   const std::string nearest = NearestName(name, known);
   return InvalidInput(fmt::format("{}: unknown Slurm setting '{}'{}", assignment.where, name,
@@ -162,6 +169,13 @@ Status Assign(SlurmSettings& settings, const Assignment& assignment, std::string
     if (!text)
       return InvalidInput(fmt::format("{}: {} is text, {}", assignment.where, name, kExtraDescription));
     settings.worker_job.extra = SplitOptions(*text);
+    return Ok{};
+  }
+  if (name == kMaster) {
+    const std::optional<std::string> text = TextOf(assignment);
+    if (text != "job" && text != "here")
+      return InvalidInput(fmt::format("{}: master is \"job\" or \"here\"", assignment.where));
+    settings.master = text == "job" ? MasterPlace::kJob : MasterPlace::kHere;
     return Ok{};
   }
   const auto key =
@@ -224,6 +238,8 @@ std::string WriteSlurmSettings(const SlurmSettings& settings) {
         key.text ? QuoteToml(key.text(copy)) : fmt::format("{}", key.get_number(settings));
     text += fmt::format("{} = {}  # {}\n", key.name, value, key.description);
   }
+  text += fmt::format("{} = \"{}\"  # {}\n", kMaster, settings.master == MasterPlace::kJob ? "job" : "here",
+                      kMasterDescription);
   text += fmt::format("{} = {}  # {}\n", kExtra, QuoteToml(JoinOptions(settings.worker_job.extra)),
                       kExtraDescription);
   return text;
@@ -244,6 +260,7 @@ std::vector<SlurmKeyInfo> SlurmKeys() {
                      key.text ? key.text(defaults) : fmt::format("{}", key.get_number(defaults)),
                      std::string(key.description)});
   }
+  infos.push_back({std::string(kMaster), "job", std::string(kMasterDescription)});
   infos.push_back({std::string(kExtra), "", std::string(kExtraDescription)});
   return infos;
 }

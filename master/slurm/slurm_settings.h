@@ -11,6 +11,9 @@
 
 namespace gauntlet::master {
 
+// Where the campaign's master runs.
+enum class MasterPlace { kJob, kHere };
+
 struct SlurmSettings {
   slurm::JobRequest worker_job;
   slurm::PoolLimits pool;
@@ -19,6 +22,9 @@ struct SlurmSettings {
   std::string master_template;
   std::string master_time_limit = "7-00:00:00";
   std::string master_partition;  // "" = that of the workers
+  MasterPlace master = MasterPlace::kJob;
+  std::string bind = "tcp://0.0.0.0:*";  // where the master listens to workers
+  std::string tag;                       // part of the jobs' names, drawn when the campaign is submitted
 };
 
 // Texts to read, the later ones win: files as (content, name for messages) and "key=value" of --slurm. Of an

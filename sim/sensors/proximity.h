@@ -24,10 +24,7 @@ class ProximityRing {
 
   void See(const OrientedBox& box);
   // The other robot's body and the gripper disc at its front.
-  void See(const BodyFrame& robot) {
-    const Vec2 offset = robot.position - self_.position;
-    if (offset.squaredNorm() < kBodyReach * kBodyReach) SeeBody(robot, offset);
-  }
+  void See(const BodyFrame& robot);
 
   // Bit i: ray i hit something.
   std::uint32_t hits() const { return hits_; }
@@ -36,10 +33,7 @@ class ProximityRing {
   ProximityReadings Readings() const;
 
  private:
-  static constexpr double kBodyReach =
-      2.0 * foot_bot::kRadius + foot_bot::kProximityRange + foot_bot::kGripperRadius;  // m, centre to centre
-
-  void SeeBody(const BodyFrame& robot, const Vec2& offset);
+  template <int kWindow>
   void SeeDisc(const Vec2& center, double radius, double apart);
   void SeeNearDisc(const Vec2& center, double radius);
   void Hit(std::size_t sensor, double distance);

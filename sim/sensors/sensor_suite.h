@@ -2,7 +2,6 @@
 // nothing else is computed.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -49,7 +48,6 @@ class SensorSuite {
 
  private:
   void SenseOthers(const World& world);
-  void FindNear();
   void SenseProximity(RobotIndex robot);
   void SenseRest(const World& world, RobotIndex robot);
 
@@ -58,7 +56,6 @@ class SensorSuite {
   std::vector<BodyFrame> frames_;
   std::vector<SensorReadings> readings_;
   NearbyBoxes nearby_;
-  std::vector<std::uint64_t> near_;  // of few robots: bit j of near_[i] says that j is near i
   NeighbourGrid proximity_grid_;
   Occluders occluders_;
   RobotPairs pairs_;

@@ -35,8 +35,27 @@ TEST(WorkerScript, SaysWhatTheSiteAsksFor) {
         "#SBATCH --output=\"/work/my campaign/log/worker-%j.log\"\n",
         "--access '/work/my campaign/access.json'"})
     EXPECT_THAT(*script, HasSubstr(line));
+  EXPECT_THAT(*script, HasSubstr("#SBATCH --signal=B:TERM@120\n"));
+  EXPECT_THAT(*script, Not(HasSubstr("--array"))) << "one is no array";
   EXPECT_THAT(*script, Not(HasSubstr("--qos"))) << "not asked for";
   EXPECT_THAT(*script, Not(testing::ContainsRegex("@[A-Z]+@")));
+}
+
+TEST(WorkerScript, AsksForEqualAllocationsAsAnArray) {
+  WorkerJob job = AWorkerJob();
+  job.array = 3;
+  const Result<std::string> script = WorkerScript(kWorkerTemplate, job, {});
+  ASSERT_TRUE(script.ok()) << script.error().message;
+  EXPECT_THAT(*script, HasSubstr("#SBATCH --array=1-3\n"));
+  EXPECT_THAT(*script, HasSubstr("/log/worker-%A_%a.log\"\n"));
+}
+
+TEST(WorkerScript, TheSignalComesEarlierInShortJobsButNeverAtTheirStart) {
+  JobRequest request;
+  request.time_limit = "1";
+  const Result<std::string> script = WorkerScript(kWorkerTemplate, AWorkerJob(), request);
+  ASSERT_TRUE(script.ok()) << script.error().message;
+  EXPECT_THAT(*script, HasSubstr("#SBATCH --signal=B:TERM@15\n"));
 }
 
 TEST(MasterScript, QuotesItsCommand) {
@@ -44,7 +63,7 @@ TEST(MasterScript, QuotesItsCommand) {
       MasterScript(kMasterTemplate,
                    {.name = "m", .command = {"/opt/g", "resume", "it's here"}, .log_file = "/l/m.log"}, {});
   ASSERT_TRUE(script.ok());
-  EXPECT_THAT(*script, HasSubstr("exec /opt/g resume 'it'\\''s here'\n"));
+  EXPECT_THAT(*script, HasSubstr("\n/opt/g resume 'it'\\''s here' &\n"));
   EXPECT_THAT(*script, HasSubstr("#SBATCH --requeue --open-mode=append\n"));
 }
 

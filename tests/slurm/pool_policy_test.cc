@@ -80,7 +80,52 @@ TEST_F(PoolPolicyTest, GivesBackWhatIsIdleTooLongAndWhatStillWaitsForNothing) {
   now_ += seconds(299);
   EXPECT_THAT(policy_.Decide({.unfinished_runs = 4}, now_).cancel, IsEmpty());
   now_ += seconds(1);
-  EXPECT_THAT(policy_.Decide({.unfinished_runs = 0}, now_).cancel, ElementsAre("1", "2"));
+  EXPECT_THAT(policy_.Decide({.unfinished_runs = 0}, now_).cancel, ElementsAre("1"));
+  now_ += seconds(299);
+  EXPECT_THAT(policy_.Decide({.unfinished_runs = 0}, now_).cancel, IsEmpty());
+  now_ += seconds(1);
+  EXPECT_THAT(policy_.Decide({.unfinished_runs = 0}, now_).cancel, ElementsAre("2"));
+}
+
+TEST_F(PoolPolicyTest, TheMomentBetweenTwoGenerationsCancelsNothing) {
+  Grow(4);
+  for (int i = 0; i < 1000; ++i) {
+    now_ += seconds(1);
+    EXPECT_THAT(policy_.Decide({.unfinished_runs = i % 2}, now_).cancel, IsEmpty());
+  }
+}
+
+TEST_F(PoolPolicyTest, AJobThatFailsSoonAfterItsHelloHasFailedToStart) {
+  Grow(2);
+  Connect("1", "node2");
+  now_ += seconds(5);
+  policy_.Workers("1", 0, 0, now_);
+  EXPECT_EQ(Trouble(), "");
+  policy_.Observed({Job("1", "FAILED", "node2", "NonZeroExitCode")}, now_);
+  EXPECT_THAT(Trouble(), HasSubstr("job 1 on node2 ended (FAILED, NonZeroExitCode) soon after its start"));
+}
+
+TEST_F(PoolPolicyTest, ADrainIsNoFailureHoweverSoon) {
+  Grow(2);
+  Connect("1");
+  now_ += seconds(5);
+  policy_.Workers("1", 0, 0, now_);
+  policy_.Observed({Job("1", "COMPLETED", "node1")}, now_);
+  EXPECT_EQ(Trouble(), "");
+  EXPECT_THAT(Grow(2), ElementsAre("2"));
+}
+
+TEST_F(PoolPolicyTest, AJobThatRunsOnWithoutItsWorkerIsGivenUp) {
+  Grow(2);
+  Connect("1");
+  now_ += seconds(1000);
+  policy_.Workers("1", 0, 0, now_);
+  policy_.Observed({Job("1", "RUNNING", "node1")}, now_);
+  now_ += seconds(119);
+  EXPECT_THAT(policy_.Decide({.unfinished_runs = 2}, now_).cancel, IsEmpty());
+  policy_.Workers("1", 0, 0, now_);
+  now_ += seconds(1);
+  EXPECT_THAT(policy_.Decide({.unfinished_runs = 2}, now_).cancel, ElementsAre("1"));
 }
 
 TEST_F(PoolPolicyTest, WorkEndsTheIdleTime) {

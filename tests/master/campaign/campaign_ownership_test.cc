@@ -20,7 +20,9 @@ using testing::HasSubstr;
 
 class CampaignOwnershipTest : public testing::Test {
  protected:
-  Result<CampaignOwnership> Create() { return CreateCampaign(dir_, "seed = 1\n", {"", "0.1.0", "cafe", 0}); }
+  Result<CampaignOwnership> Create() {
+    return CreateCampaign(dir_, {"seed = 1\n"}, {"", "0.1.0", "cafe", 0});
+  }
   // A child that does `work` and is killed once it has written a byte.
   template <typename Work>
   void Kill(const Work& work) {

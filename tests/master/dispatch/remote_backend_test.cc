@@ -39,7 +39,13 @@ class FakePool final : public WorkerPool {
     if (signal == deadly_signal) processes = 0;
   }
   std::vector<DispatchEvent> TakeEvents() override { return {}; }
+  void Observe(const PoolView& now_seen, TimePoint) override { seen = now_seen; }
+  std::vector<AllocationView> Allocations() const override {
+    return {{"12", "RUNNING", "", "node1", 1, false}};
+  }
+  std::string Trouble(TimePoint) const override { return "job 13 waits in the queue"; }
 
+  PoolView seen;
   std::optional<Error> error;
   std::vector<pid_t> ended;
   int processes = 0;
@@ -489,6 +495,30 @@ TEST_F(RemoteBackendTest, ADrainingWorkerFinishesAndGoodbyeReleasesTheRest) {
   EXPECT_EQ(LeasesSentTo("b").at(0).run_id(), 2U);
   EXPECT_THAT(EventsOf("worker-left"), HasSubstr("walltime ends"));
   EXPECT_EQ(backend_->Statistics().connected, 1);
+}
+
+TEST_F(RemoteBackendTest, ThePoolSeesRunsAndWorkersByTheirAllocationAndIsShown) {
+  FakePool pool;
+  Connect(&pool);
+  backend_->Submit({{1, "spec"}});
+  v1::Hello hello = HelloOf(kAnna);
+  hello.set_allocation("12:0:node1");
+  SayHello("a", hello);
+  SayHello("b", HelloOf(kBert));
+  Poll();
+  Poll(milliseconds(150));
+  EXPECT_EQ(pool.seen.unfinished_runs, 1);
+  ASSERT_THAT(pool.seen.workers, SizeIs(2));
+  EXPECT_EQ(pool.seen.workers[0].allocation, "12:0:node1");
+  EXPECT_TRUE(pool.seen.workers[0].busy);
+  EXPECT_EQ(pool.seen.workers[1].allocation, "");
+  EXPECT_FALSE(pool.seen.workers[1].busy);
+
+  const BackendView view = backend_->Describe();
+  ASSERT_THAT(view.allocations, SizeIs(1));
+  EXPECT_EQ(view.allocations[0].job, "12");
+  EXPECT_EQ(view.pool_trouble, "job 13 waits in the queue");
+  EXPECT_EQ(view.workers.at(0).allocation, "12:0:node1");
 }
 
 TEST_F(RemoteBackendTest, ThePoolsErrorComesOutOfPoll) {

@@ -25,6 +25,8 @@ class FakeCluster {
   bool loses_answers = false;    // accepts, but the answer does not arrive
   std::string controller_error;  // of queries
   int next_id = 1;
+  int queries = 0;
+  bool deaf = false;  // cancellations do not arrive
   std::mutex mutex;
 
   void Set(const std::string& id, const std::string& state, const std::string& reason = "") {
@@ -54,12 +56,17 @@ class FakeClient final : public slurm::SlurmClient {
     const std::size_t begin = script.find(kName) + kName.size();
     const std::string id = std::to_string(cluster_.next_id++);
     cluster_.options.push_back(options);
-    cluster_.jobs.push_back({.id = id,
-                             .name = script.substr(begin, script.find('\n', begin) - begin),
-                             .state = "PENDING",
-                             .phase = slurm::JobPhase::kQueued,
-                             .reason = "",
-                             .nodes = ""});
+    constexpr std::string_view kArray = "--array=1-";
+    const std::size_t array = script.find(kArray);
+    const int tasks = array == std::string::npos ? 1 : std::stoi(script.substr(array + kArray.size()));
+    for (int task = 1; task <= tasks; ++task) {
+      cluster_.jobs.push_back({.id = tasks == 1 ? id : id + "_" + std::to_string(task),
+                               .name = script.substr(begin, script.find('\n', begin) - begin),
+                               .state = "PENDING",
+                               .phase = slurm::JobPhase::kQueued,
+                               .reason = "",
+                               .nodes = ""});
+    }
     if (cluster_.loses_answers) return Error{ErrorKind::kIo, "no answer within 15000 ms"};
     return id;
   }
@@ -68,6 +75,7 @@ class FakeClient final : public slurm::SlurmClient {
   }
   Result<std::vector<slurm::JobStatus>> Queue(const std::string& prefix) override {
     const std::lock_guard lock(cluster_.mutex);
+    ++cluster_.queries;
     if (!cluster_.controller_error.empty()) return Error{ErrorKind::kIo, cluster_.controller_error};
     std::vector<slurm::JobStatus> found;
     for (const slurm::JobStatus& job : cluster_.jobs) {
@@ -77,6 +85,7 @@ class FakeClient final : public slurm::SlurmClient {
   }
   Status Cancel(const std::vector<std::string>& jobs) override {
     const std::lock_guard lock(cluster_.mutex);
+    if (cluster_.deaf) return Error{ErrorKind::kIo, "scancel: connect failure"};
     for (const std::string& id : jobs) {
       cluster_.cancelled.push_back(id);
       std::erase_if(cluster_.jobs, [&](const slurm::JobStatus& job) { return job.id == id; });
@@ -132,10 +141,11 @@ class SlurmPoolTest : public testing::Test {
 TEST_F(SlurmPoolTest, SubmitsWhatTheRunsNeedUnderNamesOfTheCampaign) {
   view_.unfinished_runs = 2;
   Settle();
-  EXPECT_THAT(cluster_.names(), ElementsAre("gauntlet-ab12-w1", "gauntlet-ab12-w2"));
+  EXPECT_THAT(cluster_.names(), ElementsAre("gauntlet-ab12-w1", "gauntlet-ab12-w1"))
+      << "two equal ones are an array";
   view_.unfinished_runs = 100;
   Settle();
-  EXPECT_EQ(cluster_.names().size(), 3U);
+  EXPECT_THAT(cluster_.names(), ElementsAre("gauntlet-ab12-w1", "gauntlet-ab12-w1", "gauntlet-ab12-w2"));
   EXPECT_EQ(pool_->running(), 3);
 }
 
@@ -187,8 +197,8 @@ TEST_F(SlurmPoolTest, CountsWorkersByTheirAllocation) {
   Settle();
   view_.workers = {{.allocation = "1:0:node1", .busy = true}, {.allocation = "", .busy = true}};
   Settle();
-  ASSERT_EQ(pool_->allocations().size(), 1U);
-  EXPECT_EQ(pool_->allocations()[0].workers, 1);
+  ASSERT_EQ(pool_->Allocations().size(), 1U);
+  EXPECT_EQ(pool_->Allocations()[0].workers, 1);
   EXPECT_EQ(pool_->Trouble(now_), "");
 }
 
@@ -215,10 +225,65 @@ TEST_F(SlurmPoolTest, ACancelledJobThatSlurmStillShowsIsNotAdopted) {
   EXPECT_THAT(cluster_.names(), IsEmpty());
 }
 
+TEST_F(SlurmPoolTest, CancelsATaskOfAnArrayAloneAndTellsItsWorkersFromTheOthers) {
+  view_.unfinished_runs = 2;
+  Settle();
+  cluster_.Set("1_1", "RUNNING");
+  cluster_.Set("1_2", "RUNNING");
+  view_.unfinished_runs = 1;
+  for (int i = 0; i < 35; ++i) {
+    view_.workers = {{.allocation = "1_1:0:node1", .busy = true},
+                     {.allocation = "1_2:0:node1", .busy = false}};
+    Later();
+  }
+  EXPECT_THAT(cluster_.cancelled, ElementsAre("1_2"));
+  EXPECT_EQ(pool_->running(), 1);
+}
+
+TEST_F(SlurmPoolTest, CancelsAgainWhatTheControllerDidNotHear) {
+  view_.unfinished_runs = 1;
+  Settle();
+  cluster_.Set("1", "RUNNING");
+  Later();
+  cluster_.deaf = true;
+  for (int i = 0; i < 15; ++i) Later();  // no worker ever says hello
+  EXPECT_THAT(cluster_.cancelled, IsEmpty());
+  cluster_.deaf = false;
+  Later();
+  EXPECT_THAT(cluster_.cancelled, ElementsAre("1"));
+}
+
+TEST_F(SlurmPoolTest, AsksSlurmAtMostOncePerIntervalWhateverGoesWrong) {
+  view_.unfinished_runs = 50;
+  cluster_.controller_error = "Unable to contact slurm controller (connect failure)";
+  cluster_.refusal = cluster_.controller_error;
+  const TimePoint start = now_;
+  for (int i = 0; i < 30; ++i) {
+    Settle();
+    if (i == 10) cluster_.controller_error = "";
+    if (i == 20) cluster_.refusal = "";
+  }
+  const auto elapsed = std::chrono::duration_cast<seconds>(now_ - start).count();
+  EXPECT_LE(cluster_.queries, elapsed / 10 + 1);
+  EXPECT_GE(cluster_.queries, 2);
+}
+
+TEST_F(SlurmPoolTest, LeavesItsJobsToASuccessorWhenReleased) {
+  view_.unfinished_runs = 2;
+  Settle();
+  EXPECT_TRUE(pool_->Release());
+  pool_->SignalAll(15);
+  Restart();
+  EXPECT_EQ(cluster_.names().size(), 2U);
+  EXPECT_THAT(cluster_.cancelled, IsEmpty());
+  Settle();
+  EXPECT_EQ(pool_->running(), 2) << "adopted";
+}
+
 TEST_F(SlurmPoolTest, LeavesNothingBehind) {
   view_.unfinished_runs = 3;
   Settle();
-  cluster_.Set("2", "RUNNING");
+  cluster_.Set("1_2", "RUNNING");
   pool_.reset();
   EXPECT_THAT(cluster_.names(), IsEmpty());
 }

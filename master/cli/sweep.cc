@@ -1,0 +1,125 @@
+#include "master/cli/sweep.h"
+
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace gauntlet::master {
+namespace {
+
+struct Sweep {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+// "a,b,c"; none of them may be empty.
+std::optional<std::vector<std::string>> SplitList(std::string_view text) {
+  std::vector<std::string> items;
+  while (true) {
+    const std::size_t comma = text.find(',');
+    const std::string_view item = text.substr(0, comma);
+    if (item.empty()) return std::nullopt;
+    items.emplace_back(item);
+    if (comma == std::string_view::npos) return items;
+    text.remove_prefix(comma + 1);
+  }
+}
+
+Result<Sweep> ParseSweep(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string_view view = text;
+  const auto values = equals == std::string::npos ? std::nullopt : SplitList(view.substr(equals + 1));
+  if (!values || equals == 0)
+    return InvalidInput(fmt::format("--sweep {}: give a key and its values, key=a,b,c", text));
+  const std::string key = text.substr(0, equals);
+  if (key == "seed") return InvalidInput(fmt::format("--sweep {}: seeds are given with --seeds", text));
+  return Sweep{key, *values};
+}
+
+Error WrongSeeds(const std::string& text) {
+  return InvalidInput(fmt::format(
+      "--seeds {}: give a range (1..20) or a list (1,5,9) of at most {} whole numbers", text, kMostSearches));
+}
+
+Result<std::vector<std::uint64_t>> ParseSeeds(const std::string& text) {
+  std::vector<std::uint64_t> seeds;
+  if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
+    const std::string first_text = text.substr(0, dots);
+    const std::string last_text = text.substr(dots + 2);
+    if (first_text == "random" || last_text == "random") return WrongSeeds(text);
+    const Result<std::uint64_t> first = ParseSeed(first_text);
+    const Result<std::uint64_t> last = ParseSeed(last_text);
+    if (!first || !last || *first > *last || *last - *first >= kMostSearches) return WrongSeeds(text);
+    for (std::uint64_t i = 0; i <= *last - *first; ++i) seeds.push_back(*first + i);
+    return seeds;
+  }
+  const auto items = SplitList(text);
+  if (!items || items->size() > kMostSearches) return WrongSeeds(text);
+  for (const std::string& item : *items) {
+    const Result<std::uint64_t> seed = ParseSeed(item);
+    if (!seed || item == "random") return WrongSeeds(text);
+    seeds.push_back(*seed);
+  }
+  return seeds;
+}
+
+// All combinations, the last sweep varying fastest.
+std::vector<std::vector<ExtraSet>> Combinations(const std::vector<Sweep>& sweeps) {
+  std::vector<std::vector<ExtraSet>> combinations = {{}};
+  for (const Sweep& sweep : sweeps) {
+    std::vector<std::vector<ExtraSet>> longer;
+    for (const std::vector<ExtraSet>& combination : combinations) {
+      for (const std::string& value : sweep.values) {
+        longer.push_back(combination);
+        longer.back().push_back({"--sweep " + sweep.key, sweep.key + "=" + value});
+      }
+    }
+    combinations = std::move(longer);
+  }
+  return combinations;
+}
+
+}  // namespace
+
+Result<std::vector<SearchPlan>> PlanSearches(const CommonOptions& options,
+                                             const std::vector<std::string>& sweeps,
+                                             const std::string& seeds) {
+  if (!seeds.empty() && !options.seed.empty())
+    return InvalidInput(fmt::format("--seed {} and --seeds {}: give one of them", options.seed, seeds));
+  std::vector<Sweep> parsed;
+  std::size_t searches = 1;
+  for (const std::string& text : sweeps) {
+    Result<Sweep> sweep = ParseSweep(text);
+    if (!sweep) return sweep.error();
+    searches *= sweep->values.size();
+    parsed.push_back(*std::move(sweep));
+    if (searches > kMostSearches) break;
+  }
+  std::vector<std::uint64_t> numbers;
+  if (!seeds.empty()) {
+    const Result<std::vector<std::uint64_t>> list = ParseSeeds(seeds);
+    if (!list) return list.error();
+    numbers = *list;
+    searches *= numbers.size();
+  }
+  if (searches > kMostSearches)
+    return InvalidInput(fmt::format("--sweep and --seeds ask for more than {} searches", kMostSearches));
+
+  std::vector<SearchPlan> plans;
+  for (const std::vector<ExtraSet>& combination : Combinations(parsed)) {
+    const Result<Experiment> experiment = LoadExperimentWith(options, combination);
+    if (!experiment) return experiment.error();
+    std::string settings;
+    for (const ExtraSet& set : combination) settings += (settings.empty() ? "" : ", ") + set.set;
+    if (numbers.empty()) plans.push_back({settings, *experiment});
+    for (const std::uint64_t seed : numbers) {
+      SearchPlan plan{fmt::format("{}{}seed {}", settings, settings.empty() ? "" : ", ", seed), *experiment};
+      plan.experiment.seed = seed;
+      plans.push_back(std::move(plan));
+    }
+  }
+  if (plans.size() == 1) plans.front().settings.clear();
+  return plans;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,22 @@
+// The searches that --sweep and --seeds ask for.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "master/campaign/campaign_searches.h"
+#include "master/cli/common_options.h"
+#include "sim/base/result.h"
+
+namespace gauntlet::master {
+
+inline constexpr std::size_t kMostSearches = 1000;
+
+// One search for each combination of the values of `sweeps` ("key=a,b,c", the last varies fastest) and each
+// of `seeds` ("1..20" or "1,5,9"; "" = the experiment's own); all of them valid. A single one has no
+// settings. Errors name the option and what would be right.
+Result<std::vector<SearchPlan>> PlanSearches(const CommonOptions& options,
+                                             const std::vector<std::string>& sweeps,
+                                             const std::string& seeds);
+
+}  // namespace gauntlet::master

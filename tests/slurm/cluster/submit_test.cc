@@ -1,0 +1,49 @@
+// The short one of the tests on a real Slurm.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/slurm/cluster/slurm_cluster.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+TEST_F(SlurmTest, ASubmittedSearchEndsLikeALocalOneAndLeavesNothing) {
+  StartCluster({"--nodes", "2", "--cpus", "4"});
+  const SmallCampaign campaign;
+  const std::string hash = LocalHash(campaign);
+  // What an enclosing job has set must not leak into what is submitted.
+  setenv("SBATCH_PARTITION", "no-such-partition", 1);
+  setenv("SLURM_JOB_ID", "99999", 1);
+
+  const ProcessResult dry = [&] {
+    std::vector<std::string> arguments = SubmitArguments(campaign, "job", {"constraint=gpu9000"});
+    arguments.push_back("--dry-run");
+    return Gauntlet(arguments);
+  }();
+  EXPECT_EQ(dry.exit_code, 2);
+  EXPECT_THAT(dry.out, AllOf(HasSubstr("#SBATCH --constraint=gpu9000"), HasSubstr("resume " + dir())));
+  EXPECT_THAT(dry.err, AllOf(HasSubstr("a job of workers could not start"), HasSubstr("nvalid feature"),
+                             HasSubstr("sinfo -o '%N %f'")));
+  EXPECT_FALSE(std::filesystem::exists(dir()));
+
+  const ProcessResult result = Gauntlet(SubmitArguments(campaign, "here", {"max_allocations=3"}));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(StateHash(dir()), hash);
+  EXPECT_TRUE(QueueEmpties());
+  const std::vector<std::string> all = QueueLines({"--states=all"});
+  EXPECT_THAT(all, Contains(HasSubstr("gauntlet-flocking-")));
+  EXPECT_THAT(all, SizeIs(testing::Le(3U)));
+  unsetenv("SBATCH_PARTITION");
+  unsetenv("SLURM_JOB_ID");
+}
+
+}  // namespace
+}  // namespace gauntlet::testing_support
