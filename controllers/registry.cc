@@ -77,6 +77,16 @@ const ControllerInfo* FindController(std::string_view name) {
   return FindByName(Controllers(), name);
 }
 
+const MetricInfo* FindMetric(const ScenarioInfo& scenario, std::string_view name) {
+  for (const MetricInfo& metric : scenario.metrics) {
+    const bool family = metric.name.ends_with('*');
+    if (family ? name.starts_with(metric.name.substr(0, metric.name.size() - 1)) : name == metric.name) {
+      return &metric;
+    }
+  }
+  return nullptr;
+}
+
 Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos,
                                           const sim::Parameters& given) {
   sim::Parameters resolved;

@@ -25,6 +25,14 @@ struct ParameterInfo {
   std::string_view description;  // one line, with the source of the default
 };
 
+// One of the values that a scenario reports of a run.
+struct MetricInfo {
+  std::string_view name;     // "food_window_*" stands for a family, food_window_1, food_window_2...
+  std::string_view unit;     // "m", "s", "deg", "yes/no" for 0/1, "" for counts and ratios
+  bool may_be_none = false;  // -1 then says that there was nothing to measure
+  std::string_view description;
+};
+
 struct ControllerInfo {
   std::string_view name;
   std::string_view scenario;  // the scenario it is written for
@@ -37,6 +45,7 @@ struct ScenarioInfo {
   std::string_view description;
   std::string_view default_controller;
   std::span<const ParameterInfo> parameters;
+  std::span<const MetricInfo> metrics;
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   sim::ArenaRequirements (*requirements)(const sim::Parameters& parameters, const sim::TestCase& test_case);
   // Builds the scenario of a resolved, valid spec.
@@ -48,6 +57,9 @@ std::span<const ControllerInfo> Controllers();
 // nullptr when there is none of that name.
 const ScenarioInfo* FindScenario(std::string_view name);
 const ControllerInfo* FindController(std::string_view name);
+
+// The metric `name` of a scenario, or the family it belongs to; nullptr when the scenario reports none such.
+const MetricInfo* FindMetric(const ScenarioInfo& scenario, std::string_view name);
 
 // Defaults overridden by `given`. Error: unknown name (with the nearest known one), value out of range or not
 // whole.

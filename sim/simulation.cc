@@ -242,18 +242,23 @@ void Loop::Control() {
   }
 }
 
-RobotSummary Summarize(const Observer& observer, std::size_t robot, bool lost) {
-  const auto state = [&](Tick tick) -> const RobotState& { return observer.At(tick)[robot]; };
-  const Tick last = observer.last_tick();
-  RobotSummary summary;
-  summary.start = {state(0).position(), state(0).heading};
-  summary.end = {state(last).position(), state(last).heading};
-  summary.lost = lost;
-  for (Tick tick = 0; tick <= last; ++tick) {
-    summary.path_length += state(tick).speed * kTickSeconds;
-    if (tick % kSummaryTicks == 0) summary.waypoints.push_back(state(tick).position());
+std::vector<RobotSummary> Summarize(const Observer& observer, const std::vector<bool>& lost) {
+  std::vector<RobotSummary> summaries(lost.size());
+  for (Tick tick = 0; tick <= observer.last_tick(); ++tick) {
+    const std::span<const RobotState> states = observer.At(tick);
+    for (std::size_t i = 0; i < summaries.size(); ++i) {
+      summaries[i].path_length += states[i].speed * kTickSeconds;
+      if (tick % kSummaryTicks == 0) summaries[i].waypoints.push_back(states[i].position());
+    }
   }
-  return summary;
+  const std::span<const RobotState> first = observer.At(0);
+  const std::span<const RobotState> last = observer.Latest();
+  for (std::size_t i = 0; i < summaries.size(); ++i) {
+    summaries[i].start = {first[i].position(), first[i].heading};
+    summaries[i].end = {last[i].position(), last[i].heading};
+    summaries[i].lost = lost[i];
+  }
+  return summaries;
 }
 
 std::vector<std::vector<RobotState>> TrajectoryOf(const Observer& observer) {
@@ -303,7 +308,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   result.failure = std::move(outcome.failure);
   result.annotations = std::move(outcome.annotations);
   result.ticks = observer.last_tick();
-  for (std::size_t i = 0; i < robots; ++i) result.robots.push_back(Summarize(observer, i, outcome.lost[i]));
+  result.robots = Summarize(observer, outcome.lost);
   result.trajectory_hash = loop.trajectory_hash();
   result.hash = HashOf(result);
   if (record_trajectory) result.trajectory = TrajectoryOf(observer);

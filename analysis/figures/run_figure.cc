@@ -243,16 +243,19 @@ double SplitRadius(const FigureFrame& frame) {
   return std::max(14.0, 0.2 * frame.scale());
 }
 
-// The place of the last split, and where those who left were at that moment.
-void DrawSplitPlace(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,
-                    const sim::Annotation& split) {
-  canvas.Circle(frame.At(split.points.front()), SplitRadius(frame), "class=\"split\" id=\"split\"");
+// Where those who left at a split were at that moment.
+void DrawSplitRobots(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,
+                     const sim::Annotation& split) {
   for (const sim::RobotIndex robot : split.robots) {
     const auto position = PositionAt(figure, robot, split.tick);
     if (!position) continue;
     const Pixel p = frame.At(*position);
     canvas.Polygon({{p.x, p.y - 6}, {p.x + 6, p.y}, {p.x, p.y + 6}, {p.x - 6, p.y}}, "class=\"split-robot\"");
   }
+}
+
+void DrawSplitPlace(SvgCanvas& canvas, const FigureFrame& frame, const sim::Annotation& split) {
+  canvas.Circle(frame.At(split.points.front()), SplitRadius(frame), "class=\"split\" id=\"split\"");
 }
 
 struct Callout {
@@ -326,12 +329,15 @@ std::string DrawRun(const RunFigure& figure) {
   Callout callout;
   if (split != nullptr) {
     callout = SplitCallout(figure, *split, frame, arena, tracks);
-    DrawSplitPlace(canvas, figure, frame, *split);
+    DrawSplitPlace(canvas, frame, *split);
     DrawCalloutLine(canvas, frame, *split, callout);
   }
   for (const Track& track : tracks) DrawStart(canvas, frame, track);
   DrawEnds(canvas, frame, tracks);
-  if (split != nullptr) DrawCalloutBox(canvas, callout);
+  if (split != nullptr) {
+    DrawSplitRobots(canvas, figure, frame, *split);
+    DrawCalloutBox(canvas, callout);
+  }
   DrawAxes(canvas, frame, step);
   DrawTitle(canvas, figure, frame);
   DrawPanel(canvas, figure, frame, tracks);

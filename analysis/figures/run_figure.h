@@ -3,6 +3,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
@@ -10,11 +12,12 @@
 namespace gauntlet::analysis {
 
 struct RunFigure {
-  std::string experiment;        // its name
-  std::string run;               // how the run is called, e.g. "run 123"
-  sim::RunSpec spec;             // what was simulated
-  sim::RunResult result;         // with a trajectory; without one its waypoints are drawn
-  std::string member = "robot";  // what one of the swarm is called, singular
+  std::string experiment;  // its name
+  std::string run;         // how the run is called, e.g. "run 123"
+  sim::RunSpec spec;       // what was simulated
+  sim::RunResult result;   // with a trajectory; without one its waypoints are drawn
+  std::vector<std::pair<std::string, std::string>> metrics;  // of the result, as the panel shows them
+  std::string member = "robot";                              // what one of the swarm is called, singular
 };
 
 // The robot whose planned path the result shows: the one that the annotation "path" names, or else the one

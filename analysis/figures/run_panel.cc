@@ -139,15 +139,18 @@ void DrawFigures(Panel& panel, const RunFigure& figure) {
   panel.Heading("RUN");
   panel.Figure("scenario", Shortened(figure.spec.scenario, 26));
   panel.Figure("controller", Shortened(figure.spec.controller, 26));
+  if (const std::string& name = figure.spec.test_case.name; !name.empty()) {
+    panel.Figure("test case", Shortened(name, 26));
+  }
   panel.Figure("seed", fmt::format("{}", figure.spec.seed));
   if (result.verdict == sim::Verdict::kCompleted) {
     panel.Figure("simulated", fmt::format("{:.1f} s", result.ticks * sim::kTickSeconds));
     panel.Figure("fitness (lower = tougher)", fmt::format("{:.4f}", result.fitness));
   }
-  for (std::size_t i = 0; i < std::min(kMostMetrics, result.metrics.size()); ++i) {
-    std::string name = result.metrics[i].first;
+  for (std::size_t i = 0; i < std::min(kMostMetrics, figure.metrics.size()); ++i) {
+    std::string name = figure.metrics[i].first;
     std::replace(name.begin(), name.end(), '_', ' ');
-    panel.Figure(Shortened(name, 26), fmt::format("{:.5g}", result.metrics[i].second));
+    panel.Figure(Shortened(name, 26), figure.metrics[i].second);
   }
   panel.Figure("hash", fmt::format("{:016x}", result.hash));
 }

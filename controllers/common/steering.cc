@@ -26,6 +26,13 @@ DriveCommand React(double bearing, const Reactions& reactions) {
   return {forward, std::copysign(reactions.turn_rate, bearing)};
 }
 
+DriveCommand React(const sim::Vec2& direction, const sim::Vec2& straight_edge, const Reactions& reactions) {
+  const sim::Vec2 left(direction.x(), std::fabs(direction.y()));
+  if (sim::Cross(left, straight_edge) >= 0.0) return {reactions.speed, 0.0};
+  const double forward = direction.x() < 0.0 ? 0.0 : reactions.speed * reactions.turning_speed_factor;
+  return {forward, direction.y() < 0.0 ? -reactions.turn_rate : reactions.turn_rate};
+}
+
 DriveCommand TurnThenDrive(double bearing, double speed, double max_turn_rate, double drive_within) {
   const double turn = std::clamp(bearing / sim::kTickSeconds, -max_turn_rate, max_turn_rate);
   return {std::fabs(bearing) < drive_within ? speed : 0.0, turn};

@@ -1,6 +1,8 @@
 // From a desired bearing to a wheel command. Pure functions; bearings in rad from the heading, in (-pi, pi].
 #pragma once
 
+#include "sim/geometry/vec2.h"
+
 namespace gauntlet::controllers {
 
 // What Actuators::Drive takes.
@@ -32,6 +34,9 @@ struct Reactions {
 // Straight on, or a turn towards the bearing, without forward motion when the bearing lies behind
 // (beyond 90 degrees).
 DriveCommand React(double bearing, const Reactions& reactions);
+// The same towards `direction` (any length, in the robot's frame) without working out its bearing;
+// `straight_edge` = UnitVector(reactions.straight_within).
+DriveCommand React(const sim::Vec2& direction, const sim::Vec2& straight_edge, const Reactions& reactions);
 
 // Follows a waypoint: turns at up to `max_turn_rate` towards the bearing and drives once the bearing is
 // within `drive_within`.

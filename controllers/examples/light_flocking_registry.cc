@@ -26,6 +26,12 @@ constexpr std::array kScenarioParameters = std::to_array<ParameterInfo>({
      "ARGoS' intensity: seen up to 2.5 times as many metres away (released test cases)"},
 });
 
+constexpr std::array kMetrics = std::to_array<MetricInfo>({
+    {"light_distance", "m", false, "mean distance of the robots to the light at the end"},
+    {"stopped", "", false, "share of the robots that moved less than 2 cm in the last 30 s"},
+    {"clusters", "", false, "groups of robots that are linked by line of sight at the end"},
+});
+
 constexpr std::array kControllerParameters = std::to_array<ParameterInfo>({
     {"target_distance", "m", 0.75, 0.2, 3.0, false, "distance that flockmates keep (ARGoS sample: 75 cm)"},
     {"gain", "m^2/s", 0.1, 0.0, 10.0, false, "strength of the force (ARGoS sample: 1000 cm^2/s)"},
@@ -87,7 +93,8 @@ const ScenarioInfo& LightFlockingScenarioInfo() {
   static const ScenarioInfo info = {
       "light-flocking", "example: robots flock from corner to corner, to a light (ARGoS' sample behaviour)",
       "light-flocking", kScenarioParameters,
-      Requirements,     Create,
+      kMetrics,         Requirements,
+      Create,
   };
   return info;
 }

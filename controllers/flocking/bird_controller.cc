@@ -47,7 +47,8 @@ class Goal {
   // kChase, kFlock, or kWander when nobody is visible.
   BirdRule rule() const { return rule_; }
   bool known() const { return rule_ != BirdRule::kWander; }
-  double Bearing() const { return sim::AngleOf(sum_); }
+  // Of any length; only when known.
+  const Vec2& Way() const { return sum_; }
   bool InFront(const sim::Blob& blob) const { return !known() || blob.position.dot(sum_) >= 0.0; }
   // Unit vector; straight ahead when nobody is visible, or when birds evenly around leave no direction.
   Vec2 Direction() const {
@@ -106,11 +107,11 @@ ObstaclePush FindObstacles(const sim::SensorReadings& readings, double least_rea
   return push;
 }
 
-double ObstacleBearing(const Vec2& away_sum, const Goal& goal) {
+Vec2 WayPastObstacles(const Vec2& away_sum, const Goal& goal) {
   const double length = std::sqrt(away_sum.dot(away_sum));
   const Vec2 away = length > kNoDirection ? Vec2(away_sum / length) : Vec2(Vec2::Zero());
   const Vec2 sum = goal.Direction() + away;
-  return sim::AngleOf(sum.dot(sum) < kNoDirection * kNoDirection ? sim::LeftOf(away) : sum);
+  return sum.dot(sum) < kNoDirection * kNoDirection ? sim::LeftOf(away) : sum;
 }
 
 // The nearest robot in front and on the side of the goal that is closer than the separation distance.
@@ -144,6 +145,7 @@ BirdController::BirdController(const BirdSettings& settings)
       least_obstacle_reading_(settings.obstacle_distance >= sim::foot_bot::kProximityRange
                                   ? 0.0
                                   : ProximityReadingAt(settings.obstacle_distance)),
+      straight_edge_(sim::UnitVector(settings.straight_within)),
       wander_(settings.wander) {}
 
 sim::DeviceSet BirdController::Devices() const {
@@ -165,17 +167,17 @@ void BirdController::Step(const sim::ControlStep& step) {
   DriveCommand command;
   if (obstacles.ahead) {
     last_rule_ = BirdRule::kObstacle;
-    command = React(ObstacleBearing(obstacles.away, goal), reactions);
+    command = React(WayPastObstacles(obstacles.away, goal), straight_edge_, reactions);
     command.forward *= settings_.obstacle_speed_factor;
   } else if (const sim::Blob* near = FindTooNear(blobs, settings_.separation_distance, goal)) {
     last_rule_ = BirdRule::kSeparate;
-    command = React(sim::AngleOf(-near->position), reactions);
+    command = React(Vec2(-near->position), straight_edge_, reactions);
     if (std::fabs(near->position.y()) > near->position.x()) {
       command.forward = reactions.speed * reactions.turning_speed_factor;
     }
   } else if (goal.known()) {
     last_rule_ = goal.rule();
-    command = React(goal.Bearing(), reactions);
+    command = React(goal.Way(), straight_edge_, reactions);
   } else {
     last_rule_ = BirdRule::kWander;
     command = React(wander_.Next(step.random), reactions);

@@ -47,6 +47,7 @@ class BirdController : public sim::Controller {
  private:
   BirdSettings settings_;
   double least_obstacle_reading_;
+  sim::Vec2 straight_edge_;  // to the left of what counts as straight ahead
   RandomWalk wander_;
   BirdRule last_rule_ = BirdRule::kWander;
 };

@@ -40,6 +40,19 @@ constexpr std::array kScenarioParameters = std::to_array<ParameterInfo>({
      "the prey plans this far from obstacles, 0.10 where that closes every way (chosen)"},
 });
 
+constexpr std::array kMetrics = std::to_array<MetricInfo>({
+    {"angular_order", "", false, "agreement of the headings of the birds left, 0 to 1 (thesis 4.5.1)"},
+    {"birds_left", "", false, "birds in the prey's cluster at the end"},
+    {"proportion_left", "", false, "the same as a share of the birds"},
+    {"arrival_time", "s", false, "end of the run: the prey's arrival, or the time limit"},
+    {"timeout", "yes/no", false, "whether the prey never arrived"},
+    {"prey_path_length", "m", false, "of the planned path"},
+    {"splits", "", false, "times birds left the prey's cluster for good"},
+    {"split_time", "s", true, "of the last split"},
+    {"split_angle", "rad", true, "between the headings of both clusters around the last split, 0 to pi"},
+    {"split_speed_ratio", "", true, "slower cluster over faster one around the last split"},
+});
+
 constexpr std::array kBirdParameters = std::to_array<ParameterInfo>({
     {"bird_speed", "m/s", 0.055, 0.005, 0.3, false,
      "forward speed (calibrated; released controller at most 0.10)"},
@@ -129,9 +142,10 @@ BirdSettings BirdSettingsFrom(const sim::Parameters& parameters) {
 
 const ScenarioInfo& FlockingScenarioInfo() {
   static const ScenarioInfo info = {
-      "flocking",   "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
-      "flocking",   kScenarioParameters,
-      Requirements, Create,
+      "flocking", "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
+      "flocking", kScenarioParameters,
+      kMetrics,   Requirements,
+      Create,
   };
   return info;
 }

@@ -38,6 +38,20 @@ constexpr std::array kScenarioParameters = std::to_array<ParameterInfo>({
     {"trapped_radius", "m", 0.5, 0.05, 5.0, false, "around the robot's mean position (chosen)"},
 });
 
+constexpr std::array kMetrics = std::to_array<MetricInfo>({
+    {"food_taken", "", false, "items taken from the food"},
+    {"food_carried", "", false, "items in the robots' hands at the end"},
+    {"food_lost", "", false, "items that a robot lost on its way"},
+    {"first_item_time", "s", true, "when the first item was dropped at the nest"},
+    {"first_path_time", "s", true, "when beacons first joined nest and food"},
+    {"condition_1", "yes/no", false, "no path of beacons ever (thesis 5.4.2)"},
+    {"condition_2", "yes/no", false, "no item dropped at the nest (thesis 5.4.2)"},
+    {"trapped_robots", "", false,
+     "robots that stayed within a small place for the last 120 s, beacons aside"},
+    {"food_window_*", "", false, "items dropped in each 120 s"},
+    {"mean_robots_*", "", false, "robots in that state, mean over the run"},
+});
+
 constexpr std::array kForagerParameters = std::to_array<ParameterInfo>({
     {"speed", "m/s", 0.05, 0.005, 0.3, false, "forward speed (thesis 5.4.1)"},
     {"turn_rate", "rad/s", 0.714, 0.05, 4.0, false, "on the spot (2 * speed / wheel distance; calibrated)"},
@@ -167,9 +181,10 @@ ForagerSettings ForagerSettingsFrom(std::string_view controller, const sim::Para
 
 const ScenarioInfo& ForagingScenarioInfo() {
   static const ScenarioInfo info = {
-      "foraging",   "robots bring items from a source of food to the nest (thesis chapter 5)",
-      "foraging",   kScenarioParameters,
-      Requirements, Create,
+      "foraging", "robots bring items from a source of food to the nest (thesis chapter 5)",
+      "foraging", kScenarioParameters,
+      kMetrics,   Requirements,
+      Create,
   };
   return info;
 }

@@ -93,6 +93,15 @@ std::string ParameterTable(std::span<const controllers::ParameterInfo> parameter
   return table.ToText(4);
 }
 
+std::string MetricTable(std::span<const controllers::MetricInfo> metrics) {
+  Table table({{"metric", Align::kLeft}, {"unit", Align::kLeft}, {"", Align::kLeft}});
+  for (const controllers::MetricInfo& info : metrics) {
+    table.AddRow({std::string(info.name), std::string(info.unit),
+                  fmt::format("{}{}", info.description, info.may_be_none ? "; -1 = none" : "")});
+  }
+  return table.ToText(4);
+}
+
 std::string ExperimentsText() {
   Table table({{"", Align::kLeft}, {"", Align::kLeft}});
   for (const ShippedExperiment& shipped : ListExperiments()) {
@@ -107,7 +116,7 @@ std::string ScenariosText() {
     text +=
         "\n  " + Wrapped(fmt::format("{}: {}", scenario.name, scenario.description), kTextWidth, 4) + "\n";
     text += fmt::format("    controller unless another is named: {}\n\n", scenario.default_controller);
-    text += ParameterTable(scenario.parameters);
+    text += ParameterTable(scenario.parameters) + "\n" + MetricTable(scenario.metrics);
   }
   return text;
 }
@@ -147,6 +156,17 @@ Json ParametersJson(std::span<const controllers::ParameterInfo> parameters) {
                     {"default", info.default_value},
                     {"min", info.min},
                     {"max", info.max},
+                    {"description", info.description}});
+  }
+  return list;
+}
+
+Json MetricsJson(std::span<const controllers::MetricInfo> metrics) {
+  Json list = Json::array();
+  for (const controllers::MetricInfo& info : metrics) {
+    list.push_back({{"name", info.name},
+                    {"unit", info.unit},
+                    {"may_be_none", info.may_be_none},
                     {"description", info.description}});
   }
   return list;
@@ -193,7 +213,8 @@ Json ScenariosJson() {
     list.push_back({{"name", scenario.name},
                     {"description", scenario.description},
                     {"default_controller", scenario.default_controller},
-                    {"parameters", ParametersJson(scenario.parameters)}});
+                    {"parameters", ParametersJson(scenario.parameters)},
+                    {"metrics", MetricsJson(scenario.metrics)}});
   }
   return list;
 }

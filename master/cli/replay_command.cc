@@ -12,6 +12,7 @@
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
 #include "master/cli/evaluation.h"
+#include "master/cli/metric_text.h"
 #include "master/cli/summary_json.h"
 #include "master/cli/table.h"
 
@@ -44,6 +45,7 @@ analysis::RunFigure FigureOf(const CampaignReplay& replay) {
   figure.run = fmt::format("run {}", replay.report.stored.id);
   figure.spec = replay.report.spec;
   figure.result = replay.report.replayed;
+  figure.metrics = MetricTexts(figure.spec.scenario, figure.result.metrics);
   figure.member = NounOf(replay.report.spec.scenario);
   return figure;
 }
@@ -54,12 +56,14 @@ std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure
   Table table({{"", Align::kLeft}, {"", Align::kLeft}});
   table.AddRow(
       {"test case", fmt::format("{} (generation {})", report.stored.individual, report.stored.generation)});
+  if (const std::string& name = report.spec.test_case.name; !name.empty()) {
+    table.AddRow({"its name", Printable(name)});
+  }
   table.AddRow({"seed", fmt::format("{}", report.spec.seed)});
   table.AddRow({"outcome", analysis::DescribeOutcome(figure)});
   if (report.replayed.verdict == sim::Verdict::kCompleted) {
     table.AddRow({"fitness", fmt::format("{:.6f}", report.replayed.fitness)});
-    for (const auto& [name, value] : report.replayed.metrics)
-      table.AddRow({name, fmt::format("{:.6g}", value)});
+    for (const auto& [name, text] : figure.metrics) table.AddRow({name, text});
   } else {
     table.AddRow({"verdict", std::string(NameOf(report.replayed.verdict))});
   }

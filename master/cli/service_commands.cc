@@ -17,8 +17,7 @@
 namespace gauntlet::master {
 namespace {
 
-using nlohmann::json;
-using nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 constexpr int kWatchMilliseconds = 1000;
 constexpr int kStopPollMilliseconds = 100;
@@ -34,9 +33,9 @@ std::string Seconds(double seconds) {
   return fmt::format("{:.1f} s", seconds);
 }
 
-std::string RunsOf(const json& worker) {
+std::string RunsOf(const Json& worker) {
   std::string text;
-  for (const json& run : worker["runs"]) {
+  for (const Json& run : worker["runs"]) {
     text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", run["run"].get<std::uint64_t>(),
                         Seconds(run["seconds"]),
                         run["lease"] > 1 ? fmt::format(", lease {}", run["lease"].get<int>()) : "");
@@ -45,15 +44,15 @@ std::string RunsOf(const json& worker) {
 }
 
 // The jobs of a submitted campaign.
-std::string JobsText(const json& status) {
-  const json allocations = status.value("allocations", json::array());
+std::string JobsText(const Json& status) {
+  const Json allocations = status.value("allocations", Json::array());
   if (allocations.empty()) return "";
   Table table({{"job", Align::kLeft},
                {"state", Align::kLeft},
                {"reason", Align::kLeft},
                {"node", Align::kLeft},
                {"workers", Align::kRight}});
-  for (const json& allocation : allocations) {
+  for (const Json& allocation : allocations) {
     const std::string state = allocation["state"];
     const std::string name = allocation.value("role", "");
     table.AddRow({allocation["job"].get<std::string>() + (name.empty() ? "" : " " + name),
@@ -63,9 +62,9 @@ std::string JobsText(const json& status) {
   return "\n" + table.ToText();
 }
 
-std::string StatusText(const json& status, const std::string& directory) {
+std::string StatusText(const Json& status, const std::string& directory) {
   std::string text = fmt::format("{}: {}", directory, status.value("state", "unknown"));
-  if (const json& master = status.value("master", json()); master.is_object()) {
+  if (const Json& master = status.value("master", Json()); master.is_object()) {
     text += fmt::format(", master {} on {} (start number {}), {}", master["pid"].get<std::int64_t>(),
                         master["host"].get<std::string>(), master["epoch"].get<std::uint64_t>(),
                         master["encrypted"] == true ? "encrypted" : "plaintext");
@@ -82,20 +81,20 @@ std::string StatusText(const json& status, const std::string& directory) {
     text += fmt::format("NONDETERMINISTIC: {} runs ended differently on two workers, see log/master.log\n",
                         status["nondeterministic"].get<std::uint64_t>());
   }
-  if (const json& why = status.value("why_nothing_runs", json()); why.is_string())
+  if (const Json& why = status.value("why_nothing_runs", Json()); why.is_string())
     text += "nothing runs: " + why.get<std::string>() + "\n";
-  if (const json& trouble = status.value("pool_trouble", json());
-      trouble.is_string() && !status.value("why_nothing_runs", json()).is_string())
+  if (const Json& trouble = status.value("pool_trouble", Json());
+      trouble.is_string() && !status.value("why_nothing_runs", Json()).is_string())
     text += "fewer workers than could be used: " + trouble.get<std::string>() + "\n";
   if (const double age = status.value("status_age_seconds", 0.0); age > 5.0)
     text += fmt::format("the master has said nothing for {:.0f} s: frozen, or its disk is slow\n", age);
   text += JobsText(status);
-  const json& workers = status["worker_list"];
+  const Json& workers = status["worker_list"];
   if (workers.empty()) return text;
   Table table(
       {{"worker", Align::kLeft}, {"state", Align::kLeft}, {"heard", Align::kRight}, {"runs", Align::kLeft}});
   for (std::size_t i = 0; i < std::min(kShownWorkers, workers.size()); ++i) {
-    const json& worker = workers[i];
+    const Json& worker = workers[i];
     table.AddRow({worker["worker"].get<std::string>(), worker["state"].get<std::string>(),
                   Seconds(worker["silent_seconds"]), RunsOf(worker)});
   }
@@ -106,13 +105,13 @@ std::string StatusText(const json& status, const std::string& directory) {
 }
 
 // What Slurm has of a campaign that no master serves.
-std::string WithJobs(CommandContext& context, const SlurmCampaign& campaign, ordered_json status) {
+std::string WithJobs(CommandContext& context, const SlurmCampaign& campaign, Json status) {
   const Result<std::vector<slurm::JobStatus>> jobs = LivingJobs(*context.slurm(), campaign);
   if (!jobs) {
     status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message);
     return status.dump(2) + "\n";
   }
-  status["allocations"] = ordered_json::array();
+  status["allocations"] = Json::array();
   for (const slurm::JobStatus& job : *jobs) {
     const bool master = job.name == campaign.master_job_name();
     status["allocations"].push_back({{"job", job.id},
@@ -132,7 +131,7 @@ std::string WithJobs(CommandContext& context, const SlurmCampaign& campaign, ord
 Result<std::string> Read(CommandContext& context, const StatusOptions& options) {
   Result<std::string> text = context.service.status(options.directory);
   if (!text) return text;
-  ordered_json status = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  Json status = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (!status.is_object()) return Error{ErrorKind::kCorrupt, "the status does not parse"};
   const std::string state = status.value("state", "");
   if (state == "stopped" || state == "finished") {
@@ -141,7 +140,7 @@ Result<std::string> Read(CommandContext& context, const StatusOptions& options) 
     if (submitted->has_value()) text = WithJobs(context, **submitted, std::move(status));
   }
   if (options.json) return text;
-  return StatusText(json::parse(*text), options.directory);
+  return StatusText(Json::parse(*text), options.directory);
 }
 
 // What Slurm still has of a campaign without a master. False when Slurm did not answer.

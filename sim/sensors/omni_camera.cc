@@ -49,7 +49,9 @@ void OmniCameras::Look(const Scene& scene) {
       const Signals& signals = scene.signals[static_cast<std::size_t>(other.robot)];
       if (signals.beacon != Color::kBlack && other.clear && Side(other.offset) < ranges_[i] &&
           !HiddenByLowBox(scene, scene.robots[i], other)) {
-        Add(scene.robots[i], other.offset, other.distance, signals.beacon);
+        blobs_.push_back({.position = scene.robots[i].FromWorld(other.offset),
+                          .range = other.distance,
+                          .color = signals.beacon});
       }
       if (scene.any_ring_lit) AddRing(scene, viewer, other.robot);
     }

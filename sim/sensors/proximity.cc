@@ -25,6 +25,16 @@ const std::array<Vec2, kSensors>& RestRays() {
   return rays;
 }
 
+// Thrice around, so that nobody who looks to both sides of the second turn meets the seam.
+const std::array<Vec2, 3 * kSensors>& ThreeTurnsOfRays() {
+  static const std::array<Vec2, 3 * kSensors> rays = [] {
+    std::array<Vec2, 3 * kSensors> result;
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = MakeRestRays()[i % kSensors];
+    return result;
+  }();
+  return rays;
+}
+
 // `v` turned by the angle of the unit vector `by`.
 Vec2 Turned(const Vec2& v, const Vec2& by) {
   return {by.x() * v.x() - by.y() * v.y(), by.y() * v.x() + by.x() * v.y()};
@@ -94,21 +104,14 @@ void ProximityRing::See(const OrientedBox& box) {
   }
 }
 
-void ProximityRing::See(const BodyFrame& robot) {
-  constexpr double kBodyReach = kReach + foot_bot::kRadius + foot_bot::kGripperRadius;
-  const Vec2 offset = robot.position - self_.position;
-  if (offset.squaredNorm() >= kBodyReach * kBodyReach) return;
-  const Vec2 body(self_.direction.dot(offset), Cross(self_.direction, offset));
-  // From 0.16 m on, a body spans asin(0.085 / 0.16) = 2.14 sensors to either side of its centre, from 0.07 m
-  // on a gripper 0.55. The sensor that looks nearest to the centre is up to 0.28 + 0.5 beside it.
-  SeeDisc<2>(body, foot_bot::kRadius, 0.16);
-  const Vec2 front(self_.direction.dot(robot.direction), Cross(self_.direction, robot.direction));
-  SeeDisc<1>(body + foot_bot::kRadius * front, foot_bot::kGripperRadius, 0.07);
+void ProximityRing::SeeBody(const BodyFrame& robot, const Vec2& offset) {
+  const Vec2 body = self_.FromWorld(offset);
+  SeeDisc(body, foot_bot::kRadius, 0.1);
+  SeeDisc(body + foot_bot::kRadius * self_.FromWorld(robot.direction), foot_bot::kGripperRadius, 0.02);
 }
 
-// `center` in the frame of this robot. From the distance `apart` on, only `kWindow` sensors to either side of
-// the one that looks nearest to the disc can see it.
-template <int kWindow>
+// `center` in the frame of this robot. From the distance `apart` on, less than half a turn of the ring sees
+// it.
 void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
   const double distance_squared = center.squaredNorm();
   if (distance_squared >= (kReach + radius) * (kReach + radius)) return;
@@ -116,24 +119,30 @@ void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
     SeeNearDisc(center, radius);
     return;
   }
-  const std::array<Vec2, kSensors>& rays = RestRays();
-  const int middle = static_cast<int>(SensorAngle(center) + 0.5);
   // A ray that is kReach long ends in the disc or has passed through it when it lies more than this along the
   // way to the centre: while the tangents are longer than the ray, its end must be in the disc (law of
   // cosines), else it must lie between them.
   const double power = distance_squared - radius * radius;  // square of the tangents' length
   const double least_along =
       power > kReach * kReach ? (power + kReach * kReach) / (2.0 * kReach) : std::sqrt(power);
-  for (int i = -kWindow; i <= kWindow; ++i) {
-    int sensor = middle + i;
-    sensor += sensor < 0 ? static_cast<int>(kSensors) : 0;
-    sensor -= sensor >= static_cast<int>(kSensors) ? static_cast<int>(kSensors) : 0;
-    const double along = rays[static_cast<std::size_t>(sensor)].dot(center);
-    if (along <= least_along) continue;
+  const auto sees = [&](int sensor) {
+    const double along = ThreeTurnsOfRays()[static_cast<std::size_t>(sensor)].dot(center);
+    if (along <= least_along) return false;
     const double half_chord = std::sqrt(along * along - power);
-    if (along + half_chord < foot_bot::kRadius) continue;  // ends before the ray begins
-    Hit(static_cast<std::size_t>(sensor), along - half_chord - foot_bot::kRadius);
-  }
+    // Else it ends before the ray begins.
+    if (along + half_chord >= foot_bot::kRadius) {
+      Hit(static_cast<std::size_t>(sensor) % kSensors, along - half_chord - foot_bot::kRadius);
+    }
+    return true;
+  };
+  // Those that see it are side by side. When the middle one does not, only one of its neighbours may: the
+  // middle is at most 0.28 + 0.5 sensors beside the disc's centre.
+  const int middle = static_cast<int>(SensorAngle(center) + 0.5 + kSensors);
+  int left = middle + 1;
+  int right = middle - 1;
+  while (sees(left)) ++left;
+  if (!sees(middle) && left > middle + 1) return;
+  while (sees(right)) --right;
 }
 
 // A disc so near, or overlapped, that any sensor may see it.

@@ -24,7 +24,10 @@ class ProximityRing {
 
   void See(const OrientedBox& box);
   // The other robot's body and the gripper disc at its front.
-  void See(const BodyFrame& robot);
+  void See(const BodyFrame& robot) {
+    const Vec2 offset = robot.position - self_.position;
+    if (offset.squaredNorm() < kBodyReach * kBodyReach) SeeBody(robot, offset);
+  }
 
   // Bit i: ray i hit something.
   std::uint32_t hits() const { return hits_; }
@@ -33,7 +36,10 @@ class ProximityRing {
   ProximityReadings Readings() const;
 
  private:
-  template <int kWindow>
+  static constexpr double kBodyReach =
+      2.0 * foot_bot::kRadius + foot_bot::kProximityRange + foot_bot::kGripperRadius;  // m, centre to centre
+
+  void SeeBody(const BodyFrame& robot, const Vec2& offset);
   void SeeDisc(const Vec2& center, double radius, double apart);
   void SeeNearDisc(const Vec2& center, double radius);
   void Hit(std::size_t sensor, double distance);

@@ -54,6 +54,7 @@ SensorSuite::SensorSuite(const Arena& arena, std::span<const RobotSensors> robot
       frames_(robots.size()),
       readings_(robots.size()),
       nearby_(foot_bot::kRadius + foot_bot::kProximityRange),
+      near_(std::min(robots.size(), kFewRobots)),
       proximity_grid_(kBodyReach, robots.size()),
       occluders_(arena),
       pairs_(Reaches(robots)),
@@ -69,8 +70,7 @@ SensorSuite::SensorSuite(const Arena& arena, std::span<const RobotSensors> robot
 void SensorSuite::Sense(const World& world) {
   for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i] = BodyFrame(world.poses[i]);
   SenseOthers(world);
-  if (anybodys_devices_.Has(Device::kProximity) && frames_.size() > kFewRobots)
-    proximity_grid_.Update(frames_);
+  if (anybodys_devices_.Has(Device::kProximity)) FindNear();
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const RobotIndex robot = static_cast<RobotIndex>(i);
     if (sensors_[i].devices.Has(Device::kProximity)) SenseProximity(robot);
@@ -112,15 +112,30 @@ void SensorSuite::SenseOthers(const World& world) {
   }
 }
 
+// Who could be in reach of whose proximity ring.
+void SensorSuite::FindNear() {
+  if (frames_.size() > kFewRobots) {
+    proximity_grid_.Update(frames_);
+    return;
+  }
+  std::fill(near_.begin(), near_.end(), std::uint64_t{0});
+  for (std::size_t a = 0; a < frames_.size(); ++a) {
+    const Vec2 position = frames_[a].position;
+    for (std::size_t b = 0; b < a; ++b) {
+      const std::uint64_t near = (frames_[b].position - position).squaredNorm() < kBodyReach * kBodyReach;
+      near_[a] |= near << b;
+      near_[b] |= near << a;
+    }
+  }
+}
+
 void SensorSuite::SenseProximity(RobotIndex robot) {
   const std::size_t index = static_cast<std::size_t>(robot);
   const BodyFrame& self = frames_[index];
   ProximityRing ring(self);
   for (const std::size_t box : nearby_.Near(robot, self.position)) ring.See(nearby_.box(box));
   if (frames_.size() <= kFewRobots) {
-    for (std::size_t other = 0; other < frames_.size(); ++other) {
-      if (other != index) ring.See(frames_[other]);
-    }
+    ForEachBit(near_[index], [&](std::size_t other) { ring.See(frames_[other]); });
   } else {
     for (const std::size_t other : proximity_grid_.Near(self.position)) {
       if (other != index) ring.See(frames_[other]);

@@ -2,6 +2,7 @@
 // nothing else is computed.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -48,6 +49,7 @@ class SensorSuite {
 
  private:
   void SenseOthers(const World& world);
+  void FindNear();
   void SenseProximity(RobotIndex robot);
   void SenseRest(const World& world, RobotIndex robot);
 
@@ -56,6 +58,7 @@ class SensorSuite {
   std::vector<BodyFrame> frames_;
   std::vector<SensorReadings> readings_;
   NearbyBoxes nearby_;
+  std::vector<std::uint64_t> near_;  // of few robots: bit j of near_[i] says that j is near i
   NeighbourGrid proximity_grid_;
   Occluders occluders_;
   RobotPairs pairs_;

@@ -59,7 +59,7 @@ RunFigure ThreeBirds() {
       {"split", "first", {{1.5, 1.5}}, 0.0, 40, {0}},
       {"split", "second", {{0.6, 0.6}}, 0.0, 151, {1}},
   };
-  figure.result.metrics = {{"angular_order", 0.875}};
+  figure.metrics = {{"angular_order", "0.875"}};
   figure.result.fitness = 0.25;
   return figure;
 }

@@ -7,6 +7,7 @@
 #include "controllers/flocking/flocking_registry.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
+#include "worker/run_executor.h"
 
 namespace gauntlet::controllers {
 namespace {
@@ -153,6 +154,22 @@ TEST(BirdSettingsFrom, OnlyTheImprovedBirdCatchesUp) {
       *ResolveParameters(FindController("flocking-improved")->parameters, {{"catch_up_gain", 1.5}}));
   ASSERT_TRUE(improved.catch_up);
   EXPECT_EQ(improved.catch_up->gain, 1.5);
+}
+
+TEST(Registry, EveryMetricAScenarioReportsIsDescribed) {
+  for (const ScenarioInfo& info : Scenarios()) {
+    sim::RunSpec spec;
+    spec.scenario = info.name;
+    spec.controller = info.default_controller;
+    spec.scenario_parameters["time_limit"] = 2.0;
+    const sim::RunResult result = worker::Run(spec);
+    ASSERT_EQ(result.verdict, sim::Verdict::kCompleted) << result.message;
+    EXPECT_FALSE(result.metrics.empty());
+    for (const auto& [name, value] : result.metrics) {
+      EXPECT_NE(FindMetric(info, name), nullptr) << info.name << " " << name;
+    }
+    EXPECT_EQ(FindMetric(info, "no_such_metric"), nullptr);
+  }
 }
 
 }  // namespace

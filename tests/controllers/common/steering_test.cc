@@ -46,6 +46,22 @@ TEST(React, KnowsThreeReactions) {
   EXPECT_EQ(React(-11.0 * kDegree, kReactions).turn, -0.785);
 }
 
+TEST(React, TowardsADirectionIsTowardsItsBearing) {
+  for (const double within_deg : {0.0, 10.0, 100.0}) {
+    Reactions reactions = kReactions;
+    reactions.straight_within = within_deg * kDegree;
+    for (int tenths = -1799; tenths <= 1800; tenths += 7) {
+      const double bearing = 0.1 * tenths * kDegree;
+      const DriveCommand expected = React(bearing, reactions);
+      const DriveCommand command =
+          React(0.3 * sim::UnitVector(bearing), sim::UnitVector(reactions.straight_within), reactions);
+      EXPECT_EQ(command.forward, expected.forward) << bearing;
+      EXPECT_EQ(command.turn, expected.turn) << bearing;
+    }
+  }
+  EXPECT_EQ(React(sim::Vec2::Zero(), {1.0, 0.0}, kReactions).forward, kReactions.speed);
+}
+
 TEST(React, HalvesTheSpeedWhileTurningAndStopsForWhatLiesBehind) {
   EXPECT_EQ(React(89.0 * kDegree, kReactions).forward, 0.04);
   EXPECT_EQ(React(91.0 * kDegree, kReactions).forward, 0.0);

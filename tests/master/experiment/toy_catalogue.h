@@ -25,8 +25,8 @@ inline constexpr std::array kFastControllerParameters = std::to_array<controller
 
 inline Catalogue ToyCatalogue() {
   static const std::array scenarios = std::to_array<controllers::ScenarioInfo>({
-      {"marching", "walk", "walker", kToyScenarioParameters, nullptr, nullptr},
-      {"waiting", "wait", "waiter", {}, nullptr, nullptr},
+      {"marching", "walk", "walker", kToyScenarioParameters, {}, nullptr, nullptr},
+      {"waiting", "wait", "waiter", {}, {}, nullptr, nullptr},
   });
   static const std::array controllers_of_toys = std::to_array<controllers::ControllerInfo>({
       {"walker", "marching", "walks", kToyControllerParameters},

@@ -1,0 +1,94 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/master/cli/command_line_fixture.h"
+
+namespace gauntlet::master {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+TEST_F(CommandLine, MasterStartsNoWorkersAndSaysWhereTheyConnect) {
+  std::string bind;
+  bool insecure = true;
+  during_ = [&](const SessionOptions& options) {
+    bind = options.bind;
+    insecure = options.insecure;
+    options.on_serving({{"tcp://10.0.0.7:5555"}, true});
+  };
+  EXPECT_EQ(Run({"master", "flocking", "--bind", "tcp://0.0.0.0:5555", "--dir", Path("c")}), kExitDone);
+  EXPECT_EQ(workers_, 0);
+  EXPECT_EQ(bind, "tcp://0.0.0.0:5555");
+  EXPECT_FALSE(insecure);
+  EXPECT_THAT(err_.str(), HasSubstr("workers connect to tcp://10.0.0.7:5555, encrypted; start them with: "
+                                    "gauntlet-worker --dir " +
+                                    Path("c")));
+  EXPECT_THAT(err_.str(), Not(HasSubstr("INSECURE")));
+}
+
+TEST_F(CommandLine, PlaintextToTheOutsideIsSaidEvenWhenQuiet) {
+  during_ = [](const SessionOptions& options) { options.on_serving({{"tcp://10.0.0.7:5555"}, false}); };
+  EXPECT_EQ(
+      Run({"master", "flocking", "--bind", "tcp://0.0.0.0:*", "--insecure", "--quiet", "--dir", Path("c")}),
+      kExitDone);
+  EXPECT_THAT(err_.str(), HasSubstr("INSECURE: whoever reaches tcp://10.0.0.7:5555"));
+  EXPECT_EQ(Run({"master", "flocking", "--bind", "tcp://127.0.0.1:*", "--quiet", "--dir", Path("c")}),
+            kExitDone);
+  EXPECT_THAT(err_.str(), IsEmpty());
+}
+
+TEST_F(CommandLine, MasterResumesOnlyWhenThereIsACampaignAndItIsAskedTo) {
+  const std::vector<std::string> arguments = {"master", "flocking",          "--bind",  "tcp://127.0.0.1:*",
+                                              "--dir",  directory_.string(), "--resume"};
+  EXPECT_EQ(Run(arguments), kExitDone);
+  EXPECT_EQ(std::pair(starts_, resumes_), std::pair(1, 0));
+  Write("campaign.db", "");
+  EXPECT_EQ(Run(arguments), kExitDone);
+  EXPECT_EQ(std::pair(starts_, resumes_), std::pair(1, 1));
+  EXPECT_EQ(Run({arguments.begin(), arguments.end() - 1}), kExitUsage);
+  EXPECT_THAT(err_.str(), HasSubstr("gauntlet resume"));
+  EXPECT_EQ(Run({"resume", "c", "--bind", "tcp://127.0.0.1:*"}), kExitDone);
+  EXPECT_EQ(workers_, 0);
+  EXPECT_EQ(Run({"resume", "c", "--bind", "tcp://127.0.0.1:*", "--workers", "3"}), kExitDone);
+  EXPECT_EQ(workers_, 3);
+}
+
+TEST_F(CommandLine, MasterNeedsAnEndpoint) {
+  ExpectUsageError({"master", "flocking"}, HasSubstr("--bind"));
+  ExpectUsageError({"master", "flocking", "--bind", "tcp://127.0.0.1:*", "--resume"}, HasSubstr("--dir"));
+}
+
+TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
+  status_ = R"({"state": "running", "master": {"host": "n1", "pid": 7, "epoch": 2, "encrypted": true},
+                "generation": 3, "generations": 50, "runs_done": 1234, "runs_running": 1, "runs_queued": 5,
+                "runs_per_second": 12.5, "why_nothing_runs": null, "worker_list": [
+                 {"worker": "ab@n2", "state": "running", "silent_seconds": 0.2,
+                  "runs": [{"run": 812, "lease": 2, "seconds": 1.5}]},
+                 {"worker": "cd@n3", "state": "idle", "silent_seconds": 0.4, "runs": []}]})";
+  EXPECT_EQ(Run({"status", "c"}), kExitDone);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("master 7 on n1 (start number 2), encrypted"),
+                                HasSubstr("generation 3/50, 1,234 runs done, 1 running, 5 waiting"),
+                                HasSubstr("812 (1.5 s, lease 2)"), HasSubstr("idle")));
+  EXPECT_EQ(Run({"status", "c", "--json"}), kExitDone);
+  EXPECT_EQ(out_.str(), status_);
+  status_ = R"({"state": "stopped", "master": null, "why_nothing_runs": "no master serves the campaign",
+                "worker_list": []})";
+  EXPECT_EQ(Run({"watch", "c"}), kExitDone) << "without a master it ends at once";
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("c: stopped"), HasSubstr("nothing runs: no master serves")));
+}
+
+TEST_F(CommandLine, StopAsksAndWaitsForTheMasterToEnd) {
+  EXPECT_EQ(Run({"stop", "c"}), kExitDone);
+  EXPECT_THAT(err_.str(), HasSubstr("nothing to stop"));
+  EXPECT_EQ(stopped_, "");
+  lives_ = 3;
+  EXPECT_EQ(Run({"stop", "c"}), kExitDone);
+  EXPECT_EQ(stopped_, "c");
+  EXPECT_THAT(err_.str(), HasSubstr("stopped"));
+}
+
+}  // namespace
+}  // namespace gauntlet::master
