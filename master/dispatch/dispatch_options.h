@@ -13,9 +13,13 @@ struct DispatchOptions {
   // A run that fails of itself (crash, hang, memory) this often gets the verdict; lost workers and signals
   // from outside are no attempts.
   std::uint32_t attempts = 3;
-  // Leases per slot. 1: one run at a time. 2: the next run is already there when a slot becomes free, so that
-  // a run of some milliseconds never waits for a round trip.
+  // Leases per slot, at least. 1: one run at a time. 2: the next run is already there when a slot becomes
+  // free, so that a run of some milliseconds never waits for a round trip.
   std::uint32_t credit = 2;
+  // Runs shorter than this are leased ahead, until about so much work waits at each slot (at most most_credit
+  // runs): round trips and commits then cost many of them at once.
+  std::chrono::milliseconds work_ahead{10};
+  std::uint32_t most_credit = 256;
   // CPU time of one runner on one run, s; only there to end what would never end. At least 60 in campaigns.
   double cpu_limit_seconds = 60.0;
   std::uint64_t memory_limit_bytes = 2ULL << 30;  // address space of one runner; 0 = no limit

@@ -242,6 +242,7 @@ void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
 
   switch (scheduler_.Completed(worker, message.fence, message.run, result->hash)) {
     case Answer::kAccepted: {
+      scheduler_.RunTook(message.cpu_seconds);
       const std::uint32_t attempt = std::max(1U, scheduler_.LeasesOf(message.run));
       // What arrived is stored as it came: decoding has checked it against its hash.
       const bool as_it_came = result->trajectory.empty() && result->cpu_seconds > 0.0;

@@ -11,6 +11,7 @@ namespace {
 // A lease that was sent and is not in a heartbeat of its worker was lost on the way, unless the two crossed.
 constexpr int kCrossingHeartbeats = 2;
 constexpr int kChecksPerHeartbeat = 8;
+constexpr double kPredictionGain = 0.05;  // weight of the newest run in the predicted length
 
 void Erase(std::vector<Fence>& fences, Fence fence) {
   const auto found = std::find(fences.begin(), fences.end(), fence);
@@ -38,6 +39,20 @@ void Scheduler::Advance(TimePoint now) {
     listening_ += std::min<Duration>(now - last_now_, options_.heartbeat);
     last_now_ = now;
   }
+}
+
+void Scheduler::RunTook(double seconds) {
+  if (!(seconds >= 0.0)) return;
+  predicted_seconds_ = predicted_seconds_ < 0.0
+                           ? seconds
+                           : predicted_seconds_ + kPredictionGain * (seconds - predicted_seconds_);
+}
+
+std::uint32_t Scheduler::Credit() const {
+  const double ahead = std::chrono::duration<double>(options_.work_ahead).count();
+  if (predicted_seconds_ < 0.0 || predicted_seconds_ * options_.credit >= ahead) return options_.credit;
+  const double most = std::max(options_.credit, options_.most_credit);
+  return static_cast<std::uint32_t>(std::min(most, ahead / std::max(predicted_seconds_, 1e-6)));
 }
 
 void Scheduler::Submit(RunId run) {
@@ -173,7 +188,7 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
 void Scheduler::List(InstanceId id, Worker& worker) {
   Unlist(id, worker);
   if (worker.lost || worker.draining || worker.blocked) return;
-  if (worker.live.size() >= std::size_t{worker.slots} * options_.credit) return;
+  if (worker.live.size() >= std::size_t{worker.slots} * Credit()) return;
   worker.level = static_cast<std::uint32_t>(worker.live.size() / worker.slots);
   worker.listed = true;
   available_.emplace(worker.level, id);

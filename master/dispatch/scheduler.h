@@ -119,6 +119,8 @@ class Scheduler {
 
   Answer Completed(InstanceId worker, Fence fence, RunId run, std::uint64_t hash);
   Answer Failed(InstanceId worker, Fence fence, RunId run, const RunFailure& failure);
+  // How long a run takes, as one that has just ended did: predicts the length of those to come.
+  void RunTook(double seconds);
   // The lease could not be sent. The worker gets no other before it is heard of again.
   void Undelivered(Fence fence);
 
@@ -170,6 +172,7 @@ class Scheduler {
   };
 
   void Advance(TimePoint now);
+  std::uint32_t Credit() const;  // leases per slot, by the predicted length of a run
   void Heard(InstanceId id, Worker& worker);
   void Reconcile(InstanceId id, Worker& worker, const std::vector<Fence>& held, Duration grace);
   void List(InstanceId id, Worker& worker);    // puts it where it belongs in available_
@@ -196,6 +199,7 @@ class Scheduler {
   TimePoint last_now_{};
   bool started_ = false;
   Duration next_check_{};
+  double predicted_seconds_ = -1.0;  // of a run; negative: none has ended yet
 
   std::unordered_map<RunId, Run> runs_;
   std::set<RunId> queue_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/support/fake_clock.h"
 
@@ -404,6 +405,31 @@ TEST_F(SchedulerTest, StopLeasingLeavesRunsInTheQueue) {
   Join(10);
   EXPECT_THAT(Decide().leases, IsEmpty());
   EXPECT_EQ(scheduler_.queued(), 1U);
+}
+
+TEST_F(SchedulerTest, ShortRunsAreLeasedAheadUntilEnoughWorkWaits) {
+  SubmitRuns(1, 2000);
+  Join(10, 2);
+  std::vector<LeaseOrder> leases = Decide().leases;
+  EXPECT_THAT(leases, SizeIs(2)) << "nothing is known of their length";
+  const auto complete_all = [&](double took) {
+    for (const LeaseOrder& lease : leases) {
+      scheduler_.RunTook(took);
+      EXPECT_EQ(scheduler_.Completed(10, lease.fence, lease.run, 111), Answer::kAccepted);
+    }
+    leases = Decide().leases;
+  };
+  complete_all(0.001);
+  EXPECT_THAT(leases, SizeIs(20)) << "10 ms of work at each of two slots";
+  complete_all(0.001);
+  EXPECT_THAT(leases, SizeIs(20));
+  scheduler_.RunTook(std::nan(""));
+  for (int i = 0; i < 200; ++i) scheduler_.RunTook(60.0);
+  complete_all(60.0);
+  EXPECT_THAT(leases, SizeIs(2)) << "one at a time again";
+  for (int i = 0; i < 2000; ++i) scheduler_.RunTook(0.0);
+  complete_all(0.0);
+  EXPECT_THAT(leases, SizeIs(512)) << "most_credit for each slot";
 }
 
 TEST_F(SchedulerTest, FiveHundredWorkersAreAllLeasedAtOnce) {
