@@ -53,5 +53,6 @@ inline constexpr std::string_view kPreyColor = "#00856a";
 inline constexpr std::string_view kPlanColor = "#4a5560";
 inline constexpr std::string_view kGoalColor = "#e0a800";
 inline constexpr std::string_view kSplitColor = "#7b1fa2";
+inline constexpr std::string_view kBeaconColor = "#b565c4";
 
 }  // namespace gauntlet::analysis

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/figure_frame.h"
+#include "analysis/figures/robot_states.h"
 #include "analysis/figures/run_panel.h"
 #include "analysis/figures/run_tracks.h"
 #include "analysis/figures/svg_canvas.h"
@@ -38,6 +39,11 @@ std::string StyleSheet() {
       ".spawn {{ fill: {kept}; fill-opacity: 0.08; stroke: {kept}; stroke-opacity: 0.55; stroke-width: 1.2; "
       "stroke-dasharray: 2 3; }}\n"
       ".goal {{ fill: {goal}; fill-opacity: 0.35; stroke: {goal}; stroke-width: 2.4; }}\n"
+      ".nest {{ fill: #8a94a0; fill-opacity: 0.4; stroke: {soft}; stroke-width: 2; }}\n"
+      ".food {{ fill: {prey}; fill-opacity: 0.3; stroke: {prey}; stroke-width: 2.4; }}\n"
+      ".beacon {{ fill: {beacon}; fill-opacity: 0.9; stroke: #ffffff; stroke-width: 1; }}\n"
+      ".beacon-before {{ fill: none; stroke: {beacon}; stroke-width: 1.3; stroke-opacity: 0.75; }}\n"
+      ".chain {{ fill: none; stroke: {beacon}; stroke-width: 2; stroke-dasharray: 7 5; }}\n"
       ".place {{ font-size: 12px; font-weight: bold; fill: #7a5c00; text-anchor: middle; stroke: #fdfcf9; "
       "stroke-width: 3; paint-order: stroke; }}\n"
       ".plan {{ fill: none; stroke: {plan}; stroke-width: 1.7; stroke-dasharray: 7 5; }}\n"
@@ -55,7 +61,8 @@ std::string StyleSheet() {
       ".callout-line {{ stroke: {split}; stroke-width: 1.4; }}\n"
       ".callout-text {{ font-size: 12.5px; font-weight: bold; fill: {split}; }}\n",
       fmt::arg("ink", kInk), fmt::arg("soft", kSoftInk), fmt::arg("kept", kKeptColor),
-      fmt::arg("goal", kGoalColor), fmt::arg("plan", kPlanColor), fmt::arg("split", kSplitColor));
+      fmt::arg("goal", kGoalColor), fmt::arg("plan", kPlanColor), fmt::arg("split", kSplitColor),
+      fmt::arg("prey", kPreyColor), fmt::arg("beacon", kBeaconColor));
 }
 
 void DrawBox(SvgCanvas& canvas, const FigureFrame& frame, const sim::Vec2& min, const sim::Vec2& max,
@@ -164,7 +171,7 @@ void DrawPlaces(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& f
     if (annotation.kind != "disc" || annotation.points.empty()) continue;
     const Pixel center = frame.At(annotation.points.front());
     const double radius = std::max(5.0, annotation.radius * frame.scale());
-    canvas.Circle(center, radius, "class=\"goal\"");
+    canvas.Circle(center, radius, fmt::format("class=\"{}\"", PlaceClass(annotation)));
     canvas.Text({center.x, center.y + radius + 15}, annotation.label.empty() ? "goal" : annotation.label,
                 "class=\"place\"");
   }
@@ -176,6 +183,28 @@ void DrawPlans(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& fr
     std::vector<Pixel> points;
     for (const sim::Vec2& p : annotation.points) points.push_back(frame.At(p));
     canvas.Polyline(points, "class=\"plan\"");
+  }
+  for (const sim::Annotation& annotation : figure.result.annotations) {
+    if (annotation.kind != "chain" || annotation.points.size() < 2) continue;
+    std::vector<Pixel> points;
+    for (const sim::Vec2& p : annotation.points) points.push_back(frame.At(p));
+    canvas.Polyline(points, "class=\"chain\"");
+  }
+}
+
+// Where robots stood as beacons: hollow where they left again.
+void DrawBeacons(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {
+  const RobotStates states = StatesOf(figure.result);
+  const double end = figure.result.ticks * sim::kTickSeconds;
+  for (const bool stays : {false, true}) {
+    for (const StateSpell& spell : states.spells) {
+      if (states.names[static_cast<std::size_t>(spell.state)] != "beacon") continue;
+      if ((spell.end >= end) != stays) continue;
+      const auto tick = static_cast<sim::Tick>(std::lround(spell.begin * sim::kTicksPerSecond));
+      if (const auto position = PositionAt(figure, spell.robot, tick)) {
+        DrawBeacon(canvas, frame.At(*position), stays);
+      }
+    }
   }
 }
 
@@ -324,6 +353,7 @@ std::string DrawRun(const RunFigure& figure) {
     if (track.kind == TrackKind::kPrey) DrawWay(canvas, track);
   }
   DrawPlans(canvas, figure, frame);
+  DrawBeacons(canvas, figure, frame);
   DrawObstacleNumbers(canvas, frame, arena);
   const sim::Annotation* split = LatestAnnotation(figure, "split");
   Callout callout;

@@ -18,6 +18,7 @@ struct RunFigure {
   sim::RunResult result;   // with a trajectory; without one its waypoints are drawn
   std::vector<std::pair<std::string, std::string>> metrics;  // of the result, as the panel shows them
   std::string member = "robot";                              // what one of the swarm is called, singular
+  std::string lost = "lost";                                 // what RobotSummary::lost means, in a word
 };
 
 // The robot whose planned path the result shows: the one that the annotation "path" names, or else the one
@@ -28,8 +29,9 @@ int PreyOf(const sim::RunResult& result);
 std::string DescribeOutcome(const RunFigure& figure);
 
 // A complete SVG document without scripts and outside references. Pure: same figure, same bytes.
-// Annotations drawn: "area" (where the swarm starts), "path" (dashed line), "disc" (goal), "split" (the
-// latest is marked and labelled).
+// Annotations drawn: "area" (where the swarm starts), "path" and "chain" (dashed lines), "disc" (a place, by
+// its label), "split" (the latest is marked and labelled), "trapped" (the robot's way from that tick on
+// stands out), "states" (where robots stood as a beacon).
 std::string DrawRun(const RunFigure& figure);
 
 }  // namespace gauntlet::analysis

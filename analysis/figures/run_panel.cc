@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/figures/robot_states.h"
+
 namespace gauntlet::analysis {
 namespace {
 
@@ -69,6 +71,27 @@ void DrawWaySwatch(SvgCanvas& canvas, Pixel middle, std::string_view color, doub
   }
 }
 
+void DrawPlacesLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure) {
+  const RobotStates states = StatesOf(figure.result);
+  if (std::find(states.names.begin(), states.names.end(), "beacon") != states.names.end()) {
+    panel.Row("beacon at the end, earlier beacon", [&](Pixel p) {
+      DrawBeacon(canvas, {p.x - 8, p.y}, true);
+      DrawBeacon(canvas, {p.x + 8, p.y}, false);
+    });
+  }
+  if (const sim::Annotation* chain = LatestAnnotation(figure, "chain")) {
+    panel.Row(fmt::format("{}, at {:.0f} s", Shortened(chain->label, 24), chain->tick * sim::kTickSeconds),
+              [&](Pixel p) {
+                canvas.Line({p.x - 17, p.y}, {p.x + 17, p.y}, "class=\"chain\"");
+              });
+  }
+  for (const sim::Annotation& disc : figure.result.annotations) {
+    if (disc.kind != "disc" || disc.points.empty()) continue;
+    panel.Row(disc.label.empty() ? "goal" : Shortened(disc.label, 26),
+              [&](Pixel p) { canvas.Circle(p, 8.0, fmt::format("class=\"{}\"", PlaceClass(disc))); });
+  }
+}
+
 void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const std::vector<Track>& tracks) {
   const auto count = [&](TrackKind kind) {
     return static_cast<std::size_t>(
@@ -78,11 +101,14 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
   const std::size_t lost = count(TrackKind::kLost);
   panel.Heading("LEGEND");
   if (kept > 0) {
-    panel.Row(fmt::format("{} {}, not lost", kept, Plural(figure.member, kept)),
+    panel.Row(fmt::format("{} {}, not {}", kept, Plural(figure.member, kept), figure.lost),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kKeptColor, 2.0); });
   }
   if (lost > 0) {
-    panel.Row(fmt::format("{} {}, lost", lost, Plural(figure.member, lost)),
+    const bool trapped = std::any_of(tracks.begin(), tracks.end(),
+                                     [](const Track& track) { return track.trapped_from.has_value(); });
+    panel.Row(fmt::format("{} {}, {}{}", lost, Plural(figure.member, lost), figure.lost,
+                          trapped ? ": its last loop" : ""),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kLostColor, 2.6); });
   }
   if (count(TrackKind::kPrey) > 0) {
@@ -103,7 +129,7 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
               [&](Pixel p) { DrawRobot(canvas, p, 8.0, 0.0, kKeptColor, "3"); });
   }
   if (lost > 0) {
-    panel.Row(fmt::format("end of a lost {}", figure.member), [&](Pixel p) {
+    panel.Row(fmt::format("end of a {} {}", figure.lost, figure.member), [&](Pixel p) {
       DrawLostRing(canvas, p, 8.0, kLostColor);
       DrawRobot(canvas, p, 8.0, 0.0, kLostColor, "7");
     });
@@ -115,9 +141,7 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
                      "class=\"split-robot\"");
     });
   }
-  if (LatestAnnotation(figure, "disc") != nullptr) {
-    panel.Row("goal", [&](Pixel p) { canvas.Circle(p, 8.0, "class=\"goal\""); });
-  }
+  DrawPlacesLegend(canvas, panel, figure);
   if (LatestAnnotation(figure, "area") != nullptr) {
     panel.Row("area the swarm starts in", [&](Pixel p) {
       canvas.Rectangle({p.x - 14, p.y - 8}, 28, 16, "class=\"spawn\"");
@@ -181,8 +205,22 @@ std::string DescribeOutcome(const RunFigure& figure) {
     if (result.robots[i].lost) ++lost;
   }
   const std::string_view prefix = result.failure.total ? "total failure: " : "";
-  if (lost == 0) return fmt::format("{}no {} lost", prefix, figure.member);
-  return fmt::format("{}{} of {} {} lost", prefix, lost, members, Plural(figure.member, members));
+  if (lost == 0) return fmt::format("{}no {} {}", prefix, figure.member, figure.lost);
+  return fmt::format("{}{} of {} {} {}", prefix, lost, members, Plural(figure.member, members), figure.lost);
+}
+
+std::string_view PlaceClass(const sim::Annotation& disc) {
+  if (disc.label == "nest") return "nest";
+  return disc.label == "food" ? "food" : "goal";
+}
+
+void DrawBeacon(SvgCanvas& canvas, Pixel center, bool stands) {
+  constexpr double kHalf = 7.0;
+  canvas.Polygon({{center.x, center.y - kHalf},
+                  {center.x + kHalf, center.y},
+                  {center.x, center.y + kHalf},
+                  {center.x - kHalf, center.y}},
+                 stands ? "class=\"beacon\"" : "class=\"beacon-before\"");
 }
 
 void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {

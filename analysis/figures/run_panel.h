@@ -14,6 +14,11 @@ namespace gauntlet::analysis {
 // The annotation of that kind with the latest tick; nullptr when there is none.
 const sim::Annotation* LatestAnnotation(const RunFigure& figure, std::string_view kind);
 
+// The style of a place by its label: "nest", "food", and "goal" for all others.
+std::string_view PlaceClass(const sim::Annotation& disc);
+// A square standing on its corner: full where a beacon stands, hollow where one stood.
+void DrawBeacon(SvgCanvas& canvas, Pixel center, bool stands);
+
 void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame);
 void DrawPanel(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,
                const std::vector<Track>& tracks);

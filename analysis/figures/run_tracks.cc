@@ -75,12 +75,14 @@ void ReadSummary(const sim::RobotSummary& summary, const FigureFrame& frame, Tra
   AppendPoint(track, frame.At(summary.end.position), 1.0, true);
 }
 
-double WidthOf(TrackKind kind) {
-  switch (kind) {
+constexpr int kCrowd = 12;  // more ways than this hide one another
+
+double WidthOf(const Track& track) {
+  switch (track.kind) {
     case TrackKind::kKept:
-      return 1.5;
+      return track.crowded ? 0.8 : 1.5;
     case TrackKind::kLost:
-      return 2.3;
+      return track.trapped_from ? 1.2 : 2.3;
     case TrackKind::kPrey:
       return 3.2;
   }
@@ -98,13 +100,14 @@ void DrawArrow(SvgCanvas& canvas, Pixel tip, double dx, double dy, double size, 
 void DrawArrows(SvgCanvas& canvas, const Track& track) {
   const double every = track.kind == TrackKind::kPrey ? kPreyArrows : kLostArrows;
   double way = every / 2;
+  const double from = track.trapped_from.value_or(0.0);
   const double size = track.kind == TrackKind::kPrey ? 11.0 : 8.0;
   for (std::size_t i = 3; i < track.points.size(); ++i) {
     const Pixel a = track.points[i - 1];
     const Pixel b = track.points[i];
     const double step = std::hypot(b.x - a.x, b.y - a.y);
     way += step;
-    if (way < every || step == 0.0) continue;
+    if (way < every || step == 0.0 || track.times[i] < from) continue;
     way = 0.0;
     // The direction over the last few points: steadier than that of one step.
     const Pixel before = track.points[i - 3];
@@ -154,6 +157,7 @@ std::vector<Track> TracksOf(const RunFigure& figure, const FigureFrame& frame) {
     double rank = 0.0;
     for (Track& track : tracks) {
       if (track.kind != kind) continue;
+      track.crowded = family > kCrowd;
       const double share = family > 1 ? rank / (family - 1) : 0.5;
       track.color =
           kind == TrackKind::kKept ? Mix(kKeptLight, kKeptDark, share) : Mix(kLostLight, kLostDark, share);
@@ -162,6 +166,13 @@ std::vector<Track> TracksOf(const RunFigure& figure, const FigureFrame& frame) {
   }
   for (Track& track : tracks) {
     if (track.kind == TrackKind::kPrey) track.color = kPreyColor;
+  }
+  for (const sim::Annotation& annotation : result.annotations) {
+    if (annotation.kind != "trapped" || result.ticks <= 0) continue;
+    for (Track& track : tracks) {
+      if (annotation.robots != std::vector<sim::RobotIndex>{track.robot}) continue;
+      track.trapped_from = static_cast<double>(annotation.tick) / result.ticks;
+    }
   }
   return tracks;
 }
@@ -180,8 +191,9 @@ void DrawWay(SvgCanvas& canvas, const Track& track) {
                                 : track.kind == TrackKind::kLost ? "lost"
                                                                  : "kept";
   canvas.OpenGroup(fmt::format("class=\"way {}\" id=\"robot-{}\" stroke=\"{}\" stroke-width=\"{}\"", name,
-                               track.robot, track.color, WidthOf(track.kind)));
-  const double weakest = track.kind == TrackKind::kKept ? 0.32 : 0.4;
+                               track.robot, track.color, WidthOf(track)));
+  const double weakest = track.crowded ? 0.12 : track.kind == TrackKind::kKept ? 0.32 : 0.4;
+  const double strongest = track.crowded || track.trapped_from ? 0.5 : 0.95;
   std::size_t begin = 0;
   for (int piece = 0; piece < kFadeSteps; ++piece) {
     std::size_t end = begin;
@@ -192,10 +204,15 @@ void DrawWay(SvgCanvas& canvas, const Track& track) {
     if (end > begin) {
       const std::vector<Pixel> points(track.points.begin() + static_cast<std::ptrdiff_t>(begin),
                                       track.points.begin() + static_cast<std::ptrdiff_t>(end) + 1);
-      const double strength = weakest + (0.95 - weakest) * piece / (kFadeSteps - 1);
+      const double strength = weakest + (strongest - weakest) * piece / (kFadeSteps - 1);
       canvas.Polyline(points, fmt::format("stroke-opacity=\"{}\"", SvgNumber(strength)));
     }
     begin = end;
+  }
+  if (track.trapped_from) {
+    const auto from = std::lower_bound(track.times.begin(), track.times.end(), *track.trapped_from);
+    const std::vector<Pixel> loop(track.points.begin() + (from - track.times.begin()), track.points.end());
+    if (loop.size() > 1) canvas.Polyline(loop, "class=\"loop\" stroke-width=\"2.6\"");
   }
   canvas.CloseGroup();
   if (track.kind != TrackKind::kKept) DrawArrows(canvas, track);

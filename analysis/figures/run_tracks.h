@@ -18,8 +18,10 @@ struct Track {
   int robot = 0;
   TrackKind kind = TrackKind::kKept;
   std::string color;
-  std::vector<Pixel> points;  // thinned: neighbours are at least a pixel apart
-  std::vector<double> times;  // of the points, as a share of the run: 0..1
+  std::vector<Pixel> points;           // thinned: neighbours are at least a pixel apart
+  std::vector<double> times;           // of the points, as a share of the run: 0..1
+  std::optional<double> trapped_from;  // from then on it kept to one place; the same share
+  bool crowded = false;                // one of so many that its way is drawn thin and faint
   sim::Pose start;
   sim::Pose end;
 };

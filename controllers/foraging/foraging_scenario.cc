@@ -141,6 +141,14 @@ ForagingState ForagingScenario::StateOf(sim::RobotIndex robot, sim::Tick tick) c
               static_cast<std::size_t>(robot)]);
 }
 
+// Whether the robot was dropping in the second that ends with this tick.
+bool ForagingScenario::DroppedIn(sim::RobotIndex robot, sim::Tick tick) const {
+  for (sim::Tick past = std::max(0, tick - sim::kTicksPerSecond + 1); past <= tick; ++past) {
+    if (StateOf(robot, past) == ForagingState::kDropping) return true;
+  }
+  return false;
+}
+
 std::vector<sim::Vec2> ForagingScenario::BeaconsAt(const sim::Observer& observer, sim::Tick tick) const {
   std::vector<sim::Vec2> beacons;
   for (sim::RobotIndex robot = 0; robot < settings_.robots; ++robot) {
@@ -243,7 +251,8 @@ std::vector<sim::Annotation> ForagingScenario::Annotate(const sim::Observer& obs
   return annotations;
 }
 
-// What every robot did when, for the time-line: changes of state, looked at once per second.
+// What every robot did when, for the time-line: changes of state, looked at once per second. Dropping lasts a
+// tick or two, so a second with a drop counts as Dropping.
 void ForagingScenario::AnnotateStates(std::vector<sim::Annotation>& annotations) const {
   std::string names;
   for (int state = 0; state < kForagingStates; ++state) {
@@ -253,7 +262,8 @@ void ForagingScenario::AnnotateStates(std::vector<sim::Annotation>& annotations)
   for (sim::RobotIndex robot = 0; robot < settings_.robots; ++robot) {
     sim::Annotation line{"states", names, {}, 0.0, -1, {robot}};
     for (sim::Tick tick = 0; tick < ticks; tick += sim::kTicksPerSecond) {
-      const auto state = static_cast<double>(StateOf(robot, tick));
+      const auto state =
+          static_cast<double>(DroppedIn(robot, tick) ? ForagingState::kDropping : StateOf(robot, tick));
       if (line.points.empty() || line.points.back().y() != state) {
         line.points.emplace_back(tick * sim::kTickSeconds, state);
       }

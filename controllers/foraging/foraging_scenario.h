@@ -55,6 +55,7 @@ class ForagingScenario : public sim::Scenario {
   void DropItems(const sim::Interaction& interaction);
   void RecordStates(const sim::Interaction& interaction);
   ForagingState StateOf(sim::RobotIndex robot, sim::Tick tick) const;
+  bool DroppedIn(sim::RobotIndex robot, sim::Tick tick) const;
   std::vector<sim::Vec2> BeaconsAt(const sim::Observer& observer, sim::Tick tick) const;
   void FindFirstPath(const sim::Observer& observer);
   bool Trapped(const sim::Observer& observer, sim::RobotIndex robot) const;

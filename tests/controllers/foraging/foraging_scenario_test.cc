@@ -80,6 +80,74 @@ TEST(ForagingScenario, NoItemAppearsOrVanishesInRandomArenas) {
   EXPECT_GT(taken, 16.0);
 }
 
+// A pocket of 0.9 m with an opening of 0.35 m, out of sight of nest and food, and one robot in it: a U whose
+// mouth is narrower than its inside (thesis 5.5.1, Figure 5.5).
+sim::RunSpec InAPocket(const std::string& controller, std::uint64_t seed) {
+  sim::RunSpec spec = Spec(controller, seed);
+  spec.scenario_parameters["time_limit"] = 300.0;
+  spec.controller_parameters["become_beacon_probability"] = 0.0;  // alone it would stop as a beacon
+  spec.test_case.obstacles = {{1.5, 0.5, 1.1, 0.1, 0.0},
+                              {1.5, -0.5, 1.1, 0.1, 0.0},
+                              {1.0, 0.0, 0.9, 0.1, 90.0},
+                              {2.0, 0.3125, 0.275, 0.1, 90.0},
+                              {2.0, -0.3125, 0.275, 0.1, 90.0}};
+  spec.test_case.robots = 1;
+  spec.test_case.spawn_area = sim::Rectangle{{1.25, -0.25}, {1.75, 0.25}};
+  return spec;
+}
+
+// Robots of ten that are in the pocket after 300 s, and have been for 120 s.
+double TrappedInPocket(const std::string& controller) {
+  double trapped = 0.0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const sim::RunResult result = worker::Run(InAPocket(controller, seed));
+    EXPECT_EQ(result.verdict, sim::Verdict::kCompleted) << result.message;
+    trapped += Metric(result, "trapped_robots");
+  }
+  return trapped;
+}
+
+TEST(ForagingScenario, APocketTrapsARobotThatTurnsLeftAndLetsTheImprovedOneGo) {
+  EXPECT_GE(TrappedInPocket("foraging"), 8.0);
+  EXPECT_LE(TrappedInPocket("foraging-improved"), 2.0);
+}
+
+TEST(ForagingScenario, ARobotThatTurnsLeftGoesRoundTheSameLoopForEver) {
+  sim::RunSpec spec = InAPocket("foraging", 1);
+  spec.controller_parameters["wander_turn_probability"] = 0.0;
+  spec.record_trajectory = true;
+  const sim::RunResult result = worker::Run(spec);
+  ASSERT_EQ(Metric(result, "trapped_robots"), 1.0);
+  const auto& way = result.trajectory;
+  const sim::Vec2 end = way.back()[0].position();
+  const double back = [&] {  // how near it was to where it ends, 15 s to 120 s before
+    double nearest = 1.0;
+    for (std::size_t tick = way.size() - 1200; tick < way.size() - 150; ++tick) {
+      nearest = std::min(nearest, (way[tick][0].position() - end).norm());
+    }
+    return nearest;
+  }();
+  EXPECT_LT(back, 0.05);
+  const auto trapped = std::find_if(result.annotations.begin(), result.annotations.end(),
+                                    [](const sim::Annotation& mark) { return mark.kind == "trapped"; });
+  ASSERT_NE(trapped, result.annotations.end());
+  EXPECT_EQ(trapped->robots, std::vector<sim::RobotIndex>{0});
+  EXPECT_EQ(trapped->tick, 3000 - 1200);
+}
+
+TEST(ForagingScenario, TheTimeLineShowsEveryDrop) {
+  const sim::RunResult result = worker::Run(Spec("foraging-basic", 4));
+  ASSERT_GT(result.fitness, 0.0);
+  double drops = 0.0;
+  for (const sim::Annotation& line : result.annotations) {
+    if (line.kind != "states") continue;
+    EXPECT_EQ(line.label, "wandering,following,gathering,homing,f-homing,dropping,beacon");
+    drops += static_cast<double>(std::count_if(line.points.begin(), line.points.end(),
+                                               [](const sim::Vec2& change) { return change.y() == 5.0; }));
+  }
+  EXPECT_EQ(drops, result.fitness);
+}
+
 TEST(ForagingScenario, RobotsStartAroundTheNest) {
   const sim::RunResult result = worker::Run(Spec("foraging", 3));
   ASSERT_EQ(result.robots.size(), 20u);
@@ -152,6 +220,8 @@ TEST(ForagingRefusals, CommunicationRangeOfZeroAndNegativeDecayAreOutOfRange) {
   sim::RunSpec spec = Spec("foraging", 1);
   spec.scenario_parameters["communication_range"] = 0.0;
   EXPECT_THAT(RefusalOf(spec), StartsWith("parameter 'communication_range' = 0 m is out of range"));
+  spec.scenario_parameters["communication_range"] = -3.0;
+  EXPECT_THAT(RefusalOf(spec), StartsWith("parameter 'communication_range' = -3 m is out of range"));
   spec = Spec("foraging", 1);
   spec.controller_parameters["pheromone_decay_time"] = -300.0;
   EXPECT_THAT(RefusalOf(spec), StartsWith("parameter 'pheromone_decay_time' = -300 s is out of range"));
@@ -161,6 +231,8 @@ TEST(ForagingRefusals, ASwarmThatDoesNotFitIsNamed) {
   sim::RunSpec spec = Spec("foraging", 1);
   spec.scenario_parameters = {{"robots", 100.0}, {"spawn_radius", 0.4}};
   EXPECT_THAT(RefusalOf(spec), StartsWith("no-room-to-spawn: "));
+  spec.scenario_parameters["robots"] = 10.0;  // fit once the area has been enlarged a little (spec 1.1)
+  EXPECT_EQ(worker::Run(spec).verdict, sim::Verdict::kCompleted);
   spec.test_case.robots = 101;
   EXPECT_THAT(RefusalOf(spec), StartsWith("swarm-size: 101 robots"));
 }
