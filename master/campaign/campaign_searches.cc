@@ -79,12 +79,14 @@ Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directo
     return plans;
   }
   const nlohmann::json json = nlohmann::json::parse(*list, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object() || json.value("format", 0) != kListFormat || !json.contains("searches"))
-    return BadList(path, fmt::format("is no list of searches in format {}", kListFormat));
+  const bool is_list = json.is_object() && json.contains("format") && json["format"] == kListFormat &&
+                       json.contains("searches") && json["searches"].is_array();
+  if (!is_list) return BadList(path, fmt::format("is no list of searches in format {}", kListFormat));
   for (const nlohmann::json& search : json["searches"]) {
-    if (!search.is_object() || !search.contains("experiment") || !search["experiment"].is_string())
-      return BadList(path, "a search without an experiment");
-    const Status added = add(search.value("settings", ""), search["experiment"], path);
+    const auto is_text = [&](const char* key) { return search.contains(key) && search[key].is_string(); };
+    if (!search.is_object() || !is_text("experiment") || !is_text("settings"))
+      return BadList(path, "a search without settings or an experiment");
+    const Status added = add(search["settings"], search["experiment"], path);
     if (!added) return added.error();
   }
   if (plans.empty()) return BadList(path, "no searches");

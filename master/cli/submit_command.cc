@@ -49,6 +49,7 @@ Status Test(CommandContext& context, slurm::SlurmClient& client, const std::vect
             bool print) {
   Status outcome = Ok{};
   for (const PlannedJob& job : jobs) {
+    if (!outcome && !print) break;
     const Result<std::string> answer = client.TestOnly(job.script, {});
     const std::string words = answer ? *answer : answer.error().message;
     if (print)

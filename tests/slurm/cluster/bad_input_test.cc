@@ -69,16 +69,28 @@ TEST_F(SlurmTrouble, WithoutSlurmsCommandsOrItsControllerItSaysWhatToDo) {
 TEST_F(SlurmTrouble, AFullQueueIsToldInSlurmsWords) {
   cluster_.reset();
   StartCluster({"--nodes", "1", "--cpus", "2", "--set", "MaxJobCount=3"});
-  Slurm({"sbatch", "--hold", "--array=1-2", "--output=/dev/null", "--wrap=true"});
-  std::unique_ptr<Process> master = StartGauntlet(SubmitArguments(Long(), "here", {SlowWorkers(500)}));
+  std::unique_ptr<Process> master =
+      StartGauntlet(SubmitArguments(Long(), "here", {"max_allocations=1", SlowWorkers(500)}));
+  ASSERT_TRUE(StatusBecomes([](const json& status) { return status.value("workers", 0) == 1; }))
+      << master->Err();
+  // Until there is no room; jobs that have ended count too, for some minutes.
+  Slurm({"sh", "-c", "while timeout 3 sbatch --hold --output=/dev/null --wrap=true; do :; done"});
+  const std::string job = Status().at("allocations").at(0).at("job");
+  Slurm({"scancel", job});
   EXPECT_TRUE(StatusBecomes([](const json& status) {
     const json& why = status.value("why_nothing_runs", json());
-    return why.is_string() && why.get<std::string>().find("queue is full") != std::string::npos;
-  })) << master->Err();
-  Slurm({"scancel", "--name=wrap"});
-  EXPECT_TRUE(StatusBecomes([](const json& status) { return status.value("runs_done", 0) > 0; }));
+    return why.is_string() &&
+           why.get<std::string>().find("temporarily unable to accept job") != std::string::npos &&
+           why.get<std::string>().find("queue is full") != std::string::npos;
+  }));
   EXPECT_EQ(Gauntlet({"stop", dir()}).exit_code, 0);
   EXPECT_EQ(master->Wait().exit_code, 3);
+
+  std::vector<std::string> another = SubmitArguments({}, "job");
+  *std::find(another.begin(), another.end(), dir()) += "2";
+  const ProcessResult refused = Gauntlet(another);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("Resource temporarily unavailable"), HasSubstr("queue is full")));
 }
 
 TEST_F(SlurmTrouble, ADirectoryThatNodesCannotSeeIsTold) {
@@ -156,6 +168,35 @@ TEST_F(SlurmTrouble, StopAfterACrashLeavesNothing) {
   EXPECT_TRUE(QueueEmpties());
 }
 
+TEST_F(SlurmTrouble, TheBatchScriptsForThoseWhoWantNoMagicServeACampaign) {
+  SmallCampaign campaign;
+  const std::string hash = LocalHash(campaign);
+  const std::string scripts = GAUNTLET_SOURCE_DIR "/slurm/by-hand";
+  const std::string path = std::string("PATH=") + GAUNTLET_BINARY_DIR + ":" + std::getenv("PATH");
+  Slurm({path, "GAUNTLET_BIND=tcp://127.0.0.1:*", "sbatch", "--output=/dev/null", scripts + "/master.sbatch",
+         dir(), "flocking", "--seed", "7", "--population", "8", "--generations", "4"});
+  Slurm({path, "sbatch", "--output=/dev/null", "--cpus-per-task=1", "--array=1-2", scripts + "/worker.sbatch",
+         dir()});
+  EXPECT_TRUE(StatusBecomes([](const json& status) { return status.value("state", "") == "finished"; }));
+  EXPECT_EQ(StateHash(dir()), hash);
+  EXPECT_TRUE(QueueEmpties()) << "the master lets its workers go";
+}
+
+TEST_F(SlurmTrouble, TheBundlesProgramsSubmitAndServe) {
+  const SmallCampaign campaign;
+  const std::string bundle = scratch_ / "bundle";
+  const ProcessResult made =
+      RunProcess({GAUNTLET_SOURCE_DIR "/slurm/make_bundle", GAUNTLET_BINARY_DIR, bundle});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  std::vector<std::string> command = SubmitArguments(campaign, "job");
+  command.insert(command.begin(), bundle + "/bin/gauntlet");
+  const ProcessResult submitted = RunProcess(command);
+  ASSERT_EQ(submitted.exit_code, 0) << submitted.err;
+  EXPECT_TRUE(StatusBecomes([](const json& status) { return status.value("state", "") == "finished"; }));
+  EXPECT_EQ(StateHash(dir()), LocalHash(campaign));
+  EXPECT_TRUE(QueueEmpties());
+}
+
 TEST_F(SlurmTrouble, ASweepEndsLikeItsSearchesAlone) {
   SmallCampaign campaign;
   std::vector<std::string> arguments = SubmitArguments(campaign, "here");
@@ -170,6 +211,25 @@ TEST_F(SlurmTrouble, ASweepEndsLikeItsSearchesAlone) {
   ASSERT_EQ(shown.at("searches").size(), 4U);
   EXPECT_EQ(shown["searches"][0]["state_hash"], LocalHash(campaign));
   EXPECT_TRUE(QueueEmpties());
+}
+
+TEST_F(SlurmTrouble, ASweepGoesOnOnALocalPoolAfterACrash) {
+  SmallCampaign campaign;
+  std::vector<std::string> arguments = SubmitArguments(campaign, "here", {SlowWorkers(200)});
+  const auto seed = std::find(arguments.begin(), arguments.end(), "--seed");
+  arguments.erase(seed, seed + 2);
+  arguments.insert(arguments.end(), {"--seeds", "7,8"});
+  std::unique_ptr<Process> master = StartGauntlet(arguments);
+  ASSERT_TRUE(StatusBecomes([](const json& status) { return status.value("runs_done", 0) >= 10; }))
+      << master->Err();
+  master->Signal(SIGKILL);
+  master->Wait();
+  EXPECT_EQ(Gauntlet({"stop", dir()}).exit_code, 0);
+  const json before = Show(dir());
+  EXPECT_EQ(before.at("finished"), false);
+  const ProcessResult resumed = Gauntlet({"resume", dir(), "--workers", "2", "--quiet"});
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_EQ(Show(dir()).at("searches").at(0).at("state_hash"), LocalHash(campaign));
 }
 
 }  // namespace

@@ -1,0 +1,227 @@
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "master/cli/command_line.h"
+#include "master/cli/sweep.h"
+
+namespace gauntlet::master {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::SizeIs;
+
+// What a cluster was asked, and what it answers.
+struct Requests {
+  std::vector<std::string> tested;
+  std::vector<std::string> submitted;
+  std::vector<std::string> cancelled;
+  std::vector<slurm::JobStatus> queue;
+  std::string refusal;
+};
+
+class FakeSlurm final : public slurm::SlurmClient {
+ public:
+  explicit FakeSlurm(Requests& requests) : requests_(requests) {}
+  Result<std::string> Submit(const std::string& script, const std::vector<std::string>&) override {
+    requests_.submitted.push_back(script);
+    return std::string("12");
+  }
+  Result<std::string> TestOnly(const std::string& script, const std::vector<std::string>&) override {
+    requests_.tested.push_back(script);
+    if (!requests_.refusal.empty()) return InvalidInput(requests_.refusal);
+    return std::string("Job 3 to start at once");
+  }
+  Result<std::vector<slurm::JobStatus>> Queue(const std::string& prefix) override {
+    std::vector<slurm::JobStatus> found;
+    for (slurm::JobStatus job : requests_.queue) {
+      job.name = prefix + job.name;
+      found.push_back(job);
+    }
+    return found;
+  }
+  Status Cancel(const std::vector<std::string>& jobs) override {
+    requests_.cancelled.insert(requests_.cancelled.end(), jobs.begin(), jobs.end());
+    return Ok{};
+  }
+
+ private:
+  Requests& requests_;
+};
+
+class Submit : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    root_ =
+        std::filesystem::path(::testing::TempDir()) /
+        (std::string("gauntlet-submit-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(root_);
+    std::filesystem::create_directories(root_);
+    setenv("XDG_CONFIG_HOME", root_.c_str(), 1);
+  }
+  void TearDown() override { std::filesystem::remove_all(root_); }
+
+  ExitCode Run(std::vector<std::string> arguments) {
+    out_.str("");
+    err_.str("");
+    CommandContext context{.out = out_, .err = err_, .program = "gauntlet", .service = {}};
+    context.slurm = [this] { return std::make_unique<FakeSlurm>(requests_); };
+    context.service.prepare = [this](const std::string& directory, const std::vector<SearchPlan>& searches,
+                                     const std::string& slurm) -> Status {
+      prepared_ = searches;
+      slurm_ = slurm;
+      std::filesystem::create_directories(directory);
+      std::ofstream(directory + "/slurm.toml") << slurm;
+      return Ok{};
+    };
+    context.service.status = [this](const std::string&) -> Result<std::string> { return status_; };
+    context.service.lives = [](const std::string&) -> Result<bool> { return false; };
+    context.service.read = [](const std::string&) -> Result<CampaignSummary> { return CampaignSummary{}; };
+    return RunCommandLine(arguments, context);
+  }
+  std::string dir() const { return root_ / "c"; }
+
+  std::filesystem::path root_;
+  Requests requests_;
+  std::vector<SearchPlan> prepared_;
+  std::string slurm_;
+  std::string status_;
+  std::ostringstream out_;
+  std::ostringstream err_;
+};
+
+TEST_F(Submit, MakesTheCampaignAndItsMastersJob) {
+  EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--slurm", "partition=short"}), kExitDone)
+      << err_.str();
+  EXPECT_THAT(requests_.tested, SizeIs(2));
+  ASSERT_THAT(requests_.submitted, SizeIs(1));
+  EXPECT_THAT(requests_.submitted[0], AllOf(HasSubstr("resume " + dir() + " --as-job"),
+                                            HasSubstr("--requeue"), HasSubstr("#SBATCH --partition=short")));
+  EXPECT_THAT(slurm_, HasSubstr("partition = \"short\""));
+  EXPECT_THAT(prepared_, SizeIs(1));
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("job 12 is the master"), HasSubstr("gauntlet status")));
+}
+
+TEST_F(Submit, ReadsTheUsersFileThenTheExperimentThenTheCommandLine) {
+  std::filesystem::create_directories(root_ / "gauntlet");
+  std::ofstream(root_ / "gauntlet" / "slurm.toml") << "account = \"a\"\nqos = \"b\"\nmemory = \"1G\"\n";
+  std::ofstream(root_ / "e.toml") << "scenario = \"flocking\"\n[slurm]\nqos = \"c\"\nmemory = \"2G\"\n";
+  EXPECT_EQ(Run({"submit", root_ / "e.toml", "--dir", dir(), "--slurm", "memory=3G"}), kExitDone)
+      << err_.str();
+  EXPECT_THAT(slurm_,
+              AllOf(HasSubstr("account = \"a\""), HasSubstr("qos = \"c\""), HasSubstr("memory = \"3G\"")));
+  EXPECT_EQ(Run({"submit", "flocking", "--dir", dir() + "2", "--set", "slurm.qos=x"}), kExitUsage);
+  EXPECT_THAT(err_.str(), HasSubstr("--slurm KEY=VALUE"));
+}
+
+TEST_F(Submit, ADryRunPrintsScriptsAndAnswersAndChangesNothing) {
+  EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--dry-run"}), kExitDone);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("# the master's job"), HasSubstr("exec "),
+                                HasSubstr("sbatch --test-only: Job 3 to start at once")));
+  requests_.refusal = "allocation failure: Invalid account or account/partition combination specified";
+  EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--dry-run"}), kExitUsage);
+  EXPECT_THAT(out_.str(), HasSubstr("Invalid account"));
+  EXPECT_THAT(err_.str(), HasSubstr("--slurm account=NAME"));
+  EXPECT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitUsage);
+  EXPECT_THAT(requests_.submitted, IsEmpty());
+  EXPECT_FALSE(std::filesystem::exists(dir()));
+}
+
+TEST_F(Submit, ResumeGivesTheMasterToSlurmAgainUnlessOneIsThere) {
+  ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
+  EXPECT_EQ(Run({"resume", dir()}), kExitDone) << err_.str();
+  EXPECT_THAT(requests_.submitted, SizeIs(2));
+  requests_.queue = {{.id = "13",
+                      .name = "master",
+                      .state = "PENDING",
+                      .phase = slurm::JobPhase::kQueued,
+                      .reason = "",
+                      .nodes = ""}};
+  EXPECT_EQ(Run({"resume", dir()}), kExitUsage);
+  EXPECT_THAT(err_.str(), HasSubstr("job 13 (PENDING) is the campaign's master already"));
+  EXPECT_THAT(requests_.submitted, SizeIs(2));
+}
+
+TEST_F(Submit, StopCancelsWhatIsLeft) {
+  ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
+  requests_.queue = {{.id = "13",
+                      .name = "w1",
+                      .state = "RUNNING",
+                      .phase = slurm::JobPhase::kRunning,
+                      .reason = "",
+                      .nodes = "n1"},
+                     {.id = "14",
+                      .name = "w2",
+                      .state = "COMPLETED",
+                      .phase = slurm::JobPhase::kEnded,
+                      .reason = "",
+                      .nodes = "n1"}};
+  EXPECT_EQ(Run({"stop", dir()}), kExitDone);
+  EXPECT_THAT(requests_.cancelled, ElementsAre("13"));
+}
+
+TEST_F(Submit, StatusListsTheJobsWithSlurmsWordsWhetherAMasterLivesOrNot) {
+  ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
+  status_ =
+      R"json({"state": "running", "why_nothing_runs": null, "pool_trouble": "job 8 waits in the queue (Priority)",
+                "allocations": [
+                 {"job": "7_1", "state": "RUNNING", "reason": "", "nodes": "n3", "workers": 2, "cancelled": false},
+                 {"job": "8", "state": "PENDING", "reason": "Priority", "nodes": "", "workers": 0,
+                  "cancelled": false}], "worker_list": []
+})json";
+  EXPECT_EQ(Run({"status", dir()}), kExitDone);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("fewer workers than could be used: job 8 waits"), HasSubstr("7_1"),
+                                HasSubstr("n3"), HasSubstr("PENDING  Priority")));
+  status_ = R"({"state": "stopped", "why_nothing_runs": "no master serves the campaign", "worker_list": []})";
+  requests_.queue = {{.id = "13",
+                      .name = "master",
+                      .state = "PENDING",
+                      .phase = slurm::JobPhase::kQueued,
+                      .reason = "Resources",
+                      .nodes = ""}};
+  EXPECT_EQ(Run({"status", dir()}), kExitDone);
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("job 13, which is to be the master, is PENDING (Resources)"),
+                                HasSubstr("13 master")));
+}
+
+TEST_F(Submit, ASweepHasASearchForEachCombination) {
+  EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--sweep", "search.population=4,6", "--sweep",
+                 "search.crossover=uniform,single-point", "--seeds", "3..5"}),
+            kExitDone)
+      << err_.str();
+  ASSERT_THAT(prepared_, SizeIs(12));
+  EXPECT_EQ(prepared_[0].settings, "search.population=4, search.crossover=uniform, seed 3");
+  EXPECT_EQ(prepared_[11].settings, "search.population=6, search.crossover=single-point, seed 5");
+  EXPECT_EQ(prepared_[11].experiment.search.population, 6);
+  EXPECT_EQ(prepared_[11].experiment.seed, 5U);
+}
+
+TEST_F(Submit, WrongSweepsAreRefusedByName) {
+  const auto error_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"submit", "flocking", "--dir", dir()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(Run(arguments), kExitUsage);
+    return err_.str();
+  };
+  EXPECT_THAT(error_of({"--sweep", "search.population"}), HasSubstr("give a key and its values, key=a,b,c"));
+  EXPECT_THAT(error_of({"--sweep", "search.population=4,,6"}), HasSubstr("key=a,b,c"));
+  EXPECT_THAT(error_of({"--sweep", "search.population=4,5"}), HasSubstr("search.population"));
+  EXPECT_THAT(error_of({"--sweep", "seed=1,2"}), HasSubstr("--seeds"));
+  EXPECT_THAT(error_of({"--seeds", "5..1"}), HasSubstr("a range (1..20)"));
+  EXPECT_THAT(error_of({"--seeds", "1,x"}), HasSubstr("--seeds 1,x"));
+  EXPECT_THAT(error_of({"--seeds", "1..1001"}), HasSubstr("at most 1000"));
+  EXPECT_THAT(error_of({"--seeds", "1..900", "--sweep", "search.population=4,6"}),
+              HasSubstr("more than 1000"));
+  EXPECT_THAT(error_of({"--seeds", "1..2", "--seed", "7"}), HasSubstr("give one of them"));
+  EXPECT_THAT(requests_.tested, IsEmpty());
+}
+
+}  // namespace
+}  // namespace gauntlet::master
