@@ -1,12 +1,12 @@
-// Include once in every program's file that talks to ZeroMQ: tells ThreadSanitizer that libzmq, which is not
-// built with it and hands memory between its threads by its own atomics, is not at fault. Races in our own
-// code are reported as ever. Nothing at all in other builds.
+// Include once in every program's file that talks to ZeroMQ: tells ThreadSanitizer that libzmq and libsodium,
+// which are not built with it and hand memory between libzmq's threads by its own atomics, are not at fault.
+// Races in our own code are reported as ever. Nothing at all in other builds.
 #pragma once
 
 #if defined(__SANITIZE_THREAD__)
 extern "C" __attribute__((weak, used, visibility("default"))) const char* __tsan_default_suppressions();
 // Looked up by name when the program starts; weak, because several files of one program may include this.
 extern "C" const char* __tsan_default_suppressions() {
-  return "called_from_lib:libzmq.so\nrace:libzmq.so\n";
+  return "called_from_lib:libzmq.so\nrace:libzmq.so\nrace:libsodium.so\n";
 }
 #endif
