@@ -6,6 +6,7 @@ target_sources(
           physics/differential_drive.cc
           physics/nearby_boxes.cc
           physics/neighbour_pairs.cc
+          physics/relaxation_engine.cc
           robot/controller.cc
           robot/devices.cc
           run_result.cc

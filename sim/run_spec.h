@@ -14,6 +14,9 @@ namespace gauntlet::sim {
 // controller stands here, so a later change of a default cannot change a stored run.
 using Parameters = std::map<std::string, double>;
 
+// Which physics simulates a run; see sim/physics/physics_engine.h.
+enum class PhysicsKind { kBox2d, kRelaxation };
+
 struct RunSpec {
   TestCase test_case;
   std::string scenario;  // registry name
@@ -21,6 +24,7 @@ struct RunSpec {
   std::string controller;  // registry name of the controller under test
   Parameters controller_parameters;
   std::uint64_t seed = 0;
+  PhysicsKind physics = PhysicsKind::kBox2d;
   bool record_trajectory = false;  // return every pose of every tick; no influence on the hash
 };
 

@@ -81,7 +81,7 @@ bool WithinLimit(double wheel_speed) {
 class Loop {
  public:
   Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
-       PhaseProbe* probe);
+       PhaseProbe* probe, PhysicsKind physics);
 
   // Records the start poses as tick 0.
   void Start();
@@ -103,7 +103,7 @@ class Loop {
   std::uint64_t seed_;
   Observer& observer_;
   PhaseProbe* probe_;
-  std::unique_ptr<PhysicsEngine> physics_ = MakeBox2dEngine();
+  std::unique_ptr<PhysicsEngine> physics_;
   SensorSuite sensors_;
   Grippers grippers_;
   std::vector<DeviceSet> devices_;
@@ -134,12 +134,13 @@ std::vector<bool> Equipped(const std::vector<RobotSetup>& swarm, Device device) 
 }
 
 Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
-           PhaseProbe* probe)
+           PhaseProbe* probe, PhysicsKind physics)
     : scenario_(scenario),
       swarm_(std::move(swarm)),
       seed_(seed),
       observer_(observer),
       probe_(probe),
+      physics_(physics == PhysicsKind::kRelaxation ? MakeRelaxationEngine() : MakeBox2dEngine()),
       sensors_(scenario.arena(), SensorsOf(swarm_)),
       grippers_(Equipped(swarm_, Device::kGripper)),
       actuators_(swarm_.size()),
@@ -276,7 +277,8 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   return Simulate(scenario, seed, record_trajectory, nullptr);
 }
 
-RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory, PhaseProbe* probe) {
+RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory, PhaseProbe* probe,
+                   PhysicsKind physics) {
   // Headquarters knows the observer from the beginning; how many robots it observes is known only afterwards.
   Observer observer(0, 0);
   const Headquarters headquarters(scenario.arena(), observer);
@@ -287,7 +289,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
 
   const std::size_t robots = swarm->size();
   observer = Observer(static_cast<int>(robots), scenario.tick_limit());
-  Loop loop(scenario, *std::move(swarm), seed, observer, probe);
+  Loop loop(scenario, *std::move(swarm), seed, observer, probe, physics);
   loop.Start();
 
   RunResult result;

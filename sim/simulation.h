@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "sim/run_result.h"
+#include "sim/run_spec.h"
 #include "sim/scenario.h"
 
 namespace gauntlet::sim {
@@ -31,6 +32,7 @@ class PhaseProbe {
   virtual void EndTick() = 0;
 };
 
-RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory, PhaseProbe* probe);
+RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory, PhaseProbe* probe,
+                   PhysicsKind physics = PhysicsKind::kBox2d);
 
 }  // namespace gauntlet::sim

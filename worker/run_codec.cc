@@ -153,6 +153,9 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   spec.controller_parameters = ReadParameters(wire.controller_parameters(), "controller", reader);
   spec.seed = wire.seed();
   spec.record_trajectory = wire.record_trajectory();
+  reader.Require(v1::Physics_IsValid(wire.physics()),
+                 fmt::format("physics {} is none that this version knows", static_cast<int>(wire.physics())));
+  if (wire.physics() == v1::PHYSICS_RELAXATION) spec.physics = sim::PhysicsKind::kRelaxation;
   if (!reader.ok()) return InvalidInput("spec: " + reader.error());
   return spec;
 }

@@ -14,7 +14,7 @@ sim::RunResult Run(const sim::RunSpec& spec) {
     refused.hash = sim::HashOf(refused);
     return refused;
   }
-  return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory);
+  return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory, nullptr, spec.physics);
 }
 
 }  // namespace gauntlet::worker

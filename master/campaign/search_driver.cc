@@ -99,6 +99,7 @@ Status SearchDriver::Ask() {
       spec.controller = parts_.experiment.controller;
       spec.controller_parameters = parts_.experiment.controller_parameters;
       spec.seed = run.seed;
+      spec.physics = parts_.experiment.physics;
       run.spec = EncodeRunSpec(spec);
       run.spec_hash = SpecHash(run.spec);
 

@@ -122,6 +122,7 @@ std::string EncodeRunSpec(const sim::RunSpec& spec) {
   }
   message.set_seed(spec.seed);
   message.set_record_trajectory(spec.record_trajectory);
+  if (spec.physics == sim::PhysicsKind::kRelaxation) message.set_physics(v1::PHYSICS_RELAXATION);
   return message.SerializeAsString();
 }
 
@@ -143,6 +144,7 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   }
   spec.seed = message.seed();
   spec.record_trajectory = message.record_trajectory();
+  if (message.physics() == v1::PHYSICS_RELAXATION) spec.physics = sim::PhysicsKind::kRelaxation;
   return spec;
 }
 

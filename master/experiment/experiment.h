@@ -64,6 +64,7 @@ struct Experiment {
   GenomeSpec genome;
   SearchSpec search;
   std::uint64_t seed = 1;
+  sim::PhysicsKind physics = sim::PhysicsKind::kBox2d;
 };
 
 }  // namespace gauntlet::master

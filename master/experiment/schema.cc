@@ -98,6 +98,8 @@ std::vector<Key> MakeCommonKeys() {
       SeedKey(),
       TextKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
       TextKey<&Experiment::controller>("controller", "the algorithm under test; default: the scenario's own"),
+      ChoiceKey<&Experiment::physics>("physics", {"box2d", "relaxation"},
+                                      "relaxation = hand-written, without friction: fast, for comparison"),
 
       NumberKey<kArena, &ArenaSpec::side>("arena.side", "m", 1.0, 50.0,
                                           "between the centre lines of opposite walls (thesis 4.5.3)"),

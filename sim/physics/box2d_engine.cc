@@ -269,9 +269,6 @@ RobotIndex Box2dEngine::AddRobot(const Pose& pose) {
   robot.motor = static_cast<b2MotorJoint*>(world_.CreateJoint(&motor));
 
   robots_.push_back(robot);
-  nearby_.SetRobots(static_cast<int>(robots_.size()));
-  neighbours_.SetRobots(robots_.size());
-  positions_.resize(robots_.size());
   return static_cast<RobotIndex>(robots_.size()) - 1;
 }
 
@@ -309,11 +306,14 @@ void Box2dEngine::Step(std::span<const WheelSpeeds> commands) {
   }
 }
 
-// Lets Box2D meet a dense crowd once (nobody moves), so that its pools have their size before the second
-// tick.
+// The lists get their size, once everybody is there. Lets Box2D meet a dense crowd once (nobody moves), so
+// that its pools have their size before the second tick.
 void Box2dEngine::Prepare() {
   constexpr float kSpacing = 0.2f;  // dm: everybody overlaps eight to each side
   prepared_ = true;
+  nearby_.SetRobots(static_cast<int>(robots_.size()));
+  neighbours_.SetRobots(robots_.size());
+  positions_.resize(robots_.size());
   float x = 0.0f;
   for (const Robot& robot : robots_) {
     robot.body->SetTransform({x += kSpacing, 0.0f}, 0.0f);

@@ -54,5 +54,9 @@ class PhysicsEngine {
 
 // Box2D 2.4 with the drive model of ARGoS' dynamics2d.
 std::unique_ptr<PhysicsEngine> MakeBox2dEngine();
+// Hand-written: the same drive, contacts by relaxation of positions, without friction. Several times faster
+// in crowds; pushed boxes neither turn nor meet other boxes. An oracle in tests, and `--set
+// physics=relaxation`.
+std::unique_ptr<PhysicsEngine> MakeRelaxationEngine();
 
 }  // namespace gauntlet::sim

@@ -30,21 +30,14 @@ Occluders::Occluders(const Arena& arena) {
 }
 
 void Occluders::AddBox(const OrientedBox& box, double height) {
-  boxes_.push_back({.box = box, .height = height, .min = box.center, .max = box.center});
-  MoveBox(boxes_.size() - 1, box);
+  Box added = {.box = box, .height = height, .min = box.center, .max = box.center};
+  for (const Vec2& corner : Corners(box)) {
+    added.min = added.min.cwiseMin(corner);
+    added.max = added.max.cwiseMax(corner);
+  }
+  boxes_.push_back(added);
   framed_.reserve(boxes_.size());
   all_high_ = all_high_ && height >= kHighestDevice;
-}
-
-void Occluders::MoveBox(std::size_t index, const OrientedBox& box) {
-  Box& moved = boxes_[index];
-  moved.box = box;
-  moved.min = box.center;
-  moved.max = box.center;
-  for (const Vec2& corner : Corners(box)) {
-    moved.min = moved.min.cwiseMin(corner);
-    moved.max = moved.max.cwiseMax(corner);
-  }
 }
 
 void Occluders::Frame(std::span<const BodyFrame> robots) {
@@ -64,11 +57,12 @@ void Occluders::Frame(std::span<const BodyFrame> robots) {
   }
 }
 
-bool Occluders::BoxBetweenRobots(const Vec2& a, const Vec2& b) const {
+bool Occluders::BoxBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const {
   const Vec2 min = a.cwiseMin(b);
   const Vec2 max = a.cwiseMax(b);
-  for (const std::size_t index : framed_) {
+  for (const std::size_t index : boxes) {
     const Box& box = boxes_[index];
+    if (box.height < kHighestDevice) continue;
     if (box.min.x() > max.x() || box.max.x() < min.x() || box.min.y() > max.y() || box.max.y() < min.y()) {
       continue;
     }

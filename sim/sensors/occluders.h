@@ -27,8 +27,6 @@ class Occluders {
   explicit Occluders(const Arena& arena);
 
   void AddBox(const OrientedBox& box, double height = kBoxHeight);
-  // Box `index`, in the order they were added, has moved.
-  void MoveBox(std::size_t index, const OrientedBox& box);
   // Every box is higher than any device or lamp, so BoxBetweenRobots says it all.
   bool all_high() const { return all_high_; }
 
@@ -37,7 +35,11 @@ class Occluders {
   void Frame(std::span<const BodyFrame> robots);
   // Whether a box higher than any device stands on the line between two of the robots of Frame. The answer is
   // the same in both directions. Boundary counts.
-  bool BoxBetweenRobots(const Vec2& a, const Vec2& b) const;
+  bool BoxBetweenRobots(const Vec2& a, const Vec2& b) const { return BoxBetween(framed_, a, b); }
+  // The same, asking only these boxes (their numbers in the order they were added).
+  bool BoxBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const;
+  std::size_t size() const { return boxes_.size(); }
+  const OrientedBox& box(std::size_t index) const { return boxes_[index].box; }
   // Whether the straight line from a to b meets a box, at or below the box's height.
   bool BoxBetween(const Point3& a, const Point3& b) const;
 
@@ -50,7 +52,7 @@ class Occluders {
   };
 
   std::vector<Box> boxes_;
-  std::vector<std::size_t> framed_;  // indices of boxes_
+  std::vector<std::size_t> framed_;  // indices of boxes_ that are higher than any device
   bool all_high_ = true;
 };
 

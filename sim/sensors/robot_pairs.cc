@@ -25,6 +25,7 @@ RobotPairs::RobotPairs(std::span<const Reach> reaches)
     : reaches_(reaches.begin(), reaches.end()),
       largest_reach_(LargestReach(reaches)),
       grid_(largest_reach_, reaches.size()),
+      boxes_(largest_reach_),
       first_(reaches.size()),
       count_(reaches.size()) {
   const std::size_t robots = reaches.size();
@@ -37,7 +38,8 @@ RobotPairs::RobotPairs(std::span<const Reach> reaches)
   }
 }
 
-bool RobotPairs::Find(std::span<const BodyFrame> robots, const Occluders& occluders, double extra,
+template <typename BoxBetween>
+bool RobotPairs::Find(std::span<const BodyFrame> robots, const BoxBetween& box_between, double extra,
                       std::size_t a, std::size_t b, Neighbour& view) const {
   const Vec2 offset = robots[b].position - robots[a].position;
   const double side = std::max(std::abs(offset.x()), std::abs(offset.y()));
@@ -47,7 +49,7 @@ bool RobotPairs::Find(std::span<const BodyFrame> robots, const Occluders& occlud
   if (!(camera > 0.0 && side < camera + extra) && !(squared < radio * radio)) return false;
   view.robot = static_cast<RobotIndex>(b);
   view.offset = offset;
-  view.clear = !occluders.BoxBetweenRobots(robots[a].position, robots[b].position);
+  view.clear = !box_between(robots[a].position, robots[b].position);
   if (view.clear) view.distance = std::sqrt(squared);
   return true;
 }
@@ -71,10 +73,11 @@ void RobotPairs::Update(std::span<const BodyFrame> robots, const Occluders& occl
 }
 
 void RobotPairs::UpdateFew(std::span<const BodyFrame> robots, const Occluders& occluders, double extra) {
+  const auto box_between = [&](const Vec2& p, const Vec2& q) { return occluders.BoxBetweenRobots(p, q); };
   for (std::size_t a = 0; a < robots.size(); ++a) {
     for (std::size_t b = a + 1; b < robots.size(); ++b) {
       Neighbour& view = neighbours_[first_[a] + count_[a]];
-      if (!Find(robots, occluders, extra, a, b, view)) continue;
+      if (!Find(robots, box_between, extra, a, b, view)) continue;
       ++count_[a];
       neighbours_[first_[b] + count_[b]++] = Back(view, a);
     }
@@ -84,10 +87,17 @@ void RobotPairs::UpdateFew(std::span<const BodyFrame> robots, const Occluders& o
 void RobotPairs::UpdateMany(std::span<const BodyFrame> robots, const Occluders& occluders, double extra) {
   pairs_.clear();
   grid_.Update(robots);
+  if (boxes_.size() != occluders.size()) {
+    for (std::size_t i = 0; i < occluders.size(); ++i) boxes_.AddBox(occluders.box(i));
+    boxes_.SetRobots(static_cast<int>(robots.size()));
+  }
   for (std::size_t a = 0; a < robots.size(); ++a) {
+    // Whatever stands between a and somebody in its reach is in its reach.
+    const std::span<const std::size_t> boxes = boxes_.Near(static_cast<RobotIndex>(a), robots[a].position);
+    const auto box_between = [&](const Vec2& p, const Vec2& q) { return occluders.BoxBetween(boxes, p, q); };
     for (const std::size_t b : grid_.Near(robots[a].position)) {
       Neighbour view;
-      if (b <= a || !Find(robots, occluders, extra, a, b, view)) continue;
+      if (b <= a || !Find(robots, box_between, extra, a, b, view)) continue;
       pairs_.push_back({.a = a, .b = b, .view = view});
       ++count_[a];
       ++count_[b];

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/physics/nearby_boxes.h"
 #include "sim/robot/foot_bot.h"
 #include "sim/sensors/body_frame.h"
 #include "sim/sensors/neighbour_grid.h"
@@ -29,8 +30,8 @@ class RobotPairs {
     double distance = 0.0;       // m, horizontal; only when clear
   };
 
-  // `ring_seen`: lights up to kRingRadius off the other's centre can be seen. Allocates nothing while every
-  // robot has at most 64 neighbours.
+  // `occluders` has the same boxes at every call. `ring_seen`: lights up to kRingRadius off the other's
+  // centre can be seen. Allocates nothing while every robot has at most 64 neighbours.
   void Update(std::span<const BodyFrame> robots, const Occluders& occluders, bool ring_seen);
   // Of the last Update, in robot order.
   std::span<const Neighbour> NeighboursOf(RobotIndex robot) const {
@@ -45,8 +46,9 @@ class RobotPairs {
     Neighbour view;  // of b by a
   };
 
-  // Whether a pair counts; then `view` is b as a has it.
-  bool Find(std::span<const BodyFrame> robots, const Occluders& occluders, double extra, std::size_t a,
+  // Whether a pair counts; then `view` is b as a has it. `box_between` is asked for two places.
+  template <typename BoxBetween>
+  bool Find(std::span<const BodyFrame> robots, const BoxBetween& box_between, double extra, std::size_t a,
             std::size_t b, Neighbour& view) const;
   static Neighbour Back(const Neighbour& view, std::size_t a);
   void UpdateFew(std::span<const BodyFrame> robots, const Occluders& occluders, double extra);
@@ -55,6 +57,7 @@ class RobotPairs {
   std::vector<Reach> reaches_;
   double largest_reach_ = 0.0;  // m, radius around a centre
   NeighbourGrid grid_;
+  NearbyBoxes boxes_;        // of many robots: what may stand between one and those it reaches
   std::vector<Pair> pairs_;  // only of many robots; a < b, ordered by a, then b
   std::vector<std::size_t> first_;
   std::vector<std::size_t> count_;

@@ -9,6 +9,7 @@ gauntlet_test(
           physics/moving_boxes_test.cc
           physics/nearby_boxes_test.cc
           physics/neighbour_pairs_test.cc
+          physics/relaxation_engine_test.cc
   LIBRARIES gauntlet_sim)
 
 gauntlet_test(

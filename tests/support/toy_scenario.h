@@ -142,7 +142,9 @@ inline std::vector<ToyRobot> RandomRobots(int count, const TestCase& test_case, 
   std::vector<ToyRobot> robots;
   for (int tries = 0; static_cast<int>(robots.size()) < count; ++tries) {
     GAUNTLET_CHECK(tries < 100000, "the robots do not fit");
-    const Vec2 p = center + half_side * Vec2(random.Uniform(-1, 1), random.Uniform(-1, 1));
+    const double x = random.Uniform(-1, 1);  // one after the other: arguments have no order
+    const double y = random.Uniform(-1, 1);
+    const Vec2 p = center + half_side * Vec2(x, y);
     bool clear = arena.InInterior(p);
     for (const OrientedBox& box : arena.boxes()) clear = clear && Distance(box, p) > foot_bot::kRadius + 0.01;
     for (const ToyRobot& robot : robots) clear = clear && (robot.pose.position - p).norm() > 0.18;

@@ -79,6 +79,10 @@ SpecPair ArbitrarySpec() {
   Write(pair.spec.controller_parameters = ArbitraryParameters(), pair.wire.mutable_controller_parameters());
   pair.wire.set_seed(pair.spec.seed = *rc::gen::arbitrary<std::uint64_t>());
   pair.wire.set_record_trajectory(pair.spec.record_trajectory = *rc::gen::arbitrary<bool>());
+  if (*rc::gen::arbitrary<bool>()) {
+    pair.wire.set_physics(v1::PHYSICS_RELAXATION);
+    pair.spec.physics = sim::PhysicsKind::kRelaxation;
+  }
   return pair;
 }
 
@@ -105,6 +109,7 @@ RC_GTEST_PROP(RunCodecProperty, SpecsDecodeToWhatWasSent, ()) {
   RC_ASSERT(decoded->controller_parameters == pair.spec.controller_parameters);
   RC_ASSERT(decoded->seed == pair.spec.seed);
   RC_ASSERT(decoded->record_trajectory == pair.spec.record_trajectory);
+  RC_ASSERT(decoded->physics == pair.spec.physics);
 }
 
 RC_GTEST_PROP(RunCodecProperty, GarbageIsAnErrorNeverACrash, (const std::string& bytes)) {

@@ -37,6 +37,7 @@ TEST(RunCodecTest, ARunSpecSurvivesTheRoundTrip) {
   EXPECT_EQ(decoded->controller_parameters, spec.controller_parameters);
   EXPECT_EQ(decoded->seed, spec.seed);
   EXPECT_TRUE(decoded->record_trajectory);
+  EXPECT_EQ(decoded->physics, sim::PhysicsKind::kRelaxation);
   EXPECT_EQ(EncodeRunSpec(*decoded), bytes);
 }
 

@@ -20,6 +20,7 @@ inline sim::RunSpec SampleSpec() {
   spec.controller_parameters = {{"speed", 0.07}};
   spec.seed = 0xfedcba9876543210ULL;
   spec.record_trajectory = true;
+  spec.physics = sim::PhysicsKind::kRelaxation;
   return spec;
 }
 

@@ -32,9 +32,9 @@ TEST(ExperimentErrorsTest, UnknownKeysComeWithTheNearestKnownOne) {
                     HasSubstr("known: controller_parameters.speed")));
   EXPECT_EQ(ErrorOf(Marching("[search]\nlength_max = 3\n")),
             "toy.toml:3:1: unknown key 'search.length_max'; did you mean 'genome.length_max'?");
-  EXPECT_EQ(
-      ErrorOf(Marching("quux = 3\n")),
-      "toy.toml:2:1: unknown key 'quux'; known at the top: name, description, seed, scenario, controller");
+  EXPECT_EQ(ErrorOf(Marching("quux = 3\n")),
+            "toy.toml:2:1: unknown key 'quux'; known at the top: name, description, seed, scenario, "
+            "controller, physics");
   EXPECT_EQ(ErrorOf(kMarching, {"serch.population=4"}),
             "--set serch.population=4: unknown key 'serch.population'; did you mean 'search.population'?");
 }

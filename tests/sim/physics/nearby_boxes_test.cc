@@ -11,7 +11,7 @@ namespace {
 RC_GTEST_PROP(NearbyBoxes, MissNoBoxInReachOnAnyWay, ()) {
   constexpr double kReach = 0.3;
   NearbyBoxes nearby(kReach);
-  const int boxes = *rc::gen::inRange(0, 12);
+  const int boxes = *rc::gen::inRange(0, 40);
   const auto coordinate = [] { return *rc::gen::inRange(-3000, 3001) * 1e-3; };
   for (int i = 0; i < boxes; ++i) {
     nearby.AddBox(MakeBox({coordinate(), coordinate()}, *rc::gen::inRange(1, 2000) * 1e-3,
