@@ -85,13 +85,15 @@ class Loop {
 
   // Records the start poses as tick 0.
   void Start();
-  // One tick. False when a controller's command cannot be carried out; see invalid_command().
+  // One tick. False when a controller's command cannot be carried out or the scenario's lights are no
+  // numbers; see invalid_command().
   bool Tick();
   const std::string& invalid_command() const { return invalid_command_; }
   std::uint64_t trajectory_hash() const { return trajectory_hash_.value(); }
 
  private:
   bool Act();
+  bool CheckLights();
   void Observe();
   void Control();
   void Enter(Phase phase) {
@@ -172,6 +174,7 @@ bool Loop::Tick() {
   Observe();
   Enter(Phase::kSense);
   scenario_.Interact({.observer = observer_, .signals = signals_, .grippers = grippers_});
+  if (!CheckLights()) return false;
   sensors_.Sense({.poses = poses_,
                   .signals = signals_,
                   .actuators = actuators_,
@@ -212,6 +215,25 @@ bool Loop::Act() {
       return false;
     }
     wheels_[i] = {.left = actuators.left_wheel, .right = actuators.right_wheel};
+  }
+  return true;
+}
+
+// Lights may change from tick to tick.
+bool Loop::CheckLights() {
+  const std::span<const Light> lights = scenario_.lights();
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const Light& light = lights[i];
+    if (std::isfinite(light.position.x()) && std::isfinite(light.position.y()) && light.height >= 0.0 &&
+        std::isfinite(light.height) && light.intensity >= 0.0 && std::isfinite(light.intensity)) [[likely]] {
+      continue;
+    }
+    invalid_command_ = "invalid-light: light " + std::to_string(i) + ", tick " +
+                       std::to_string(observer_.last_tick()) + ": at " +
+                       PointText(light.position.x(), light.position.y()) + " m, height " +
+                       NumberText(light.height) + " m, intensity " + NumberText(light.intensity) +
+                       "; a place is finite, a height and an intensity are finite and not negative";
+    return false;
   }
   return true;
 }

@@ -16,8 +16,8 @@ inline constexpr int kMaxRobots = 1000;
 // Simulates the scenario to its end. A function of the scenario and the seed alone. Never throws.
 // A swarm that cannot be simulated (no robots, a robot outside the interior or inside an obstacle, a device
 // that this simulator lacks) is refused; a wheel speed that is not finite or beyond
-// foot_bot::kMaxWheelSpeed ends the run with the verdict kInvalidCommand. The message names robot, tick and
-// value.
+// foot_bot::kMaxWheelSpeed ends the run with the verdict kInvalidCommand, and so does a light of the scenario
+// that is not finite. The message names robot or light, tick and value.
 RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory);
 
 // The parts of a tick, in order.

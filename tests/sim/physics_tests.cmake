@@ -2,7 +2,6 @@
 gauntlet_test(
   sim_physics_test
   SOURCES argos_csv.cc
-          physics/argos_motion_test.cc
           physics/argos_scenes.cc
           physics/box2d_engine_test.cc
           physics/differential_drive_test.cc

@@ -186,8 +186,8 @@ TEST(Simulation, RefusesSwarmsThatCannotBeSimulated) {
   ToyScenario empty(TestCase{}, {}, 10);
   EXPECT_THAT(Simulate(empty, 1, false).message, StartsWith("swarm-size: 0 robots"));
 
-  ToyScenario huge(TestCase{}, std::vector<ToyRobot>(1001, RobotAt(0, 0, DriveStraight(0.1))), 10);
-  EXPECT_THAT(Simulate(huge, 1, false).message, StartsWith("swarm-size: 1001 robots"));
+  ToyScenario huge(TestCase{}, std::vector<ToyRobot>(10000, RobotAt(0, 0, DriveStraight(0.1))), 10);
+  EXPECT_THAT(Simulate(huge, 1, false).message, StartsWith("swarm-size: 10000 robots"));
 }
 
 // Robots on top of each other are possible, if odd: they drift apart and nothing becomes NaN.
@@ -210,6 +210,22 @@ TEST(Simulation, SurvivesObstaclesOfAnySize) {
   const RunResult result = Simulate(scenario, 1, false);
   EXPECT_EQ(result.verdict, Verdict::kCompleted);
   EXPECT_TRUE(std::isfinite(result.fitness));
+}
+
+TEST(Simulation, EndsAtALightThatIsNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Light& bad : {Light{.position = {nan, 0.0}}, Light{.height = -0.1}, Light{.intensity = -1.0},
+                           Light{.intensity = std::numeric_limits<double>::infinity()}}) {
+    ToyScenario scenario(TestCase{}, {RobotAt(0, 0, DriveStraight(0.1))}, 50);
+    scenario.lamps = {Light{}, Light{}};
+    scenario.interact = [&](const Interaction& interaction) {
+      if (interaction.observer.last_tick() == 7) scenario.lamps[1] = bad;
+    };
+    const RunResult result = Simulate(scenario, 1, false);
+    EXPECT_EQ(result.verdict, Verdict::kInvalidCommand);
+    EXPECT_EQ(result.ticks, 7);
+    EXPECT_THAT(result.message, StartsWith("invalid-light: light 1, tick 7: at "));
+  }
 }
 
 TEST(Simulation, EndsAtAScannerCommandThatIsNotFinite) {
