@@ -41,7 +41,7 @@ std::string StyleSheet() {
       ".goal {{ fill: {goal}; fill-opacity: 0.35; stroke: {goal}; stroke-width: 2.4; }}\n"
       ".nest {{ fill: #8a94a0; fill-opacity: 0.4; stroke: {soft}; stroke-width: 2; }}\n"
       ".food {{ fill: {prey}; fill-opacity: 0.3; stroke: {prey}; stroke-width: 2.4; }}\n"
-      ".beacon {{ fill: {beacon}; fill-opacity: 0.9; stroke: #ffffff; stroke-width: 1; }}\n"
+      ".beacon {{ fill: {beacon}; fill-opacity: 0.6; stroke: #ffffff; stroke-width: 1; }}\n"
       ".beacon-before {{ fill: none; stroke: {beacon}; stroke-width: 1.3; stroke-opacity: 0.75; }}\n"
       ".chain {{ fill: none; stroke: {beacon}; stroke-width: 2; stroke-dasharray: 7 5; }}\n"
       ".place {{ font-size: 12px; font-weight: bold; fill: #7a5c00; text-anchor: middle; stroke: #fdfcf9; "
@@ -202,7 +202,8 @@ void DrawBeacons(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& 
       if ((spell.end >= end) != stays) continue;
       const auto tick = static_cast<sim::Tick>(std::lround(spell.begin * sim::kTicksPerSecond));
       if (const auto position = PositionAt(figure, spell.robot, tick)) {
-        DrawBeacon(canvas, frame.At(*position), stays);
+        // Around the robot that stands there still.
+        DrawBeacon(canvas, frame.At(*position), stays ? 19.0 : 7.0, stays);
       }
     }
   }

@@ -74,9 +74,10 @@ void DrawWaySwatch(SvgCanvas& canvas, Pixel middle, std::string_view color, doub
 void DrawPlacesLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure) {
   const RobotStates states = StatesOf(figure.result);
   if (std::find(states.names.begin(), states.names.end(), "beacon") != states.names.end()) {
-    panel.Row("beacon at the end, earlier beacon", [&](Pixel p) {
-      DrawBeacon(canvas, {p.x - 8, p.y}, true);
-      DrawBeacon(canvas, {p.x + 8, p.y}, false);
+    panel.Row("beacon at the end, earlier", [&](Pixel p) {
+      DrawBeacon(canvas, {p.x - 6, p.y}, 12.0, true);
+      DrawRobot(canvas, {p.x - 6, p.y}, 5.0, 0.0, kKeptColor, "");
+      DrawBeacon(canvas, {p.x + 14, p.y}, 6.0, false);
     });
   }
   if (const sim::Annotation* chain = LatestAnnotation(figure, "chain")) {
@@ -108,7 +109,7 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
     const bool trapped = std::any_of(tracks.begin(), tracks.end(),
                                      [](const Track& track) { return track.trapped_from.has_value(); });
     panel.Row(fmt::format("{} {}, {}{}", lost, Plural(figure.member, lost), figure.lost,
-                          trapped ? ": its last loop" : ""),
+                          trapped ? ": strong since then" : ""),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kLostColor, 2.6); });
   }
   if (count(TrackKind::kPrey) > 0) {
@@ -214,12 +215,11 @@ std::string_view PlaceClass(const sim::Annotation& disc) {
   return disc.label == "food" ? "food" : "goal";
 }
 
-void DrawBeacon(SvgCanvas& canvas, Pixel center, bool stands) {
-  constexpr double kHalf = 7.0;
-  canvas.Polygon({{center.x, center.y - kHalf},
-                  {center.x + kHalf, center.y},
-                  {center.x, center.y + kHalf},
-                  {center.x - kHalf, center.y}},
+void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands) {
+  canvas.Polygon({{center.x, center.y - half},
+                  {center.x + half, center.y},
+                  {center.x, center.y + half},
+                  {center.x - half, center.y}},
                  stands ? "class=\"beacon\"" : "class=\"beacon-before\"");
 }
 

@@ -16,8 +16,8 @@ const sim::Annotation* LatestAnnotation(const RunFigure& figure, std::string_vie
 
 // The style of a place by its label: "nest", "food", and "goal" for all others.
 std::string_view PlaceClass(const sim::Annotation& disc);
-// A square standing on its corner: full where a beacon stands, hollow where one stood.
-void DrawBeacon(SvgCanvas& canvas, Pixel center, bool stands);
+// A square on its corner, full where a beacon stands, hollow where one stood; `half` its diagonal, in pixels.
+void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands);
 
 void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame);
 void DrawPanel(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,

@@ -79,6 +79,12 @@ class Timeline {
     canvas_.Text({kLeft + kWidth + kPanel - 22, 40},
                  fmt::format("fitness {:g} after {:.0f} s", figure_.result.fitness, seconds_),
                  "class=\"subtitle\"");
+    if (!figure_.result.failure.label.empty()) {
+      canvas_.Text(
+          {kLeft + kWidth + kPanel - 22, 71},
+          fmt::format("failure type {}: {}", figure_.result.failure.type, figure_.result.failure.label),
+          "class=\"subtitle\"");
+    }
     canvas_.Text({kLeft, kTop - 12}, fmt::format("WHAT EVERY {} DID", Upper(figure_.member)),
                  "class=\"heading\"");
     canvas_.Text({kLeft, rows_bottom_ + kCountsTop - 12},
