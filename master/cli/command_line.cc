@@ -165,6 +165,10 @@ Examples:
       ->add_option("--svg", replay_options->svg,
                    "write a picture: arena, every robot's way, where the swarm split")
       ->type_name("F");
+  replay
+      ->add_option("--timeline", replay_options->timeline,
+                   "write a picture: what every robot did when (foraging)")
+      ->type_name("F");
   replay->add_option("--csv", replay_options->csv, "write every pose of every tick")->type_name("F");
   replay->add_flag("--json", replay_options->json, "the result as one JSON document");
   replay->footer(

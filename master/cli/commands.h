@@ -64,6 +64,7 @@ struct ReplayOptions {
   std::string directory;
   std::string run;
   std::string svg;
+  std::string timeline;
   std::string csv;
   bool json = false;
 };

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/run_figure.h"
+#include "analysis/figures/timeline_figure.h"
 #include "analysis/figures/trajectory_csv.h"
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
@@ -35,6 +36,21 @@ bool SameFile(const std::string& a, const std::string& b) {
   return fs::absolute(a, error).lexically_normal() == fs::absolute(b, error).lexically_normal();
 }
 
+// Two outputs in one file would leave only the later one.
+Status CheckOwnFiles(const ReplayOptions& options) {
+  const std::pair<const char*, const std::string&> files[] = {
+      {"--svg", options.svg}, {"--timeline", options.timeline}, {"--csv", options.csv}};
+  for (std::size_t i = 0; i < std::size(files); ++i) {
+    for (std::size_t j = i + 1; j < std::size(files); ++j) {
+      if (files[i].second.empty() || files[j].second.empty()) continue;
+      if (!SameFile(files[i].second, files[j].second)) continue;
+      return InvalidInput(fmt::format("{} and {} are both {}: give each its own file", files[i].first,
+                                      files[j].first, files[i].second));
+    }
+  }
+  return Ok{};
+}
+
 std::string NounOf(const std::string& scenario) {
   return scenario == "flocking" ? "bird" : "robot";
 }
@@ -47,6 +63,7 @@ analysis::RunFigure FigureOf(const CampaignReplay& replay) {
   figure.result = replay.report.replayed;
   figure.metrics = MetricTexts(figure.spec.scenario, figure.result.metrics);
   figure.member = NounOf(replay.report.spec.scenario);
+  if (replay.report.spec.scenario == "foraging") figure.lost = "trapped";
   return figure;
 }
 
@@ -89,10 +106,7 @@ std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure
 ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
   const Result<std::uint64_t> run = ParseRunId(options.run);
   if (!run) return Fail(context, run.error());
-  if (!options.svg.empty() && SameFile(options.svg, options.csv)) {
-    return Fail(context, InvalidInput(fmt::format("--svg and --csv are both {}: give each its own file",
-                                                  options.svg)));
-  }
+  if (const Status own_files = CheckOwnFiles(options); !own_files) return Fail(context, own_files.error());
   const Result<CampaignReplay> replay = context.service.replay(options.directory, *run);
   if (!replay) return Fail(context, replay.error());
   if (!replay->report.damage.empty()) {  // what does not read back did not reproduce
@@ -100,12 +114,23 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
     return kExitNegative;
   }
   const analysis::RunFigure figure = FigureOf(*replay);
+  if (!options.timeline.empty() && !analysis::HasTimeline(figure)) {
+    return Fail(context,
+                InvalidInput(fmt::format("--timeline: runs of {} do not say what their robots did when",
+                                         figure.spec.scenario)));
+  }
   context.out << (options.json ? ReplayJson(replay->report) : Text(*replay, figure)) << std::flush;
   if (!options.svg.empty()) {
     if (const Status written = WriteFile(options.svg, analysis::DrawRun(figure)); !written) {
       return Fail(context, written.error());
     }
     PrintMessage(context, fmt::format("wrote {}", options.svg));
+  }
+  if (!options.timeline.empty()) {
+    if (const Status written = WriteFile(options.timeline, analysis::DrawTimeline(figure)); !written) {
+      return Fail(context, written.error());
+    }
+    PrintMessage(context, fmt::format("wrote {}", options.timeline));
   }
   if (!options.csv.empty()) {
     const std::string csv = analysis::WriteTrajectoryCsv(replay->report.replayed.trajectory);

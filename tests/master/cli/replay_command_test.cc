@@ -90,7 +90,20 @@ TEST_F(Replay, RefusedRunIsReproducedWithItsRule) {
 TEST_F(Replay, OneFileForTwoOutputsIsRefused) {
   ExpectUsageError({"replay", "d", "12", "--svg", Path("a"), "--csv", Path("./a")},
                    AllOf(HasSubstr("--svg"), HasSubstr("--csv")));
+  ExpectUsageError({"replay", "d", "12", "--timeline", Path("a"), "--csv", Path("./a")},
+                   AllOf(HasSubstr("--timeline"), HasSubstr("--csv")));
   EXPECT_FALSE(std::filesystem::exists(Path("a")));
+}
+
+TEST_F(Replay, TimelineIsWrittenForRunsThatSayWhatRobotsDid) {
+  EXPECT_EQ(Run({"replay", "d", "12", "--timeline", Path("t.svg"), "--csv", Path("t.csv")}), kExitUsage);
+  EXPECT_THAT(err_.str(), HasSubstr("--timeline: runs of flocking do not say what their robots did when"));
+  EXPECT_FALSE(std::filesystem::exists(Path("t.svg")));
+  replay_.report.spec.scenario = "foraging";
+  replay_.report.replayed.annotations = {{"states", "wandering,beacon", {{0.0, 1.0}}, 0.0, -1, {0}}};
+  EXPECT_EQ(Run({"replay", "d", "12", "--timeline", Path("t.svg")}), kExitDone);
+  pugi::xml_document svg;
+  EXPECT_TRUE(svg.load_file(Path("t.svg").c_str()));
 }
 
 TEST_F(Replay, BadRunIdsAndFilesAreUsageErrors) {
