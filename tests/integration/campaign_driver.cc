@@ -57,14 +57,23 @@ std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments
   return std::make_unique<Process>(WithProgram(arguments));
 }
 
+SmallCampaign SmallForaging() {
+  SmallCampaign campaign;
+  campaign.experiment = "foraging";
+  campaign.settings = {"scenario_parameters.time_limit=120"};
+  return campaign;
+}
+
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers) {
-  return {"evolve",        campaign.experiment,
-          "--dir",         dir,
-          "--workers",     std::to_string(workers),
-          "--seed",        campaign.seed,
-          "--population",  std::to_string(campaign.population),
-          "--generations", std::to_string(campaign.generations),
-          "--quiet"};
+  std::vector<std::string> arguments = {"evolve",        campaign.experiment,
+                                        "--dir",         dir,
+                                        "--workers",     std::to_string(workers),
+                                        "--seed",        campaign.seed,
+                                        "--population",  std::to_string(campaign.population),
+                                        "--generations", std::to_string(campaign.generations),
+                                        "--quiet"};
+  for (const std::string& setting : campaign.settings) arguments.insert(arguments.end(), {"--set", setting});
+  return arguments;
 }
 
 nlohmann::json Show(const std::string& dir) {

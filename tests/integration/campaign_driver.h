@@ -29,7 +29,10 @@ struct SmallCampaign {
   int generations = 4;
   std::string seed = "7";
   std::string experiment = "flocking";
+  std::vector<std::string> settings;  // key=value, as given to --set
 };
+// Foraging of the same size: the runs are cut short, because 20 robots over 800 s take 0.1 s each.
+SmallCampaign SmallForaging();
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers);
 
 // `show DIR --json`, parsed; a null value (and a test failure) when it does not answer with one JSON

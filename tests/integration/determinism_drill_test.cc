@@ -5,6 +5,7 @@
 #include <signal.h>
 
 #include <filesystem>
+#include <map>
 
 #include "tests/integration/campaign_driver.h"
 
@@ -22,57 +23,64 @@ using testing_support::StartGauntlet;
 using testing_support::StateHash;
 using testing_support::TemporaryDirectory;
 
-// The undisturbed run with one worker that every drill is compared with.
-const std::string& UndisturbedHash() {
-  static const std::string hash = [] {
+// Every drill is for every shipped behaviour.
+class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {
+ protected:
+  // The undisturbed run with one worker that every drill is compared with.
+  static const std::string& UndisturbedHash() {
+    static std::map<std::string, std::string> hashes;
+    std::string& hash = hashes[GetParam().experiment];
+    if (hash.empty()) {
+      const TemporaryDirectory scratch;
+      const ProcessResult result = Gauntlet(EvolveArguments(GetParam(), scratch / "c", 1));
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      hash = StateHash(scratch / "c");
+    }
+    return hash;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Experiments, DeterminismDrill,
+                         testing::Values(SmallCampaign{}, testing_support::SmallForaging()),
+                         [](const testing::TestParamInfo<SmallCampaign>& parameter) {
+                           return parameter.param.experiment;
+                         });
+
+TEST_P(DeterminismDrill, StateHashDoesNotDependOnTheNumberOfWorkers) {
+  for (const int workers : {2, 5}) {
     const TemporaryDirectory scratch;
-    const ProcessResult result = Gauntlet(EvolveArguments(SmallCampaign{}, scratch / "c", 1));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    return StateHash(scratch / "c");
-  }();
-  return hash;
-}
-
-class WorkerCountTest : public testing::TestWithParam<int> {};
-
-TEST_P(WorkerCountTest, StateHashDoesNotDependOnIt) {
-  const TemporaryDirectory scratch;
-  const ProcessResult result = Gauntlet(EvolveArguments(SmallCampaign{}, scratch / "c", GetParam()));
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
+    const ProcessResult result = Gauntlet(EvolveArguments(GetParam(), scratch / "c", workers));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash()) << workers << " workers";
+  }
   EXPECT_EQ(UndisturbedHash().size(), 64u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Workers, WorkerCountTest, testing::Values(2, 5),
-                         [](const testing::TestParamInfo<int>& parameter) {
-                           return fmt::format("{}", parameter.param);
-                         });
-
-TEST(DeterminismDrill, AnotherSeedGivesAnotherStateHash) {
+TEST_P(DeterminismDrill, AnotherSeedGivesAnotherStateHash) {
   const TemporaryDirectory scratch;
-  SmallCampaign other;
+  SmallCampaign other = GetParam();
   other.seed = "8";
   ASSERT_EQ(Gauntlet(EvolveArguments(other, scratch / "c", 2)).exit_code, 0);
   EXPECT_NE(StateHash(scratch / "c"), UndisturbedHash());
 }
 
-TEST(DeterminismDrill, KilledMasterResumesToTheSameStateHash) {
+TEST_P(DeterminismDrill, KilledMasterResumesToTheSameStateHash) {
   const TemporaryDirectory scratch;
-  testing_support::EvolveThroughMasterKills(SmallCampaign{}, scratch / "c", 2, 4, 1,
+  testing_support::EvolveThroughMasterKills(GetParam(), scratch / "c", 2, 4, 1,
                                             std::chrono::milliseconds(900));
   EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
 }
 
-TEST(DeterminismDrill, KilledWorkersAndRunnersDoNotChangeTheStateHash) {
+TEST_P(DeterminismDrill, KilledWorkersAndRunnersDoNotChangeTheStateHash) {
   const TemporaryDirectory scratch;
-  testing_support::EvolveThroughWorkerKills(SmallCampaign{}, scratch / "c", 2, 6, 2,
+  testing_support::EvolveThroughWorkerKills(GetParam(), scratch / "c", 2, 6, 2,
                                             std::chrono::milliseconds(200));
   EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
 }
 
-TEST(DeterminismDrill, InterruptedCampaignExitsWith3AndResumesToTheSameStateHash) {
+TEST_P(DeterminismDrill, InterruptedCampaignExitsWith3AndResumesToTheSameStateHash) {
   const TemporaryDirectory scratch;
-  SmallCampaign campaign;
+  const SmallCampaign& campaign = GetParam();
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 2));
   ASSERT_TRUE(
@@ -86,10 +94,10 @@ TEST(DeterminismDrill, InterruptedCampaignExitsWith3AndResumesToTheSameStateHash
   EXPECT_EQ(StateHash(dir), UndisturbedHash());
 }
 
-TEST(DeterminismDrill, ResumingAFinishedCampaignChangesNothing) {
+TEST_P(DeterminismDrill, ResumingAFinishedCampaignChangesNothing) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
-  ASSERT_EQ(Gauntlet(EvolveArguments(SmallCampaign{}, dir, 2)).exit_code, 0);
+  ASSERT_EQ(Gauntlet(EvolveArguments(GetParam(), dir, 2)).exit_code, 0);
   const nlohmann::json before = Show(dir);
   EXPECT_EQ(Gauntlet({"resume", dir, "--quiet"}).exit_code, 0);
   EXPECT_EQ(Show(dir), before);

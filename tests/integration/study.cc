@@ -1,0 +1,148 @@
+#include "tests/integration/study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "analysis/statistics/bootstrap.h"
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kRandomSeed = 5000;
+constexpr int kFreshRandomSeed = 6000;   // of simulating the random cases again
+constexpr int kFreshEvolvedSeed = 1000;  // plus the number of the evolution
+
+// The genomes of a campaign's population as case files; their paths.
+std::vector<std::string> WriteCases(const json& population, const std::string& prefix) {
+  std::vector<std::string> paths;
+  for (const json& member : population) {
+    paths.push_back(fmt::format("{}-{:04}.json", prefix, paths.size()));
+    std::ofstream(paths.back()) << json::object({{"obstacles", member.at("genome")}});
+  }
+  return paths;
+}
+
+std::vector<std::vector<double>> FitnessOf(const StudySample& sample) {
+  std::vector<std::vector<double>> clusters;
+  for (const StudyCluster& cluster : sample) {
+    std::vector<double>& values = clusters.emplace_back();
+    for (const SimulatedCase& one : cluster) values.push_back(one.fitness);
+  }
+  return clusters;
+}
+
+StudyCluster Flatten(const StudySample& sample) {
+  StudyCluster all;
+  for (const StudyCluster& cluster : sample) all.insert(all.end(), cluster.begin(), cluster.end());
+  return all;
+}
+
+std::vector<double> FlatFitness(const StudySample& sample) {
+  std::vector<double> values;
+  for (const SimulatedCase& one : Flatten(sample)) values.push_back(one.fitness);
+  return values;
+}
+
+void MustSucceed(const ProcessResult& result) {
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+}  // namespace
+
+double MeanFitness(const StudySample& sample) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const StudyCluster& cluster : sample) {
+    for (const SimulatedCase& one : cluster) {
+      sum += one.fitness;
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+void PrintSample(const std::string& name, const StudySample& sample) {
+  const StudyCluster all = Flatten(sample);
+  const auto n = static_cast<double>(all.size());
+  const double mean = MeanFitness(sample);
+  double squares = 0.0;
+  for (const SimulatedCase& one : all) squares += (one.fitness - mean) * (one.fitness - mean);
+  const auto share = [&](auto&& holds) {
+    return 100.0 * static_cast<double>(std::count_if(all.begin(), all.end(), holds)) / n;
+  };
+  fmt::print("{:<34} n {:>4}  mean {:.3f}  sd {:.3f}  zeros {:.1f} %  condition 1 {:.1f} %  2 {:.1f} %\n",
+             name, all.size(), mean, std::sqrt(squares / (n - 1.0)),
+             share([](const SimulatedCase& one) { return one.fitness == 0.0; }),
+             share([](const SimulatedCase& one) { return one.condition_1; }),
+             share([](const SimulatedCase& one) { return one.condition_2; }));
+}
+
+Comparison CompareSamples(const std::string& name, const StudySample& first, const StudySample& second) {
+  const Comparison comparison{
+      analysis::MannWhitney(FlatFitness(first), FlatFitness(second)),
+      analysis::ClusterBootstrapA(FitnessOf(first), FitnessOf(second), 0.90, 4000, 1).low};
+  fmt::print("{:<34} A {:.3f} (95 % lower bound {:.3f}), one-tailed p {:.3g}\n", name, comparison.test.a,
+             comparison.lower_bound, comparison.test.p_greater);
+  return comparison;
+}
+
+StudyCluster Study::Simulate(const std::string& controller, const std::vector<std::string>& cases,
+                             const std::string& dir, int seed) const {
+  std::vector<std::string> arguments = {
+      "evaluate", experiment_, "--json", "--quiet",           "--set", "controller=" + controller,
+      "--dir",    dir,         "--seed", std::to_string(seed)};
+  for (const std::string& path : cases) arguments.insert(arguments.end(), {"--case", path});
+  const ProcessResult result = Gauntlet(arguments, std::chrono::seconds(1200));
+  MustSucceed(result);
+  const json document = json::parse(result.out, nullptr, false);
+  StudyCluster simulated;
+  for (const json& one : document["cases"]) {
+    const json& metrics = one["runs"][0]["metrics"];
+    simulated.push_back({one["fitness"].get<double>(), metrics.value("condition_1", 0.0) == 1.0,
+                         metrics.value("condition_2", 0.0) == 1.0});
+  }
+  return simulated;
+}
+
+std::vector<StudySample> Study::Random(const std::vector<std::string>& controllers) const {
+  const std::string dir = scratch_ / "random";
+  MustSucceed(Gauntlet({"random", experiment_, "--cases", std::to_string(kRandomCases), "--seed",
+                        std::to_string(kRandomSeed), "--dir", dir, "--quiet"},
+                       std::chrono::seconds(1200)));
+  const std::vector<std::string> cases = WriteCases(Show(dir)["population"], dir + "-case");
+  std::vector<StudySample> samples;
+  for (const std::string& controller : controllers) {
+    StudySample& sample = samples.emplace_back();
+    for (const SimulatedCase& one :
+         Simulate(controller, cases, fmt::format("{}-{}", dir, controller), kFreshRandomSeed)) {
+      sample.push_back({one});
+    }
+  }
+  return samples;
+}
+
+std::vector<StudySample> Study::Evolved(const std::vector<std::string>& controllers) const {
+  std::vector<StudySample> samples(controllers.size());
+  for (int seed = 1; seed <= kEvolutions; ++seed) {
+    const std::string dir = scratch_ / fmt::format("{}-{}", controllers.front(), seed);
+    MustSucceed(Gauntlet({"evolve", experiment_, "--set", "controller=" + controllers.front(), "--dir", dir,
+                          "--seed", std::to_string(seed), "--quiet"},
+                         std::chrono::seconds(1200)));
+    const std::vector<std::string> cases = WriteCases(Show(dir)["population"], dir + "-case");
+    for (std::size_t i = 0; i < controllers.size(); ++i) {
+      samples[i].push_back(Simulate(controllers[i], cases, fmt::format("{}-by-{}", dir, controllers[i]),
+                                    kFreshEvolvedSeed + seed));
+    }
+  }
+  return samples;
+}
+
+}  // namespace gauntlet::testing_support
