@@ -90,6 +90,7 @@ int Main(const std::vector<std::string>& arguments) {
                     .orphan_timeout_seconds = std::stod(arguments[2]),
                     .log_file = "",
                     .quiet = false,
+                    .allocation = "",
                     .software_version = "test",
                     .golden_hash = [] { return std::uint64_t{42}; }},
                    FaultyRunFunction);
