@@ -206,6 +206,9 @@ std::string DescribeOutcome(const RunFigure& figure) {
     if (result.robots[i].lost) ++lost;
   }
   const std::string_view prefix = result.failure.total ? "total failure: " : "";
+  if (lost == 0 && result.failure.total && !result.failure.label.empty()) {
+    return fmt::format("{}{}", prefix, result.failure.label);
+  }
   if (lost == 0) return fmt::format("{}no {} {}", prefix, figure.member, figure.lost);
   return fmt::format("{}{} of {} {} {}", prefix, lost, members, Plural(figure.member, members), figure.lost);
 }

@@ -197,6 +197,10 @@ TEST(RunFigure, TellsTheOutcomeInWords) {
   EXPECT_EQ(DescribeOutcome(figure), "1 of 3 birds lost");
   figure.result.failure = {true, 12, "20-30 degrees apart"};
   EXPECT_EQ(DescribeOutcome(figure), "total failure: 1 of 3 birds lost");
+  RunFigure nobody_lost = figure;
+  for (sim::RobotSummary& robot : nobody_lost.result.robots) robot.lost = false;
+  nobody_lost.result.failure.label = "no path, no food";
+  EXPECT_EQ(DescribeOutcome(nobody_lost), "total failure: no path, no food");
   const std::string texts = Texts(Parse(DrawRun(figure)));
   EXPECT_THAT(texts, HasSubstr("flocking, run 12\n"));
   EXPECT_THAT(texts, HasSubstr("total failure: 1 of 3 birds lost\n"));
