@@ -9,7 +9,7 @@ namespace gauntlet::slurm {
 namespace {
 
 // "sbatch: error: Batch job submission failed: Invalid account" without the lines' prefixes, in one line.
-std::string WordsOf(const std::string& program, std::string text) {
+std::string WordsOf(const std::string& program, const std::string& text) {
   std::string words;
   std::size_t begin = 0;
   while (begin < text.size()) {

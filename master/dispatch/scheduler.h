@@ -103,22 +103,22 @@ class Scheduler {
   // Ids are new; smaller ids are leased first, whenever they were submitted or released.
   void Submit(RunId run);
   // The result of this finished run is stored durably.
-  void Acknowledge(RunId run);
+  void Acknowledge(RunId id);
   // No lease is given from now on.
   void StopLeasing() { leasing_ = false; }
 
   // A worker said hello, for the first time or after a reconnect; `held`: the leases it works on or has
   // results for.
-  void WorkerJoined(InstanceId worker, std::uint32_t slots, const std::vector<Fence>& held, TimePoint now);
+  void WorkerJoined(InstanceId id, std::uint32_t slots, const std::vector<Fence>& held, TimePoint now);
   // The following return false when the worker is unknown.
-  bool WorkerHeard(InstanceId worker, TimePoint now);
-  bool WorkerHeartbeat(InstanceId worker, const std::vector<Fence>& held, TimePoint now);
-  bool WorkerDraining(InstanceId worker);  // finishes what it has, wants nothing new
-  bool WorkerLeft(InstanceId worker);      // said goodbye: nothing will come from it any more
-  bool WorkerDied(InstanceId worker);      // its process is gone; what it sent before may still arrive
+  bool WorkerHeard(InstanceId id, TimePoint now);
+  bool WorkerHeartbeat(InstanceId id, const std::vector<Fence>& held, TimePoint now);
+  bool WorkerDraining(InstanceId id);  // finishes what it has, wants nothing new
+  bool WorkerLeft(InstanceId id);      // said goodbye: nothing will come from it any more
+  bool WorkerDied(InstanceId id);      // its process is gone; what it sent before may still arrive
 
-  Answer Completed(InstanceId worker, Fence fence, RunId run, std::uint64_t hash);
-  Answer Failed(InstanceId worker, Fence fence, RunId run, const RunFailure& failure);
+  Answer Completed(InstanceId worker, Fence fence, RunId id, std::uint64_t hash);
+  Answer Failed(InstanceId worker, Fence fence, RunId id, const RunFailure& failure);
   // How long a run takes, as one that has just ended did: predicts the length of those to come.
   void RunTook(double seconds);
   // The lease could not be sent. The worker gets no other before it is heard of again.
