@@ -127,4 +127,20 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
   return scenario->create(resolved);
 }
 
+Status CheckSwarmFits(const sim::RunSpec& spec) {
+  constexpr std::uint64_t kSeeds = 5;
+  Status fits = Ok{};
+  for (std::uint64_t i = 0; i < kSeeds; ++i) {
+    sim::RunSpec trial = spec;
+    trial.seed += i;
+    const auto scenario = CreateScenario(trial);
+    if (!scenario.ok()) return scenario.error();
+    const sim::Observer observer(0, 0);
+    const auto swarm = (*scenario)->CreateSwarm(sim::Headquarters((*scenario)->arena(), observer));
+    if (swarm.ok()) return Ok{};
+    fits = swarm.error();
+  }
+  return fits;
+}
+
 }  // namespace gauntlet::controllers

@@ -25,6 +25,7 @@
 #include "master/dispatch/zmq_transport.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/case_list_search.h"
+#include "master/search/make_search.h"
 
 namespace gauntlet::master {
 namespace {
@@ -279,8 +280,21 @@ struct NewCampaign {
   std::uint64_t golden_hash = 0;
 };
 
+// Whether every search can begin, asked before anything is written.
+Status CheckSearches(const std::vector<SearchPlan>& plans) {
+  for (const SearchPlan& plan : plans) {
+    if (plan.experiment.search.kind == SearchKind::kCases) continue;
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(plan.experiment, kOnlySearch);
+    if (search) continue;
+    if (plan.settings.empty()) return search.error();
+    return Error{search.error().kind, fmt::format("{}: {}", plan.settings, search.error().message)};
+  }
+  return Ok{};
+}
+
 Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
                            const std::vector<sim::TestCase>& cases, const std::string& slurm) {
+  if (Status possible = CheckSearches(plans); !possible) return possible.error();
   Result<std::uint64_t> golden_hash = GoldenHashOfThisMachine();
   if (!golden_hash) return golden_hash.error();
   CampaignMeta meta;

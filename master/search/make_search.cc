@@ -19,6 +19,21 @@ Result<std::unique_ptr<SearchAlgorithm>> Make(const SearchSetup& setup) {
   return std::unique_ptr<SearchAlgorithm>(std::move(*search));
 }
 
+// Without this every run of the search would be refused for the same reason.
+Status SwarmFitsEmptyArena(const Experiment& experiment) {
+  sim::RunSpec spec;
+  spec.test_case = EmptyArena(experiment.arena);
+  spec.scenario = experiment.scenario;
+  spec.scenario_parameters = experiment.scenario_parameters;
+  spec.controller = experiment.controller;
+  spec.controller_parameters = experiment.controller_parameters;
+  spec.seed = experiment.seed;
+  Status fits = controllers::CheckSwarmFits(spec);
+  if (fits.ok()) return fits;
+  return InvalidInput("the swarm does not fit into the arena before it has any obstacle: " +
+                      fits.error().message);
+}
+
 }  // namespace
 
 Result<sim::ArenaRequirements> RequirementsOf(const Experiment& experiment) {
@@ -32,7 +47,10 @@ Result<sim::ArenaRequirements> RequirementsOf(const Experiment& experiment) {
 Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment, std::uint32_t search_id) {
   const Result<sim::ArenaRequirements> requirements = RequirementsOf(experiment);
   if (!requirements.ok()) return requirements.error();
-  return MakeSearch(experiment, *requirements, search_id);
+  auto search = MakeSearch(experiment, *requirements, search_id);
+  if (!search.ok()) return search;
+  if (const Status fits = SwarmFitsEmptyArena(experiment); !fits.ok()) return fits.error();
+  return search;
 }
 
 Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment,

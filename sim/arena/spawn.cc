@@ -19,8 +19,12 @@ Error NoRoom(const std::string& why) {
   return InvalidInput("no-room-to-spawn: " + why);
 }
 
+// To the millimetre: an enlarged area has long numbers.
 std::string AreaText(const Rectangle& area) {
-  return PointText(area.min.x(), area.min.y()) + " to " + PointText(area.max.x(), area.max.y()) + " m";
+  const auto corner = [](const Vec2& point) {
+    return PointText(std::round(point.x() * 1000.0) / 1000.0, std::round(point.y() * 1000.0) / 1000.0);
+  };
+  return corner(area.min) + " to " + corner(area.max) + " m";
 }
 
 // What makes the request senseless, if anything.

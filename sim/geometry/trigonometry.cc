@@ -158,7 +158,8 @@ double Atan2(double y, double x) {
 
 double Exp(double x) {
   if (!(x < 709.79)) [[unlikely]] {
-    return std::isnan(x) ? kNotANumber : kInfinity;
+    if (std::isnan(x)) return kNotANumber;
+    return kInfinity;
   }
   if (x < -745.2) [[unlikely]] {
     return 0.0;

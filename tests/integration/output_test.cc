@@ -52,12 +52,13 @@ TEST(OutputTest, AClosedProgressPipeDoesNotStopTheCampaign) {
   EXPECT_EQ(status.out, "0\n") << status.err;
 }
 
+// 34 birds find room in the empty arena, so the search begins, but not between 60 obstacles.
 TEST(OutputTest, ASearchWithoutAnyResultSaysWhyAndExits1) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   const ProcessResult result =
-      Gauntlet({"evolve", "flocking", "--set", "scenario_parameters.birds=100", "--generations", "2",
-                "--population", "4", "--workers", "2", "--dir", dir});
+      Gauntlet({"evolve", "flocking", "--set", "scenario_parameters.birds=34", "--set", "genome.genes=60",
+                "--generations", "2", "--population", "4", "--workers", "2", "--dir", dir});
   EXPECT_EQ(result.exit_code, 1) << result.err;
   EXPECT_THAT(result.out, HasSubstr("NO RUN GAVE A RESULT"));
   EXPECT_THAT(result.out, HasSubstr("8 of 8 refused: no-room-to-spawn: "));

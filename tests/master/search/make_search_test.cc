@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "controllers/registry.h"
 #include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
@@ -41,6 +42,25 @@ TEST(MakeSearchTest, UnknownScenarioIsNamed) {
   ASSERT_FALSE(search.ok());
   EXPECT_EQ(search.error().kind, ErrorKind::kNotFound);
   EXPECT_THAT(search.error().message, HasSubstr("'juggling'"));
+}
+
+TEST(MakeSearchTest, ASwarmThatDoesNotFitIntoTheEmptyArenaIsRefused) {
+  Experiment experiment = ToySetup().experiment;
+  experiment.scenario = "foraging";
+  experiment.controller = "foraging";
+  experiment.controller_parameters.clear();
+  const auto defaults = controllers::ResolveParameters(controllers::FindScenario("foraging")->parameters,
+                                                       {{"robots", 100.0}, {"spawn_radius", 0.4}});
+  ASSERT_TRUE(defaults.ok());
+  experiment.scenario_parameters = *defaults;
+  auto search = MakeSearch(experiment, 1);
+  ASSERT_FALSE(search.ok());
+  EXPECT_EQ(search.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_THAT(search.error().message, HasSubstr("no-room-to-spawn: only "));
+  EXPECT_THAT(search.error().message, HasSubstr(" of 100 robots fit"));
+  experiment.scenario_parameters["robots"] = 10.0;
+  search = MakeSearch(experiment, 1);
+  EXPECT_TRUE(search.ok()) << search.error().message;
 }
 
 }  // namespace
