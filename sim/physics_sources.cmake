@@ -9,6 +9,7 @@ target_sources(
           physics/relaxation_engine.cc
           robot/controller.cc
           robot/devices.cc
+          run_checks.cc
           run_result.cc
           sensors/distance_scanner.cc
           sensors/light_sensor.cc

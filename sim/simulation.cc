@@ -9,14 +9,11 @@
 #include "sim/base/hash.h"
 #include "sim/base/number_text.h"
 #include "sim/physics/physics_engine.h"
+#include "sim/run_checks.h"
 #include "sim/sensors/sensor_suite.h"
 
 namespace gauntlet::sim {
 namespace {
-
-std::string RobotName(std::size_t robot) {
-  return "robot " + std::to_string(robot);
-}
 
 RunResult Refusal(std::string message) {
   RunResult result;
@@ -24,52 +21,6 @@ RunResult Refusal(std::string message) {
   result.message = std::move(message);
   result.hash = HashOf(result);
   return result;
-}
-
-// Why this robot cannot be simulated, or nothing.
-std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, const RobotSetup& setup) {
-  const Vec2& p = setup.pose.position;
-  if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(setup.pose.heading)) {
-    return "bad-start: " + RobotName(index) +
-           " starts at a pose that is not finite: " + PointText(p.x(), p.y()) + " m" + ", heading " +
-           NumberText(setup.pose.heading);
-  }
-  if (!arena.InInterior(p)) {
-    return "bad-start: " + RobotName(index) + " starts outside the walls, at " + PointText(p.x(), p.y()) +
-           " m";
-  }
-  for (std::size_t box = 0; box < arena.obstacles().size(); ++box) {
-    if (Contains(arena.obstacles()[box], p)) {
-      return "bad-start: " + RobotName(index) + " starts inside obstacle " + std::to_string(box) + ", at " +
-             PointText(p.x(), p.y()) + " m";
-    }
-  }
-  for (const double range : {setup.camera_range, setup.radio_range}) {
-    if (!std::isfinite(range) || range < 0.0) {
-      return "bad-range: " + RobotName(index) + " has a camera or radio range of " + NumberText(range) +
-             " m; a range is finite and not negative";
-    }
-  }
-  if (setup.controller == nullptr) return "bad-start: " + RobotName(index) + " has no controller";
-  const DeviceSet devices = setup.controller->Devices();
-  for (std::uint32_t bit = 0; bit < 32; ++bit) {
-    const Device device = static_cast<Device>(1u << bit);
-    if (!devices.Has(device) || (kAllDevices.Has(device) && setup.equipment.Has(device))) continue;
-    return "unsupported-device: " + RobotName(index) + " asks in tick 0 for " + std::string(NameOf(device)) +
-           ", which it does not have";
-  }
-  return std::nullopt;
-}
-
-std::optional<std::string> RefuseSwarm(const Arena& arena, const std::vector<RobotSetup>& swarm) {
-  if (swarm.empty() || swarm.size() > static_cast<std::size_t>(kMaxRobots)) {
-    return "swarm-size: " + std::to_string(swarm.size()) + " robots; a run has 1 to " +
-           std::to_string(kMaxRobots);
-  }
-  for (std::size_t i = 0; i < swarm.size(); ++i) {
-    if (std::optional<std::string> reason = RefuseRobot(arena, i, swarm[i])) return reason;
-  }
-  return std::nullopt;
 }
 
 // NaN is not within anything.
@@ -85,15 +36,15 @@ class Loop {
 
   // Records the start poses as tick 0.
   void Start();
-  // One tick. False when a controller's command cannot be carried out or the scenario's lights are no
-  // numbers; see invalid_command().
+  // One tick. False when a controller's command cannot be carried out or something that surrounds the robots
+  // is no number; see invalid_command().
   bool Tick();
   const std::string& invalid_command() const { return invalid_command_; }
   std::uint64_t trajectory_hash() const { return trajectory_hash_.value(); }
 
  private:
   bool Act();
-  bool CheckLights();
+  bool CheckPoses();
   void Observe();
   void Control();
   void Enter(Phase phase) {
@@ -172,9 +123,14 @@ bool Loop::Tick() {
   for (std::size_t i = 0; i < swarm_.size(); ++i) poses_[i] = physics_->PoseOf(static_cast<RobotIndex>(i));
   Enter(Phase::kObserve);
   Observe();
+  if (!CheckPoses()) return false;
   Enter(Phase::kSense);
   scenario_.Interact({.observer = observer_, .signals = signals_, .grippers = grippers_});
-  if (!CheckLights()) return false;
+  if (std::optional<std::string> complaint = CheckSurroundings(scenario_, observer_.last_tick()))
+      [[unlikely]] {
+    invalid_command_ = *std::move(complaint);
+    return false;
+  }
   sensors_.Sense({.poses = poses_,
                   .signals = signals_,
                   .actuators = actuators_,
@@ -219,20 +175,17 @@ bool Loop::Act() {
   return true;
 }
 
-// Lights may change from tick to tick.
-bool Loop::CheckLights() {
-  const std::span<const Light> lights = scenario_.lights();
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    const Light& light = lights[i];
-    if (std::isfinite(light.position.x()) && std::isfinite(light.position.y()) && light.height >= 0.0 &&
-        std::isfinite(light.height) && light.intensity >= 0.0 && std::isfinite(light.intensity)) [[likely]] {
+// Bodies that overlap from the beginning may be pushed through a wall. NaN is not within walls.
+bool Loop::CheckPoses() {
+  const Arena& arena = scenario_.arena();
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const Vec2& p = poses_[i].position;
+    if (arena.InInterior(p)) [[likely]] {
       continue;
     }
-    invalid_command_ = "invalid-light: light " + std::to_string(i) + ", tick " +
-                       std::to_string(observer_.last_tick()) + ": at " +
-                       PointText(light.position.x(), light.position.y()) + " m, height " +
-                       NumberText(light.height) + " m, intensity " + NumberText(light.intensity) +
-                       "; a place is finite, a height and an intensity are finite and not negative";
+    invalid_command_ = "left-arena: " + RobotName(i) + ", tick " + std::to_string(observer_.last_tick()) +
+                       ": at " + PointText(p.x(), p.y()) +
+                       " m, outside the walls: bodies that overlap pushed it there";
     return false;
   }
   return true;
@@ -326,6 +279,11 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
 
   Outcome outcome;
   if (result.verdict == Verdict::kCompleted) outcome = scenario.Evaluate(observer);
+  if (std::optional<std::string> complaint = CheckOutcome(outcome, observer.last_tick())) {
+    result.verdict = Verdict::kInvalidCommand;
+    result.message = *std::move(complaint);
+    outcome = {};
+  }
   outcome.lost.resize(robots, false);
   result.fitness = outcome.fitness;
   result.metrics = std::move(outcome.metrics);

@@ -17,7 +17,8 @@ inline constexpr int kMaxRobots = 1000;
 // A swarm that cannot be simulated (no robots, a robot outside the interior or inside an obstacle, a device
 // that this simulator lacks) is refused; a wheel speed that is not finite or beyond
 // foot_bot::kMaxWheelSpeed ends the run with the verdict kInvalidCommand, and so does a light of the scenario
-// that is not finite. The message names robot or light, tick and value.
+// or a radio beacon that is not finite, and a fitness or metric that is none, and a robot that gets out of
+// the walls. The message names robot, light or beacon, tick and value.
 RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory);
 
 // The parts of a tick, in order.

@@ -160,17 +160,18 @@ TEST(Simulation, RefusesSwarmsThatCannotBeSimulated) {
   ToyRobot robot = RobotAt(7.0, 0, DriveStraight(0.1));
   RunResult result = SimulateOne(robot);
   EXPECT_EQ(result.verdict, Verdict::kRefused);
-  EXPECT_THAT(result.message, StartsWith("bad-start: robot 1 starts outside the walls, at (7, 0) m"));
+  EXPECT_THAT(result.message,
+              StartsWith("bad-start: robot 1, tick 0: at (7, 0) m, outside the walls, whose inner"));
 
   TestCase blocked;
   blocked.obstacles = {{.x = 1.0, .y = 0.0, .length = 0.5, .width = 0.5, .orientation_deg = 0.0}};
   robot = RobotAt(1.0, 0.1, DriveStraight(0.1));
   EXPECT_THAT(SimulateOne(robot, blocked).message,
-              StartsWith("bad-start: robot 1 starts inside obstacle 0, at (1, 0.1) m"));
+              StartsWith("bad-start: robot 1, tick 0: at (1, 0.1) m, inside obstacle 1"));
 
   robot = RobotAt(std::numeric_limits<double>::quiet_NaN(), 0, DriveStraight(0.1));
   EXPECT_THAT(SimulateOne(robot).message,
-              StartsWith("bad-start: robot 1 starts at a pose that is not finite"));
+              StartsWith("bad-start: robot 1, tick 0: at (nan, 0) m, heading 0; a pose is finite"));
 
   robot = RobotAt(1, 0, DriveStraight(0.1));
   robot.devices = Device::kWheels | Device::kGripper;
@@ -181,7 +182,7 @@ TEST(Simulation, RefusesSwarmsThatCannotBeSimulated) {
   robot = RobotAt(1, 0, DriveStraight(0.1));
   robot.camera_range = std::numeric_limits<double>::infinity();
   EXPECT_THAT(SimulateOne(robot).message,
-              StartsWith("bad-range: robot 1 has a camera or radio range of inf m"));
+              StartsWith("bad-range: robot 1, tick 0: camera or radio range inf m"));
 
   ToyScenario empty(TestCase{}, {}, 10);
   EXPECT_THAT(Simulate(empty, 1, false).message, StartsWith("swarm-size: 0 robots"));
@@ -204,12 +205,47 @@ TEST(Simulation, SurvivesRobotsInOnePlace) {
 TEST(Simulation, SurvivesObstaclesOfAnySize) {
   TestCase test_case;
   test_case.obstacles = {{.x = 0.5, .y = 0.0, .length = 1e-9, .width = 1e-9, .orientation_deg = 10.0},
+                         {.x = 1.0, .y = 0.0, .length = 0.0, .width = 0.0, .orientation_deg = 0.0},
                          {.x = 0.0, .y = 0.6, .length = 2.0, .width = 1e-6, .orientation_deg = 0.0},
                          {.x = 0.0, .y = -1e6, .length = 1e6, .width = 1e5, .orientation_deg = 0.0}};
-  ToyScenario scenario(test_case, {RobotAt(0, 0, DriveStraight(0.1)), RobotAt(0, 0.3, RandomWalk(0.1))}, 300);
-  const RunResult result = Simulate(scenario, 1, false);
-  EXPECT_EQ(result.verdict, Verdict::kCompleted);
-  EXPECT_TRUE(std::isfinite(result.fitness));
+  for (const PhysicsKind physics : {PhysicsKind::kBox2d, PhysicsKind::kRelaxation}) {
+    ToyScenario scenario(test_case, {RobotAt(0, 0, DriveStraight(0.1)), RobotAt(0, 0.3, RandomWalk(0.1))},
+                         300);
+    const RunResult result = Simulate(scenario, 1, false, nullptr, physics);
+    EXPECT_EQ(result.verdict, Verdict::kCompleted);
+    EXPECT_TRUE(std::isfinite(result.fitness));
+  }
+}
+
+// Twenty robots in one heap, into whose bodies (not centres) obstacles reach that overlap each other and the
+// walls: nothing hangs, nothing becomes NaN, and who is pushed through a wall is named.
+TEST(Simulation, SurvivesOrNamesEverythingOverlapping) {
+  TestCase test_case;
+  test_case.side_x = 1.0;
+  test_case.side_y = 1.0;
+  for (int i = 0; i < 12; ++i) {
+    const Vec2 place = 0.3 * UnitVector(i * kPi / 6);
+    test_case.obstacles.push_back({place.x(), place.y(), 0.4, 0.4, i * 30.0});
+  }
+  std::vector<ToyRobot> robots;
+  for (int i = 0; i < 20; ++i) robots.push_back(RobotAt(0.004 * i - 0.04, 0.002 * i - 0.02, Huddle(0.1)));
+  for (const PhysicsKind physics : {PhysicsKind::kBox2d, PhysicsKind::kRelaxation}) {
+    ToyScenario scenario(test_case, robots, 300);
+    const RunResult result = Simulate(scenario, 1, true, nullptr, physics);
+    const bool named = result.verdict == Verdict::kInvalidCommand;
+    EXPECT_TRUE(named || result.verdict == Verdict::kCompleted);
+    if (named) {
+      EXPECT_THAT(result.message,
+                  testing::MatchesRegex("left-arena: robot [0-9]+, tick " + std::to_string(result.ticks) +
+                                        ": at .* m, outside the walls: .*"));
+    }
+    for (std::size_t tick = 0; tick + 1 < result.trajectory.size(); ++tick) {
+      for (const RobotState& state : result.trajectory[tick]) {
+        ASSERT_TRUE(scenario.arena().InInterior(state.position())) << "tick " << tick;
+        ASSERT_TRUE(std::isfinite(state.heading));
+      }
+    }
+  }
 }
 
 TEST(Simulation, EndsAtALightThatIsNotFinite) {
@@ -226,6 +262,36 @@ TEST(Simulation, EndsAtALightThatIsNotFinite) {
     EXPECT_EQ(result.ticks, 7);
     EXPECT_THAT(result.message, StartsWith("invalid-light: light 1, tick 7: at "));
   }
+}
+
+TEST(Simulation, EndsAtARadioBeaconThatIsNotFinite) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const RadioBeacon& bad :
+       {RadioBeacon{.position = {0.0, nan}}, RadioBeacon{.position = {infinity, 0.0}},
+        RadioBeacon{.range = -0.5}, RadioBeacon{.range = nan}, RadioBeacon{.range = infinity}}) {
+    ToyScenario scenario(TestCase{}, {RobotAt(0, 0, DriveStraight(0.1))}, 50);
+    scenario.radios = {RadioBeacon{}, RadioBeacon{}};
+    scenario.interact = [&](const Interaction& interaction) {
+      if (interaction.observer.last_tick() == 7) scenario.radios[1] = bad;
+    };
+    const RunResult result = Simulate(scenario, 1, false);
+    EXPECT_EQ(result.verdict, Verdict::kInvalidCommand);
+    EXPECT_EQ(result.ticks, 7);
+    EXPECT_THAT(result.message, AllOf(StartsWith("invalid-radio-beacon: radio beacon 1, tick 7: at "),
+                                      HasSubstr(PointText(bad.position.x(), bad.position.y()) + " m, range " +
+                                                NumberText(bad.range) + " m")));
+  }
+}
+
+TEST(Simulation, GivesNoResultThatIsNotFinite) {
+  ToyScenario scenario(TestCase{}, {RobotAt(0, 0, DriveStraight(0.1))}, 5);
+  scenario.extra_metrics = {{"share", std::numeric_limits<double>::quiet_NaN()}};
+  const RunResult result = Simulate(scenario, 1, false);
+  EXPECT_EQ(result.verdict, Verdict::kInvalidCommand);
+  EXPECT_EQ(result.message,
+            "invalid-outcome: tick 5: the scenario's metric share is nan; a result is finite");
+  EXPECT_TRUE(result.metrics.empty());
 }
 
 TEST(Simulation, EndsAtAScannerCommandThatIsNotFinite) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,7 @@ class ToyScenario final : public Scenario {
   std::function<double(const Vec2&)> floor = [](const Vec2&) { return 1.0; };
   std::vector<Light> lamps;
   std::vector<RadioBeacon> radios;
+  std::vector<std::pair<std::string, double>> extra_metrics;
 
   const Arena& arena() const override { return arena_; }
   Tick tick_limit() const override { return tick_limit_; }
@@ -79,6 +81,7 @@ class ToyScenario final : public Scenario {
     for (const RobotState& state : observer.Latest()) outcome.fitness += state.position().norm();
     outcome.fitness /= observer.robots();
     outcome.metrics = {{"robots", observer.robots()}};
+    outcome.metrics.insert(outcome.metrics.end(), extra_metrics.begin(), extra_metrics.end());
     outcome.lost.assign(static_cast<std::size_t>(observer.robots()), false);
     return outcome;
   }
