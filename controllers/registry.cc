@@ -7,6 +7,7 @@
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/flocking/flocking_registry.h"
 #include "controllers/foraging/foraging_registry.h"
+#include "controllers/partitioning/partitioning_registry.h"
 #include "sim/base/nearest_name.h"
 #include "sim/base/number_text.h"
 
@@ -55,7 +56,7 @@ Status CheckRange(const ParameterInfo& info, double value) {
 
 std::span<const ScenarioInfo> Scenarios() {
   static const std::array scenarios = {FlockingScenarioInfo(), ForagingScenarioInfo(),
-                                       LightFlockingScenarioInfo()};
+                                       PartitioningScenarioInfo(), LightFlockingScenarioInfo()};
   return scenarios;
 }
 
@@ -63,6 +64,7 @@ std::span<const ControllerInfo> Controllers() {
   static const std::vector<ControllerInfo> controllers = [] {
     std::vector<ControllerInfo> all(FlockingControllerInfos().begin(), FlockingControllerInfos().end());
     all.insert(all.end(), ForagingControllerInfos().begin(), ForagingControllerInfos().end());
+    all.insert(all.end(), PartitioningControllerInfos().begin(), PartitioningControllerInfos().end());
     all.push_back(LightFlockingControllerInfo());
     return all;
   }();

@@ -43,6 +43,7 @@ std::string StyleSheet() {
       ".food {{ fill: {prey}; fill-opacity: 0.3; stroke: {prey}; stroke-width: 2.4; }}\n"
       ".beacon {{ fill: {beacon}; fill-opacity: 0.6; stroke: #ffffff; stroke-width: 1; }}\n"
       ".beacon-before {{ fill: none; stroke: {beacon}; stroke-width: 1.3; stroke-opacity: 0.75; }}\n"
+      ".transfer {{ fill: #ffffff; fill-opacity: 0.85; stroke: {beacon}; stroke-width: 2.2; }}\n"
       ".chain {{ fill: none; stroke: {beacon}; stroke-width: 2; stroke-dasharray: 7 5; }}\n"
       ".place {{ font-size: 12px; font-weight: bold; fill: #7a5c00; text-anchor: middle; stroke: #fdfcf9; "
       "stroke-width: 3; paint-order: stroke; }}\n"
@@ -209,6 +210,14 @@ void DrawBeacons(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& 
   }
 }
 
+// Where robots handed items over.
+void DrawTransfers(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {
+  for (const sim::Annotation& annotation : figure.result.annotations) {
+    if (annotation.kind != "transfer" || annotation.points.empty()) continue;
+    DrawTransfer(canvas, frame.At(annotation.points.front()));
+  }
+}
+
 // "0-3, 5, 7-9".
 std::string Ranges(std::vector<sim::RobotIndex> robots) {
   std::sort(robots.begin(), robots.end());
@@ -355,6 +364,7 @@ std::string DrawRun(const RunFigure& figure) {
   }
   DrawPlans(canvas, figure, frame);
   DrawBeacons(canvas, figure, frame);
+  DrawTransfers(canvas, figure, frame);
   DrawObstacleNumbers(canvas, frame, arena);
   const sim::Annotation* split = LatestAnnotation(figure, "split");
   Callout callout;

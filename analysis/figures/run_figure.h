@@ -31,7 +31,7 @@ std::string DescribeOutcome(const RunFigure& figure);
 // A complete SVG document without scripts and outside references. Pure: same figure, same bytes.
 // Annotations drawn: "area" (where the swarm starts), "path" and "chain" (dashed lines), "disc" (a place, by
 // its label), "split" (the latest is marked and labelled), "trapped" (the robot's way from that tick on
-// stands out), "states" (where robots stood as a beacon).
+// stands out), "states" (where robots stood as a beacon), "transfer" (where an item changed hands).
 std::string DrawRun(const RunFigure& figure);
 
 }  // namespace gauntlet::analysis

@@ -80,6 +80,15 @@ void DrawPlacesLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure) 
       DrawBeacon(canvas, {p.x + 14, p.y}, 6.0, false);
     });
   }
+  const auto transfers = static_cast<std::size_t>(
+      std::count_if(figure.result.annotations.begin(), figure.result.annotations.end(),
+                    [](const sim::Annotation& annotation) {
+                      return annotation.kind == "transfer" && !annotation.points.empty();
+                    }));
+  if (transfers > 0) {
+    panel.Row(fmt::format("{} {} from robot to robot", transfers, Plural("transfer", transfers)),
+              [&](Pixel p) { DrawTransfer(canvas, p); });
+  }
   if (const sim::Annotation* chain = LatestAnnotation(figure, "chain")) {
     panel.Row(fmt::format("{}, at {:.0f} s", Shortened(chain->label, 24), chain->tick * sim::kTickSeconds),
               [&](Pixel p) {
@@ -224,6 +233,11 @@ void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands) {
                   {center.x, center.y + half},
                   {center.x - half, center.y}},
                  stands ? "class=\"beacon\"" : "class=\"beacon-before\"");
+}
+
+void DrawTransfer(SvgCanvas& canvas, Pixel center) {
+  canvas.Circle({center.x - 3, center.y}, 4.5, "class=\"transfer\"");
+  canvas.Circle({center.x + 3, center.y}, 4.5, "class=\"transfer\"");
 }
 
 void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {

@@ -18,6 +18,8 @@ const sim::Annotation* LatestAnnotation(const RunFigure& figure, std::string_vie
 std::string_view PlaceClass(const sim::Annotation& disc);
 // A square on its corner, full where a beacon stands, hollow where one stood; `half` its diagonal, in pixels.
 void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands);
+// The mark of a hand-over between two robots, also used by the legend.
+void DrawTransfer(SvgCanvas& canvas, Pixel center);
 
 void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame);
 void DrawPanel(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,

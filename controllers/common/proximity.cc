@@ -54,6 +54,19 @@ double FrontReading(const ProximityReadings& readings, double half_angle) {
   return largest;
 }
 
+ProximityReadings WithoutBodies(const ProximityReadings& readings, std::span<const SeenBody> bodies) {
+  const auto& directions = ProximityDirections();
+  ProximityReadings result = readings;
+  for (const SeenBody& body : bodies) {
+    if (body.range >= kBodyReach) continue;
+    const sim::Vec2 body_direction = sim::UnitVector(body.bearing);
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      if (result[i] != 0.0 && LooksAt(directions[i], body.range, body_direction)) result[i] = 0.0;
+    }
+  }
+  return result;
+}
+
 ProximitySum SumProximity(const ProximityReadings& readings, const std::optional<SeenBody>& ignored) {
   const auto& directions = ProximityDirections();
   const bool ignore = ignored && ignored->range < kBodyReach;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "sim/geometry/vec2.h"
 #include "sim/robot/controller.h"
@@ -30,6 +31,9 @@ struct SeenBody {
   double range = 0.0;    // m between centres
   double bearing = 0.0;  // rad from the heading
 };
+
+// The readings without those of sensors that look at one of `bodies`, by the rule of SumProximity.
+ProximityReadings WithoutBodies(const ProximityReadings& readings, std::span<const SeenBody> bodies);
 
 // All readings as one push.
 struct ProximitySum {

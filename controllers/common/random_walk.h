@@ -1,6 +1,7 @@
 // Wandering: straight on, and now and then a new heading (Buchanan's dps code, spec section 1).
 #pragma once
 
+#include "controllers/common/steering.h"
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::controllers {
@@ -15,6 +16,11 @@ struct RandomWalkParameters {
 class RandomWalk {
  public:
   explicit RandomWalk(const RandomWalkParameters& parameters) : parameters_(parameters) {}
+
+  // Drives the walk's bearing of this tick and reports the turn to itself: all that wandering takes.
+  DriveCommand Drive(double speed, const SteeringThresholds& steering, sim::RandomStream& random);
+  // Still turning to a heading that it took.
+  bool turning() const { return remaining_ != 0.0; }
 
   // The bearing to take in this tick, rad. Draws once or twice from `random`.
   double Next(sim::RandomStream& random);

@@ -227,13 +227,7 @@ DriveCommand ForagingController::Walk(const sim::ControlStep& step) {
     walk_.Reset();
     return *aside;
   }
-  const DriveCommand command = Steer(walk_.Next(step.random), settings_.speed, settings_.steering);
-  if (command.turn == 0.0) {
-    walk_.Reset();
-  } else {
-    walk_.Turned(command.turn * sim::kTickSeconds);
-  }
-  return command;
+  return walk_.Drive(settings_.speed, settings_.steering, step.random);
 }
 
 RadioMessage ForagingController::Say(const View& view) const {

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "controllers/common/stillness.h"
 #include "sim/arena/spawn.h"
 
 namespace gauntlet::controllers {
@@ -89,8 +90,7 @@ Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
     swarm.push_back(std::move(robot));
   }
 
-  states_.reserve(robots * (static_cast<std::size_t>(settings_.tick_limit) + 1));
-  states_.assign(robots, 0);  // tick 0: everybody wanders
+  states_.Begin(settings_.robots, settings_.tick_limit, static_cast<std::uint8_t>(ForagingState::kWandering));
   last_at_rest_.assign(robots, -1);
   carrying_.assign(robots, 0);
   dropped_in_window_.assign(static_cast<std::size_t>((settings_.tick_limit + kWindow - 1) / kWindow), 0);
@@ -129,24 +129,14 @@ void ForagingScenario::RecordStates(const sim::Interaction& interaction) {
   for (std::size_t i = 0; i < interaction.signals.size(); ++i) {
     const auto robot = static_cast<sim::RobotIndex>(i);
     const ForagingState state = StateIn(interaction.signals[i].message);
-    states_.push_back(static_cast<std::uint8_t>(state));
+    states_.Add(static_cast<std::uint8_t>(state));
     if (state == ForagingState::kBeacon || source_.Waits(robot)) last_at_rest_[i] = tick;
     carrying_[i] = interaction.grippers.Holds(robot) ? 1 : 0;
   }
 }
 
 ForagingState ForagingScenario::StateOf(sim::RobotIndex robot, sim::Tick tick) const {
-  return static_cast<ForagingState>(
-      states_[static_cast<std::size_t>(tick) * static_cast<std::size_t>(settings_.robots) +
-              static_cast<std::size_t>(robot)]);
-}
-
-// Whether the robot was dropping in the second that ends with this tick.
-bool ForagingScenario::DroppedIn(sim::RobotIndex robot, sim::Tick tick) const {
-  for (sim::Tick past = std::max(0, tick - sim::kTicksPerSecond + 1); past <= tick; ++past) {
-    if (StateOf(robot, past) == ForagingState::kDropping) return true;
-  }
-  return false;
+  return static_cast<ForagingState>(states_.At(robot, tick));
 }
 
 std::vector<sim::Vec2> ForagingScenario::BeaconsAt(const sim::Observer& observer, sim::Tick tick) const {
@@ -169,18 +159,9 @@ bool ForagingScenario::Finished(const sim::Observer& observer) {
 }
 
 bool ForagingScenario::Trapped(const sim::Observer& observer, sim::RobotIndex robot) const {
-  const sim::Tick last = observer.last_tick();
-  const sim::Tick first = last - settings_.trapped_window;
-  const auto index = static_cast<std::size_t>(robot);
-  if (first < 0 || last_at_rest_[index] >= first) return false;
-  sim::Vec2 sum = sim::Vec2::Zero();
-  for (sim::Tick tick = first; tick <= last; ++tick) sum += observer.At(tick)[index].position();
-  const sim::Vec2 center = sum / static_cast<double>(last - first + 1);
-  for (sim::Tick tick = first; tick <= last; ++tick) {
-    const sim::Vec2 offset = observer.At(tick)[index].position() - center;
-    if (offset.squaredNorm() > settings_.trapped_radius * settings_.trapped_radius) return false;
-  }
-  return true;
+  const sim::Tick first = observer.last_tick() - settings_.trapped_window;
+  if (first < 0 || last_at_rest_[static_cast<std::size_t>(robot)] >= first) return false;
+  return KeptWithin(observer, robot, settings_.trapped_window, settings_.trapped_radius);
 }
 
 sim::Outcome ForagingScenario::Evaluate(const sim::Observer& observer) {
@@ -197,13 +178,12 @@ sim::Outcome ForagingScenario::Evaluate(const sim::Observer& observer) {
     outcome.failure.type = (no_path ? 1 : 0) + (no_food ? 2 : 0);
     outcome.failure.label = no_path && no_food ? "no path, no food" : (no_path ? "no path" : "no food");
   }
-  outcome.metrics = Metrics(observer, trapped);
+  outcome.metrics = Metrics(trapped);
   outcome.annotations = Annotate(observer, outcome.lost);
   return outcome;
 }
 
-std::vector<std::pair<std::string, double>> ForagingScenario::Metrics(const sim::Observer& observer,
-                                                                      int trapped) const {
+std::vector<std::pair<std::string, double>> ForagingScenario::Metrics(int trapped) const {
   const auto carried = static_cast<int>(std::count(carrying_.begin(), carrying_.end(), 1));
   std::vector<std::pair<std::string, double>> metrics = {
       {"food_taken", taken_},
@@ -218,11 +198,10 @@ std::vector<std::pair<std::string, double>> ForagingScenario::Metrics(const sim:
   for (std::size_t i = 0; i < dropped_in_window_.size(); ++i) {
     metrics.emplace_back("food_window_" + std::to_string(i + 1), dropped_in_window_[i]);
   }
-  std::vector<double> ticks(kForagingStates, 0.0);
-  for (const std::uint8_t state : states_) ticks[state] += 1.0;
+  const std::vector<double> means = states_.MeanRobots(kForagingStates);
   for (int state = 0; state < kForagingStates; ++state) {
     metrics.emplace_back("mean_robots_" + std::string(NameOf(static_cast<ForagingState>(state))),
-                         ticks[static_cast<std::size_t>(state)] / (observer.last_tick() + 1));
+                         means[static_cast<std::size_t>(state)]);
   }
   return metrics;
 }
@@ -247,29 +226,14 @@ std::vector<sim::Annotation> ForagingScenario::Annotate(const sim::Observer& obs
       annotations.push_back({"trapped", label, {}, 0.0, last - settings_.trapped_window, {robot}});
     }
   }
-  AnnotateStates(annotations);
-  return annotations;
-}
-
-// What every robot did when, for the time-line: changes of state, looked at once per second. Dropping lasts a
-// tick or two, so a second with a drop counts as Dropping.
-void ForagingScenario::AnnotateStates(std::vector<sim::Annotation>& annotations) const {
   std::string names;
   for (int state = 0; state < kForagingStates; ++state) {
     names.append(state == 0 ? "" : ",").append(NameOf(static_cast<ForagingState>(state)));
   }
-  const auto ticks = static_cast<sim::Tick>(states_.size() / static_cast<std::size_t>(settings_.robots));
   for (sim::RobotIndex robot = 0; robot < settings_.robots; ++robot) {
-    sim::Annotation line{"states", names, {}, 0.0, -1, {robot}};
-    for (sim::Tick tick = 0; tick < ticks; tick += sim::kTicksPerSecond) {
-      const auto state =
-          static_cast<double>(DroppedIn(robot, tick) ? ForagingState::kDropping : StateOf(robot, tick));
-      if (line.points.empty() || line.points.back().y() != state) {
-        line.points.emplace_back(tick * sim::kTickSeconds, state);
-      }
-    }
-    annotations.push_back(std::move(line));
+    annotations.push_back(states_.Line(robot, names, static_cast<std::uint8_t>(ForagingState::kDropping)));
   }
+  return annotations;
 }
 
 }  // namespace gauntlet::controllers

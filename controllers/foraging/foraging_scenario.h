@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "controllers/common/food_source.h"
+#include "controllers/common/state_log.h"
 #include "controllers/foraging/beacon_chain.h"
-#include "controllers/foraging/food_source.h"
 #include "controllers/foraging/foraging_controller.h"
 #include "sim/scenario.h"
 
@@ -55,14 +56,12 @@ class ForagingScenario : public sim::Scenario {
   void DropItems(const sim::Interaction& interaction);
   void RecordStates(const sim::Interaction& interaction);
   ForagingState StateOf(sim::RobotIndex robot, sim::Tick tick) const;
-  bool DroppedIn(sim::RobotIndex robot, sim::Tick tick) const;
   std::vector<sim::Vec2> BeaconsAt(const sim::Observer& observer, sim::Tick tick) const;
   void FindFirstPath(const sim::Observer& observer);
   bool Trapped(const sim::Observer& observer, sim::RobotIndex robot) const;
   std::vector<sim::Annotation> Annotate(const sim::Observer& observer,
                                         const std::vector<bool>& trapped) const;
-  void AnnotateStates(std::vector<sim::Annotation>& annotations) const;
-  std::vector<std::pair<std::string, double>> Metrics(const sim::Observer& observer, int trapped) const;
+  std::vector<std::pair<std::string, double>> Metrics(int trapped) const;
 
   sim::Arena arena_;
   ForagingSettings settings_;
@@ -75,7 +74,7 @@ class ForagingScenario : public sim::Scenario {
   sim::RadioBeacon nest_beacon_;
   FoodSource source_;
 
-  std::vector<std::uint8_t> states_;     // [tick * robots + robot], from tick 0
+  StateLog states_;
   std::vector<sim::Tick> last_at_rest_;  // per robot: newest tick as a beacon or in the source's queue
   std::vector<std::uint8_t> carrying_;   // per robot
   std::vector<int> dropped_in_window_;   // items per kWindow

@@ -167,7 +167,7 @@ Examples:
       ->type_name("F");
   replay
       ->add_option("--timeline", replay_options->timeline,
-                   "write a picture: what every robot did when (foraging)")
+                   "write a picture: what every robot did when (foraging, task-partitioning)")
       ->type_name("F");
   replay->add_option("--csv", replay_options->csv, "write every pose of every tick")->type_name("F");
   replay->add_flag("--json", replay_options->json, "the result as one JSON document");

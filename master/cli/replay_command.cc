@@ -55,6 +55,11 @@ std::string NounOf(const std::string& scenario) {
   return scenario == "flocking" ? "bird" : "robot";
 }
 
+// What it means that a robot counts as lost.
+std::string LostWordOf(const std::string& scenario) {
+  return scenario == "foraging" || scenario == "task-partitioning" ? "trapped" : "lost";
+}
+
 analysis::RunFigure FigureOf(const CampaignReplay& replay) {
   analysis::RunFigure figure;
   figure.experiment = replay.experiment.name;
@@ -63,7 +68,7 @@ analysis::RunFigure FigureOf(const CampaignReplay& replay) {
   figure.result = replay.report.replayed;
   figure.metrics = MetricTexts(figure.spec.scenario, figure.result.metrics);
   figure.member = NounOf(replay.report.spec.scenario);
-  if (replay.report.spec.scenario == "foraging") figure.lost = "trapped";
+  figure.lost = LostWordOf(replay.report.spec.scenario);
   return figure;
 }
 

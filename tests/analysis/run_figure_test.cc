@@ -192,6 +192,23 @@ TEST(RunFigure, WithoutSplitNothingIsMarked) {
   EXPECT_THAT(Texts(document), Not(HasSubstr("split")));
 }
 
+TEST(RunFigure, TransfersAreMarkedAndCounted) {
+  RunFigure figure = ThreeBirds();
+  const std::string before = DrawRun(figure);
+  EXPECT_EQ(before.find("transfer\""), std::string::npos);
+  figure.result.annotations.push_back({"transfer", "transfer", {{0.5, 0.5}}, 0.0, 300, {1, 2}});
+  figure.result.annotations.push_back({"transfer", "transfer", {{-0.5, 0.5}}, 0.0, 700, {2, 1}});
+  figure.result.annotations.push_back({"transfer", "nowhere", {}, 0.0, 700, {2, 1}});
+  const std::string svg = DrawRun(figure);
+  std::size_t circles = 0;
+  for (std::size_t at = svg.find("class=\"transfer\""); at != std::string::npos;
+       at = svg.find("class=\"transfer\"", at + 1)) {
+    ++circles;
+  }
+  EXPECT_EQ(circles, 2u * 2u + 2u) << "two per transfer, two in the legend";
+  EXPECT_NE(svg.find("2 transfers from robot to robot"), std::string::npos);
+}
+
 TEST(RunFigure, TellsTheOutcomeInWords) {
   RunFigure figure = ThreeBirds();
   EXPECT_EQ(DescribeOutcome(figure), "1 of 3 birds lost");

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "controllers/foraging/beacon_chain.h"
-#include "controllers/foraging/food_source.h"
+#include "controllers/common/food_source.h"
 #include "controllers/foraging/pheromone.h"
 #include "controllers/foraging/radio_message.h"
 #include "gmock/gmock.h"

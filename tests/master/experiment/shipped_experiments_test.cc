@@ -87,6 +87,28 @@ TEST_F(ShippedExperimentsTest, ForagingHasTheParametersOfTable51AndSelectableVar
               HasSubstr("foraging-improved"));
 }
 
+TEST_F(ShippedExperimentsTest, TaskPartitioningReusesTheParametersOfTable51) {
+  const Result<Experiment> experiment = LoadExperiment("task-partitioning", {});
+  ASSERT_TRUE(experiment.ok()) << experiment.error().message;
+  const Result<Experiment> foraging = LoadExperiment("foraging", {});
+  EXPECT_EQ(experiment->genome.genes, 8);
+  EXPECT_EQ(experiment->search.population, foraging->search.population);
+  EXPECT_EQ(experiment->search.generations, foraging->search.generations);
+  EXPECT_EQ(experiment->search.parent_selection, foraging->search.parent_selection);
+  EXPECT_EQ(experiment->search.crossover, foraging->search.crossover);
+  EXPECT_EQ(experiment->search.crossover_probability, foraging->search.crossover_probability);
+  EXPECT_EQ(experiment->search.mutation_probability, foraging->search.mutation_probability);
+  for (const char* variant : {"task-partitioning-improved", "task-partitioning-dynamic"}) {
+    const auto chosen = LoadExperiment("task-partitioning", {std::string("controller=") + variant});
+    ASSERT_TRUE(chosen.ok()) << chosen.error().message;
+    EXPECT_EQ(chosen->controller, variant);
+  }
+  const Result<Experiment> convergence = LoadExperiment("task-partitioning-convergence", {});
+  ASSERT_TRUE(convergence.ok()) << convergence.error().message;
+  EXPECT_EQ(convergence->scenario_parameters.at("time_limit"), 3600.0);
+  EXPECT_EQ(convergence->scenario_parameters.at("start_mode"), 1.0);
+}
+
 TEST_F(ShippedExperimentsTest, WrittenResolvedFlockingReadsBackEqual) {
   const Experiment experiment = *LoadExperiment("flocking", {"seed=5", "search.generations=3"});
   const std::string text = WriteExperiment(experiment, {"resolved"});

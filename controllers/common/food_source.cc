@@ -1,4 +1,4 @@
-#include "controllers/foraging/food_source.h"
+#include "controllers/common/food_source.h"
 
 namespace gauntlet::controllers {
 

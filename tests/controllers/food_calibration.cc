@@ -1,8 +1,8 @@
-// Prints the figures that the foraging parameters were calibrated with (spec section 9): the empty arena with
-// many seeds, and random valid cases, for the chosen variants over a grid of the knobs. Evolved cases are
-// never looked at.
+// Prints the figures that the parameters of foraging and of task partitioning were calibrated with (spec
+// section 9): the empty arena with many seeds, and random valid cases, for the chosen variants over a grid of
+// the knobs. Evolved cases are never looked at.
 //
-//   foraging_calibration [name=value ...] [variant ...]
+//   food_calibration [name=value ...] [variant ...]
 //     cases=200 seeds=100 threads=2 genes=8 l_max=2   how much
 //     first=0                                         number of the first case and seed
 //     any other name                                  a parameter of scenario or controller; lists like
@@ -67,10 +67,36 @@ Options ParseOptions(int argc, char** argv) {
   return options;
 }
 
+struct Column {
+  const char* title;
+  const char* metric;
+  double factor;
+};
+// After items and sd.
+std::vector<Column> ColumnsOf(std::string_view scenario) {
+  if (scenario == "foraging") {
+    return {{"no path %", "condition_1", 100.0},
+            {"trapped", "trapped_robots", 1.0},
+            {"beacons", "mean_robots_beacon", 1.0},
+            {"lost", "food_lost", 1.0}};
+  }
+  return {{"trapped", "trapped_robots", 1.0},
+          {"transfers", "transfers", 1.0},
+          {"broken", "broken_transfers", 1.0},
+          {"waits", "waits", 1.0},
+          {"timeouts", "wait_timeouts", 1.0},
+          {"length", "partition_length", 1.0},
+          {"explore", "mean_robots_explore", 1.0},
+          {"to nest", "mean_robots_go-to-nest", 1.0},
+          {"wait", "mean_robots_wait-for-transfer", 1.0},
+          {"lost", "food_lost", 1.0}};
+}
+
 void Measure(const std::vector<sim::RunSpec>& specs, int threads) {
+  const std::vector<Column> columns = ColumnsOf(specs.empty() ? "" : specs.front().scenario);
   const std::vector<sim::RunResult> results = RunAll(specs, threads);
-  double mean = 0.0, squares = 0.0, zeros = 0.0, no_path = 0.0, trapped = 0.0, beacons = 0.0, lost = 0.0;
-  double cpu_ms = 0.0, n = 0.0;
+  std::vector<double> sums(columns.size(), 0.0);
+  double mean = 0.0, squares = 0.0, zeros = 0.0, cpu_ms = 0.0, n = 0.0;
   int refused = 0;
   for (const sim::RunResult& result : results) {
     if (result.verdict != sim::Verdict::kCompleted) {
@@ -80,18 +106,18 @@ void Measure(const std::vector<sim::RunSpec>& specs, int threads) {
     n += 1.0;
     mean += result.fitness;
     squares += result.fitness * result.fitness;
-    zeros += Metric(result, "condition_2");
-    no_path += Metric(result, "condition_1");
-    trapped += Metric(result, "trapped_robots");
-    beacons += Metric(result, "mean_robots_beacon");
-    lost += Metric(result, "food_lost");
+    zeros += result.fitness == 0.0 ? 1.0 : 0.0;
     cpu_ms += 1e3 * result.cpu_seconds;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      sums[i] += columns[i].factor * Metric(result, columns[i].metric);
+    }
   }
   n = std::max(1.0, n);
   mean /= n;
-  std::printf(" | %5.2f %5.2f %5.1f%% %6.1f%% %5.2f %5.2f %4.0f %5.1f", mean,
-              std::sqrt(std::max(0.0, squares / n - mean * mean)), 100.0 * zeros / n, 100.0 * no_path / n,
-              trapped / n, beacons / n, lost, cpu_ms / n);
+  std::printf(" | %5.2f %5.2f %5.1f", mean, std::sqrt(std::max(0.0, squares / n - mean * mean)),
+              100.0 * zeros / n);
+  for (const double sum : sums) std::printf(" %6.2f", sum / n);
+  std::printf(" %5.1f", cpu_ms / n);
 }
 
 bool Has(std::span<const controllers::ParameterInfo> infos, const std::string& name) {
@@ -102,10 +128,6 @@ void MeasureSettings(const Options& options, sim::RunSpec spec,
                      const std::map<std::string, double>& settings) {
   const auto* scenario = controllers::FindScenario(spec.scenario);
   const auto* controller = controllers::FindController(spec.controller);
-  if (controller == nullptr) {
-    std::fprintf(stderr, "no controller %s\n", spec.controller.c_str());
-    std::exit(2);
-  }
   std::printf("%-22s", spec.controller.c_str());
   for (const auto& [name, value] : settings) {
     if (Has(scenario->parameters, name)) spec.scenario_parameters[name] = value;
@@ -136,12 +158,18 @@ void MeasureGrid(const Options& options, const sim::RunSpec& spec,
 
 int Main(int argc, char** argv) {
   const Options options = ParseOptions(argc, argv);
-  std::printf(
-      "controller | empty, then random: items, sd, no items, no path, trapped, beacons, lost, ms/run\n");
   for (const std::string& controller : options.controllers) {
+    const auto* info = controllers::FindController(controller);
+    if (info == nullptr) {
+      std::fprintf(stderr, "no controller %s\n", controller.c_str());
+      return 2;
+    }
     sim::RunSpec spec;
-    spec.scenario = "foraging";
+    spec.scenario = info->scenario;
     spec.controller = controller;
+    std::printf("%s | empty, then random: items, sd, zero %%", spec.scenario.c_str());
+    for (const Column& column : ColumnsOf(spec.scenario)) std::printf(", %s", column.title);
+    std::printf(", ms/run\n");
     MeasureGrid(options, spec, options.knobs.begin(), {});
   }
   return 0;

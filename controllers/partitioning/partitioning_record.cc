@@ -1,0 +1,106 @@
+#include "controllers/partitioning/partitioning_record.h"
+
+#include <algorithm>
+
+namespace gauntlet::controllers {
+namespace {
+
+// Hand-overs of a run that are kept with their places; more are only counted. Memory, not behaviour.
+constexpr std::size_t kMostTransfers = 4000;
+
+std::size_t WindowOf(sim::Tick tick) {
+  return static_cast<std::size_t>((tick - 1) / kPartitioningWindow);
+}
+
+bool Engaged(HandoverStep step) {
+  return step == HandoverStep::kGrant || step == HandoverStep::kRelease;
+}
+
+}  // namespace
+
+void PartitioningRecord::Begin(int robots, PartitioningState state, sim::Tick tick_limit) {
+  const auto windows = static_cast<std::size_t>((tick_limit + kPartitioningWindow - 1) / kPartitioningWindow);
+  states_.Begin(robots, tick_limit, static_cast<std::uint8_t>(state));
+  robots_.assign(static_cast<std::size_t>(robots), {.state = state});
+  dropped_in_window_.assign(windows, 0);
+  length_in_window_.assign(windows, 0.0);
+  transfers_.reserve(kMostTransfers);
+}
+
+void PartitioningRecord::Hear(sim::Tick tick, std::span<const sim::Signals> signals) {
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    Robot& robot = robots_[i];
+    if (const PartitionMessage message = DecodePartition(signals[i].message); message.from_robot) {
+      Hear(tick, message, robot);
+    }
+    states_.Add(static_cast<std::uint8_t>(robot.state));
+  }
+  length_in_window_[WindowOf(std::max(tick, 1))] = MeanLength();
+}
+
+void PartitioningRecord::Hear(sim::Tick tick, const PartitionMessage& message, Robot& robot) {
+  constexpr auto kWait = PartitioningState::kWaitForTransfer;
+  if (message.state == kWait && robot.state != kWait) ++waits_;
+  if (message.state == PartitioningState::kGoToNest && robot.state == kWait) ++timeouts_;
+  if (message.state == kWait) {
+    Engaged(message.step) ? ++transferring_ : ++waited_;
+    if (Engaged(robot.step) && message.step == HandoverStep::kOffer) ++broken_;
+  }
+  robot.state = message.state;
+  robot.step = message.step;
+  robot.length = message.partition_length;
+  if (message.state == kWait || message.step != HandoverStep::kNone) robot.at_rest = tick;
+}
+
+void PartitioningRecord::Drop(sim::Tick tick, bool in_nest) {
+  if (!in_nest) {
+    ++lost_;
+    return;
+  }
+  ++dropped_;
+  ++dropped_in_window_[WindowOf(tick)];
+  if (first_item_ < 0) first_item_ = tick;
+}
+
+void PartitioningRecord::HandOver(const Transfer& transfer) {
+  ++handed_over_;
+  if (transfers_.size() < kMostTransfers) transfers_.push_back(transfer);
+}
+
+double PartitioningRecord::MeanLength() const {
+  double sum = 0.0;
+  for (const Robot& robot : robots_) sum += robot.length;
+  return sum / static_cast<double>(robots_.size());
+}
+
+std::vector<std::pair<std::string, double>> PartitioningRecord::Metrics(int carried, int trapped) const {
+  const double none = -1.0;
+  std::vector<std::pair<std::string, double>> metrics = {
+      {"food_taken", taken_},
+      {"food_carried", carried},
+      {"food_lost", lost_},
+      {"first_item_time", first_item_ < 0 ? none : first_item_ * sim::kTickSeconds},
+      {"transfers", handed_over_},
+      {"broken_transfers", broken_},
+      {"waits", waits_},
+      {"wait_timeouts", timeouts_},
+      {"mean_waiting_time", waits_ == 0 ? none : waited_ * sim::kTickSeconds / waits_},
+      {"transfer_time", transferring_ * sim::kTickSeconds},
+      {"trapped_robots", trapped},
+      {"partition_length", MeanLength()},
+  };
+  for (std::size_t i = 0; i < dropped_in_window_.size(); ++i) {
+    metrics.emplace_back("food_window_" + std::to_string(i + 1), dropped_in_window_[i]);
+  }
+  for (std::size_t i = 0; i < length_in_window_.size(); ++i) {
+    metrics.emplace_back("partition_length_window_" + std::to_string(i + 1), length_in_window_[i]);
+  }
+  const std::vector<double> means = states_.MeanRobots(kPartitioningStates);
+  for (int state = 0; state < kPartitioningStates; ++state) {
+    metrics.emplace_back("mean_robots_" + std::string(NameOf(static_cast<PartitioningState>(state))),
+                         means[static_cast<std::size_t>(state)]);
+  }
+  return metrics;
+}
+
+}  // namespace gauntlet::controllers

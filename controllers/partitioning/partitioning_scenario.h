@@ -1,0 +1,90 @@
+// The task partitioning scenario (thesis 6.1 to 6.4; spec 4.1): robots bring items from a source to a nest 4
+// m away below a lamp, and hand them over to one another on the way. Fitness is the number of items dropped
+// in the nest (thesis 6.3.2, equation 5.1).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "controllers/common/food_source.h"
+#include "controllers/partitioning/partitioning_controller.h"
+#include "controllers/partitioning/partitioning_record.h"
+#include "sim/arena/spawn.h"
+#include "sim/scenario.h"
+
+namespace gauntlet::controllers {
+
+// Where robots begin.
+enum class StartMode : std::uint8_t {
+  kSteadyState = 0,  // half of them at the centre, half at the source, in Neighbourhood (thesis 6.4.1)
+  kNest = 1,         // all in the nest, in Explore (thesis 6.4.2)
+};
+
+struct PartitioningSettings {
+  int robots = 0;
+  sim::Tick tick_limit = 0;
+  StartMode start = StartMode::kSteadyState;
+  double nest_radius = 0.0;          // m
+  double food_radius = 0.0;          // m; for pictures, and part of the pick-up distance
+  double nest_food_distance = 0.0;   // m between the centres, which lie on the y axis, the nest below
+  double spawn_radius = 0.0;         // m, of the discs where robots begin
+  double camera_range = 0.0;         // m, half side of the square in which a robot sees items
+  double communication_range = 0.0;  // m, of range-and-bearing
+  sim::Vec2 lamp_offset = sim::Vec2::Zero();  // m, of the lamp from the nest's centre
+  double lamp_height = 0.0;                   // m
+  double lamp_intensity = 0.0;                // at least; larger where the arena needs it
+  double pickup_distance = 0.0;               // m from the source's centre to a robot's
+  sim::Tick pickup = 0;
+  sim::Tick trapped_window = 0;  // a robot is trapped when it kept within trapped_radius for this long
+  double trapped_radius = 0.0;   // m around its mean position
+};
+
+sim::Vec2 NestOf(const PartitioningSettings& settings);
+sim::Vec2 FoodOf(const PartitioningSettings& settings);
+
+class PartitioningScenario : public sim::Scenario {
+ public:
+  // `test_case` is valid for the requirements of the scenario; its number of robots and its spawn area
+  // override the settings. `seed` decides the start poses.
+  PartitioningScenario(const sim::TestCase& test_case, const PartitioningSettings& settings,
+                       const PartitionerSettings& robot, std::uint64_t seed);
+
+  const sim::Arena& arena() const override { return arena_; }
+  sim::Tick tick_limit() const override { return settings_.tick_limit; }
+  std::span<const sim::Light> lights() const override { return lights_; }
+  double FloorGrey(const sim::Vec2& point) const override;
+  // Errors besides "no-room-to-spawn": "swarm-size", "light-outside", "partition-length", "start-mode".
+  Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters& headquarters) override;
+  void Interact(const sim::Interaction& interaction) override;
+  bool Finished(const sim::Observer& observer) override;
+  sim::Outcome Evaluate(const sim::Observer& observer) override;
+
+ private:
+  Status CheckSettings() const;
+  Result<std::vector<sim::Pose>> StartPoses() const;
+  bool InNest(const sim::Vec2& point) const;
+  void DropItems(const sim::Interaction& interaction);
+  void HandItemsOver(const sim::Interaction& interaction);
+  bool MayHandOver(const sim::Interaction& interaction, sim::RobotIndex giver,
+                   sim::RobotIndex receiver) const;
+  bool Trapped(const sim::Observer& observer, sim::RobotIndex robot) const;
+  std::vector<sim::Annotation> Annotate(const sim::Observer& observer,
+                                        const std::vector<bool>& trapped) const;
+
+  sim::Arena arena_;
+  PartitioningSettings settings_;
+  PartitionerSettings robot_;
+  std::uint64_t seed_;
+  sim::Vec2 nest_;
+  sim::Vec2 food_;
+  std::optional<sim::Rectangle> spawn_area_;  // of the test case
+  std::vector<sim::Light> lights_;            // above the nest, at the source
+  FoodSource source_;
+  PartitioningRecord record_;
+  std::vector<std::uint8_t> carrying_;  // per robot
+  std::vector<sim::Tick> last_served_;  // per robot: newest tick in the source's queue
+};
+
+}  // namespace gauntlet::controllers
