@@ -1,5 +1,6 @@
 // Headquarters (thesis 3.3.3.2): the one explicit door through which a scenario hands global information to a
-// robot. Only the prey of the flocking scenario is given one.
+// robot. The prey of the flocking scenario is given one, and the odometers of task partitioning, which tell
+// their robot its own motion only.
 #pragma once
 
 #include "sim/arena/arena.h"

@@ -112,17 +112,64 @@ StudyCluster Study::Simulate(const std::string& controller, const std::vector<st
   return simulated;
 }
 
-std::vector<StudySample> Study::Random(const std::vector<std::string>& controllers) const {
+std::vector<std::string> Study::RandomCases(int count) const {
   const std::string dir = scratch_ / "random";
-  MustSucceed(Gauntlet({"random", experiment_, "--cases", std::to_string(kRandomCases), "--seed",
+  MustSucceed(Gauntlet({"random", experiment_, "--cases", std::to_string(count), "--seed",
                         std::to_string(kRandomSeed), "--dir", dir, "--quiet"},
                        std::chrono::seconds(1200)));
-  const std::vector<std::string> cases = WriteCases(Show(dir)["population"], dir + "-case");
+  return WriteCases(Show(dir)["population"], dir + "-case");
+}
+
+const std::vector<std::vector<std::string>>& Study::EvolvedCases(const std::string& controller) const {
+  std::vector<std::vector<std::string>>& populations = evolved_[controller];
+  if (!populations.empty()) return populations;
+  for (int seed = 1; seed <= kEvolutions; ++seed) {
+    const std::string dir = scratch_ / fmt::format("{}-{}", controller, seed);
+    MustSucceed(Gauntlet({"evolve", experiment_, "--set", "controller=" + controller, "--dir", dir, "--seed",
+                          std::to_string(seed), "--quiet"},
+                         std::chrono::seconds(1200)));
+    populations.push_back(WriteCases(Show(dir)["population"], dir + "-case"));
+  }
+  return populations;
+}
+
+std::vector<std::vector<double>> Study::Windows(const std::vector<std::string>& cases, int replicates,
+                                                const std::vector<std::string>& settings,
+                                                const std::string& prefix) const {
+  const std::string dir = scratch_ / fmt::format("windows-{}", ++evaluations_);
+  std::vector<std::string> arguments = {"evaluate", experiment_, "--json", "--quiet", "--dir", dir};
+  arguments.insert(arguments.end(), {"--seed", std::to_string(kFreshRandomSeed),  //
+                                     "--replicates", std::to_string(replicates)});
+  for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+  std::vector<std::string> paths = cases;
+  if (paths.empty()) {
+    paths.push_back(scratch_ / "empty.json");
+    std::ofstream(paths.back()) << R"({"obstacles": []})";
+  }
+  for (const std::string& path : paths) arguments.insert(arguments.end(), {"--case", path});
+  const ProcessResult result = Gauntlet(arguments, std::chrono::seconds(1200));
+  MustSucceed(result);
+  const json document = json::parse(result.out, nullptr, false);
+  std::vector<std::vector<double>> windows;
+  for (const json& one : document["cases"]) {
+    for (const json& run : one["runs"]) {
+      std::vector<double>& values = windows.emplace_back();
+      const json& metrics = run["metrics"];
+      for (int i = 1; metrics.contains(prefix + std::to_string(i)); ++i) {
+        values.push_back(metrics[prefix + std::to_string(i)].get<double>());
+      }
+    }
+  }
+  return windows;
+}
+
+std::vector<StudySample> Study::Random(const std::vector<std::string>& controllers) const {
+  const std::vector<std::string> cases = RandomCases(kRandomCases);
   std::vector<StudySample> samples;
   for (const std::string& controller : controllers) {
     StudySample& sample = samples.emplace_back();
     for (const SimulatedCase& one :
-         Simulate(controller, cases, fmt::format("{}-{}", dir, controller), kFreshRandomSeed)) {
+         Simulate(controller, cases, scratch_ / fmt::format("random-{}", controller), kFreshRandomSeed)) {
       sample.push_back({one});
     }
   }
@@ -131,15 +178,13 @@ std::vector<StudySample> Study::Random(const std::vector<std::string>& controlle
 
 std::vector<StudySample> Study::Evolved(const std::vector<std::string>& controllers) const {
   std::vector<StudySample> samples(controllers.size());
-  for (int seed = 1; seed <= kEvolutions; ++seed) {
-    const std::string dir = scratch_ / fmt::format("{}-{}", controllers.front(), seed);
-    MustSucceed(Gauntlet({"evolve", experiment_, "--set", "controller=" + controllers.front(), "--dir", dir,
-                          "--seed", std::to_string(seed), "--quiet"},
-                         std::chrono::seconds(1200)));
-    const std::vector<std::string> cases = WriteCases(Show(dir)["population"], dir + "-case");
+  const auto& populations = EvolvedCases(controllers.front());
+  for (std::size_t evolution = 0; evolution < populations.size(); ++evolution) {
+    const int seed = static_cast<int>(evolution) + 1;
     for (std::size_t i = 0; i < controllers.size(); ++i) {
-      samples[i].push_back(Simulate(controllers[i], cases, fmt::format("{}-by-{}", dir, controllers[i]),
-                                    kFreshEvolvedSeed + seed));
+      const std::string dir =
+          scratch_ / fmt::format("{}-{}-by-{}", controllers.front(), seed, controllers[i]);
+      samples[i].push_back(Simulate(controllers[i], populations[evolution], dir, kFreshEvolvedSeed + seed));
     }
   }
   return samples;

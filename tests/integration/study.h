@@ -2,6 +2,7 @@
 // random ones, all simulated again with fresh seeds and compared.
 #pragma once
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,6 +42,17 @@ class Study {
 
   explicit Study(std::string experiment) : experiment_(std::move(experiment)) {}
 
+  // The random cases, as case files that live as long as this object.
+  std::vector<std::string> RandomCases(int count) const;
+  // The final populations of evolutions against the controller with the experiment's defaults, as such files.
+  // Evolves once only.
+  const std::vector<std::vector<std::string>>& EvolvedCases(const std::string& controller) const;
+  // Per run the metrics PREFIX1, PREFIX2, ... of these cases (none: the empty arena), `replicates` runs of
+  // each, with `settings` of the experiment (key=value) changed.
+  std::vector<std::vector<double>> Windows(const std::vector<std::string>& cases, int replicates,
+                                           const std::vector<std::string>& settings,
+                                           const std::string& prefix) const;
+
   // Valid random cases, every one a cluster, simulated with each of the controllers, with the same seeds.
   std::vector<StudySample> Random(const std::vector<std::string>& controllers) const;
   // Evolutions against the first controller with the experiment's defaults; their final populations simulated
@@ -53,6 +65,8 @@ class Study {
 
   std::string experiment_;
   TemporaryDirectory scratch_;
+  mutable std::map<std::string, std::vector<std::vector<std::string>>> evolved_;  // by controller
+  mutable int evaluations_ = 0;
 };
 
 }  // namespace gauntlet::testing_support
