@@ -86,7 +86,7 @@ void DrawPlacesLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure) 
                       return annotation.kind == "transfer" && !annotation.points.empty();
                     }));
   if (transfers > 0) {
-    panel.Row(fmt::format("{} {} from robot to robot", transfers, Plural("transfer", transfers)),
+    panel.Row(fmt::format("{} {} of an item", transfers, Plural("transfer", transfers)),
               [&](Pixel p) { DrawTransfer(canvas, p); });
   }
   if (const sim::Annotation* chain = LatestAnnotation(figure, "chain")) {
@@ -118,7 +118,7 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
     const bool trapped = std::any_of(tracks.begin(), tracks.end(),
                                      [](const Track& track) { return track.trapped_from.has_value(); });
     panel.Row(fmt::format("{} {}, {}{}", lost, Plural(figure.member, lost), figure.lost,
-                          trapped ? ": strong since then" : ""),
+                          trapped ? ", then strong" : ""),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kLostColor, 2.6); });
   }
   if (count(TrackKind::kPrey) > 0) {

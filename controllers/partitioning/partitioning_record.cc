@@ -73,7 +73,8 @@ double PartitioningRecord::MeanLength() const {
   return sum / static_cast<double>(robots_.size());
 }
 
-std::vector<std::pair<std::string, double>> PartitioningRecord::Metrics(int carried, int trapped) const {
+std::vector<std::pair<std::string, double>> PartitioningRecord::Metrics(int carried, int trapped,
+                                                                        bool learns) const {
   const double none = -1.0;
   std::vector<std::pair<std::string, double>> metrics = {
       {"food_taken", taken_},
@@ -92,7 +93,7 @@ std::vector<std::pair<std::string, double>> PartitioningRecord::Metrics(int carr
   for (std::size_t i = 0; i < dropped_in_window_.size(); ++i) {
     metrics.emplace_back("food_window_" + std::to_string(i + 1), dropped_in_window_[i]);
   }
-  for (std::size_t i = 0; i < length_in_window_.size(); ++i) {
+  for (std::size_t i = 0; learns && i < length_in_window_.size(); ++i) {
     metrics.emplace_back("partition_length_window_" + std::to_string(i + 1), length_in_window_[i]);
   }
   const std::vector<double> means = states_.MeanRobots(kPartitioningStates);

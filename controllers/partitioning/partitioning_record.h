@@ -41,8 +41,9 @@ class PartitioningRecord {
   }
   const std::vector<Transfer>& transfers() const { return transfers_; }
   const StateLog& states() const { return states_; }
-  // Of the registry's MetricInfo list, in its order.
-  std::vector<std::pair<std::string, double>> Metrics(int carried, int trapped) const;
+  // Of the registry's MetricInfo list, in its order. `learns`: partition lengths change, so they are told
+  // over time.
+  std::vector<std::pair<std::string, double>> Metrics(int carried, int trapped, bool learns) const;
 
  private:
   struct Robot {

@@ -57,7 +57,8 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"trapped_robots", "", false, "robots that stayed within a small place for the last 120 s"},
     {"partition_length", "m", false, "mean of the robots at the end"},
     {"food_window_*", "", false, "items dropped in each 120 s"},
-    {"partition_length_window_*", "m", false, "mean of the robots at the end of each 120 s"},
+    {"partition_length_window_*", "m", false,
+     "mean of the robots at the end of each 120 s, of the dynamic strategy"},
     {"mean_robots_*", "", false, "robots in that state, mean over the run"},
 });
 

@@ -242,14 +242,14 @@ sim::Outcome PartitioningScenario::Evaluate(const sim::Observer& observer) {
   }
   const auto trapped = static_cast<int>(std::count(outcome.lost.begin(), outcome.lost.end(), true));
   const auto carried = static_cast<int>(std::count(carrying_.begin(), carrying_.end(), 1));
-  outcome.metrics = record_.Metrics(carried, trapped);
+  outcome.metrics =
+      record_.Metrics(carried, trapped, robot_.length.rule != PartitionLengthSettings::Rule::kStatic);
   outcome.annotations = Annotate(observer, outcome.lost);
   return outcome;
 }
 
 std::vector<sim::Annotation> PartitioningScenario::Annotate(const sim::Observer& observer,
                                                             const std::vector<bool>& trapped) const {
-  const sim::Tick last = observer.last_tick();
   std::vector<sim::Annotation> annotations = {
       {"disc", "nest", {nest_}, settings_.nest_radius, -1, {}},
       {"disc", "food", {food_}, settings_.food_radius, -1, {}},
@@ -266,7 +266,8 @@ std::vector<sim::Annotation> PartitioningScenario::Annotate(const sim::Observer&
     const auto index = static_cast<std::size_t>(robot);
     if (trapped[index]) {
       const std::string label = carrying_[index] != 0 ? "trapped with an item" : "trapped";
-      annotations.push_back({"trapped", label, {}, 0.0, last - settings_.trapped_window, {robot}});
+      const sim::Tick since = StillSince(observer, robot, settings_.trapped_window, settings_.trapped_radius);
+      annotations.push_back({"trapped", label, {}, 0.0, since, {robot}});
     }
     annotations.push_back(record_.states().Line(robot, names, std::nullopt));
   }

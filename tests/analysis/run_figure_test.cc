@@ -206,7 +206,7 @@ TEST(RunFigure, TransfersAreMarkedAndCounted) {
     ++circles;
   }
   EXPECT_EQ(circles, 2u * 2u + 2u) << "two per transfer, two in the legend";
-  EXPECT_NE(svg.find("2 transfers from robot to robot"), std::string::npos);
+  EXPECT_NE(svg.find("2 transfers of an item"), std::string::npos);
 }
 
 TEST(RunFigure, TellsTheOutcomeInWords) {

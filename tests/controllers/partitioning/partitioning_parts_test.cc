@@ -200,6 +200,7 @@ TEST(Stillness, IsKeepingWithinTheRadiusOfTheMeanPlace) {
   EXPECT_FALSE(KeptWithin(observer, 0, 70, 0.29));
   EXPECT_FALSE(KeptWithin(observer, 0, 100, 0.5));
   EXPECT_FALSE(KeptWithin(observer, 0, 101, 100.0)) << "longer than the run";
+  EXPECT_EQ(StillSince(observer, 0, 70, 0.31), 17) << "it came from afar, and was there before the window";
 }
 
 // --- BugS ---
