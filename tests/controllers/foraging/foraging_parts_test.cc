@@ -3,8 +3,8 @@
 #include <limits>
 #include <vector>
 
-#include "controllers/foraging/beacon_chain.h"
 #include "controllers/common/food_source.h"
+#include "controllers/foraging/beacon_chain.h"
 #include "controllers/foraging/pheromone.h"
 #include "controllers/foraging/radio_message.h"
 #include "gmock/gmock.h"
