@@ -196,9 +196,11 @@ void SearchDriver::TellCompleted() {
     last_told_ = evaluation.runs.back().run.id;
     pending_.pop_front();
     parts_.search.Tell(outcome);
+    if (parts_.search.AtBoundary()) SaveState();
   }
-  if (!parts_.search.AtBoundary() || last_told_ == saved_until_) return;
+}
 
+void SearchDriver::SaveState() {
   const std::vector<Individual> newborns = parts_.search.TakeNewborns();
   parts_.store.AddIndividuals(parts_.search_id, newborns);
   SavedState state;

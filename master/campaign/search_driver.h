@@ -88,6 +88,7 @@ class SearchDriver {
   };
 
   Status Ask();
+  void SaveState();
   void Count(const StoredRun& run);
   PendingRun* Find(RunId id);
 

@@ -30,9 +30,10 @@ const std::vector<Search>& Searches() {
   static const std::vector<Search> searches = {
       {"genetic",
        "a population of test cases is bred for low fitness: gauntlet evolve",
-       {"search.population", "search.generations", "search.parent_selection", "search.crossover",
-        "search.crossover_probability", "search.mutation_probability", "search.reevaluation",
-        "search.fitness_aggregation", "search.replicates", "search.variation_tries", "genome."}},
+       {"search.mode", "search.lag", "search.population", "search.generations", "search.parent_selection",
+        "search.crossover", "search.crossover_probability", "search.mutation_probability",
+        "search.reevaluation", "search.fitness_aggregation", "search.replicates", "search.variation_tries",
+        "genome."}},
       {"random",
        "independent random test cases, the baseline: gauntlet random",
        {"search.cases", "search.replicates", "genome."}},

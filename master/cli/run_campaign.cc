@@ -119,8 +119,13 @@ std::string Announcement(const Experiment& experiment, int workers, const std::s
   std::string what;
   switch (search.kind) {
     case SearchKind::kGenetic:
-      what = fmt::format("genetic search, {} test cases x {} generations", search.population,
-                         search.generations);
+      what = search.mode == SearchMode::kSteadyState
+                 ? fmt::format("steady-state genetic search, {} test cases, lag {}",
+                               FormatCount(static_cast<std::uint64_t>(search.population) *
+                                           static_cast<std::uint64_t>(search.generations)),
+                               search.lag)
+                 : fmt::format("genetic search, {} test cases x {} generations", search.population,
+                               search.generations);
       break;
     case SearchKind::kRandom:
       what =

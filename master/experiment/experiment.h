@@ -31,10 +31,15 @@ enum class CrossoverKind { kSinglePoint, kDoublePoint, kUniform };
 // the parent selection's source does it: everybody in the two-parent schemes, children only in
 // AllParent-BestHalf.
 enum class Reevaluation { kScheme, kPopulation, kChildren };
+// Generation after generation, or child after child without a barrier (SteadyStateSearch).
+enum class SearchMode { kGenerational, kSteadyState };
 enum class FitnessAggregation { kMean, kLast };
 
 struct SearchSpec {
   SearchKind kind = SearchKind::kGenetic;
+  SearchMode mode = SearchMode::kGenerational;  // of the genetic search
+  int lag =
+      10;  // of the steady-state mode: evaluation k depends on results 1 .. k - lag; workers it can feed
   int population = 20;
   int generations = 50;
   ParentSelection parent_selection = ParentSelection::kTwoBestParentsTwoWorseAway;

@@ -123,6 +123,12 @@ std::vector<Key> MakeCommonKeys() {
 
       ChoiceKey<kSearch, &SearchSpec::kind>("search.algorithm", {"genetic", "random", "cases"},
                                             "cases = a given list, as `evaluate` takes it"),
+      ChoiceKey<kSearch, &SearchSpec::mode>(
+          "search.mode", {"generational", "steady-state"},
+          "of the genetic search; steady-state breeds child after child, without waiting for a generation"),
+      IntegerKey<kSearch, &SearchSpec::lag>(
+          "search.lag", 1, 9999,
+          "steady-state only: a child knows all results but the last so many; workers it can keep busy"),
       IntegerKey<kSearch, &SearchSpec::population>("search.population", 4, 10000,
                                                    "individuals, an even number (thesis Table 4.1)"),
       IntegerKey<kSearch, &SearchSpec::generations>("search.generations", 1, 1e6,
@@ -313,6 +319,17 @@ std::optional<BrokenRule> CheckRules(const Experiment& experiment) {
   if (experiment.search.population % 2 != 0) {
     return BrokenRule{"search.population", fmt::format("search.population = {} must be even: couples breed",
                                                        experiment.search.population)};
+  }
+  if (experiment.search.mode == SearchMode::kGenerational) return std::nullopt;
+  if (experiment.search.lag >= experiment.search.population) {
+    return BrokenRule{"search.lag", fmt::format("search.lag = {} must be below search.population = {}: the "
+                                                "first child needs two parents",
+                                                experiment.search.lag, experiment.search.population)};
+  }
+  if (experiment.search.reevaluation == Reevaluation::kPopulation) {
+    return BrokenRule{"search.reevaluation",
+                      "search.reevaluation = \"population\" needs generations: with search.mode = "
+                      "\"steady-state\" everybody is evaluated once (use search.replicates)"};
   }
   return std::nullopt;
 }

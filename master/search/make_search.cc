@@ -8,6 +8,7 @@
 #include "master/search/genetic_algorithm.h"
 #include "master/search/random_search.h"
 #include "master/search/search_setup.h"
+#include "master/search/steady_state_search.h"
 
 namespace gauntlet::master {
 namespace {
@@ -59,6 +60,7 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment
   const SearchSetup setup{experiment, requirements, search_id};
   switch (experiment.search.kind) {
     case SearchKind::kGenetic:
+      if (experiment.search.mode == SearchMode::kSteadyState) return Make<SteadyStateSearch>(setup);
       return Make<GeneticAlgorithm>(setup);
     case SearchKind::kRandom:
       return Make<RandomSearch>(setup);

@@ -71,10 +71,10 @@ class SearchAlgorithm {
   // A figure or two of the search itself, e.g. {"distinct_individuals", 118}, {"clone_rate", 0.61}.
   virtual std::vector<std::pair<std::string, double>> Statistics() const = 0;
 
-  // True when every request of Ask() was told: the moment when state may be saved.
+  // Whether state may be saved now: at moments that depend on the number of told outcomes only.
   virtual bool AtBoundary() const = 0;
-  // The whole state in the canonical encoding; only at a boundary. Restoring it and asking again gives the
-  // same requests.
+  // The whole state in the canonical encoding; only at a boundary. After Restore, Ask gives everything that
+  // was not told when it was saved.
   virtual void Save(CanonicalEncoder& encoder) const = 0;
   virtual Status Restore(CanonicalDecoder& decoder) = 0;
 };

@@ -85,6 +85,8 @@ std::string SearchIdentity(const SearchSetup& setup) {
       s.population, static_cast<int>(s.parent_selection), static_cast<int>(s.crossover),
       s.crossover_probability, s.mutation_probability, static_cast<int>(s.reevaluation),
       static_cast<int>(s.aggregation), s.variation_tries);
+  if (s.mode == SearchMode::kSteadyState)
+    identity += fmt::format("search.mode = 1\nsearch.lag = {}\n", s.lag);
   return identity;
 }
 

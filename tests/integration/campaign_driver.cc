@@ -59,8 +59,16 @@ std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments
 
 SmallCampaign SmallForaging() {
   SmallCampaign campaign;
+  campaign.name = "foraging";
   campaign.experiment = "foraging";
   campaign.settings = {"scenario_parameters.time_limit=120"};
+  return campaign;
+}
+
+SmallCampaign SmallSteadyState() {
+  SmallCampaign campaign;
+  campaign.name = "steady_state";
+  campaign.settings = {"search.mode=steady-state", "search.lag=5"};
   return campaign;
 }
 

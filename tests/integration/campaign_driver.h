@@ -25,6 +25,7 @@ std::string ReadFile(const std::string& path);
 
 // A campaign small enough for a test: a few dozen to a few hundred runs.
 struct SmallCampaign {
+  std::string name = "flocking";  // of the tests
   int population = 8;
   int generations = 4;
   std::string seed = "7";
@@ -33,6 +34,8 @@ struct SmallCampaign {
 };
 // Foraging of the same size: the runs are cut short, because 20 robots over 800 s take 0.1 s each.
 SmallCampaign SmallForaging();
+// Flocking in the steady-state mode.
+SmallCampaign SmallSteadyState();
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers);
 
 // `show DIR --json`, parsed; a null value (and a test failure) when it does not answer with one JSON

@@ -29,7 +29,7 @@ class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {
   // The undisturbed run with one worker that every drill is compared with.
   static const std::string& UndisturbedHash() {
     static std::map<std::string, std::string> hashes;
-    std::string& hash = hashes[GetParam().experiment];
+    std::string& hash = hashes[GetParam().name];
     if (hash.empty()) {
       const TemporaryDirectory scratch;
       const ProcessResult result = Gauntlet(EvolveArguments(GetParam(), scratch / "c", 1));
@@ -41,9 +41,10 @@ class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Experiments, DeterminismDrill,
-                         testing::Values(SmallCampaign{}, testing_support::SmallForaging()),
+                         testing::Values(SmallCampaign{}, testing_support::SmallForaging(),
+                                         testing_support::SmallSteadyState()),
                          [](const testing::TestParamInfo<SmallCampaign>& parameter) {
-                           return parameter.param.experiment;
+                           return parameter.param.name;
                          });
 
 TEST_P(DeterminismDrill, StateHashDoesNotDependOnTheNumberOfWorkers) {

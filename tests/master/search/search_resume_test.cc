@@ -7,6 +7,7 @@
 #include "master/search/case_list_search.h"
 #include "master/search/genetic_algorithm.h"
 #include "master/search/random_search.h"
+#include "master/search/steady_state_search.h"
 #include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
@@ -46,6 +47,16 @@ Factory Genetic(ParentSelection selection) {
   return [selection] { return std::move(GeneticAlgorithm::Create(GeneticSetup(selection))).value(); };
 }
 
+// A lag that does not divide the population, so that evaluations are outstanding at boundaries.
+Factory SteadyState(ParentSelection selection) {
+  return [selection] {
+    SearchSetup setup = GeneticSetup(selection);
+    setup.experiment.search.mode = SearchMode::kSteadyState;
+    setup.experiment.search.lag = 3;
+    return std::move(SteadyStateSearch::Create(setup)).value();
+  };
+}
+
 // Some evaluations fail, so that resuming them is tested too.
 EvaluationOutcome OutcomeWithFailures(const EvaluationRequest& request) {
   EvaluationOutcome outcome = OutcomeOf(request, Noise(request));
@@ -53,10 +64,16 @@ EvaluationOutcome OutcomeWithFailures(const EvaluationRequest& request) {
   return outcome;
 }
 
+// On to the next boundary; returns what was asked.
 std::vector<EvaluationRequest> Step(SearchAlgorithm& search) {
-  std::vector<EvaluationRequest> requests = search.Ask();
-  for (const EvaluationRequest& request : requests) search.Tell(OutcomeWithFailures(request));
-  return requests;
+  std::vector<EvaluationRequest> all;
+  do {
+    const std::vector<EvaluationRequest> requests = search.Ask();
+    if (requests.empty()) break;
+    for (const EvaluationRequest& request : requests) search.Tell(OutcomeWithFailures(request));
+    all.insert(all.end(), requests.begin(), requests.end());
+  } while (!search.AtBoundary());
+  return all;
 }
 
 class SearchResumeTest : public ::testing::TestWithParam<Kind> {};
@@ -117,6 +134,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Kind{"AllParentBestHalf", Genetic(ParentSelection::kAllParentBestHalf)},
                       Kind{"TwoBest", Genetic(ParentSelection::kTwoBestParentsTwoWorseAway)},
                       Kind{"TwoRandom", Genetic(ParentSelection::kTwoRandomParentsTwoWorseAway)},
+                      Kind{"SteadyState", SteadyState(ParentSelection::kAllParentBestHalf)},
+                      Kind{"SteadyStateTwoBest", SteadyState(ParentSelection::kTwoBestParentsTwoWorseAway)},
                       Kind{"Random",
                            [] { return std::move(RandomSearch::Create(RandomSetup(230))).value(); }},
                       Kind{"CaseList",
