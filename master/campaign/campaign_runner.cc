@@ -127,15 +127,16 @@ Result<CampaignEnd> CampaignRunner::Run(const std::function<StopWish()>& stop,
       on_progress(Progress(started));
       last_report = now;
     }
-    if (running_.empty()) break;
+    const bool searched = running_.empty();
+    if (searched && parts_.backend.Statistics().audits_open == 0) break;
     const StopWish wish = stop();
     if (wish == StopWish::kAfterRuns) parts_.backend.StopLeasing();
     if (wish == StopWish::kNow || (wish == StopWish::kAfterRuns && parts_.backend.Statistics().busy == 0)) {
       if (Status ended = EndSession(); !ended) return ended.error();
-      return CampaignEnd::kStopped;
+      return searched ? CampaignEnd::kFinished : CampaignEnd::kStopped;
     }
-    if (std::none_of(running_.begin(), running_.end(),
-                     [](const SearchDriver* search) { return search->pending(); }))
+    if (!searched && std::none_of(running_.begin(), running_.end(),
+                                  [](const SearchDriver* search) { return search->pending(); }))
       continue;
     Result<std::vector<FinishedRun>> finished = parts_.backend.Poll(kPollTime);
     if (!finished) {

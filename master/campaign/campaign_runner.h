@@ -51,9 +51,9 @@ class CampaignRunner {
   // Call once, before Run: restores all searches. `finished`: those that the store calls finished.
   Status Restore(const std::vector<SearchId>& finished);
 
-  // Until all searches have finished, `stop` answers kNow, or it has answered kAfterRuns and what was running
-  // has ended. `on_progress` is called about ten times a second. Error: the store or the backend failed;
-  // whatever was acknowledged is stored.
+  // Until all searches have finished and the backend's audits are done, `stop` answers kNow, or it has
+  // answered kAfterRuns and what was running has ended. `on_progress` is called about ten times a second.
+  // Error: the store or the backend failed; whatever was acknowledged is stored.
   Result<CampaignEnd> Run(const std::function<StopWish()>& stop,
                           const std::function<void(const CampaignProgress&)>& on_progress);
 

@@ -18,6 +18,7 @@
 #include "master/campaign/campaign_status.h"
 #include "master/campaign/process_identity.h"
 #include "master/campaign/reachable_endpoints.h"
+#include "master/campaign/reproduction_bundle.h"
 #include "master/campaign/stored_check.h"
 #include "master/campaign/worker_program.h"
 #include "master/dispatch/local_pool.h"
@@ -188,8 +189,19 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
 
   const CampaignIdentity identity{store.meta().campaign_id, campaign.epoch, std::string(kSoftwareVersion),
                                   golden_hash};
-  RemoteBackend backend(identity, DispatchOptions{}, *serving->transport, clock, pool.get());
+  DispatchOptions dispatch;
+  dispatch.audit_share = options.audit_share;
+  RemoteBackend backend(identity, dispatch, *serving->transport, clock, pool.get());
   backend.WatchFd(store.CommitNotifier());
+  const BundleContext bundles{campaign.directory.path(), store.meta().campaign_id,
+                              std::string(kSoftwareVersion), HashText(golden_hash)};
+  const auto keep_bundle = [&bundles](const Experiment& experiment) {
+    return [&bundles, &experiment](const StoredRun& run, const FinishedRun& finished) {
+      if (!LeavesBundle(finished.result.verdict)) return;
+      const Status written = WriteBundle(bundles, experiment, run, finished);
+      if (!written) spdlog::warn("no bundle for run {}: {}", run.id, written.error().message);
+    };
+  };
   std::deque<SearchDriver> drivers;
   CampaignRunner::Parts parts{{}, backend, store, clock};
   for (std::size_t i = 0; i < plans.size(); ++i) {
@@ -197,7 +209,8 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
                                              .search_id = static_cast<SearchId>(i + 1),
                                              .search = *searches[i],
                                              .backend = backend,
-                                             .store = store});
+                                             .store = store,
+                                             .on_run = keep_bundle(plans[i].experiment)});
     parts.searches.push_back(&drivers.back());
   }
   CampaignRunner runner(parts);
@@ -256,11 +269,18 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
     spdlog::error("stopped: {}", end.error().message);
     return end.error();
   }
+  const WorkerStatistics workers = backend.Statistics();
+  if (workers.audits > 0) {
+    store.AddEvent({UnixMilliseconds(), "audit",
+                    fmt::format("{} runs were simulated on a second worker, {} ended differently",
+                                workers.audits, workers.nondeterministic)});
+  }
   store.AddEvent({UnixMilliseconds(), *end == CampaignEnd::kFinished ? "finished" : "stop",
                   fmt::format("{} runs stored", runner.runs_done())});
   if (Status flushed = store.Flush(); !flushed) return flushed.error();
 
   SessionReport report;
+  report.workers = workers;
   report.end = *end;
   report.runs_this_session = runner.runs_done() - runs_before;
   report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();

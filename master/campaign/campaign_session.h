@@ -39,6 +39,7 @@ struct SessionOptions {
   // Where workers connect. Reachable from other machines: encrypted, for known keys only, unless `insecure`.
   std::string bind = "tcp://127.0.0.1:*";
   bool insecure = false;
+  double audit_share = 0.0;  // of runs, 0 to 1, that a second worker simulates too, to be compared
   std::function<void(const ServingNotice&)> on_serving = [](const ServingNotice&) {};
   // Asks for a clean stop at once. Workers from elsewhere stay and look for the campaign's next master; when
   // `gauntlet stop` asks, runs that have begun are waited for and all workers are let go.
@@ -52,6 +53,7 @@ struct SessionReport {
   double wall_seconds = 0.0;
   double master_cpu_seconds = 0.0;      // user + system of the master process alone, in this session
   std::uint64_t runs_this_session = 0;  // simulated, not taken from the store
+  WorkerStatistics workers;
 };
 
 // Creates the campaign in `dir` (which must not exist or be empty) and runs it. `cases`: what `evaluate`

@@ -49,7 +49,7 @@ void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>
   auto group = std::find_if(groups.begin(), groups.end(), [&](const RunsWithoutResult& one) {
     return one.verdict == verdict && one.rule == rule && (!rule.empty() || one.message == message);
   });
-  if (group == groups.end()) group = groups.insert(groups.end(), {verdict, rule, message, 0});
+  if (group == groups.end()) group = groups.insert(groups.end(), {verdict, rule, message, 0, run.id});
   ++group->runs;
 }
 

@@ -39,6 +39,7 @@ struct RunsWithoutResult {
   std::string rule;     // "no-room-to-spawn"; "" when the messages do not begin with one
   std::string message;  // of the first of them
   std::uint64_t runs = 0;
+  RunId first_run = 0;  // the first of them
 };
 
 struct CampaignSummary {

@@ -78,10 +78,21 @@ Status SearchDriver::Restore() {
   return read;
 }
 
+double SearchDriver::PredictedLength(const EvaluationRequest& request) const {
+  if (const auto own = ticks_.find(request.individual); own != ticks_.end()) return own->second;
+  double longest = 0.0;
+  for (const IndividualId parent : request.parents) {
+    if (const auto found = ticks_.find(parent); found != ticks_.end())
+      longest = std::max(longest, found->second);
+  }
+  return longest;
+}
+
 Status SearchDriver::Ask() {
   std::vector<RunRequest> submissions;
   for (EvaluationRequest& request : parts_.search.Ask()) {
     PendingEvaluation evaluation;
+    const double length = PredictedLength(request);
     for (std::uint32_t replicate = 0; replicate < request.replicates; ++replicate) {
       StoredRun run;
       run.id = ++last_asked_;
@@ -105,7 +116,7 @@ Status SearchDriver::Ask() {
 
       const auto stored = stored_ahead_.find(run.id);
       if (stored == stored_ahead_.end()) {
-        submissions.push_back({run.id, run.spec});
+        submissions.push_back({run.id, run.spec, length});
         evaluation.runs.push_back({std::move(run), false});
       } else {
         if (stored->second.spec != run.spec) {
@@ -148,6 +159,9 @@ void SearchDriver::Store(FinishedRun finished) {
   GAUNTLET_CHECK(pending != nullptr && !pending->durable, fmt::format("run {} finished twice", finished.id));
   StoredRun& run = pending->run;
   --at_backend_;
+  if (parts_.experiment.search.kind == SearchKind::kGenetic)
+    ticks_[run.individual] = static_cast<double>(finished.result.ticks);
+  if (parts_.on_run) parts_.on_run(run, finished);
   run.result = std::move(finished.encoded);
   run.hash = finished.result.hash;
   run.worker = std::move(finished.worker);
@@ -217,7 +231,9 @@ void SearchDriver::SaveState() {
   double sum = 0.0;
   int counted = 0;
   best_fitness_ = std::numeric_limits<double>::infinity();
+  std::map<IndividualId, double> ticks;
   for (const Individual& individual : parts_.search.Population()) {
+    if (const auto known = ticks_.find(individual.id); known != ticks_.end()) ticks.insert(*known);
     if (!std::isfinite(individual.fitness)) continue;
     best_fitness_ = std::min(best_fitness_, individual.fitness);
     sum += individual.fitness;
@@ -225,6 +241,7 @@ void SearchDriver::SaveState() {
   }
   mean_fitness_ = counted > 0 ? sum / counted : std::numeric_limits<double>::quiet_NaN();
   if (counted == 0) best_fitness_ = mean_fitness_;
+  ticks_ = std::move(ticks);
 }
 
 Status SearchDriver::Advance() {

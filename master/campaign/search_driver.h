@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <string_view>
 #include <vector>
@@ -42,6 +43,8 @@ class SearchDriver {
     SearchAlgorithm& search;
     EvaluationBackend& backend;
     ResultStore& store;
+    // A run that has come back, before it is stored; it still has its spec.
+    std::function<void(const StoredRun&, const FinishedRun&)> on_run = {};
   };
   explicit SearchDriver(const Parts& parts);
 
@@ -88,6 +91,8 @@ class SearchDriver {
   };
 
   Status Ask();
+  // Ticks that the individual's runs took so far, or its parents'; 0 = unknown.
+  double PredictedLength(const EvaluationRequest& request) const;
   void SaveState();
   void Count(const StoredRun& run);
   PendingRun* Find(RunId id);
@@ -97,6 +102,7 @@ class SearchDriver {
   std::map<RunId, StoredRun>
       stored_ahead_;  // results that a former session stored and the saved state has not seen
   std::uint64_t at_backend_ = 0;
+  std::map<IndividualId, double> ticks_;  // of the newest run of those who may run or breed again
   RunId last_asked_ = 0;
   RunId last_told_ = 0;
   RunId saved_until_ = 0;

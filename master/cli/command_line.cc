@@ -22,9 +22,18 @@ void AddMessageOptions(CLI::App& command, CommonOptions& options) {
   command.add_flag("--no-progress", options.no_progress, "messages, but no progress");
 }
 
+void AddAuditOption(CLI::App& command, CommonOptions& options) {
+  command
+      .add_option(
+          "--audit", options.audit,
+          "share of runs, 0 to 1, that a second worker simulates too; a difference is told (default: 0)")
+      ->type_name("P");
+}
+
 void AddRunningOptions(CLI::App& command, CommonOptions& options) {
   command.add_option("--workers", options.workers, "worker processes on this machine (default: its cores)")
       ->type_name("N");
+  AddAuditOption(command, options);
   AddMessageOptions(command, options);
 }
 
@@ -231,6 +240,7 @@ void AddServiceCommands(CLI::App& app, CommandAction& chosen) {
   const auto [master, master_options] =
       AddCommand(app, chosen, "master", "a search whose workers come from elsewhere", RunMaster);
   AddExperimentOptions(*master, master_options->common);
+  AddAuditOption(*master, master_options->common);
   AddMessageOptions(*master, master_options->common);
   AddBindOptions(*master, master_options->common);
   master->get_option("--bind")->required();

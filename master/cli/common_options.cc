@@ -45,6 +45,14 @@ Result<int> ParseWorkers(const std::string& text) {
   return static_cast<int>(*workers);
 }
 
+Result<double> ParseShare(const std::string& option, const std::string& text) {
+  if (text.empty()) return 0.0;
+  double share = -1.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), share);
+  if (error == std::errc() && end == text.data() + text.size() && share >= 0.0 && share <= 1.0) return share;
+  return InvalidInput(fmt::format("{} {}: must be a share from 0 to 1, e.g. 0.05", option, text));
+}
+
 Result<std::uint64_t> ParseSeed(const std::string& text) {
   if (text == "random") {
     std::random_device device;

@@ -23,6 +23,7 @@ struct CommonOptions {
   std::string population;
   std::string bind;  // where workers connect; only master and resume
   bool insecure = false;
+  std::string audit;
   bool as_job = false;  // only resume: the master's job of a submitted campaign
   bool json = false;
   bool quiet = false;
@@ -33,6 +34,8 @@ inline constexpr int kMostWorkers = 1024;
 
 // 1 to kMostWorkers; "" gives the cores that this process may use.
 Result<int> ParseWorkers(const std::string& text);
+// A share, 0 to 1; "" gives 0.
+Result<double> ParseShare(const std::string& option, const std::string& text);
 // A decimal number below 2^64, or "random", which draws one from the operating system.
 Result<std::uint64_t> ParseSeed(const std::string& text);
 // Decimal, at least 1.

@@ -30,7 +30,7 @@ const std::vector<Search>& Searches() {
   static const std::vector<Search> searches = {
       {"genetic",
        "a population of test cases is bred for low fitness: gauntlet evolve",
-       {"search.mode", "search.lag", "search.population", "search.generations", "search.parent_selection",
+       {"search.population", "search.generations", "search.mode", "search.lag", "search.parent_selection",
         "search.crossover", "search.crossover_probability", "search.mutation_probability",
         "search.reevaluation", "search.fitness_aggregation", "search.replicates", "search.variation_tries",
         "genome."}},

@@ -26,12 +26,27 @@ std::string Timing(const SessionReport& report) {
     line += fmt::format(" ({:.1f}/s; master {:.0f} us of CPU per run)", runs / report.wall_seconds,
                         1e6 * report.master_cpu_seconds / runs);
   }
+  const WorkerStatistics& workers = report.workers;
+  if (workers.slot_seconds > 0.0) {
+    line +=
+        fmt::format("; workers idle for {:.0f} % of {} ({:.0f} % because the search waited for results)",
+                    100.0 * workers.idle_seconds / workers.slot_seconds, FormatDuration(workers.slot_seconds),
+                    100.0 * workers.barrier_seconds / workers.slot_seconds);
+  }
+  if (workers.audits > 0) {
+    line += fmt::format("; {} runs simulated on a second worker, {}", FormatCount(workers.audits),
+                        workers.nondeterministic == 0
+                            ? "all equal"
+                            : fmt::format("{} ENDED DIFFERENTLY", workers.nondeterministic));
+  }
   return line;
 }
 
 }  // namespace
 
 ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, const CampaignRun& campaign) {
+  const Result<double> audit_share = ParseShare("--audit", options.audit);
+  if (!audit_share) return Fail(context, audit_share.error());
   if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
 
   const SteadyClock clock;
@@ -44,6 +59,7 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
   SessionOptions session;
   session.workers = campaign.workers;
   session.insecure = campaign.insecure;
+  session.audit_share = *audit_share;
   session.batch_job = campaign.batch_job;
   session.make_pool = campaign.make_pool;
   if (!campaign.bind.empty()) session.bind = campaign.bind;

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "master/campaign/reproduction_bundle.h"
+
 namespace gauntlet::master {
 namespace {
 
@@ -104,10 +106,13 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
 
   Json without_result = Json::array();
   for (const RunsWithoutResult& group : summary.runs_without_result) {
-    without_result.push_back({{"verdict", NameOf(group.verdict)},
-                              {"rule", TextOrNull(group.rule)},
-                              {"message", group.message},
-                              {"runs", group.runs}});
+    without_result.push_back(
+        {{"verdict", NameOf(group.verdict)},
+         {"rule", TextOrNull(group.rule)},
+         {"message", group.message},
+         {"runs", group.runs},
+         {"first_run", group.first_run},
+         {"bundle", LeavesBundle(group.verdict) ? Json(BundleName(group.first_run)) : Json(nullptr)}});
   }
 
   return {{"experiment", summary.experiment},

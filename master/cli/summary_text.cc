@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "master/campaign/reproduction_bundle.h"
 #include "master/campaign/verdict_text.h"
 #include "master/cli/table.h"
 
@@ -70,6 +71,8 @@ std::string RunsWithoutAResult(const CampaignSummary& summary) {
   for (std::size_t i = 0; i < std::min(kMostGroups, groups.size()); ++i) {
     text += fmt::format("  {} of {} {}: {}\n", FormatCount(groups[i].runs), FormatCount(summary.runs_done),
                         NameOf(groups[i].verdict), Printable(groups[i].message));
+    if (LeavesBundle(groups[i].verdict))
+      text += fmt::format("    to see it again: {}/README.txt\n", BundleName(groups[i].first_run));
   }
   if (groups.size() > kMostGroups)
     text += fmt::format("  and {} more reasons; see show --json\n", groups.size() - kMostGroups);

@@ -20,6 +20,11 @@ struct DispatchOptions {
   // runs): round trips and commits then cost many of them at once.
   std::chrono::milliseconds work_ahead{10};
   std::uint32_t most_credit = 256;
+  // When no run waits, an idle worker gets a copy of a run that has taken this many times the predicted time
+  // on another; the first answer counts. 0 = never.
+  double copy_after = 2.0;
+  // Share of runs, 0 to 1, that another worker simulates once more, to be compared.
+  double audit_share = 0.0;
   // CPU time of one runner on one run, s; only there to end what would never end. At least 60 in campaigns.
   double cpu_limit_seconds = 60.0;
   std::uint64_t memory_limit_bytes = 2ULL << 30;  // address space of one runner; 0 = no limit

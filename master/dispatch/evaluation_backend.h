@@ -17,6 +17,9 @@ using RunId = std::uint64_t;  // 1, 2, 3, ... in logical order within a campaign
 struct RunRequest {
   RunId id = 0;
   std::string spec;  // serialized gauntlet.v1.RunSpec (master/dispatch/run_codec.h)
+  // How long it will probably take, compared with the others that are submitted with it, in any unit; the
+  // longest go first, equals in the order of their ids.
+  double length = 0.0;
 };
 
 struct FinishedRun {
@@ -25,6 +28,7 @@ struct FinishedRun {
   std::string encoded;        // `result` as it is stored: a serialized gauntlet.v1.RunResult, no trajectory
   std::string worker;         // instance id and host, for the log
   std::uint32_t attempt = 1;  // how many leases it took
+  std::string stderr_tail;    // of a run that failed in all attempts, what the last one printed
 };
 
 struct WorkerStatistics {
@@ -35,6 +39,12 @@ struct WorkerStatistics {
   std::uint64_t duplicates = 0;
   std::uint64_t rejected_messages = 0;
   std::uint64_t nondeterministic = 0;  // duplicates whose result differed from the first one
+  std::uint64_t copies = 0;            // runs that an idle worker got although another had them
+  std::uint64_t audits = 0;            // runs simulated twice on purpose, and compared
+  std::uint64_t audits_open = 0;       // and those that wait for it
+  double slot_seconds = 0.0;           // of connected workers, since the first lease
+  double idle_seconds = 0.0;           // of these, without a run
+  double barrier_seconds = 0.0;        // of these, because no run waited: the search needed a result first
 };
 
 // One worker, for people.

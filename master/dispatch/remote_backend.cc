@@ -54,8 +54,9 @@ RemoteBackend::RemoteBackend(CampaignIdentity identity, const DispatchOptions& o
       scheduler_(options, FirstFence(identity_.epoch)) {}
 
 void RemoteBackend::Submit(std::vector<RunRequest> runs) {
+  scheduler_.BeginBatch();
   for (RunRequest& run : runs) {
-    scheduler_.Submit(run.id);
+    scheduler_.Submit(run.id, run.length);
     specs_.emplace(run.id, std::move(run.spec));
   }
 }
@@ -228,7 +229,9 @@ void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
   }
 
   if (!result) {
+    if (specs_.contains(message.run)) stderr_tails_[message.run] = message.stderr_tail;
     const Answer answer = scheduler_.Failed(worker, message.fence, message.run, *message.failure);
+    if (answer == Answer::kUnwanted) ForgetSpec(message.run);
     if (answer == Answer::kRejected) {
       Reject("lease", fmt::format("worker {} reported on a lease that is not its own", LabelOf(worker)));
     } else if (answer == Answer::kAccepted) {
@@ -247,18 +250,26 @@ void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
       // What arrived is stored as it came: decoding has checked it against its hash.
       const bool as_it_came = result->trajectory.empty() && result->cpu_seconds > 0.0;
       if (result->cpu_seconds == 0.0) result->cpu_seconds = message.cpu_seconds;
-      finished_.push_back({message.run, std::move(*result), {}, LabelOf(worker), attempt});
+      finished_.push_back({message.run, std::move(*result), {}, LabelOf(worker), attempt, {}});
       FinishedRun& finished = finished_.back();
       finished.encoded = as_it_came ? std::move(message.result) : EncodeStoredResult(finished.result);
-      specs_.erase(message.run);
+      ForgetSpec(message.run);
       break;
     }
     case Answer::kRejected:
       Reject("lease", fmt::format("worker {} answered a lease that is not its own", LabelOf(worker)));
       break;
     default:
+      ForgetSpec(message.run);
       break;  // counted by the scheduler
   }
+}
+
+// Unless somebody may have to simulate it yet.
+void RemoteBackend::ForgetSpec(RunId run) {
+  if (scheduler_.Wanted(run)) return;
+  specs_.erase(run);
+  stderr_tails_.erase(run);
 }
 
 void RemoteBackend::GiveLeases(TimePoint now) {
@@ -304,10 +315,11 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
   run.encoded = EncodeStoredResult(run.result);
   run.worker = LabelOf(order.worker);
   run.attempt = order.leases;
+  run.stderr_tail = stderr_tails_[order.run];
   Report("run-given-up", fmt::format("run {} {} in {} of {} attempts", order.run, run.result.message,
                                      order.of_last_kind, order.attempts));
   finished_.push_back(std::move(run));
-  specs_.erase(order.run);
+  ForgetSpec(order.run);
 }
 
 void RemoteBackend::SendHeartbeats(TimePoint now) {

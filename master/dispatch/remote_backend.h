@@ -61,6 +61,7 @@ class RemoteBackend final : public EvaluationBackend {
   // Why this worker may not work here; "" when it may.
   std::string ReasonToRefuse(const HelloMessage& hello) const;
   void GiveLeases(TimePoint now);
+  void ForgetSpec(RunId run);
   // False when a lease could not be delivered: others may take it.
   bool Perform(const SchedulerOrders& orders);
   void GiveUp(const RunGivenUp& order);
@@ -80,7 +81,9 @@ class RemoteBackend final : public EvaluationBackend {
   int watched_fd_ = -1;
 
   Scheduler scheduler_;
-  std::unordered_map<RunId, std::string> specs_;  // of unfinished runs
+  std::unordered_map<RunId, std::string> specs_;  // of runs that somebody may have to simulate
+  std::unordered_map<RunId, std::string>
+      stderr_tails_;  // of those of them that failed, their newest failure's
   std::map<InstanceId, Connection> connections_;
   std::unordered_map<PeerId, InstanceId> instances_;
   std::vector<FinishedRun> finished_;

@@ -4,14 +4,22 @@
 #include <string>
 
 #include "sim/base/check.h"
+#include "sim/base/hash.h"
 
 namespace gauntlet::master {
 namespace {
 
 // A lease that was sent and is not in a heartbeat of its worker was lost on the way, unless the two crossed.
 constexpr int kCrossingHeartbeats = 2;
-constexpr int kChecksPerHeartbeat = 8;
 constexpr double kPredictionGain = 0.05;  // weight of the newest run in the predicted length
+
+// The same runs in every session and for any number of workers.
+bool Audited(RunId run, double share) {
+  if (!(share > 0.0)) return false;
+  Fnv1a64 hash;
+  hash.AddUint64(run);
+  return static_cast<double>(hash.value() >> 11) * 0x1p-53 < share;
+}
 
 void Erase(std::vector<Fence>& fences, Fence fence) {
   const auto found = std::find(fences.begin(), fences.end(), fence);
@@ -36,8 +44,12 @@ void Scheduler::Advance(TimePoint now) {
     return;
   }
   if (now > last_now_) {
-    listening_ += std::min<Duration>(now - last_now_, options_.heartbeat);
+    const Duration passed = std::min<Duration>(now - last_now_, options_.heartbeat);
+    listening_ += passed;
     last_now_ = now;
+    if (leasing_ && next_fence_ > first_fence_) {
+      usage_.Pass(std::chrono::duration<double>(passed).count(), queue_.empty());
+    }
   }
 }
 
@@ -55,11 +67,18 @@ std::uint32_t Scheduler::Credit() const {
   return static_cast<std::uint32_t>(std::min(most, ahead / std::max(predicted_seconds_, 1e-6)));
 }
 
-void Scheduler::Submit(RunId run) {
-  const bool added = runs_.try_emplace(run).second;
-  GAUNTLET_CHECK(added, "run " + std::to_string(run) + " submitted twice");
-  queue_.insert(run);
+void Scheduler::Submit(RunId id, double length) {
+  const auto [run, added] = runs_.try_emplace(id);
+  GAUNTLET_CHECK(added, "run " + std::to_string(id) + " submitted twice");
+  run->second.batch = batch_;
+  run->second.length = length;
+  queue_.insert({batch_, length, id});
   ++unfinished_;
+}
+
+bool Scheduler::Wanted(RunId id) const {
+  const auto found = runs_.find(id);
+  return found != runs_.end() && (!found->second.finished || found->second.audit);
 }
 
 void Scheduler::Acknowledge(RunId id) {
@@ -121,6 +140,7 @@ bool Scheduler::WorkerLeft(InstanceId id) {
   worker.lost = true;  // gets nothing of what it gives back
   Unlist(id, worker);
   ReleaseAll(worker);
+  Count(worker);
   while (!worker.loose.empty()) {
     const Fence fence = worker.loose.back();
     const RunId run = leases_.at(fence).run;
@@ -171,7 +191,7 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
       Erase(worker.loose, fence);
       worker.live.push_back(fence);
       ++run.live;
-      queue_.erase(run_id);
+      queue_.erase({run.batch, run.length, run_id});
     } else {
       lease.state = LeaseState::kCancelled;
       orders_.cancels.push_back({id, fence});
@@ -185,7 +205,12 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
   List(id, worker);
 }
 
+void Scheduler::Count(Worker& worker) {
+  usage_.Set(worker.usage, worker.lost || worker.draining ? 0 : worker.slots, worker.live.size());
+}
+
 void Scheduler::List(InstanceId id, Worker& worker) {
+  Count(worker);
   Unlist(id, worker);
   if (worker.lost || worker.draining || worker.blocked) return;
   if (worker.live.size() >= std::size_t{worker.slots} * Credit()) return;
@@ -221,8 +246,12 @@ void Scheduler::EndLease(Fence fence) {
 }
 
 bool Scheduler::Requeue(RunId id, Run& run) {
-  if (run.finished || run.live > 0) return false;
-  queue_.insert(id);
+  if (run.live > 0) return false;
+  if (run.finished) {
+    if (run.audit) audits_.insert(id);
+    return false;
+  }
+  queue_.insert({run.batch, run.length, id});
   return true;
 }
 
@@ -241,6 +270,7 @@ void Scheduler::Lose(InstanceId id, Worker& worker) {
   worker.lost = true;
   ++lost_;
   Unlist(id, worker);
+  Count(worker);
   orders_.lost.push_back({id, ReleaseAll(worker)});
 }
 
@@ -249,13 +279,17 @@ void Scheduler::Finish(RunId id, Run& run, InstanceId worker, Fence fence) {
   run.finished_by = worker;
   run.accepted = fence;
   --unfinished_;
-  queue_.erase(id);
+  queue_.erase({run.batch, run.length, id});
   for (const Fence other : run.fences) {
     Lease& lease = leases_.at(other);
     if (lease.state != LeaseState::kLive) continue;
     orders_.cancels.push_back({lease.worker, other});
     Loosen(other, lease, LeaseState::kCancelled);
   }
+  run.audit = !run.given_up && Audited(id, options_.audit_share);
+  if (!run.audit) return;
+  ++audits_open_;
+  audits_.insert(id);
 }
 
 Answer Scheduler::CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash) {
@@ -265,6 +299,7 @@ Answer Scheduler::CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence 
     ++mismatches_;
     orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, hash});
   }
+  if (run.audit && (worker != run.finished_by || Alone(worker))) EndAudit(id, run);
   ForgetIfDone(id);
   return Answer::kDuplicate;
 }
@@ -314,6 +349,12 @@ Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const RunFail
   EndLease(fence);
   orders_.acknowledgements.push_back({worker, fence});
   if (run.finished) {
+    if (run.audit && failure.kind != FailureKind::kExternal && ++run.audit_failures >= options_.attempts) {
+      ++mismatches_;
+      orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, 0});
+      EndAudit(id, run);
+    }
+    Requeue(id, run);
     ForgetIfDone(id);
     return Answer::kUnwanted;
   }
@@ -347,9 +388,18 @@ std::uint32_t Scheduler::LeasesOf(RunId run) const {
   return found == runs_.end() ? 0 : found->second.leases;
 }
 
+void Scheduler::EndAudit(RunId id, Run& run) {
+  run.audit = false;
+  audits_.erase(id);
+  --audits_open_;
+  ++audited_;
+}
+
 void Scheduler::ForgetIfDone(RunId id) {
   const auto found = runs_.find(id);
-  if (found != runs_.end() && found->second.acknowledged && found->second.fences.empty()) runs_.erase(found);
+  if (found == runs_.end()) return;
+  const Run& run = found->second;
+  if (run.acknowledged && run.fences.empty() && !run.audit) runs_.erase(found);
 }
 
 void Scheduler::Purge() {
@@ -366,27 +416,12 @@ void Scheduler::Purge() {
     loose_ends_.pop_front();
     const auto found = runs_.find(id);
     if (found == runs_.end()) continue;
+    if (found->second.audit) {
+      loose_ends_.emplace_back(listening_, id);
+      continue;
+    }
     for (const Fence fence : std::vector<Fence>(found->second.fences)) EndLease(fence);
     ForgetIfDone(id);
-  }
-}
-
-void Scheduler::Assign() {
-  if (!leasing_) return;
-  while (!queue_.empty() && !available_.empty()) {
-    const RunId id = *queue_.begin();
-    queue_.erase(queue_.begin());
-    const InstanceId worker_id = available_.begin()->second;
-    Worker& worker = workers_.at(worker_id);
-    Run& run = runs_.at(id);
-    const Fence fence = next_fence_++;
-    leases_.emplace(fence, Lease{id, worker_id, LeaseState::kLive, listening_});
-    run.fences.push_back(fence);
-    ++run.live;
-    ++run.leases;
-    worker.live.push_back(fence);
-    List(worker_id, worker);
-    orders_.leases.push_back({worker_id, fence, id, run.leases});
   }
 }
 
@@ -400,46 +435,12 @@ SchedulerOrders Scheduler::Decide(TimePoint now) {
       }
     }
     Purge();
+    Assign();
+    AssignCopies();
   }
   Assign();
+  AssignAudits();
   return std::exchange(orders_, {});
-}
-
-std::vector<std::pair<InstanceId, WorkerView>> Scheduler::DescribeWorkers() const {
-  const auto seconds_since = [this](Duration then) {
-    return std::chrono::duration<double>(listening_ - then).count();
-  };
-  std::vector<std::pair<InstanceId, WorkerView>> views;
-  for (const auto& [id, worker] : workers_) {
-    WorkerView view;
-    view.slots = worker.slots;
-    view.lost = worker.lost;
-    view.leaving = worker.draining;
-    view.silent_seconds = seconds_since(worker.heard);
-    std::vector<Fence> fences = worker.live;
-    std::sort(fences.begin(), fences.end());
-    for (const Fence fence : fences) {
-      const Lease& lease = leases_.at(fence);
-      view.leases.push_back({lease.run, runs_.at(lease.run).leases, seconds_since(lease.granted)});
-    }
-    views.emplace_back(id, std::move(view));
-  }
-  std::sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  return views;
-}
-
-WorkerStatistics Scheduler::Statistics() const {
-  WorkerStatistics statistics;
-  for (const auto& [id, worker] : workers_) {
-    if (worker.lost) continue;
-    ++statistics.connected;
-    if (!worker.live.empty()) ++statistics.busy;
-  }
-  statistics.lost = lost_;
-  statistics.releases = releases_;
-  statistics.duplicates = duplicates_;
-  statistics.nondeterministic = mismatches_;
-  return statistics;
 }
 
 }  // namespace gauntlet::master

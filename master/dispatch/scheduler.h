@@ -7,6 +7,9 @@
 //   cancelled  not needed any more; a late answer is a duplicate and is compared
 //   answered   its result was accepted and waits to be stored (Acknowledge)
 // so that no answer is ever refused for being late, and no run is finished twice.
+//
+// When no run waits, idle workers get a second lease of runs that take unusually long (copy_after), or of
+// finished runs that are to be audited; a finished run is remembered until its audit has been answered.
 #pragma once
 
 #include <array>
@@ -21,6 +24,7 @@
 #include "master/dispatch/clock.h"
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
+#include "master/dispatch/slot_usage.h"
 
 namespace gauntlet::master {
 
@@ -100,8 +104,10 @@ class Scheduler {
   // Fencing numbers are first_fence, first_fence + 1, ...; smaller ones belong to earlier masters.
   Scheduler(const DispatchOptions& options, Fence first_fence);
 
-  // Ids are new; smaller ids are leased first, whenever they were submitted or released.
-  void Submit(RunId run);
+  // What is submitted from now on comes after what was submitted so far, whenever it is released.
+  void BeginBatch() { ++batch_; }
+  // Ids are new. Within a batch the longest go first (RunRequest::length), equals in the order of their ids.
+  void Submit(RunId run, double length = 0.0);
   // The result of this finished run is stored durably.
   void Acknowledge(RunId id);
   // No lease is given from now on.
@@ -131,6 +137,8 @@ class Scheduler {
   std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown runs
   std::size_t queued() const { return queue_.size(); }
   std::size_t unfinished() const { return unfinished_; }
+  // Whether another lease of the run may still be given: it has not finished, or its audit is open.
+  bool Wanted(RunId run) const;
   std::size_t remembered_runs() const { return runs_.size(); }  // all that takes memory
   WorkerStatistics Statistics() const;
   // Without labels and pids, in the order of the ids; times as of the last event. Runs that several workers
@@ -138,6 +146,8 @@ class Scheduler {
   std::vector<std::pair<InstanceId, WorkerView>> DescribeWorkers() const;
 
  private:
+  static constexpr int kChecksPerHeartbeat = 8;  // for what is silent or slow
+
   enum class LeaseState { kLive, kOrphaned, kCancelled, kAnswered };
   struct Lease {
     RunId run = 0;
@@ -145,7 +155,18 @@ class Scheduler {
     LeaseState state = LeaseState::kLive;
     Duration granted{};
   };
+  struct Place {  // in the queue
+    std::uint64_t batch = 0;
+    double length = 0.0;
+    RunId run = 0;
+    bool operator<(const Place& other) const {
+      if (batch != other.batch) return batch < other.batch;
+      return length != other.length ? length > other.length : run < other.run;
+    }
+  };
   struct Run {
+    std::uint64_t batch = 0;
+    double length = 0.0;
     std::vector<Fence> fences;  // live, orphaned and cancelled leases
     std::uint32_t live = 0;
     std::uint32_t leases = 0;  // given so far
@@ -154,6 +175,8 @@ class Scheduler {
     bool finished = false;
     bool given_up = false;
     bool acknowledged = false;
+    bool audit = false;  // is to be simulated once more, and has not been
+    std::uint32_t audit_failures = 0;
     Fence accepted = 0;
     InstanceId finished_by = 0;
     std::uint64_t hash = 0;
@@ -166,6 +189,7 @@ class Scheduler {
     bool lost = false;
     bool draining = false;
     bool blocked = false;  // the last lease could not be delivered
+    SlotUsage::Share usage;
     // Its place in available_, when it has one.
     bool listed = false;
     std::uint32_t level = 0;
@@ -180,13 +204,19 @@ class Scheduler {
   void Loosen(Fence fence, Lease& lease, LeaseState state);
   void EndLease(Fence fence);
   bool Requeue(RunId id, Run& run);
+  void Count(Worker& worker);  // its slots and leases, for the statistics
   std::vector<RunId> ReleaseAll(Worker& worker);
   void Lose(InstanceId id, Worker& worker);
   void Finish(RunId id, Run& run, InstanceId worker, Fence fence);
   Answer CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);
+  void EndAudit(RunId id, Run& run);
   void ForgetIfDone(RunId id);
   void Purge();
+  void Grant(InstanceId worker_id, RunId id);
   void Assign();
+  void AssignAudits();
+  void AssignCopies();
+  bool Alone(InstanceId worker) const;  // there is no other worker
 
   DispatchOptions options_;
   Fence first_fence_;
@@ -202,8 +232,11 @@ class Scheduler {
   double predicted_seconds_ = -1.0;  // of a run; negative: none has ended yet
 
   std::unordered_map<RunId, Run> runs_;
-  std::set<RunId> queue_;
+  std::set<Place> queue_;
+  std::uint64_t batch_ = 0;
   std::size_t unfinished_ = 0;
+  std::set<RunId> audits_;  // finished runs that wait for their second lease
+  std::size_t audits_open_ = 0;
   std::unordered_map<Fence, Lease> leases_;
   std::map<InstanceId, Worker> workers_;
   // Workers that can take a lease, least loaded first: (live leases / slots, id).
@@ -215,6 +248,9 @@ class Scheduler {
   std::uint64_t releases_ = 0;
   std::uint64_t duplicates_ = 0;
   std::uint64_t mismatches_ = 0;
+  std::uint64_t copies_ = 0;
+  std::uint64_t audited_ = 0;
+  SlotUsage usage_;
 };
 
 }  // namespace gauntlet::master

@@ -37,7 +37,8 @@ EvaluationRequest NextEvaluation(const Individual& individual, int replicates, s
       .evaluation = static_cast<std::uint32_t>(individual.evaluations.size()) + individual.failed_evaluations,
       .replicates = static_cast<std::uint32_t>(replicates),
       .generation = generation,
-      .test_case = individual.test_case};
+      .test_case = individual.test_case,
+      .parents = individual.parents};
 }
 
 bool HasFitness(const EvaluationOutcome& outcome) {

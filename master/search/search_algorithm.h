@@ -23,6 +23,7 @@ struct EvaluationRequest {
   std::uint32_t replicates = 1;  // runs, each with its own seed
   std::uint32_t generation = 0;  // 1 = initial population; for display
   sim::TestCase test_case;
+  std::vector<IndividualId> parents;  // their runs tell how long this one's will take
 };
 
 // What came of an EvaluationRequest.

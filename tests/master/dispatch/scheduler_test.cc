@@ -432,6 +432,178 @@ TEST_F(SchedulerTest, ShortRunsAreLeasedAheadUntilEnoughWorkWaits) {
   EXPECT_THAT(leases, SizeIs(512)) << "most_credit for each slot";
 }
 
+TEST_F(SchedulerTest, TheLongestRunsOfABatchGoFirstButNoBatchOvertakesAnother) {
+  Join(1, 8);
+  scheduler_.BeginBatch();
+  scheduler_.Submit(1, 10.0);
+  scheduler_.Submit(2, 30.0);
+  scheduler_.Submit(3, 10.0);
+  scheduler_.BeginBatch();
+  scheduler_.Submit(4, 90.0);
+  scheduler_.Submit(5);
+  EXPECT_THAT(RunsOf(Decide()), ElementsAre(2, 1, 3, 4, 5));
+}
+
+TEST_F(SchedulerTest, AnIdleWorkerGetsACopyOfARunThatTakesLong) {
+  Join(1);
+  Join(2);
+  SubmitRuns(1, 1);
+  const SchedulerOrders first = Decide();
+  ASSERT_EQ(first.leases.size(), 1U);
+  scheduler_.RunTook(1.0);
+  EXPECT_TRUE(PassTime(milliseconds(2000), {1, 2}).leases.empty()) << "twice the usual time is not unusual";
+  const SchedulerOrders copied = PassTime(milliseconds(500), {1, 2});
+  ASSERT_EQ(copied.leases.size(), 1U);
+  EXPECT_EQ(copied.leases[0].run, 1U);
+  EXPECT_NE(copied.leases[0].worker, first.leases[0].worker);
+  EXPECT_TRUE(PassTime(milliseconds(5000), {1, 2}).leases.empty()) << "one copy is enough";
+  EXPECT_EQ(scheduler_.Statistics().copies, 1U);
+
+  EXPECT_EQ(scheduler_.Completed(copied.leases[0].worker, copied.leases[0].fence, 1, 77), Answer::kAccepted);
+  const SchedulerOrders after = Decide();
+  ASSERT_EQ(after.cancels.size(), 1U) << "the first is told to stop";
+  EXPECT_EQ(after.cancels[0].fence, first.leases[0].fence);
+}
+
+TEST_F(SchedulerTest, NobodyGetsACopyWhileRunsWait) {
+  Join(1);
+  SubmitRuns(1, 2);
+  Decide();
+  scheduler_.RunTook(0.1);
+  EXPECT_TRUE(PassTime(milliseconds(3000), {1}).leases.empty());
+  Join(2);
+  EXPECT_THAT(RunsOf(Decide()), ElementsAre(2));
+  EXPECT_EQ(scheduler_.Statistics().copies, 0U);
+}
+
+class SchedulerAuditTest : public SchedulerTest {
+ protected:
+  SchedulerAuditTest() {
+    DispatchOptions options = Options();
+    options.audit_share = 1.0;
+    scheduler_ = Scheduler(options, kFirstFence);
+  }
+  // Run 1 is answered by `worker` and stored.
+  void FinishRun1(InstanceId worker) {
+    SubmitRuns(1, 1);
+    const SchedulerOrders orders = Decide();
+    ASSERT_EQ(orders.leases.size(), 1U);
+    ASSERT_EQ(orders.leases[0].worker, worker);
+    ASSERT_EQ(scheduler_.Completed(worker, orders.leases[0].fence, 1, 55), Answer::kAccepted);
+    scheduler_.Acknowledge(1);
+  }
+};
+
+TEST_F(SchedulerAuditTest, AnotherWorkerSimulatesTheRunOnceMore) {
+  Join(1);
+  FinishRun1(1);
+  Join(2);
+  const SchedulerOrders audit = Decide();
+  ASSERT_EQ(audit.leases.size(), 1U);
+  EXPECT_EQ(audit.leases[0].worker, 2U);
+  EXPECT_EQ(scheduler_.Statistics().audits_open, 1U);
+  EXPECT_TRUE(scheduler_.Wanted(1));
+  EXPECT_EQ(scheduler_.Completed(2, audit.leases[0].fence, 1, 55), Answer::kDuplicate);
+  EXPECT_TRUE(Decide().mismatches.empty());
+  EXPECT_EQ(scheduler_.Statistics().audits, 1U);
+  EXPECT_EQ(scheduler_.Statistics().audits_open, 0U);
+  EXPECT_FALSE(scheduler_.Wanted(1));
+  EXPECT_EQ(scheduler_.remembered_runs(), 0U);
+}
+
+TEST_F(SchedulerAuditTest, ADifferenceNamesBothWorkers) {
+  Join(1);
+  FinishRun1(1);
+  Join(2);
+  const SchedulerOrders audit = Decide();
+  ASSERT_EQ(audit.leases.size(), 1U);
+  scheduler_.Completed(2, audit.leases[0].fence, 1, 56);
+  const SchedulerOrders orders = Decide();
+  ASSERT_EQ(orders.mismatches.size(), 1U);
+  EXPECT_EQ(orders.mismatches[0].first_worker, 1U);
+  EXPECT_EQ(orders.mismatches[0].second_worker, 2U);
+  EXPECT_EQ(orders.mismatches[0].first_hash, 55U);
+  EXPECT_EQ(orders.mismatches[0].second_hash, 56U);
+}
+
+TEST_F(SchedulerAuditTest, AnOnlyWorkerAuditsItself) {
+  Join(1);
+  FinishRun1(1);
+  const SchedulerOrders audit = Decide();
+  ASSERT_EQ(audit.leases.size(), 1U);
+  EXPECT_EQ(scheduler_.Completed(1, audit.leases[0].fence, 1, 55), Answer::kDuplicate);
+  EXPECT_EQ(scheduler_.Statistics().audits, 1U);
+}
+
+TEST_F(SchedulerAuditTest, OutlivesTheWorkerThatDoesIt) {
+  Join(1);
+  FinishRun1(1);
+  Join(2);
+  ASSERT_EQ(Decide().leases.size(), 1U);
+  scheduler_.WorkerDied(2);
+  Join(3);
+  const SchedulerOrders again = Decide();
+  ASSERT_EQ(again.leases.size(), 1U);
+  EXPECT_EQ(again.leases[0].worker, 3U);
+}
+
+TEST_F(SchedulerAuditTest, RunsThatWaitGoFirst) {
+  Join(1);
+  FinishRun1(1);
+  Join(2);
+  SubmitRuns(2, 3);
+  EXPECT_THAT(RunsOf(Decide()), UnorderedElementsAre(2, 3));
+}
+
+TEST_F(SchedulerAuditTest, CountsAsADifferenceWhenItFailsAsOftenAsAVerdictTakes) {
+  Join(1);
+  FinishRun1(1);
+  Join(2);
+  for (int attempt = 1; attempt <= 3; ++attempt) {
+    const SchedulerOrders audit = Decide();
+    ASSERT_EQ(audit.leases.size(), 1U) << attempt;
+    EXPECT_TRUE(audit.mismatches.empty());
+    scheduler_.Failed(2, audit.leases[0].fence, 1, {FailureKind::kCrashed, 11, 0});
+  }
+  const SchedulerOrders orders = Decide();
+  ASSERT_EQ(orders.mismatches.size(), 1U);
+  EXPECT_EQ(orders.mismatches[0].second_hash, 0U);
+  EXPECT_EQ(scheduler_.Statistics().audits_open, 0U);
+}
+
+TEST_F(SchedulerTest, AuditsTheShareThatWasAskedFor) {
+  DispatchOptions options = Options();
+  options.audit_share = 0.1;
+  scheduler_ = Scheduler(options, kFirstFence);
+  Join(1);
+  for (RunId run = 1; run <= 1000; ++run) {
+    SubmitRuns(run, run);
+    // The run, then perhaps its audit.
+    for (int round = 0; round < 2; ++round) {
+      for (const LeaseOrder& lease : Decide().leases) scheduler_.Completed(1, lease.fence, lease.run, run);
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(scheduler_.Statistics().audits), 100.0, 30.0);
+}
+
+TEST_F(SchedulerTest, CountsHowLongWorkersWereIdleAndWhy) {
+  Join(1);
+  Join(2);
+  SubmitRuns(1, 1);
+  ASSERT_EQ(Decide().leases.size(), 1U);
+  PassTime(milliseconds(4000), {1, 2});
+  const WorkerStatistics statistics = scheduler_.Statistics();
+  EXPECT_NEAR(statistics.slot_seconds, 8.0, 1e-6);
+  EXPECT_NEAR(statistics.idle_seconds, 4.0, 1e-6);
+  EXPECT_NEAR(statistics.barrier_seconds, 4.0, 1e-6) << "no run waited";
+
+  scheduler_.WorkerDied(2);
+  scheduler_.WorkerDraining(1);
+  PassTime(milliseconds(4000), {1});
+  EXPECT_NEAR(scheduler_.Statistics().slot_seconds, 8.0, 1e-6) << "they do not count any more";
+  EXPECT_NEAR(scheduler_.Statistics().idle_seconds, 4.0, 1e-6);
+}
+
 TEST_F(SchedulerTest, FiveHundredWorkersAreAllLeasedAtOnce) {
   SubmitRuns(1, 2000);
   for (InstanceId worker = 1; worker <= 512; ++worker) Join(worker);

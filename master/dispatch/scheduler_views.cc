@@ -1,0 +1,51 @@
+// What people are told of the scheduler.
+#include <algorithm>
+
+#include "master/dispatch/scheduler.h"
+
+namespace gauntlet::master {
+
+std::vector<std::pair<InstanceId, WorkerView>> Scheduler::DescribeWorkers() const {
+  const auto seconds_since = [this](Duration then) {
+    return std::chrono::duration<double>(listening_ - then).count();
+  };
+  std::vector<std::pair<InstanceId, WorkerView>> views;
+  for (const auto& [id, worker] : workers_) {
+    WorkerView view;
+    view.slots = worker.slots;
+    view.lost = worker.lost;
+    view.leaving = worker.draining;
+    view.silent_seconds = seconds_since(worker.heard);
+    std::vector<Fence> fences = worker.live;
+    std::sort(fences.begin(), fences.end());
+    for (const Fence fence : fences) {
+      const Lease& lease = leases_.at(fence);
+      view.leases.push_back({lease.run, runs_.at(lease.run).leases, seconds_since(lease.granted)});
+    }
+    views.emplace_back(id, std::move(view));
+  }
+  std::sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return views;
+}
+
+WorkerStatistics Scheduler::Statistics() const {
+  WorkerStatistics statistics;
+  for (const auto& [id, worker] : workers_) {
+    if (worker.lost) continue;
+    ++statistics.connected;
+    if (!worker.live.empty()) ++statistics.busy;
+  }
+  statistics.lost = lost_;
+  statistics.releases = releases_;
+  statistics.duplicates = duplicates_;
+  statistics.nondeterministic = mismatches_;
+  statistics.copies = copies_;
+  statistics.audits = audited_;
+  statistics.audits_open = audits_open_;
+  statistics.slot_seconds = usage_.slot_seconds();
+  statistics.idle_seconds = usage_.idle_seconds();
+  statistics.barrier_seconds = usage_.barrier_seconds();
+  return statistics;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,81 @@
+// A run that crashes in every attempt is a finding: what is needed to see it again is kept.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::ChildrenOf;
+using testing_support::Eventually;
+using testing_support::Gauntlet;
+using testing_support::Process;
+using testing_support::ProcessResult;
+using testing_support::ReadFile;
+using testing_support::RunProcess;
+
+using testing_support::Show;
+using testing_support::StartGauntlet;
+using testing_support::TemporaryDirectory;
+using testing_support::WorkerPath;
+
+// Master, worker, fork server, runner: 0 when there is none now.
+pid_t RunnerOf(pid_t master) {
+  for (const pid_t worker : ChildrenOf(master)) {
+    for (const pid_t fork_server : ChildrenOf(worker)) {
+      for (const pid_t runner : ChildrenOf(fork_server)) return runner;
+    }
+  }
+  return 0;
+}
+
+TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  std::ofstream(scratch / "empty.json") << R"({"obstacles": []})";
+  // Long enough to be hit three times.
+  const std::unique_ptr<Process> master =
+      StartGauntlet({"evaluate", "foraging", "--case", scratch / "empty.json", "--set",
+                     "scenario_parameters.time_limit=3600", "--workers", "1", "--dir", dir, "--quiet"});
+  pid_t hit = 0;
+  ASSERT_TRUE(Eventually(
+      [&] {
+        const pid_t runner = RunnerOf(master->pid());
+        if (runner != 0 && runner != hit && kill(runner, SIGSEGV) == 0) hit = runner;
+        return !master->Running();
+      },
+      std::chrono::seconds(60)));
+
+  const nlohmann::json shown = Show(dir)["runs_without_result"];
+  ASSERT_EQ(shown.size(), 1U) << shown;
+  EXPECT_EQ(shown[0]["verdict"], "crashed");
+  ASSERT_EQ(shown[0]["bundle"], "bundles/run-1");
+  EXPECT_THAT(Gauntlet({"show", dir}).out, HasSubstr("to see it again: bundles/run-1/README.txt"));
+
+  const std::string bundle = dir + "/bundles/run-1";
+  const std::string readme = ReadFile(bundle + "/README.txt");
+  EXPECT_THAT(readme, HasSubstr("crashed with signal 11"));
+  EXPECT_THAT(readme, HasSubstr("golden hash   "));
+  EXPECT_THAT(ReadFile(bundle + "/experiment.toml"), HasSubstr("time_limit = 3600"));
+  EXPECT_THAT(ReadFile(bundle + "/case.json"), HasSubstr("obstacles"));
+  EXPECT_TRUE(std::filesystem::exists(bundle + "/stderr.txt"));
+
+  // Its command simulates the run: here it does not crash, because nobody hits it.
+  const std::size_t begin = readme.find("gauntlet-worker --run-spec");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string command = readme.substr(begin, readme.find('\n', begin) - begin);
+  const std::string worker_folder = std::filesystem::path(WorkerPath()).parent_path();
+  const ProcessResult again =
+      RunProcess({"/bin/sh", "-c", "cd '" + bundle + "' && PATH='" + worker_folder + "':$PATH " + command});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_GT(std::filesystem::file_size(bundle + "/result"), 100U);
+}
+
+}  // namespace
+}  // namespace gauntlet
