@@ -158,6 +158,11 @@ RC_GTEST_PROP(ExperimentFileTest, WhatIsWrittenReadsBackAsTheSame, ()) {
   }
   // Rules that span keys.
   experiment.search.population &= ~1;
+  experiment.search.lag = std::min(experiment.search.lag, experiment.search.population - 1);
+  if (experiment.search.mode == SearchMode::kSteadyState &&
+      experiment.search.reevaluation == Reevaluation::kPopulation) {
+    experiment.search.reevaluation = Reevaluation::kChildren;
+  }
   GenomeSpec& genome = experiment.genome;
   genome.genes = std::max(genome.genes, 1);
   genome.step = *rc::gen::element(0.0, 0.1, 0.05, 1.0 / 3.0);

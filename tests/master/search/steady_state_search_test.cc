@@ -8,6 +8,8 @@
 
 #include "master/experiment/experiment_file.h"
 #include "master/search/genetic_algorithm.h"
+#include "master/search/make_search.h"
+#include "tests/master/search/simulated_cluster.h"
 #include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
@@ -143,6 +145,22 @@ TEST(SteadyStateSearchTest, EvolvesTougherCases) {
     return sum / kPopulation;
   };
   EXPECT_LT(mean(asked.size() - kPopulation), mean(0) - 1.0);
+}
+
+// What it is for: one slow evaluation does not stop everybody.
+TEST(SteadyStateSearchTest, WorkersAreIdleLessTheLargerTheLag) {
+  constexpr int kWorkers = 4;
+  const auto idle = [&](SearchMode mode, int lag) {
+    SearchSetup setup = SteadySetup(lag);
+    setup.experiment.search.mode = mode;
+    setup.experiment.search.generations = 30;
+    const auto search = MakeSearch(setup.experiment, setup.requirements, 1);
+    return RunOnCluster(**search, kWorkers, HeavyTailed, SumOfX).idle_share;
+  };
+  EXPECT_NEAR(idle(SearchMode::kSteadyState, 1), 0.75, 1e-9) << "one at a time";
+  EXPECT_LT(idle(SearchMode::kSteadyState, 4), idle(SearchMode::kSteadyState, 2));
+  EXPECT_LT(idle(SearchMode::kSteadyState, 7), idle(SearchMode::kSteadyState, 4));
+  EXPECT_LT(idle(SearchMode::kSteadyState, 7), idle(SearchMode::kGenerational, 7));
 }
 
 std::string RefusalOfSettings(const std::vector<std::string>& settings) {
