@@ -139,7 +139,7 @@ std::string Announcement(const Experiment& experiment, int workers, const std::s
                  ? fmt::format("steady-state genetic search, {} test cases, lag {}",
                                FormatCount(static_cast<std::uint64_t>(search.population) *
                                            static_cast<std::uint64_t>(search.generations)),
-                               search.lag)
+                               LagOf(search))
                  : fmt::format("genetic search, {} test cases x {} generations", search.population,
                                search.generations);
       break;

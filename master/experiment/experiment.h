@@ -38,8 +38,9 @@ enum class FitnessAggregation { kMean, kLast };
 struct SearchSpec {
   SearchKind kind = SearchKind::kGenetic;
   SearchMode mode = SearchMode::kGenerational;  // of the genetic search
-  int lag =
-      10;  // of the steady-state mode: evaluation k depends on results 1 .. k - lag; workers it can feed
+  // Of the steady-state mode: evaluation k depends on results 1 .. k - lag, so at most `lag` workers have
+  // work. 0 = the largest possible, population - 1, which is no more than a generation waits on average.
+  int lag = 0;
   int population = 20;
   int generations = 50;
   ParentSelection parent_selection = ParentSelection::kTwoBestParentsTwoWorseAway;
@@ -52,6 +53,11 @@ struct SearchSpec {
   int cases = 1000;           // of random search
   int variation_tries = 100;  // of an offspring that breaks a validity rule; then it becomes a copy
 };
+
+// search.lag with its default filled in.
+inline int LagOf(const SearchSpec& spec) {
+  return spec.lag > 0 ? spec.lag : spec.population - 1;
+}
 
 struct ArenaSpec {
   double side = 6.0;            // m

@@ -127,8 +127,9 @@ std::vector<Key> MakeCommonKeys() {
           "search.mode", {"generational", "steady-state"},
           "of the genetic search; steady-state breeds child after child, without waiting for a generation"),
       IntegerKey<kSearch, &SearchSpec::lag>(
-          "search.lag", 1, 9999,
-          "steady-state only: a child knows all results but the last so many; workers it can keep busy"),
+          "search.lag", 0, 9999,
+          "steady-state only: a child knows all results but the last so many; workers it can keep busy; 0 = "
+          "population - 1"),
       IntegerKey<kSearch, &SearchSpec::population>("search.population", 4, 10000,
                                                    "individuals, an even number (thesis Table 4.1)"),
       IntegerKey<kSearch, &SearchSpec::generations>("search.generations", 1, 1e6,

@@ -86,7 +86,7 @@ std::string SearchIdentity(const SearchSetup& setup) {
       s.crossover_probability, s.mutation_probability, static_cast<int>(s.reevaluation),
       static_cast<int>(s.aggregation), s.variation_tries);
   if (s.mode == SearchMode::kSteadyState)
-    identity += fmt::format("search.mode = 1\nsearch.lag = {}\n", s.lag);
+    identity += fmt::format("search.mode = 1\nsearch.lag = {}\n", LagOf(s));
   return identity;
 }
 

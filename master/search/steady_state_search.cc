@@ -28,8 +28,8 @@ SteadyStateSearch::SteadyStateSearch(const SearchSetup& setup)
 
 Result<std::unique_ptr<SteadyStateSearch>> SteadyStateSearch::Create(const SearchSetup& setup) {
   const SearchSpec& spec = setup.experiment.search;
-  GAUNTLET_CHECK(spec.lag >= 1 && spec.lag < spec.population,
-                 fmt::format("lag {} of population {}", spec.lag, spec.population));
+  GAUNTLET_CHECK(LagOf(spec) >= 1 && LagOf(spec) < spec.population,
+                 fmt::format("lag {} of population {}", LagOf(spec), spec.population));
   std::unique_ptr<SteadyStateSearch> search(new SteadyStateSearch(setup));
   for (IndividualId id = 1; id <= search->PopulationSize(); ++id) {
     sim::RandomStream random = GenomeStream(search->search_seed_, id);
@@ -83,7 +83,7 @@ Individual SteadyStateSearch::Child(IndividualId id) {
 }
 
 void SteadyStateSearch::Release() {
-  const auto lag = static_cast<std::uint64_t>(setup_.experiment.search.lag);
+  const auto lag = static_cast<std::uint64_t>(LagOf(setup_.experiment.search));
   while (next_id_ <= std::min(Planned(), told_ + lag)) {
     const IndividualId id = next_id_++;
     waiting_.push_back(id <= PopulationSize() ? RandomIndividual(id) : Child(id));
@@ -182,7 +182,7 @@ Status SteadyStateSearch::Restore(CanonicalDecoder& decoder) {
     return individuals;
   };
   std::vector<Individual> population = read(PopulationSize(), told + 1);
-  std::vector<Individual> waiting = read(static_cast<std::uint64_t>(spec.lag), next_id);
+  std::vector<Individual> waiting = read(static_cast<std::uint64_t>(LagOf(spec)), next_id);
   if (damage) return DamagedState(*damage);
   std::set<std::uint64_t> genomes_seen;
   for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {

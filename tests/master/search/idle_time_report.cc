@@ -14,8 +14,6 @@ namespace {
 SearchSetup ReportSetup() {
   SearchSetup setup = ToySetup();
   setup.experiment.search.parent_selection = ParentSelection::kAllParentBestHalf;
-  setup.experiment.search.population = 20;
-  setup.experiment.search.generations = 30;
   return setup;
 }
 
@@ -29,18 +27,26 @@ void Row(const char* name, const Experiment& experiment, const sim::ArenaRequire
   std::printf("\n");
 }
 
-void PrintReport() {
-  std::printf("Idle share of the workers; 600 evaluations, population 20, durations Pareto(1.5)\n\n");
-  std::printf("| search | 2 workers | 4 | 8 | 16 | 64 |\n|---|---|---|---|---|---|\n");
+void Table(int population, int generations, const std::vector<int>& lags) {
+  std::printf("\n| %d generations of %d | 2 workers | 4 | 8 | 16 | 64 |\n|---|---|---|---|---|---|\n",
+              generations, population);
   SearchSetup setup = ReportSetup();
+  setup.experiment.search.population = population;
+  setup.experiment.search.generations = generations;
   Row("generational", setup.experiment, setup.requirements);
   setup.experiment.search.mode = SearchMode::kSteadyState;
-  for (const int lag : {2, 5, 10, 15, 19}) {
+  for (const int lag : lags) {
     setup.experiment.search.lag = lag;
     char name[32];
     std::snprintf(name, sizeof(name), "steady-state, lag %d", lag);
     Row(name, setup.experiment, setup.requirements);
   }
+}
+
+void PrintReport() {
+  std::printf("Idle share of the workers; 600 evaluations, durations Pareto(1.5)\n");
+  Table(20, 30, {2, 5, 10, 15, 19});
+  Table(100, 6, {10, 50, 99});
 }
 
 }  // namespace

@@ -104,6 +104,11 @@ TEST(SteadyStateSearchTest, ARequestKnowsAllResultsButTheLastOnesOfTheLag) {
   }
 }
 
+TEST(SteadyStateSearchTest, TheLargestLagIsTheDefault) {
+  const auto search = MakeSteady(SteadySetup(0));
+  EXPECT_EQ(search->Ask().size(), static_cast<std::size_t>(kPopulation - 1));
+}
+
 TEST(SteadyStateSearchTest, EvaluatesEverybodyOnceAndKeepsTheFittest) {
   const auto search = MakeSteady(SteadySetup(4));
   const std::vector<EvaluationRequest> asked = Drive(*search, 1, SumOfX);
@@ -173,7 +178,7 @@ TEST(SteadyStateSearchTest, ImpossibleSettingsAreNamed) {
   EXPECT_EQ(RefusalOfSettings({mode}), "");
   EXPECT_THAT(RefusalOfSettings({mode, "search.lag=20"}),
               HasSubstr("search.lag = 20 must be below search.population = 20"));
-  EXPECT_THAT(RefusalOfSettings({mode, "search.lag=0"}), HasSubstr("search.lag = 0 is out of range"));
+  EXPECT_THAT(RefusalOfSettings({mode, "search.lag=-1"}), HasSubstr("search.lag = -1 is out of range"));
   EXPECT_THAT(RefusalOfSettings({mode, "search.reevaluation=population"}), HasSubstr("needs generations"));
   EXPECT_THAT(RefusalOfSettings({"search.mode=steady"}), HasSubstr("generational, steady-state"));
 }
