@@ -9,16 +9,17 @@ namespace {
 constexpr double kShortRange = 0.26;    // m beyond the body
 constexpr double kLongNearest = 0.12;   // m beyond the body
 constexpr double kLongFarthest = 1.42;  // m beyond the body
+constexpr double kMargin = 1e-6;        // m: a box that only rounding keeps out of reach is asked
 
 // Distance from the surface of robot `self` to the first thing in this direction, or kNoHit beyond `range`.
-double FirstHit(std::span<const BodyFrame> robots, std::size_t self, std::span<const OrientedBox> boxes,
-                const Vec2& direction, double range) {
+double FirstHit(std::span<const BodyFrame> robots, std::size_t self,
+                std::span<const OrientedBox* const> boxes, const Vec2& direction, double range) {
   const Vec2 origin = robots[self].position + foot_bot::kRadius * direction;
   double nearest = kNoHit;
   const auto see = [&nearest](double hit) {
     if (hit != kNoHit && (nearest == kNoHit || hit < nearest)) nearest = hit;
   };
-  for (const OrientedBox& box : boxes) see(RayHit(box, origin, direction, range));
+  for (const OrientedBox* box : boxes) see(RayHit(*box, origin, direction, range));
   const double reach = range + foot_bot::kRadius + foot_bot::kGripperRadius;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (i == self || (robots[i].position - origin).squaredNorm() > reach * reach) continue;
@@ -27,6 +28,11 @@ double FirstHit(std::span<const BodyFrame> robots, std::size_t self, std::span<c
     see(RayHit(gripper, foot_bot::kGripperRadius, origin, direction, range));
   }
   return nearest;
+}
+
+bool Reaches(const OrientedBox& box, const Vec2& center, double range) {
+  const double reach = foot_bot::kRadius + range + kMargin;
+  return SquaredDistance(box, center) <= reach * reach;
 }
 
 double ShortReading(double hit) {
@@ -43,22 +49,33 @@ double LongReading(double hit) {
 void DistanceScanner::Scan(const ScannerCommand& command, std::span<const BodyFrame> robots, RobotIndex self,
                            std::span<const OrientedBox> boxes) {
   count_ = 0;
+  near_short_.reserve(boxes.size());  // in the first tick, even when off: later ones allocate nothing
+  near_long_.reserve(boxes.size());
   if (command.mode == ScannerCommand::Mode::kOff) return;
   const bool turning = command.mode == ScannerCommand::Mode::kSpeed;
   if (!turning) rotation_ = WrapAngle(command.value);
   const std::size_t rays = turning ? kRaysPerTick : 1;
   const double swept = turning ? command.value * kTickSeconds : 0.0;  // rad
   const std::size_t index = static_cast<std::size_t>(self);
+  near_short_.clear();
+  near_long_.clear();
+  for (const OrientedBox& box : boxes) {
+    if (!Reaches(box, robots[index].position, kLongFarthest)) continue;
+    near_long_.push_back(&box);
+    if (Reaches(box, robots[index].position, kShortRange)) near_short_.push_back(&box);
+  }
   for (const double side : {0.0, kPi}) {
     for (std::size_t ray = 0; ray < rays; ++ray) {
       const double angle =
           rotation_ + side + swept * static_cast<double>(ray) / static_cast<double>(kRaysPerTick);
-      const auto look = [&](double bearing, double range) {
-        return FirstHit(robots, index, boxes, UnitVector(robots[index].heading + bearing), range);
+      const auto look = [&](std::span<const OrientedBox* const> near, double bearing, double range) {
+        return FirstHit(robots, index, near, UnitVector(robots[index].heading + bearing), range);
       };
       const double across = angle + kPi / 2.0;
-      short_[count_] = {.bearing = WrapAngle(angle), .distance = ShortReading(look(angle, kShortRange))};
-      long_[count_] = {.bearing = WrapAngle(across), .distance = LongReading(look(across, kLongFarthest))};
+      short_[count_] = {.bearing = WrapAngle(angle),
+                        .distance = ShortReading(look(near_short_, angle, kShortRange))};
+      long_[count_] = {.bearing = WrapAngle(across),
+                       .distance = LongReading(look(near_long_, across, kLongFarthest))};
       ++count_;
     }
   }

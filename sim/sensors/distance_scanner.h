@@ -4,6 +4,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "sim/arena/arena.h"
 #include "sim/robot/controller.h"
@@ -29,6 +30,9 @@ class DistanceScanner {
 
   double rotation_ = 0.0;  // rad from the heading
   std::size_t count_ = 0;
+  std::vector<const OrientedBox*>
+      near_short_;  // boxes that a ray of this tick can reach; kept for their memory
+  std::vector<const OrientedBox*> near_long_;
   std::array<ScannerReading, 2 * kRaysPerTick> short_;
   std::array<ScannerReading, 2 * kRaysPerTick> long_;
 };
