@@ -90,8 +90,10 @@ class PartitionBookkeeper : public sim::Scenario {
         ++dropped;
         continue;
       }
+      // The one that it named; several may hand over in one tick.
+      const std::size_t partner = controllers::DecodePartition(interaction.signals[i].message).partner;
       const auto taker = std::find_if(gained.begin(), gained.end(), [&](std::size_t other) {
-        return (robots[other].position() - place).norm() <= handover_reach_;
+        return other == partner && (robots[other].position() - place).norm() <= handover_reach_;
       });
       if (taker == gained.end()) {
         Complain(tick, i, "an item gone beside the nest");
@@ -142,7 +144,7 @@ sim::RunSpec QuickSpec(const std::string& controller, std::uint64_t seed) {
   spec.seed = seed;
   spec.scenario_parameters = {{"nest_food_distance", 2.4}, {"time_limit", 150.0}};
   spec.controller_parameters = {
-      {"transfer_time", 3.0}, {"least_handover_distance", 0.5}, {"wait_time", 30.0}};
+      {"transfer_time", 3.0}, {"least_handover_distance", 0.7}, {"wait_time", 30.0}};
   const char* length =
       controller == "task-partitioning-dynamic" ? "start_partition_length" : "partition_length";
   spec.controller_parameters[length] = 0.8;
@@ -154,7 +156,7 @@ controllers::PartitioningSettings SettingsOf(const sim::RunSpec& spec) {
       controllers::PartitioningScenarioInfo().parameters, spec.scenario_parameters));
 }
 
-constexpr double kHandoverReach = 0.30;  // m
+constexpr double kHandoverReach = 0.30 + 1e-9;  // m
 
 void AddBoxes(sim::RunSpec& spec) {
   const controllers::PartitioningSettings settings = SettingsOf(spec);
