@@ -18,7 +18,8 @@ struct RunFigure {
   sim::RunResult result;   // with a trajectory; without one its waypoints are drawn
   std::vector<std::pair<std::string, std::string>> metrics;  // of the result, as the panel shows them
   std::string member = "robot";                              // what one of the swarm is called, singular
-  std::string lost = "lost";                                 // what RobotSummary::lost means, in a word
+  bool lost_is_failure = true;  // total failure means that too many were lost, not something of its own
+  std::string lost = "lost";    // what RobotSummary::lost means, in a word
 };
 
 // The robot whose planned path the result shows: the one that the annotation "path" names, or else the one

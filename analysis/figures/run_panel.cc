@@ -215,11 +215,13 @@ std::string DescribeOutcome(const RunFigure& figure) {
     if (result.robots[i].lost) ++lost;
   }
   const std::string_view prefix = result.failure.total ? "total failure: " : "";
-  if (lost == 0 && result.failure.total && !result.failure.label.empty()) {
-    return fmt::format("{}{}", prefix, result.failure.label);
-  }
-  if (lost == 0) return fmt::format("{}no {} {}", prefix, figure.member, figure.lost);
-  return fmt::format("{}{} of {} {} {}", prefix, lost, members, Plural(figure.member, members), figure.lost);
+  const std::string who =
+      lost == 0 ? fmt::format("no {} {}", figure.member, figure.lost)
+                : fmt::format("{} of {} {} {}", lost, members, Plural(figure.member, members), figure.lost);
+  const bool labelled = result.failure.total && !result.failure.label.empty();
+  if (labelled && lost == 0) return fmt::format("{}{}", prefix, result.failure.label);
+  if (labelled && !figure.lost_is_failure) return fmt::format("{}{}; {}", prefix, result.failure.label, who);
+  return fmt::format("{}{}", prefix, who);
 }
 
 std::string_view PlaceClass(const sim::Annotation& disc) {

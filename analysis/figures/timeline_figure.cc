@@ -63,8 +63,8 @@ class Timeline {
   static constexpr double kCountsTop = 50.0;  // between the rows and the counts
   static constexpr double kCounts = 170.0;
   static constexpr double kPanel = 230.0;
-  static constexpr double kLeastBar = 3.0;  // so that a spell of one second is seen
-  static constexpr int kColumns = 400;      // of the counts
+  static constexpr double kLeastBar = 3.0;        // so that a spell of one second is seen
+  static constexpr double kMostColumns = kWidth;  // of the counts: no more than there are pixels
 
   double X(double second) const { return kLeft + kWidth * second / seconds_; }
   double RowTop(int robot) const { return kTop + robot * kRow + (kRow - kBar) / 2; }
@@ -137,14 +137,15 @@ class Timeline {
     const double height = kCounts / std::max(1, states_.robots);
     std::vector<std::vector<Pixel>> tops(states_.names.size());
     std::vector<std::vector<Pixel>> bottoms(states_.names.size());
-    for (int column = 0; column < kColumns; ++column) {
-      const std::vector<int> counts = CountAt(seconds_ * (column + 0.5) / kColumns);
+    // One column a second, as states are looked at.
+    const int columns = static_cast<int>(std::clamp(std::ceil(seconds_), 1.0, kMostColumns));
+    for (int column = 0; column < columns; ++column) {
+      const std::vector<int> counts = CountAt(seconds_ * (column + 0.5) / columns);
       double y = counts_bottom_;
       // From the bottom: the last state first, so that beacons are the ground the others stand on.
       for (std::size_t i = states_.names.size(); i-- > 0;) {
         const double top = y - counts[i] * height;
-        for (const double x :
-             {kLeft + kWidth * column / kColumns, kLeft + kWidth * (column + 1) / kColumns}) {
+        for (const double x : {kLeft + kWidth * column / columns, kLeft + kWidth * (column + 1) / columns}) {
           bottoms[i].push_back({x, y});
           tops[i].push_back({x, top});
         }
@@ -156,7 +157,7 @@ class Timeline {
       outline.insert(outline.end(), bottoms[i].rbegin(), bottoms[i].rend());
       canvas_.Polygon(outline, fmt::format("class=\"count\" fill=\"{}\"", StateColor(static_cast<int>(i))));
     }
-    const int step = states_.robots > 10 ? 5 : 1;
+    const int step = states_.robots > 50 ? 20 : states_.robots > 10 ? 5 : 1;
     for (int count = 0; count <= states_.robots; count += step) {
       const double y = counts_bottom_ - count * height;
       canvas_.Line({kLeft - 5, y}, {kLeft, y}, "class=\"tick\"");

@@ -6,6 +6,7 @@
 
 #include "controllers/common/stillness.h"
 #include "sim/arena/spawn.h"
+#include "sim/base/number_text.h"
 
 namespace gauntlet::controllers {
 namespace {
@@ -65,6 +66,15 @@ Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
   if (settings_.robots < 1 || settings_.robots > kMaxRobots) {
     return InvalidInput("swarm-size: " + std::to_string(settings_.robots) + " robots; from 1 to " +
                         std::to_string(kMaxRobots) + " can be tested");
+  }
+  if ((ends_.food - ends_.nest).norm() <= settings_.nest_radius) {
+    return InvalidInput("nest-and-food: the food is " + NumberText((ends_.food - ends_.nest).norm()) +
+                        " m from the nest's centre (nest_food_distance), inside the nest (nest_radius " +
+                        NumberText(settings_.nest_radius) + " m)");
+  }
+  if (forager_.field && forager_.field->analytic && forager_.field->balance >= forager_.field->reach) {
+    return InvalidInput("field-law: field_balance = " + NumberText(forager_.field->balance) +
+                        " m must be below field_reach = " + NumberText(forager_.field->reach) + " m");
   }
   sim::SpawnRequest request;
   request.count = settings_.robots;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "controllers/registry.h"
+#include "master/campaign/verdict_text.h"
 #include "master/cases/case_file.h"
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
@@ -15,6 +16,7 @@
 #include "master/cli/summary_json.h"
 #include "master/cli/summary_text.h"
 #include "master/dispatch/run_codec.h"
+#include "master/search/make_search.h"
 #include "sim/arena/validity.h"
 
 namespace gauntlet::master {
@@ -45,6 +47,11 @@ CaseList LoadCases(CommandContext& context, const EvaluateOptions& options, cons
       if (const auto violation = sim::CheckValidity(loaded->test_case, requirements)) {
         evaluated.refused_rule = sim::NameOf(violation->rule);
         evaluated.error = violation->message;
+        continue;
+      }
+      if (const Status fits = CheckSwarmFits(experiment, loaded->test_case); !fits) {
+        evaluated.refused_rule = RuleOf(fits.error().message);
+        evaluated.error = fits.error().message;
         continue;
       }
     }

@@ -69,6 +69,7 @@ analysis::RunFigure FigureOf(const CampaignReplay& replay) {
   figure.metrics = MetricTexts(figure.spec.scenario, figure.result.metrics);
   figure.member = NounOf(replay.report.spec.scenario);
   figure.lost = LostWordOf(replay.report.spec.scenario);
+  figure.lost_is_failure = figure.lost == "lost";
   return figure;
 }
 
@@ -124,7 +125,6 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
                 InvalidInput(fmt::format("--timeline: runs of {} do not say what their robots did when",
                                          figure.spec.scenario)));
   }
-  context.out << (options.json ? ReplayJson(replay->report) : Text(*replay, figure)) << std::flush;
   if (!options.svg.empty()) {
     if (const Status written = WriteFile(options.svg, analysis::DrawRun(figure)); !written) {
       return Fail(context, written.error());
@@ -142,6 +142,7 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
     if (const Status written = WriteFile(options.csv, csv); !written) return Fail(context, written.error());
     PrintMessage(context, fmt::format("wrote {}", options.csv));
   }
+  context.out << (options.json ? ReplayJson(replay->report) : Text(*replay, figure)) << std::flush;
   if (replay->report.differences.empty()) return kExitDone;
   PrintMessage(context, fmt::format("run {} of {} was not reproduced: {}", *run, options.directory,
                                     replay->report.differences.front()));

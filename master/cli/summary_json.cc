@@ -188,6 +188,8 @@ std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const Campai
 
 std::string ReplayJson(const ReplayReport& report) {
   const bool completed = report.replayed.verdict == sim::Verdict::kCompleted;
+  Json metrics = Json::object();
+  for (const auto& [name, value] : report.replayed.metrics) metrics[name] = FitnessJson(value);
   return Dump({{"run", IdJson(report.stored.id)},
                {"reproduced", report.differences.empty()},
                {"stored_hash", fmt::format("{:016x}", report.stored_result.hash)},
@@ -195,7 +197,10 @@ std::string ReplayJson(const ReplayReport& report) {
                {"differences", report.differences},
                {"verdict", NameOf(report.replayed.verdict)},
                {"message", TextOrNull(report.replayed.message)},
-               {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json(nullptr)}});
+               {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json(nullptr)},
+               {"total_failure", report.replayed.failure.total},
+               {"failure", TextOrNull(report.replayed.failure.label)},
+               {"metrics", std::move(metrics)}});
 }
 
 }  // namespace gauntlet::master

@@ -20,21 +20,6 @@ Result<std::unique_ptr<SearchAlgorithm>> Make(const SearchSetup& setup) {
   return std::unique_ptr<SearchAlgorithm>(std::move(*search));
 }
 
-// Without this every run of the search would be refused for the same reason.
-Status SwarmFitsEmptyArena(const Experiment& experiment) {
-  sim::RunSpec spec;
-  spec.test_case = EmptyArena(experiment.arena);
-  spec.scenario = experiment.scenario;
-  spec.scenario_parameters = experiment.scenario_parameters;
-  spec.controller = experiment.controller;
-  spec.controller_parameters = experiment.controller_parameters;
-  spec.seed = experiment.seed;
-  Status fits = controllers::CheckSwarmFits(spec);
-  if (fits.ok()) return fits;
-  return InvalidInput("the swarm does not fit into the arena before it has any obstacle: " +
-                      fits.error().message);
-}
-
 }  // namespace
 
 Result<sim::ArenaRequirements> RequirementsOf(const Experiment& experiment) {
@@ -45,12 +30,26 @@ Result<sim::ArenaRequirements> RequirementsOf(const Experiment& experiment) {
   return scenario->requirements(experiment.scenario_parameters, EmptyArena(experiment.arena));
 }
 
+Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {
+  sim::RunSpec spec;
+  spec.test_case = test_case;
+  spec.scenario = experiment.scenario;
+  spec.scenario_parameters = experiment.scenario_parameters;
+  spec.controller = experiment.controller;
+  spec.controller_parameters = experiment.controller_parameters;
+  spec.seed = experiment.seed;
+  return controllers::CheckSwarmFits(spec);
+}
+
 Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment, std::uint32_t search_id) {
   const Result<sim::ArenaRequirements> requirements = RequirementsOf(experiment);
   if (!requirements.ok()) return requirements.error();
   auto search = MakeSearch(experiment, *requirements, search_id);
   if (!search.ok()) return search;
-  if (const Status fits = SwarmFitsEmptyArena(experiment); !fits.ok()) return fits.error();
+  // Without this every run of the search would be refused for the same reason.
+  if (const Status fits = CheckSwarmFits(experiment, EmptyArena(experiment.arena)); !fits.ok()) {
+    return InvalidInput("no run can begin, even without obstacles: " + fits.error().message);
+  }
   return search;
 }
 

@@ -15,6 +15,9 @@ namespace gauntlet::master {
 // no such scenario.
 Result<sim::ArenaRequirements> RequirementsOf(const Experiment& experiment);
 
+// controllers::CheckSwarmFits of the experiment's runs in this arena.
+Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case);
+
 // The search that experiment.search describes; `search_id` is its number within the campaign and part of all
 // its random keys. Error: the ranges of genes leave no room for a valid case, or search.algorithm is "cases",
 // which needs a list (CaseListSearch).

@@ -218,6 +218,11 @@ TEST(RunFigure, TellsTheOutcomeInWords) {
   for (sim::RobotSummary& robot : nobody_lost.result.robots) robot.lost = false;
   nobody_lost.result.failure.label = "no path, no food";
   EXPECT_EQ(DescribeOutcome(nobody_lost), "total failure: no path, no food");
+  RunFigure trapped = figure;  // where being trapped is no failure by itself
+  trapped.lost_is_failure = false;
+  trapped.lost = "trapped";
+  trapped.result.failure.label = "no path";
+  EXPECT_EQ(DescribeOutcome(trapped), "total failure: no path; 1 of 3 birds trapped");
   const std::string texts = Texts(Parse(DrawRun(figure)));
   EXPECT_THAT(texts, HasSubstr("flocking, run 12\n"));
   EXPECT_THAT(texts, HasSubstr("total failure: 1 of 3 birds lost\n"));

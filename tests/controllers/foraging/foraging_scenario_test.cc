@@ -227,6 +227,20 @@ TEST(ForagingRefusals, CommunicationRangeOfZeroAndNegativeDecayAreOutOfRange) {
   EXPECT_THAT(RefusalOf(spec), StartsWith("parameter 'pheromone_decay_time' = -300 s is out of range"));
 }
 
+TEST(ForagingRefusals, FoodInsideTheNestIsNamed) {
+  sim::RunSpec spec = Spec("foraging", 1);
+  spec.scenario_parameters = {{"nest_food_distance", 1.5}, {"nest_radius", 2.0}};
+  EXPECT_THAT(RefusalOf(spec), StartsWith("nest-and-food: the food is 1.5 m from the nest's centre"));
+}
+
+TEST(ForagingRefusals, AFieldThatIsNoRepulsionIsNamed) {
+  sim::RunSpec spec = Spec("foraging-improved", 1);
+  spec.controller_parameters = {{"field_analytic", 1.0}, {"field_reach", 0.04}};
+  EXPECT_EQ(RefusalOf(spec), "field-law: field_balance = 0.05 m must be below field_reach = 0.04 m");
+  spec.controller_parameters["field_analytic"] = 0.0;
+  EXPECT_EQ(worker::Run(spec).verdict, sim::Verdict::kCompleted);
+}
+
 TEST(ForagingRefusals, ASwarmThatDoesNotFitIsNamed) {
   sim::RunSpec spec = Spec("foraging", 1);
   spec.scenario_parameters = {{"robots", 100.0}, {"spawn_radius", 0.4}};
