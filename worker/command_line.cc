@@ -40,6 +40,7 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
   WorkerOptions worker;
   worker.software_version = GAUNTLET_VERSION;
   worker.golden_hash = functions.golden_hash;
+  worker.controllers = functions.controllers;
   SpecOptions spec;
   std::string directory;
   bool golden = false;

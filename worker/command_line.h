@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "worker/runner.h"
 
@@ -11,6 +13,7 @@ namespace gauntlet::worker {
 struct WorkerFunctions {
   RunFunction run;
   std::function<std::uint64_t()> golden_hash;
+  std::vector<std::string> controllers = {};  // names of those that `run` can simulate
 };
 
 // The exit code. To be called from main(), before any thread exists.

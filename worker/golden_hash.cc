@@ -78,4 +78,11 @@ std::uint64_t GoldenHash() {
   return hash.value();
 }
 
+std::vector<std::string> ControllerNames() {
+  std::vector<std::string> names;
+  for (const controllers::ControllerInfo& controller : controllers::Controllers())
+    names.emplace_back(controller.name);
+  return names;
+}
+
 }  // namespace gauntlet::worker

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace gauntlet::worker {
 
@@ -9,5 +11,9 @@ namespace gauntlet::worker {
 // own trigonometry and random numbers. Equal on every machine and for every compiler; a worker says it in its
 // hello, and a campaign refuses workers with another one. Takes some ten milliseconds.
 std::uint64_t GoldenHash();
+
+// Names of the controllers that it covers, which a worker says in its hello too: a master that was built with
+// others can then say which.
+std::vector<std::string> ControllerNames();
 
 }  // namespace gauntlet::worker

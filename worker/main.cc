@@ -4,6 +4,7 @@
 #include "worker/run_executor.h"
 
 int main(int argc, char** argv) {
-  return gauntlet::worker::RunWorkerCommandLine(argc, argv,
-                                                {gauntlet::worker::Run, gauntlet::worker::GoldenHash});
+  namespace worker = gauntlet::worker;
+  return worker::RunWorkerCommandLine(argc, argv,
+                                      {worker::Run, worker::GoldenHash, worker::ControllerNames()});
 }

@@ -1,6 +1,7 @@
 #include "worker/message_codec.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/stubs/logging.h>
 
 #include <cmath>
 #include <utility>
@@ -45,6 +46,7 @@ struct ToWire {
     wire.set_pid(hello.pid);
     wire.mutable_held_leases()->Add(hello.held_leases.begin(), hello.held_leases.end());
     wire.set_allocation(hello.allocation);
+    for (const std::string& name : hello.controllers) wire.add_controllers(name);
   }
   void operator()(const LeaseResult& result) const {
     v1::LeaseResult& wire = *envelope.mutable_lease_result();
@@ -77,6 +79,7 @@ Result<MasterMessage> DecodeMasterMessage(std::string_view frame) {
   if (frame.size() > kMaxMessageBytes) {
     return InvalidInput(fmt::format("a message of {} bytes, {} are allowed", frame.size(), kMaxMessageBytes));
   }
+  const google::protobuf::LogSilencer silencer;  // the error says enough
   v1::Envelope envelope;
   if (!envelope.ParseFromArray(frame.data(), static_cast<int>(frame.size()))) {
     return InvalidInput(fmt::format("{} bytes that are no envelope", frame.size()));

@@ -27,6 +27,7 @@ struct Hello {
   std::int64_t pid = 0;
   std::vector<Fence> held_leases;
   std::string allocation;  // the batch job that holds the worker, as its script says; "" for none
+  std::vector<std::string> controllers = {};  // names of those it can simulate
   bool operator==(const Hello&) const = default;
 };
 

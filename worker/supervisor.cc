@@ -116,7 +116,10 @@ class Supervisor::Loop {
       } else if (auto* finished = std::get_if<SlotFinished>(&event)) {
         Tell(RunFinished{finished->slot, std::move(finished->report.result), finished->report.cpu_seconds});
       } else if (auto* failed = std::get_if<SlotFailed>(&event)) {
-        spdlog::warn("slot {}: the runner {}", failed->slot, Describe(failed->failure));
+        const Lease* lease = state_.LeaseIn(failed->slot);
+        spdlog::warn(
+            "slot {}: the runner {}{}", failed->slot, Describe(failed->failure),
+            lease == nullptr ? "" : fmt::format(" (run {}, lease {:x})", lease->run_id, lease->fence));
         Tell(RunnerDied{failed->slot, std::move(failed->failure), failed->cpu_seconds});
       } else if (const auto* emptied = std::get_if<SlotEmptied>(&event)) {
         Tell(RunnerDied{emptied->slot, {}, 0.0});

@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/prctl.h>
@@ -36,6 +36,9 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kAccessPollInterval{200};
+// worker-1.log, and worker-1.1.log before it.
+constexpr std::size_t kLogBytes = 4U << 20;
+constexpr std::size_t kFormerLogs = 1;
 
 int Complain(const std::string& text, int code) {
   fmt::print(stderr, "gauntlet-worker: {}\n", text);
@@ -66,7 +69,8 @@ Status StartLogging(const WorkerOptions& options) {
     if (!options.log_file.empty()) {
       // What ends the worker stands on stderr too: whoever started it may not look into the file.
       to_stderr->set_level(spdlog::level::err);
-      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(options.log_file));
+      sinks.push_back(
+          std::make_shared<spdlog::sinks::rotating_file_sink_mt>(options.log_file, kLogBytes, kFormerLogs));
     }
     auto logger = std::make_shared<spdlog::logger>("worker", sinks.begin(), sinks.end());
     logger->set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
@@ -198,7 +202,8 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
                             .host = HostName(),
                             .pid = getpid(),
                             .held_leases = {},
-                            .allocation = options.allocation};
+                            .allocation = options.allocation,
+                            .controllers = options.controllers};
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
   Supervisor supervisor(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "worker/runner.h"
 
@@ -22,6 +23,7 @@ struct WorkerOptions {
   std::string allocation;  // told to the master, which may keep a pool of batch jobs
   std::string software_version;
   std::function<std::uint64_t()> golden_hash;
+  std::vector<std::string> controllers = {};  // names of those that `run` can simulate
 };
 
 // Serves until the master lets it go; the exit code (worker_state.h). To be called from main(), before any

@@ -62,6 +62,11 @@ TimePoint WorkerState::NextTick() const {
   return next;
 }
 
+const Lease* WorkerState::LeaseIn(int slot) const {
+  const Slot& there = slots_.at(static_cast<std::size_t>(slot));
+  return there.state == SlotState::kRunning ? &there.lease : nullptr;
+}
+
 std::vector<Fence> WorkerState::HeldLeases() const {
   std::vector<Fence> fences;
   fences.reserve(finished_.size() + slots_.size() + waiting_.size());

@@ -108,6 +108,8 @@ class WorkerState {
   bool welcomed() const { return phase_ == Phase::kWelcomed; }
   bool draining() const { return drain_.has_value(); }
   std::vector<Fence> HeldLeases() const;
+  // What the slot's runner works on; nullptr when it has nothing.
+  const Lease* LeaseIn(int slot) const;
 
  private:
   enum class Phase { kGreeting, kWelcomed, kExited };

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace gauntlet::master {
 
@@ -39,6 +40,8 @@ struct CampaignIdentity {
   std::uint64_t epoch = 1;  // number of this master start; must fit 32 bits: it begins the fencing numbers
   std::string software_version;
   std::uint64_t golden_hash = 0;
+  // Names of the controllers that this program was built with; a worker with others is refused.
+  std::vector<std::string> controllers = {};
 };
 
 }  // namespace gauntlet::master

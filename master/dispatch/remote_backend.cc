@@ -28,6 +28,27 @@ std::string Shorten(const std::string& text) {
   return "..." + text.substr(text.size() - kShownBytes);
 }
 
+// Those of `names` that are not in `others`, "a, b".
+std::string NamesNotIn(const std::vector<std::string>& names, const std::vector<std::string>& others) {
+  std::string found;
+  for (const std::string& name : names) {
+    if (std::find(others.begin(), others.end(), name) != others.end()) continue;
+    if (!found.empty()) found += ", ";
+    found += name;
+  }
+  return found;
+}
+
+// " (run 3, 4, 5, ...)"; "" for none.
+std::string ListRuns(const std::vector<RunId>& runs) {
+  constexpr std::size_t kShownRuns = 10;
+  if (runs.empty()) return "";
+  const std::size_t shown = std::min(kShownRuns, runs.size());
+  return fmt::format(" (run {}{})",
+                     fmt::join(runs.begin(), runs.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+                     shown < runs.size() ? ", ..." : "");
+}
+
 Fence FirstFence(std::uint64_t epoch) {
   GAUNTLET_CHECK(epoch >= 1 && epoch < (1ULL << 32), fmt::format("epoch {} does not fit 32 bits", epoch));
   return epoch << 32;
@@ -172,6 +193,15 @@ std::string RemoteBackend::ReasonToRefuse(const HelloMessage& hello) const {
     return fmt::format("this worker has software version {}, this master has {}",
                        Shorten(hello.software_version), identity_.software_version);
   }
+  if (!hello.controllers.empty()) {
+    const std::string missing = NamesNotIn(identity_.controllers, hello.controllers);
+    const std::string more = NamesNotIn(hello.controllers, identity_.controllers);
+    if (!missing.empty() || !more.empty()) {
+      return fmt::format("this worker was built with another set of controllers: it {} '{}'",
+                         missing.empty() ? "has, and this master has not," : "lacks",
+                         Shorten(missing.empty() ? more : missing));
+    }
+  }
   if (hello.golden_hash != identity_.golden_hash) {
     return fmt::format(
         "this worker's golden hash is {:016x}, the campaign's is {:016x}: the same runs end differently on "
@@ -279,8 +309,8 @@ void RemoteBackend::GiveLeases(TimePoint now) {
 
 bool RemoteBackend::Perform(const SchedulerOrders& orders) {
   for (const WorkerLost& lost : orders.lost) {
-    Report("worker-lost", fmt::format("worker {} is lost; {} of its runs wait for another worker",
-                                      LabelOf(lost.worker), lost.released.size()));
+    Report("worker-lost", fmt::format("worker {} is lost; {} of its runs wait for another worker{}",
+                                      LabelOf(lost.worker), lost.released.size(), ListRuns(lost.released)));
   }
   for (const ResultMismatch& mismatch : orders.mismatches) {
     Report("nondeterministic",

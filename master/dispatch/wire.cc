@@ -35,6 +35,7 @@ HelloMessage From(v1::Hello& hello) {
   message.pid = hello.pid();
   message.held.assign(hello.held_leases().begin(), hello.held_leases().end());
   message.allocation = std::move(*hello.mutable_allocation());
+  message.controllers.assign(hello.controllers().begin(), hello.controllers().end());
   return message;
 }
 

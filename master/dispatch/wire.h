@@ -27,6 +27,7 @@ struct HelloMessage {
   std::int64_t pid = 0;
   std::vector<Fence> held;
   std::string allocation;  // "" for none
+  std::vector<std::string> controllers;
 };
 
 struct HeartbeatMessage {

@@ -27,7 +27,8 @@ TEST(MessageCodecTest, HelloCarriesTheProtocolVersionAndWhoTheWorkerIs) {
                                         .host = "node1",
                                         .pid = 4321,
                                         .held_leases = {9, 1ULL << 60},
-                                        .allocation = "12_3:0:node1"})
+                                        .allocation = "12_3:0:node1",
+                                        .controllers = {"boids", "foragers"}})
                               .hello();
   EXPECT_EQ(hello.protocol_version(), 1u);
   EXPECT_EQ(hello.campaign_id(), "c0ffee");
@@ -39,6 +40,7 @@ TEST(MessageCodecTest, HelloCarriesTheProtocolVersionAndWhoTheWorkerIs) {
   EXPECT_EQ(hello.pid(), 4321);
   EXPECT_THAT(hello.held_leases(), ElementsAre(9, 1ULL << 60));
   EXPECT_EQ(hello.allocation(), "12_3:0:node1");
+  EXPECT_THAT(hello.controllers(), ElementsAre("boids", "foragers"));
 }
 
 TEST(MessageCodecTest, ResultWithoutFailureHasNoFailureOnTheWire) {

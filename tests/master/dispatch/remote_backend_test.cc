@@ -63,7 +63,8 @@ class RemoteBackendTest : public testing::Test {
     options.credit = 1;
     options.cpu_limit_seconds = 75.0;
     options.memory_limit_bytes = 123456789;
-    backend_.emplace(CampaignIdentity{"campaign-1", 5, "1.2.3", 0xfeed}, options, transport_, clock_, pool);
+    backend_.emplace(CampaignIdentity{"campaign-1", 5, "1.2.3", 0xfeed, {"first", "second"}}, options,
+                     transport_, clock_, pool);
   }
 
   static v1::Hello HelloOf(InstanceId instance) {
@@ -194,6 +195,13 @@ INSTANTIATE_TEST_SUITE_P(
                     "belongs to campaign 'other', this master serves campaign 'campaign-1'"},
         RefusalCase{"Version", [](v1::Hello& hello) { hello.set_software_version("1.2.4"); },
                     "software version 1.2.4, this master has 1.2.3"},
+        RefusalCase{"ControllerMissing", [](v1::Hello& hello) { hello.add_controllers("second"); },
+                    "another set of controllers: it lacks 'first'"},
+        RefusalCase{"ControllerTooMany",
+                    [](v1::Hello& hello) {
+                      for (const char* name : {"first", "mine", "second"}) hello.add_controllers(name);
+                    },
+                    "another set of controllers: it has, and this master has not, 'mine'"},
         RefusalCase{"Golden", [](v1::Hello& hello) { hello.set_golden_hash(0xbad); },
                     "golden hash is 0000000000000bad, the campaign's is 000000000000feed"},
         RefusalCase{"Instance", [](v1::Hello& hello) { hello.set_instance_id(0); }, "instance id 0"},
@@ -263,7 +271,8 @@ TEST_F(RemoteBackendTest, ASilentWorkersRunGoesElsewhereAndItsLateResultIsADupli
   EXPECT_GE(clock_.Now() - start, seconds(3));
   EXPECT_LE(clock_.Now() - start, milliseconds(3300));
   EXPECT_EQ(leases[0].attempt(), 2U);
-  EXPECT_THAT(EventsOf("worker-lost"), HasSubstr("000000000000000a@node7 is lost; 1 of its runs"));
+  EXPECT_THAT(EventsOf("worker-lost"),
+              HasSubstr("000000000000000a@node7 is lost; 1 of its runs wait for another worker (run 1)"));
   transport_.on_wait = nullptr;
 
   SendResult("b", leases[0], result_);

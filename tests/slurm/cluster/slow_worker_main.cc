@@ -1,8 +1,13 @@
 // gauntlet-worker-slow: gauntlet-worker whose runs take longer, and no more CPU time, so that what happens to
-// a cluster happens during an evolution. GAUNTLET_TEST_RUN_MILLISECONDS: added to each run. For tests only.
+// a cluster happens during an evolution. For tests only.
+//   GAUNTLET_TEST_RUN_MILLISECONDS  added to each run
+//   GAUNTLET_TEST_RUN_LOG           file to which each run appends its seed when it begins
+#include <fcntl.h>
 #include <poll.h>
+#include <unistd.h>
 
 #include <cstdlib>
+#include <string>
 
 #include "worker/command_line.h"
 #include "worker/golden_hash.h"
@@ -10,7 +15,18 @@
 
 namespace {
 
+void LogRun(std::uint64_t seed) {
+  const char* path = std::getenv("GAUNTLET_TEST_RUN_LOG");
+  if (path == nullptr || *path == '\0') return;
+  const std::string line = std::to_string(seed) + "\n";
+  const int fd = open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  // One write, so that lines of several runners do not mix; a kill after it makes no difference to it.
+  if (fd < 0 || write(fd, line.data(), line.size()) != static_cast<ssize_t>(line.size())) std::abort();
+  close(fd);
+}
+
 gauntlet::sim::RunResult SlowRun(const gauntlet::sim::RunSpec& spec) {
+  LogRun(spec.seed);
   const char* text = std::getenv("GAUNTLET_TEST_RUN_MILLISECONDS");
   poll(nullptr, 0, text == nullptr ? 0 : std::atoi(text));
   return gauntlet::worker::Run(spec);
@@ -19,5 +35,6 @@ gauntlet::sim::RunResult SlowRun(const gauntlet::sim::RunSpec& spec) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return gauntlet::worker::RunWorkerCommandLine(argc, argv, {SlowRun, gauntlet::worker::GoldenHash});
+  return gauntlet::worker::RunWorkerCommandLine(
+      argc, argv, {SlowRun, gauntlet::worker::GoldenHash, gauntlet::worker::ControllerNames()});
 }
