@@ -25,7 +25,7 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
   nlohmann::json json;
   try {
     json = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
+  } catch (const nlohmann::json::exception& error) {  // parse errors, and numbers beyond all ranges
     return InvalidInput(fmt::format("{}: {}", place, error.what()));
   }
   const auto wrong = [&](const std::string& what) {

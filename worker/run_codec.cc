@@ -1,6 +1,7 @@
 #include "worker/run_codec.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/stubs/logging.h>
 #include <google/protobuf/unknown_field_set.h>
 
 #include <cmath>
@@ -139,6 +140,7 @@ void WriteTrajectory(const sim::RunResult& result, v1::Trajectory& wire) {
 }  // namespace
 
 Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
+  const google::protobuf::LogSilencer silencer;  // the error says enough
   v1::RunSpec wire;
   if (bytes.size() > INT32_MAX || !wire.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return InvalidInput(fmt::format("spec: {} bytes that are no RunSpec", bytes.size()));

@@ -16,6 +16,7 @@
 #include "master/cli/metric_text.h"
 #include "master/cli/summary_json.h"
 #include "master/cli/table.h"
+#include "sim/base/printable.h"
 
 namespace gauntlet::master {
 namespace {

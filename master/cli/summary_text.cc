@@ -9,6 +9,7 @@
 #include "master/campaign/reproduction_bundle.h"
 #include "master/campaign/verdict_text.h"
 #include "master/cli/table.h"
+#include "sim/base/printable.h"
 
 namespace gauntlet::master {
 namespace {

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "sim/base/check.h"
+#include "sim/base/printable.h"
 
 namespace gauntlet::master {
 
@@ -70,27 +71,6 @@ std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent
     out += word;
     column += length;
     text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return out;
-}
-
-std::string Printable(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
-    if (byte == '\n') {
-      out += "\\n";
-    } else if (byte == '\t') {
-      out += "\\t";
-    } else if (byte < 0x20U || byte == 0x7FU) {
-      out += fmt::format("\\x{:02x}", byte);
-    } else if (byte == 0xC2U && next >= 0x80U && next < 0xA0U) {  // a control character of two bytes
-      out += fmt::format("\\x{:02x}", next);
-      ++i;
-    } else {
-      out += text[i];
-    }
   }
   return out;
 }

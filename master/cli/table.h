@@ -36,10 +36,6 @@ std::size_t DisplayWidth(std::string_view text);
 // Text broken at blanks into lines of at most `width` columns, each after the first indented.
 std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent);
 
-// The text with its control characters (ESC, line breaks, also U+0080 to U+009F) written as escapes of C:
-// names of files may hold anything, and a terminal obeys some of it.
-std::string Printable(std::string_view text);
-
 // "1,234,567".
 std::string FormatCount(std::uint64_t count);
 // Three decimals; "-" for NaN and infinity.

@@ -11,6 +11,7 @@
 
 #include "master/experiment/toml_text.h"
 #include "sim/base/nearest_name.h"
+#include "sim/base/printable.h"
 
 namespace gauntlet::master {
 namespace {
@@ -314,14 +315,18 @@ Result<Experiment> ParseExperiment(std::string_view text, const std::string& fil
 
 Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
                                    const std::vector<std::string>& sets, const Catalogue& catalogue) {
+  // Messages quote what was written there.
+  const auto printable = [](const Error& error) { return Error{error.kind, Printable(error.message)}; };
   Result<std::vector<Assignment>> assignments = ReadToml(text, file_name);
-  if (!assignments.ok()) return assignments.error();
+  if (!assignments.ok()) return printable(assignments.error());
   for (const std::string& set : sets) {
     Result<Assignment> assignment = ReadSet(set);
-    if (!assignment.ok()) return assignment.error();
+    if (!assignment.ok()) return printable(assignment.error());
     assignments->push_back(std::move(*assignment));
   }
-  return Reader(std::move(*assignments), file_name, catalogue).Read();
+  Result<Experiment> experiment = Reader(std::move(*assignments), file_name, catalogue).Read();
+  if (!experiment.ok()) return printable(experiment.error());
+  return experiment;
 }
 
 std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header) {

@@ -86,5 +86,11 @@ TEST(AccessFileTest, MissingFileIsNotFound) {
   EXPECT_TRUE(ReadAccess(directory / "access.json").ok());
 }
 
+TEST(AccessFileTest, ANumberBeyondAllRangesIsRefusedLikeAnyOther) {
+  const Result<Access> access = ParseAccess(R"({"format": 1e999})", "a.json");
+  ASSERT_FALSE(access.ok());
+  EXPECT_THAT(access.error().message, testing::StartsWith("a.json: "));
+}
+
 }  // namespace
 }  // namespace gauntlet::worker

@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "sim/base/printable.h"
+
 namespace gauntlet::master {
 namespace {
 

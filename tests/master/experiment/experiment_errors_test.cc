@@ -168,5 +168,9 @@ TEST(ExperimentErrorsTest, RulesThatSpanKeysPointAtOneOfThem) {
   EXPECT_THAT(ErrorOf(Marching("name = '../up'\n")), StartsWith("toy.toml:2:1: name = \"../up\" is no good"));
 }
 
+TEST(ExperimentErrorsTest, WhatIsQuotedStaysInOneLine) {
+  EXPECT_THAT(ErrorOf(Marching("controller = \"a\\nb\\u001b[31m\"\n")), HasSubstr("'a\\nb\\x1b[31m'"));
+}
+
 }  // namespace
 }  // namespace gauntlet::master

@@ -1,0 +1,13 @@
+// Text that came from outside, made fit for one line of a message, a log or a terminal.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace gauntlet {
+
+// The text with its control characters (ESC, line breaks, also U+0080 to U+009F) written as escapes of C:
+// names of files may hold anything, and a terminal obeys some of it.
+std::string Printable(std::string_view text);
+
+}  // namespace gauntlet

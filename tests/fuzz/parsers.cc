@@ -1,0 +1,106 @@
+#include "tests/fuzz/parsers.h"
+
+#include <array>
+#include <cmath>
+
+#include "master/cases/argos_import.h"
+#include "master/dispatch/run_codec.h"
+#include "master/dispatch/wire.h"
+#include "master/experiment/experiment_file.h"
+#include "sim/base/check.h"
+#include "worker/access_file.h"
+#include "worker/message_codec.h"
+#include "worker/run_codec.h"
+
+namespace gauntlet::fuzz {
+namespace {
+
+constexpr std::size_t kMostMessage = 100'000;
+
+// Errors are for people: one line, not empty, no longer than a screen.
+template <typename T>
+void ExpectAGoodError(const Result<T>& result) {
+  const std::string& message = result.error().message;
+  GAUNTLET_CHECK(!message.empty() && message.size() < kMostMessage && message.find('\n') == std::string::npos,
+                 "a bad error message: '" + message + "'");
+}
+
+// A frame may come from either side; what it carries is decoded as the next step would.
+void ReadWire(std::string_view bytes) {
+  const Result<master::WorkerMessage> from_worker = master::DecodeWorkerMessage(bytes);
+  if (!from_worker) {
+    ExpectAGoodError(from_worker);
+  } else if (const auto* result = std::get_if<master::ResultMessage>(&*from_worker)) {
+    const Result<sim::RunResult> decoded = master::DecodeRunResult(result->result);
+    if (!decoded) ExpectAGoodError(decoded);
+  }
+  const Result<worker::MasterMessage> from_master = worker::DecodeMasterMessage(bytes);
+  if (!from_master) {
+    ExpectAGoodError(from_master);
+  } else if (const auto* lease = std::get_if<worker::Lease>(&*from_master)) {
+    const Result<sim::RunSpec> decoded = worker::DecodeRunSpec(lease->spec);
+    if (!decoded) ExpectAGoodError(decoded);
+  }
+}
+
+// Stored specs and results: what was read is written and read again, and is the same.
+void ReadRun(std::string_view bytes) {
+  if (const Result<sim::RunSpec> spec = master::DecodeRunSpec(bytes); spec) {
+    const std::string encoded = master::EncodeRunSpec(*spec);
+    const Result<sim::RunSpec> again = master::DecodeRunSpec(encoded);
+    GAUNTLET_CHECK(again.ok() && master::EncodeRunSpec(*again) == encoded, "a spec does not survive");
+  }
+  if (const Result<sim::RunResult> result = master::DecodeRunResult(bytes); result) {
+    const Result<sim::RunResult> again = master::DecodeRunResult(master::EncodeRunResult(*result));
+    GAUNTLET_CHECK(again.ok() && again->hash == result->hash, "a result does not survive");
+  }
+}
+
+void ReadCaseJson(std::string_view bytes) {
+  const Result<sim::TestCase> read = master::ParseCaseJson(std::string(bytes), "case.json");
+  if (!read) return ExpectAGoodError(read);
+  const std::string written = master::WriteCaseJson(*read);
+  const Result<sim::TestCase> again = master::ParseCaseJson(written, "again.json");
+  GAUNTLET_CHECK(again.ok() && master::WriteCaseJson(*again) == written,
+                 "a case does not survive:\n" + written);
+}
+
+void ReadArgos(std::string_view bytes) {
+  const Result<master::ImportedCase> read = master::ParseArgos(std::string(bytes), "case.argos");
+  if (!read) return ExpectAGoodError(read);
+  for (const sim::ObstacleGene& obstacle : read->test_case.obstacles) {
+    GAUNTLET_CHECK(std::isfinite(obstacle.x) && std::isfinite(obstacle.y) && std::isfinite(obstacle.length) &&
+                       std::isfinite(obstacle.width) && std::isfinite(obstacle.orientation_deg),
+                   "an obstacle that is no number");
+  }
+  GAUNTLET_CHECK(read->notice.find('\n') == std::string::npos, "a notice of several lines");
+}
+
+void ReadExperiment(std::string_view bytes) {
+  const Result<master::Experiment> read = master::ParseExperiment(bytes, "experiment.toml", {});
+  if (!read) return ExpectAGoodError(read);
+  const std::string written = master::WriteExperiment(*read, {});
+  const Result<master::Experiment> again = master::ParseExperiment(written, "again.toml", {});
+  GAUNTLET_CHECK(again.ok() && master::WriteExperiment(*again, {}) == written,
+                 "an experiment does not survive:\n" + written);
+}
+
+void ReadAccessFile(std::string_view bytes) {
+  const Result<worker::Access> read = worker::ParseAccess(std::string(bytes), "access.json");
+  if (!read) return ExpectAGoodError(read);
+  GAUNTLET_CHECK(!read->endpoints.empty(), "an access.json without an endpoint");
+}
+
+}  // namespace
+
+std::span<const Parser> Parsers() {
+  static const std::array<Parser, 6> parsers{{{"wire", ReadWire},
+                                              {"run", ReadRun},
+                                              {"case_json", ReadCaseJson},
+                                              {"argos", ReadArgos},
+                                              {"experiment", ReadExperiment},
+                                              {"access", ReadAccessFile}}};
+  return parsers;
+}
+
+}  // namespace gauntlet::fuzz
