@@ -63,12 +63,12 @@ struct Pipe {
   }
 };
 
-std::vector<char*> CleanEnvironment() {
+std::vector<char*> EnvironmentOf(Callee callee) {
   std::vector<char*> result;
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
-    const bool inherited = text.starts_with("SLURM_") || text.starts_with("SBATCH_");
-    if (!inherited || text.starts_with("SLURM_CONF=")) result.push_back(*entry);
+    const bool of_a_job = text.starts_with("SLURM_") || text.starts_with("SBATCH_");
+    if (callee == Callee::kPartOfUs || !of_a_job || text.starts_with("SLURM_CONF=")) result.push_back(*entry);
   }
   result.push_back(nullptr);
   return result;
@@ -139,10 +139,11 @@ bool Reap(pid_t child, Clock::time_point deadline, int& status) {
 
 }  // namespace
 
-Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, const std::string& input,
-                               std::chrono::milliseconds deadline) {
+Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::string_view input,
+                               std::optional<std::chrono::milliseconds> deadline, Callee callee) {
   const std::string& program = arguments.at(0);
-  const Clock::time_point end = Clock::now() + deadline;
+  const bool part_of_us = callee == Callee::kPartOfUs;
+  const Clock::time_point end = deadline ? Clock::now() + *deadline : Clock::time_point::max();
   Pipe in;
   Pipe out;
   Pipe err;
@@ -152,7 +153,7 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, const 
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, in.read.get(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, out.write.get(), STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, err.write.get(), STDERR_FILENO);
+  if (!part_of_us) posix_spawn_file_actions_adddup2(&actions, err.write.get(), STDERR_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -163,23 +164,24 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, const 
   sigaddset(&defaults, SIGINT);
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setsigdefault(&attributes, &defaults);
-  // A group of its own: Ctrl-C is the master's to handle.
+  const int group = part_of_us ? 0 : POSIX_SPAWN_SETPGROUP;
   posix_spawnattr_setflags(&attributes,
-                           POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+                           static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | group));
 
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  std::vector<char*> environment = CleanEnvironment();
+  std::vector<char*> environment = EnvironmentOf(callee);
   pid_t child = -1;
   const int failed =
       posix_spawnp(&child, program.c_str(), &actions, &attributes, argv.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
   if (failed == ENOENT)
-    return Error{ErrorKind::kNotFound,
-                 "there is no " + program + " in PATH: is Slurm installed on this machine?"};
+    return Error{
+        ErrorKind::kNotFound,
+        "there is no " + program + (part_of_us ? "" : " in PATH: is Slurm installed on this machine?")};
   if (failed != 0) return Failure(program, std::strerror(failed));
   in.read.Close();
   out.write.Close();
@@ -189,12 +191,15 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, const 
   const bool spoken = Converse(in, out, err, input, result, end);
   int status = 0;
   const bool ended = Reap(child, spoken ? end : Clock::now(), status);
+  if (!deadline && !spoken) return Failure(program, "its output could not be read");
   if (!spoken || !ended) {
     // A full queue makes sbatch wait and say so.
     const std::string said = result.err.empty() ? "" : "; so far it said: " + LastLine(result.err);
-    return Failure(program, "no answer within " + std::to_string(deadline.count()) + " ms" + said);
+    return Failure(program,
+                   "no answer within " + std::to_string(deadline ? deadline->count() : 0) + " ms" + said);
   }
   constexpr int kSignalBase = 128;
+  result.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : kSignalBase + WTERMSIG(status);
   return result;
 }
