@@ -84,6 +84,10 @@ Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode)
 Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return SystemError(fmt::format("cannot open {}", path), errno);
+  return ReadAndClose(fd, path, limit);
+}
+
+Result<std::string> ReadAndClose(int fd, const std::string& path, std::size_t limit) {
   std::string bytes;
   std::array<char, 4096> buffer{};
   int error = 0;

@@ -26,6 +26,9 @@ Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode)
 // A whole file of at most `limit` bytes. Errors: kNotFound, kIo, kCorrupt when it is longer.
 Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit = 1 << 20);
 
+// The same of a file that is open; closes it. `path` is for messages.
+Result<std::string> ReadAndClose(int fd, const std::string& path, std::size_t limit);
+
 // The error of a failed system call, by errno.
 Error SystemError(const std::string& what, int error_number);
 

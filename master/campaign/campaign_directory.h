@@ -3,11 +3,21 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "sim/base/result.h"
 
 namespace gauntlet::master {
+
+// Which file a path names, by what can be asked without opening it.
+struct FileIdentity {
+  std::uint64_t device = 0;
+  std::uint64_t inode = 0;
+  std::int64_t modified_seconds = 0;
+  std::int64_t modified_nanoseconds = 0;
+  bool operator==(const FileIdentity&) const = default;
+};
 
 class CampaignDirectory {
  public:
@@ -35,20 +45,24 @@ class CampaignDirectory {
   std::string searches_path() const { return path_ + "/searches.json"; }
   // Secret keys, 0600; only when the master is reachable from other machines.
   std::string key_path() const { return path_ + "/master.key"; }
+  // Which copy of the campaign this is (campaign_origin.h).
+  std::string origin_path() const { return path_ + "/origin.json"; }
   // `gauntlet stop` was here; the master removes it.
   std::string stop_path() const { return path_ + "/stop"; }
   std::string log_path() const { return path_ + "/log"; }
 
   // Counts one more start of a master, durably, and returns its number (1, 2, ...). Only under the campaign's
   // lock.
-  Result<std::uint64_t> StartEpoch() const;
-  // Whether the master number `mine` is still the newest: kInUse when not. Opens and reads one small file.
+  Result<std::uint64_t> StartEpoch();
+  // Whether the master number `mine` is still the newest: kInUse when not. Opens and reads one small file; a
+  // process that may open no more files only looks whether it is still the one that StartEpoch has written.
   Status CheckEpoch(std::uint64_t mine) const;
 
  private:
   explicit CampaignDirectory(std::string path) : path_(std::move(path)) {}
 
-  std::string path_;  // without a slash at its end
+  std::string path_;                        // without a slash at its end
+  std::optional<FileIdentity> epoch_file_;  // as StartEpoch left it
 };
 
 // 128 random bits as 32 hex digits.

@@ -24,6 +24,9 @@ Status OpenStore(CampaignOwnership& ownership) {
       SqliteStore::Open(ownership.directory.database_path(), std::move(options));
   if (!store) return store.error();
   ownership.store = *std::move(store);
+  Result<CampaignOrigin> origin = ConfirmOrigin(ownership.directory, ownership.store->meta().campaign_id);
+  if (!origin) return origin.error();
+  ownership.origin = *std::move(origin);
   return Ok{};
 }
 
@@ -57,7 +60,7 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
   if (Status created = SqliteStore::Create(directory->database_path(), meta); !created)
     return created.error();
 
-  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, nullptr};
+  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, {}, nullptr};
   if (Status opened = OpenStore(ownership); !opened) return opened.error();
   return ownership;
 }
@@ -79,7 +82,7 @@ Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster othe
   if (!lock) return lock.error();
   Result<std::uint64_t> epoch = directory->StartEpoch();
   if (!epoch) return epoch.error();
-  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, nullptr};
+  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, {}, nullptr};
   if (Status opened = OpenStore(ownership); !opened) return opened.error();
   return ownership;
 }

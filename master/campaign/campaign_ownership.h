@@ -7,6 +7,7 @@
 
 #include "master/campaign/campaign_directory.h"
 #include "master/campaign/campaign_lock.h"
+#include "master/campaign/campaign_origin.h"
 #include "master/store/sqlite_store.h"
 #include "sim/base/result.h"
 
@@ -18,6 +19,7 @@ struct CampaignOwnership {
   CampaignDirectory directory;
   std::unique_ptr<CampaignLock> lock;
   std::uint64_t epoch = 0;
+  CampaignOrigin origin;
   // Commits nothing any more once a newer master has started or the lock is lost (kInUse).
   std::unique_ptr<SqliteStore> store;
 };

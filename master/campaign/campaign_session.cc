@@ -1,7 +1,7 @@
 #include "master/campaign/campaign_session.h"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -11,11 +11,14 @@
 #include <filesystem>
 #include <memory>
 
+#include "controllers/registry.h"
 #include "master/campaign/access_file.h"
 #include "master/campaign/atomic_file.h"
 #include "master/campaign/campaign_keys.h"
 #include "master/campaign/campaign_ownership.h"
 #include "master/campaign/campaign_status.h"
+#include "master/campaign/metrics_server.h"
+#include "master/campaign/metrics_text.h"
 #include "master/campaign/process_identity.h"
 #include "master/campaign/reachable_endpoints.h"
 #include "master/campaign/reproduction_bundle.h"
@@ -34,15 +37,9 @@ namespace {
 constexpr std::string_view kSoftwareVersion = GAUNTLET_VERSION;
 constexpr std::chrono::milliseconds kShutdownTime{2000};
 constexpr std::chrono::milliseconds kStatusEvery{1000};
-
-double CpuSeconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
+// master.log, and master.1.log to master.4.log before it.
+constexpr std::size_t kLogBytes = 16U << 20;
+constexpr std::size_t kFormerLogs = 4;
 
 std::string HashText(std::uint64_t hash) {
   return fmt::format("{:016x}", hash);
@@ -58,12 +55,29 @@ Status CheckGoldenHash(const CampaignMeta& meta, std::uint64_t golden_hash) {
                   meta.software_version, meta.golden_hash, kSoftwareVersion, HashText(golden_hash))};
 }
 
+std::vector<std::string> NamesOfControllers() {
+  std::vector<std::string> names;
+  for (const controllers::ControllerInfo& controller : controllers::Controllers())
+    names.emplace_back(controller.name);
+  return names;
+}
+
 std::vector<SearchId> FinishedOf(const std::vector<StoredSearch>& searches) {
   std::vector<SearchId> finished;
   for (const StoredSearch& search : searches) {
     if (search.finished) finished.push_back(search.id);
   }
   return finished;
+}
+
+// Every connection needs a descriptor, of workers and of strangers. As many as the system allows, within
+// reason: each may cost the master some 10 KB.
+void AllowManyConnections() {
+  constexpr rlim_t kMostDescriptors = 16384;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kMostDescriptors) return;
+  limit.rlim_cur = std::min(limit.rlim_max, kMostDescriptors);
+  setrlimit(RLIMIT_NOFILE, &limit);
 }
 
 // A socket for workers, with keys when others than this machine can reach it.
@@ -73,7 +87,7 @@ struct Serving {
 };
 Result<Serving> Listen(const CampaignOwnership& campaign, const SessionOptions& options) {
   AccessInfo access;
-  access.campaign = campaign.store->meta().campaign_id;
+  access.campaign = campaign.origin.campaign_id;
   access.epoch = campaign.epoch;
   ZmqTransportOptions transport_options;
   transport_options.endpoint = options.bind;
@@ -96,7 +110,8 @@ void OpenLog(const CampaignDirectory& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory.log_path(), error);
   try {
-    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(directory.log_path() + "/master.log");
+    auto sink = std::make_shared<spdlog::sinks::rotating_file_sink_mt>(directory.log_path() + "/master.log",
+                                                                       kLogBytes, kFormerLogs);
     auto logger = std::make_shared<spdlog::logger>("master", std::move(sink));
     logger->flush_on(spdlog::level::info);
     spdlog::set_default_logger(std::move(logger));
@@ -163,10 +178,10 @@ std::string DescribePool(const SessionOptions& options) {
 Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<SearchPlan>& plans,
                             std::uint64_t golden_hash, const SessionOptions& options) {
   const auto started = std::chrono::steady_clock::now();
-  const double cpu_before = CpuSeconds();
+  const double cpu_before = CostOfThisProcess().cpu_seconds;
   SqliteStore& store = *campaign.store;
   OpenLog(campaign.directory);
-  spdlog::info("master {} of campaign {} with {}", campaign.epoch, store.meta().campaign_id,
+  spdlog::info("master {} of campaign {} with {}", campaign.epoch, campaign.origin.campaign_id,
                DescribePool(options));
   const LivingMasterFiles living(campaign.directory, campaign.epoch);
 
@@ -180,6 +195,7 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
     searches.push_back(*std::move(search));
   }
 
+  AllowManyConnections();
   Result<Serving> serving = Listen(campaign, options);
   if (!serving) return serving.error();
   const SteadyClock clock;
@@ -187,13 +203,13 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   if (!made_pool) return made_pool.error();
   const std::unique_ptr<WorkerPool> pool = *std::move(made_pool);
 
-  const CampaignIdentity identity{store.meta().campaign_id, campaign.epoch, std::string(kSoftwareVersion),
-                                  golden_hash};
+  const CampaignIdentity identity{campaign.origin.campaign_id, campaign.epoch, std::string(kSoftwareVersion),
+                                  golden_hash, NamesOfControllers()};
   DispatchOptions dispatch;
   dispatch.audit_share = options.audit_share;
   RemoteBackend backend(identity, dispatch, *serving->transport, clock, pool.get());
   backend.WatchFd(store.CommitNotifier());
-  const BundleContext bundles{campaign.directory.path(), store.meta().campaign_id,
+  const BundleContext bundles{campaign.directory.path(), campaign.origin.campaign_id,
                               std::string(kSoftwareVersion), HashText(golden_hash)};
   const auto keep_bundle = [&bundles](const Experiment& experiment) {
     return [&bundles, &experiment](const StoredRun& run, const FinishedRun& finished) {
@@ -215,11 +231,18 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   }
   CampaignRunner runner(parts);
   if (Status restored = runner.Restore(FinishedOf(*known)); !restored) return restored.error();
+  if (!campaign.origin.copied_from.empty()) {
+    const std::string text =
+        fmt::format("this directory is a copy of campaign {}; it is campaign {} from now on",
+                    campaign.origin.copied_from, campaign.origin.campaign_id);
+    spdlog::info("copied: {}", text);
+    store.AddEvent({UnixMilliseconds(), "copied", text});
+  }
   store.AddEvent({UnixMilliseconds(), campaign.epoch == 1 ? "start" : "resume",
                   fmt::format("master {} with {}", campaign.epoch, DescribePool(options))});
 
   MasterView view;
-  view.campaign_id = store.meta().campaign_id;
+  view.campaign_id = campaign.origin.campaign_id;
   view.experiment = plans.front().experiment.name;
   view.host = IdentifyThisProcess().host;
   view.pid = getpid();
@@ -228,6 +251,7 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   view.endpoints = serving->access.endpoints;
   view.encrypted = serving->access.curve.has_value();
   view.batch_job = options.batch_job;
+  if (options.metrics != nullptr) view.metrics_url = options.metrics->url();
   options.on_serving({view.endpoints, view.encrypted});
 
   TimePoint last_status = clock.Now() - kStatusEvery;
@@ -247,9 +271,12 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
       const Status newest = campaign.directory.CheckEpoch(campaign.epoch);
       outdated = !newest && newest.error().kind == ErrorKind::kInUse;
       view.now_unix_ms = UnixMilliseconds();
-      const Status written = ReplaceFile(campaign.directory.status_path(),
-                                         StatusJson(view, progress, backend.Describe()), kReadableByAll);
+      const BackendView seen = backend.Describe();
+      const Status written =
+          ReplaceFile(campaign.directory.status_path(), StatusJson(view, progress, seen), kReadableByAll);
       if (!written) spdlog::debug("status: {}", written.error().message);
+      if (options.metrics != nullptr)
+        options.metrics->Publish(MetricsText(view, progress, seen, CostOfThisProcess()));
       last_status = now;
     }
     options.on_progress(progress);
@@ -284,7 +311,7 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   report.end = *end;
   report.runs_this_session = runner.runs_done() - runs_before;
   report.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
-  report.master_cpu_seconds = CpuSeconds() - cpu_before;
+  report.master_cpu_seconds = CostOfThisProcess().cpu_seconds - cpu_before;
   Result<CampaignSummary> summary = SummariseAll(plans, store);
   if (!summary) return summary.error();
   report.summary = std::move(*summary);

@@ -17,6 +17,8 @@
 
 namespace gauntlet::master {
 
+class MetricsServer;
+
 // What a master says of itself once workers can reach it.
 struct ServingNotice {
   std::vector<std::string> endpoints;
@@ -39,7 +41,8 @@ struct SessionOptions {
   // Where workers connect. Reachable from other machines: encrypted, for known keys only, unless `insecure`.
   std::string bind = "tcp://127.0.0.1:*";
   bool insecure = false;
-  double audit_share = 0.0;  // of runs, 0 to 1, that a second worker simulates too, to be compared
+  double audit_share = 0.0;          // of runs, 0 to 1, that a second worker simulates too, to be compared
+  MetricsServer* metrics = nullptr;  // told every second what goes on; nullptr = nobody asks
   std::function<void(const ServingNotice&)> on_serving = [](const ServingNotice&) {};
   // Asks for a clean stop at once. Workers from elsewhere stay and look for the campaign's next master; when
   // `gauntlet stop` asks, runs that have begun are waited for and all workers are let go.

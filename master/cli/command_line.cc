@@ -30,10 +30,18 @@ void AddAuditOption(CLI::App& command, CommonOptions& options) {
       ->type_name("P");
 }
 
+void AddMetricsOption(CLI::App& command, CommonOptions& options) {
+  command
+      .add_option("--metrics-port", options.metrics_port,
+                  "serve Prometheus metrics on this port of 127.0.0.1 (0: any free one)")
+      ->type_name("PORT");
+}
+
 void AddRunningOptions(CLI::App& command, CommonOptions& options) {
   command.add_option("--workers", options.workers, "worker processes on this machine (default: its cores)")
       ->type_name("N");
   AddAuditOption(command, options);
+  AddMetricsOption(command, options);
   AddMessageOptions(command, options);
 }
 
@@ -243,6 +251,7 @@ void AddServiceCommands(CLI::App& app, CommandAction& chosen) {
   AddAuditOption(*master, master_options->common);
   AddMessageOptions(*master, master_options->common);
   AddBindOptions(*master, master_options->common);
+  AddMetricsOption(*master, master_options->common);
   master->get_option("--bind")->required();
   master->add_flag("--resume", master_options->resume, "go on with the campaign in --dir when there is one");
   master->footer(

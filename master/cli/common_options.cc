@@ -63,6 +63,13 @@ Result<std::uint64_t> ParseSeed(const std::string& text) {
       fmt::format("--seed {}: must be a whole number from 0 to 18446744073709551615, or 'random'", text));
 }
 
+Result<int> ParseMetricsPort(const std::string& text) {
+  const std::optional<std::uint64_t> port = ParseUnsigned(text);
+  if (port && *port <= 65535) return static_cast<int>(*port);
+  return InvalidInput(
+      fmt::format("--metrics-port {}: must be a port from 1 to 65535, or 0 for any free one", text));
+}
+
 Result<std::uint64_t> ParseRunId(const std::string& text) {
   const std::optional<std::uint64_t> id = ParseUnsigned(text);
   if (id && *id >= 1) return *id;

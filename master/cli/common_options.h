@@ -24,7 +24,8 @@ struct CommonOptions {
   std::string bind;  // where workers connect; only master and resume
   bool insecure = false;
   std::string audit;
-  bool as_job = false;  // only resume: the master's job of a submitted campaign
+  std::string metrics_port;  // only commands that serve a campaign
+  bool as_job = false;       // only resume: the master's job of a submitted campaign
   bool json = false;
   bool quiet = false;
   bool no_progress = false;
@@ -38,6 +39,8 @@ Result<int> ParseWorkers(const std::string& text);
 Result<double> ParseShare(const std::string& option, const std::string& text);
 // A decimal number below 2^64, or "random", which draws one from the operating system.
 Result<std::uint64_t> ParseSeed(const std::string& text);
+// 0 (any free one) to 65535.
+Result<int> ParseMetricsPort(const std::string& text);
 // Decimal, at least 1.
 Result<std::uint64_t> ParseRunId(const std::string& text);
 

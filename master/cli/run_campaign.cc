@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "master/campaign/metrics_server.h"
 #include "master/cli/progress.h"
 #include "master/cli/stop_signal.h"
 #include "master/cli/summary_json.h"
@@ -56,7 +57,18 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
       mode, clock, [&](const std::string& text) { context.err << text << std::flush; }, TerminalColumns);
   bool began = false;
 
+  std::unique_ptr<MetricsServer> metrics;
+  if (!options.metrics_port.empty()) {
+    const Result<int> port = ParseMetricsPort(options.metrics_port);
+    if (!port) return Fail(context, port.error());
+    Result<std::unique_ptr<MetricsServer>> started = MetricsServer::Start(*port);
+    if (!started) return Fail(context, started.error());
+    metrics = *std::move(started);
+    if (!options.quiet) PrintMessage(context, fmt::format("metrics at {}", metrics->url()));
+  }
+
   SessionOptions session;
+  session.metrics = metrics.get();
   session.workers = campaign.workers;
   session.insecure = campaign.insecure;
   session.audit_share = *audit_share;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 
@@ -109,6 +110,25 @@ TEST_F(EpochTest, AnOlderMasterLearnsOfTheNewer) {
   ASSERT_FALSE(checked.ok());
   EXPECT_EQ(checked.error().kind, ErrorKind::kInUse);
   EXPECT_THAT(checked.error().message, HasSubstr("newer master (start number 2; this one is number 1)"));
+}
+
+// Strangers may use up a master's descriptors; that a newer one has begun is noticed all the same.
+TEST_F(EpochTest, ItIsCheckedWithoutADescriptorToo) {
+  ASSERT_TRUE(directory_.StartEpoch().ok());
+  CampaignDirectory newer = directory_;
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const rlimit none{0, limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const Status same = directory_.CheckEpoch(1);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  EXPECT_TRUE(same.ok()) << same.error().message;
+
+  ASSERT_TRUE(newer.StartEpoch().ok());
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const Status outdated = directory_.CheckEpoch(1);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  EXPECT_FALSE(outdated.ok());
 }
 
 TEST_F(EpochTest, AFileThatIsGoneOrDamagedStopsTheMaster) {
