@@ -17,6 +17,9 @@ std::string GauntletPath() {
 std::string WorkerPath() {
   return std::string(GAUNTLET_BINARY_DIR) + "/gauntlet-worker";
 }
+std::string FaultShimPath() {
+  return GAUNTLET_FAULT_SHIM;
+}
 
 namespace {
 

@@ -14,6 +14,8 @@ namespace gauntlet::testing_support {
 
 std::string GauntletPath();
 std::string WorkerPath();
+// The library that tests/support/fault_shim.cc makes, for LD_PRELOAD.
+std::string FaultShimPath();
 
 // gauntlet ARGUMENTS..., waited for.
 ProcessResult Gauntlet(const std::vector<std::string>& arguments,

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/integration/campaign_driver.h"
+#include "tests/integration/durability_drill.h"
 
 namespace gauntlet {
 namespace {
@@ -55,6 +56,33 @@ TEST(LongDrill, EveryWorkerCountGivesTheSameStateHash) {
     ASSERT_EQ(Gauntlet(EvolveArguments(DefaultCampaign(), scratch / "c", workers)).exit_code, 0);
     EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash()) << workers << " workers";
   }
+}
+
+// The number to hold: 100 masters and 200 workers within one evolution.
+TEST(LongDrill, AHundredMastersAndTwoHundredWorkersKilled) {
+  const TemporaryDirectory scratch;
+  SmallCampaign campaign = DefaultCampaign();
+  campaign.generations = 200;
+  const testing_support::MassacreReport report = testing_support::EvolveThroughMassacre(
+      campaign, scratch / "c", 2, 100, 200, 5, std::chrono::milliseconds(2000));
+  fmt::print("{} masters and {} workers killed, {} runs, {} evaluations, {} of stored runs\n",
+             report.master_kills, report.worker_kills, report.runs, report.evaluations,
+             report.evaluated_after_stored);
+  EXPECT_EQ(report.master_kills, 100);
+  EXPECT_EQ(report.worker_kills, 200);
+  EXPECT_EQ(report.evaluated_after_stored, 0);
+}
+
+TEST(LongDrill, AHundredLossesOfPower) {
+  const TemporaryDirectory scratch;
+  SmallCampaign campaign = DefaultCampaign();
+  campaign.generations = 100;
+  const testing_support::DurabilityReport report = testing_support::EvolveThroughPowerLosses(
+      campaign, scratch / "c", 100, 6, std::chrono::milliseconds(600));
+  fmt::print("{} kills, {} runs acknowledged before one, {} of them leased again, {} simulated, {} runs\n",
+             report.kills, report.acknowledged, report.leased_again, report.simulated, report.runs);
+  EXPECT_GE(report.kills, 50);
+  EXPECT_EQ(report.leased_again, 0);
 }
 
 }  // namespace

@@ -1,18 +1,16 @@
 // A hostile world around a running campaign: second masters, damaged files, a full disk, garbage on the port.
-#include <arpa/inet.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <signal.h>
 #include <sqlite3.h>
-#include <sys/socket.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
 #include "tests/integration/campaign_driver.h"
+#include "tests/integration/hostile_sockets.h"
 
 namespace gauntlet {
 namespace {
@@ -32,6 +30,7 @@ using testing_support::SmallCampaign;
 using testing_support::StartGauntlet;
 using testing_support::StateHash;
 using testing_support::TemporaryDirectory;
+using testing_support::ZmtpHandshake;
 
 SmallCampaign LongerCampaign() {
   SmallCampaign campaign;
@@ -102,34 +101,7 @@ TEST_F(DamagedCampaignTest, ADatabaseThatIsNoneIsReportedAndLeftAlone) {
 }
 
 void SendBytes(int port, const std::string& bytes) {
-  const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  ASSERT_GE(fd, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (connect(fd, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) {
-    std::size_t sent = 0;
-    while (sent < bytes.size()) {
-      const ssize_t size = send(fd, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
-      if (size <= 0) break;
-      sent += static_cast<std::size_t>(size);
-    }
-  }
-  close(fd);
-}
-
-// A ZMTP 3.0 greeting with the NULL mechanism, and a READY command: what follows is taken as messages.
-std::string ZmtpHandshake() {
-  std::string greeting = "\xff";
-  greeting += std::string(8, '\0') + "\x7f";
-  greeting += "\x03";
-  greeting += std::string(1, '\0');
-  greeting += "NULL" + std::string(16, '\0');
-  greeting += std::string(1, '\0') + std::string(31, '\0');
-  const std::string ready = std::string("\x05READY", 6) + std::string("\x0bSocket-Type", 12) +
-                            std::string("\0\0\0\x06", 4) + "DEALER";
-  return greeting + "\x04" + static_cast<char>(ready.size()) + ready;
+  testing_support::HostileSocket(port).Send(bytes);
 }
 
 TEST(HostilePortTest, GarbageAndOversizedMessagesAreDroppedAndTheCampaignGoesOn) {

@@ -2,13 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sqlite3.h>
 #include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "tests/integration/campaign_driver.h"
+#include "tests/integration/service_driver.h"
+#include "tests/support/local_socket.h"
 
 namespace gauntlet {
 namespace {
@@ -17,70 +17,25 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-using testing_support::Eventually;
 using testing_support::EvolveArguments;
 using testing_support::Gauntlet;
+using testing_support::MasterArguments;
 using testing_support::Process;
 using testing_support::ProcessResult;
 using testing_support::ReadFile;
 using testing_support::SmallCampaign;
 using testing_support::StartGauntlet;
+using testing_support::StartWorker;
 using testing_support::StateHash;
+using testing_support::StatusBecomes;
+using testing_support::StatusOf;
+using testing_support::StoredRuns;
 using testing_support::TemporaryDirectory;
 using testing_support::WorkerPath;
-
-constexpr std::chrono::seconds kPatience{60};
-
-std::vector<std::string> MasterArguments(const SmallCampaign& campaign, const std::string& dir,
-                                         const std::string& endpoint = "tcp://127.0.0.1:*") {
-  return {"master",        campaign.experiment,
-          "--dir",         dir,
-          "--bind",        endpoint,
-          "--seed",        campaign.seed,
-          "--population",  std::to_string(campaign.population),
-          "--generations", std::to_string(campaign.generations),
-          "--no-progress"};
-}
-
-std::unique_ptr<Process> StartWorker(const std::string& dir, const std::string& orphan_timeout = "60") {
-  return std::make_unique<Process>(
-      std::vector<std::string>{WorkerPath(), "--dir", dir, "--orphan-timeout", orphan_timeout});
-}
-
-json StatusOf(const std::string& dir) {
-  const ProcessResult result = Gauntlet({"status", dir, "--json"});
-  return result.exit_code == 0 ? json::parse(result.out, nullptr, false) : json();
-}
-
-bool StatusBecomes(const std::string& dir, const std::function<bool(const json&)>& condition) {
-  return Eventually(
-      [&] {
-        const json status = StatusOf(dir);
-        return status.is_object() && condition(status);
-      },
-      kPatience);
-}
 
 mode_t ModeOf(const std::string& path) {
   struct stat info {};
   return stat(path.c_str(), &info) == 0 ? info.st_mode & 07777 : 0;
-}
-
-// Ids of the stored runs; the database's triggers see to it that none is stored twice.
-std::vector<std::uint64_t> StoredRuns(const std::string& dir) {
-  std::vector<std::uint64_t> runs;
-  sqlite3* database = nullptr;
-  if (sqlite3_open_v2(("file:" + dir + "/campaign.db?immutable=1").c_str(), &database,
-                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr) == SQLITE_OK) {
-    sqlite3_stmt* query = nullptr;
-    sqlite3_prepare_v2(database, "SELECT id FROM runs ORDER BY id", -1, &query, nullptr);
-    while (sqlite3_step(query) == SQLITE_ROW) {
-      runs.push_back(static_cast<std::uint64_t>(sqlite3_column_int64(query, 0)));
-    }
-    sqlite3_finalize(query);
-  }
-  sqlite3_close(database);
-  return runs;
 }
 
 TEST(ServiceTest, WorkersOutliveAKilledMasterAndServeTheNext) {
@@ -188,6 +143,35 @@ TEST(ServiceTest, OuterAddressesAreEncryptedForKnownKeysAndTellNobody) {
   const ProcessResult refused = Gauntlet({"resume", dir, "--bind", "tcp://0.0.0.0:*"});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("master.key"), HasSubstr("others may read it")));
+}
+
+TEST(ServiceTest, MetricsAreServedOnThisMachinesOwnAddress) {
+  const TemporaryDirectory scratch;
+  SmallCampaign campaign;
+  campaign.generations = 500;
+  const std::string dir = scratch / "c";
+  std::vector<std::string> arguments = MasterArguments(campaign, dir);
+  arguments.insert(arguments.end(), {"--metrics-port", "0"});
+  const std::unique_ptr<Process> master = StartGauntlet(arguments);
+  const std::unique_ptr<Process> worker = StartWorker(dir);
+  ASSERT_TRUE(StatusBecomes(dir, [](const json& status) { return status.value("runs_done", 0) > 0; }));
+  const std::string url = StatusOf(dir).at("master").at("metrics");
+  EXPECT_THAT(url, testing::MatchesRegex("http://127.0.0.1:[0-9]+/metrics"));
+  const std::string answer = testing_support::Converse(std::stoi(url.substr(url.rfind(':') + 1)),
+                                                       "GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  EXPECT_THAT(answer, AllOf(HasSubstr("200 OK"), HasSubstr("experiment=\"flocking\""),
+                            testing::ContainsRegex("gauntlet_runs_stored_total [1-9]"),
+                            HasSubstr("gauntlet_workers{state=")));
+  EXPECT_EQ(Gauntlet({"stop", dir}).exit_code, 0);
+  EXPECT_EQ(master->Wait().exit_code, 3);
+
+  for (const std::string port : {"x", "65536", "-1"}) {
+    const ProcessResult refused =
+        Gauntlet({"evolve", "flocking", "--dir", scratch / "none", "--metrics-port", port});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("--metrics-port " + port + ": must be a port from 1 to 65535"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(scratch / "none"));
 }
 
 TEST(ServiceTest, PlaintextOnAnOuterAddressIsAskedForAndSaid) {

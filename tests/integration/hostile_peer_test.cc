@@ -1,0 +1,146 @@
+// Peers that are no workers of the campaign, against a living master: it tells them why, or drops them, keeps
+// its memory, and ends with the result of an undisturbed campaign.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include "proto/protocol.pb.h"
+#include "tests/integration/hostile_sockets.h"
+#include "tests/integration/scripted_worker.h"
+#include "tests/integration/service_driver.h"
+
+namespace gauntlet {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+using testing_support::HostileSocket;
+using testing_support::MasterArguments;
+using testing_support::MasterLog;
+using testing_support::Process;
+using testing_support::ProcessResult;
+using testing_support::ResidentMebibytes;
+using testing_support::ScriptedWorker;
+using testing_support::SmallCampaign;
+using testing_support::StartGauntlet;
+using testing_support::StartSlowWorker;
+using testing_support::StatusOf;
+using testing_support::UndisturbedHash;
+
+constexpr double kMostGrowth = 64.0;  // MiB
+
+class HostilePeer : public testing::Test {
+ protected:
+  void SetUp() override {
+    campaign_.generations = 3;
+    hash_ = UndisturbedHash(campaign_);
+  }
+  // A master with one worker that takes its time, so that the campaign lasts.
+  void Begin(const std::vector<std::string>& limits = {}) {
+    std::vector<std::string> argv = limits;
+    argv.push_back(testing_support::GauntletPath());
+    for (const std::string& argument : MasterArguments(campaign_, dir_)) argv.push_back(argument);
+    master_ = std::make_unique<Process>(argv);
+    worker_ = StartSlowWorker(dir_, 60);
+    ASSERT_TRUE(testing_support::RunsDone(dir_, 2)) << master_->Err();
+    const std::string endpoint = StatusOf(dir_).at("master").at("endpoints")[0];
+    port_ = std::stoi(endpoint.substr(endpoint.rfind(':') + 1));
+    memory_ = ResidentMebibytes(master_->pid());
+  }
+  double Growth() const { return ResidentMebibytes(master_->pid()) - memory_; }
+  void ExpectTheUndisturbedResult() {
+    const ProcessResult result = master_->Wait();
+    EXPECT_EQ(result.exit_code, 0) << result.err << MasterLog(dir_);
+    EXPECT_EQ(testing_support::StateHash(dir_), hash_);
+    EXPECT_EQ(worker_->Wait().exit_code, 0) << worker_->Err();
+  }
+
+  testing_support::TemporaryDirectory scratch_;
+  std::string dir_ = scratch_ / "c";
+  SmallCampaign campaign_;
+  std::string hash_;
+  std::unique_ptr<Process> master_;
+  std::unique_ptr<Process> worker_;
+  int port_ = 0;
+  double memory_ = 0.0;
+};
+
+TEST_F(HostilePeer, AWorkerThatDiffersIsToldInWhatAndGetsNothing) {
+  Begin();
+  const auto refusal = [this](const std::function<void(gauntlet::v1::Hello&)>& change) {
+    ScriptedWorker peer(dir_, 0x666);
+    EXPECT_TRUE(peer.Connect());
+    gauntlet::v1::Envelope envelope;
+    gauntlet::v1::Hello& hello = *envelope.mutable_hello();
+    hello.set_protocol_version(worker::kProtocolVersion);
+    hello.set_campaign_id(peer.access().campaign_id);
+    hello.set_instance_id(peer.hello().instance_id);
+    hello.set_software_version(peer.hello().software_version);
+    hello.set_golden_hash(peer.hello().golden_hash);
+    hello.set_slots(1);
+    change(hello);
+    peer.SayBytes(envelope.SerializeAsString());
+    const auto refused = peer.HearA<worker::Refused>();
+    EXPECT_FALSE(peer.HearA<worker::Lease>(milliseconds(50)));
+    return refused ? refused->reason : "";
+  };
+  EXPECT_THAT(refusal([](auto& hello) { hello.set_protocol_version(99); }),
+              HasSubstr("speaks protocol version 99, this master speaks 1"));
+  EXPECT_THAT(refusal([](auto& hello) { hello.set_campaign_id("stolen"); }), HasSubstr("campaign 'stolen'"));
+  EXPECT_THAT(refusal([](auto& hello) { hello.set_software_version("9.9"); }), HasSubstr("version 9.9"));
+  EXPECT_THAT(refusal([](auto& hello) { hello.set_golden_hash(1); }),
+              HasSubstr("golden hash is 0000000000000001, the campaign's is"));
+  EXPECT_THAT(refusal([](auto& hello) { hello.add_controllers("mine"); }), HasSubstr("set of controllers"));
+  ExpectTheUndisturbedResult();
+  EXPECT_THAT(MasterLog(dir_), HasSubstr("worker-refused"));
+}
+
+// Each sort of connection that costs its owner nothing: silent, half a greeting, a whole one, a whole
+// handshake, a handshake and garbage.
+TEST_F(HostilePeer, TenThousandConnectionsAndHalfGreetings) {
+  rlimit files{};
+  getrlimit(RLIMIT_NOFILE, &files);
+  const auto connections = static_cast<std::size_t>(std::min<rlim_t>(files.rlim_max, 10'200) - 200);
+  files.rlim_cur = std::min<rlim_t>(files.rlim_max, 10'200);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
+  campaign_.generations = 20;
+  hash_ = UndisturbedHash(campaign_);
+  Begin();
+  const std::string handshake = testing_support::ZmtpHandshake();
+  const std::string beginnings[] = {"", handshake.substr(0, 7), handshake.substr(0, 64), handshake,
+                                    handshake + std::string("\0\x05hello", 7)};
+  std::vector<HostileSocket> sockets;
+  for (std::size_t i = 0; i < connections; ++i) {
+    sockets.emplace_back(port_);
+    sockets.back().Send(beginnings[i % std::size(beginnings)]);
+  }
+  std::size_t connected = 0;
+  for (const HostileSocket& socket : sockets) connected += socket.connected() ? 1 : 0;
+  const double growth = Growth();
+  // The master is still there for its worker, and for a second one.
+  const int done = StatusOf(dir_).at("runs_done");
+  EXPECT_TRUE(testing_support::RunsDone(dir_, done + 2)) << MasterLog(dir_);
+  const std::unique_ptr<Process> second = StartSlowWorker(dir_, 60);
+  EXPECT_TRUE(testing_support::LogBecomes(dir_, fmt::format("(pid {}, slots 1) joined", second->pid())));
+  fmt::print("{} connections: {:.1f} MiB of {:.1f} more\n", connected, growth, memory_);
+  EXPECT_GT(connected, connections / 2);
+  EXPECT_LT(growth, kMostGrowth + 0.015 * static_cast<double>(connections));
+  ExpectTheUndisturbedResult();
+}
+
+// More connections than the master may have files open: it must not lose the files it needs itself.
+TEST_F(HostilePeer, MoreConnectionsThanOpenFilesAreAllowed) {
+  campaign_.generations = 6;
+  hash_ = UndisturbedHash(campaign_);
+  Begin({"/usr/bin/prlimit", "--nofile=128:128"});
+  std::vector<HostileSocket> sockets;
+  for (int i = 0; i < 400; ++i) {
+    sockets.emplace_back(port_);
+    sockets.back().Send(testing_support::ZmtpHandshake());
+  }
+  ExpectTheUndisturbedResult();
+}
+
+}  // namespace
+}  // namespace gauntlet

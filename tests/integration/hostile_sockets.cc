@@ -1,0 +1,50 @@
+#include "tests/integration/hostile_sockets.h"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <utility>
+
+namespace gauntlet::testing_support {
+
+HostileSocket::HostileSocket(int port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  if (fd_ < 0) return;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  timeval patience{.tv_sec = 0, .tv_usec = 200'000};  // for a listener whose queue is full
+  setsockopt(fd_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+  connected_ = connect(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
+}
+
+HostileSocket::HostileSocket(HostileSocket&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), connected_(other.connected_) {}
+
+HostileSocket::~HostileSocket() {
+  if (fd_ >= 0) close(fd_);
+}
+
+void HostileSocket::Send(const std::string& bytes) {
+  for (std::size_t sent = 0; connected_ && sent < bytes.size();) {
+    const ssize_t size = send(fd_, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    if (size <= 0) return;
+    sent += static_cast<std::size_t>(size);
+  }
+}
+
+std::string ZmtpHandshake() {
+  std::string greeting = "\xff";
+  greeting += std::string(8, '\0') + "\x7f";
+  greeting += "\x03";
+  greeting += std::string(1, '\0');
+  greeting += "NULL" + std::string(16, '\0');
+  greeting += std::string(1, '\0') + std::string(31, '\0');
+  const std::string ready = std::string("\x05READY", 6) + std::string("\x0bSocket-Type", 12) +
+                            std::string("\0\0\0\x06", 4) + "DEALER";
+  return greeting + "\x04" + static_cast<char>(ready.size()) + ready;
+}
+
+}  // namespace gauntlet::testing_support

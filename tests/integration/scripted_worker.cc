@@ -1,0 +1,100 @@
+#include "tests/integration/scripted_worker.h"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "sim/run_result.h"
+#include "tests/integration/campaign_driver.h"
+#include "worker/golden_hash.h"
+#include "worker/message_codec.h"
+#include "worker/run_codec.h"
+#include "worker/run_executor.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+sim::RunResult Simulate(const worker::Lease& lease) {
+  const Result<sim::RunSpec> spec = worker::DecodeRunSpec(lease.spec);
+  EXPECT_TRUE(spec.ok()) << (spec.ok() ? "" : spec.error().message);
+  return spec.ok() ? worker::Run(*spec) : sim::RunResult();
+}
+
+worker::LeaseResult ToMessage(const worker::Lease& lease, const sim::RunResult& result) {
+  return {lease.fence, lease.run_id, worker::EncodeRunResult(result, worker::TrajectoryEncoding::kLeaveOut),
+          std::nullopt, 0.01};
+}
+
+}  // namespace
+
+ScriptedWorker::ScriptedWorker(const std::string& dir, std::uint64_t instance_id) : dir_(dir) {
+  static const std::uint64_t golden_hash = worker::GoldenHash();
+  hello_.instance_id = instance_id;
+  hello_.software_version = GAUNTLET_VERSION;
+  hello_.golden_hash = golden_hash;
+  hello_.host = "scripted";
+  hello_.pid = getpid();
+}
+
+bool ScriptedWorker::Connect(std::uint64_t epoch) {
+  return Eventually(
+             [&] {
+               Result<worker::Access> access = worker::ReadAccess(dir_ + "/access.json");
+               if (!access || access->epoch < epoch) return false;
+               access_ = *std::move(access);
+               return true;
+             },
+             std::chrono::seconds(60)) &&
+         connection_.Open(access_.endpoints.front(), access_.curve).ok();
+}
+
+bool ScriptedWorker::Join(std::uint64_t epoch) {
+  if (!Connect(epoch)) return false;
+  hello_.campaign_id = access_.campaign_id;
+  Say(hello_);
+  const auto welcome = HearA<worker::Welcome>();
+  return welcome && welcome->epoch >= epoch;
+}
+
+void ScriptedWorker::Say(const worker::WorkerMessage& message) {
+  SayBytes(worker::EncodeWorkerMessage(message));
+}
+
+void ScriptedWorker::SayBytes(std::string bytes) {
+  connection_.Send(std::move(bytes));
+}
+
+void ScriptedWorker::Beat(const std::vector<worker::Fence>& held) {
+  Say(worker::Heartbeat{1, held});
+}
+
+std::optional<worker::MasterMessage> ScriptedWorker::Hear(std::chrono::milliseconds patience) {
+  std::optional<worker::MasterMessage> heard;
+  Eventually(
+      [&] {
+        connection_.Flush();
+        while (std::optional<std::string> frame = connection_.Receive()) {
+          Result<worker::MasterMessage> message = worker::DecodeMasterMessage(*frame);
+          EXPECT_TRUE(message.ok()) << (message.ok() ? "" : message.error().message);
+          if (!message || std::holds_alternative<worker::Heartbeat>(*message)) continue;
+          heard = *std::move(message);
+          return true;
+        }
+        return false;
+      },
+      patience);
+  return heard;
+}
+
+worker::LeaseResult ScriptedWorker::Answer(const worker::Lease& lease) {
+  return ToMessage(lease, Simulate(lease));
+}
+
+worker::LeaseResult ScriptedWorker::WrongAnswer(const worker::Lease& lease) {
+  sim::RunResult result = Simulate(lease);
+  result.fitness += 1e-9;
+  result.hash = sim::HashOf(result);
+  return ToMessage(lease, result);
+}
+
+}  // namespace gauntlet::testing_support

@@ -1,0 +1,60 @@
+// A worker in the test's own hands: it speaks the workers' protocol, simulates in this process, and says what
+// the test wants when the test wants it. Nothing happens by itself, heartbeats included.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "worker/access_file.h"
+#include "worker/connection.h"
+#include "worker/messages.h"
+
+namespace gauntlet::testing_support {
+
+class ScriptedWorker {
+ public:
+  // For the campaign in `dir`; with the version and golden hash of this build, one slot.
+  ScriptedWorker(const std::string& dir, std::uint64_t instance_id);
+
+  // What it says of itself; may be changed before Join.
+  worker::Hello& hello() { return hello_; }
+  const worker::Access& access() const { return access_; }
+
+  // Waits for an access.json of an epoch of at least `epoch`, and connects; a former connection is dropped.
+  bool Connect(std::uint64_t epoch = 1);
+  // Connect, Hello, and the Welcome that answers it.
+  bool Join(std::uint64_t epoch = 1);
+
+  void Say(const worker::WorkerMessage& message);
+  void SayBytes(std::string bytes);
+  void Beat(const std::vector<worker::Fence>& held);
+  // The next message; none within the time. Heartbeats are skipped.
+  std::optional<worker::MasterMessage> Hear(std::chrono::milliseconds patience = std::chrono::seconds(10));
+  // The next message of a kind; others are lost.
+  template <typename Message>
+  std::optional<Message> HearA(std::chrono::milliseconds patience = std::chrono::seconds(10)) {
+    const auto end = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < end) {
+      std::optional<worker::MasterMessage> message = Hear(std::chrono::milliseconds(100));
+      if (!message) continue;
+      if (auto* wanted = std::get_if<Message>(&*message)) return std::move(*wanted);
+    }
+    return std::nullopt;
+  }
+
+  // Simulates a lease, and the answer to it.
+  static worker::LeaseResult Answer(const worker::Lease& lease);
+  // The same with another fitness: what a broken machine would say.
+  static worker::LeaseResult WrongAnswer(const worker::Lease& lease);
+
+ private:
+  std::string dir_;
+  worker::Hello hello_;
+  worker::Access access_;
+  worker::Connection connection_;
+};
+
+}  // namespace gauntlet::testing_support

@@ -1,0 +1,48 @@
+// Masters whose workers come from elsewhere, as the drills start, watch and read them.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet::testing_support {
+
+// Long enough for anything on a busy machine.
+inline constexpr std::chrono::seconds kPatience{60};
+
+std::vector<std::string> MasterArguments(const SmallCampaign& campaign, const std::string& dir,
+                                         const std::string& endpoint = "tcp://127.0.0.1:*");
+std::vector<std::string> ResumeArguments(const std::string& dir,
+                                         const std::string& endpoint = "tcp://127.0.0.1:*");
+
+std::unique_ptr<Process> StartWorker(const std::string& dir, const std::string& orphan_timeout = "60");
+// gauntlet-worker-slow: every run takes `milliseconds` longer and no more CPU time. `run_log`, when given:
+// every run appends its seed to this file when it begins.
+std::unique_ptr<Process> StartSlowWorker(const std::string& dir, int milliseconds,
+                                         const std::string& run_log = "");
+
+// `status DIR --json`; null when it does not answer.
+nlohmann::json StatusOf(const std::string& dir);
+bool StatusBecomes(const std::string& dir, const std::function<bool(const nlohmann::json&)>& condition);
+bool RunsDone(const std::string& dir, int runs);
+
+// What log/master.log says so far.
+std::string MasterLog(const std::string& dir);
+bool LogBecomes(const std::string& dir, const std::string& text);
+
+// Ids of the stored runs; the database's triggers see to it that none is stored twice.
+std::vector<std::uint64_t> StoredRuns(const std::string& dir);
+
+// The state_hash of an undisturbed `evolve` with two workers; computed once per campaign.
+const std::string& UndisturbedHash(const SmallCampaign& campaign);
+
+// The signal goes to the process and everything below it.
+void SignalFamily(const Process& process, int signal);
+
+// Resident memory of a process, MiB; 0 when there is none.
+double ResidentMebibytes(pid_t pid);
+
+}  // namespace gauntlet::testing_support

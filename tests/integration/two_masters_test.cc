@@ -1,0 +1,113 @@
+// Two masters on one campaign: there is only ever one that stores.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/integration/service_driver.h"
+
+namespace gauntlet {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::Gauntlet;
+using testing_support::GauntletPath;
+using testing_support::MasterArguments;
+using testing_support::Process;
+using testing_support::ProcessResult;
+using testing_support::ResumeArguments;
+using testing_support::SmallCampaign;
+using testing_support::StartGauntlet;
+using testing_support::StartSlowWorker;
+using testing_support::StateHash;
+using testing_support::TemporaryDirectory;
+using testing_support::UndisturbedHash;
+
+constexpr int kGenerations = 6;
+
+SmallCampaign Campaign() {
+  SmallCampaign campaign;
+  campaign.generations = kGenerations;
+  return campaign;
+}
+
+// A frozen master lives: on its own host nobody takes the campaign from it, and it goes on when it wakes.
+TEST(TwoMasters, OnOneHostAFrozenMasterKeepsItsCampaign) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(Campaign(), dir));
+  const std::unique_ptr<Process> worker = StartSlowWorker(dir, 50);
+  ASSERT_TRUE(testing_support::RunsDone(dir, 8));
+  master->Signal(SIGSTOP);
+  const ProcessResult second = Gauntlet(ResumeArguments(dir));
+  EXPECT_EQ(second.exit_code, 2);
+  EXPECT_THAT(second.err, HasSubstr(std::to_string(master->pid())));
+  master->Signal(SIGCONT);
+  EXPECT_EQ(master->Wait().exit_code, 0) << master->Err();
+  EXPECT_EQ(StateHash(dir), UndisturbedHash(Campaign()));
+}
+
+// A job that Slurm has started again fences its twin: woken, the twin sees the newer number and stops.
+TEST(TwoMasters, OnOneHostAFrozenTwinThatIsFencedStopsWhenItWakes) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(Campaign(), dir));
+  std::unique_ptr<Process> worker = StartSlowWorker(dir, 50);
+  ASSERT_TRUE(testing_support::RunsDone(dir, 8));
+  master->Signal(SIGSTOP);
+  // What `resume --as-job` does first, without a cluster: the next number.
+  ASSERT_EQ(testing_support::ReadFile(dir + "/epoch"), "1\n");
+  std::ofstream(scratch / "epoch") << "2\n";
+  std::filesystem::rename(scratch / "epoch", dir + "/epoch");
+  master->Signal(SIGCONT);
+  const ProcessResult stopped = master->Wait();
+  EXPECT_EQ(stopped.exit_code, 3) << stopped.err;
+  EXPECT_THAT(stopped.err, HasSubstr("newer"));
+  // Its worker waits for the twin, which goes on with what was stored.
+  EXPECT_TRUE(worker->Running()) << worker->Err();
+  const ProcessResult twin = Gauntlet(ResumeArguments(dir));
+  EXPECT_EQ(twin.exit_code, 0) << twin.err;
+  EXPECT_EQ(worker->Wait().exit_code, 0);
+  EXPECT_EQ(StateHash(dir), UndisturbedHash(Campaign()));
+}
+
+// Two hosts and a file system that knows no locks between them: other pids, locks that each host keeps to
+// itself, and the second host's clock two minutes ahead, so that the frozen master counts as dead at once.
+TEST(TwoMasters, OnAnotherHostAFrozenMasterIsReplacedAndStopsWhenItWakes) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  const std::string local_locks = "LD_PRELOAD=" + testing_support::FaultShimPath();
+  std::vector<std::string> elsewhere = {"/usr/bin/unshare", "--map-root-user", "--pid",       "--fork",
+                                        "--kill-child",     "--mount-proc",    GauntletPath()};
+  const ProcessResult possible =
+      testing_support::RunProcess({"/usr/bin/unshare", "--map-root-user", "--pid", "--fork", "--kill-child",
+                                   "--mount-proc", "/bin/true"});
+  if (possible.exit_code != 0) GTEST_SKIP() << "no pid namespace to be had here: " << possible.err;
+
+  std::vector<std::string> first_arguments = elsewhere;
+  for (const std::string& argument : MasterArguments(Campaign(), dir)) first_arguments.push_back(argument);
+  Process first(first_arguments, {local_locks, "GAUNTLET_FAULT_LOCAL_LOCKS=1"});
+  const std::unique_ptr<Process> worker = StartSlowWorker(dir, 50);
+  ASSERT_TRUE(testing_support::RunsDone(dir, 8)) << first.Err();
+  testing_support::SignalFamily(first, SIGSTOP);
+
+  std::vector<std::string> second_arguments = {GauntletPath()};
+  for (const std::string& argument : ResumeArguments(dir)) second_arguments.push_back(argument);
+  Process second(second_arguments,
+                 {local_locks, "GAUNTLET_FAULT_LOCAL_LOCKS=1", "GAUNTLET_FAULT_CLOCK_OFFSET=120"});
+  ASSERT_TRUE(testing_support::Eventually(
+      [&] { return testing_support::ReadFile(dir + "/epoch") == "2\n" || !second.Running(); },
+      testing_support::kPatience));
+  // The first wakes in the middle of it, or when all is over: it must not touch anything.
+  testing_support::SignalFamily(first, SIGCONT);
+  const ProcessResult stopped = first.Wait();
+  EXPECT_EQ(stopped.exit_code, 3) << stopped.err;
+  const ProcessResult done = second.Wait();
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(StateHash(dir), UndisturbedHash(Campaign()));
+}
+
+}  // namespace
+}  // namespace gauntlet

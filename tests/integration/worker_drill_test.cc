@@ -1,0 +1,234 @@
+// Workers that freeze, lag, answer late, twice or wrongly: the campaign ends as if nothing had been.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <set>
+
+#include "tests/integration/scripted_worker.h"
+#include "tests/integration/service_driver.h"
+
+namespace gauntlet {
+namespace {
+
+using nlohmann::json;
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+using testing_support::Eventually;
+using testing_support::LogBecomes;
+using testing_support::MasterArguments;
+using testing_support::MasterLog;
+using testing_support::Process;
+using testing_support::ProcessResult;
+using testing_support::ScriptedWorker;
+using testing_support::Show;
+using testing_support::SignalFamily;
+using testing_support::SmallCampaign;
+using testing_support::StartGauntlet;
+using testing_support::StartSlowWorker;
+using testing_support::StartWorker;
+using testing_support::StateHash;
+using testing_support::StatusBecomes;
+using testing_support::StatusOf;
+using testing_support::UndisturbedHash;
+
+constexpr std::uint64_t kFirstWorker = 0x1111;
+constexpr std::uint64_t kSecondWorker = 0x2222;
+
+class WorkerDrill : public testing::Test {
+ protected:
+  void Begin(int generations) {
+    campaign_.generations = generations;
+    runs_ = campaign_.population * (generations + 1);
+    hash_ = UndisturbedHash(campaign_);
+    master_ = StartGauntlet(MasterArguments(campaign_, dir_));
+  }
+  // The master ends by itself, with the result of an undisturbed campaign and every run stored once.
+  void ExpectTheUndisturbedResult() {
+    const ProcessResult result = master_->Wait();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(StateHash(dir_), hash_);
+    EXPECT_EQ(testing_support::StoredRuns(dir_).size(), Show(dir_).value("runs_done", 0U));
+  }
+
+  testing_support::TemporaryDirectory scratch_;
+  std::string dir_ = scratch_ / "c";
+  SmallCampaign campaign_;
+  int runs_ = 0;
+  std::string hash_;
+  std::unique_ptr<Process> master_;
+};
+
+TEST_F(WorkerDrill, AFrozenWorkersRunsGoElsewhereWithin3HeartbeatsAndItIsTakenBack) {
+  Begin(5);
+  const std::unique_ptr<Process> frozen = StartSlowWorker(dir_, 300);
+  const std::unique_ptr<Process> other = StartSlowWorker(dir_, 300);
+  ASSERT_TRUE(StatusBecomes(dir_, [&](const json& status) {
+    int busy = 0;
+    for (const json& worker : status.at("worker_list")) busy += worker.at("runs").empty() ? 0 : 1;
+    return busy == 2 && status.value("runs_done", 0) >= 2;
+  }));
+  SignalFamily(*frozen, SIGSTOP);
+  const auto begun = std::chrono::steady_clock::now();
+  ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  RecordProperty("noticed_after_seconds", fmt::format("{:.2f}", seconds));
+  fmt::print("a frozen worker was noticed after {:.2f} s\n", seconds);
+  // Three heartbeats of a second, an eighth of one between checks, and the time to read the log.
+  EXPECT_LT(seconds, 3.4);
+  ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) { return status.value("leased_again", 0) > 0; }));
+  // Its runs are given to the other; then it wakes, and is told to drop them.
+  const int done = StatusOf(dir_).value("runs_done", 0);
+  ASSERT_TRUE(testing_support::RunsDone(dir_, done + 2));
+  SignalFamily(*frozen, SIGCONT);
+  EXPECT_TRUE(StatusBecomes(dir_, [](const json& status) { return status.value("workers", 0) == 2; }));
+  ExpectTheUndisturbedResult();
+}
+
+TEST_F(WorkerDrill, AKilledWorkersRunsGoElsewhereWithinASecond) {
+  campaign_.generations = 4;
+  hash_ = UndisturbedHash(campaign_);
+  std::vector<std::string> argv = testing_support::EvolveArguments(campaign_, dir_, 2);
+  argv.insert(argv.begin(), testing_support::GauntletPath());
+  master_ = std::make_unique<Process>(
+      argv, std::vector<std::string>{"GAUNTLET_WORKER=" + testing_support::WorkerPath() + "-slow",
+                                     "GAUNTLET_TEST_RUN_MILLISECONDS=200"});
+  pid_t busy = 0;
+  ASSERT_TRUE(StatusBecomes(dir_, [&](const json& status) {
+    for (const json& worker : status.at("worker_list")) {
+      if (!worker.at("runs").empty()) busy = worker.at("pid");
+    }
+    return busy != 0;
+  }));
+  const auto begun = std::chrono::steady_clock::now();
+  ASSERT_EQ(kill(busy, SIGKILL), 0);
+  ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  fmt::print("a killed worker was noticed after {:.3f} s\n", seconds);
+  EXPECT_LT(seconds, 1.0);
+  ExpectTheUndisturbedResult();
+}
+
+TEST_F(WorkerDrill, ASlowWorkerBesideAFastOneChangesNothing) {
+  Begin(4);
+  const std::unique_ptr<Process> slow = StartSlowWorker(dir_, 250);
+  ASSERT_TRUE(LogBecomes(dir_, "worker-joined"));
+  const std::unique_ptr<Process> fast = StartWorker(dir_);
+  ExpectTheUndisturbedResult();
+  EXPECT_THAT(MasterLog(dir_), testing::Not(HasSubstr("worker-lost")));
+}
+
+// Every answer is sent twice, every third a third time after the next; one is kept until its lease was given
+// away and another worker has answered.
+TEST_F(WorkerDrill, LateAndRepeatedAnswersAreComparedAndCountOnce) {
+  Begin(3);
+  ScriptedWorker first(dir_, kFirstWorker);
+  ASSERT_TRUE(first.Join());
+  const auto kept = first.HearA<worker::Lease>();
+  ASSERT_TRUE(kept);
+  ASSERT_TRUE(LogBecomes(dir_, "worker-lost")) << "silent from now on";
+
+  ScriptedWorker second(dir_, kSecondWorker);
+  ASSERT_TRUE(second.Join());
+  std::map<std::uint64_t, int> leased;
+  std::string former;
+  bool handed_in = false;
+  while (master_->Running()) {
+    const auto lease = second.HearA<worker::Lease>(milliseconds(200));
+    if (!lease) continue;
+    ++leased[lease->run_id];
+    const worker::LeaseResult answer = ScriptedWorker::Answer(*lease);
+    second.Say(answer);
+    second.Say(answer);
+    if (lease->run_id % 3 == 0) second.Say(answer);
+    if (!handed_in && leased.contains(kept->run_id) && leased.size() > 3) {
+      handed_in = true;
+      EXPECT_EQ(leased[kept->run_id], 1) << "leased again when its worker was lost";
+      first.Say(ScriptedWorker::Answer(*kept));
+      EXPECT_TRUE(first.HearA<worker::Acknowledge>()) << "a late answer is acknowledged like any other";
+    }
+  }
+  EXPECT_TRUE(handed_in);
+  for (const auto& [run, times] : leased) EXPECT_EQ(times, 1) << "run " << run;
+  ExpectTheUndisturbedResult();
+  EXPECT_FALSE(Show(dir_).value("nondeterministic", true));
+}
+
+TEST_F(WorkerDrill, TwoAnswersThatDifferMarkTheCampaignAndNameBothWorkers) {
+  Begin(3);
+  ScriptedWorker broken(dir_, kFirstWorker);
+  ASSERT_TRUE(broken.Join());
+  const auto kept = broken.HearA<worker::Lease>();
+  ASSERT_TRUE(kept);
+  ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
+  const std::unique_ptr<Process> sound = StartSlowWorker(dir_, 100);
+  ASSERT_TRUE(testing_support::RunsDone(dir_, 8));
+  broken.Say(ScriptedWorker::WrongAnswer(*kept));
+  ASSERT_TRUE(LogBecomes(dir_, "nondeterministic"));
+  EXPECT_THAT(MasterLog(dir_), HasSubstr(fmt::format("run {} ended differently", kept->run_id)));
+  EXPECT_THAT(MasterLog(dir_), HasSubstr("0000000000001111@scripted gave"));
+  EXPECT_EQ(master_->Wait().exit_code, 0);
+  EXPECT_TRUE(Show(dir_).value("nondeterministic", false));
+}
+
+// What an eavesdropper of the first master's time could send to the second: results, heartbeats and a hello
+// of then, from a stranger and from a worker that said hello.
+TEST_F(WorkerDrill, MessagesOfAnEarlierMasterChangeNothing) {
+  Begin(3);
+  std::vector<worker::LeaseResult> recorded;
+  {
+    ScriptedWorker early(dir_, kFirstWorker);
+    ASSERT_TRUE(early.Join());
+    for (std::size_t acknowledged = 0; acknowledged < 5;) {
+      const auto message = early.Hear();
+      ASSERT_TRUE(message);
+      if (const auto* acknowledge = std::get_if<worker::Acknowledge>(&*message))
+        acknowledged += acknowledge->fences.size();
+      if (const auto* lease = std::get_if<worker::Lease>(&*message);
+          lease != nullptr && recorded.size() < 5) {
+        recorded.push_back(ScriptedWorker::Answer(*lease));
+        early.Say(recorded.back());
+      }
+    }
+  }
+  master_->Signal(SIGKILL);
+  master_->Wait();
+  master_ = StartGauntlet(testing_support::ResumeArguments(dir_));
+
+  ScriptedWorker stranger(dir_, kSecondWorker);
+  ASSERT_TRUE(stranger.Connect(2));
+  for (const worker::LeaseResult& result : recorded) stranger.Say(result);
+  stranger.Beat({recorded.front().fence});
+  EXPECT_FALSE(stranger.Hear(milliseconds(300))) << "who has not said hello is not answered";
+
+  ScriptedWorker again(dir_, kFirstWorker);
+  ASSERT_TRUE(again.Join(2));
+  std::set<std::uint64_t> acknowledged;
+  for (const worker::LeaseResult& result : recorded) acknowledged.insert(result.run_id);
+  for (const worker::LeaseResult& result : recorded) again.Say(result);
+  while (master_->Running()) {
+    const auto lease = again.HearA<worker::Lease>(milliseconds(200));
+    if (!lease) continue;
+    EXPECT_FALSE(acknowledged.contains(lease->run_id)) << "run " << lease->run_id << " was acknowledged";
+    again.Say(ScriptedWorker::Answer(*lease));
+  }
+  ExpectTheUndisturbedResult();
+  EXPECT_THAT(MasterLog(dir_), HasSubstr("a peer that has not said hello sent a message"));
+}
+
+TEST_F(WorkerDrill, AMasterThatFreezesAndWakesTakesNobodyForLost) {
+  Begin(4);
+  const std::unique_ptr<Process> workers[] = {StartSlowWorker(dir_, 200), StartSlowWorker(dir_, 200)};
+  ASSERT_TRUE(testing_support::RunsDone(dir_, 4));
+  master_->Signal(SIGSTOP);
+  // Longer than the silence after which a worker counts as lost.
+  Eventually([] { return false; }, milliseconds(4500));
+  master_->Signal(SIGCONT);
+  ExpectTheUndisturbedResult();
+  for (const auto& worker : workers) EXPECT_EQ(worker->Wait().exit_code, 0) << worker->Err();
+  EXPECT_THAT(MasterLog(dir_), testing::Not(HasSubstr("worker-lost")));
+}
+
+}  // namespace
+}  // namespace gauntlet
