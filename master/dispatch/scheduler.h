@@ -107,7 +107,7 @@ class Scheduler {
   // What is submitted from now on comes after what was submitted so far, whenever it is released.
   void BeginBatch() { ++batch_; }
   // Ids are new. Within a batch the longest go first (RunRequest::length), equals in the order of their ids.
-  void Submit(RunId run, double length = 0.0);
+  void Submit(RunId id, double length = 0.0);
   // The result of this finished run is stored durably.
   void Acknowledge(RunId id);
   // No lease is given from now on.
@@ -138,7 +138,7 @@ class Scheduler {
   std::size_t queued() const { return queue_.size(); }
   std::size_t unfinished() const { return unfinished_; }
   // Whether another lease of the run may still be given: it has not finished, or its audit is open.
-  bool Wanted(RunId run) const;
+  bool Wanted(RunId id) const;
   std::size_t remembered_runs() const { return runs_.size(); }  // all that takes memory
   WorkerStatistics Statistics() const;
   // Without labels and pids, in the order of the ids; times as of the last event. Runs that several workers
