@@ -48,8 +48,8 @@ double ProximityDistanceOf(double reading) {
 double FrontReading(const ProximityReadings& readings, double half_angle) {
   double largest = 0.0;
   for (int i = 0; i < sim::foot_bot::kProximitySensors; ++i) {
-    if (std::fabs(sim::ProximityBearing(i)) > half_angle) continue;
-    largest = std::max(largest, readings[static_cast<std::size_t>(i)]);
+    const double reading = readings[static_cast<std::size_t>(i)];  // most are 0: cheaper to ask first
+    if (reading > largest && std::fabs(sim::ProximityBearing(i)) <= half_angle) largest = reading;
   }
   return largest;
 }
