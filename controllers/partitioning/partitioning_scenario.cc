@@ -75,6 +75,11 @@ Status PartitioningScenario::CheckSettings() const {
     return InvalidInput("swarm-size: " + std::to_string(settings_.robots) + " robots; from 1 to " +
                         std::to_string(kMaxRobots) + " can be tested");
   }
+  if ((food_ - nest_).norm() <= settings_.nest_radius) {
+    return InvalidInput("nest-and-food: the source is " + NumberText((food_ - nest_).norm()) +
+                        " m from the nest's centre (nest_food_distance), inside the nest (nest_radius " +
+                        NumberText(settings_.nest_radius) + " m)");
+  }
   const sim::Vec2& lamp = lights_[0].position;
   if (!arena_.InInterior(lamp)) {
     return InvalidInput("light-outside: the light is at " + PointText(lamp.x(), lamp.y()) +

@@ -55,7 +55,8 @@ class PartitioningScenario : public sim::Scenario {
   sim::Tick tick_limit() const override { return settings_.tick_limit; }
   std::span<const sim::Light> lights() const override { return lights_; }
   double FloorGrey(const sim::Vec2& point) const override;
-  // Errors besides "no-room-to-spawn": "swarm-size", "light-outside", "partition-length", "start-mode".
+  // Errors besides "no-room-to-spawn": "swarm-size", "nest-and-food", "light-outside",
+  // "partition-length", "start-mode".
   Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters& headquarters) override;
   void Interact(const sim::Interaction& interaction) override;
   bool Finished(const sim::Observer& observer) override;

@@ -257,6 +257,12 @@ TEST(PartitioningRefusals, ASwarmThatDoesNotFitIsNamed) {
   EXPECT_THAT(MessageOfRefusal(spec), StartsWith("no-room-to-spawn: "));
 }
 
+TEST(PartitioningRefusals, ASourceInsideTheNestIsNamed) {
+  sim::RunSpec spec = PartitionSpec("task-partitioning", 1);
+  spec.scenario_parameters = {{"nest_food_distance", 1.5}, {"nest_radius", 1.6}};
+  EXPECT_THAT(MessageOfRefusal(spec), StartsWith("nest-and-food: the source is 1.5 m"));
+}
+
 TEST(PartitioningRefusals, BlockedPlacesAreNamed) {
   sim::RunSpec spec = PartitionSpec("task-partitioning", 1);
   spec.test_case.obstacles = {{0.1, -2.1, 0.5, 0.3, 20.0}};
