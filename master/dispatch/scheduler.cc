@@ -300,6 +300,8 @@ Answer Scheduler::CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence 
     orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, hash});
   }
   if (run.audit && (worker != run.finished_by || Alone(worker))) EndAudit(id, run);
+  // Its only worker audited itself, and then others came.
+  if (run.audit) Requeue(id, run);
   ForgetIfDone(id);
   return Answer::kDuplicate;
 }

@@ -535,6 +535,21 @@ TEST_F(SchedulerAuditTest, AnOnlyWorkerAuditsItself) {
   EXPECT_EQ(scheduler_.Statistics().audits, 1U);
 }
 
+TEST_F(SchedulerAuditTest, GoesToAnotherWorkerThatJoinsWhileTheOnlyOneAuditsItself) {
+  Join(1);
+  FinishRun1(1);
+  const SchedulerOrders own = Decide();
+  ASSERT_EQ(own.leases.size(), 1U);
+  Join(2);
+  EXPECT_EQ(scheduler_.Completed(1, own.leases[0].fence, 1, 55), Answer::kDuplicate);
+  EXPECT_EQ(scheduler_.Statistics().audits_open, 1U);
+  const SchedulerOrders audit = Decide();
+  ASSERT_EQ(audit.leases.size(), 1U);
+  EXPECT_EQ(audit.leases[0].worker, 2U);
+  scheduler_.Completed(2, audit.leases[0].fence, 1, 55);
+  EXPECT_EQ(scheduler_.Statistics().audits_open, 0U);
+}
+
 TEST_F(SchedulerAuditTest, OutlivesTheWorkerThatDoesIt) {
   Join(1);
   FinishRun1(1);
