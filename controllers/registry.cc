@@ -129,9 +129,9 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
   return scenario->create(resolved);
 }
 
-Status CheckSwarmFits(const sim::RunSpec& spec) {
+Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {
   constexpr std::uint64_t kSeeds = 5;
-  Status fits = Ok{};
+  Error error;
   for (std::uint64_t i = 0; i < kSeeds; ++i) {
     sim::RunSpec trial = spec;
     trial.seed += i;
@@ -139,10 +139,10 @@ Status CheckSwarmFits(const sim::RunSpec& spec) {
     if (!scenario.ok()) return scenario.error();
     const sim::Observer observer(0, 0);
     const auto swarm = (*scenario)->CreateSwarm(sim::Headquarters((*scenario)->arena(), observer));
-    if (swarm.ok()) return Ok{};
-    fits = swarm.error();
+    if (swarm.ok()) return swarm->size();
+    error = swarm.error();
   }
-  return fits;
+  return error;
 }
 
 }  // namespace gauntlet::controllers

@@ -69,9 +69,9 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos, 
 // rule's name and a colon when the test case is at fault.
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec);
 
-// Whether a swarm can be put into the spec's arena at all. Start places are random, so a few seeds from the
-// spec's on are tried, and one that works is enough. Error: as CreateScenario, or why the last try failed
-// ("no-room-to-spawn: ...").
-Status CheckSwarmFits(const sim::RunSpec& spec);
+// The number of robots of the spec's swarm, provided that it can be put into the arena at all. Start places
+// are random, so a few seeds from the spec's on are tried, and one that works is enough. Error: as
+// CreateScenario, or why the last try failed ("no-room-to-spawn: ...").
+Result<std::size_t> CountSwarm(const sim::RunSpec& spec);
 
 }  // namespace gauntlet::controllers

@@ -9,9 +9,11 @@ target_sources(
           physics/relaxation_engine.cc
           robot/controller.cc
           robot/devices.cc
+          robot/disturbances.cc
           run_checks.cc
           run_result.cc
           sensors/distance_scanner.cc
+          sensors/disturber.cc
           sensors/light_sensor.cc
           sensors/neighbour_grid.cc
           sensors/occluders.cc

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/arena/test_case.h"
+#include "sim/robot/disturbances.h"
 #include "sim/robot/foot_bot.h"
 
 namespace gauntlet::sim {
@@ -25,6 +26,7 @@ struct RunSpec {
   Parameters controller_parameters;
   std::uint64_t seed = 0;
   PhysicsKind physics = PhysicsKind::kBox2d;
+  Disturbances disturbances;
   bool record_trajectory = false;  // return every pose of every tick; no influence on the hash
 };
 

@@ -10,6 +10,7 @@
 #include "sim/base/number_text.h"
 #include "sim/physics/physics_engine.h"
 #include "sim/run_checks.h"
+#include "sim/sensors/disturber.h"
 #include "sim/sensors/sensor_suite.h"
 
 namespace gauntlet::sim {
@@ -32,7 +33,7 @@ bool WithinLimit(double wheel_speed) {
 class Loop {
  public:
   Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
-       PhaseProbe* probe, PhysicsKind physics);
+       const SimulationOptions& options);
 
   // Records the start poses as tick 0.
   void Start();
@@ -44,6 +45,7 @@ class Loop {
 
  private:
   bool Act();
+  void Disturb();
   bool CheckPoses();
   void Observe();
   void Control();
@@ -65,6 +67,7 @@ class Loop {
   std::vector<Signals> signals_;      // in action
   std::vector<Pose> poses_;
   std::vector<RobotState> states_;
+  std::optional<Disturber> disturber_;  // only when something is disturbed
   WordHash64 trajectory_hash_;
   std::string invalid_command_;
 };
@@ -87,13 +90,13 @@ std::vector<bool> Equipped(const std::vector<RobotSetup>& swarm, Device device) 
 }
 
 Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed, Observer& observer,
-           PhaseProbe* probe, PhysicsKind physics)
+           const SimulationOptions& options)
     : scenario_(scenario),
       swarm_(std::move(swarm)),
       seed_(seed),
       observer_(observer),
-      probe_(probe),
-      physics_(physics == PhysicsKind::kRelaxation ? MakeRelaxationEngine() : MakeBox2dEngine()),
+      probe_(options.probe),
+      physics_(options.physics == PhysicsKind::kRelaxation ? MakeRelaxationEngine() : MakeBox2dEngine()),
       sensors_(scenario.arena(), SensorsOf(swarm_)),
       grippers_(Equipped(swarm_, Device::kGripper)),
       actuators_(swarm_.size()),
@@ -108,6 +111,7 @@ Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed
     actuators_[i].beacon = swarm_[i].beacon;
     poses_[i] = swarm_[i].pose;
   }
+  if (!options.disturbances.None()) disturber_.emplace(options.disturbances, seed, swarm_.size(), scenario);
 }
 
 void Loop::Start() {
@@ -119,6 +123,7 @@ void Loop::Start() {
 bool Loop::Tick() {
   Enter(Phase::kPhysics);
   if (!Act()) return false;
+  if (disturber_) Disturb();
   physics_->Step(wheels_);
   for (std::size_t i = 0; i < swarm_.size(); ++i) poses_[i] = physics_->PoseOf(static_cast<RobotIndex>(i));
   Enter(Phase::kObserve);
@@ -175,6 +180,15 @@ bool Loop::Act() {
   return true;
 }
 
+// Noise and faults of what the robots do.
+void Loop::Disturb() {
+  const sim::Tick tick = observer_.last_tick() + 1;
+  for (std::size_t i = 0; i < swarm_.size(); ++i) {
+    disturber_->DisturbAction(static_cast<RobotIndex>(i), tick,
+                              {.wheels = wheels_[i], .signals = signals_[i], .grippers = grippers_});
+  }
+}
+
 // Bodies that overlap from the beginning may be pushed through a wall. NaN is not within walls.
 bool Loop::CheckPoses() {
   const Arena& arena = scenario_.arena();
@@ -209,12 +223,16 @@ void Loop::Observe() {
 void Loop::Control() {
   const sim::Tick tick = observer_.last_tick();
   for (std::size_t i = 0; i < swarm_.size(); ++i) {
+    const RobotIndex robot = static_cast<RobotIndex>(i);
+    const SensorReadings* readings = &sensors_.ReadingsOf(robot);
+    if (disturber_) {
+      if (disturber_->Stopped(robot, tick)) continue;
+      readings = &disturber_->DisturbReadings(robot, tick, devices_[i], poses_[i], *readings);
+    }
     RandomStream random(seed_, StreamPurpose::kController, static_cast<std::uint32_t>(i),
                         static_cast<std::uint32_t>(tick));
-    swarm_[i].controller->Step({.tick = tick,
-                                .readings = sensors_.ReadingsOf(static_cast<RobotIndex>(i)),
-                                .actuators = actuators_[i],
-                                .random = random});
+    swarm_[i].controller->Step(
+        {.tick = tick, .readings = *readings, .actuators = actuators_[i], .random = random});
   }
 }
 
@@ -248,12 +266,8 @@ std::vector<std::vector<RobotState>> TrajectoryOf(const Observer& observer) {
 
 }  // namespace
 
-RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory) {
-  return Simulate(scenario, seed, record_trajectory, nullptr);
-}
-
-RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory, PhaseProbe* probe,
-                   PhysicsKind physics) {
+RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory,
+                   const SimulationOptions& options) {
   // Headquarters knows the observer from the beginning; how many robots it observes is known only afterwards.
   Observer observer(0, 0);
   const Headquarters headquarters(scenario.arena(), observer);
@@ -261,10 +275,13 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   if (!swarm.ok()) return Refusal(swarm.error().message);
   if (std::optional<std::string> reason = RefuseSwarm(scenario.arena(), *swarm))
     return Refusal(*std::move(reason));
+  if (std::optional<std::string> reason = RefuseDisturbances(options.disturbances, swarm->size())) {
+    return Refusal(*std::move(reason));
+  }
 
   const std::size_t robots = swarm->size();
   observer = Observer(static_cast<int>(robots), scenario.tick_limit());
-  Loop loop(scenario, *std::move(swarm), seed, observer, probe, physics);
+  Loop loop(scenario, *std::move(swarm), seed, observer, options);
   loop.Start();
 
   RunResult result;

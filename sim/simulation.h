@@ -13,14 +13,6 @@ namespace gauntlet::sim {
 // Largest swarm of a run; a larger one is refused.
 inline constexpr int kMaxRobots = 1000;
 
-// Simulates the scenario to its end. A function of the scenario and the seed alone. Never throws.
-// A swarm that cannot be simulated (no robots, a robot outside the interior or inside an obstacle, a device
-// that this simulator lacks) is refused; a wheel speed that is not finite or beyond
-// foot_bot::kMaxWheelSpeed ends the run with the verdict kInvalidCommand, and so does a light of the scenario
-// or a radio beacon that is not finite, and a fitness or metric that is none, and a robot that gets out of
-// the walls. The message names robot, light or beacon, tick and value.
-RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory);
-
 // The parts of a tick, in order.
 enum class Phase { kPhysics, kObserve, kSense, kControl };
 
@@ -33,7 +25,21 @@ class PhaseProbe {
   virtual void EndTick() = 0;
 };
 
-RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory, PhaseProbe* probe,
-                   PhysicsKind physics = PhysicsKind::kBox2d);
+// How a run is simulated, beside its scenario and seed.
+struct SimulationOptions {
+  PhysicsKind physics = PhysicsKind::kBox2d;
+  Disturbances disturbances = {};
+  PhaseProbe* probe = nullptr;  // told of every phase
+};
+
+// Simulates the scenario to its end. A function of scenario, seed, physics and disturbances alone. Never
+// throws.
+// A swarm that cannot be simulated (no robots, a robot outside the interior or inside an obstacle, a device
+// that this simulator lacks, noise or a fault that cannot be) is refused; a wheel speed that is not finite or
+// beyond foot_bot::kMaxWheelSpeed ends the run with the verdict kInvalidCommand, and so does a light of the
+// scenario or a radio beacon that is not finite, and a fitness or metric that is none, and a robot that gets
+// out of the walls. The message names robot, light or beacon, tick and value.
+RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory,
+                   const SimulationOptions& options = {});
 
 }  // namespace gauntlet::sim

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "proto/run.pb.h"
 #include "worker/utf8.h"
@@ -101,6 +102,33 @@ sim::Parameters ReadParameters(const List& wire, const char* owner, SpecReader& 
   return parameters;
 }
 
+sim::Disturbances ReadDisturbances(const v1::RunSpec& wire, SpecReader& reader) {
+  sim::Disturbances disturbances;
+  for (const v1::DeviceNoise& noise : wire.noise()) {
+    reader.RequireKnownFields(noise, "noise");
+    const std::optional<sim::Device> device = sim::DeviceOfKey(noise.device());
+    reader.Require(device.has_value(), fmt::format("noise of '{}', which is no device", noise.device()));
+    if (!reader.ok()) return disturbances;
+    const bool first =
+        disturbances.noise
+            .emplace(*device, sim::DeviceNoise{reader.Finite(noise.uniform(), "uniform noise"),
+                                               reader.Finite(noise.gaussian(), "Gaussian noise"),
+                                               reader.Finite(noise.drop(), "a drop probability")})
+            .second;
+    reader.Require(first, fmt::format("noise of {} is given twice", noise.device()));
+  }
+  reader.RequireAtMost(wire.faults(), kMaxFaults, "faults");
+  if (!reader.ok()) return disturbances;
+  for (const v1::RobotFault& fault : wire.faults()) {
+    reader.RequireKnownFields(fault, "fault");
+    const std::optional<sim::Device> device = sim::DeviceOfKey(fault.device());
+    reader.Require(device || fault.device().empty(),
+                   fmt::format("a fault of '{}', which is no device", fault.device()));
+    disturbances.faults.push_back({.robot = fault.robot(), .device = device, .tick = fault.tick()});
+  }
+  return disturbances;
+}
+
 void WritePose(const sim::Pose& pose, v1::Pose& wire) {
   wire.set_x(pose.position.x());
   wire.set_y(pose.position.y());
@@ -158,6 +186,7 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   reader.Require(v1::Physics_IsValid(wire.physics()),
                  fmt::format("physics {} is none that this version knows", static_cast<int>(wire.physics())));
   if (wire.physics() == v1::PHYSICS_RELAXATION) spec.physics = sim::PhysicsKind::kRelaxation;
+  spec.disturbances = ReadDisturbances(wire, reader);
   if (!reader.ok()) return InvalidInput("spec: " + reader.error());
   return spec;
 }

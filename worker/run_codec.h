@@ -14,6 +14,7 @@ namespace gauntlet::worker {
 // Sizes beyond which a spec is refused before anything is built from it.
 inline constexpr int kMaxObstacles = 10'000;
 inline constexpr int kMaxParameters = 1'000;
+inline constexpr int kMaxFaults = 10'000;
 inline constexpr std::size_t kMaxNameBytes = 4'096;
 
 // A serialized gauntlet.v1.RunSpec. Error (kInvalidInput, the message begins with "spec:"): not a RunSpec,

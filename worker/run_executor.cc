@@ -14,7 +14,8 @@ sim::RunResult Run(const sim::RunSpec& spec) {
     refused.hash = sim::HashOf(refused);
     return refused;
   }
-  return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory, nullptr, spec.physics);
+  return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory,
+                       {.physics = spec.physics, .disturbances = spec.disturbances});
 }
 
 }  // namespace gauntlet::worker

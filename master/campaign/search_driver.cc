@@ -111,6 +111,7 @@ Status SearchDriver::Ask() {
       spec.controller_parameters = parts_.experiment.controller_parameters;
       spec.seed = run.seed;
       spec.physics = parts_.experiment.physics;
+      spec.disturbances = parts_.experiment.disturbances;
       run.spec = EncodeRunSpec(spec);
       run.spec_hash = SpecHash(run.spec);
 

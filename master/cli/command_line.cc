@@ -294,10 +294,11 @@ Example:
 }
 
 void AddListCommand(CLI::App& app, CommandAction& chosen) {
-  const auto [list, options] = AddCommand(
-      app, chosen, "list", "experiments, scenarios, controllers, searches; all parameters", RunList);
+  const auto [list, options] =
+      AddCommand(app, chosen, "list",
+                 "experiments, scenarios, controllers, searches, disturbances; all parameters", RunList);
   list->add_option("SECTION", options->section,
-                   "experiments, scenarios, controllers or searches (default: all)")
+                   "experiments, scenarios, controllers, searches or disturbances (default: all)")
       ->check(CLI::IsMember(kListSections));
   list->add_flag("--json", options->json, "as one JSON document");
   list->footer(R"(Examples:

@@ -75,7 +75,8 @@ struct ListOptions {
   std::string section;  // one of kListSections, "" = all
   bool json = false;
 };
-inline const std::vector<std::string> kListSections = {"experiments", "scenarios", "controllers", "searches"};
+inline const std::vector<std::string> kListSections = {"experiments", "scenarios", "controllers", "searches",
+                                                       "disturbances"};
 ExitCode RunList(CommandContext& context, const ListOptions& options);
 
 }  // namespace gauntlet::master

@@ -146,6 +146,20 @@ std::string SearchesText() {
   return text;
 }
 
+// Keys that change what the robots of any experiment read and do.
+bool IsDisturbance(const Key& key) {
+  return key.path == "faults" || key.path.starts_with("noise.");
+}
+
+std::string DisturbancesText() {
+  Table table(ParameterColumns());
+  for (const Key& key : CommonKeys()) {
+    if (!IsDisturbance(key)) continue;
+    table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
+  }
+  return "Disturbances (--set PARAMETER=VALUE on any experiment)\n\n" + table.ToText();
+}
+
 Json ParametersJson(std::span<const controllers::ParameterInfo> parameters) {
   Json list = Json::array();
   for (const controllers::ParameterInfo& info : parameters) {
@@ -242,6 +256,14 @@ Json SearchesJson() {
   return list;
 }
 
+Json DisturbancesJson() {
+  Json list = Json::array();
+  for (const Key& key : CommonKeys()) {
+    if (IsDisturbance(key)) list.push_back(KeyJson(key));
+  }
+  return list;
+}
+
 }  // namespace
 
 ExitCode RunList(CommandContext& context, const ListOptions& options) {
@@ -253,7 +275,8 @@ ExitCode RunList(CommandContext& context, const ListOptions& options) {
   constexpr Section kSections[] = {{"experiments", ExperimentsText, ExperimentsJson},
                                    {"scenarios", ScenariosText, ScenariosJson},
                                    {"controllers", ControllersText, ControllersJson},
-                                   {"searches", SearchesText, SearchesJson}};
+                                   {"searches", SearchesText, SearchesJson},
+                                   {"disturbances", DisturbancesText, DisturbancesJson}};
   std::string text;
   Json json = Json::object();
   for (const Section& section : kSections) {

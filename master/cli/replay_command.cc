@@ -17,6 +17,7 @@
 #include "master/cli/summary_json.h"
 #include "master/cli/table.h"
 #include "sim/base/printable.h"
+#include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
 namespace {
@@ -84,6 +85,7 @@ std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure
     table.AddRow({"its name", Printable(name)});
   }
   table.AddRow({"seed", fmt::format("{}", report.spec.seed)});
+  for (const auto& [key, value] : sim::DisturbanceTexts(report.spec.disturbances)) table.AddRow({key, value});
   table.AddRow({"outcome", analysis::DescribeOutcome(figure)});
   if (report.replayed.verdict == sim::Verdict::kCompleted) {
     table.AddRow({"fitness", fmt::format("{:.6f}", report.replayed.fitness)});

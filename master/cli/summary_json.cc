@@ -187,6 +187,8 @@ std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const Campai
 }
 
 std::string ReplayJson(const ReplayReport& report) {
+  Json disturbances = Json::object();
+  for (const auto& [key, value] : sim::DisturbanceTexts(report.spec.disturbances)) disturbances[key] = value;
   const bool completed = report.replayed.verdict == sim::Verdict::kCompleted;
   Json metrics = Json::object();
   for (const auto& [name, value] : report.replayed.metrics) metrics[name] = FitnessJson(value);
@@ -195,6 +197,7 @@ std::string ReplayJson(const ReplayReport& report) {
                {"stored_hash", fmt::format("{:016x}", report.stored_result.hash)},
                {"hash", fmt::format("{:016x}", report.replayed.hash)},
                {"differences", report.differences},
+               {"disturbances", std::move(disturbances)},
                {"verdict", NameOf(report.replayed.verdict)},
                {"message", TextOrNull(report.replayed.message)},
                {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json(nullptr)},

@@ -58,6 +58,38 @@ Error Corrupt(const std::string& what) {
   return {ErrorKind::kCorrupt, what};
 }
 
+void ToProto(const sim::Disturbances& disturbances, v1::RunSpec& message) {
+  for (const auto& [device, noise] : disturbances.noise) {
+    v1::DeviceNoise& written = *message.add_noise();
+    written.set_device(sim::KeyOf(device));
+    written.set_uniform(noise.uniform);
+    written.set_gaussian(noise.gaussian);
+    written.set_drop(noise.drop);
+  }
+  for (const sim::RobotFault& fault : disturbances.faults) {
+    v1::RobotFault& written = *message.add_faults();
+    written.set_robot(fault.robot);
+    if (fault.device) written.set_device(sim::KeyOf(*fault.device));
+    written.set_tick(fault.tick);
+  }
+}
+
+Status FromProto(const v1::RunSpec& message, sim::Disturbances& disturbances) {
+  for (const v1::DeviceNoise& noise : message.noise()) {
+    const std::optional<sim::Device> device = sim::DeviceOfKey(noise.device());
+    if (!device) return Corrupt(fmt::format("the run spec has noise of '{}', no device", noise.device()));
+    disturbances.noise[*device] = {noise.uniform(), noise.gaussian(), noise.drop()};
+  }
+  for (const v1::RobotFault& fault : message.faults()) {
+    const std::optional<sim::Device> device = sim::DeviceOfKey(fault.device());
+    if (!device && !fault.device().empty()) {
+      return Corrupt(fmt::format("the run spec has a fault of '{}', no device", fault.device()));
+    }
+    disturbances.faults.push_back({fault.robot(), device, fault.tick()});
+  }
+  return Ok{};
+}
+
 void ToProto(const sim::Pose& pose, v1::Pose& message) {
   message.set_x(pose.position.x());
   message.set_y(pose.position.y());
@@ -123,6 +155,7 @@ std::string EncodeRunSpec(const sim::RunSpec& spec) {
   message.set_seed(spec.seed);
   message.set_record_trajectory(spec.record_trajectory);
   if (spec.physics == sim::PhysicsKind::kRelaxation) message.set_physics(v1::PHYSICS_RELAXATION);
+  ToProto(spec.disturbances, message);
   return message.SerializeAsString();
 }
 
@@ -145,6 +178,7 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   spec.seed = message.seed();
   spec.record_trajectory = message.record_trajectory();
   if (message.physics() == v1::PHYSICS_RELAXATION) spec.physics = sim::PhysicsKind::kRelaxation;
+  if (Status read = FromProto(message, spec.disturbances); !read) return read.error();
   return spec;
 }
 

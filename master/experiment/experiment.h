@@ -76,6 +76,7 @@ struct Experiment {
   SearchSpec search;
   std::uint64_t seed = 1;
   sim::PhysicsKind physics = sim::PhysicsKind::kBox2d;
+  sim::Disturbances disturbances;
 };
 
 }  // namespace gauntlet::master

@@ -225,7 +225,7 @@ class Reader {
     if (const std::string sibling = NearestName(name, siblings); !sibling.empty()) nearest = table + sibling;
     if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
     if (!siblings_text.empty()) return siblings_text;
-    return "known at the top: name, description, seed, scenario, controller, physics";
+    return "known at the top: name, description, seed, scenario, controller, physics, faults";
   }
 
   static bool IsParameterTable(std::string_view path) {

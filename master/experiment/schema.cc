@@ -8,6 +8,7 @@
 
 #include "master/experiment/toml_text.h"
 #include "master/search/genome_generator.h"
+#include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
 namespace {
@@ -88,6 +89,56 @@ Key SeedKey() {
   return key;
 }
 
+Key FaultsKey() {
+  Key key =
+      MakeKey("faults", KeyType::kText,
+              "ROBOT:WHAT@TICK, with spaces between several: 3:wheels@500 9:stopped@0; WHAT is a device or "
+              "'stopped'");
+  key.get = [](const Experiment& e) -> KeyValue { return sim::FaultsText(e.disturbances.faults); };
+  key.set = [](Experiment& e, const KeyValue& v) {
+    e.disturbances.faults = *sim::ParseFaults(std::get<std::string>(v));
+  };
+  key.check = [](const KeyValue& v) -> std::optional<std::string> {
+    const auto faults = sim::ParseFaults(std::get<std::string>(v));
+    if (faults.ok()) return std::nullopt;
+    return "faults: " + faults.error().message;
+  };
+  return key;
+}
+
+// "noise.proximity.gaussian": one number of one device.
+Key NoiseKey(const sim::NoisyDevice& noisy, const std::string& name, double sim::DeviceNoise::*member,
+             const std::string& description) {
+  Key key =
+      MakeKey(fmt::format("noise.{}.{}", sim::KeyOf(noisy.device), name), KeyType::kNumber, description);
+  key.max = noisy.most;
+  key.unit = noisy.unit;
+  key.get = [device = noisy.device, member](const Experiment& e) -> KeyValue {
+    const auto found = e.disturbances.noise.find(device);
+    return found == e.disturbances.noise.end() ? 0.0 : found->second.*member;
+  };
+  key.set = [device = noisy.device, member](Experiment& e, const KeyValue& v) {
+    e.disturbances.noise[device].*member = std::get<double>(v);
+    if (!e.disturbances.noise[device].Any()) e.disturbances.noise.erase(device);
+  };
+  return key;
+}
+
+std::vector<Key> NoiseKeys() {
+  std::vector<Key> keys;
+  for (const sim::NoisyDevice& noisy : sim::NoisyDevices()) {
+    keys.push_back(NoiseKey(noisy, "uniform", &sim::DeviceNoise::uniform,
+                            fmt::format("half width of a uniform error {}", noisy.error)));
+    keys.push_back(NoiseKey(noisy, "gaussian", &sim::DeviceNoise::gaussian,
+                            "standard deviation of a Gaussian one, likewise"));
+    if (!noisy.drops) continue;
+    keys.push_back(NoiseKey(noisy, "drop", &sim::DeviceNoise::drop, "probability that one is not received"));
+    keys.back().max = 1.0;
+    keys.back().unit = "";
+  }
+  return keys;
+}
+
 std::vector<Key> MakeCommonKeys() {
   constexpr auto kArena = &Experiment::arena;
   constexpr auto kGenome = &Experiment::genome;
@@ -100,6 +151,7 @@ std::vector<Key> MakeCommonKeys() {
       TextKey<&Experiment::controller>("controller", "the algorithm under test; default: the scenario's own"),
       ChoiceKey<&Experiment::physics>("physics", {"box2d", "relaxation"},
                                       "relaxation = hand-written, without friction: fast, for comparison"),
+      FaultsKey(),
 
       NumberKey<kArena, &ArenaSpec::side>("arena.side", "m", 1.0, 50.0,
                                           "between the centre lines of opposite walls (thesis 4.5.3)"),
@@ -155,6 +207,7 @@ std::vector<Key> MakeCommonKeys() {
           "search.variation_tries", 1, 1e6,
           "of an offspring that breaks a validity rule; then the step leaves it unchanged"),
   };
+  for (Key& key : NoiseKeys()) keys.push_back(std::move(key));
   for (Key& key : keys) key.default_value = key.get(Experiment{});
   return keys;
 }
@@ -280,6 +333,7 @@ std::string ToToml(const KeyValue& value) {
 }
 
 std::optional<std::string> CheckValue(const Key& key, const KeyValue& value) {
+  if (key.check) return key.check(value);
   const auto message = [&](std::string_view what) {
     return fmt::format("{} = {} {}", key.path, ToToml(value), what);
   };

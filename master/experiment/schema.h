@@ -39,6 +39,8 @@ struct Key {
   std::vector<std::string> choices;
   std::string description;  // one line
   KeyValue default_value;
+  std::function<std::optional<std::string>(const KeyValue&)>
+      check;  // what is wrong with a text; may be empty
   std::function<KeyValue(const Experiment&)> get;
   std::function<void(Experiment&, const KeyValue&)> set;  // `value` must have passed CheckValue
 };

@@ -9,6 +9,7 @@
 #include "master/search/random_search.h"
 #include "master/search/search_setup.h"
 #include "master/search/steady_state_search.h"
+#include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
 namespace {
@@ -38,7 +39,12 @@ Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_ca
   spec.controller = experiment.controller;
   spec.controller_parameters = experiment.controller_parameters;
   spec.seed = experiment.seed;
-  return controllers::CheckSwarmFits(spec);
+  const Result<std::size_t> robots = controllers::CountSwarm(spec);
+  if (!robots.ok()) return robots.error();
+  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, *robots)) {
+    return InvalidInput(*refused);
+  }
+  return Ok{};
 }
 
 Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment, std::uint32_t search_id) {

@@ -15,7 +15,8 @@ namespace gauntlet::master {
 // no such scenario.
 Result<sim::ArenaRequirements> RequirementsOf(const Experiment& experiment);
 
-// controllers::CheckSwarmFits of the experiment's runs in this arena.
+// Whether the experiment's swarm, with its noise and faults, can begin in this arena
+// (controllers::CountSwarm).
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case);
 
 // The search that experiment.search describes; `search_id` is its number within the campaign and part of all

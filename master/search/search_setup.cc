@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "sim/base/check.h"
+#include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
 namespace {
@@ -69,6 +70,9 @@ std::string SearchIdentity(const SearchSetup& setup) {
       fmt::format("start = {} {}\ngoal = {} {}\nclearance = {}\ninflation = {}\n",
                   setup.requirements.start.x(), setup.requirements.start.y(), setup.requirements.goal.x(),
                   setup.requirements.goal.y(), setup.requirements.clearance, setup.requirements.inflation);
+  for (const auto& [key, value] : sim::DisturbanceTexts(e.disturbances)) {
+    identity += fmt::format("{} = {}\n", key, value);
+  }
   const GenomeSpec& g = e.genome;
   identity += fmt::format("genome.genes = {}\ngenome.position = {} {}\ngenome.length = {} {}\n", g.genes,
                           g.position_min, g.position_max, g.length_min, g.length_max);

@@ -16,11 +16,11 @@ PhiloxBlock Philox4x32(const PhiloxBlock& counter, const PhiloxKey& key);
 enum class StreamPurpose : std::uint32_t {
   kSpawn = 1,
   kController = 2,
-  kSensorNoise = 3,
   kGenome = 4,     // random test cases
   kVariation = 5,  // shuffling, crossover, mutation
   kTest = 6,
-  kStatistics = 7,  // bootstrap
+  kStatistics = 7,         // bootstrap
+  kFirstDeviceNoise = 16,  // to 47: one for each device (sim/sensors/disturber.h)
 };
 
 // Draws from one stream. Copying copies the position. Not for sharing between threads.

@@ -11,6 +11,7 @@ struct Signals {
   Color beacon = Color::kBlack;
   std::array<Color, foot_bot::kRingLeds> ring{};
   Payload message{};
+  bool silent = false;  // no message is sent: its radio is dead
 
   bool RingLit() const { return ring != std::array<Color, foot_bot::kRingLeds>{}; }
 };

@@ -35,7 +35,7 @@ void Radios::HearRobots(const Scene& scene, std::size_t listener) {
   const RobotIndex robot = static_cast<RobotIndex>(listener);
   for (const RobotPairs::Neighbour& other : scene.pairs.NeighboursOf(robot)) {
     const std::size_t sender = static_cast<std::size_t>(other.robot);
-    if (!other.clear || !(other.distance < radios_[sender].range)) continue;
+    if (!other.clear || !(other.distance < radios_[sender].range) || scene.signals[sender].silent) continue;
     if (!scene.occluders.all_high() &&
         scene.occluders.BoxBetween(AntennaAt(self.position), AntennaAt(scene.robots[sender].position))) {
       continue;

@@ -77,7 +77,7 @@ void Run(benchmark::State& state, const Behaviour& behaviour, double half_side) 
   for (int repeat = 0; repeat < 5; ++repeat) {
     PhaseClock clock;
     ToyScenario scenario = Scene(robots, behaviour, half_side, kTicks);
-    Simulate(scenario, 1, false, &clock);
+    Simulate(scenario, 1, false, {.probe = &clock});
     for (std::size_t i = 0; i < phases.size(); ++i) {
       phases[i] = std::min(phases[i], clock.NanosecondsPerTick(static_cast<Phase>(i)));
     }

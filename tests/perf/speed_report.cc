@@ -59,7 +59,7 @@ double ForagingLikeCost(int robots, Tick ticks, PhysicsKind physics) {
     robot.bodies_block_radio = false;
   }
   ToyScenario scenario(test_case, std::move(swarm), ticks);
-  return Cost([&] { Simulate(scenario, 1, false, nullptr, physics); });
+  return Cost([&] { Simulate(scenario, 1, false, {.physics = physics}); });
 }
 
 // The default flock in the empty arena and in seven courses, per 200 s.
@@ -103,7 +103,7 @@ double RunCost(int robots, Tick ticks, PhysicsKind physics) {
   }
   ToyScenario scenario(
       test_case, RandomRobots(robots, test_case, Vec2::Zero(), 2.9 * scale, RandomWalk(0.1), random), ticks);
-  return Cost([&] { Simulate(scenario, 1, false, nullptr, physics); });
+  return Cost([&] { Simulate(scenario, 1, false, {.physics = physics}); });
 }
 
 // Square roots and divisions in a chain and memory that fits the first cache: what a tick is made of.

@@ -123,7 +123,7 @@ INSTANTIATE_TEST_SUITE_P(
         LayerRule{"master",
                   {"master/", "analysis/", "slurm/", "proto/", "sim/base/", "sim/geometry/", "sim/arena/",
                    "sim/random/", "sim/run_spec.h", "sim/run_result.h", "sim/observer.h",
-                   "sim/robot/foot_bot.h", "controllers/registry.h"},
+                   "sim/robot/foot_bot.h", "sim/robot/disturbances.h", "controllers/registry.h"},
                   {"box2d"}},
         LayerRule{"slurm", {"slurm/", "sim/base/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
     [](const testing::TestParamInfo<LayerRule>& parameter) { return parameter.param.layer; });

@@ -50,10 +50,11 @@ class AllocationProbe final : public PhaseProbe {
   std::vector<long> per_tick_;
 };
 
-std::vector<long> AllocationsPerTick(ToyScenario& scenario, Tick ticks) {
+std::vector<long> AllocationsPerTick(ToyScenario& scenario, Tick ticks,
+                                     const Disturbances& disturbances = {}) {
   AllocationProbe probe(ticks);
   const long before = allocations;
-  Simulate(scenario, 1, false, &probe);
+  Simulate(scenario, 1, false, {.disturbances = disturbances, .probe = &probe});
   EXPECT_GT(allocations, before) << "the counter does not count";
   EXPECT_EQ(probe.per_tick().size(), static_cast<std::size_t>(ticks));
   return probe.per_tick();
@@ -83,6 +84,12 @@ TEST(Simulation, AllocatesNothingWithEveryDevice) {
     scenario.lamps = {{.position = {1.0, 1.0}, .intensity = 3.0, .color = Color::kYellow}};
     scenario.radios = {{.position = {-1.0, 1.0}}};
     ExpectNoneAfterTheFirst(AllocationsPerTick(scenario, 60));
+    Disturbances disturbances;
+    for (const NoisyDevice& noisy : NoisyDevices()) {
+      disturbances.noise[noisy.device] = {.uniform = 0.02, .gaussian = 0.02, .drop = noisy.drops ? 0.1 : 0.0};
+    }
+    disturbances.faults = {{.robot = 3, .device = Device::kProximity, .tick = 20}, {.robot = 5, .tick = 30}};
+    ExpectNoneAfterTheFirst(AllocationsPerTick(scenario, 60, disturbances));
   }
 }
 

@@ -211,7 +211,7 @@ TEST(Simulation, SurvivesObstaclesOfAnySize) {
   for (const PhysicsKind physics : {PhysicsKind::kBox2d, PhysicsKind::kRelaxation}) {
     ToyScenario scenario(test_case, {RobotAt(0, 0, DriveStraight(0.1)), RobotAt(0, 0.3, RandomWalk(0.1))},
                          300);
-    const RunResult result = Simulate(scenario, 1, false, nullptr, physics);
+    const RunResult result = Simulate(scenario, 1, false, {.physics = physics});
     EXPECT_EQ(result.verdict, Verdict::kCompleted);
     EXPECT_TRUE(std::isfinite(result.fitness));
   }
@@ -231,7 +231,7 @@ TEST(Simulation, SurvivesOrNamesEverythingOverlapping) {
   for (int i = 0; i < 20; ++i) robots.push_back(RobotAt(0.004 * i - 0.04, 0.002 * i - 0.02, Huddle(0.1)));
   for (const PhysicsKind physics : {PhysicsKind::kBox2d, PhysicsKind::kRelaxation}) {
     ToyScenario scenario(test_case, robots, 300);
-    const RunResult result = Simulate(scenario, 1, true, nullptr, physics);
+    const RunResult result = Simulate(scenario, 1, true, {.physics = physics});
     const bool named = result.verdict == Verdict::kInvalidCommand;
     EXPECT_TRUE(named || result.verdict == Verdict::kCompleted);
     if (named) {

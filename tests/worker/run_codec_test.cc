@@ -164,6 +164,39 @@ TEST(RunCodecTest, RefusesAParameterThatIsGivenTwice) {
   EXPECT_THAT(ErrorOf(wire), HasSubstr("controller parameter 'speed' is given twice"));
 }
 
+TEST(RunCodecTest, DisturbancesDecodeToWhatWasSent) {
+  v1::RunSpec wire;
+  v1::DeviceNoise& noise = *wire.add_noise();
+  noise.set_device("range_and_bearing");
+  noise.set_gaussian(0.05);
+  noise.set_drop(0.1);
+  wire.add_faults()->set_robot(3);
+  wire.mutable_faults(0)->set_device("wheels");
+  wire.mutable_faults(0)->set_tick(500);
+  wire.add_faults()->set_tick(7);
+  const Result<sim::RunSpec> decoded = DecodeRunSpec(wire.SerializeAsString());
+  ASSERT_TRUE(decoded.ok()) << decoded.error().message;
+  EXPECT_EQ(decoded->disturbances,
+            (sim::Disturbances{.noise = {{sim::Device::kRangeAndBearing, {.gaussian = 0.05, .drop = 0.1}}},
+                               .faults = {{.robot = 3, .device = sim::Device::kWheels, .tick = 500},
+                                          {.robot = 0, .tick = 7}}}));
+}
+
+TEST(RunCodecTest, RefusesDisturbancesThatItDoesNotKnow) {
+  v1::RunSpec wire;
+  wire.add_noise()->set_device("sonar");
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("noise of 'sonar', which is no device"));
+  wire.mutable_noise(0)->set_device("light");
+  wire.mutable_noise(0)->set_uniform(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("uniform noise is nan"));
+  wire.mutable_noise(0)->set_uniform(0.1);
+  wire.add_noise()->set_device("light");
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("noise of light is given twice"));
+  wire.Clear();
+  wire.add_faults()->set_device("sonar");
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("a fault of 'sonar', which is no device"));
+}
+
 TEST(RunCodecTest, RefusesNamesBeyondReason) {
   v1::RunSpec wire;
   wire.set_scenario(std::string(kMaxNameBytes + 1, 'x'));

@@ -30,6 +30,13 @@ TEST_F(CommandLine, ListNamesEverythingWithUnitsDefaultsAndRanges) {
     }
   }
   for (const Json& scenario : json.at("scenarios")) EXPECT_FALSE(scenario.at("metrics").empty());
+  const Json& disturbances = json.at("disturbances");
+  EXPECT_TRUE(std::any_of(disturbances.begin(), disturbances.end(), [](const Json& key) {
+    return key.at("name") == "noise.range_and_bearing.drop" && key.at("default") == 0.0 &&
+           key.at("max") == 1.0;
+  }));
+  EXPECT_TRUE(std::any_of(disturbances.begin(), disturbances.end(),
+                          [](const Json& key) { return key.at("name") == "faults"; }));
   const Json& genetic = json.at("searches").at(0);
   EXPECT_EQ(genetic.at("name"), "genetic");
   const Json& population = genetic.at("parameters").at(0);

@@ -38,6 +38,7 @@ TEST(RunCodecTest, ARunSpecSurvivesTheRoundTrip) {
   EXPECT_EQ(decoded->seed, spec.seed);
   EXPECT_TRUE(decoded->record_trajectory);
   EXPECT_EQ(decoded->physics, sim::PhysicsKind::kRelaxation);
+  EXPECT_EQ(decoded->disturbances, spec.disturbances);
   EXPECT_EQ(EncodeRunSpec(*decoded), bytes);
 }
 

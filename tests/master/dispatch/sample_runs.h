@@ -21,6 +21,10 @@ inline sim::RunSpec SampleSpec() {
   spec.seed = 0xfedcba9876543210ULL;
   spec.record_trajectory = true;
   spec.physics = sim::PhysicsKind::kRelaxation;
+  spec.disturbances.noise = {{sim::Device::kProximity, {.uniform = 0.01, .gaussian = 0.02}},
+                             {sim::Device::kRangeAndBearing, {.drop = 0.1}}};
+  spec.disturbances.faults = {{.robot = 3, .device = sim::Device::kWheels, .tick = 500},
+                              {.robot = 0, .device = {}, .tick = 7}};
   return spec;
 }
 

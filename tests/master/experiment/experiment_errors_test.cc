@@ -34,7 +34,7 @@ TEST(ExperimentErrorsTest, UnknownKeysComeWithTheNearestKnownOne) {
             "toy.toml:3:1: unknown key 'search.length_max'; did you mean 'genome.length_max'?");
   EXPECT_EQ(ErrorOf(Marching("quux = 3\n")),
             "toy.toml:2:1: unknown key 'quux'; known at the top: name, description, seed, scenario, "
-            "controller, physics");
+            "controller, physics, faults");
   EXPECT_EQ(ErrorOf(kMarching, {"serch.population=4"}),
             "--set serch.population=4: unknown key 'serch.population'; did you mean 'search.population'?");
 }
@@ -138,6 +138,27 @@ TEST(ExperimentErrorsTest, SetsNeedAKeyAndAValue) {
             "--set generations: expected key=value, such as search.generations=10");
   EXPECT_THAT(ErrorOf(kMarching, {"=3"}), StartsWith("--set =3: expected key=value"));
   EXPECT_THAT(ErrorOf(kMarching, {"description=\xFF"}), HasSubstr("not valid UTF-8"));
+}
+
+TEST(ExperimentErrorsTest, DisturbancesAreCheckedBeforeAnythingStarts) {
+  EXPECT_EQ(ErrorOf(kMarching, {"noise.proximty.gaussian=0.1"}),
+            "--set noise.proximty.gaussian=0.1: unknown key 'noise.proximty.gaussian'; did you mean "
+            "'noise.proximity.gaussian'?");
+  EXPECT_EQ(
+      ErrorOf(kMarching, {"noise.proximity.gaussian=-0.1"}),
+      "--set noise.proximity.gaussian=-0.1: noise.proximity.gaussian = -0.1 is out of range, allowed 0 to 1");
+  EXPECT_EQ(
+      ErrorOf(kMarching, {"noise.range_and_bearing.drop=1.5"}),
+      "--set noise.range_and_bearing.drop=1.5: noise.range_and_bearing.drop = 1.5 is out of range, allowed 0 "
+      "to 1");
+  EXPECT_THAT(ErrorOf(kMarching, {"noise.light.drop=0.1"}), HasSubstr("unknown key 'noise.light.drop'"));
+  EXPECT_EQ(
+      ErrorOf(kMarching, {"faults=3:whels@500"}),
+      "--set faults=3:whels@500: faults: '3:whels@500': no device is called 'whels'; did you mean 'wheels'?");
+  EXPECT_THAT(ErrorOf(Marching("faults = '3:wheels@-5'\n")),
+              HasSubstr("toy.toml:2:1: faults: '3:wheels@-5': the tick is a whole number, 0 to 1000000000"));
+  EXPECT_THAT(ErrorOf(Marching("faults = 3\n")),
+              HasSubstr("toy.toml:2:1: faults is a whole number, expected text"));
 }
 
 TEST(ExperimentErrorsTest, ScenarioAndControllerMustExistAndFit) {

@@ -104,6 +104,24 @@ TEST(ExperimentFileTest, SetsWinOverTheFileAndTheLastOneWins) {
   EXPECT_EQ(experiment->scenario_parameters.at("headwind"), 1.0);
 }
 
+TEST(ExperimentFileTest, DisturbancesAreKeysOfEveryExperiment) {
+  const Experiment quiet = *ParseToy("scenario = 'marching'");
+  EXPECT_TRUE(quiet.disturbances.None());
+  const Result<Experiment> read =
+      ParseToy("scenario = 'marching'\n[noise]\nproximity.gaussian = 0.02\nlight.uniform = 0.0\n",
+               {"noise.range_and_bearing.drop=0.1", "faults=3:wheels@500 4:stopped@0"});
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const sim::Disturbances expected = {.noise = {{sim::Device::kProximity, {.gaussian = 0.02}},
+                                                {sim::Device::kRangeAndBearing, {.drop = 0.1}}},
+                                      .faults = {{3, sim::Device::kWheels, 500}, {4, {}, 0}}};
+  EXPECT_EQ(read->disturbances, expected);
+  const std::string text = WriteExperiment(*read, {}, ToyCatalogue());
+  EXPECT_THAT(text, HasSubstr("faults = \"3:wheels@500 4:stopped@0\""));
+  EXPECT_THAT(text, HasSubstr("\n[noise]\n"));
+  EXPECT_THAT(text, HasSubstr("\nrange_and_bearing.drop = 0.1 "));
+  EXPECT_EQ(ParseToy(text)->disturbances, expected);
+}
+
 TEST(ExperimentFileTest, WritesEveryKeyWithItsMeaning) {
   const Experiment experiment = *ParseToy("scenario = 'marching'");
   const std::string text = WriteExperiment(experiment, {"made by a test", ""}, ToyCatalogue());
@@ -132,6 +150,8 @@ TEST(ExperimentFileTest, PathsAreUniqueAndDefaultsAllowed) {
 KeyValue AllowedValue(const Key& key) {
   switch (key.type) {
     case KeyType::kText:
+      if (key.path == "faults")
+        return *rc::gen::element<std::string>("", "3:wheels@500 0:stopped@7", "9:leds@1");
       return *rc::gen::container<std::string>(rc::gen::inRange<char>(1, 127));
     case KeyType::kChoice:
       return *rc::gen::elementOf(key.choices);

@@ -35,6 +35,18 @@ TEST(MakeSearchTest, AListOfCasesCannotBeMadeFromAnExperimentAlone) {
   EXPECT_THAT(search.error().message, HasSubstr("gauntlet evaluate"));
 }
 
+TEST(MakeSearchTest, AFaultOfARobotThatTheSwarmDoesNotHaveIsRefused) {
+  Experiment experiment = ToySetup().experiment;
+  experiment.disturbances.faults = {{.robot = 11, .device = sim::Device::kWheels, .tick = 500}};
+  const auto search = MakeSearch(experiment, 1);
+  ASSERT_FALSE(search.ok());
+  EXPECT_THAT(search.error().message,
+              HasSubstr("bad-fault: 11:wheels@500: robot 11, tick 500; this swarm has "
+                        "robots 0 to 10"));
+  experiment.disturbances.faults[0].robot = 10;
+  EXPECT_TRUE(MakeSearch(experiment, 1).ok());
+}
+
 TEST(MakeSearchTest, UnknownScenarioIsNamed) {
   Experiment experiment = ToySetup().experiment;
   experiment.scenario = "juggling";

@@ -1,0 +1,184 @@
+#include "sim/robot/disturbances.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
+
+#include "sim/base/bits.h"
+#include "sim/base/nearest_name.h"
+#include "sim/base/number_text.h"
+
+namespace gauntlet::sim {
+namespace {
+
+constexpr std::string_view kStopped = "stopped";
+constexpr Tick kLatestFault = 1'000'000'000;
+constexpr RobotIndex kLastRobot = 999;
+
+constexpr std::array<NoisyDevice, 8> kNoisyDevices = {{
+    {Device::kWheels, "", 1.0, false, "share of the commanded speed, of each wheel"},
+    {Device::kProximity, "", 1.0, false, "of full scale, of each of the 24 readings, also of zero ones"},
+    {Device::kOmnidirectionalCamera, "", 1.0, true,
+     "share of the blob's distance, by which it is shifted in a random direction"},
+    {Device::kRangeAndBearing, "m", 10.0, true,
+     "by which the sender's place is shifted in a random direction"},
+    {Device::kLight, "", 1.0, false, "of full scale, of each of the 24 readings"},
+    {Device::kMotorGround, "", 1.0, false, "of the grey, of each of the 4 readings"},
+    {Device::kBaseGround, "", 1.0, false,
+     "of the grey, of each of the 8 readings before they are cut at 0.5"},
+    {Device::kDistanceScanner, "m", 1.0, false, "of each distance that is read"},
+}};
+
+std::vector<std::string> FaultNames() {
+  std::vector<std::string> names = {std::string(kStopped)};
+  for (std::uint32_t bit = 0; bit < 32; ++bit) {
+    const Device device = static_cast<Device>(1u << bit);
+    if (kAllDevices.Has(device)) names.push_back(KeyOf(device));
+  }
+  return names;
+}
+
+Error WrongFault(std::string_view fault, const std::string& why) {
+  std::string message = "'";
+  return InvalidInput(message.append(fault).append("': ").append(why));
+}
+
+// A whole number that fills the text.
+std::optional<long long> WholeNumber(std::string_view text) {
+  long long value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (text.empty() || error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+Result<RobotFault> ParseFault(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  const std::size_t at = text.find('@');
+  if (colon == std::string_view::npos || at == std::string_view::npos || at < colon) {
+    return WrongFault(text, "a fault is written ROBOT:WHAT@TICK, such as 3:wheels@500");
+  }
+  const std::optional<long long> robot = WholeNumber(text.substr(0, colon));
+  if (!robot || *robot < 0 || *robot > kLastRobot) {
+    return WrongFault(text, "the robot is a whole number, 0 to " + std::to_string(kLastRobot));
+  }
+  const std::optional<long long> tick = WholeNumber(text.substr(at + 1));
+  if (!tick || *tick < 0 || *tick > kLatestFault) {
+    return WrongFault(text, "the tick is a whole number, 0 to " + std::to_string(kLatestFault));
+  }
+  RobotFault fault = {.robot = static_cast<RobotIndex>(*robot), .tick = static_cast<Tick>(*tick)};
+  const std::string_view what = text.substr(colon + 1, at - colon - 1);
+  if (what == kStopped) return fault;
+  fault.device = DeviceOfKey(what);
+  if (fault.device) return fault;
+  const std::vector<std::string> names = FaultNames();
+  const std::string nearest = NearestName(what, std::vector<std::string_view>(names.begin(), names.end()));
+  std::string known;
+  for (const std::string& name : names) known.append(known.empty() ? "" : ", ").append(name);
+  std::string why = "no device is called '";
+  why.append(what).append("'; ");
+  if (nearest.empty()) return WrongFault(text, why.append("known: ").append(known));
+  return WrongFault(text, why.append("did you mean '").append(nearest).append("'?"));
+}
+
+std::string FaultText(const RobotFault& fault) {
+  std::string text = std::to_string(fault.robot) + ":";
+  text.append(fault.device ? KeyOf(*fault.device) : kStopped);
+  return text.append("@").append(std::to_string(fault.tick));
+}
+
+// NaN is not within anything.
+bool Within(double value, double most) {
+  return value >= 0.0 && value <= most;
+}
+
+std::optional<std::string> RefuseNoise(Device device, const DeviceNoise& noise) {
+  const std::string key = "noise." + KeyOf(device);
+  const auto* const known = std::find_if(kNoisyDevices.begin(), kNoisyDevices.end(),
+                                         [&](const NoisyDevice& one) { return one.device == device; });
+  if (known == kNoisyDevices.end()) return "bad-noise: " + key + ": no noise is defined for this device";
+  struct Field {
+    const char* name;
+    double value;
+    double most;
+  };
+  for (const Field& field :
+       {Field{"uniform", noise.uniform, known->most}, Field{"gaussian", noise.gaussian, known->most},
+        Field{"drop", noise.drop, known->drops ? 1.0 : 0.0}}) {
+    if (Within(field.value, field.most)) continue;
+    return "bad-noise: " + key + "." + field.name + " = " + NumberText(field.value) + "; 0 to " +
+           NumberText(field.most) + " is possible";
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::span<const NoisyDevice> NoisyDevices() {
+  return kNoisyDevices;
+}
+
+std::string KeyOf(Device device) {
+  std::string key(NameOf(device));
+  std::replace(key.begin(), key.end(), '-', '_');
+  return key;
+}
+
+std::optional<Device> DeviceOfKey(std::string_view key) {
+  for (std::uint32_t bit = 0; bit < 32; ++bit) {
+    const Device device = static_cast<Device>(1u << bit);
+    if (kAllDevices.Has(device) && KeyOf(device) == key) return device;
+  }
+  return std::nullopt;
+}
+
+Result<std::vector<RobotFault>> ParseFaults(std::string_view text) {
+  std::vector<RobotFault> faults;
+  while (true) {
+    const std::size_t begin = text.find_first_not_of(' ');
+    if (begin == std::string_view::npos) return faults;
+    text.remove_prefix(begin);
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const Result<RobotFault> fault = ParseFault(text.substr(0, end));
+    if (!fault.ok()) return fault.error();
+    faults.push_back(*fault);
+    text.remove_prefix(end);
+  }
+}
+
+std::string FaultsText(std::span<const RobotFault> faults) {
+  std::string text;
+  for (const RobotFault& fault : faults) text.append(text.empty() ? "" : " ").append(FaultText(fault));
+  return text;
+}
+
+std::vector<std::pair<std::string, std::string>> DisturbanceTexts(const Disturbances& disturbances) {
+  std::vector<std::pair<std::string, std::string>> texts;
+  for (const auto& [device, noise] : disturbances.noise) {
+    const std::string key = "noise." + KeyOf(device) + ".";
+    if (noise.uniform != 0.0) texts.emplace_back(key + "uniform", NumberText(noise.uniform));
+    if (noise.gaussian != 0.0) texts.emplace_back(key + "gaussian", NumberText(noise.gaussian));
+    if (noise.drop != 0.0) texts.emplace_back(key + "drop", NumberText(noise.drop));
+  }
+  if (!disturbances.faults.empty()) texts.emplace_back("faults", FaultsText(disturbances.faults));
+  return texts;
+}
+
+std::optional<std::string> RefuseDisturbances(const Disturbances& disturbances, std::size_t robots) {
+  for (const auto& [device, noise] : disturbances.noise) {
+    if (std::optional<std::string> reason = RefuseNoise(device, noise)) return reason;
+  }
+  for (const RobotFault& fault : disturbances.faults) {
+    if (fault.robot >= 0 && static_cast<std::size_t>(fault.robot) < robots && fault.tick >= 0 &&
+        (!fault.device || kAllDevices.Has(*fault.device))) {
+      continue;
+    }
+    return "bad-fault: " + FaultText(fault) + ": robot " + std::to_string(fault.robot) + ", tick " +
+           std::to_string(fault.tick) + "; this swarm has robots 0 to " + std::to_string(robots - 1) +
+           ", ticks count from 0";
+  }
+  return std::nullopt;
+}
+
+}  // namespace gauntlet::sim
