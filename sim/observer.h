@@ -23,10 +23,11 @@ struct RobotState {
 // `tick_limit`.
 class Observer {
  public:
-  Observer(int robots, Tick tick_limit);
+  Observer(int robots, Tick tick_limit, std::size_t moving_obstacles = 0);
 
-  // Appends one tick; `states` has robots() entries.
-  void Record(std::span<const RobotState> states);
+  // Appends one tick; `states` has robots() entries, `obstacles` the centres (m) of the moving obstacles in
+  // the order of Arena::moving().
+  void Record(std::span<const RobotState> states, std::span<const Vec2> obstacles = {});
 
   int robots() const { return robots_; }
   // The newest recorded tick; -1 before the first.
@@ -37,11 +38,18 @@ class Observer {
         static_cast<std::size_t>(tick) * static_cast<std::size_t>(robots_),
         static_cast<std::size_t>(robots_));
   }
+  // The centres of the moving obstacles at `tick`, as Arena::LineOfSight takes them.
+  std::span<const Vec2> ObstaclesAt(Tick tick) const {
+    return std::span<const Vec2>(obstacles_)
+        .subspan(static_cast<std::size_t>(tick) * moving_obstacles_, moving_obstacles_);
+  }
   std::span<const RobotState> Latest() const { return At(last_tick()); }
 
  private:
   int robots_;
+  std::size_t moving_obstacles_;
   std::vector<RobotState> states_;
+  std::vector<Vec2> obstacles_;
 };
 
 }  // namespace gauntlet::sim

@@ -10,6 +10,7 @@ target_sources(
           robot/controller.cc
           robot/devices.cc
           robot/disturbances.cc
+          robot/obstacle_course.cc
           run_checks.cc
           run_result.cc
           sensors/distance_scanner.cc

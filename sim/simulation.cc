@@ -9,6 +9,7 @@
 #include "sim/base/hash.h"
 #include "sim/base/number_text.h"
 #include "sim/physics/physics_engine.h"
+#include "sim/robot/obstacle_course.h"
 #include "sim/run_checks.h"
 #include "sim/sensors/disturber.h"
 #include "sim/sensors/sensor_suite.h"
@@ -46,6 +47,7 @@ class Loop {
  private:
   bool Act();
   void Disturb();
+  void SendObstacles();
   bool CheckPoses();
   void Observe();
   void Control();
@@ -60,6 +62,8 @@ class Loop {
   PhaseProbe* probe_;
   std::unique_ptr<PhysicsEngine> physics_;
   SensorSuite sensors_;
+  ObstacleCourse course_;
+  std::vector<double> headings_;  // rad, of the moving obstacles
   Grippers grippers_;
   std::vector<DeviceSet> devices_;
   std::vector<Actuators> actuators_;  // as the controllers left them
@@ -98,12 +102,17 @@ Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed
       probe_(options.probe),
       physics_(options.physics == PhysicsKind::kRelaxation ? MakeRelaxationEngine() : MakeBox2dEngine()),
       sensors_(scenario.arena(), SensorsOf(swarm_)),
+      course_(scenario.arena()),
       grippers_(Equipped(swarm_, Device::kGripper)),
       actuators_(swarm_.size()),
       wheels_(swarm_.size()),
       poses_(swarm_.size()),
       states_(swarm_.size()) {
-  for (const OrientedBox& box : scenario.arena().boxes()) physics_->AddBox(box);
+  for (const OrientedBox& box : scenario.arena().fixed_boxes()) physics_->AddBox(box);
+  for (const OrientedBox& box : course_.boxes()) {
+    physics_->AddKinematicBox(box);
+    headings_.push_back(AngleOf(box.axis));
+  }
   for (std::size_t i = 0; i < swarm_.size(); ++i) {
     physics_->AddRobot(swarm_[i].pose);
     devices_.push_back(swarm_[i].controller->Devices());
@@ -111,7 +120,8 @@ Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed
     actuators_[i].beacon = swarm_[i].beacon;
     poses_[i] = swarm_[i].pose;
   }
-  if (!options.disturbances.None()) disturber_.emplace(options.disturbances, seed, swarm_.size(), scenario);
+  if (!options.disturbances.None())
+    disturber_.emplace(options.disturbances, seed, swarm_.size(), scenario, course_.lights().size());
 }
 
 void Loop::Start() {
@@ -124,7 +134,11 @@ bool Loop::Tick() {
   Enter(Phase::kPhysics);
   if (!Act()) return false;
   if (disturber_) Disturb();
+  SendObstacles();
   physics_->Step(wheels_);
+  for (std::size_t i = 0; i < course_.boxes().size(); ++i) {
+    course_.Place(i, physics_->BoxAt(static_cast<BoxIndex>(i)));
+  }
   for (std::size_t i = 0; i < swarm_.size(); ++i) poses_[i] = physics_->PoseOf(static_cast<RobotIndex>(i));
   Enter(Phase::kObserve);
   Observe();
@@ -140,7 +154,9 @@ bool Loop::Tick() {
                   .signals = signals_,
                   .actuators = actuators_,
                   .surroundings = scenario_,
-                  .grippers = grippers_});
+                  .grippers = grippers_,
+                  .moving_boxes = course_.boxes(),
+                  .obstacle_lights = course_.lights()});
   Enter(Phase::kControl);
   Control();
   if (probe_ != nullptr) probe_->EndTick();
@@ -189,6 +205,14 @@ void Loop::Disturb() {
   }
 }
 
+void Loop::SendObstacles() {
+  if (course_.boxes().empty()) return;
+  course_.Advance(poses_);
+  for (std::size_t i = 0; i < headings_.size(); ++i) {
+    physics_->MoveBox(static_cast<BoxIndex>(i), {course_.centers()[i], headings_[i]});
+  }
+}
+
 // Bodies that overlap from the beginning may be pushed through a wall. NaN is not within walls.
 bool Loop::CheckPoses() {
   const Arena& arena = scenario_.arena();
@@ -217,7 +241,7 @@ void Loop::Observe() {
     trajectory_hash_.AddDouble(pose.position.y());
     trajectory_hash_.AddDouble(pose.heading);
   }
-  observer_.Record(states_);
+  observer_.Record(states_, course_.centers());
 }
 
 void Loop::Control() {
@@ -280,7 +304,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   }
 
   const std::size_t robots = swarm->size();
-  observer = Observer(static_cast<int>(robots), scenario.tick_limit());
+  observer = Observer(static_cast<int>(robots), scenario.tick_limit(), scenario.arena().moving().size());
   Loop loop(scenario, *std::move(swarm), seed, observer, options);
   loop.Start();
 

@@ -53,6 +53,23 @@ class SpecReader {
   std::string error_;
 };
 
+// What makes an obstacle move or shine.
+void ReadExtras(const v1::Obstacle& wire, sim::ObstacleGene& gene, SpecReader& reader) {
+  reader.RequireKnownFields(wire.motion(), "motion");
+  gene.speed = reader.Finite(wire.motion().speed(), "an obstacle's speed");
+  reader.RequireAtMost(wire.motion().path(), static_cast<int>(sim::kMaxObstaclePath), "points of a path");
+  if (!reader.ok()) return;
+  for (const v1::Point& point : wire.motion().path()) {
+    reader.RequireKnownFields(point, "point");
+    const double x = reader.Finite(point.x(), "x of a path");
+    gene.path.emplace_back(x, reader.Finite(point.y(), "y of a path"));
+  }
+  if (!wire.has_light()) return;
+  const std::optional<sim::Color> light = sim::ColorNamed(wire.light());
+  reader.Require(light.has_value(), fmt::format("an obstacle's light is '{}', no colour", wire.light()));
+  gene.light = light.value_or(sim::Color::kBlack);
+}
+
 sim::TestCase ReadTestCase(const v1::TestCase& wire, SpecReader& reader) {
   sim::TestCase test_case;
   reader.RequireKnownFields(wire, "test_case");
@@ -67,12 +84,13 @@ sim::TestCase ReadTestCase(const v1::TestCase& wire, SpecReader& reader) {
   test_case.obstacles.reserve(static_cast<std::size_t>(wire.obstacles_size()));
   for (const v1::Obstacle& obstacle : wire.obstacles()) {
     reader.RequireKnownFields(obstacle, "obstacle");
-    test_case.obstacles.push_back(
-        {.x = reader.Finite(obstacle.x(), "an obstacle's x"),
-         .y = reader.Finite(obstacle.y(), "an obstacle's y"),
-         .length = reader.Finite(obstacle.length(), "an obstacle's length"),
-         .width = reader.Finite(obstacle.width(), "an obstacle's width"),
-         .orientation_deg = reader.Finite(obstacle.orientation_deg(), "an obstacle's orientation_deg")});
+    sim::ObstacleGene& gene = test_case.obstacles.emplace_back(sim::ObstacleGene{
+        .x = reader.Finite(obstacle.x(), "an obstacle's x"),
+        .y = reader.Finite(obstacle.y(), "an obstacle's y"),
+        .length = reader.Finite(obstacle.length(), "an obstacle's length"),
+        .width = reader.Finite(obstacle.width(), "an obstacle's width"),
+        .orientation_deg = reader.Finite(obstacle.orientation_deg(), "an obstacle's orientation_deg")});
+    ReadExtras(obstacle, gene, reader);
   }
   if (wire.has_spawn_area()) {
     const v1::Rectangle& area = wire.spawn_area();

@@ -34,6 +34,11 @@ std::string StyleSheet() {
       ".grid {{ stroke: #ebe7dd; stroke-width: 1; }}\n"
       ".wall {{ fill: #3a424c; }}\n"
       ".obstacle {{ fill: #cbc4b6; stroke: #857c6c; stroke-width: 1.2; stroke-linejoin: round; }}\n"
+      ".obstacle-end {{ fill: none; stroke: #857c6c; stroke-width: 1.2; stroke-dasharray: 3 3; }}\n"
+      ".obstacle-path {{ fill: none; stroke: #857c6c; stroke-width: 1.6; stroke-dasharray: 1 4; "
+      "stroke-linecap: "
+      "round; }}\n"
+      ".lamp {{ stroke: #ffffff; stroke-width: 1; }}\n"
       ".obstacle-number {{ font-size: 13px; font-weight: bold; fill: #4d463a; text-anchor: middle; "
       "stroke: #efebe3; stroke-width: 3; paint-order: stroke; }}\n"
       ".spawn {{ fill: {kept}; fill-opacity: 0.08; stroke: {kept}; stroke-opacity: 0.55; stroke-width: 1.2; "
@@ -150,6 +155,38 @@ void DrawObstacles(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena
     for (const sim::Vec2& corner : arena.VisiblePart(i)) corners.push_back(frame.At(corner));
     if (!corners.empty())
       canvas.Polygon(corners, fmt::format("class=\"obstacle\" id=\"obstacle-{}\"", i + 1));
+  }
+}
+
+// Where the moving ones go: the way of the centre, and their outline where they turn.
+void DrawObstaclePaths(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  for (const sim::Arena::Moving& moving : arena.moving()) {
+    std::vector<Pixel> way;
+    for (const sim::Vec2& point : moving.path) {
+      way.push_back(frame.At(point));
+      sim::OrientedBox box = arena.obstacles()[moving.obstacle];
+      box.center = point;
+      std::vector<Pixel> corners;
+      for (const sim::Vec2& corner : ClipToRectangle(box, arena.interior_min(), arena.interior_max())) {
+        corners.push_back(frame.At(corner));
+      }
+      if (way.size() > 1 && !corners.empty()) canvas.Polygon(corners, "class=\"obstacle-end\"");
+    }
+    canvas.Polyline(way, fmt::format("class=\"obstacle-path\" id=\"path-{}\"", moving.obstacle + 1));
+  }
+}
+
+// The lamps of lit obstacles, on the sides that are inside the walls.
+void DrawLamps(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  for (const sim::Arena::Lit& lit : arena.lit()) {
+    const sim::OrientedBox& box = arena.obstacles()[lit.obstacle];
+    const sim::Vec2 ahead = box.half_extents.x() * box.axis;
+    const sim::Vec2 aside = box.half_extents.y() * sim::LeftOf(box.axis);
+    for (const sim::Vec2& way : {ahead, aside, sim::Vec2(-ahead), sim::Vec2(-aside)}) {
+      const sim::Vec2 place = box.center + way;
+      if (!arena.InInterior(place)) continue;
+      canvas.Circle(frame.At(place), 5.0, fmt::format("class=\"lamp\" fill=\"{}\"", sim::NameOf(lit.color)));
+    }
   }
 }
 
@@ -352,7 +389,9 @@ std::string DrawRun(const RunFigure& figure) {
   canvas.Rectangle({0, 0}, frame.page_width(), frame.page_height(), "fill=\"#ffffff\"");
   DrawFloor(canvas, frame, arena, step);
   DrawPlaces(canvas, figure, frame);
+  DrawObstaclePaths(canvas, frame, arena);
   DrawObstacles(canvas, frame, arena);
+  DrawLamps(canvas, frame, arena);
   DrawWalls(canvas, frame, arena);
   for (const TrackKind kind : {TrackKind::kKept, TrackKind::kLost}) {
     for (const Track& track : tracks) {

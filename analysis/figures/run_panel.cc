@@ -165,6 +165,18 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
                 canvas.Text({p.x, p.y + 4.5}, "1", "class=\"obstacle-number\"");
               });
   }
+  const sim::Genome& genome = figure.spec.test_case.obstacles;
+  if (std::any_of(genome.begin(), genome.end(), [](const sim::ObstacleGene& gene) { return gene.Moves(); })) {
+    panel.Row("way of a moving obstacle", [&](Pixel p) {
+      canvas.Line({p.x - 14, p.y}, {p.x + 14, p.y}, "class=\"obstacle-path\"");
+    });
+  }
+  const auto lit = std::find_if(genome.begin(), genome.end(), [](const auto& gene) { return gene.Lit(); });
+  if (lit != genome.end()) {
+    panel.Row("lamps of an obstacle", [&](Pixel p) {
+      canvas.Circle(p, 5.0, fmt::format("class=\"lamp\" fill=\"{}\"", sim::NameOf(lit->light)));
+    });
+  }
 }
 
 void DrawFigures(Panel& panel, const RunFigure& figure) {
@@ -173,6 +185,9 @@ void DrawFigures(Panel& panel, const RunFigure& figure) {
   panel.Heading("RUN");
   panel.Figure("scenario", Shortened(figure.spec.scenario, 26));
   panel.Figure("controller", Shortened(figure.spec.controller, 26));
+  for (const auto& [key, value] : sim::DisturbanceTexts(figure.spec.disturbances)) {
+    panel.Figure(key, Shortened(value, 16));
+  }
   if (const std::string& name = figure.spec.test_case.name; !name.empty()) {
     panel.Figure("test case", Shortened(name, 26));
   }

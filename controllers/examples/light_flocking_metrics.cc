@@ -11,7 +11,8 @@ double MeanDistance(std::span<const sim::Vec2> robots, const sim::Vec2& point) {
   return sum / static_cast<double>(robots.size());
 }
 
-int CountClusters(std::span<const sim::Vec2> robots, const sim::Arena& arena, double link_range) {
+int CountClusters(std::span<const sim::Vec2> robots, const sim::Arena& arena, double link_range,
+                  std::span<const sim::Vec2> obstacles) {
   std::vector<bool> seen(robots.size(), false);
   std::vector<std::size_t> open;
   int clusters = 0;
@@ -25,7 +26,7 @@ int CountClusters(std::span<const sim::Vec2> robots, const sim::Arena& arena, do
       open.pop_back();
       for (std::size_t to = 0; to < robots.size(); ++to) {
         if (seen[to] || (robots[to] - from).squaredNorm() >= link_range * link_range) continue;
-        if (!arena.LineOfSight(from, robots[to])) continue;
+        if (!arena.LineOfSight(from, robots[to], obstacles)) continue;
         seen[to] = true;
         open.push_back(to);
       }

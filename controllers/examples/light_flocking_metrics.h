@@ -14,7 +14,8 @@ double MeanDistance(std::span<const sim::Vec2> robots, const sim::Vec2& point);
 
 // Connected components when robots are linked whose centres are less than `link_range` (m) apart and that no
 // obstacle stands between.
-int CountClusters(std::span<const sim::Vec2> robots, const sim::Arena& arena, double link_range);
+int CountClusters(std::span<const sim::Vec2> robots, const sim::Arena& arena, double link_range,
+                  std::span<const sim::Vec2> obstacles = {});
 
 // Share of robots that `samples` ([time][robot]) never find at `threshold` (m) or more from where the first
 // sample has them; 0 of nobody.

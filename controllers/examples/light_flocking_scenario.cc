@@ -90,7 +90,8 @@ sim::Outcome LightFlockingScenario::Evaluate(const sim::Observer& observer) {
   outcome.metrics = {
       {"light_distance", end_distance},
       {"stopped", ShareStopped(late, kStopped)},
-      {"clusters", static_cast<double>(CountClusters(end, arena_, robot_.cutoff * robot_.target_distance))},
+      {"clusters", static_cast<double>(CountClusters(end, arena_, robot_.cutoff * robot_.target_distance,
+                                                     observer.ObstaclesAt(observer.last_tick())))},
   };
   outcome.lost.assign(end.size(), false);
   const std::vector<sim::Vec2> corners = {spawn_area_.min,

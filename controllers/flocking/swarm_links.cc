@@ -18,7 +18,8 @@ bool SwarmLinks::Edge(sim::RobotIndex a, sim::RobotIndex b, sim::Tick tick) cons
   const auto states = observer_.At(tick);
   const sim::Vec2 pa = states[static_cast<std::size_t>(a)].position();
   const sim::Vec2 pb = states[static_cast<std::size_t>(b)].position();
-  return (pb - pa).squaredNorm() <= rule_.range * rule_.range && arena_.LineOfSight(pa, pb);
+  return (pb - pa).squaredNorm() <= rule_.range * rule_.range &&
+         arena_.LineOfSight(pa, pb, observer_.ObstaclesAt(tick));
 }
 
 bool SwarmLinks::Linked(sim::RobotIndex a, sim::RobotIndex b, sim::Tick tick) {

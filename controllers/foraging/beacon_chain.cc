@@ -5,11 +5,12 @@
 namespace gauntlet::controllers {
 
 std::vector<sim::Vec2> FindBeaconChain(const sim::Arena& arena, const ChainEnds& ends,
-                                       std::span<const sim::Vec2> beacons, double range) {
+                                       std::span<const sim::Vec2> beacons, double range,
+                                       std::span<const sim::Vec2> obstacles) {
   constexpr int kUnseen = -2;
   constexpr int kNest = -1;
   const auto linked = [&](const sim::Vec2& a, const sim::Vec2& b) {
-    return (b - a).squaredNorm() < range * range && arena.LineOfSight(a, b);
+    return (b - a).squaredNorm() < range * range && arena.LineOfSight(a, b, obstacles);
   };
   std::vector<int> previous(beacons.size(), kUnseen);
   std::vector<std::size_t> open;  // breadth first

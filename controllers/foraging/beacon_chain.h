@@ -15,8 +15,9 @@ struct ChainEnds {
 };
 
 // The chain with the fewest beacons: nest, beacons, food. Empty when there is none; without any beacon there
-// is no chain, however near the food is.
+// is no chain, however near the food is. `obstacles`: where the moving ones are (Observer::ObstaclesAt).
 std::vector<sim::Vec2> FindBeaconChain(const sim::Arena& arena, const ChainEnds& ends,
-                                       std::span<const sim::Vec2> beacons, double range);
+                                       std::span<const sim::Vec2> beacons, double range,
+                                       std::span<const sim::Vec2> obstacles = {});
 
 }  // namespace gauntlet::controllers

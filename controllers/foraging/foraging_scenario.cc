@@ -160,7 +160,8 @@ std::vector<sim::Vec2> ForagingScenario::BeaconsAt(const sim::Observer& observer
 
 void ForagingScenario::FindFirstPath(const sim::Observer& observer) {
   const sim::Tick tick = observer.last_tick();
-  first_chain_ = FindBeaconChain(arena_, ends_, BeaconsAt(observer, tick), settings_.communication_range);
+  first_chain_ = FindBeaconChain(arena_, ends_, BeaconsAt(observer, tick), settings_.communication_range,
+                                 observer.ObstaclesAt(tick));
   if (!first_chain_.empty()) first_path_ = tick;
 }
 

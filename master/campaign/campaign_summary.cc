@@ -8,6 +8,7 @@
 #include "master/campaign/state_digest.h"
 #include "master/campaign/verdict_text.h"
 #include "master/dispatch/run_codec.h"
+#include "sim/arena/genome_codec.h"
 #include "sim/run_result.h"
 
 namespace gauntlet::master {
@@ -67,6 +68,10 @@ std::string EncodeExperiment(const Experiment& experiment) {
       encoder.Double(value);
     }
   }
+  for (const auto& [key, value] : sim::DisturbanceTexts(experiment.disturbances)) {
+    encoder.String(key);
+    encoder.String(value);
+  }
   return encoder.Take();
 }
 
@@ -76,11 +81,7 @@ std::string EncodePopulation(const std::vector<Individual>& population) {
   for (const Individual& individual : population) {
     encoder.Uint(individual.id);
     encoder.Double(individual.fitness);
-    encoder.Uint(individual.test_case.obstacles.size());
-    for (const sim::ObstacleGene& gene : individual.test_case.obstacles) {
-      for (const double value : {gene.x, gene.y, gene.length, gene.width, gene.orientation_deg})
-        encoder.Double(value);
-    }
+    sim::EncodeGenome(individual.test_case.obstacles, encoder);
   }
   return encoder.Take();
 }

@@ -40,6 +40,12 @@ Json GenomeJson(const sim::Genome& genome) {
                     {"length", gene.length},
                     {"width", gene.width},
                     {"orientationDeg", gene.orientation_deg}});
+    if (gene.Moves()) {
+      Json path = Json::array();
+      for (const sim::Vec2& point : gene.path) path.push_back({{"x", point.x()}, {"y", point.y()}});
+      list.back()["motion"] = {{"speed", gene.speed}, {"path", std::move(path)}};
+    }
+    if (gene.Lit()) list.back()["light"] = sim::NameOf(gene.light);
   }
   return list;
 }

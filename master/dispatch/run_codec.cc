@@ -24,6 +24,15 @@ void ToProto(const sim::TestCase& test_case, v1::TestCase& message) {
     obstacle.set_length(gene.length);
     obstacle.set_width(gene.width);
     obstacle.set_orientation_deg(gene.orientation_deg);
+    if (gene.speed != 0.0 || !gene.path.empty()) {
+      obstacle.mutable_motion()->set_speed(gene.speed);
+      for (const sim::Vec2& point : gene.path) {
+        v1::Point& written = *obstacle.mutable_motion()->add_path();
+        written.set_x(point.x());
+        written.set_y(point.y());
+      }
+    }
+    if (gene.Lit()) obstacle.set_light(std::string(sim::NameOf(gene.light)));
   }
   if (test_case.spawn_area) {
     v1::Rectangle& area = *message.mutable_spawn_area();
@@ -35,7 +44,7 @@ void ToProto(const sim::TestCase& test_case, v1::TestCase& message) {
   if (test_case.robots) message.set_robots(*test_case.robots);
 }
 
-sim::TestCase FromProto(const v1::TestCase& message) {
+Result<sim::TestCase> FromProto(const v1::TestCase& message) {
   sim::TestCase test_case;
   test_case.name = message.name();
   if (message.has_side_x()) test_case.side_x = message.side_x();
@@ -43,8 +52,18 @@ sim::TestCase FromProto(const v1::TestCase& message) {
   if (message.has_wall_thickness()) test_case.wall_thickness = message.wall_thickness();
   test_case.obstacles.reserve(static_cast<std::size_t>(message.obstacles_size()));
   for (const v1::Obstacle& obstacle : message.obstacles()) {
-    test_case.obstacles.push_back(
-        {obstacle.x(), obstacle.y(), obstacle.length(), obstacle.width(), obstacle.orientation_deg()});
+    sim::ObstacleGene& gene = test_case.obstacles.emplace_back(sim::ObstacleGene{
+        obstacle.x(), obstacle.y(), obstacle.length(), obstacle.width(), obstacle.orientation_deg()});
+    gene.speed = obstacle.motion().speed();
+    for (const v1::Point& point : obstacle.motion().path()) gene.path.emplace_back(point.x(), point.y());
+    if (!obstacle.has_light()) continue;
+    const std::optional<sim::Color> light = sim::ColorNamed(obstacle.light());
+    if (!light) {
+      return InvalidInput(fmt::format("obstacle {}: '{}' is no colour of lights; known: {}",
+                                      test_case.obstacles.size(), obstacle.light(),
+                                      fmt::join(sim::kColorNames, ", ")));
+    }
+    gene.light = *light;
   }
   if (message.has_spawn_area()) {
     const v1::Rectangle& area = message.spawn_area();
@@ -166,7 +185,9 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
     return Corrupt(fmt::format("the {} bytes of the run spec do not parse", bytes.size()));
   }
   sim::RunSpec spec;
-  spec.test_case = FromProto(message.test_case());
+  Result<sim::TestCase> test_case = FromProto(message.test_case());
+  if (!test_case) return Corrupt("the run spec's " + test_case.error().message);
+  spec.test_case = std::move(*test_case);
   spec.scenario = message.scenario();
   for (const v1::Parameter& parameter : message.scenario_parameters()) {
     spec.scenario_parameters[parameter.name()] = parameter.value();
@@ -289,7 +310,9 @@ Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& 
   if (!json) return json.error();
   v1::TestCase message;
   if (Status filled = FillMessage(*json, file_name, message); !filled) return filled.error();
-  return FromProto(message);
+  Result<sim::TestCase> test_case = FromProto(message);
+  if (!test_case) return InvalidInput(file_name + ": " + test_case.error().message);
+  return test_case;
 }
 
 std::string WriteCaseJson(const sim::TestCase& test_case) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "sim/robot/color.h"
 #include "sim/run_spec.h"
 
 namespace gauntlet::master {
@@ -20,6 +21,12 @@ struct GenomeSpec {
   double width_min = 0.1;      // m
   double width_max = 0.4;      // m
   double step = 0.1;  // m, grid of positions and sizes (the thesis' files carry one decimal); 0 = continuous
+  double moving = 0.0;      // share of the genes that move (thesis 7.4)
+  int waypoints = 1;        // points that they go to; 1 = back and forth
+  double speed_min = 0.01;  // m/s
+  double speed_max = 0.03;  // m/s
+  double lights = 0.0;      // share of the genes that carry lights (thesis 7.4)
+  sim::Color light_color = sim::Color::kRed;
   int tries_per_gene = 500;  // redraws of one gene before the whole case starts anew
 };
 

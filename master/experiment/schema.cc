@@ -8,6 +8,7 @@
 
 #include "master/experiment/toml_text.h"
 #include "master/search/genome_generator.h"
+#include "sim/robot/color.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
@@ -86,6 +87,17 @@ Key SeedKey() {
   key.max = 18446744073709551615.0;
   key.get = [](const Experiment& e) -> KeyValue { return e.seed; };
   key.set = [](Experiment& e, const KeyValue& v) { e.seed = std::get<std::uint64_t>(v); };
+  return key;
+}
+
+Key LightColorKey() {
+  Key key =
+      MakeKey("genome.light_color", KeyType::kChoice, "of those lights; birds are red, their prey is blue");
+  key.choices.assign(sim::kColorNames.begin() + 1, sim::kColorNames.end());  // black is no light
+  key.get = [](const Experiment& e) -> KeyValue { return std::string(sim::NameOf(e.genome.light_color)); };
+  key.set = [](Experiment& e, const KeyValue& v) {
+    e.genome.light_color = *sim::ColorNamed(std::get<std::string>(v));
+  };
   return key;
 }
 
@@ -170,6 +182,17 @@ std::vector<Key> MakeCommonKeys() {
       NumberKey<kGenome, &GenomeSpec::width_max>("genome.width_max", "m", 0.01, 50.0, "widest obstacle"),
       NumberKey<kGenome, &GenomeSpec::step>("genome.step", "m", 0.0, 1.0,
                                             "grid of positions and sizes; 0 = continuous"),
+      NumberKey<kGenome, &GenomeSpec::moving>("genome.moving", "", 0.0, 1.0,
+                                              "share of the obstacles that move (thesis 7.4)"),
+      IntegerKey<kGenome, &GenomeSpec::waypoints>("genome.waypoints", 1, sim::kMaxObstaclePath,
+                                                  "places that they visit in turn; 1 = back and forth"),
+      NumberKey<kGenome, &GenomeSpec::speed_min>("genome.speed_min", "m/s", 0.001, sim::kMaxObstacleSpeed,
+                                                 "slowest moving obstacle"),
+      NumberKey<kGenome, &GenomeSpec::speed_max>("genome.speed_max", "m/s", 0.001, sim::kMaxObstacleSpeed,
+                                                 "fastest moving obstacle"),
+      NumberKey<kGenome, &GenomeSpec::lights>("genome.lights", "", 0.0, 1.0,
+                                              "share of the obstacles that carry lights (thesis 7.4)"),
+      LightColorKey(),
       IntegerKey<kGenome, &GenomeSpec::tries_per_gene>(
           "genome.tries_per_gene", 1, 1e6, "redraws of one obstacle before the whole case starts anew"),
 

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "sim/arena/genome_codec.h"
 #include "sim/base/check.h"
 #include "sim/base/hash.h"
 

@@ -19,6 +19,7 @@ struct GridRange {
 
 // Slack for ranges whose ends are grid points that binary fractions miss by a rounding error.
 constexpr double kGridSlack = 1e-6;
+constexpr double kSpeedStep = 0.001;  // m/s
 
 GridRange GridOf(double min, double max, double step) {
   const double divisions = std::floor(1.0 / step + 0.5);
@@ -40,10 +41,11 @@ struct Range {
   double max;
 };
 
-std::array<Range, 3> RangesOf(const GenomeSpec& spec) {
+std::array<Range, 4> RangesOf(const GenomeSpec& spec) {
   return {{{"position", spec.position_min, spec.position_max},
            {"length", spec.length_min, spec.length_max},
-           {"width", spec.width_min, spec.width_max}}};
+           {"width", spec.width_min, spec.width_max},
+           {"speed", spec.speed_min, spec.speed_max}}};
 }
 
 }  // namespace
@@ -63,7 +65,17 @@ sim::ObstacleGene GenomeGenerator::RandomGene(sim::RandomStream& random) const {
   gene.length = Draw(spec_.length_min, spec_.length_max, spec_.step, random);
   gene.width = Draw(spec_.width_min, spec_.width_max, spec_.step, random);
   gene.orientation_deg = random.Below(360);
+  if (spec_.moving > 0.0 && random.Chance(spec_.moving)) SetInMotion(random, gene);
+  if (spec_.lights > 0.0 && random.Chance(spec_.lights)) gene.light = spec_.light_color;
   return gene;
+}
+
+void GenomeGenerator::SetInMotion(sim::RandomStream& random, sim::ObstacleGene& gene) const {
+  gene.speed = Draw(spec_.speed_min, spec_.speed_max, kSpeedStep, random);
+  for (int i = 0; i < spec_.waypoints; ++i) {
+    const double x = Draw(spec_.position_min, spec_.position_max, spec_.step, random);
+    gene.path.emplace_back(x, Draw(spec_.position_min, spec_.position_max, spec_.step, random));
+  }
 }
 
 std::optional<sim::Genome> GenomeGenerator::TryGenome(sim::RandomStream& random) const {
@@ -114,6 +126,12 @@ Status CheckGenomeSpec(const GenomeSpec& spec) {
                                       range.min, range.max));
     }
   }
+  if (const GridRange speeds = GridOf(spec.speed_min, spec.speed_max, kSpeedStep);
+      speeds.first > speeds.last) {
+    return InvalidInput(
+        fmt::format("genome.speed_min = {} to genome.speed_max = {} holds no multiple of {} m/s",
+                    spec.speed_min, spec.speed_max, kSpeedStep));
+  }
   if (spec.step == 0.0) return Ok{};
   const double divisions = 1.0 / spec.step;
   if (!(spec.step > 0.0) || divisions < 1.0 - kGridSlack ||
@@ -123,6 +141,7 @@ Status CheckGenomeSpec(const GenomeSpec& spec) {
                     spec.step));
   }
   for (const Range& range : RangesOf(spec)) {
+    if (range.name == "speed") continue;  // has a grid of its own
     const GridRange grid = GridOf(range.min, range.max, spec.step);
     if (grid.first > grid.last) {
       return InvalidInput(
@@ -161,6 +180,17 @@ std::optional<sim::Violation> CheckGeneRanges(const sim::Genome& genome, const G
     const double orientation = genome[i].orientation_deg;
     if (!(orientation >= 0.0 && orientation < 360.0)) {
       return violation(i, "orientation", orientation, "0 to less than 360 degrees");
+    }
+    if (!genome[i].Moves()) continue;
+    if (genome[i].speed < spec.speed_min || genome[i].speed > spec.speed_max) {
+      return violation(i, "speed", genome[i].speed,
+                       fmt::format("{} to {} m/s", spec.speed_min, spec.speed_max));
+    }
+    for (const sim::Vec2& point : genome[i].path) {
+      for (const double value : {point.x(), point.y()}) {
+        if (value >= spec.position_min && value <= spec.position_max) continue;
+        return violation(i, "path", value, fmt::format("{} to {} m", spec.position_min, spec.position_max));
+      }
     }
   }
   return std::nullopt;

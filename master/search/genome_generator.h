@@ -23,7 +23,8 @@ class GenomeGenerator {
                   const sim::ArenaRequirements& requirements);
 
   // One gene, uniform in the ranges: on the grid of `step` metres (the thesis' files carry one decimal) or
-  // continuous, and turned by whole degrees. It may break validity rules.
+  // continuous, and turned by whole degrees; with the shares asked for moving, at whole mm/s, and lit. It may
+  // break validity rules.
   sim::ObstacleGene RandomGene(sim::RandomStream& random) const;
 
   // A valid case. Error: the arena breaks a rule without any obstacle; or no case was found in kMaxRestarts
@@ -38,6 +39,7 @@ class GenomeGenerator {
   const GenomeSpec& spec() const { return spec_; }
 
  private:
+  void SetInMotion(sim::RandomStream& random, sim::ObstacleGene& gene) const;
   // Nothing when a gene found no place in tries_per_gene draws.
   std::optional<sim::Genome> TryGenome(sim::RandomStream& random) const;
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "sim/arena/genome_codec.h"
 #include "sim/base/check.h"
 #include "sim/base/hash.h"
 
@@ -59,14 +60,7 @@ void EncodeIndividual(const Individual& individual, CanonicalEncoder& encoder) {
   encoder.Uint(individual.parents.size());
   for (const IndividualId parent : individual.parents) encoder.Uint(parent);
   encoder.Uint(individual.birth_generation);
-  encoder.Uint(individual.test_case.obstacles.size());
-  for (const sim::ObstacleGene& gene : individual.test_case.obstacles) {
-    encoder.Double(gene.x);
-    encoder.Double(gene.y);
-    encoder.Double(gene.length);
-    encoder.Double(gene.width);
-    encoder.Double(gene.orientation_deg);
-  }
+  sim::EncodeGenome(individual.test_case.obstacles, encoder);
   encoder.Uint(individual.evaluations.size());
   for (const double fitness : individual.evaluations) encoder.Double(fitness);
   encoder.Uint(individual.failed_evaluations);
@@ -79,33 +73,13 @@ Individual DecodeIndividual(FitnessAggregation aggregation, CanonicalDecoder& de
     individual.parents.push_back(decoder.Uint());
   }
   individual.birth_generation = static_cast<std::uint32_t>(decoder.Uint());
-  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
-    sim::ObstacleGene gene;
-    gene.x = decoder.Double();
-    gene.y = decoder.Double();
-    gene.length = decoder.Double();
-    gene.width = decoder.Double();
-    gene.orientation_deg = decoder.Double();
-    individual.test_case.obstacles.push_back(gene);
-  }
+  individual.test_case.obstacles = sim::DecodeGenome(decoder);
   for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
     individual.evaluations.push_back(decoder.Double());
   }
   individual.failed_evaluations = static_cast<std::uint32_t>(decoder.Uint());
   individual.fitness = Aggregate(individual.evaluations, aggregation);
   return individual;
-}
-
-std::uint64_t GenomeHash(const sim::Genome& genome) {
-  Fnv1a64 hash;
-  for (const sim::ObstacleGene& gene : genome) {
-    hash.AddDouble(gene.x);
-    hash.AddDouble(gene.y);
-    hash.AddDouble(gene.length);
-    hash.AddDouble(gene.width);
-    hash.AddDouble(gene.orientation_deg);
-  }
-  return hash.value();
 }
 
 void PendingRequests::Settle(const EvaluationOutcome& outcome) {

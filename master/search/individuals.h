@@ -28,9 +28,6 @@ void EncodeIndividual(const Individual& individual, CanonicalEncoder& encoder);
 // The genome stands in test_case.obstacles; check decoder.ok() before use.
 Individual DecodeIndividual(FitnessAggregation aggregation, CanonicalDecoder& decoder);
 
-// A hash of the genes, to count distinct genomes.
-std::uint64_t GenomeHash(const sim::Genome& genome);
-
 // Requests that were asked and not yet told. Outcomes must come in the order of the requests.
 class PendingRequests {
  public:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/arena/genome_codec.h"
 #include "sim/base/check.h"
 
 namespace gauntlet::master {

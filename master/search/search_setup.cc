@@ -78,6 +78,14 @@ std::string SearchIdentity(const SearchSetup& setup) {
                           g.position_min, g.position_max, g.length_min, g.length_max);
   identity += fmt::format("genome.width = {} {}\ngenome.step = {}\ngenome.tries_per_gene = {}\n", g.width_min,
                           g.width_max, g.step, g.tries_per_gene);
+  if (g.moving > 0.0) {
+    identity += fmt::format("genome.moving = {}\ngenome.waypoints = {}\ngenome.speed = {} {}\n", g.moving,
+                            g.waypoints, g.speed_min, g.speed_max);
+  }
+  if (g.lights > 0.0) {
+    identity +=
+        fmt::format("genome.lights = {}\ngenome.light_color = {}\n", g.lights, sim::NameOf(g.light_color));
+  }
   const SearchSpec& s = e.search;
   identity +=
       fmt::format("search.algorithm = {}\nsearch.replicates = {}\n", static_cast<int>(s.kind), s.replicates);

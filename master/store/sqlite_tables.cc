@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "sim/arena/genome_codec.h"
 #include "sim/base/canonical_encoder.h"
 #include "sim/base/hash.h"
 
@@ -31,11 +32,7 @@ std::string EncodeTestCase(const sim::TestCase& test_case) {
   encoder.String(test_case.name);
   for (const double value : {test_case.side_x, test_case.side_y, test_case.wall_thickness})
     encoder.Double(value);
-  encoder.Uint(test_case.obstacles.size());
-  for (const sim::ObstacleGene& gene : test_case.obstacles) {
-    for (const double value : {gene.x, gene.y, gene.length, gene.width, gene.orientation_deg})
-      encoder.Double(value);
-  }
+  sim::EncodeGenome(test_case.obstacles, encoder);
   encoder.Bool(test_case.spawn_area.has_value());
   if (test_case.spawn_area) {
     const sim::Rectangle& area = *test_case.spawn_area;
@@ -61,13 +58,7 @@ bool DecodeTestCase(std::string_view bytes, sim::TestCase& test_case) {
   test_case.name = decoder.String();
   for (double* value : {&test_case.side_x, &test_case.side_y, &test_case.wall_thickness})
     *value = decoder.Double();
-  const std::uint64_t count = decoder.Uint();
-  for (std::uint64_t i = 0; i < count && decoder.ok(); ++i) {
-    sim::ObstacleGene& gene = test_case.obstacles.emplace_back();
-    for (double* value : {&gene.x, &gene.y, &gene.length, &gene.width, &gene.orientation_deg}) {
-      *value = decoder.Double();
-    }
-  }
+  test_case.obstacles = sim::DecodeGenome(decoder);
   if (decoder.Bool()) {
     sim::Rectangle& area = test_case.spawn_area.emplace();
     for (sim::Vec2* corner : {&area.min, &area.max}) {

@@ -15,7 +15,16 @@ Arena::Arena(const TestCase& test_case) {
                  "an arena without interior: judge the test case with CheckValidity first");
 
   obstacles_.reserve(test_case.obstacles.size());
-  for (const ObstacleGene& gene : test_case.obstacles) obstacles_.push_back(BoxOf(gene));
+  for (const ObstacleGene& gene : test_case.obstacles) {
+    if (gene.Lit()) lit_.push_back({obstacles_.size(), gene.light});
+    if (gene.Moves()) {
+      moving_.push_back({obstacles_.size(), {{gene.x, gene.y}}, gene.speed});
+      moving_.back().path.insert(moving_.back().path.end(), gene.path.begin(), gene.path.end());
+    } else {
+      fixed_boxes_.push_back(BoxOf(gene));
+    }
+    obstacles_.push_back(BoxOf(gene));
+  }
 
   // Walls overlap in the corners, so that no gap is left there.
   const Vec2 along_x = {half_x + thickness / 2.0, thickness / 2.0};
@@ -27,6 +36,7 @@ Arena::Arena(const TestCase& test_case) {
 
   boxes_ = obstacles_;
   boxes_.insert(boxes_.end(), walls_.begin(), walls_.end());
+  fixed_boxes_.insert(fixed_boxes_.end(), walls_.begin(), walls_.end());
 }
 
 Polygon Arena::VisiblePart(std::size_t index) const {
@@ -39,9 +49,21 @@ bool Arena::InInterior(const Vec2& p) const {
          p.y() < interior_max_.y();
 }
 
-bool Arena::LineOfSight(const Vec2& a, const Vec2& b) const {
-  for (const OrientedBox& box : obstacles_) {
-    if (SegmentTouches(box, a, b)) return false;
+bool Arena::LineOfSight(const Vec2& a, const Vec2& b, std::span<const Vec2> centers) const {
+  if (centers.empty()) {
+    for (const OrientedBox& box : obstacles_) {
+      if (SegmentTouches(box, a, b)) return false;
+    }
+  } else {
+    GAUNTLET_CHECK(centers.size() == moving_.size(), "one centre per moving obstacle");
+    for (const OrientedBox& box : fixed_boxes_) {
+      if (SegmentTouches(box, a, b)) return false;
+    }
+    for (std::size_t i = 0; i < centers.size(); ++i) {
+      OrientedBox box = obstacles_[moving_[i].obstacle];
+      box.center = centers[i];
+      if (SegmentTouches(box, a, b)) return false;
+    }
   }
   // The interior is convex: only a point outside it can have a wall in the way.
   if (InInterior(a) && InInterior(b)) return true;

@@ -122,6 +122,57 @@ std::optional<Violation> JudgeGeneNumbers(const ObstacleGene& gene, std::size_t 
   return std::nullopt;
 }
 
+// The rules that concern nothing but its path.
+std::optional<Violation> JudgeMotion(const ObstacleGene& gene, std::size_t index) {
+  const int number = static_cast<int>(index);
+  const bool finite =
+      std::all_of(gene.path.begin(), gene.path.end(), [](const Vec2& p) { return p.allFinite(); });
+  if (!finite || !std::isfinite(gene.speed)) {
+    return Violation{ValidityRule::kFiniteNumbers, number,
+                     GeneText(gene, index) + " moves along numbers that are not finite"};
+  }
+  if (gene.speed < 0.0 || gene.speed > kMaxObstacleSpeed) {
+    return Violation{ValidityRule::kLimits, number,
+                     GeneText(gene, index) + " moves at " + NumberText(gene.speed) + " m/s; want 0 to " +
+                         NumberText(kMaxObstacleSpeed) + " m/s"};
+  }
+  if (gene.path.empty() != (gene.speed == 0.0)) {
+    return Violation{ValidityRule::kLimits, number,
+                     GeneText(gene, index) + " has a path of " + std::to_string(gene.path.size()) +
+                         " points and a speed of " + NumberText(gene.speed) + " m/s; want both or neither"};
+  }
+  if (gene.path.size() > kMaxObstaclePath) {
+    return Violation{ValidityRule::kLimits, number,
+                     GeneText(gene, index) + " has a path of " + std::to_string(gene.path.size()) +
+                         " points; want at most " + std::to_string(kMaxObstaclePath)};
+  }
+  for (const Vec2& point : gene.path) {
+    if (point.cwiseAbs().maxCoeff() <= kMaxCoordinate) continue;
+    return Violation{ValidityRule::kLimits, number,
+                     GeneText(gene, index) + " moves to " + PointText(point) + " m; want paths within " +
+                         NumberText(kMaxCoordinate) + " m of the origin"};
+  }
+  return std::nullopt;
+}
+
+// The least distance of the obstacle from `place` on its whole path.
+double LeastDistance(const ObstacleGene& gene, const Vec2& place) {
+  constexpr double kStride = 0.01;  // m between the places of the obstacle that are looked at
+  OrientedBox box = BoxOf(gene);
+  double least = Distance(box, place);
+  for (const Vec2& point : gene.path) {
+    const Vec2 from = box.center;
+    const double length = std::sqrt((point - from).squaredNorm());
+    const int strides = static_cast<int>(length / kStride) + 1;
+    for (int i = 1; i <= strides; ++i) {
+      box.center = from + static_cast<double>(i) / strides * (point - from);
+      least = std::min(least, Distance(box, place));
+    }
+    box.center = point;
+  }
+  return least;
+}
+
 // Start and goal free and connected in `grid`; `culprit` begins the message.
 std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequirements& requirements, int gene,
                                    const std::string& culprit) {
@@ -196,6 +247,8 @@ std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene
   const int number = static_cast<int>(index);
   if (std::optional<Violation> violation = JudgeGeneNumbers(gene, index)) return violation;
 
+  if (std::optional<Violation> violation = JudgeMotion(gene, index)) return violation;
+
   const OrientedBox box = BoxOf(gene);
   const auto around = std::find_if(boxes_.begin(), boxes_.end(),
                                    [&](const OrientedBox& earlier) { return ContainsBox(earlier, box); });
@@ -205,7 +258,8 @@ std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene
                          std::to_string(around - boxes_.begin() + 1)};
   }
   for (const auto& [place, name] : {std::pair{requirements_.start, "start"}, {requirements_.goal, "goal"}}) {
-    const double distance = Distance(box, place);
+    if (requirements_.clearance <= 0.0) break;
+    const double distance = LeastDistance(gene, place);
     if (distance < requirements_.clearance) {
       return Violation{ValidityRule::kClearance, number,
                        GeneText(gene, index) + " is " + NumberText(distance) + " m from the " + name + " " +

@@ -85,6 +85,7 @@ struct MovingBox {
   b2Body* body = nullptr;
   b2PolygonShape* shape = nullptr;
   bool kinematic = false;
+  bool shown = true;         // Box2D has it where it is
   double reach = 0.0;        // m, furthest that a point of it can get in this tick by itself
   Vec2 move = Vec2::Zero();  // m, of a kinematic box in this tick
   double turn = 0.0;         // rad, likewise
@@ -101,13 +102,20 @@ void SetCorners(const OrientedBox& box, b2PolygonShape& shape) {
   }
 }
 
-// Box2D's body stays unturned; its shape turns.
 void Place(MovingBox& moving, const Vec2& center, double heading) {
   moving.heading = WrapAngle(heading);
   moving.box.center = center;
   moving.box.axis = UnitVector(moving.heading);
+  moving.shown = false;
+}
+
+// Lets Box2D know. Its body stays unturned; its shape turns. Box2D remembers each such move until its next
+// step, so boxes are shown only when there is one.
+void Show(MovingBox& moving) {
+  if (moving.shown) return;
   SetCorners(moving.box, *moving.shape);
-  moving.body->SetTransform(ToBox2d(center), 0.0f);
+  moving.body->SetTransform(ToBox2d(moving.box.center), 0.0f);
+  moving.shown = true;
 }
 
 // The first positive overlap at the ends of the substeps of a step, at most kDeepestBite. `overlap_at` tells
@@ -415,6 +423,7 @@ void Box2dEngine::MoveBoxes(std::size_t step) {
 }
 
 void Box2dEngine::Solve() {
+  for (MovingBox& moving : moving_) Show(moving);
   for (std::size_t step = 0; step < kSteps; ++step) {
     for (MovingBox& moving : moving_) {
       if (!moving.kinematic) continue;
@@ -433,6 +442,7 @@ void Box2dEngine::Solve() {
     }
     world_.Step(static_cast<float>(kStep), kVelocityIterations, kPositionIterations);
     MoveBoxes(step);
+    for (MovingBox& moving : moving_) Show(moving);
     for (Robot& robot : robots_) {
       if (!robot.in_solver) continue;
       robot.held = Touching(*robot.body);
@@ -471,6 +481,7 @@ void Box2dEngine::StepBackFromBoxes(std::size_t index) {
     } else {  // it gives way
       robot.touched = true;
       Place(moving, moving.box.center - back, moving.heading);
+      Show(moving);
     }
   }
 }

@@ -9,22 +9,11 @@
 #include "sim/geometry/trigonometry.h"
 #include "sim/geometry/vec2.h"
 #include "sim/random/random_stream.h"
+#include "sim/robot/color.h"
 #include "sim/robot/devices.h"
 #include "sim/robot/foot_bot.h"
 
 namespace gauntlet::sim {
-
-enum class Color : std::uint8_t {
-  kBlack = 0,
-  kRed,
-  kGreen,
-  kBlue,
-  kYellow,
-  kWhite,
-  kMagenta,
-  kCyan,
-  kOrange
-};
 
 // A light source seen by the omnidirectional camera. Most rules need its place only, so its bearing is worked
 // out when asked for.

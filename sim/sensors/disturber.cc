@@ -35,7 +35,7 @@ bool HasErrors(const DeviceNoise& noise) {
 }  // namespace
 
 Disturber::Disturber(const Disturbances& disturbances, std::uint64_t seed, std::size_t robots,
-                     const Surroundings& surroundings)
+                     const Surroundings& surroundings, std::size_t obstacle_lights)
     : seed_(seed), surroundings_(surroundings), stopped_(robots, kNever), dead_(robots) {
   for (PerDevice& ticks : dead_) ticks.fill(kNever);
   for (const auto& [device, noise] : disturbances.noise) noise_[Index(device)] = noise;
@@ -55,7 +55,7 @@ Disturber::Disturber(const Disturbances& disturbances, std::uint64_t seed, std::
       dead = std::min(dead, stopped_[robot]);
     }
   }
-  blobs_.reserve(robots * (1 + foot_bot::kRingLeds) + surroundings.lights().size());
+  blobs_.reserve(robots * (1 + foot_bot::kRingLeds) + surroundings.lights().size() + obstacle_lights);
   messages_.reserve(robots + surroundings.radio_beacons().size());
   short_.reserve(kMostRays);
   long_.reserve(kMostRays);

@@ -20,7 +20,7 @@ class Disturber {
   // Disturbances that RefuseDisturbances lets pass. `surroundings` tells how many blobs and messages there
   // may be; afterwards nothing is allocated.
   Disturber(const Disturbances& disturbances, std::uint64_t seed, std::size_t robots,
-            const Surroundings& surroundings);
+            const Surroundings& surroundings, std::size_t obstacle_lights);
 
   // The whole robot is dead in this tick.
   bool Stopped(RobotIndex robot, Tick tick) const { return tick >= stopped_[Index(robot)]; }

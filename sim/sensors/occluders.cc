@@ -26,18 +26,28 @@ bool CutBelow(double height, const Point3& a, const Point3& b, Vec2& from, Vec2&
 }  // namespace
 
 Occluders::Occluders(const Arena& arena) {
-  for (const OrientedBox& box : arena.boxes()) AddBox(box);
+  for (const OrientedBox& box : arena.fixed_boxes()) AddBox(box);
+  moving_.reserve(arena.moving().size());
+}
+
+Occluders::Box Occluders::Bounded(const OrientedBox& box, double height) {
+  Box bounded = {.box = box, .height = height, .min = box.center, .max = box.center};
+  for (const Vec2& corner : Corners(box)) {
+    bounded.min = bounded.min.cwiseMin(corner);
+    bounded.max = bounded.max.cwiseMax(corner);
+  }
+  return bounded;
 }
 
 void Occluders::AddBox(const OrientedBox& box, double height) {
-  Box added = {.box = box, .height = height, .min = box.center, .max = box.center};
-  for (const Vec2& corner : Corners(box)) {
-    added.min = added.min.cwiseMin(corner);
-    added.max = added.max.cwiseMax(corner);
-  }
-  boxes_.push_back(added);
+  boxes_.push_back(Bounded(box, height));
   framed_.reserve(boxes_.size());
   all_high_ = all_high_ && height >= kHighestDevice;
+}
+
+void Occluders::SetMoving(std::span<const OrientedBox> boxes) {
+  moving_.clear();
+  for (const OrientedBox& box : boxes) moving_.push_back(Bounded(box, kBoxHeight));
 }
 
 void Occluders::Frame(std::span<const BodyFrame> robots) {
@@ -57,30 +67,44 @@ void Occluders::Frame(std::span<const BodyFrame> robots) {
   }
 }
 
+inline bool Occluders::HighBoxBetween(const Box& box, const Vec2& a, const Vec2& b, const Vec2& min,
+                                      const Vec2& max) {
+  if (box.height < kHighestDevice) return false;
+  if (box.min.x() > max.x() || box.max.x() < min.x() || box.min.y() > max.y() || box.max.y() < min.y()) {
+    return false;
+  }
+  return SegmentTouches(box.box, a, b);
+}
+
 bool Occluders::BoxBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const {
   const Vec2 min = a.cwiseMin(b);
   const Vec2 max = a.cwiseMax(b);
   for (const std::size_t index : boxes) {
-    const Box& box = boxes_[index];
-    if (box.height < kHighestDevice) continue;
-    if (box.min.x() > max.x() || box.max.x() < min.x() || box.min.y() > max.y() || box.max.y() < min.y()) {
-      continue;
-    }
-    if (SegmentTouches(box.box, a, b)) return true;
+    if (HighBoxBetween(boxes_[index], a, b, min, max)) return true;
+  }
+  for (const Box& box : moving_) {
+    if (HighBoxBetween(box, a, b, min, max)) return true;
   }
   return false;
 }
 
+inline bool Occluders::LowBoxBetween(const Box& box, const Point3& a, const Point3& b) {
+  Vec2 from;
+  Vec2 to;
+  if (!CutBelow(box.height, a, b, from, to)) return false;
+  if (box.min.x() > std::max(from.x(), to.x()) || box.max.x() < std::min(from.x(), to.x()) ||
+      box.min.y() > std::max(from.y(), to.y()) || box.max.y() < std::min(from.y(), to.y())) {
+    return false;
+  }
+  return SegmentTouches(box.box, from, to);
+}
+
 bool Occluders::BoxBetween(const Point3& a, const Point3& b) const {
   for (const Box& box : boxes_) {
-    Vec2 from;
-    Vec2 to;
-    if (!CutBelow(box.height, a, b, from, to)) continue;
-    if (box.min.x() > std::max(from.x(), to.x()) || box.max.x() < std::min(from.x(), to.x()) ||
-        box.min.y() > std::max(from.y(), to.y()) || box.max.y() < std::min(from.y(), to.y())) {
-      continue;
-    }
-    if (SegmentTouches(box.box, from, to)) return true;
+    if (LowBoxBetween(box, a, b)) return true;
+  }
+  for (const Box& box : moving_) {
+    if (LowBoxBetween(box, a, b)) return true;
   }
   return false;
 }

@@ -27,6 +27,9 @@ class Occluders {
   explicit Occluders(const Arena& arena);
 
   void AddBox(const OrientedBox& box, double height = kBoxHeight);
+  // The boxes that move, where they are now, all of the usual height. The answers below count them in. Does
+  // not allocate for as many as the arena has.
+  void SetMoving(std::span<const OrientedBox> boxes);
   // Every box is higher than any device or lamp, so BoxBetweenRobots says it all.
   bool all_high() const { return all_high_; }
 
@@ -38,6 +41,7 @@ class Occluders {
   bool BoxBetweenRobots(const Vec2& a, const Vec2& b) const { return BoxBetween(framed_, a, b); }
   // The same, asking only these boxes (their numbers in the order they were added).
   bool BoxBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const;
+  // Of the fixed boxes.
   std::size_t size() const { return boxes_.size(); }
   const OrientedBox& box(std::size_t index) const { return boxes_[index].box; }
   // Whether the straight line from a to b meets a box, at or below the box's height.
@@ -51,7 +55,12 @@ class Occluders {
     Vec2 max;
   };
 
+  static Box Bounded(const OrientedBox& box, double height);
+  static bool HighBoxBetween(const Box& box, const Vec2& a, const Vec2& b, const Vec2& min, const Vec2& max);
+  static bool LowBoxBetween(const Box& box, const Point3& a, const Point3& b);
+
   std::vector<Box> boxes_;
+  std::vector<Box> moving_;
   std::vector<std::size_t> framed_;  // indices of boxes_ that are higher than any device
   bool all_high_ = true;
 };

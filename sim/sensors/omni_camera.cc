@@ -55,7 +55,8 @@ void OmniCameras::Look(const Scene& scene) {
       }
       if (scene.any_ring_lit) AddRing(scene, viewer, other.robot);
     }
-    if (!scene.lights.empty()) AddLights(scene, viewer);
+    if (!scene.lights.empty()) AddLights(scene, scene.lights, viewer);
+    if (!scene.obstacle_lights.empty()) AddLights(scene, scene.obstacle_lights, viewer);
   }
   first_.back() = blobs_.size();
 }
@@ -80,10 +81,10 @@ void OmniCameras::AddRing(const Scene& scene, RobotIndex viewer, RobotIndex othe
   }
 }
 
-void OmniCameras::AddLights(const Scene& scene, RobotIndex viewer) {
+void OmniCameras::AddLights(const Scene& scene, std::span<const Light> lights, RobotIndex viewer) {
   const BodyFrame& self = scene.robots[static_cast<std::size_t>(viewer)];
   const Point3 camera = {self.position, foot_bot::kCameraHeight};
-  for (const Light& light : scene.lights) {
+  for (const Light& light : lights) {
     if (light.color == Color::kBlack || light.height >= kHighestLight) continue;
     const Vec2 offset = light.position - self.position;
     if (!(Side(offset) < ranges_[static_cast<std::size_t>(viewer)])) continue;

@@ -26,7 +26,8 @@ class OmniCameras {
     const RobotPairs& pairs;
     std::span<const Signals> signals;
     bool any_ring_lit;
-    std::span<const Light> lights;
+    std::span<const Light> lights;           // of the scenario
+    std::span<const Light> obstacle_lights;  // of the obstacles
   };
   // What every camera sees: a blob for each beacon, ring LED and lamp that is not black, strictly inside the
   // square and not hidden. Robots are lower than the line to a beacon and hide none; a ring LED may be hidden
@@ -34,7 +35,8 @@ class OmniCameras {
   // or more above the floor are not seen. Allocates nothing unless a robot sees more than 64 robots.
   void Look(const Scene& scene);
 
-  // Of the last Look: robots in robot order, of each the beacon, then its ring; then lights in their order.
+  // Of the last Look: robots in robot order, of each the beacon, then its ring; then lights in their order,
+  // then those of obstacles.
   std::span<const Blob> BlobsOf(RobotIndex robot) const {
     const std::size_t index = static_cast<std::size_t>(robot);
     return std::span(blobs_).subspan(first_[index], first_[index + 1] - first_[index]);
@@ -42,7 +44,7 @@ class OmniCameras {
 
  private:
   void AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other);
-  void AddLights(const Scene& scene, RobotIndex viewer);
+  void AddLights(const Scene& scene, std::span<const Light> lights, RobotIndex viewer);
   void Add(const BodyFrame& viewer, const Vec2& offset, double range, Color color);
 
   std::vector<double> ranges_;

@@ -60,8 +60,9 @@ SensorSuite::SensorSuite(const Arena& arena, std::span<const RobotSensors> robot
       pairs_(Reaches(robots)),
       cameras_(CameraRanges(robots)),
       radios_(RadiosOf(robots)),
-      boxes_(arena.boxes()) {
-  for (const OrientedBox& box : arena.boxes()) nearby_.AddBox(box);
+      boxes_(arena.fixed_boxes()) {
+  for (const OrientedBox& box : arena.fixed_boxes()) nearby_.AddBox(box);
+  boxes_.resize(boxes_.size() + arena.moving().size());
   nearby_.SetRobots(static_cast<int>(robots.size()));
   for (const RobotSensors& robot : robots) anybodys_devices_ = anybodys_devices_ | robot.devices;
   if (anybodys_devices_.Has(Device::kDistanceScanner)) scanners_.resize(robots.size());
@@ -69,11 +70,16 @@ SensorSuite::SensorSuite(const Arena& arena, std::span<const RobotSensors> robot
 
 void SensorSuite::Sense(const World& world) {
   for (std::size_t i = 0; i < frames_.size(); ++i) frames_[i] = BodyFrame(world.poses[i]);
+  if (!world.moving_boxes.empty()) {
+    occluders_.SetMoving(world.moving_boxes);
+    std::copy(world.moving_boxes.begin(), world.moving_boxes.end(),
+              boxes_.end() - std::ssize(world.moving_boxes));
+  }
   SenseOthers(world);
   if (anybodys_devices_.Has(Device::kProximity)) FindNear();
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     const RobotIndex robot = static_cast<RobotIndex>(i);
-    if (sensors_[i].devices.Has(Device::kProximity)) SenseProximity(robot);
+    if (sensors_[i].devices.Has(Device::kProximity)) SenseProximity(world, robot);
     SenseRest(world, robot);
   }
 }
@@ -96,7 +102,8 @@ void SensorSuite::SenseOthers(const World& world) {
                    .pairs = pairs_,
                    .signals = world.signals,
                    .any_ring_lit = any_ring_lit,
-                   .lights = world.surroundings.lights()});
+                   .lights = world.surroundings.lights(),
+                   .obstacle_lights = world.obstacle_lights});
   }
   if (radio) {
     radios_.Listen({.robots = frames_,
@@ -129,11 +136,12 @@ void SensorSuite::FindNear() {
   }
 }
 
-void SensorSuite::SenseProximity(RobotIndex robot) {
+void SensorSuite::SenseProximity(const World& world, RobotIndex robot) {
   const std::size_t index = static_cast<std::size_t>(robot);
   const BodyFrame& self = frames_[index];
   ProximityRing ring(self);
   for (const std::size_t box : nearby_.Near(robot, self.position)) ring.See(nearby_.box(box));
+  for (const OrientedBox& box : world.moving_boxes) ring.See(box);
   if (frames_.size() <= kFewRobots) {
     ForEachBit(near_[index], [&](std::size_t other) { ring.See(frames_[other]); });
   } else {

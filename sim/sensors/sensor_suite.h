@@ -39,6 +39,8 @@ class SensorSuite {
     std::span<const Actuators> actuators;  // as in action: drives the scanners
     const Surroundings& surroundings;
     const Grippers& grippers;
+    std::span<const OrientedBox> moving_boxes = {};  // as many as the arena has moving obstacles
+    std::span<const Light> obstacle_lights = {};
   };
   // Reads every sensor. Allocates nothing, except in crowds where a robot sees or hears more than 64 others.
   void Sense(const World& world);
@@ -50,7 +52,7 @@ class SensorSuite {
  private:
   void SenseOthers(const World& world);
   void FindNear();
-  void SenseProximity(RobotIndex robot);
+  void SenseProximity(const World& world, RobotIndex robot);
   void SenseRest(const World& world, RobotIndex robot);
 
   std::vector<RobotSensors> sensors_;
@@ -64,7 +66,7 @@ class SensorSuite {
   RobotPairs pairs_;
   OmniCameras cameras_;
   Radios radios_;
-  std::vector<OrientedBox> boxes_;
+  std::vector<OrientedBox> boxes_;         // fixed, then moving ones
   std::vector<DistanceScanner> scanners_;  // per robot; empty when nobody has one
 };
 

@@ -307,5 +307,26 @@ TEST(TrajectoryCsv, OneLinePerTickAndRobotWithNumbersThatReadBack) {
   EXPECT_EQ(WriteTrajectoryCsv({}), "tick,time_s,robot,x,y,heading,speed\n");
 }
 
+TEST(RunFigureTest, MovingAndLitObstaclesShowTheirPathAndTheirLamps) {
+  RunFigure figure = ThreeBirds();
+  EXPECT_THAT(DrawRun(figure), Not(HasSubstr("class=\"obstacle-path\"")));
+  EXPECT_THAT(DrawRun(figure), Not(HasSubstr("class=\"lamp\"")));
+  figure.spec.test_case.obstacles[2].path = {{1.0, -1.0}};
+  figure.spec.test_case.obstacles[2].speed = 0.02;
+  figure.spec.test_case.obstacles[1].light = sim::Color::kMagenta;
+  const std::string picture = DrawRun(figure);
+  EXPECT_THAT(picture, HasSubstr("class=\"obstacle-path\" id=\"path-3\""));
+  EXPECT_THAT(picture, HasSubstr("class=\"obstacle-end\""));
+  EXPECT_THAT(picture, HasSubstr("way of a moving obstacle"));
+  figure.spec.disturbances.faults = {{.robot = 3, .tick = 500}};
+  EXPECT_THAT(DrawRun(figure), HasSubstr("3:stopped@500"));
+  std::size_t lamps = 0;
+  for (std::size_t at = picture.find("class=\"lamp\" fill=\"magenta\""); at != std::string::npos;
+       at = picture.find("class=\"lamp\"", at + 1)) {
+    ++lamps;
+  }
+  EXPECT_EQ(lamps, 2u) << "only its right side is inside the walls (half of it is beyond), and the legend";
+}
+
 }  // namespace
 }  // namespace gauntlet::analysis

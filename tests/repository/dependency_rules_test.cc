@@ -120,11 +120,12 @@ INSTANTIATE_TEST_SUITE_P(
                   {"analysis/", "sim/base/", "sim/geometry/", "sim/arena/", "sim/random/", "sim/run_spec.h",
                    "sim/run_result.h", "sim/observer.h", "sim/robot/foot_bot.h"},
                   {"zmq", "google/", "sqlite3", "box2d", "thread", "sys/"}},
-        LayerRule{"master",
-                  {"master/", "analysis/", "slurm/", "proto/", "sim/base/", "sim/geometry/", "sim/arena/",
-                   "sim/random/", "sim/run_spec.h", "sim/run_result.h", "sim/observer.h",
-                   "sim/robot/foot_bot.h", "sim/robot/disturbances.h", "controllers/registry.h"},
-                  {"box2d"}},
+        LayerRule{
+            "master",
+            {"master/", "analysis/", "slurm/", "proto/", "sim/base/", "sim/geometry/", "sim/arena/",
+             "sim/random/", "sim/run_spec.h", "sim/run_result.h", "sim/observer.h", "sim/robot/foot_bot.h",
+             "sim/robot/disturbances.h", "sim/robot/color.h", "controllers/registry.h"},
+            {"box2d"}},
         LayerRule{"slurm", {"slurm/", "sim/base/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
     [](const testing::TestParamInfo<LayerRule>& parameter) { return parameter.param.layer; });
 

@@ -71,6 +71,11 @@ TEST(Simulation, AllocatesNothingWithEveryDevice) {
     RandomStream random(2, StreamPurpose::kTest);
     TestCase test_case;
     test_case.obstacles = RandomObstacles(8, random);
+    for (const std::size_t gene : {0u, 3u}) {
+      test_case.obstacles[gene].path = {Vec2::Zero()};
+      test_case.obstacles[gene].speed = kMaxObstacleSpeed;
+      test_case.obstacles[gene].light = Color::kYellow;
+    }
     const Behaviour use_everything = [walk = Huddle(0.1)](const ControlStep& step) mutable {
       walk(step);
       step.actuators.ring.fill(step.tick % 3 == 0 ? Color::kBlack : Color::kGreen);

@@ -27,7 +27,7 @@ gauntlet_test(
 
 gauntlet_test(
   sim_simulation_test
-  SOURCES disturbances_test.cc interaction_test.cc observer_test.cc run_result_test.cc simulation_test.cc
+  SOURCES disturbances_test.cc interaction_test.cc moving_obstacles_test.cc observer_test.cc run_result_test.cc simulation_test.cc
   LIBRARIES gauntlet_sim)
 
 # An executable of its own, because it replaces the allocation functions.

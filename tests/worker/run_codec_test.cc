@@ -164,6 +164,29 @@ TEST(RunCodecTest, RefusesAParameterThatIsGivenTwice) {
   EXPECT_THAT(ErrorOf(wire), HasSubstr("controller parameter 'speed' is given twice"));
 }
 
+TEST(RunCodecTest, ObstaclesThatMoveAndShineDecodeToWhatWasSent) {
+  v1::RunSpec wire;
+  v1::Obstacle& obstacle = *wire.mutable_test_case()->add_obstacles();
+  obstacle.set_length(1.0);
+  obstacle.set_light("green");
+  obstacle.mutable_motion()->set_speed(0.02);
+  obstacle.mutable_motion()->add_path()->set_y(2.0);
+  const Result<sim::RunSpec> decoded = DecodeRunSpec(wire.SerializeAsString());
+  ASSERT_TRUE(decoded.ok()) << decoded.error().message;
+  const sim::ObstacleGene& gene = decoded->test_case.obstacles.at(0);
+  EXPECT_EQ(gene.light, sim::Color::kGreen);
+  EXPECT_EQ(gene.speed, 0.02);
+  EXPECT_EQ(gene.path, (std::vector<sim::Vec2>{{0.0, 2.0}}));
+
+  obstacle.set_light("mauve");
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("an obstacle's light is 'mauve', no colour"));
+  obstacle.clear_light();
+  obstacle.mutable_motion()->mutable_path(0)->set_x(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("x of a path is nan"));
+  for (int i = 0; i < 16; ++i) obstacle.mutable_motion()->add_path();
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("17 points of a path, 16 are possible"));
+}
+
 TEST(RunCodecTest, DisturbancesDecodeToWhatWasSent) {
   v1::RunSpec wire;
   v1::DeviceNoise& noise = *wire.add_noise();

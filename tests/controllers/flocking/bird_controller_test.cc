@@ -1,12 +1,15 @@
 #include "controllers/flocking/bird_controller.h"
 
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "controllers/common/proximity.h"
 #include "controllers/flocking/flocking_registry.h"
 #include "gtest/gtest.h"
 #include "sim/geometry/trigonometry.h"
+#include "sim/simulation.h"
+#include "tests/support/toy_scenario.h"
 
 namespace gauntlet::controllers {
 namespace {
@@ -246,6 +249,25 @@ TEST(BirdController, ImprovedBirdIsTheOriginalOneWhenNobodyInFrontIsFar) {
     EXPECT_EQ(original.rule, improved.rule);
     ExpectDrive(improved, original.forward, original.turn);
   }
+}
+
+// Thesis 7.4: robots take an obstacle with a light of their colour for a flockmate and anchor at it.
+TEST(BirdControllerTest, ALightOnAnObstacleIsCountedAsANeighbour) {
+  const auto last_rule = [](Color light) {
+    sim::TestCase test_case;
+    test_case.obstacles = {{1.0, 0.0, 0.2, 0.4, 0.0}};
+    test_case.obstacles[0].light = light;
+    const auto bird = std::make_shared<BirdController>(Original());
+    sim::ToyRobot robot = {.pose = {{0.0, 0.0}, 0.0},
+                           .behaviour = [bird](const sim::ControlStep& step) { bird->Step(step); }};
+    sim::ToyScenario scenario(test_case, {robot}, 3);
+    sim::Simulate(scenario, 1, false);
+    return bird->last_rule();
+  };
+  EXPECT_EQ(last_rule(BirdController::kBirdColor), BirdRule::kFlock);
+  EXPECT_EQ(last_rule(BirdController::kPreyColor), BirdRule::kChase);
+  EXPECT_EQ(last_rule(Color::kGreen), BirdRule::kWander);
+  EXPECT_EQ(last_rule(Color::kBlack), BirdRule::kWander);
 }
 
 }  // namespace

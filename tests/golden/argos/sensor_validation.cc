@@ -157,7 +157,8 @@ std::vector<sim::Blob> Look(CameraScene& scene) {
                 .pairs = pairs,
                 .signals = signals,
                 .any_ring_lit = scene.target.RingLit(),
-                .lights = scene.lights});
+                .lights = scene.lights,
+                .obstacle_lights = {}});
   const auto blobs = cameras.BlobsOf(0);
   return {blobs.begin(), blobs.end()};
 }

@@ -41,6 +41,19 @@ TEST_F(Replay, ReproducedRunExitsZeroAndWritesItsFiles) {
               StartsWith("tick,time_s,robot,x,y,heading,speed\n0,0.0,0,0,0,0,0\n1,0.1,0,0.1,"));
 }
 
+TEST_F(Replay, NoiseAndFaultsOfTheRunAreNamed) {
+  EXPECT_EQ(Run({"replay", "d", "12"}), kExitDone);
+  EXPECT_THAT(out_.str(), AllOf(Not(HasSubstr("noise.")), Not(HasSubstr("faults"))));
+  sim::Disturbances& disturbances = replay_.report.spec.disturbances;
+  disturbances.noise[sim::Device::kProximity].gaussian = 0.02;
+  disturbances.faults = {{.robot = 3, .device = sim::Device::kWheels, .tick = 500}};
+  EXPECT_EQ(Run({"replay", "d", "12"}), kExitDone);
+  EXPECT_THAT(out_.str(),
+              AllOf(HasSubstr("noise.proximity.gaussian"), HasSubstr("0.02"), HasSubstr("3:wheels@500")));
+  EXPECT_EQ(Run({"replay", "d", "12", "--json"}), kExitDone);
+  EXPECT_THAT(out_.str(), HasSubstr("\"noise.proximity.gaussian\": \"0.02\""));
+}
+
 TEST_F(Replay, MetricsHaveUnitsAndNoneWhereNothingWasMeasured) {
   replay_.report.spec.test_case.name = "three-walls.json";
   replay_.report.replayed.metrics = {

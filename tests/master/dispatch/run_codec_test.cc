@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "tests/master/dispatch/sample_runs.h"
+#include "tests/sim/arena/random_genomes.h"
 
 namespace gauntlet::master {
 namespace {
@@ -40,6 +41,34 @@ TEST(RunCodecTest, ARunSpecSurvivesTheRoundTrip) {
   EXPECT_EQ(decoded->physics, sim::PhysicsKind::kRelaxation);
   EXPECT_EQ(decoded->disturbances, spec.disturbances);
   EXPECT_EQ(EncodeRunSpec(*decoded), bytes);
+}
+
+RC_GTEST_PROP(RunCodecProperty, CasesOfAllKindsOfGenesSurviveFilesAndSpecs, ()) {
+  sim::RunSpec spec;
+  spec.test_case.name = "all kinds";
+  spec.test_case.obstacles = sim::ArbitraryGenome();
+  const Result<sim::TestCase> read = ParseCaseJson(WriteCaseJson(spec.test_case), "case.json");
+  RC_ASSERT(read.ok());
+  RC_ASSERT(read->obstacles == spec.test_case.obstacles);
+  const Result<sim::RunSpec> decoded = DecodeRunSpec(EncodeRunSpec(spec));
+  RC_ASSERT(decoded.ok());
+  RC_ASSERT(decoded->test_case.obstacles == spec.test_case.obstacles);
+}
+
+TEST(RunCodecTest, AnObstacleMayMoveAndShine) {
+  const Result<sim::TestCase> read = ParseCaseJson(
+      R"({"obstacles": [{"x": 1, "y": 0, "length": 1, "width": 0.2, "light": "red",
+                         "motion": {"speed": 0.02, "path": [{"x": 1, "y": 2}, {"x": -1}]}},
+                        {"x": 2, "length": 1, "width": 0.2}]})",
+      "case.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->obstacles[0].light, sim::Color::kRed);
+  EXPECT_EQ(read->obstacles[0].speed, 0.02);
+  EXPECT_EQ(read->obstacles[0].path, (std::vector<sim::Vec2>{{1.0, 2.0}, {-1.0, 0.0}}));
+  EXPECT_TRUE(read->obstacles[1].Plain());
+  EXPECT_THAT(CaseError(R"({"obstacles": [{"light": "mauve"}]})"),
+              HasSubstr("case.json: obstacle 1: 'mauve' is no colour of lights; known: black, red,"));
+  EXPECT_THAT(CaseError(R"({"obstacles": [{"motion": {"speeed": 1}}]})"), HasSubstr("speeed"));
 }
 
 TEST(RunCodecTest, AZeroIsNotADefault) {

@@ -12,6 +12,9 @@ inline sim::RunSpec SampleSpec() {
   spec.test_case.side_x = 7.0;
   spec.test_case.wall_thickness = 0.25;
   spec.test_case.obstacles = {{1.0, 2.0, 0.5, 0.1, 45.0}, {0.1, 1.0 / 3.0, 0.7, 0.0, 359.0}};
+  spec.test_case.obstacles[1].path = {{0.5, 0.25}, {1.0, -1.0 / 3.0}};
+  spec.test_case.obstacles[1].speed = 0.02;
+  spec.test_case.obstacles[0].light = sim::Color::kRed;
   spec.test_case.spawn_area = sim::Rectangle{{0.5, 0.25}, {1.5, 2.5}};
   spec.test_case.robots = 12;
   spec.scenario = "flocking";

@@ -190,6 +190,8 @@ RC_GTEST_PROP(ExperimentFileTest, WhatIsWrittenReadsBackAsTheSame, ()) {
   genome.position_max = 2.5;
   genome.length_max = genome.length_min + 1.0;
   genome.width_max = genome.width_min + 1.0;
+  genome.speed_min = 0.005;
+  genome.speed_max = std::max(genome.speed_max, 0.006);
   if (genome.length_max > 50.0 || genome.width_max > 50.0) RC_DISCARD("beyond the range");
   experiment.arena.wall_thickness = std::min(experiment.arena.wall_thickness, experiment.arena.side / 2.0);
 

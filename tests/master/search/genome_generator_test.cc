@@ -152,5 +152,51 @@ TEST(CheckGenomeSpecTest, RefusesRangesThatCannotBeDrawnFrom) {
   EXPECT_TRUE(CheckGenomeSpec({.width_min = 0.15, .width_max = 0.18, .step = 0.0}).ok());
 }
 
+// Thesis 7.4: the asked-for shares move and shine; without shares the draws are those of always.
+TEST(GenomeGeneratorTest, SharesOfTheGenesMoveAndShine) {
+  GenomeSpec spec = ToySetup().experiment.genome;
+  sim::RandomStream plain_draws(1, sim::StreamPurpose::kTest);
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(Generator(spec).RandomGene(plain_draws).Plain());
+  spec.moving = 0.2;
+  spec.lights = 0.1;
+  spec.waypoints = 2;
+  spec.light_color = sim::Color::kGreen;
+  const GenomeGenerator generator = Generator(spec);
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  int moving = 0;
+  int lit = 0;
+  constexpr int kGenes = 10000;
+  for (int i = 0; i < kGenes; ++i) {
+    const sim::ObstacleGene gene = generator.RandomGene(random);
+    moving += gene.Moves() ? 1 : 0;
+    lit += gene.Lit() ? 1 : 0;
+    ASSERT_TRUE(!gene.Lit() || gene.light == sim::Color::kGreen);
+    ASSERT_EQ(CheckGeneRanges({gene}, spec), std::nullopt);
+    if (!gene.Moves()) continue;
+    ASSERT_EQ(gene.path.size(), 2u);
+    ASSERT_NEAR(gene.speed * 1000, std::round(gene.speed * 1000), 1e-9);
+  }
+  EXPECT_NEAR(moving / double{kGenes}, 0.2, 0.016);  // four standard deviations
+  EXPECT_NEAR(lit / double{kGenes}, 0.1, 0.012);
+}
+
+TEST(GenomeGeneratorTest, MotionOutsideTheRangesIsNamed) {
+  GenomeSpec spec = ToySetup().experiment.genome;
+  sim::ObstacleGene gene = {1.0, 1.0, 0.5, 0.2, 0.0};
+  gene.path = {{1.0, 30.0}};
+  gene.speed = 0.02;
+  ASSERT_TRUE(CheckGeneRanges({gene}, spec).has_value());
+  EXPECT_THAT(CheckGeneRanges({gene}, spec)->message, HasSubstr("obstacle 1: path = 30 is outside"));
+  gene.path = {{1.0, 2.0}};
+  gene.speed = 0.05;
+  EXPECT_THAT(CheckGeneRanges({gene}, spec)->message, HasSubstr("speed = 0.05 is outside"));
+  spec.speed_min = 0.0101;
+  spec.speed_max = 0.0109;
+  EXPECT_THAT(CheckGenomeSpec(spec).error().message,
+              HasSubstr("genome.speed_min = 0.0101 to genome.speed_max"));
+  spec.speed_min = 0.02;
+  EXPECT_THAT(CheckGenomeSpec(spec).error().message, HasSubstr("genome.speed_min = 0.02 must not exceed"));
+}
+
 }  // namespace
 }  // namespace gauntlet::master

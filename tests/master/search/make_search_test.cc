@@ -37,13 +37,20 @@ TEST(MakeSearchTest, AListOfCasesCannotBeMadeFromAnExperimentAlone) {
 
 TEST(MakeSearchTest, AFaultOfARobotThatTheSwarmDoesNotHaveIsRefused) {
   Experiment experiment = ToySetup().experiment;
-  experiment.disturbances.faults = {{.robot = 11, .device = sim::Device::kWheels, .tick = 500}};
+  experiment.scenario = "foraging";
+  experiment.controller = "foraging";
+  experiment.controller_parameters.clear();
+  const auto parameters =
+      controllers::ResolveParameters(controllers::FindScenario("foraging")->parameters, {{"robots", 10.0}});
+  ASSERT_TRUE(parameters.ok());
+  experiment.scenario_parameters = *parameters;
+  experiment.disturbances.faults = {{.robot = 10, .device = sim::Device::kWheels, .tick = 500}};
   const auto search = MakeSearch(experiment, 1);
   ASSERT_FALSE(search.ok());
   EXPECT_THAT(search.error().message,
-              HasSubstr("bad-fault: 11:wheels@500: robot 11, tick 500; this swarm has "
-                        "robots 0 to 10"));
-  experiment.disturbances.faults[0].robot = 10;
+              HasSubstr("bad-fault: 10:wheels@500: robot 10, tick 500; this swarm has "
+                        "robots 0 to 9"));
+  experiment.disturbances.faults[0].robot = 9;
   EXPECT_TRUE(MakeSearch(experiment, 1).ok());
 }
 

@@ -239,6 +239,41 @@ TEST(IncrementalValidityTest, ValidMeansThatThePlannerFindsAPathAndNoPathThatItF
   EXPECT_GT(no_path, 10);
 }
 
+TEST(IncrementalValidityTest, MotionBeyondTheLimitsIsNamed) {
+  const auto judge = [](const ObstacleGene& gene, const ArenaRequirements& requirements) {
+    IncrementalValidity validity(TestCase{}, requirements);
+    const std::optional<Violation> violation = validity.TryAppend(gene);
+    return violation ? std::string(NameOf(violation->rule)) + ": " + violation->message
+                     : std::string("valid");
+  };
+  ObstacleGene gene = {0.0, 0.0, 1.0, 0.2, 0.0};
+  gene.path = {{0.0, 1.0}};
+  gene.speed = 0.05;
+  EXPECT_EQ(judge(gene, CornerToCorner()), "valid");
+  gene.speed = 0.06;
+  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("limits: obstacle 1 "));
+  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("moves at 0.06 m/s; want 0 to 0.05 m/s"));
+  gene.speed = 0.0;
+  EXPECT_THAT(judge(gene, CornerToCorner()),
+              ::testing::HasSubstr("a path of 1 points and a speed of 0 m/s; want both or neither"));
+  gene.speed = -0.01;
+  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("moves at -0.01 m/s"));
+  gene.speed = std::nan("");
+  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("finite-numbers: obstacle 1 "));
+  gene.speed = 0.05;
+  gene.path = {{0.0, 1e6}};
+  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("moves to (0, 1e+06) m"));
+  gene.path.assign(kMaxObstaclePath + 1, {0.0, 1.0});
+  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("a path of 17 points; want at most 16"));
+
+  ArenaRequirements keep_away = CornerToCorner();
+  keep_away.clearance = 0.5;
+  gene.path = {{0.0, 1.0}};
+  EXPECT_EQ(judge(gene, keep_away), "valid");
+  gene.path = {keep_away.goal};
+  EXPECT_THAT(judge(gene, keep_away), ::testing::HasSubstr("clearance: obstacle 1 "));
+}
+
 TEST(IncrementalValidityTest, CopiesContinueIndependently) {
   IncrementalValidity validity(TestCase{}, CornerToCorner());
   ASSERT_FALSE(validity.TryAppend({0.0, 0.0, 1.0, 0.2, 0.0}));

@@ -50,7 +50,8 @@ Seen Look(const Arena& arena, const std::vector<BodyFrame>& robots, const std::v
                 .pairs = pairs,
                 .signals = signals,
                 .any_ring_lit = false,
-                .lights = {}});
+                .lights = {},
+                .obstacle_lights = {}});
   Seen seen;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const auto blobs = cameras.BlobsOf(static_cast<RobotIndex>(i));
