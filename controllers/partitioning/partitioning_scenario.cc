@@ -218,7 +218,8 @@ bool PartitioningScenario::MayHandOver(const sim::Interaction& interaction, sim:
   const sim::Vec2 from = robots[static_cast<std::size_t>(giver)].position();
   const sim::Vec2 to = robots[static_cast<std::size_t>(receiver)].position();
   const double reach = robot_.handover.keep_reach;
-  return (from - to).squaredNorm() <= reach * reach && arena_.LineOfSight(from, to);
+  const auto obstacles = interaction.observer.ObstaclesAt(interaction.observer.last_tick());
+  return (from - to).squaredNorm() <= reach * reach && arena_.LineOfSight(from, to, obstacles);
 }
 
 bool PartitioningScenario::Finished(const sim::Observer& observer) {

@@ -9,6 +9,7 @@
 
 #include "master/search/selection.h"
 #include "master/search/variation.h"
+#include "sim/arena/genome_codec.h"
 #include "sim/base/check.h"
 
 namespace gauntlet::master {

@@ -89,6 +89,7 @@ void Disturber::DisturbAction(RobotIndex robot, Tick tick, const Action& action)
     action.signals.ring.fill(Color::kBlack);
   }
   action.signals.silent = Dead(robot, Device::kRangeAndBearing, tick);
+  if (action.signals.silent) action.signals.message = {};
   if (Dead(robot, Device::kGripper, tick)) action.grippers.SetClosed(robot, false);
 }
 
