@@ -180,7 +180,8 @@ void PartitioningController::ChangeState(const View& view, sim::RandomStream& ra
     case State::kGoToNest:
       if (!view.carrying) {
         GoBack(random);
-      } else if (may_wait_ && pickup_nest_distance_ - NestGoal(view).distance >= length_.value()) {
+      } else if (may_wait_ && settings_.wait > 0 &&
+                 pickup_nest_distance_ - NestGoal(view).distance >= length_.value()) {
         state_ = State::kWaitForTransfer;
         in_state_ = 0;
         giver_.Reset();

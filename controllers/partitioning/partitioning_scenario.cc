@@ -87,9 +87,18 @@ Status PartitioningScenario::CheckSettings() const {
   }
   const sim::Vec2 size = arena_.interior_max() - arena_.interior_min();
   const double longest = std::max(size.x(), size.y());
-  if (robot_.length.start > longest) {
-    return InvalidInput("partition-length: " + NumberText(robot_.length.start) +
-                        " m is longer than the arena, which is " + NumberText(longest) + " m");
+  const PartitionLengthSettings& length = robot_.length;
+  const bool learns = length.rule != PartitionLengthSettings::Rule::kStatic;
+  for (const double metres : {length.start, learns ? length.most : length.start}) {
+    if (metres <= longest) continue;
+    return InvalidInput("partition-length: " + NumberText(metres) + " m is longer than the arena, which is " +
+                        NumberText(longest) + " m");
+  }
+  if (learns && !(length.least <= length.start && length.start <= length.most)) {
+    return InvalidInput("partition-length: it starts at " + NumberText(length.start) +
+                        " m (start_partition_length), which is not from least_partition_length = " +
+                        NumberText(length.least) +
+                        " m to most_partition_length = " + NumberText(length.most) + " m");
   }
   if (spawn_area_ && settings_.start == StartMode::kSteadyState) {
     return InvalidInput(

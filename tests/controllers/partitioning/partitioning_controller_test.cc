@@ -135,6 +135,12 @@ TEST(GoToNest, CarriesOnWhenItWouldWaitTooNearTheNest) {
   EXPECT_EQ(far.Step(Scene().Nest(1.1).Carrying()), State::kWaitForTransfer);
 }
 
+TEST(GoToNest, NeverWaitsWhenTheWaitingTimeIsZero) {
+  Robot robot = Carrier(3.7, {{"wait_time", 0.0}});
+  EXPECT_EQ(robot.Step(Scene().Nest(1.69).Carrying()), State::kGoToNest);
+  EXPECT_EQ(robot.Step(Scene().Nest(1.6).Carrying(), 100), State::kGoToNest);
+}
+
 // --- Wait for Transfer ---
 
 TEST(WaitForTransfer, StandsWithAGreenBeacon) {
@@ -157,12 +163,6 @@ TEST(WaitForTransfer, CarriesOnAfterItsTimeAndDoesNotWaitAgain) {
   EXPECT_EQ(robot.Step(Scene().Nest(1.69).Carrying(), 1800), State::kWaitForTransfer);
   EXPECT_EQ(robot.Step(Scene().Nest(1.69).Carrying()), State::kGoToNest);
   EXPECT_EQ(robot.Step(Scene().Nest(1.0).Carrying(), 100), State::kGoToNest);
-}
-
-TEST(WaitForTransfer, AZeroWaitingTimeMeansCarryingOnAtOnce) {
-  Robot robot = Waiting({{"wait_time", 0.0}});
-  EXPECT_EQ(robot.Step(Scene().Nest(1.69).Carrying()), State::kGoToNest);
-  EXPECT_EQ(robot.Step(Scene().Nest(1.6).Carrying(), 100), State::kGoToNest);
 }
 
 TEST(WaitForTransfer, AHandOverThatHasBegunIsFinishedFirst) {

@@ -215,6 +215,16 @@ TEST(PartitioningRefusals, APartitionLengthBeyondTheArenaIsNamed) {
   EXPECT_THAT(MessageOfRefusal(spec), StartsWith("partition-length: 7.5 m"));
 }
 
+TEST(PartitioningRefusals, LimitsOfALearntPartitionLengthThatContradictEachOtherAreNamed) {
+  sim::RunSpec spec = PartitionSpec("task-partitioning-dynamic", 1);
+  spec.controller_parameters = {{"most_partition_length", 1000.0}};
+  EXPECT_THAT(MessageOfRefusal(spec), StartsWith("partition-length: 1000 m is longer than the arena"));
+  spec.controller_parameters = {{"start_partition_length", 4.0}};
+  EXPECT_THAT(MessageOfRefusal(spec), StartsWith("partition-length: it starts at 4 m"));
+  spec.controller_parameters = {{"least_partition_length", 3.0}, {"most_partition_length", 1.0}};
+  EXPECT_THAT(MessageOfRefusal(spec), StartsWith("partition-length: it starts at "));
+}
+
 TEST(PartitioningRefusals, AWaitingTimeBelowZeroIsOutOfRange) {
   sim::RunSpec spec = PartitionSpec("task-partitioning", 1);
   spec.controller_parameters["wait_time"] = -1.0;
@@ -223,6 +233,7 @@ TEST(PartitioningRefusals, AWaitingTimeBelowZeroIsOutOfRange) {
   const sim::RunResult result = worker::Run(spec);
   EXPECT_EQ(result.verdict, sim::Verdict::kCompleted);
   EXPECT_EQ(MetricNamed(result, "transfers"), 0.0) << "nobody waits: everybody carries all the way";
+  EXPECT_EQ(MetricNamed(result, "waits"), 0.0);
   EXPECT_GE(result.fitness, 1.0);
 }
 
