@@ -114,9 +114,9 @@ DurabilityReport EvolveThroughPowerLosses(const SmallCampaign& campaign, const s
     const bool joined = worker.Join(epoch);
     EXPECT_TRUE(joined) << master.Err();
     if (!joined) return report;
-    const bool last = report.kills == kills;
-    const auto life =
-        last ? kPatience : milliseconds(random.Below(static_cast<std::uint32_t>(longest_life.count())));
+    const bool last = report.kills >= kills;
+    const auto life = last ? milliseconds(kPatience * 10)
+                           : milliseconds(random.Below(static_cast<std::uint32_t>(longest_life.count())));
     std::map<worker::Fence, std::uint64_t> waiting;
     Serve(worker, master, steady_clock::now() + life, waiting, acknowledged, report);
     if (!master.Running()) {
