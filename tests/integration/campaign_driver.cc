@@ -68,6 +68,14 @@ SmallCampaign SmallForaging() {
   return campaign;
 }
 
+SmallCampaign SmallPartitioning() {
+  SmallCampaign campaign;
+  campaign.name = "task_partitioning";
+  campaign.experiment = "task-partitioning";
+  campaign.settings = {"scenario_parameters.time_limit=300"};
+  return campaign;
+}
+
 SmallCampaign SmallSteadyState() {
   SmallCampaign campaign;
   campaign.name = "steady_state";

@@ -36,6 +36,8 @@ struct SmallCampaign {
 };
 // Foraging of the same size: the runs are cut short, because 20 robots over 800 s take 0.1 s each.
 SmallCampaign SmallForaging();
+// Task partitioning, likewise.
+SmallCampaign SmallPartitioning();
 // Flocking in the steady-state mode.
 SmallCampaign SmallSteadyState();
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers);

@@ -42,6 +42,7 @@ class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {
 
 INSTANTIATE_TEST_SUITE_P(Experiments, DeterminismDrill,
                          testing::Values(SmallCampaign{}, testing_support::SmallForaging(),
+                                         testing_support::SmallPartitioning(),
                                          testing_support::SmallSteadyState()),
                          [](const testing::TestParamInfo<SmallCampaign>& parameter) {
                            return parameter.param.name;
