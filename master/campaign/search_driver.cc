@@ -103,16 +103,7 @@ Status SearchDriver::Ask() {
       run.generation = request.generation;
       run.seed = sim::DeriveSeed(parts_.experiment.seed, PurposeOf(parts_.experiment.search.kind),
                                  kOnlySearch, request.individual, request.evaluation, replicate);
-      sim::RunSpec spec;
-      spec.test_case = request.test_case;
-      spec.scenario = parts_.experiment.scenario;
-      spec.scenario_parameters = parts_.experiment.scenario_parameters;
-      spec.controller = parts_.experiment.controller;
-      spec.controller_parameters = parts_.experiment.controller_parameters;
-      spec.seed = run.seed;
-      spec.physics = parts_.experiment.physics;
-      spec.disturbances = parts_.experiment.disturbances;
-      run.spec = EncodeRunSpec(spec);
+      run.spec = EncodeRunSpec(SpecOf(parts_.experiment, request.test_case, run.seed));
       run.spec_hash = SpecHash(run.spec);
 
       const auto stored = stored_ahead_.find(run.id);

@@ -86,4 +86,18 @@ struct Experiment {
   sim::Disturbances disturbances;
 };
 
+// A run of the experiment.
+inline sim::RunSpec SpecOf(const Experiment& experiment, const sim::TestCase& test_case, std::uint64_t seed) {
+  sim::RunSpec spec;
+  spec.test_case = test_case;
+  spec.scenario = experiment.scenario;
+  spec.scenario_parameters = experiment.scenario_parameters;
+  spec.controller = experiment.controller;
+  spec.controller_parameters = experiment.controller_parameters;
+  spec.seed = seed;
+  spec.physics = experiment.physics;
+  spec.disturbances = experiment.disturbances;
+  return spec;
+}
+
 }  // namespace gauntlet::master

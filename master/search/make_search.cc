@@ -32,14 +32,7 @@ Result<sim::ArenaRequirements> RequirementsOf(const Experiment& experiment) {
 }
 
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {
-  sim::RunSpec spec;
-  spec.test_case = test_case;
-  spec.scenario = experiment.scenario;
-  spec.scenario_parameters = experiment.scenario_parameters;
-  spec.controller = experiment.controller;
-  spec.controller_parameters = experiment.controller_parameters;
-  spec.seed = experiment.seed;
-  const Result<std::size_t> robots = controllers::CountSwarm(spec);
+  const Result<std::size_t> robots = controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed));
   if (!robots.ok()) return robots.error();
   if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, *robots)) {
     return InvalidInput(*refused);

@@ -1,0 +1,58 @@
+// A scheduler with a clock set by hand, and what tests do with it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "master/dispatch/scheduler.h"
+#include "tests/support/fake_clock.h"
+
+namespace gauntlet::master {
+
+inline constexpr Fence kFirstFence = 7ULL << 32;
+
+inline DispatchOptions LeaseOptions(std::uint32_t credit = 1) {
+  DispatchOptions options;
+  options.credit = credit;
+  return options;
+}
+
+class SchedulerTest : public testing::Test {
+ protected:
+  SchedulerOrders Decide() { return scheduler_.Decide(clock_.Now()); }
+  void Join(InstanceId worker, std::uint32_t slots = 1, const std::vector<Fence>& held = {}) {
+    scheduler_.WorkerJoined(worker, slots, held, clock_.Now());
+  }
+  void SubmitRuns(RunId first, RunId last) {
+    for (RunId run = first; run <= last; ++run) scheduler_.Submit(run);
+  }
+  // Lets time pass while these workers, holding nothing in particular, send heartbeats.
+  SchedulerOrders PassTime(std::chrono::milliseconds time, const std::vector<InstanceId>& alive) {
+    SchedulerOrders all;
+    for (std::chrono::milliseconds passed{0}; passed < time; passed += std::chrono::milliseconds(250)) {
+      clock_.Advance(std::chrono::milliseconds(250));
+      for (const InstanceId worker : alive) scheduler_.WorkerHeard(worker, clock_.Now());
+      SchedulerOrders orders = Decide();
+      for (auto& lost : orders.lost) all.lost.push_back(lost);
+      for (auto& lease : orders.leases) all.leases.push_back(lease);
+      for (auto& forgotten : orders.forgotten) all.forgotten.push_back(forgotten);
+    }
+    return all;
+  }
+  static std::vector<RunId> RunsOf(const SchedulerOrders& orders) {
+    std::vector<RunId> runs;
+    for (const LeaseOrder& lease : orders.leases) runs.push_back(lease.run);
+    return runs;
+  }
+  static std::vector<Fence> FencesOf(const std::vector<FenceOrder>& orders) {
+    std::vector<Fence> fences;
+    for (const FenceOrder& order : orders) fences.push_back(order.fence);
+    return fences;
+  }
+
+  testing_support::FakeClock clock_;
+  Scheduler scheduler_{LeaseOptions(), kFirstFence};
+};
+
+}  // namespace gauntlet::master
