@@ -33,7 +33,8 @@ PartitioningController::PartitioningController(const PartitionerSettings& settin
       giver_(settings.handover, self),
       receiver_(settings.handover, self),
       length_(settings.length),
-      state_(state) {
+      state_(state),
+      estimate_(settings.odometry_drift) {
   heard_.reserve(kMostHeard);
   bodies_.reserve(kMostHeard);
 }
@@ -46,7 +47,8 @@ sim::DeviceSet PartitioningController::Devices() const {
 }
 
 void PartitioningController::Step(const sim::ControlStep& step) {
-  estimate_ = AfterMotion(estimate_, odometer_->Next());
+  const bool travelling = state_ == State::kGoToNest || state_ == State::kGoToSource;
+  estimate_.Move(odometer_->Next(), travelling);
   Hear(step.readings.range_and_bearing);
   const View view = Look(step.readings);
   HandOver(view);
@@ -123,17 +125,15 @@ bool PartitioningController::AtSource(const View& view) const {
 
 void PartitioningController::TakeHome(const View& view, sim::RandomStream& random) {
   state_ = State::kGoToNest;
-  estimate_ = sim::Vec2::Zero();
-  odometer_->BeginTrip(random);
+  estimate_.Begin(NestGoal(view).bearing, random);
   pickup_nest_distance_ = NestGoal(view).distance;
   may_wait_ = pickup_nest_distance_ - length_.value() >= settings_.least_handover_distance;
   bug_.Reset();
 }
 
-void PartitioningController::GoBack(sim::RandomStream& random) {
+void PartitioningController::GoBack() {
   state_ = State::kGoToSource;
-  odometer_->BeginTrip(random);
-  nearest_ = Length(estimate_);
+  nearest_ = Length(estimate());
   since_nearer_ = 0;
   giver_.Reset();
   bug_.Reset();
@@ -144,7 +144,7 @@ void PartitioningController::Search(const View& view) {
   if (receiver_.engaged() || AtSource(view)) return;
   ++in_state_;
   if (state_ == State::kGoToSource) {
-    const double distance = Length(estimate_);
+    const double distance = Length(estimate());
     ++since_nearer_;
     if (distance < nearest_ - kNearer) {
       nearest_ = distance;
@@ -179,7 +179,7 @@ void PartitioningController::ChangeState(const View& view, sim::RandomStream& ra
       break;
     case State::kGoToNest:
       if (!view.carrying) {
-        GoBack(random);
+        GoBack();
       } else if (may_wait_ && settings_.wait > 0 &&
                  pickup_nest_distance_ - NestGoal(view).distance >= length_.value()) {
         state_ = State::kWaitForTransfer;
@@ -190,7 +190,7 @@ void PartitioningController::ChangeState(const View& view, sim::RandomStream& ra
     case State::kWaitForTransfer:
       ++in_state_;
       if (!view.carrying) {
-        GoBack(random);
+        GoBack();
       } else if (in_state_ > settings_.wait && !giver_.engaged()) {
         state_ = State::kGoToNest;
         may_wait_ = false;
@@ -205,7 +205,7 @@ PartitioningController::Goal PartitioningController::NestGoal(const View& view) 
 }
 
 PartitioningController::Goal PartitioningController::EstimateGoal() const {
-  return {sim::AngleOf(estimate_), Length(estimate_)};
+  return {sim::AngleOf(estimate()), Length(estimate())};
 }
 
 DriveCommand PartitioningController::Move(const View& view, const sim::ControlStep& step) {
@@ -217,7 +217,7 @@ DriveCommand PartitioningController::Move(const View& view, const sim::ControlSt
   if (state_ == State::kGoToNest) return view.in_nest ? DriveCommand{} : Travel(NestGoal(view), step);
   if (const auto item = Item(view)) return DriveToItem(*item, step);
   if (state_ == State::kGoToSource) return Travel(EstimateGoal(), step);
-  const bool strayed = state_ == State::kNeighbourhood && Length(estimate_) > settings_.neighbourhood_radius;
+  const bool strayed = state_ == State::kNeighbourhood && Length(estimate()) > settings_.neighbourhood_radius;
   return strayed ? Travel(EstimateGoal(), step) : Wander(step);
 }
 

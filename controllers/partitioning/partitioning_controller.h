@@ -16,6 +16,7 @@
 #include "controllers/partitioning/nest_light.h"
 #include "controllers/partitioning/odometer.h"
 #include "controllers/partitioning/partition_length.h"
+#include "controllers/partitioning/source_estimate.h"
 #include "sim/robot/controller.h"
 
 namespace gauntlet::controllers {
@@ -36,7 +37,7 @@ struct PartitionerSettings {
   double neighbourhood_radius = 0.0;  // m around it
   sim::Tick neighbourhood = 0;        // searches there for this long
   sim::Tick no_progress = 0;          // gives an estimate up that it came no nearer to for this long
-  double odometry_drift = 0.0;        // see BodyOdometer
+  double odometry_drift = 0.0;        // see SourceEstimate
   std::optional<BugSettings> bug;     // instead of the potential field, on the way to nest and estimate
   Lamp lamp;                          // above the nest
 };
@@ -61,7 +62,7 @@ class PartitioningController : public sim::Controller {
   PartitioningState state() const { return state_; }
   double partition_length() const { return length_.value(); }
   // The estimated source position in the robot's frame, m.
-  const sim::Vec2& estimate() const { return estimate_; }
+  const sim::Vec2& estimate() const { return estimate_.value(); }
 
  private:
   // What the readings of one tick mean.
@@ -82,7 +83,7 @@ class PartitioningController : public sim::Controller {
   void HandOver(const View& view);
   void ChangeState(const View& view, sim::RandomStream& random);
   void TakeHome(const View& view, sim::RandomStream& random);
-  void GoBack(sim::RandomStream& random);
+  void GoBack();
   void Search(const View& view);
   bool AtSource(const View& view) const;
   bool Receives() const;
@@ -104,7 +105,7 @@ class PartitioningController : public sim::Controller {
   Receiver receiver_;
   PartitionLength length_;
   PartitioningState state_;
-  sim::Vec2 estimate_ = sim::Vec2::Zero();
+  SourceEstimate estimate_;
   double pickup_nest_distance_ = 0.0;  // m
   bool may_wait_ = false;              // on this way to the nest
   sim::Tick in_state_ = 0;             // ticks, hand-overs and pick-ups aside

@@ -91,8 +91,8 @@ constexpr std::array kRobotParameters = std::to_array<ParameterInfo>({
     {"neighbourhood_radius", "m", 0.45, 0.1, 5.0, false, "searched around the estimate (dps)"},
     {"neighbourhood_time", "s", 60.0, 0.0, 3600.0, false, "searched for this long (dps)"},
     {"odometry_drift", "", 0.0, 0.0, 0.5, false,
-     "scale of the error of one wheel per trip, a share; dps and Pini et al. 2014: 0.0027 (thesis 3.3.2: "
-     "none)"},
+     "scale of the error of one wheel per trip, a share, that displaces the estimated source position; dps "
+     "and Pini et al. 2014: 0.0027 (thesis 3.3.2: none)"},
 });
 
 constexpr std::array kStaticParameters = std::to_array<ParameterInfo>({

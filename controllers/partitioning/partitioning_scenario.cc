@@ -163,7 +163,7 @@ Result<std::vector<sim::RobotSetup>> PartitioningScenario::CreateSwarm(
     robot.radio_range = settings_.communication_range;
     robot.controller = std::make_unique<PartitioningController>(
         robot_, static_cast<std::uint8_t>(i), state,
-        std::make_unique<BodyOdometer>(headquarters, index, robot.pose, robot_.odometry_drift));
+        std::make_unique<BodyOdometer>(headquarters, index, robot.pose));
     swarm.push_back(std::move(robot));
   }
   record_.Begin(settings_.robots, state, settings_.tick_limit);

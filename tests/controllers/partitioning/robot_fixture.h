@@ -130,7 +130,6 @@ class PartitionRobot {
    public:
     explicit HandOdometer(std::shared_ptr<BodyMotion> motion) : motion_(std::move(motion)) {}
     BodyMotion Next() override { return *motion_; }
-    void BeginTrip(sim::RandomStream& /*random*/) override {}
 
    private:
     std::shared_ptr<BodyMotion> motion_;
