@@ -269,6 +269,9 @@ std::vector<sim::Annotation> PartitioningScenario::Annotate(const sim::Observer&
       {"disc", "nest", {nest_}, settings_.nest_radius, -1, {}},
       {"disc", "food", {food_}, settings_.food_radius, -1, {}},
   };
+  if (settings_.lamp_offset != sim::Vec2::Zero()) {
+    annotations.push_back({"disc", "light", {lights_[0].position}, 0.0, -1, {}});
+  }
   for (const PartitioningRecord::Transfer& transfer : record_.transfers()) {
     annotations.push_back(
         {"transfer", "transfer", {transfer.place}, 0.0, transfer.tick, {transfer.giver, transfer.receiver}});

@@ -113,6 +113,21 @@ TEST(PartitioningScenario, MarksTransfersAndTellsStates) {
   EXPECT_EQ(lines, 6.0);
 }
 
+TEST(PartitioningScenario, MarksALightThatIsNotAboveTheNest) {
+  sim::RunSpec spec = PartitionSpec("task-partitioning", 1);
+  spec.scenario_parameters["time_limit"] = 10.0;
+  const auto light = [](const sim::RunResult& result) {
+    return std::find_if(result.annotations.begin(), result.annotations.end(),
+                        [](const sim::Annotation& one) { return one.label == "light"; });
+  };
+  const sim::RunResult above = worker::Run(spec);
+  EXPECT_EQ(light(above), above.annotations.end());
+  spec.scenario_parameters["light_offset_x"] = 0.7;
+  const sim::RunResult beside = worker::Run(spec);
+  ASSERT_NE(light(beside), beside.annotations.end());
+  EXPECT_EQ(light(beside)->points.front(), sim::Vec2(0.7, -2.0));
+}
+
 TEST(PartitioningScenario, RunsAgainBitByBit) {
   for (const controllers::ControllerInfo& controller : controllers::PartitioningControllerInfos()) {
     sim::RunSpec spec = PartitionSpec(std::string(controller.name), 9);
