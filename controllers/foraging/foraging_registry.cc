@@ -96,24 +96,11 @@ constexpr std::array kFieldParameters = std::to_array<ParameterInfo>({
      "where Khatib's repulsion equals the attraction (chosen)"},
 });
 
-template <std::size_t kFirst, std::size_t kSecond>
-constexpr std::array<ParameterInfo, kFirst + kSecond> Join(const std::array<ParameterInfo, kFirst>& first,
-                                                           const std::array<ParameterInfo, kSecond>& second) {
-  std::array<ParameterInfo, kFirst + kSecond> all;
-  std::copy(second.begin(), second.end(), std::copy(first.begin(), first.end(), all.begin()));
-  return all;
-}
-
-constexpr auto kPheromoneParameters = Join(kForagerParameters, kBeaconParameters);
-constexpr auto kImprovedParameters = Join(kPheromoneParameters, kFieldParameters);
+constexpr auto kPheromoneParameters = Joined(kForagerParameters, kBeaconParameters);
+constexpr auto kImprovedParameters = Joined(kPheromoneParameters, kFieldParameters);
 
 sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& /*test_case*/) {
-  const ForagingSettings settings = ForagingSettingsFrom(parameters);
-  sim::ArenaRequirements requirements;
-  requirements.start = NestOf(settings);
-  requirements.goal = FoodOf(settings);
-  requirements.clearance = GetParameter(parameters, "clearance");
-  return requirements;
+  return RequirementsOf(ForagingSettingsFrom(parameters), parameters);
 }
 
 std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec) {
@@ -128,20 +115,11 @@ std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec) {
 ForagingSettings ForagingSettingsFrom(const sim::Parameters& parameters) {
   const auto get = [&](const char* name) { return GetParameter(parameters, name); };
   ForagingSettings settings;
-  settings.robots = static_cast<int>(get("robots"));
-  settings.tick_limit = ToTicks(get("time_limit"));
-  settings.nest_radius = get("nest_radius");
-  settings.food_radius = get("food_radius");
-  settings.nest_food_distance = get("nest_food_distance");
-  settings.spawn_radius = get("spawn_radius");
+  ReadNestAndFood(parameters, settings);
   settings.camera_range = get("food_visible_range");
-  settings.communication_range = get("communication_range");
   settings.bodies_block_radio = get("bodies_block_radio") != 0.0;
   settings.pickup_distance = settings.food_radius + sim::foot_bot::kRadius;
-  settings.pickup = ToTicks(get("pickup_time"));
   settings.serving_interval = ToTicks(get("serving_interval"));
-  settings.trapped_window = ToTicks(get("trapped_window"));
-  settings.trapped_radius = get("trapped_radius");
   return settings;
 }
 

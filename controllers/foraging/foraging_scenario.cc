@@ -11,27 +11,13 @@
 namespace gauntlet::controllers {
 namespace {
 
-constexpr int kMaxRobots = 100;                            // also the largest value of the parameter `robots`
-constexpr sim::Tick kWindow = 120 * sim::kTicksPerSecond;  // of the counts of items over time
 constexpr sim::Tick kPathSampling = sim::kTicksPerSecond;  // how often a path is looked for (spec 3.6)
 
 FoodSourceSettings SourceSettings(const ForagingSettings& settings) {
   return {FoodOf(settings), settings.pickup_distance, settings.pickup, settings.serving_interval};
 }
 
-double Seconds(sim::Tick tick) {
-  return tick < 0 ? -1.0 : tick * sim::kTickSeconds;
-}
-
 }  // namespace
-
-sim::Vec2 NestOf(const ForagingSettings& settings) {
-  return {0.0, -settings.nest_food_distance / 2.0};
-}
-
-sim::Vec2 FoodOf(const ForagingSettings& settings) {
-  return {0.0, settings.nest_food_distance / 2.0};
-}
 
 ForagingScenario::ForagingScenario(const sim::TestCase& test_case, const ForagingSettings& settings,
                                    const ForagerSettings& forager, std::uint64_t seed)
@@ -63,15 +49,7 @@ double ForagingScenario::FloorGrey(const sim::Vec2& point) const {
 
 Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
     const sim::Headquarters& /*headquarters*/) {
-  if (settings_.robots < 1 || settings_.robots > kMaxRobots) {
-    return InvalidInput("swarm-size: " + std::to_string(settings_.robots) + " robots; from 1 to " +
-                        std::to_string(kMaxRobots) + " can be tested");
-  }
-  if ((ends_.food - ends_.nest).norm() <= settings_.nest_radius) {
-    return InvalidInput("nest-and-food: the food is " + NumberText((ends_.food - ends_.nest).norm()) +
-                        " m from the nest's centre (nest_food_distance), inside the nest (nest_radius " +
-                        NumberText(settings_.nest_radius) + " m)");
-  }
+  if (const Status checked = CheckNestAndFood(settings_, "food"); !checked.ok()) return checked.error();
   if (forager_.field && forager_.field->analytic && forager_.field->balance >= forager_.field->reach) {
     return InvalidInput("field-law: field_balance = " + NumberText(forager_.field->balance) +
                         " m must be below field_reach = " + NumberText(forager_.field->reach) + " m");
@@ -103,14 +81,14 @@ Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
   states_.Begin(settings_.robots, settings_.tick_limit, static_cast<std::uint8_t>(ForagingState::kWandering));
   last_at_rest_.assign(robots, -1);
   carrying_.assign(robots, 0);
-  dropped_in_window_.assign(static_cast<std::size_t>((settings_.tick_limit + kWindow - 1) / kWindow), 0);
+  food_.Begin(settings_.tick_limit);
   return swarm;
 }
 
 void ForagingScenario::Interact(const sim::Interaction& interaction) {
   const sim::Tick tick = interaction.observer.last_tick();
   DropItems(interaction);
-  if (source_.Serve(tick, interaction.observer.Latest(), interaction.grippers)) ++taken_;
+  if (source_.Serve(tick, interaction.observer.Latest(), interaction.grippers)) food_.Take();
   RecordStates(interaction);
   if (first_path_ < 0 && tick % kPathSampling == 0) FindFirstPath(interaction.observer);
 }
@@ -123,13 +101,7 @@ void ForagingScenario::DropItems(const sim::Interaction& interaction) {
     const auto robot = static_cast<sim::RobotIndex>(i);
     if (!interaction.grippers.Holds(robot) || interaction.grippers.Closed(robot)) continue;
     interaction.grippers.Take(robot);
-    if (!InNest(robots[i].position())) {
-      ++lost_items_;
-      continue;
-    }
-    ++dropped_;
-    ++dropped_in_window_[static_cast<std::size_t>((tick - 1) / kWindow)];
-    if (first_item_ < 0) first_item_ = tick;
+    food_.Drop(tick, InNest(robots[i].position()));
   }
 }
 
@@ -177,13 +149,13 @@ bool ForagingScenario::Trapped(const sim::Observer& observer, sim::RobotIndex ro
 
 sim::Outcome ForagingScenario::Evaluate(const sim::Observer& observer) {
   sim::Outcome outcome;
-  outcome.fitness = dropped_;
+  outcome.fitness = food_.dropped();
   for (sim::RobotIndex robot = 0; robot < settings_.robots; ++robot) {
     outcome.lost.push_back(Trapped(observer, robot));
   }
   const auto trapped = static_cast<int>(std::count(outcome.lost.begin(), outcome.lost.end(), true));
   const bool no_path = forager_.beacons && first_path_ < 0;
-  const bool no_food = dropped_ == 0;
+  const bool no_food = food_.dropped() == 0;
   outcome.failure.total = no_path || no_food;
   if (outcome.failure.total) {
     outcome.failure.type = (no_path ? 1 : 0) + (no_food ? 2 : 0);
@@ -196,19 +168,13 @@ sim::Outcome ForagingScenario::Evaluate(const sim::Observer& observer) {
 
 std::vector<std::pair<std::string, double>> ForagingScenario::Metrics(int trapped) const {
   const auto carried = static_cast<int>(std::count(carrying_.begin(), carrying_.end(), 1));
-  std::vector<std::pair<std::string, double>> metrics = {
-      {"food_taken", taken_},
-      {"food_carried", carried},
-      {"food_lost", lost_items_},
-      {"first_item_time", Seconds(first_item_)},
-      {"first_path_time", Seconds(first_path_)},
-      {"condition_1", forager_.beacons && first_path_ < 0 ? 1.0 : 0.0},
-      {"condition_2", dropped_ == 0 ? 1.0 : 0.0},
-      {"trapped_robots", trapped},
-  };
-  for (std::size_t i = 0; i < dropped_in_window_.size(); ++i) {
-    metrics.emplace_back("food_window_" + std::to_string(i + 1), dropped_in_window_[i]);
-  }
+  std::vector<std::pair<std::string, double>> metrics = food_.Metrics(carried);
+  metrics.insert(metrics.end(),
+                 {{"first_path_time", first_path_ < 0 ? -1.0 : first_path_ * sim::kTickSeconds},
+                  {"condition_1", forager_.beacons && first_path_ < 0 ? 1.0 : 0.0},
+                  {"condition_2", food_.dropped() == 0 ? 1.0 : 0.0},
+                  {"trapped_robots", trapped}});
+  food_.AddWindows(metrics);
   const std::vector<double> means = states_.MeanRobots(kForagingStates);
   for (int state = 0; state < kForagingStates; ++state) {
     metrics.emplace_back("mean_robots_" + std::string(NameOf(static_cast<ForagingState>(state))),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controllers/common/food_source.h"
+#include "controllers/common/nest_and_food.h"
 #include "controllers/common/state_log.h"
 #include "controllers/foraging/beacon_chain.h"
 #include "controllers/foraging/foraging_controller.h"
@@ -14,25 +15,10 @@
 
 namespace gauntlet::controllers {
 
-struct ForagingSettings {
-  int robots = 0;
-  sim::Tick tick_limit = 0;
-  double nest_radius = 0.0;          // m
-  double food_radius = 0.0;          // m; for pictures, and part of the pick-up distance
-  double nest_food_distance = 0.0;   // m between the centres, which lie on the y axis, the nest below
-  double spawn_radius = 0.0;         // m around the nest
-  double camera_range = 0.0;         // m, half side of the square in which a robot sees the food
-  double communication_range = 0.0;  // m, of range-and-bearing
+struct ForagingSettings : NestAndFood {
   bool bodies_block_radio = false;
-  double pickup_distance = 0.0;  // m from the food's centre to a robot's
-  sim::Tick pickup = 0;
   sim::Tick serving_interval = 0;
-  sim::Tick trapped_window = 0;  // a robot is trapped when it kept within trapped_radius for this long
-  double trapped_radius = 0.0;   // m around its mean position
 };
-
-sim::Vec2 NestOf(const ForagingSettings& settings);
-sim::Vec2 FoodOf(const ForagingSettings& settings);
 
 class ForagingScenario : public sim::Scenario {
  public:
@@ -77,11 +63,7 @@ class ForagingScenario : public sim::Scenario {
   StateLog states_;
   std::vector<sim::Tick> last_at_rest_;  // per robot: newest tick as a beacon or in the source's queue
   std::vector<std::uint8_t> carrying_;   // per robot
-  std::vector<int> dropped_in_window_;   // items per kWindow
-  int taken_ = 0;
-  int dropped_ = 0;
-  int lost_items_ = 0;
-  sim::Tick first_item_ = -1;
+  FoodCount food_;
   sim::Tick first_path_ = -1;
   std::vector<sim::Vec2> first_chain_;
 };

@@ -8,10 +8,6 @@ namespace {
 // Hand-overs of a run that are kept with their places; more are only counted. Memory, not behaviour.
 constexpr std::size_t kMostTransfers = 4000;
 
-std::size_t WindowOf(sim::Tick tick) {
-  return static_cast<std::size_t>((tick - 1) / kPartitioningWindow);
-}
-
 bool Engaged(HandoverStep step) {
   return step == HandoverStep::kGrant || step == HandoverStep::kRelease;
 }
@@ -19,11 +15,10 @@ bool Engaged(HandoverStep step) {
 }  // namespace
 
 void PartitioningRecord::Begin(int robots, PartitioningState state, sim::Tick tick_limit) {
-  const auto windows = static_cast<std::size_t>((tick_limit + kPartitioningWindow - 1) / kPartitioningWindow);
   states_.Begin(robots, tick_limit, static_cast<std::uint8_t>(state));
   robots_.assign(static_cast<std::size_t>(robots), {.state = state});
-  dropped_in_window_.assign(windows, 0);
-  length_in_window_.assign(windows, 0.0);
+  food_.Begin(tick_limit);
+  length_in_window_.assign(FoodCount::Windows(tick_limit), 0.0);
   transfers_.reserve(kMostTransfers);
 }
 
@@ -35,7 +30,7 @@ void PartitioningRecord::Hear(sim::Tick tick, std::span<const sim::Signals> sign
     }
     states_.Add(static_cast<std::uint8_t>(robot.state));
   }
-  length_in_window_[WindowOf(std::max(tick, 1))] = MeanLength();
+  length_in_window_[FoodCount::WindowOf(tick)] = MeanLength();
 }
 
 void PartitioningRecord::Hear(sim::Tick tick, const PartitionMessage& message, Robot& robot) {
@@ -52,16 +47,6 @@ void PartitioningRecord::Hear(sim::Tick tick, const PartitionMessage& message, R
   if (message.state == kWait || message.step != HandoverStep::kNone) robot.at_rest = tick;
 }
 
-void PartitioningRecord::Drop(sim::Tick tick, bool in_nest) {
-  if (!in_nest) {
-    ++lost_;
-    return;
-  }
-  ++dropped_;
-  ++dropped_in_window_[WindowOf(tick)];
-  if (first_item_ < 0) first_item_ = tick;
-}
-
 void PartitioningRecord::HandOver(const Transfer& transfer) {
   ++handed_over_;
   if (transfers_.size() < kMostTransfers) transfers_.push_back(transfer);
@@ -76,23 +61,17 @@ double PartitioningRecord::MeanLength() const {
 std::vector<std::pair<std::string, double>> PartitioningRecord::Metrics(int carried, int trapped,
                                                                         bool learns) const {
   const double none = -1.0;
-  std::vector<std::pair<std::string, double>> metrics = {
-      {"food_taken", taken_},
-      {"food_carried", carried},
-      {"food_lost", lost_},
-      {"first_item_time", first_item_ < 0 ? none : first_item_ * sim::kTickSeconds},
-      {"transfers", handed_over_},
-      {"broken_transfers", broken_},
-      {"waits", waits_},
-      {"wait_timeouts", timeouts_},
-      {"mean_waiting_time", waits_ == 0 ? none : waited_ * sim::kTickSeconds / waits_},
-      {"transfer_time", transferring_ * sim::kTickSeconds},
-      {"trapped_robots", trapped},
-      {"partition_length", MeanLength()},
-  };
-  for (std::size_t i = 0; i < dropped_in_window_.size(); ++i) {
-    metrics.emplace_back("food_window_" + std::to_string(i + 1), dropped_in_window_[i]);
-  }
+  std::vector<std::pair<std::string, double>> metrics = food_.Metrics(carried);
+  metrics.insert(metrics.end(),
+                 {{"transfers", handed_over_},
+                  {"broken_transfers", broken_},
+                  {"waits", waits_},
+                  {"wait_timeouts", timeouts_},
+                  {"mean_waiting_time", waits_ == 0 ? none : waited_ * sim::kTickSeconds / waits_},
+                  {"transfer_time", transferring_ * sim::kTickSeconds},
+                  {"trapped_robots", trapped},
+                  {"partition_length", MeanLength()}});
+  food_.AddWindows(metrics);
   for (std::size_t i = 0; learns && i < length_in_window_.size(); ++i) {
     metrics.emplace_back("partition_length_window_" + std::to_string(i + 1), length_in_window_[i]);
   }

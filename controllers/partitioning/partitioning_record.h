@@ -6,14 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "controllers/common/nest_and_food.h"
 #include "controllers/common/state_log.h"
 #include "controllers/partitioning/partition_message.h"
 #include "sim/robot/signals.h"
 
 namespace gauntlet::controllers {
-
-inline constexpr sim::Tick kPartitioningWindow =
-    120 * sim::kTicksPerSecond;  // of counts over time, thesis 6.4.2
 
 // Allocates in Begin only.
 class PartitioningRecord {
@@ -30,11 +28,9 @@ class PartitioningRecord {
 
   // One tick: what all robots say. One that has said nothing yet is in the state it began in.
   void Hear(sim::Tick tick, std::span<const sim::Signals> signals);
-  void Take() { ++taken_; }
-  void Drop(sim::Tick tick, bool in_nest);
   void HandOver(const Transfer& transfer);
 
-  int dropped() const { return dropped_; }
+  FoodCount& food() { return food_; }
   // Newest tick at which the robot stood by its own rules: waiting, or in a hand-over; -1 = never.
   sim::Tick last_at_rest(sim::RobotIndex robot) const {
     return robots_[static_cast<std::size_t>(robot)].at_rest;
@@ -57,19 +53,15 @@ class PartitioningRecord {
 
   StateLog states_;
   std::vector<Robot> robots_;
-  std::vector<int> dropped_in_window_;
+  FoodCount food_;
   std::vector<double> length_in_window_;  // m, mean of the robots at the end of each
   std::vector<Transfer> transfers_;
-  int taken_ = 0;
   int handed_over_ = 0;
-  int dropped_ = 0;
-  int lost_ = 0;
   int waits_ = 0;
   int timeouts_ = 0;
   int broken_ = 0;
   sim::Tick waited_ = 0;        // robot-ticks offering
   sim::Tick transferring_ = 0;  // robot-ticks of givers
-  sim::Tick first_item_ = -1;
 };
 
 }  // namespace gauntlet::controllers

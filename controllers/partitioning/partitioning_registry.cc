@@ -135,14 +135,6 @@ constexpr std::array kDynamicParameters = std::to_array<ParameterInfo>({
     {"partition_decay", "", 0.16, 0.0, 10.0, false, "of DPS-E (dps)"},
 });
 
-template <std::size_t kFirst, std::size_t kSecond>
-constexpr std::array<ParameterInfo, kFirst + kSecond> Joined(
-    const std::array<ParameterInfo, kFirst>& first, const std::array<ParameterInfo, kSecond>& second) {
-  std::array<ParameterInfo, kFirst + kSecond> all;
-  std::copy(second.begin(), second.end(), std::copy(first.begin(), first.end(), all.begin()));
-  return all;
-}
-
 constexpr auto kStaticAll = Joined(Joined(kRobotParameters, kFieldPlanParameters), kStaticParameters);
 constexpr auto kImprovedAll = Joined(Joined(kRobotParameters, kBugPlanParameters), kStaticParameters);
 constexpr auto kDynamicAll = Joined(Joined(kRobotParameters, kFieldPlanParameters), kDynamicParameters);
@@ -152,12 +144,7 @@ constexpr double kWallSpeed = 0.9;           // share of the speed along an obst
 constexpr double kLostSpeed = 0.6;           // share of the speed round its end (spec 4.4)
 
 sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& /*test_case*/) {
-  const PartitioningSettings settings = PartitioningSettingsFrom(parameters);
-  sim::ArenaRequirements requirements;
-  requirements.start = NestOf(settings);
-  requirements.goal = FoodOf(settings);
-  requirements.clearance = GetParameter(parameters, "clearance");
-  return requirements;
+  return RequirementsOf(PartitioningSettingsFrom(parameters), parameters);
 }
 
 std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec) {
@@ -210,22 +197,13 @@ PartitionLengthSettings LengthSettingsFrom(std::string_view controller, const si
 PartitioningSettings PartitioningSettingsFrom(const sim::Parameters& parameters) {
   const auto get = [&](const char* name) { return GetParameter(parameters, name); };
   PartitioningSettings settings;
-  settings.robots = static_cast<int>(get("robots"));
-  settings.tick_limit = ToTicks(get("time_limit"));
+  ReadNestAndFood(parameters, settings);
   settings.start = get("start_mode") != 0.0 ? StartMode::kNest : StartMode::kSteadyState;
-  settings.nest_radius = get("nest_radius");
-  settings.food_radius = get("food_radius");
-  settings.nest_food_distance = get("nest_food_distance");
-  settings.spawn_radius = get("spawn_radius");
   settings.camera_range = get("item_visible_range");
-  settings.communication_range = get("communication_range");
   settings.lamp_offset = {get("light_offset_x"), get("light_offset_y")};
   settings.lamp_height = get("light_height");
   settings.lamp_intensity = get("light_intensity");
   settings.pickup_distance = settings.food_radius + sim::foot_bot::kRadius + 0.025;  // 0.36 m, spec 4.2
-  settings.pickup = ToTicks(get("pickup_time"));
-  settings.trapped_window = ToTicks(get("trapped_window"));
-  settings.trapped_radius = get("trapped_radius");
   return settings;
 }
 

@@ -12,7 +12,6 @@
 namespace gauntlet::controllers {
 namespace {
 
-constexpr int kMaxRobots = 100;     // also the largest value of the parameter `robots`
 constexpr double kLampReach = 2.5;  // m per unit of intensity (ARGoS light sensor)
 
 // A lamp that every place of the arena sees: A-19, the light is always detectable.
@@ -27,14 +26,6 @@ double IntensityFor(const sim::Arena& arena, const sim::Vec2& lamp, double heigh
 }
 
 }  // namespace
-
-sim::Vec2 NestOf(const PartitioningSettings& settings) {
-  return {0.0, -settings.nest_food_distance / 2.0};
-}
-
-sim::Vec2 FoodOf(const PartitioningSettings& settings) {
-  return {0.0, settings.nest_food_distance / 2.0};
-}
 
 PartitioningScenario::PartitioningScenario(const sim::TestCase& test_case,
                                            const PartitioningSettings& settings,
@@ -71,15 +62,7 @@ double PartitioningScenario::FloorGrey(const sim::Vec2& point) const {
 }
 
 Status PartitioningScenario::CheckSettings() const {
-  if (settings_.robots < 1 || settings_.robots > kMaxRobots) {
-    return InvalidInput("swarm-size: " + std::to_string(settings_.robots) + " robots; from 1 to " +
-                        std::to_string(kMaxRobots) + " can be tested");
-  }
-  if ((food_ - nest_).norm() <= settings_.nest_radius) {
-    return InvalidInput("nest-and-food: the source is " + NumberText((food_ - nest_).norm()) +
-                        " m from the nest's centre (nest_food_distance), inside the nest (nest_radius " +
-                        NumberText(settings_.nest_radius) + " m)");
-  }
+  if (Status checked = CheckNestAndFood(settings_, "source"); !checked.ok()) return checked;
   const sim::Vec2& lamp = lights_[0].position;
   if (!arena_.InInterior(lamp)) {
     return InvalidInput("light-outside: the light is at " + PointText(lamp.x(), lamp.y()) +
@@ -176,7 +159,7 @@ void PartitioningScenario::Interact(const sim::Interaction& interaction) {
   const sim::Tick tick = interaction.observer.last_tick();
   DropItems(interaction);
   HandItemsOver(interaction);
-  if (source_.Serve(tick, interaction.observer.Latest(), interaction.grippers)) record_.Take();
+  if (source_.Serve(tick, interaction.observer.Latest(), interaction.grippers)) record_.food().Take();
   record_.Hear(tick, interaction.signals);
   for (std::size_t i = 0; i < carrying_.size(); ++i) {
     const auto robot = static_cast<sim::RobotIndex>(i);
@@ -192,7 +175,7 @@ void PartitioningScenario::DropItems(const sim::Interaction& interaction) {
     const auto robot = static_cast<sim::RobotIndex>(i);
     if (!interaction.grippers.Holds(robot) || interaction.grippers.Closed(robot)) continue;
     interaction.grippers.Take(robot);
-    record_.Drop(interaction.observer.last_tick(), InNest(robots[i].position()));
+    record_.food().Drop(interaction.observer.last_tick(), InNest(robots[i].position()));
   }
 }
 
@@ -246,11 +229,11 @@ bool PartitioningScenario::Trapped(const sim::Observer& observer, sim::RobotInde
 
 sim::Outcome PartitioningScenario::Evaluate(const sim::Observer& observer) {
   sim::Outcome outcome;
-  outcome.fitness = record_.dropped();
+  outcome.fitness = record_.food().dropped();
   for (sim::RobotIndex robot = 0; robot < settings_.robots; ++robot) {
     outcome.lost.push_back(Trapped(observer, robot));
   }
-  outcome.failure.total = record_.dropped() == 0;
+  outcome.failure.total = record_.food().dropped() == 0;
   if (outcome.failure.total) {
     outcome.failure.type = 1;
     outcome.failure.label = "no food";

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "controllers/common/food_source.h"
+#include "controllers/common/nest_and_food.h"
 #include "controllers/partitioning/partitioning_controller.h"
 #include "controllers/partitioning/partitioning_record.h"
 #include "sim/arena/spawn.h"
@@ -22,27 +23,12 @@ enum class StartMode : std::uint8_t {
   kNest = 1,         // all in the nest, in Explore (thesis 6.4.2)
 };
 
-struct PartitioningSettings {
-  int robots = 0;
-  sim::Tick tick_limit = 0;
+struct PartitioningSettings : NestAndFood {
   StartMode start = StartMode::kSteadyState;
-  double nest_radius = 0.0;          // m
-  double food_radius = 0.0;          // m; for pictures, and part of the pick-up distance
-  double nest_food_distance = 0.0;   // m between the centres, which lie on the y axis, the nest below
-  double spawn_radius = 0.0;         // m, of the discs where robots begin
-  double camera_range = 0.0;         // m, half side of the square in which a robot sees items
-  double communication_range = 0.0;  // m, of range-and-bearing
   sim::Vec2 lamp_offset = sim::Vec2::Zero();  // m, of the lamp from the nest's centre
   double lamp_height = 0.0;                   // m
   double lamp_intensity = 0.0;                // at least; larger where the arena needs it
-  double pickup_distance = 0.0;               // m from the source's centre to a robot's
-  sim::Tick pickup = 0;
-  sim::Tick trapped_window = 0;  // a robot is trapped when it kept within trapped_radius for this long
-  double trapped_radius = 0.0;   // m around its mean position
 };
-
-sim::Vec2 NestOf(const PartitioningSettings& settings);
-sim::Vec2 FoodOf(const PartitioningSettings& settings);
 
 class PartitioningScenario : public sim::Scenario {
  public:

@@ -2,6 +2,7 @@
 // given. Every target of libFuzzer calls one of them, and so does the short run in the suite.
 #pragma once
 
+#include <ostream>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,5 +16,10 @@ struct Parser {
 };
 
 std::span<const Parser> Parsers();
+
+// For GoogleTest, which would print the bytes of a Parser.
+inline void PrintTo(const Parser& parser, std::ostream* out) {
+  *out << parser.name;
+}
 
 }  // namespace gauntlet::fuzz

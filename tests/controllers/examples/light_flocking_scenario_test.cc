@@ -3,20 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "controllers/examples/light_flocking_metrics.h"
+#include "tests/controllers/run_support.h"
 #include "worker/run_executor.h"
 
 namespace gauntlet::controllers {
 namespace {
 
 using sim::Vec2;
-
-double MetricOf(const sim::RunResult& result, const std::string& name) {
-  for (const auto& [metric, value] : result.metrics) {
-    if (metric == name) return value;
-  }
-  ADD_FAILURE() << "no metric " << name;
-  return 0.0;
-}
+using testing_support::Metric;
 
 TEST(LightFlockingMetrics, LinksEndAtTheRangeAndAtObstacles) {
   sim::TestCase test_case;
@@ -47,7 +41,7 @@ TEST(LightFlockingScenario, TheSwarmComesToTheLightInAnEmptyArena) {
   EXPECT_EQ(result.ticks, 3000);
   EXPECT_GT(result.fitness, 0.7);
   EXPECT_FALSE(result.failure.total);
-  EXPECT_EQ(MetricOf(result, "clusters"), 1.0);
+  EXPECT_EQ(Metric(result, "clusters"), 1.0);
 }
 
 TEST(LightFlockingScenario, AWallBeforeTheLightKeepsItInTheDark) {

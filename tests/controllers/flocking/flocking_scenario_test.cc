@@ -10,6 +10,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "sim/geometry/trigonometry.h"
+#include "tests/controllers/run_support.h"
 #include "worker/run_executor.h"
 
 namespace gauntlet {
@@ -17,20 +18,10 @@ namespace {
 
 using ::testing::Each;
 using ::testing::StartsWith;
+using testing_support::Metric;
 
 sim::RunSpec Spec(const std::string& controller, std::uint64_t seed) {
-  sim::RunSpec spec;
-  spec.scenario = "flocking";
-  spec.controller = controller;
-  spec.seed = seed;
-  return spec;
-}
-
-double Metric(const sim::RunResult& result, std::string_view name) {
-  const auto found = std::find_if(result.metrics.begin(), result.metrics.end(),
-                                  [&](const auto& metric) { return metric.first == name; });
-  EXPECT_NE(found, result.metrics.end()) << name;
-  return found == result.metrics.end() ? 0.0 : found->second;
+  return testing_support::SpecOf("flocking", controller, seed);
 }
 
 const sim::Annotation* FindAnnotation(const sim::RunResult& result, std::string_view kind) {

@@ -10,28 +10,23 @@
 #include "controllers/foraging/foraging_registry.h"
 #include "controllers/registry.h"
 #include "sim/simulation.h"
+#include "tests/controllers/run_support.h"
 
 namespace gauntlet {
 namespace {
 
+using testing_support::Metric;
+using testing_support::WatchedScenario;
+
 // The foraging scenario with a bookkeeper, who looks into every gripper before and after the scenario moved
 // items.
-class Bookkeeper : public sim::Scenario {
+class Bookkeeper : public WatchedScenario {
  public:
   Bookkeeper(std::unique_ptr<sim::Scenario> scenario, const controllers::ForagingSettings& settings,
              int robots)
-      : scenario_(std::move(scenario)), settings_(settings), held_(static_cast<std::size_t>(robots), false) {}
-
-  const sim::Arena& arena() const override { return scenario_->arena(); }
-  sim::Tick tick_limit() const override { return scenario_->tick_limit(); }
-  std::span<const sim::Light> lights() const override { return scenario_->lights(); }
-  std::span<const sim::RadioBeacon> radio_beacons() const override { return scenario_->radio_beacons(); }
-  double FloorGrey(const sim::Vec2& point) const override { return scenario_->FloorGrey(point); }
-  Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters& headquarters) override {
-    return scenario_->CreateSwarm(headquarters);
-  }
-  bool Finished(const sim::Observer& observer) override { return scenario_->Finished(observer); }
-  sim::Outcome Evaluate(const sim::Observer& observer) override { return scenario_->Evaluate(observer); }
+      : WatchedScenario(std::move(scenario)),
+        settings_(settings),
+        held_(static_cast<std::size_t>(robots), false) {}
 
   void Interact(const sim::Interaction& interaction) override {
     const sim::Tick tick = interaction.observer.last_tick();
@@ -41,7 +36,7 @@ class Bookkeeper : public sim::Scenario {
         Say(tick, i, "an item moved while the scenario did not look");
       }
     }
-    scenario_->Interact(interaction);
+    WatchedScenario::Interact(interaction);
     for (std::size_t i = 0; i < held_.size(); ++i) {
       const bool holds = interaction.grippers.Holds(static_cast<sim::RobotIndex>(i));
       const sim::Vec2 place = robots[i].position();
@@ -77,18 +72,10 @@ class Bookkeeper : public sim::Scenario {
     if (complaint.empty()) complaint = fmt::format("tick {}, robot {}: {}", tick, robot, what);
   }
 
-  std::unique_ptr<sim::Scenario> scenario_;
   controllers::ForagingSettings settings_;
   std::vector<bool> held_;
   sim::Tick last_taken_ = -1;
 };
-
-double MetricOf(const sim::RunResult& result, std::string_view name) {
-  const auto found = std::find_if(result.metrics.begin(), result.metrics.end(),
-                                  [&](const auto& metric) { return metric.first == name; });
-  RC_ASSERT(found != result.metrics.end());
-  return found->second;
-}
 
 // Small and quick, so that items flow: nest and food 2 m apart, an item every 3 s.
 sim::RunSpec BusySpec(std::uint64_t seed) {
@@ -100,22 +87,10 @@ sim::RunSpec BusySpec(std::uint64_t seed) {
 }
 
 void AddRandomObstacles(sim::RunSpec& spec, const controllers::ForagingSettings& settings) {
-  sim::ArenaRequirements requirements;
-  requirements.start = controllers::NestOf(settings);
-  requirements.goal = controllers::FoodOf(settings);
-  requirements.clearance = 0.3;
+  const auto requirements = RequirementsOf(settings, {{"clearance", 0.3}});
   sim::RandomStream random(spec.seed, sim::StreamPurpose::kTest);
-  sim::IncrementalValidity validity(spec.test_case, requirements);
-  const int wanted = static_cast<int>(random.Below(9));
-  for (int tries = 0; tries < wanted; ++tries) {
-    sim::ObstacleGene gene;
-    gene.x = random.Uniform(-3.0, 3.0);
-    gene.y = random.Uniform(-3.0, 3.0);
-    gene.length = random.Uniform(0.4, 2.0);
-    gene.width = random.Uniform(0.1, 0.4);
-    gene.orientation_deg = random.Below(360);
-    if (!validity.TryAppend(gene)) spec.test_case.obstacles.push_back(gene);
-  }
+  const int tries = static_cast<int>(random.Below(9));
+  testing_support::AddRandomBoxes(spec.test_case, requirements, random, tries, 8);
 }
 
 RC_GTEST_PROP(ForagingItems, AddUpInEveryTickOfRandomArenas, (std::uint64_t seed)) {
@@ -137,9 +112,9 @@ RC_GTEST_PROP(ForagingItems, AddUpInEveryTickOfRandomArenas, (std::uint64_t seed
   RC_ASSERT(result.verdict == sim::Verdict::kCompleted);
   RC_ASSERT(bookkeeper.complaint == std::string());
   RC_ASSERT(result.fitness == bookkeeper.dropped);
-  RC_ASSERT(MetricOf(result, "food_taken") == bookkeeper.taken);
-  RC_ASSERT(MetricOf(result, "food_carried") == bookkeeper.Held());
-  RC_ASSERT(MetricOf(result, "food_lost") == 0.0);
+  RC_ASSERT(Metric(result, "food_taken") == bookkeeper.taken);
+  RC_ASSERT(Metric(result, "food_carried") == bookkeeper.Held());
+  RC_ASSERT(Metric(result, "food_lost") == 0.0);
   RC_TAG(bookkeeper.dropped > 0 ? "with drops" : "without drops");
 }
 

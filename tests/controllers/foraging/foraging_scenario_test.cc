@@ -8,32 +8,18 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "sim/simulation.h"
+#include "tests/controllers/run_support.h"
 #include "worker/run_executor.h"
 
 namespace gauntlet {
 namespace {
 
 using ::testing::StartsWith;
+using testing_support::Metric;
+using testing_support::SumOfMetrics;
 
 sim::RunSpec Spec(const std::string& controller, std::uint64_t seed) {
-  sim::RunSpec spec;
-  spec.scenario = "foraging";
-  spec.controller = controller;
-  spec.seed = seed;
-  return spec;
-}
-
-double Metric(const sim::RunResult& result, std::string_view name) {
-  const auto found = std::find_if(result.metrics.begin(), result.metrics.end(),
-                                  [&](const auto& metric) { return metric.first == name; });
-  EXPECT_NE(found, result.metrics.end()) << name;
-  return found == result.metrics.end() ? 0.0 : found->second;
-}
-
-double SumOfMetrics(const sim::RunResult& result, std::string_view prefix) {
-  double sum = 0.0;
-  for (const auto& [name, value] : result.metrics) sum += name.starts_with(prefix) ? value : 0.0;
-  return sum;
+  return testing_support::SpecOf("foraging", controller, seed);
 }
 
 sim::TestCase RandomCase(std::uint32_t index) {
@@ -41,16 +27,7 @@ sim::TestCase RandomCase(std::uint32_t index) {
   sim::TestCase test_case;
   const auto requirements = controllers::ForagingScenarioInfo().requirements(*parameters, test_case);
   sim::RandomStream random(77, sim::StreamPurpose::kTest, index);
-  sim::IncrementalValidity validity(test_case, requirements);
-  for (int tries = 0; tries < 500 && test_case.obstacles.size() < 8; ++tries) {
-    sim::ObstacleGene gene;
-    gene.x = random.Uniform(-3.0, 3.0);
-    gene.y = random.Uniform(-3.0, 3.0);
-    gene.length = random.Uniform(0.4, 2.0);
-    gene.width = random.Uniform(0.1, 0.4);
-    gene.orientation_deg = random.Below(360);
-    if (!validity.TryAppend(gene)) test_case.obstacles.push_back(gene);
-  }
+  testing_support::AddRandomBoxes(test_case, requirements, random, 500, 8);
   return test_case;
 }
 

@@ -11,9 +11,13 @@
 #include "controllers/partitioning/partitioning_registry.h"
 #include "controllers/registry.h"
 #include "sim/simulation.h"
+#include "tests/controllers/run_support.h"
 
 namespace gauntlet {
 namespace {
+
+using testing_support::Metric;
+using testing_support::WatchedScenario;
 
 // How a robot ends.
 enum class End { kNever, kFreezes, kFallsSilent, kStopsMoving };
@@ -40,22 +44,17 @@ class Mortal : public sim::Controller {
 };
 
 // The scenario with a bookkeeper, who looks into every gripper before and after the scenario moved items.
-class PartitionBookkeeper : public sim::Scenario {
+class PartitionBookkeeper : public WatchedScenario {
  public:
   PartitionBookkeeper(std::unique_ptr<sim::Scenario> scenario, controllers::PartitioningSettings settings,
                       double handover_reach)
-      : scenario_(std::move(scenario)), settings_(settings), handover_reach_(handover_reach) {}
+      : WatchedScenario(std::move(scenario)), settings_(settings), handover_reach_(handover_reach) {}
 
   // The robots that end, by number.
   std::vector<std::pair<End, sim::Tick>> ends;
 
-  const sim::Arena& arena() const override { return scenario_->arena(); }
-  sim::Tick tick_limit() const override { return scenario_->tick_limit(); }
-  std::span<const sim::Light> lights() const override { return scenario_->lights(); }
-  std::span<const sim::RadioBeacon> radio_beacons() const override { return scenario_->radio_beacons(); }
-  double FloorGrey(const sim::Vec2& point) const override { return scenario_->FloorGrey(point); }
   Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters& headquarters) override {
-    auto swarm = scenario_->CreateSwarm(headquarters);
+    auto swarm = WatchedScenario::CreateSwarm(headquarters);
     if (!swarm.ok()) return swarm;
     held_.assign(swarm->size(), false);
     for (std::size_t i = 0; i < std::min(ends.size(), swarm->size()); ++i) {
@@ -64,9 +63,6 @@ class PartitionBookkeeper : public sim::Scenario {
     }
     return swarm;
   }
-  bool Finished(const sim::Observer& observer) override { return scenario_->Finished(observer); }
-  sim::Outcome Evaluate(const sim::Observer& observer) override { return scenario_->Evaluate(observer); }
-
   void Interact(const sim::Interaction& interaction) override {
     const sim::Tick tick = interaction.observer.last_tick();
     for (std::size_t i = 0; i < held_.size(); ++i) {
@@ -74,7 +70,7 @@ class PartitionBookkeeper : public sim::Scenario {
         Complain(tick, i, "an item moved while the scenario did not look");
       }
     }
-    scenario_->Interact(interaction);
+    WatchedScenario::Interact(interaction);
     const auto robots = interaction.observer.Latest();
     std::vector<std::size_t> gained;
     std::vector<std::size_t> lost;
@@ -123,17 +119,10 @@ class PartitionBookkeeper : public sim::Scenario {
     if (complaint.empty()) complaint = fmt::format("tick {}, robot {}: {}", tick, robot, what);
   }
 
-  std::unique_ptr<sim::Scenario> scenario_;
   controllers::PartitioningSettings settings_;
   double handover_reach_;
   std::vector<bool> held_;
 };
-
-double ValueOf(const sim::RunResult& result, std::string_view name) {
-  const auto found = std::find_if(result.metrics.begin(), result.metrics.end(),
-                                  [&](const auto& metric) { return metric.first == name; });
-  return found == result.metrics.end() ? -1000.0 : found->second;
-}
 
 // Small and quick, so that items change hands: 2.4 m from the source to the nest, hand-overs of 3 s every 0.8
 // m.
@@ -160,22 +149,10 @@ constexpr double kHandoverReach = 0.30 + 1e-9;  // m
 
 void AddBoxes(sim::RunSpec& spec) {
   const controllers::PartitioningSettings settings = SettingsOf(spec);
-  sim::ArenaRequirements requirements;
-  requirements.start = controllers::NestOf(settings);
-  requirements.goal = controllers::FoodOf(settings);
-  requirements.clearance = 0.3;
+  const auto requirements = RequirementsOf(settings, {{"clearance", 0.3}});
   sim::RandomStream random(spec.seed, sim::StreamPurpose::kTest);
-  sim::IncrementalValidity validity(spec.test_case, requirements);
-  const int wanted = static_cast<int>(random.Below(7));
-  for (int tries = 0; tries < wanted; ++tries) {
-    sim::ObstacleGene gene;
-    gene.x = random.Uniform(-3.0, 3.0);
-    gene.y = random.Uniform(-3.0, 3.0);
-    gene.length = random.Uniform(0.4, 1.5);
-    gene.width = random.Uniform(0.1, 0.4);
-    gene.orientation_deg = random.Below(360);
-    if (!validity.TryAppend(gene)) spec.test_case.obstacles.push_back(gene);
-  }
+  const int tries = static_cast<int>(random.Below(7));
+  testing_support::AddRandomBoxes(spec.test_case, requirements, random, tries, 6);
 }
 
 RC_GTEST_PROP(PartitioningItems, AddUpInEveryTickWhateverHappensToTheRobots, (std::uint64_t seed)) {
@@ -197,10 +174,10 @@ RC_GTEST_PROP(PartitioningItems, AddUpInEveryTickWhateverHappensToTheRobots, (st
   RC_ASSERT(result.verdict == sim::Verdict::kCompleted);
   RC_ASSERT(bookkeeper.complaint == std::string());
   RC_ASSERT(result.fitness == bookkeeper.dropped);
-  RC_ASSERT(ValueOf(result, "food_taken") == bookkeeper.taken);
-  RC_ASSERT(ValueOf(result, "food_carried") == bookkeeper.Held());
-  RC_ASSERT(ValueOf(result, "transfers") == bookkeeper.transfers);
-  RC_ASSERT(ValueOf(result, "food_lost") == 0.0);
+  RC_ASSERT(Metric(result, "food_taken") == bookkeeper.taken);
+  RC_ASSERT(Metric(result, "food_carried") == bookkeeper.Held());
+  RC_ASSERT(Metric(result, "transfers") == bookkeeper.transfers);
+  RC_ASSERT(Metric(result, "food_lost") == 0.0);
   RC_TAG(bookkeeper.transfers > 0 ? "with transfers" : "without transfers");
 }
 

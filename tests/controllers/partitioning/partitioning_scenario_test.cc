@@ -9,6 +9,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "sim/simulation.h"
+#include "tests/controllers/run_support.h"
 #include "worker/run_executor.h"
 
 namespace gauntlet {
@@ -16,26 +17,11 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
+using testing_support::Metric;
+using testing_support::SumOfMetrics;
 
 sim::RunSpec PartitionSpec(const std::string& controller, std::uint64_t seed) {
-  sim::RunSpec spec;
-  spec.scenario = "task-partitioning";
-  spec.controller = controller;
-  spec.seed = seed;
-  return spec;
-}
-
-double MetricNamed(const sim::RunResult& result, std::string_view name) {
-  const auto found = std::find_if(result.metrics.begin(), result.metrics.end(),
-                                  [&](const auto& metric) { return metric.first == name; });
-  EXPECT_NE(found, result.metrics.end()) << name;
-  return found == result.metrics.end() ? 0.0 : found->second;
-}
-
-double SumOf(const sim::RunResult& result, std::string_view prefix) {
-  double sum = 0.0;
-  for (const auto& [name, value] : result.metrics) sum += name.starts_with(prefix) ? value : 0.0;
-  return sum;
+  return testing_support::SpecOf("task-partitioning", controller, seed);
 }
 
 TEST(PartitioningScenario, RelaysItemsInTheEmptyArena) {
@@ -44,12 +30,12 @@ TEST(PartitioningScenario, RelaysItemsInTheEmptyArena) {
     ASSERT_EQ(result.verdict, sim::Verdict::kCompleted) << result.message;
     EXPECT_EQ(result.ticks, 8000);
     EXPECT_GE(result.fitness, 6.0);
-    EXPECT_GE(MetricNamed(result, "transfers"), 6.0);
-    EXPECT_EQ(MetricNamed(result, "food_taken"), result.fitness + MetricNamed(result, "food_carried"));
-    EXPECT_EQ(SumOf(result, "food_window_"), result.fitness);
-    EXPECT_NEAR(SumOf(result, "mean_robots_"), 6.0, 1e-9);
-    EXPECT_EQ(MetricNamed(result, "partition_length"), 2.0);
-    EXPECT_GE(MetricNamed(result, "mean_waiting_time"), 0.0);
+    EXPECT_GE(Metric(result, "transfers"), 6.0);
+    EXPECT_EQ(Metric(result, "food_taken"), result.fitness + Metric(result, "food_carried"));
+    EXPECT_EQ(SumOfMetrics(result, "food_window_"), result.fitness);
+    EXPECT_NEAR(SumOfMetrics(result, "mean_robots_"), 6.0, 1e-9);
+    EXPECT_EQ(Metric(result, "partition_length"), 2.0);
+    EXPECT_GE(Metric(result, "mean_waiting_time"), 0.0);
     EXPECT_FALSE(result.failure.total);
   }
 }
@@ -76,10 +62,10 @@ TEST(PartitioningScenario, OneRobotAloneWorksWithoutTransfers) {
   spec.test_case.robots = 1;
   const sim::RunResult result = worker::Run(spec);
   EXPECT_GE(result.fitness, 1.0);
-  EXPECT_EQ(MetricNamed(result, "transfers"), 0.0);
-  EXPECT_GE(MetricNamed(result, "wait_timeouts"), 1.0);
-  EXPECT_GT(MetricNamed(result, "mean_waiting_time"), 100.0);  // the last wait may be cut short
-  EXPECT_LE(MetricNamed(result, "mean_waiting_time"), 180.2);
+  EXPECT_EQ(Metric(result, "transfers"), 0.0);
+  EXPECT_GE(Metric(result, "wait_timeouts"), 1.0);
+  EXPECT_GT(Metric(result, "mean_waiting_time"), 100.0);  // the last wait may be cut short
+  EXPECT_LE(Metric(result, "mean_waiting_time"), 180.2);
   spec.controller_parameters["wait_time"] = 0.0;
   const sim::RunResult hasty = worker::Run(spec);
   EXPECT_GT(hasty.fitness, result.fitness) << "zero waiting time: it carries on at once";
@@ -109,7 +95,7 @@ TEST(PartitioningScenario, MarksTransfersAndTellsStates) {
     EXPECT_GT(mark.tick, 150);
     EXPECT_EQ(mark.points.size(), 1u);
   }
-  EXPECT_EQ(transfers, MetricNamed(result, "transfers"));
+  EXPECT_EQ(transfers, Metric(result, "transfers"));
   EXPECT_EQ(lines, 6.0);
 }
 
@@ -140,11 +126,12 @@ TEST(PartitioningScenario, TellsHowPartitionLengthsAreLearnt) {
   sim::RunSpec spec = PartitionSpec("task-partitioning-dynamic", 1);
   spec.scenario_parameters = {{"time_limit", 1200.0}};
   const sim::RunResult result = worker::Run(spec);
-  EXPECT_NEAR(MetricNamed(result, "partition_length_window_1"), 0.5, 0.2);
-  EXPECT_EQ(MetricNamed(result, "partition_length_window_10"), MetricNamed(result, "partition_length"));
-  EXPECT_GT(MetricNamed(result, "partition_length"), 0.7) << "it grows while items are found";
-  EXPECT_GT(MetricNamed(result, "transfers"), result.fitness) << "more than one per item";
-  EXPECT_EQ(SumOf(worker::Run(PartitionSpec("task-partitioning", 1)), "partition_length_window_"), 0.0);
+  EXPECT_NEAR(Metric(result, "partition_length_window_1"), 0.5, 0.2);
+  EXPECT_EQ(Metric(result, "partition_length_window_10"), Metric(result, "partition_length"));
+  EXPECT_GT(Metric(result, "partition_length"), 0.7) << "it grows while items are found";
+  EXPECT_GT(Metric(result, "transfers"), result.fitness) << "more than one per item";
+  EXPECT_EQ(SumOfMetrics(worker::Run(PartitionSpec("task-partitioning", 1)), "partition_length_window_"),
+            0.0);
 }
 
 // --- Traps ---
@@ -175,9 +162,9 @@ Escapes TryTen(const std::string& controller, double depth, double width) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const sim::RunResult result = worker::Run(BehindAU(controller, depth, width, seed));
     EXPECT_EQ(result.verdict, sim::Verdict::kCompleted) << result.message;
-    EXPECT_GE(MetricNamed(result, "food_taken"), 1.0) << seed;
+    EXPECT_GE(Metric(result, "food_taken"), 1.0) << seed;
     escapes.brought += result.fitness > 0.0 ? 1 : 0;
-    escapes.trapped += MetricNamed(result, "trapped_robots") > 0.0 && result.fitness == 0.0 ? 1 : 0;
+    escapes.trapped += Metric(result, "trapped_robots") > 0.0 && result.fitness == 0.0 ? 1 : 0;
   }
   return escapes;
 }
@@ -247,8 +234,8 @@ TEST(PartitioningRefusals, AWaitingTimeBelowZeroIsOutOfRange) {
   spec.controller_parameters["wait_time"] = 0.0;
   const sim::RunResult result = worker::Run(spec);
   EXPECT_EQ(result.verdict, sim::Verdict::kCompleted);
-  EXPECT_EQ(MetricNamed(result, "transfers"), 0.0) << "nobody waits: everybody carries all the way";
-  EXPECT_EQ(MetricNamed(result, "waits"), 0.0);
+  EXPECT_EQ(Metric(result, "transfers"), 0.0) << "nobody waits: everybody carries all the way";
+  EXPECT_EQ(Metric(result, "waits"), 0.0);
   EXPECT_GE(result.fitness, 1.0);
 }
 
