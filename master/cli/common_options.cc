@@ -90,7 +90,15 @@ Result<Experiment> LoadExperimentWith(const CommonOptions& options, const std::v
     seed = *parsed;
   }
   std::vector<std::string> sets = options.sets;
-  for (const ExtraSet& one : all) sets.push_back(one.set);
+  for (const ExtraSet& one : all) {
+    const std::string key = one.set.substr(0, one.set.find('=') + 1);
+    for (const std::string& set : options.sets) {
+      if (!set.starts_with(key) || set == one.set) continue;
+      return InvalidInput(
+          fmt::format("--set {}: {} already says {}; give one of them", set, one.option, one.set));
+    }
+    sets.push_back(one.set);
+  }
   Result<Experiment> experiment = LoadExperiment(options.experiment, sets);
   if (!experiment) {
     // The person typed --generations 0, not --set search.generations=0.

@@ -1,5 +1,6 @@
 // gauntlet evolve, gauntlet random: a search on a pool of workers.
 
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +22,16 @@ Status CheckRandomOptions(const CommonOptions& options) {
                     "cases is 'random "
                     "--cases N', or --set search.cases=N",
                     option, value));
+  }
+  for (const std::string& set : options.sets) {
+    const std::string_view key = std::string_view(set).substr(0, set.find('='));
+    if (!key.starts_with("search.") || key == "search.algorithm" || key == "search.cases" ||
+        key == "search.replicates") {
+      continue;
+    }
+    return InvalidInput(fmt::format(
+        "--set {}: a random search breeds nothing; of the search it reads search.cases and search.replicates",
+        set));
   }
   return Ok{};
 }

@@ -128,6 +128,13 @@ TEST_F(CommandLine, OptionsOfAnotherSearchAreRefused) {
                    AllOf(HasSubstr("--generations 3"), HasSubstr("search.cases")));
   ExpectUsageError({"evolve", "flocking", "--generations", "1", "--set", "search.generations=1e3"},
                    HasSubstr("--set search.generations=1e3: "));
+  ExpectUsageError({"random", "flocking", "--set", "search.mode=steady-state"},
+                   AllOf(HasSubstr("--set search.mode=steady-state"), HasSubstr("search.cases")));
+}
+
+TEST_F(CommandLine, OptionsThatContradictEachOtherAreRefused) {
+  ExpectUsageError({"evolve", "flocking", "--generations", "3", "--set", "search.generations=4"},
+                   AllOf(HasSubstr("--set search.generations=4"), HasSubstr("--generations already says")));
 }
 
 TEST_F(CommandLine, HelpIsACommandToo) {
