@@ -47,6 +47,9 @@ struct ToWire {
     wire.mutable_held_leases()->Add(hello.held_leases.begin(), hello.held_leases.end());
     wire.set_allocation(hello.allocation);
     for (const std::string& name : hello.controllers) wire.add_controllers(name);
+    wire.set_boot_id(hello.boot_id);
+    wire.set_pid_namespace(hello.pid_namespace);
+    wire.set_start_time(hello.start_time);
   }
   void operator()(const LeaseResult& result) const {
     v1::LeaseResult& wire = *envelope.mutable_lease_result();

@@ -28,6 +28,10 @@ struct Hello {
   std::vector<Fence> held_leases;
   std::string allocation;  // the batch job that holds the worker, as its script says; "" for none
   std::vector<std::string> controllers = {};  // names of those it can simulate
+  // Who `pid` is, for a master on the same machine (worker/process_identity.h); "" and 0 when not known.
+  std::string boot_id = {};
+  std::string pid_namespace = {};
+  std::uint64_t start_time = 0;  // clock ticks since boot
   bool operator==(const Hello&) const = default;
 };
 

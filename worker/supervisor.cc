@@ -117,9 +117,11 @@ class Supervisor::Loop {
         Tell(RunFinished{finished->slot, std::move(finished->report.result), finished->report.cpu_seconds});
       } else if (auto* failed = std::get_if<SlotFailed>(&event)) {
         const Lease* lease = state_.LeaseIn(failed->slot);
-        spdlog::warn(
-            "slot {}: the runner {}{}", failed->slot, Describe(failed->failure),
-            lease == nullptr ? "" : fmt::format(" (run {}, lease {:x})", lease->run_id, lease->fence));
+        // Without a lease it was this worker that ended the runner: its run is not needed any more.
+        if (lease != nullptr) {
+          spdlog::warn("slot {}: the runner {} (run {}, lease {:x})", failed->slot, Describe(failed->failure),
+                       lease->run_id, lease->fence);
+        }
         Tell(RunnerDied{failed->slot, std::move(failed->failure), failed->cpu_seconds});
       } else if (const auto* emptied = std::get_if<SlotEmptied>(&event)) {
         Tell(RunnerDied{emptied->slot, {}, 0.0});

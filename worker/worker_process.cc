@@ -3,8 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spdlog/sinks/rotating_file_sink.h>
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 #include <sys/prctl.h>
 #include <sys/signalfd.h>
@@ -25,9 +23,11 @@
 #include "worker/access_file.h"
 #include "worker/fork_server.h"
 #include "worker/message_codec.h"
+#include "worker/process_identity.h"
 #include "worker/run_codec.h"
 #include "worker/runner_pool.h"
 #include "worker/supervisor.h"
+#include "worker/worker_log.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -36,9 +36,6 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kAccessPollInterval{200};
-// worker-1.log, and worker-1.1.log before it.
-constexpr std::size_t kLogBytes = 4U << 20;
-constexpr std::size_t kFormerLogs = 1;
 
 int Complain(const std::string& text, int code) {
   fmt::print(stderr, "gauntlet-worker: {}\n", text);
@@ -60,27 +57,6 @@ UniqueFd BlockStopSignals() {
   sigprocmask(SIG_BLOCK, &set, nullptr);
   signal(SIGPIPE, SIG_IGN);
   return UniqueFd(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK));
-}
-
-Status StartLogging(const WorkerOptions& options) {
-  try {
-    auto to_stderr = std::make_shared<spdlog::sinks::stderr_sink_mt>();
-    std::vector<spdlog::sink_ptr> sinks{to_stderr};
-    if (!options.log_file.empty()) {
-      // What ends the worker stands on stderr too: whoever started it may not look into the file.
-      to_stderr->set_level(spdlog::level::err);
-      sinks.push_back(
-          std::make_shared<spdlog::sinks::rotating_file_sink_mt>(options.log_file, kLogBytes, kFormerLogs));
-    }
-    auto logger = std::make_shared<spdlog::logger>("worker", sinks.begin(), sinks.end());
-    logger->set_level(options.quiet ? spdlog::level::warn : spdlog::level::info);
-    logger->flush_on(spdlog::level::info);
-    logger->set_pattern(fmt::format("%Y-%m-%d %H:%M:%S.%e worker {} %l: %v", getpid()));
-    spdlog::set_default_logger(std::move(logger));
-  } catch (const spdlog::spdlog_ex& error) {
-    return InvalidInput(error.what());
-  }
-  return Ok{};
 }
 
 // nullopt: a signal asked to stop. Error: the file is wrong, or has not come in time (kNotFound).
@@ -177,7 +153,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
   Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
   if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
   const UniqueFd signals = BlockStopSignals();
-  if (const Status logging = StartLogging(options); !logging.ok()) {
+  if (const Status logging = StartLogging(options.log_file, options.quiet); !logging.ok()) {
     return Complain(logging.error().message, kExitRefused);
   }
 
@@ -200,10 +176,11 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
                             .golden_hash = options.golden_hash(),
                             .slots = static_cast<std::uint32_t>(options.slots),
                             .host = HostName(),
-                            .pid = getpid(),
+                            .pid = 0,
                             .held_leases = {},
                             .allocation = options.allocation,
                             .controllers = options.controllers};
+  IdentifyThisProcess(settings.identity);
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
   Supervisor supervisor(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());

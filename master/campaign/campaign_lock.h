@@ -11,7 +11,7 @@
 #include <string>
 #include <thread>
 
-#include "master/campaign/process_identity.h"
+#include "master/dispatch/process_identity.h"
 #include "sim/base/result.h"
 
 namespace gauntlet::master {

@@ -1,7 +1,6 @@
 #include "master/campaign/campaign_session.h"
 
 #include <fmt/format.h>
-#include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/spdlog.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -17,14 +16,15 @@
 #include "master/campaign/campaign_keys.h"
 #include "master/campaign/campaign_ownership.h"
 #include "master/campaign/campaign_status.h"
+#include "master/campaign/master_log.h"
 #include "master/campaign/metrics_server.h"
 #include "master/campaign/metrics_text.h"
-#include "master/campaign/process_identity.h"
 #include "master/campaign/reachable_endpoints.h"
 #include "master/campaign/reproduction_bundle.h"
 #include "master/campaign/stored_check.h"
 #include "master/campaign/worker_program.h"
 #include "master/dispatch/local_pool.h"
+#include "master/dispatch/process_identity.h"
 #include "master/dispatch/remote_backend.h"
 #include "master/dispatch/zmq_transport.h"
 #include "master/experiment/experiment_file.h"
@@ -38,8 +38,6 @@ constexpr std::string_view kSoftwareVersion = GAUNTLET_VERSION;
 constexpr std::chrono::milliseconds kShutdownTime{2000};
 constexpr std::chrono::milliseconds kStatusEvery{1000};
 // master.log, and master.1.log to master.4.log before it.
-constexpr std::size_t kLogBytes = 16U << 20;
-constexpr std::size_t kFormerLogs = 4;
 
 std::string HashText(std::uint64_t hash) {
   return fmt::format("{:016x}", hash);
@@ -105,19 +103,11 @@ Result<Serving> Listen(const CampaignOwnership& campaign, const SessionOptions& 
   return Serving{*std::move(transport), std::move(access)};
 }
 
-// The master's log, beside those of its workers. Logging is no reason to stop: without a file it is silent.
+// The master's log, beside those of its workers.
 void OpenLog(const CampaignDirectory& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory.log_path(), error);
-  try {
-    auto sink = std::make_shared<spdlog::sinks::rotating_file_sink_mt>(directory.log_path() + "/master.log",
-                                                                       kLogBytes, kFormerLogs);
-    auto logger = std::make_shared<spdlog::logger>("master", std::move(sink));
-    logger->flush_on(spdlog::level::info);
-    spdlog::set_default_logger(std::move(logger));
-  } catch (const spdlog::spdlog_ex&) {
-    spdlog::set_level(spdlog::level::off);
-  }
+  OpenMasterLog(directory.log_path() + "/master.log");
 }
 
 Status CheckAllStored(const std::vector<SearchPlan>& plans, ResultStore& store) {

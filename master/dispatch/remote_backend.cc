@@ -19,8 +19,11 @@ constexpr std::size_t kBatch = 512;        // messages taken from the socket at 
 constexpr int kBatchesPerStep = 8;         // then leases and heartbeats get their turn
 constexpr milliseconds kLongestWait{100};  // so that silence and pool deaths are noticed
 constexpr std::uint32_t kMaxSlots = 4096;
-constexpr std::size_t kMaxEvents = 1000;  // kept until somebody takes them
-constexpr int kUnreachableBeats = 2;      // a connection gets this long to come back
+constexpr std::size_t kMaxEvents = 1000;         // kept until somebody takes them
+constexpr std::size_t kLongestHello = 1U << 20;  // bytes; what is longer is not even parsed for a stranger
+constexpr int kUnreachableBeats = 2;             // a connection gets this long to come back
+// What a process said just before its end, its goodbye above all, is heard first.
+constexpr milliseconds kLastWords{200};
 constexpr std::size_t kShownBytes = 300;  // of a text that came from a worker
 
 std::string Shorten(const std::string& text) {
@@ -106,6 +109,7 @@ Status RemoteBackend::Step() {
   const TimePoint now = clock_.Now();
   Status supervised = SupervisePool(now);
   for (int batch = 0; batch < kBatchesPerStep && ReceiveMessages(now); ++batch) continue;
+  BuryEnded(now);
   SendHeartbeats(now);
   GiveLeases(now);
   return supervised;
@@ -125,6 +129,13 @@ Status RemoteBackend::SupervisePool(TimePoint now) {
     }
   }
   return Ok{};
+}
+
+void RemoteBackend::BuryEnded(TimePoint now) {
+  while (!ended_.empty() && ended_.front().first <= now) {
+    scheduler_.WorkerDied(ended_.front().second);
+    ended_.erase(ended_.begin());
+  }
 }
 
 PoolView RemoteBackend::ViewForPool() const {
@@ -147,6 +158,11 @@ bool RemoteBackend::ReceiveMessages(TimePoint now) {
 }
 
 void RemoteBackend::Handle(const PeerMessage& message, TimePoint now) {
+  if (message.bytes.size() > kLongestHello && !instances_.contains(message.peer)) {
+    Reject("long-stranger",
+           fmt::format("a peer that has not said hello sent {} bytes", message.bytes.size()));
+    return;
+  }
   Result<WorkerMessage> decoded = DecodeWorkerMessage(message.bytes);
   if (!decoded) {
     Reject("unreadable",
@@ -234,6 +250,8 @@ void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimeP
   if (known && connection.peer != peer) instances_.erase(connection.peer);
   connection = {peer, label, hello.pid, Shorten(hello.allocation), 0};
   instances_[peer] = hello.instance_id;
+  processes_.Watch(hello.instance_id, {hello.host, hello.boot_id, hello.pid_namespace,
+                                       static_cast<pid_t>(hello.pid), hello.start_time});
   transport_.Send(peer, EncodeWelcome(options_, identity_.epoch));
   scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held, now);
   if (shutting_down_) transport_.Send(peer, EncodeDrain("the master is leaving", false));
@@ -265,7 +283,8 @@ void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
     if (answer == Answer::kRejected) {
       Reject("lease", fmt::format("worker {} reported on a lease that is not its own", LabelOf(worker)));
     } else if (answer == Answer::kAccepted) {
-      Report("runner-failure",
+      const bool own = message.failure->kind != FailureKind::kExternal;
+      Report(own ? "runner-failure" : "run-returned",
              fmt::format("run {} {} on worker {} (lease {:x}){}{}", message.run,
                          DescribeFailure(*message.failure), LabelOf(worker), message.fence,
                          message.stderr_tail.empty() ? "" : ": ", Shorten(message.stderr_tail)));
@@ -372,10 +391,15 @@ SendOutcome RemoteBackend::SendTo(InstanceId worker, std::string_view bytes) {
 WaitOutcome RemoteBackend::WaitForSomething(milliseconds timeout, bool watch) {
   wait_fds_.clear();
   if (watch && watched_fd_ >= 0) wait_fds_.push_back(watched_fd_);
+  if (processes_.fd() >= 0) wait_fds_.push_back(processes_.fd());
   const std::size_t others = wait_fds_.size();
   if (pool_ != nullptr) pool_->AppendWaitFds(wait_fds_);
   WaitOutcome outcome = transport_.Wait(timeout, wait_fds_);
   for (const int fd : outcome.ready_fds) {
+    if (fd == processes_.fd()) {
+      const TimePoint heard_until = clock_.Now() + kLastWords;
+      for (const InstanceId worker : processes_.TakeEnded()) ended_.emplace_back(heard_until, worker);
+    }
     const auto pool_fds = wait_fds_.begin() + static_cast<std::ptrdiff_t>(others);
     if (std::find(pool_fds, wait_fds_.end(), fd) != wait_fds_.end()) next_supervision_ = TimePoint{};
   }
@@ -428,6 +452,7 @@ void RemoteBackend::Disconnect(InstanceId worker) {
   if (connection == connections_.end()) return;
   const auto instance = instances_.find(connection->second.peer);
   if (instance != instances_.end() && instance->second == worker) instances_.erase(instance);
+  processes_.Forget(worker);
   connections_.erase(connection);
 }
 

@@ -9,11 +9,13 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "master/dispatch/clock.h"
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
+#include "master/dispatch/process_watch.h"
 #include "master/dispatch/scheduler.h"
 #include "master/dispatch/transport.h"
 #include "master/dispatch/wire.h"
@@ -53,6 +55,7 @@ class RemoteBackend final : public EvaluationBackend {
 
   Status Step();
   Status SupervisePool(TimePoint now);
+  void BuryEnded(TimePoint now);
   PoolView ViewForPool() const;
   bool ReceiveMessages(TimePoint now);
   void Handle(const PeerMessage& message, TimePoint now);
@@ -86,6 +89,8 @@ class RemoteBackend final : public EvaluationBackend {
       stderr_tails_;  // of those of them that failed, their newest failure's
   std::map<InstanceId, Connection> connections_;
   std::unordered_map<PeerId, InstanceId> instances_;
+  ProcessWatch processes_;                               // of the workers on this machine
+  std::vector<std::pair<TimePoint, InstanceId>> ended_;  // with the time until which they may be heard
   std::vector<FinishedRun> finished_;
   std::vector<DispatchEvent> events_;
   std::optional<Error> pool_error_;

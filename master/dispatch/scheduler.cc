@@ -185,8 +185,9 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
     if (!holds(fence)) {
       EndLease(fence);
       ForgetIfDone(run_id);
-    } else if (lease.state == LeaseState::kOrphaned && !run.finished && run.live == 0) {
-      // Back in time: nobody else has the run yet.
+    } else if (lease.state == LeaseState::kOrphaned && !run.finished) {
+      // Back in time. Should somebody else have the run by now, the first answer counts and ends the other's
+      // lease: this worker has done more of it.
       lease.state = LeaseState::kLive;
       Erase(worker.loose, fence);
       worker.live.push_back(fence);

@@ -44,7 +44,7 @@ class Transport {
   virtual ~Transport() = default;
   // Never blocks.
   virtual SendOutcome Send(const PeerId& peer, std::string_view bytes) = 0;
-  // Appends at most `limit` messages that have arrived; never blocks.
+  // Appends at most `limit` messages that have arrived, fewer when they are very long; never blocks.
   virtual void Receive(std::size_t limit, std::vector<PeerMessage>& messages) = 0;
   // Waits until messages arrive, one of `fds` becomes readable, WakeUp is called or `timeout` has passed.
   virtual WaitOutcome Wait(std::chrono::milliseconds timeout, std::span<const int> fds) = 0;

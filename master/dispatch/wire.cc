@@ -33,6 +33,9 @@ HelloMessage From(v1::Hello& hello) {
   message.slots = hello.slots();
   message.host = std::move(*hello.mutable_host());
   message.pid = hello.pid();
+  message.boot_id = std::move(*hello.mutable_boot_id());
+  message.pid_namespace = std::move(*hello.mutable_pid_namespace());
+  message.start_time = hello.start_time();
   message.held.assign(hello.held_leases().begin(), hello.held_leases().end());
   message.allocation = std::move(*hello.mutable_allocation());
   message.controllers.assign(hello.controllers().begin(), hello.controllers().end());

@@ -25,6 +25,9 @@ struct HelloMessage {
   std::uint32_t slots = 0;
   std::string host;
   std::int64_t pid = 0;
+  std::string boot_id;  // with the two below: who `pid` is (ProcessIdentity); "" when not known
+  std::string pid_namespace;
+  std::uint64_t start_time = 0;
   std::vector<Fence> held;
   std::string allocation;  // "" for none
   std::vector<std::string> controllers;

@@ -20,6 +20,9 @@ namespace {
 // The connection is closed only beyond the limit of a message, so that a slightly too long one can be
 // counted.
 constexpr std::size_t kConnectionMargin = 1U << 20;
+// Messages of the longest sort that Receive takes at once: whoever sends only such must not keep the master
+// from everybody else.
+constexpr std::size_t kLongestAtOnce = 4;
 constexpr int kLingerMilliseconds = 100;  // for the last messages to leave
 constexpr const char* kMonitorAddress = "inproc://gauntlet-transport-monitor";
 constexpr int kMonitoredEvents = ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
@@ -108,6 +111,8 @@ Result<std::unique_ptr<ZmqTransport>> ZmqTransport::Bind(const ZmqTransportOptio
     router.set(zmq::sockopt::rcvhwm, options.peer_queue);
     router.set(zmq::sockopt::linger, kLingerMilliseconds);
     router.set(zmq::sockopt::backlog, 1024);
+    router.set(zmq::sockopt::heartbeat_ivl, static_cast<int>(options.sign_of_life.count()));
+    router.set(zmq::sockopt::heartbeat_timeout, static_cast<int>(options.sign_of_life.count()));
     if (zmq_socket_monitor(router.handle(), kMonitorAddress, kMonitoredEvents) != 0) throw zmq::error_t();
     sockets->monitor.set(zmq::sockopt::linger, 0);
     sockets->monitor.connect(kMonitorAddress);
@@ -154,7 +159,9 @@ SendOutcome ZmqTransport::Send(const PeerId& peer, std::string_view bytes) {
 void ZmqTransport::Receive(std::size_t limit, std::vector<PeerMessage>& messages) {
   zmq::message_t identity;
   zmq::message_t frame;
+  std::size_t bytes = 0;
   for (std::size_t received = 0; received < limit; ++received) {
+    if (bytes >= kLongestAtOnce * sockets_->max_message_bytes) return;
     try {
       if (!sockets_->router.recv(identity, zmq::recv_flags::dontwait)) return;
       if (!identity.more()) {
@@ -171,6 +178,7 @@ void ZmqTransport::Receive(std::size_t limit, std::vector<PeerMessage>& messages
     } catch (const zmq::error_t&) {
       return;  // interrupted by a signal: what is there is received next time
     }
+    bytes += frame.size();
     if (frame.size() > sockets_->max_message_bytes) {
       ++sockets_->rejections.oversized;
       continue;

@@ -1,6 +1,7 @@
 // Transport over a ZeroMQ ROUTER socket; workers connect with DEALER sockets and send one frame per message.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,6 +26,9 @@ struct ZmqTransportOptions {
   // is closed before its bytes are read.
   std::size_t max_message_bytes = 16U << 20;
   int peer_queue = 1000;  // messages per peer and direction before it counts as not reading
+  // A connection on which nothing has come for so long is asked for a sign of life, which every peer that
+  // speaks ZeroMQ gives by itself, and is closed when none comes in the same time again. 0: never asked.
+  std::chrono::milliseconds sign_of_life{30'000};
   std::optional<CurveServer> curve = std::nullopt;  // none: plaintext, open to whoever reaches the endpoint
 };
 

@@ -417,6 +417,16 @@ TEST_F(RemoteBackendTest, GarbageIsDroppedCountedAndReportedOncePerKind) {
   EXPECT_THAT(Sent("x"), IsEmpty());
 }
 
+TEST_F(RemoteBackendTest, AStrangersLongMessageIsNotEvenParsed) {
+  v1::Hello hello = HelloOf(kAnna);
+  hello.set_host(std::string(2 << 20, 'x'));
+  SayHello("a", hello);
+  Poll();
+  EXPECT_THAT(Sent("a"), IsEmpty());
+  EXPECT_EQ(backend_->Statistics().rejected_messages, 1U);
+  EXPECT_THAT(EventsOf("rejected-message"), HasSubstr("a peer that has not said hello sent 2097"));
+}
+
 TEST_F(RemoteBackendTest, AnAnswerToSomebodyElsesLeaseIsRejected) {
   backend_->Submit({{1, "spec"}});
   SayHello("a", HelloOf(kAnna));

@@ -273,13 +273,34 @@ TEST_F(SchedulerTest, AReturningWorkerKeepsTheRunThatNobodyElseHas) {
   EXPECT_EQ(scheduler_.Completed(10, fence, 1, 111), Answer::kAccepted);
 }
 
-TEST_F(SchedulerTest, AReturningWorkerIsToldToDropARunThatWasGivenAway) {
+TEST_F(SchedulerTest, OfAReturningWorkerAndTheOneThatGotItsRunTheFirstToAnswerCounts) {
+  for (const InstanceId first : {10, 11}) {
+    SCOPED_TRACE(first);
+    scheduler_ = Scheduler(LeaseOptions(), kFirstFence);
+    SubmitRuns(1, 1);
+    Join(10);
+    const Fence old_fence = Decide().leases[0].fence;
+    Join(11);
+    scheduler_.WorkerDied(10);
+    const Fence new_fence = Decide().leases.at(0).fence;
+    scheduler_.WorkerHeartbeat(10, {old_fence}, clock_.Now());
+    EXPECT_THAT(Decide().cancels, IsEmpty()) << "both go on";
+    EXPECT_EQ(scheduler_.Completed(first, first == 10 ? old_fence : new_fence, 1, 111), Answer::kAccepted);
+    const SchedulerOrders orders = Decide();
+    ASSERT_THAT(FencesOf(orders.cancels), ElementsAre(first == 10 ? new_fence : old_fence));
+    EXPECT_EQ(orders.cancels[0].worker, first == 10 ? 11U : 10U);
+    EXPECT_EQ(scheduler_.unfinished(), 0U);
+  }
+}
+
+TEST_F(SchedulerTest, AReturningWorkerIsToldToDropARunThatHasFinishedElsewhere) {
   SubmitRuns(1, 1);
   Join(10);
   const Fence fence = Decide().leases[0].fence;
   Join(11);
   scheduler_.WorkerDied(10);
-  Decide();
+  const Fence new_fence = Decide().leases.at(0).fence;
+  EXPECT_EQ(scheduler_.Completed(11, new_fence, 1, 111), Answer::kAccepted);
   scheduler_.WorkerHeartbeat(10, {fence}, clock_.Now());
   const SchedulerOrders orders = Decide();
   ASSERT_THAT(FencesOf(orders.cancels), ElementsAre(fence));

@@ -231,6 +231,23 @@ TEST_F(ZmqTransportTest, ATooLongMessageIsDroppedAndCounted) {
   EXPECT_EQ(transport_->Rejections().oversized, 1U);
 }
 
+TEST_F(ZmqTransportTest, TakesOnlySoManyLongMessagesAtOnce) {
+  zmq::socket_t dealer = Connect();
+  for (int i = 0; i < 10; ++i) dealer.send(zmq::message_t(kLimit), zmq::send_flags::none);
+  const auto deadline = std::chrono::steady_clock::now() + seconds(10);
+  std::size_t most = 0;
+  std::size_t all = 0;
+  while (all < 10 && std::chrono::steady_clock::now() < deadline) {
+    transport_->Wait(milliseconds(200), {});
+    received_.clear();
+    transport_->Receive(100, received_);
+    most = std::max(most, received_.size());
+    all += received_.size();
+  }
+  EXPECT_EQ(all, 10U);
+  EXPECT_LE(most, 4U);
+}
+
 TEST_F(ZmqTransportTest, AMuchTooLongMessageClosesItsConnectionOnly) {
   zmq::socket_t good = Connect();
   good.send(zmq::str_buffer("hello"), zmq::send_flags::none);
@@ -269,6 +286,44 @@ TEST_F(ZmqTransportTest, GarbageBytesAreCountedAndDisturbNobody) {
   ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
   EXPECT_THAT(received_, SizeIs(1));
   EXPECT_EQ(received_[0].bytes, "hello");
+}
+
+// A greeting of ZMTP 3.0 and READY of a DEALER: from then on nothing limits how long a connection lasts.
+std::string WholeHandshake(char minor_version) {
+  std::string bytes = "\xff" + std::string(8, '\0') + "\x7f\x03" + std::string(1, minor_version) + "NULL";
+  bytes += std::string(64 - bytes.size(), '\0');
+  const std::string ready = std::string("\x05READY\x0bSocket-Type\0\0\0\x06", 22) + "DEALER";
+  return bytes + "\x04" + static_cast<char>(ready.size()) + ready;
+}
+
+TEST_F(ZmqTransportTest, AConnectionWithoutASignOfLifeIsClosedButAWorkerThatSaysNothingIsKept) {
+  ZmqTransportOptions options;
+  options.sign_of_life = milliseconds(150);
+  transport_ = *ZmqTransport::Bind(options);
+  zmq::socket_t quiet = Connect();
+  quiet.send(zmq::str_buffer("hello"), zmq::send_flags::none);
+  ASSERT_TRUE(Eventually([this] { return !received_.empty(); }));
+  const PeerId quiet_peer = received_[0].peer;
+
+  for (const char minor_version : {'\0', '\1'}) {
+    const int fd = ConnectRaw();
+    const std::string handshake = WholeHandshake(minor_version);
+    ASSERT_EQ(send(fd, handshake.data(), handshake.size(), MSG_NOSIGNAL), std::ssize(handshake));
+    const timeval patience{.tv_sec = 0, .tv_usec = 1000};
+    setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    std::string answer(4096, '\0');
+    ssize_t got = -1;
+    EXPECT_TRUE(Eventually([&] {
+      while ((got = recv(fd, answer.data(), answer.size(), 0)) > 0) continue;
+      return got == 0 || errno == ECONNRESET;
+    })) << "version 3."
+        << static_cast<int>(minor_version);
+    close(fd);
+  }
+  EXPECT_EQ(transport_->Send(quiet_peer, "still there"), SendOutcome::kSent);
+  zmq::message_t message;
+  EXPECT_TRUE(quiet.recv(message).has_value());
+  EXPECT_EQ(message.to_string(), "still there");
 }
 
 TEST_F(ZmqTransportTest, AnotherThreadWakesItUp) {

@@ -1,12 +1,10 @@
-#include "master/campaign/process_identity.h"
+#include "master/dispatch/process_identity.h"
 
 #include <unistd.h>
 
 #include <array>
+#include <fstream>
 #include <sstream>
-#include <string_view>
-
-#include "master/campaign/atomic_file.h"
 
 namespace gauntlet::master {
 namespace {
@@ -18,8 +16,10 @@ std::string HostName() {
 }
 
 std::string FirstLineOf(const std::string& path) {
-  const Result<std::string> text = ReadSmallFile(path);
-  return text ? text->substr(0, text->find('\n')) : std::string();
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  return line;
 }
 
 std::string TargetOf(const char* link) {
@@ -31,12 +31,14 @@ std::string TargetOf(const char* link) {
 }  // namespace
 
 std::optional<std::uint64_t> StartTimeOf(pid_t pid) {
-  const Result<std::string> stat = ReadSmallFile("/proc/" + std::to_string(pid) + "/stat");
-  if (!stat) return std::nullopt;
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::ostringstream stat;
+  if (!(stat << file.rdbuf())) return std::nullopt;
+  const std::string text = stat.str();
   // The second field is the program's name in parentheses, which may hold anything.
-  const std::size_t name_end = stat->rfind(')');
+  const std::size_t name_end = text.rfind(')');
   if (name_end == std::string::npos) return std::nullopt;
-  std::istringstream fields(stat->substr(name_end + 1));
+  std::istringstream fields(text.substr(name_end + 1));
   std::string state;
   fields >> state;
   if (state == "Z" || state == "X") return std::nullopt;

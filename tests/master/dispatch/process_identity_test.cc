@@ -1,4 +1,4 @@
-#include "master/campaign/process_identity.h"
+#include "master/dispatch/process_identity.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>

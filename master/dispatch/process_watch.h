@@ -1,0 +1,38 @@
+// Notices at once when a process of this machine ends that is not our child.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "master/dispatch/process_identity.h"
+
+namespace gauntlet::master {
+
+// Thread-safety: one thread. Needs Linux 5.3 (pidfd_open); without it nobody can be watched.
+class ProcessWatch {
+ public:
+  ProcessWatch();
+  ProcessWatch(const ProcessWatch&) = delete;
+  ProcessWatch& operator=(const ProcessWatch&) = delete;
+  ~ProcessWatch();
+
+  // From now on the end of the process is told under this name; a former process of the name is forgotten.
+  // False, and nothing is watched, unless the process certainly is one of this machine and pid namespace and
+  // lives. At most kMost processes are watched: each takes a descriptor.
+  bool Watch(std::uint64_t name, const ProcessIdentity& process);
+  void Forget(std::uint64_t name);
+  // Readable when TakeEnded has something; -1 when nobody can be watched.
+  int fd() const { return epoll_; }
+  // Names of processes that have ended since the last call; they are forgotten.
+  std::vector<std::uint64_t> TakeEnded();
+
+  static constexpr std::size_t kMost = 1024;
+
+ private:
+  int epoll_;
+  ProcessIdentity self_;
+  std::map<std::uint64_t, int> pidfds_;
+};
+
+}  // namespace gauntlet::master
