@@ -69,11 +69,10 @@ std::optional<LockOwner> ReadOwner(int fd) {
 Error InUse(const std::string& campaign, const LockOwner& owner, bool elsewhere, std::int64_t now) {
   const ProcessIdentity& process = owner.process;
   if (!elsewhere) {
-    return {
-        ErrorKind::kInUse,
-        fmt::format(
-            "campaign {} is in use by a living master (host {}, pid {}); stop it with Ctrl-C or `kill {}`",
-            campaign, process.host, process.pid, process.pid)};
+    return {ErrorKind::kInUse, fmt::format("campaign {0} is in use by a living master (host {1}, pid {2}): "
+                                           "`gauntlet status {0}` says how it "
+                                           "goes, `gauntlet stop {0}` ends it",
+                                           campaign, process.host, process.pid)};
   }
   return {ErrorKind::kInUse,
           fmt::format(

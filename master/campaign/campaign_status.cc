@@ -67,7 +67,8 @@ std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& pro
     }
   }
   if (connected == 0) {
-    const std::string gone = lost > 0 ? fmt::format(" ({} were, and are silent now)", lost) : "";
+    const std::string gone =
+        lost > 0 ? fmt::format(" ({} {} silent now)", lost, lost == 1 ? "is" : "are") : "";
     if (!backend.pool_trouble.empty())
       return fmt::format("no worker is connected{}: {}", gone, backend.pool_trouble);
     if (!backend.allocations.empty())
@@ -78,7 +79,7 @@ std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& pro
   if (leaving == connected) return fmt::format("all {} connected workers are leaving", connected);
   if (backend.queued == 0)
     return "all runs that were asked for are done; the master stores them and asks for more";
-  return fmt::format("{} runs wait and are about to be given to {} workers", backend.queued,
+  return fmt::format("nothing is wrong, {} runs are just being given to {} workers", backend.queued,
                      connected - leaving);
 }
 

@@ -37,7 +37,8 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
                   limits.cpu_limit_seconds, limits.memory_limit_bytes);
   const std::string readme = fmt::format(
       "Run {} of the campaign {} {} ({}), in every attempt; the last was on worker {}.\n\n"
-      "See it again, in this folder:\n    {} > result\n\n"
+      "See it again, in this folder:\n    {} > result\n"
+      "It says on stderr how the run ends. `result` is a serialized gauntlet.v1.RunResult.\n\n"
       "scenario      {}\ncontroller    {}\nseed          {}\nindividual    {}, evaluation {}, replicate {}\n"
       "version       gauntlet {}\ngolden hash   {}\n\n"
       "run.spec         all the run depends on, as a serialized gauntlet.v1.RunSpec\n"

@@ -62,6 +62,14 @@ std::string JobsText(const Json& status) {
   return "\n" + table.ToText();
 }
 
+// The master's sentences name no path, for the directory may be elsewhere for whoever reads them.
+std::string WithDirectory(std::string sentence, const std::string& directory) {
+  constexpr std::string_view kPlaceholder = " DIR`";
+  if (const std::size_t at = sentence.find(kPlaceholder); at != std::string::npos)
+    sentence.replace(at, kPlaceholder.size(), " " + ShellQuoted(directory) + "`");
+  return sentence;
+}
+
 std::string StatusText(const Json& status, const std::string& directory) {
   std::string text = fmt::format("{}: {}", directory, status.value("state", "unknown"));
   if (const Json& master = status.value("master", Json()); master.is_object()) {
@@ -82,7 +90,7 @@ std::string StatusText(const Json& status, const std::string& directory) {
                         status["nondeterministic"].get<std::uint64_t>());
   }
   if (const Json& why = status.value("why_nothing_runs", Json()); why.is_string())
-    text += "nothing runs: " + why.get<std::string>() + "\n";
+    text += "nothing runs: " + WithDirectory(why.get<std::string>(), directory) + "\n";
   if (const Json& trouble = status.value("pool_trouble", Json());
       trouble.is_string() && !status.value("why_nothing_runs", Json()).is_string())
     text += "fewer workers than could be used: " + trouble.get<std::string>() + "\n";
@@ -200,7 +208,7 @@ ExitCode RunStatus(CommandContext& context, const StatusOptions& options) {
 }
 
 ExitCode RunWatch(CommandContext& context, const StatusOptions& options) {
-  const StopSignal handlers;
+  const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
   while (true) {
     const Result<bool> lives = context.service.lives(options.directory);
     if (!lives) return Fail(context, lives.error());
@@ -222,7 +230,7 @@ ExitCode RunStop(CommandContext& context, const StatusOptions& options) {
   if (const Status asked = context.service.stop(options.directory); !asked)
     return Fail(context, asked.error());
   PrintMessage(context, "the master lets the runs that have begun end, then stops (Ctrl-C: wait no longer)");
-  const StopSignal handlers;
+  const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
   while (*lives) {
     if (!Pause(kStopPollMilliseconds)) return kExitDone;
     lives = context.service.lives(options.directory);

@@ -10,6 +10,7 @@ namespace gauntlet::master {
 namespace {
 
 std::atomic<int> signals_received{0};
+std::atomic<bool> announce{true};
 static_assert(std::atomic<int>::is_always_lock_free, "needed in a signal handler");
 
 constexpr int kStoppedExitCode = 3;  // stopped, resumable: whatever is not stored yet is simulated again
@@ -19,14 +20,17 @@ void HandleSignal(int /*signal*/) {
   const int saved_errno = errno;
   if (signals_received.fetch_add(1) > 0) _exit(kStoppedExitCode);
   constexpr char kMessage[] = "\ngauntlet: stopping cleanly; once more to stop at once\n";
-  [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage, std::strlen(kMessage));
+  if (announce) {
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage, std::strlen(kMessage));
+  }
   errno = saved_errno;
 }
 
 }  // namespace
 
-StopSignal::StopSignal() {
+StopSignal::StopSignal(bool announced) {
   signals_received = 0;
+  announce = announced;
   struct sigaction action {};
   action.sa_handler = HandleSignal;
   sigemptyset(&action.sa_mask);

@@ -8,7 +8,8 @@ namespace gauntlet::master {
 // Installs handlers while it lives; at most one at a time.
 class StopSignal {
  public:
-  StopSignal();
+  // `announced`: the first signal says that it is obeyed. For commands that have something to stop.
+  explicit StopSignal(bool announced = true);
   ~StopSignal();
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;

@@ -75,9 +75,10 @@ TEST_F(CampaignLockTest, ALivingOwnerIsNamedWithHostAndPid) {
     EXPECT_EQ(second.error().kind, ErrorKind::kInUse);
     EXPECT_EQ(
         second.error().message,
-        fmt::format("campaign camp is in use by a living master (host {0}, pid {1}); stop it with Ctrl-C or "
-                    "`kill {1}`",
-                    IdentifyThisProcess().host, getpid()));
+        fmt::format(
+            "campaign camp is in use by a living master (host {0}, pid {1}): `gauntlet status camp` says "
+            "how it goes, `gauntlet stop camp` ends it",
+            IdentifyThisProcess().host, getpid()));
   }
   EXPECT_EQ(ReadLockOwner(path_)->process, IdentifyThisProcess()) << "a refused one changed the lock";
 }

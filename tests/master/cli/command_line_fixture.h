@@ -37,7 +37,7 @@ class CommandLine : public ::testing::Test {
     out_.str("");
     err_.str("");
     CommandContext context{
-        .out = out_, .err = err_, .err_is_terminal = false, .program = "gauntlet", .service = {}};
+        .out = out_, .err = err_, .err_is_terminal = err_is_terminal_, .program = "gauntlet", .service = {}};
     context.service.start = [this](const std::string& directory, const Experiment& experiment,
                                    const std::vector<sim::TestCase>& cases,
                                    const SessionOptions& options) -> Result<SessionReport> {
@@ -108,6 +108,7 @@ class CommandLine : public ::testing::Test {
   std::filesystem::path directory_;
   std::ostringstream out_;
   std::ostringstream err_;
+  bool err_is_terminal_ = false;
   int starts_ = 0;
   int resumes_ = 0;
   int lives_ = 0;  // how often a master is found alive

@@ -40,6 +40,15 @@ TEST_F(CommandLine, PlaintextToTheOutsideIsSaidEvenWhenQuiet) {
   EXPECT_THAT(err_.str(), IsEmpty());
 }
 
+TEST_F(CommandLine, PlaintextToTheOutsideIsSaidInRedOnATerminal) {
+  during_ = [](const SessionOptions& options) { options.on_serving({{"tcp://10.0.0.7:5555"}, false}); };
+  err_is_terminal_ = true;
+  EXPECT_EQ(
+      Run({"master", "flocking", "--bind", "tcp://0.0.0.0:*", "--insecure", "--quiet", "--dir", Path("c")}),
+      kExitDone);
+  EXPECT_THAT(err_.str(), testing::ContainsRegex("\x1b\\[1;31mINSECURE: [^\x1b]*\x1b\\[0m"));
+}
+
 TEST_F(CommandLine, MasterResumesOnlyWhenThereIsACampaignAndItIsAskedTo) {
   const std::vector<std::string> arguments = {"master", "flocking",          "--bind",  "tcp://127.0.0.1:*",
                                               "--dir",  directory_.string(), "--resume"};
