@@ -9,6 +9,7 @@
 #include "tests/integration/hostile_sockets.h"
 #include "tests/integration/scripted_worker.h"
 #include "tests/integration/service_driver.h"
+#include "tests/integration/zmtp_fuzz.h"
 
 namespace gauntlet {
 namespace {
@@ -37,10 +38,12 @@ class HostilePeer : public testing::Test {
     hash_ = UndisturbedHash(campaign_);
   }
   // A master with one worker that takes its time, so that the campaign lasts.
-  void Begin(const std::vector<std::string>& limits = {}) {
+  void Begin(const std::vector<std::string>& limits = {},
+             const std::string& endpoint_to_bind = "tcp://127.0.0.1:*") {
     std::vector<std::string> argv = limits;
     argv.push_back(testing_support::GauntletPath());
-    for (const std::string& argument : MasterArguments(campaign_, dir_)) argv.push_back(argument);
+    for (const std::string& argument : MasterArguments(campaign_, dir_, endpoint_to_bind))
+      argv.push_back(argument);
     master_ = std::make_unique<Process>(argv);
     worker_ = StartSlowWorker(dir_, 60);
     ASSERT_TRUE(testing_support::RunsDone(dir_, 2)) << master_->Err();
@@ -127,6 +130,54 @@ TEST_F(HostilePeer, TenThousandConnectionsAndHalfGreetings) {
   EXPECT_GT(connected, connections / 2);
   EXPECT_LT(growth, kMostGrowth + 0.015 * static_cast<double>(connections));
   ExpectTheUndisturbedResult();
+}
+
+// Whole handshakes, and then for ever nonsense: nothing in ZeroMQ can drop a single peer that answers. They
+// cost the master little, and nobody else anything.
+TEST_F(HostilePeer, AThousandPeersThatTalkNonsenseForEver) {
+  campaign_.generations = 10;
+  hash_ = UndisturbedHash(campaign_);
+  Begin();
+  const std::string nonsense("\0\x05hello", 7);
+  std::vector<HostileSocket> sockets;
+  for (int i = 0; i < 1000; ++i) {
+    sockets.emplace_back(port_);
+    sockets.back().Send(testing_support::ZmtpHandshake() + nonsense);
+  }
+  const std::unique_ptr<Process> second = StartSlowWorker(dir_, 60);
+  int rounds = 0;
+  for (; master_->Running(); ++rounds) {
+    for (HostileSocket& socket : sockets) socket.Send(nonsense);
+    if (rounds == 3) {
+      EXPECT_LT(Growth(), kMostGrowth);
+    }
+  }
+  EXPECT_GT(rounds, 3);
+  ExpectTheUndisturbedResult();
+  EXPECT_EQ(second->Wait().exit_code, 0) << second->Err();
+  EXPECT_THAT(MasterLog(dir_), testing::Not(HasSubstr("worker-lost")));
+}
+
+// The long form is a LongDrill.
+TEST_F(HostilePeer, RandomConversationsChangeNothing) {
+  for (const bool encrypted : {false, true}) {
+    SCOPED_TRACE(encrypted ? "CURVE" : "plaintext");
+    campaign_.generations = 5;
+    hash_ = UndisturbedHash(campaign_);
+    Begin({}, encrypted ? "tcp://0.0.0.0:*" : "tcp://127.0.0.1:*");
+    double growth = 0.0;
+    const testing_support::ZmtpFuzzReport report = testing_support::FuzzPort(port_, encrypted, 1, [&] {
+      const bool runs = master_->Running();
+      if (runs) growth = std::max(growth, Growth());
+      return runs;
+    });
+    fmt::print("{} connections, {} bytes, {:.1f} MiB of {:.1f} more\n", report.connections, report.bytes,
+               growth, memory_);
+    EXPECT_GT(report.connections, 100U);
+    EXPECT_LT(growth, kMostGrowth);
+    ExpectTheUndisturbedResult();
+    dir_ = scratch_ / "encrypted";
+  }
 }
 
 // More connections than the master may have files open: it must not lose the files it needs itself.

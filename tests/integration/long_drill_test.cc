@@ -3,8 +3,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdlib>
+
 #include "tests/integration/campaign_driver.h"
+#include "tests/integration/crowd_drill.h"
 #include "tests/integration/durability_drill.h"
+#include "tests/integration/service_driver.h"
+#include "tests/integration/zmtp_fuzz.h"
 
 namespace gauntlet {
 namespace {
@@ -82,6 +88,52 @@ TEST(LongDrill, AHundredLossesOfPower) {
   fmt::print("{} kills, {} runs acknowledged before one, {} of them leased again, {} simulated, {} runs\n",
              report.kills, report.acknowledged, report.leased_again, report.simulated, report.runs);
   EXPECT_GE(report.kills, 50);
+  EXPECT_EQ(report.leased_again, 0);
+}
+
+// Two and a half minutes in plaintext, as many with CURVE.
+TEST(LongDrill, RandomConversationsOnTheMastersPort) {
+  SmallCampaign campaign;
+  campaign.generations = 300;
+  const std::string& undisturbed = testing_support::UndisturbedHash(campaign);
+  for (const bool encrypted : {false, true}) {
+    SCOPED_TRACE(encrypted ? "CURVE" : "plaintext");
+    const TemporaryDirectory scratch;
+    const std::string dir = scratch / "c";
+    const auto begun = std::chrono::steady_clock::now();
+    const auto master = testing_support::StartGauntlet(
+        testing_support::MasterArguments(campaign, dir, encrypted ? "tcp://0.0.0.0:*" : "tcp://127.0.0.1:*"));
+    const auto worker = testing_support::StartSlowWorker(dir, 60);
+    ASSERT_TRUE(testing_support::RunsDone(dir, 8));
+    const double before = testing_support::ResidentMebibytes(master->pid());
+    const std::string endpoint = testing_support::StatusOf(dir).at("master").at("endpoints")[0];
+    double after = before;
+    const testing_support::ZmtpFuzzReport report = testing_support::FuzzPort(
+        std::stoi(endpoint.substr(endpoint.rfind(':') + 1)), encrypted, encrypted ? 12 : 11, [&] {
+          if (const double now = testing_support::ResidentMebibytes(master->pid()); now > 0.0) after = now;
+          return master->Running();
+        });
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    fmt::print("{:.0f} s: {} connections, {} bytes, memory {:.1f} -> {:.1f} MiB\n", seconds,
+               report.connections, report.bytes, before, after);
+    EXPECT_EQ(master->Wait().exit_code, 0) << master->Err();
+    EXPECT_EQ(worker->Wait().exit_code, 0) << worker->Err();
+    EXPECT_EQ(StateHash(dir), undisturbed);
+    EXPECT_LT(after, before + 64.0);
+    EXPECT_EQ(testing_support::MasterLog(dir).find("worker-lost"), std::string::npos);
+  }
+}
+
+// Ten minutes, or as many seconds as GAUNTLET_DRILL_SECONDS says.
+TEST(LongDrill, SixtyFourWorkersUnderFullLoadAreNeverTakenForLost) {
+  const TemporaryDirectory scratch;
+  const char* wish = std::getenv("GAUNTLET_DRILL_SECONDS");
+  const std::chrono::seconds duration(wish != nullptr ? std::atoi(wish) : 600);
+  const testing_support::CrowdReport report = testing_support::WatchACrowd(scratch / "c", 64, duration);
+  fmt::print("{} workers, {} s, load {:.1f}: {} runs, {} workers taken for lost, {} runs leased again\n",
+             report.joined, duration.count(), report.load, report.runs, report.lost, report.leased_again);
+  EXPECT_EQ(report.joined, 64);
+  EXPECT_EQ(report.lost, 0);
   EXPECT_EQ(report.leased_again, 0);
 }
 

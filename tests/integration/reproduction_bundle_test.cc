@@ -66,6 +66,16 @@ TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
   EXPECT_THAT(ReadFile(bundle + "/case.json"), HasSubstr("obstacles"));
   EXPECT_TRUE(std::filesystem::exists(bundle + "/stderr.txt"));
 
+  // The logs of both sides name the run and the lease alike.
+  const std::string log = ReadFile(dir + "/log/master.log");
+  const std::string beginning = "runner-failure: run 1 crashed with signal 11 on worker ";
+  const std::size_t failure = log.find(beginning);
+  ASSERT_NE(failure, std::string::npos) << log;
+  const std::size_t lease = log.find("(lease ", failure) + 7;
+  const std::string fence = log.substr(lease, log.find(')', lease) - lease);
+  EXPECT_EQ(fence, "100000000") << "the first lease of the first master";
+  EXPECT_THAT(ReadFile(dir + "/log/worker-1.log"), HasSubstr("(run 1, lease " + fence + ")"));
+
   // Its command simulates the run: here it does not crash, because nobody hits it.
   const std::size_t begin = readme.find("gauntlet-worker --run-spec");
   ASSERT_NE(begin, std::string::npos);

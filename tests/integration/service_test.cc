@@ -126,6 +126,22 @@ TEST(ServiceTest, OuterAddressesAreEncryptedForKnownKeysAndTellNobody) {
   const std::unique_ptr<Process> worker = StartWorker(dir);
   EXPECT_TRUE(StatusBecomes(dir, [](const json& status) { return status.value("runs_done", 0) > 0; }))
       << worker->Err();
+  // Other users of the machine may read command lines; files of the directory are read while they are
+  // written.
+  std::string told;
+  for (const pid_t process : {master->pid(), worker->pid()}) {
+    std::vector<pid_t> family = testing_support::DescendantsOf(process);
+    family.push_back(process);
+    for (const pid_t pid : family) {
+      for (const char* what : {"cmdline", "environ"}) {
+        told += ReadFile("/proc/" + std::to_string(pid) + "/" + what);
+      }
+    }
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(dir)) {
+    if (entry.path().filename().string().rfind("campaign.db", 0) == 0) told += ReadFile(entry.path());
+  }
+  EXPECT_THAT(told, AllOf(HasSubstr(dir), HasSubstr("PATH="), HasSubstr("SQLite format 3")));
   EXPECT_EQ(Gauntlet({"stop", dir}).exit_code, 0);
   EXPECT_EQ(master->Wait().exit_code, 3);
   worker->Wait();
@@ -133,6 +149,8 @@ TEST(ServiceTest, OuterAddressesAreEncryptedForKnownKeysAndTellNobody) {
   const json keys = json::parse(ReadFile(dir + "/master.key"));
   for (const char* name : {"server_secret", "worker_secret"}) {
     const std::string key = keys.at(name);
+    EXPECT_EQ(told.find(key), std::string::npos)
+        << name << " stands in a command line, environment or database";
     for (const auto& entry : std::filesystem::recursive_directory_iterator(dir)) {
       if (!entry.is_regular_file() || entry.path().filename() == "master.key") continue;
       EXPECT_EQ(ReadFile(entry.path()).find(key), std::string::npos) << name << " stands in " << entry.path();

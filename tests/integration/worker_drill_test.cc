@@ -6,8 +6,10 @@
 
 #include <set>
 
+#include "tests/integration/crowd_drill.h"
 #include "tests/integration/scripted_worker.h"
 #include "tests/integration/service_driver.h"
+#include "worker/process_identity.h"
 
 namespace gauntlet {
 namespace {
@@ -77,8 +79,11 @@ TEST_F(WorkerDrill, AFrozenWorkersRunsGoElsewhereWithin3HeartbeatsAndItIsTakenBa
   fmt::print("a frozen worker was noticed after {:.2f} s\n", seconds);
   // Three heartbeats of a second, an eighth of one between checks, and the time to read the log.
   EXPECT_LT(seconds, 3.4);
-  ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) { return status.value("leased_again", 0) > 0; }));
-  // Its runs are given to the other; then it wakes, and is told to drop them.
+  // Unless they had been already, as copies of runs that take long.
+  ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) {
+    return status.value("leased_again", 0) + status.value("copies", 0) > 0;
+  }));
+  // Its runs are given to the other; then it wakes, and is told to drop what they have finished.
   const int done = StatusOf(dir_).value("runs_done", 0);
   ASSERT_TRUE(testing_support::RunsDone(dir_, done + 2));
   SignalFamily(*frozen, SIGCONT);
@@ -107,6 +112,74 @@ TEST_F(WorkerDrill, AKilledWorkersRunsGoElsewhereWithinASecond) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   fmt::print("a killed worker was noticed after {:.3f} s\n", seconds);
   EXPECT_LT(seconds, 1.0);
+  ExpectTheUndisturbedResult();
+}
+
+// The same for workers that somebody else has started on the master's machine.
+TEST_F(WorkerDrill, AKilledForeignWorkersRunsGoElsewhereWithinASecondToo) {
+  Begin(4);
+  const std::unique_ptr<Process> first = StartSlowWorker(dir_, 200);
+  const std::unique_ptr<Process> second = StartSlowWorker(dir_, 200);
+  ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) {
+    int busy = 0;
+    for (const json& worker : status.at("worker_list")) busy += worker.at("runs").empty() ? 0 : 1;
+    return busy == 2;
+  }));
+  const auto begun = std::chrono::steady_clock::now();
+  first->Signal(SIGKILL);
+  ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  fmt::print("a killed worker that was started elsewhere was noticed after {:.3f} s\n", seconds);
+  EXPECT_LT(seconds, 1.0);
+  EXPECT_TRUE(StatusBecomes(dir_, [](const json& status) { return status.value("leased_again", 0) > 0; }));
+  ExpectTheUndisturbedResult();
+}
+
+// What is watched is the process: its connection may break and come back, and its goodbye is no death.
+TEST_F(WorkerDrill, AReconnectAndAGoodbyeAreNoLoss) {
+  Begin(3);
+  ScriptedWorker worker(dir_, kFirstWorker);
+  worker::IdentifyThisProcess(worker.hello());
+  ASSERT_TRUE(worker.Join());
+  const auto kept = worker.HearA<worker::Lease>();
+  ASSERT_TRUE(kept);
+  worker.hello().held_leases = {kept->fence};
+  ASSERT_TRUE(worker.Join()) << "on a new connection; the old one is gone";
+  const std::unique_ptr<Process> leaving = StartSlowWorker(dir_, 50);
+  ASSERT_TRUE(StatusBecomes(dir_, [&](const json& status) {
+    worker.Beat({kept->fence});
+    return status.value("runs_done", 0) >= 3;
+  }));
+  leaving->Signal(SIGTERM);
+  EXPECT_EQ(leaving->Wait().exit_code, 0);
+  worker.Say(ScriptedWorker::Answer(*kept));
+  EXPECT_TRUE(worker.HearA<worker::Acknowledge>());
+  worker.Say(worker::Goodbye{"enough"});
+  const std::unique_ptr<Process> last = StartWorker(dir_);
+  ExpectTheUndisturbedResult();
+  EXPECT_THAT(MasterLog(dir_), testing::Not(HasSubstr("worker-lost")));
+}
+
+// Its run was given away while it was frozen, and nobody has finished it: it brings its answer first.
+TEST_F(WorkerDrill, AnAnswerThatAFrozenWorkerBringsBeforeTheOtherCountsFirst) {
+  Begin(3);
+  const std::unique_ptr<Process> frozen = StartSlowWorker(dir_, 1000);
+  ASSERT_TRUE(LogBecomes(dir_, "worker-joined"));
+  ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) {
+    return !status.at("worker_list").empty() && !status.at("worker_list")[0].at("runs").empty();
+  }));
+  frozen->Signal(SIGSTOP);  // its supervisor alone: the runner ends the run meanwhile
+  ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
+  ScriptedWorker other(dir_, kSecondWorker);
+  ASSERT_TRUE(other.Join());
+  const auto given = other.HearA<worker::Lease>();
+  ASSERT_TRUE(given);
+  frozen->Signal(SIGCONT);
+  const auto cancelled = other.HearA<worker::Cancel>();
+  ASSERT_TRUE(cancelled) << "the other need not go on";
+  EXPECT_EQ(cancelled->fence, given->fence);
+  other.Say(worker::Goodbye{"enough"});
+  const std::unique_ptr<Process> last = StartWorker(dir_);
   ExpectTheUndisturbedResult();
 }
 
@@ -215,6 +288,15 @@ TEST_F(WorkerDrill, MessagesOfAnEarlierMasterChangeNothing) {
   }
   ExpectTheUndisturbedResult();
   EXPECT_THAT(MasterLog(dir_), HasSubstr("a peer that has not said hello sent a message"));
+}
+
+// The long form, with 64 workers for ten minutes, is a LongDrill.
+TEST_F(WorkerDrill, ACrowdOfWorkersUnderFullLoadIsNeverTakenForLost) {
+  const testing_support::CrowdReport report = testing_support::WatchACrowd(dir_, 24, std::chrono::seconds(5));
+  fmt::print("{} workers, load {:.1f}: {} runs\n", report.joined, report.load, report.runs);
+  EXPECT_EQ(report.joined, 24);
+  EXPECT_EQ(report.lost, 0);
+  EXPECT_EQ(report.leased_again, 0);
 }
 
 TEST_F(WorkerDrill, AMasterThatFreezesAndWakesTakesNobodyForLost) {
