@@ -21,6 +21,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kMostOutput = std::size_t{16} << 20;
+constexpr std::size_t kMostOfOurs = std::size_t{1} << 30;  // a run's result with every pose of every tick
 
 class Descriptor {
  public:
@@ -86,13 +87,12 @@ std::string LastLine(std::string text) {
 }
 
 // False at its end.
-bool ReadSome(int fd, std::string& into) {
+bool ReadSome(int fd, std::string& into, std::size_t most) {
   std::array<char, 65536> buffer{};
   const ssize_t count = read(fd, buffer.data(), buffer.size());
   if (count < 0) return errno == EINTR || errno == EAGAIN;
   if (count == 0) return false;
-  into.append(buffer.data(),
-              std::min(static_cast<std::size_t>(count), kMostOutput - std::min(kMostOutput, into.size())));
+  into.append(buffer.data(), std::min(static_cast<std::size_t>(count), most - std::min(most, into.size())));
   return true;
 }
 
@@ -104,8 +104,9 @@ bool WriteSome(int fd, std::string_view& rest) {
   return !rest.empty();
 }
 
-// Serves the three pipes until both outputs are at their end. False at the deadline.
-bool Converse(Pipe& in, Pipe& out, Pipe& err, std::string_view input, CallOutput& result,
+// Serves the three pipes until both outputs are at their end, and keeps `most` bytes of each. False at the
+// deadline.
+bool Converse(Pipe& in, Pipe& out, Pipe& err, std::string_view input, CallOutput& result, std::size_t most,
               Clock::time_point deadline) {
   if (input.empty()) in.write.Close();
   while (out.read.get() >= 0 || err.read.get() >= 0) {
@@ -117,8 +118,8 @@ bool Converse(Pipe& in, Pipe& out, Pipe& err, std::string_view input, CallOutput
         errno != EINTR)
       return false;
     if (waiting[0].revents != 0 && !WriteSome(in.write.get(), input)) in.write.Close();
-    if (waiting[1].revents != 0 && !ReadSome(out.read.get(), result.out)) out.read.Close();
-    if (waiting[2].revents != 0 && !ReadSome(err.read.get(), result.err)) err.read.Close();
+    if (waiting[1].revents != 0 && !ReadSome(out.read.get(), result.out, most)) out.read.Close();
+    if (waiting[2].revents != 0 && !ReadSome(err.read.get(), result.err, most)) err.read.Close();
   }
   return true;
 }
@@ -188,7 +189,7 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
   err.write.Close();
 
   CallOutput result;
-  const bool spoken = Converse(in, out, err, input, result, end);
+  const bool spoken = Converse(in, out, err, input, result, part_of_us ? kMostOfOurs : kMostOutput, end);
   int status = 0;
   const bool ended = Reap(child, spoken ? end : Clock::now(), status);
   if (!deadline && !spoken) return Failure(program, "its output could not be read");

@@ -14,7 +14,7 @@ namespace gauntlet::slurm {
 struct CallOutput {
   int exit_code = 0;  // 128 + signal when a signal ended it
   int signal = 0;     // 0 when it exited
-  std::string out;    // at most 16 MB are kept
+  std::string out;    // at most 16 MiB are kept, of a part of ourselves 1 GiB
   std::string err;    // "" of a part of ourselves
 };
 

@@ -85,6 +85,10 @@ TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
       RunProcess({"/bin/sh", "-c", "cd '" + bundle + "' && PATH='" + worker_folder + "':$PATH " + command});
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_GT(std::filesystem::file_size(bundle + "/result"), 100U);
+
+  // A replay has every pose of this hour: 17 MB.
+  const ProcessResult replay = Gauntlet({"replay", dir, "1"});
+  EXPECT_EQ(replay.exit_code, 1) << replay.err << "what is stored is a crash, and this one does not crash";
 }
 
 }  // namespace

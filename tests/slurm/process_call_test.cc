@@ -28,6 +28,17 @@ TEST(CallProcess, MoreThanAPipeHoldsPassesBothWays) {
   EXPECT_EQ(output->out, big);
 }
 
+TEST(CallProcess, KeepsSomeOfWhatOthersSayAndAllOfWhatOurProgramsSay) {
+  constexpr std::size_t kSize = std::size_t{20} << 20;
+  const std::vector<std::string> talker = {"/usr/bin/head", "-c", std::to_string(kSize), "/dev/zero"};
+  const Result<CallOutput> others = CallProcess(talker, "", seconds(20));
+  ASSERT_TRUE(others.ok()) << others.error().message;
+  EXPECT_EQ(others->out.size(), std::size_t{16} << 20);
+  const Result<CallOutput> ours = CallProcess(talker, "", std::nullopt, Callee::kPartOfUs);
+  ASSERT_TRUE(ours.ok()) << ours.error().message;
+  EXPECT_EQ(ours->out.size(), kSize);
+}
+
 TEST(CallProcess, AProgramThatReadsNothingDoesNoHarm) {
   const Result<CallOutput> output = CallProcess({"/bin/true"}, std::string(1 << 20, 'x'), seconds(20));
   ASSERT_TRUE(output.ok()) << output.error().message;
