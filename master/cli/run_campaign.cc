@@ -81,10 +81,12 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
       // Said even with --quiet.
       const char* red = context.err_is_terminal ? "\x1b[1;31m" : "";
       const char* plain = context.err_is_terminal ? "\x1b[0m" : "";
+      context.err << red << std::flush;
       PrintMessage(context,
-                   fmt::format("{}INSECURE: whoever reaches {} can read this campaign and feed it results; "
-                               "nothing is encrypted or checked{}",
-                               red, notice.endpoints.front(), plain));
+                   fmt::format("INSECURE: whoever reaches {} can read this campaign and feed it results; "
+                               "nothing is encrypted or checked",
+                               notice.endpoints.front()));
+      context.err << plain << std::flush;
     }
     if (options.quiet) return;
     if (campaign.make_pool) {

@@ -46,7 +46,7 @@ TEST_F(CommandLine, PlaintextToTheOutsideIsSaidInRedOnATerminal) {
   EXPECT_EQ(
       Run({"master", "flocking", "--bind", "tcp://0.0.0.0:*", "--insecure", "--quiet", "--dir", Path("c")}),
       kExitDone);
-  EXPECT_THAT(err_.str(), testing::ContainsRegex("\x1b\\[1;31mINSECURE: [^\x1b]*\x1b\\[0m"));
+  EXPECT_THAT(err_.str(), testing::ContainsRegex("^\x1b\\[1;31mgauntlet: INSECURE: [^\x1b]*\x1b\\[0m$"));
 }
 
 TEST_F(CommandLine, MasterResumesOnlyWhenThereIsACampaignAndItIsAskedTo) {
