@@ -247,14 +247,19 @@ void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimeP
   }
   const bool known = connections_.contains(hello.instance_id);
   Connection& connection = connections_[hello.instance_id];
-  if (known && connection.peer != peer) instances_.erase(connection.peer);
+  // Said again before our welcome arrived: what was leased meanwhile is on its way, not lost.
+  const bool repeated = known && connection.peer == peer;
+  if (known && !repeated) instances_.erase(connection.peer);
   connection = {peer, label, hello.pid, Shorten(hello.allocation), 0};
   instances_[peer] = hello.instance_id;
   processes_.Watch(hello.instance_id, {hello.host, hello.boot_id, hello.pid_namespace,
                                        static_cast<pid_t>(hello.pid), hello.start_time});
   transport_.Send(peer, EncodeWelcome(options_, identity_.epoch));
-  scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held, now);
+  if (!repeated || !scheduler_.WorkerHeartbeat(hello.instance_id, hello.held, now)) {
+    scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held, now);
+  }
   if (shutting_down_) transport_.Send(peer, EncodeDrain("the master is leaving", false));
+  if (repeated) return;
   Report("worker-joined", fmt::format("worker {} (pid {}, slots {}) {}", label, hello.pid, hello.slots,
                                       known ? "is back" : "joined"));
 }

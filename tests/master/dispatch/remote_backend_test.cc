@@ -455,6 +455,24 @@ TEST_F(RemoteBackendTest, AReconnectedWorkerContinuesUnderItsNewPeer) {
   EXPECT_EQ(backend_->Statistics().rejected_messages, 1U) << "the old connection speaks for nobody";
 }
 
+// A worker says hello every second until it is welcomed, on the same connection.
+TEST_F(RemoteBackendTest, AHelloThatCrossedTheWelcomeIsNoReconnect) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("a", HelloOf(kAnna));
+  Poll();
+  const v1::Lease lease = LeasesSentTo("a").at(0);
+  EXPECT_THAT(EventsOf("worker-joined"), HasSubstr("joined"));
+  SayHello("a", HelloOf(kAnna));
+  Poll();
+  const std::vector<v1::Envelope> sent = Sent("a");
+  ASSERT_THAT(sent, SizeIs(1)) << "no second lease";
+  EXPECT_TRUE(sent[0].has_welcome()) << "the first may have been lost";
+  EXPECT_THAT(EventsOf("worker-joined"), IsEmpty());
+  EXPECT_EQ(backend_->Statistics().releases, 0U);
+  SendResult("a", lease, result_);
+  EXPECT_THAT(Poll(), SizeIs(1));
+}
+
 TEST_F(RemoteBackendTest, HeartbeatsGoToEveryWorkerOncePerSecond) {
   SayHello("p", HelloOf(kAnna));
   transport_.on_wait = [this] { SendHeartbeat("p"); };
