@@ -55,7 +55,6 @@ Status Connection::Open(const std::string& endpoint, const std::optional<CurveKe
 
 void Connection::Send(std::string frame) {
   outbox_.push_back(std::move(frame));
-  Flush();
 }
 
 void Connection::Flush() {

@@ -23,8 +23,9 @@ class Connection {
 
   // Drops the old connection with everything that waits, and begins a new one.
   Status Open(const std::string& endpoint, const std::optional<CurveKeys>& curve);
+  // With the next Flush.
   void Send(std::string frame);
-  // True when Send would have to keep a message back.
+  // True when something waits to be sent.
   bool congested() const { return !outbox_.empty(); }
   // Sends what waits, as far as possible.
   void Flush();

@@ -73,19 +73,25 @@ FrameBuffer::State FrameBuffer::ReadFrom(int fd, Wait wait) {
     if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return State::kOpen;
     if (got <= 0) return State::kEnded;
     bytes_.append(chunk.data(), static_cast<std::size_t>(got));
-    if (bytes_.size() >= kPrefixBytes && SizeIn(bytes_.data()) > kMaxFrameBytes) return State::kDamaged;
+    if (bytes_.size() >= taken_ + kPrefixBytes && SizeIn(bytes_.data() + taken_) > kMaxFrameBytes)
+      return State::kDamaged;
     if (static_cast<std::size_t>(got) < chunk.size()) return State::kOpen;
     flags = MSG_DONTWAIT;
   }
 }
 
 std::optional<std::string> FrameBuffer::Next() {
-  if (bytes_.size() < kPrefixBytes) return std::nullopt;
-  const std::size_t size = SizeIn(bytes_.data());
-  if (bytes_.size() < kPrefixBytes + size) return std::nullopt;
-  std::string payload = bytes_.substr(kPrefixBytes, size);
-  bytes_.erase(0, kPrefixBytes + size);
-  return payload;
+  const std::string_view rest = std::string_view(bytes_).substr(taken_);
+  if (rest.size() >= kPrefixBytes) {
+    const std::size_t size = SizeIn(rest.data());
+    if (rest.size() >= kPrefixBytes + size) {
+      taken_ += kPrefixBytes + size;
+      return std::string(rest.substr(kPrefixBytes, size));
+    }
+  }
+  bytes_.erase(0, taken_);
+  taken_ = 0;
+  return std::nullopt;
 }
 
 }  // namespace gauntlet::worker

@@ -62,6 +62,7 @@ class FrameBuffer {
 
  private:
   std::string bytes_;
+  std::size_t taken_ = 0;  // of them, by Next
 };
 
 }  // namespace gauntlet::worker

@@ -64,12 +64,19 @@ std::vector<PoolEvent> RunnerPool::Process(std::span<const pollfd> polled, TimeP
 
 void RunnerPool::StartJob(int slot_index, const RunnerJob& job) {
   Slot& slot = slots_[static_cast<std::size_t>(slot_index)];
-  GAUNTLET_CHECK(slot.pid >= 0 && !slot.busy, fmt::format("slot {} cannot take a job", slot_index));
-  ReadOutput(slot);
-  slot.output_tail.clear();
-  slot.busy = true;
-  slot.unsent = MakeFrame(EncodeJob(job));
-  SendRest(slot);
+  GAUNTLET_CHECK(slot.pid >= 0, fmt::format("slot {} cannot take a job", slot_index));
+  if (slot.jobs == 0) {
+    ReadOutput(slot);
+    slot.output_tail.clear();
+  }
+  const std::string frame = MakeFrame(EncodeJob(job));
+  ++slot.jobs;
+  slot.unsent_frames.push_back(frame.size());
+  slot.unsent += frame;
+}
+
+void RunnerPool::Flush() {
+  for (Slot& slot : slots_) SendRest(slot);
 }
 
 void RunnerPool::Kill(int slot_index) {
@@ -113,10 +120,11 @@ void RunnerPool::Exited(const RunnerExited& exited, std::vector<PoolEvent>& even
   // A report that was complete counts, whatever happened to the runner afterwards.
   ReadReports(index, events);
   ReadOutput(*slot);
-  if (slot->busy) {
+  if (slot->jobs > 0) {
     RunnerFailure failure = ClassifyExit(exited.wait_status, slot->output_tail);
     if (slot->broke_protocol) failure.kind = FailureKind::kCrashed;
-    if (!slot->unsent.empty()) failure.kind = FailureKind::kExternal;  // it ended before it had the job
+    // It ended before it had the job.
+    if (slot->unsent_frames.size() == slot->jobs) failure.kind = FailureKind::kExternal;
     events.emplace_back(
         SlotFailed{index, std::move(failure), std::max(0.0, exited.cpu_seconds - slot->process_cpu_seconds)});
   } else {
@@ -132,8 +140,8 @@ void RunnerPool::ReadReports(int slot_index, std::vector<PoolEvent>& events) {
   const FrameBuffer::State state = slot.reports.ReadFrom(slot.pipe.get());
   while (const std::optional<std::string> frame = slot.reports.Next()) {
     std::optional<RunnerReport> report = DecodeReport(*frame);
-    if (!report || !slot.busy) return BreakOff(slot);
-    slot.busy = false;
+    if (!report || slot.jobs <= slot.unsent_frames.size()) return BreakOff(slot);
+    --slot.jobs;
     slot.process_cpu_seconds = report->process_cpu_seconds;
     events.emplace_back(SlotFinished{slot_index, std::move(*report)});
   }
@@ -177,6 +185,12 @@ void RunnerPool::SendRest(Slot& slot) {
     if (sent < 0 && errno == EINTR) continue;
     if (sent < 0) return;  // full (poll tells when to go on) or closed (its exit will be reported)
     slot.unsent.erase(0, static_cast<std::size_t>(sent));
+    std::size_t left = static_cast<std::size_t>(sent);
+    while (left > 0 && left >= slot.unsent_frames.front()) {
+      left -= slot.unsent_frames.front();
+      slot.unsent_frames.pop_front();
+    }
+    if (left > 0) slot.unsent_frames.front() -= left;
   }
 }
 

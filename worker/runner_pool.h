@@ -5,6 +5,7 @@
 #include <poll.h>
 
 #include <chrono>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,7 +26,7 @@ struct SlotFinished {
   int slot = 0;
   RunnerReport report;
 };
-// The slot's runner ended during its job. SlotReady follows when it is replaced.
+// The slot's runner ended during its first job. SlotReady follows when it is replaced.
 struct SlotFailed {
   int slot = 0;
   RunnerFailure failure;
@@ -52,8 +53,11 @@ class RunnerPool {
   // Works off what poll found in Descriptors() (same order, untouched since). `now` paces repeated starts.
   std::vector<PoolEvent> Process(std::span<const pollfd> polled, TimePoint now);
 
-  // The slot must have been reported ready and be without a job.
+  // The slot must have been reported ready. When it has jobs already, this one follows them: SlotFinished
+  // comes in their order, SlotFailed is about the first one and ends all. Sent by Flush at the latest.
   void StartJob(int slot, const RunnerJob& job);
+  // Sends what waits, as far as possible. Call before sleeping on Descriptors().
+  void Flush();
   // SIGKILL; the slot is heard of again by SlotFailed or SlotEmptied (or a report that was under way).
   void Kill(int slot);
 
@@ -63,9 +67,11 @@ class RunnerPool {
     UniqueFd pipe;
     UniqueFd output;
     FrameBuffer reports;
-    std::string unsent;       // what is left of a job's frame
-    std::string output_tail;  // what the current job printed, its end
-    bool busy = false;
+    std::string unsent;       // what is left of the jobs' frames
+    std::string output_tail;  // what the jobs since it was last without printed, its end
+    std::size_t jobs = 0;     // that it has not reported
+    // Of them, those whose frames have not been sent to the end, and their bytes.
+    std::deque<std::size_t> unsent_frames;
     bool broke_protocol = false;       // was killed for it: its own fault
     double process_cpu_seconds = 0.0;  // as of the last report
   };

@@ -57,16 +57,23 @@ class Supervisor::Loop {
       HandlePoolEvents();
       Tell(ClockTick{});
     }
+    connection_.Flush();
     return *exit_code_;
   }
 
  private:
   void Wait() {
+    // What was decided since goes now, all at once.
+    connection_.Flush();
+    pool_.Flush();
     polled_ = pool_.Descriptors();
     polled_.push_back({.fd = signals_, .events = POLLIN, .revents = 0});
     polled_.push_back({.fd = connection_.fd(), .events = POLLIN, .revents = 0});
     message_came_ = connection_.Readable();
-    connection_.Flush();
+    if (connection_.congested()) {
+      connection_.Flush();
+      message_came_ = message_came_ || connection_.Readable();
+    }
     const auto until_tick =
         std::chrono::ceil<milliseconds>(state_.NextTick() - std::chrono::steady_clock::now());
     const milliseconds timeout =
@@ -143,7 +150,10 @@ class Supervisor::Loop {
 
   void Do(const Send& send) {
     // A heartbeat that cannot leave now says nothing later.
-    if (connection_.congested() && std::holds_alternative<Heartbeat>(send.message)) return;
+    if (std::holds_alternative<Heartbeat>(send.message)) {
+      connection_.Flush();
+      if (connection_.congested()) return;
+    }
     connection_.Send(EncodeWorkerMessage(send.message));
   }
   void Do(StartRun& start) {

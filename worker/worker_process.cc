@@ -125,6 +125,7 @@ sim::RunResult ResultOf(const RunnerFailure& failure) {
 std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const RunnerJob& job) {
   RunnerPool pool(server, 1);
   while (true) {
+    pool.Flush();
     std::vector<pollfd> polled = pool.Descriptors();
     if (poll(polled.data(), polled.size(), 1000) < 0) {
       for (pollfd& item : polled) item.revents = 0;

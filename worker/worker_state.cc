@@ -15,6 +15,10 @@ constexpr int kUneasyHeartbeats = 3;
 constexpr int kSilentHeartbeats = 10;
 constexpr int kHellosPerConnection = 10;
 constexpr int kResendHeartbeats = 10;
+// CPU time of the runs that a runner may have ahead, s, and how many at most.
+constexpr double kWorkAhead = 1e-3;
+constexpr std::size_t kMostAhead = 64;
+constexpr double kForget = 0.95;  // per run: so fast a long run is forgotten
 // Leases beyond the slots wait here; a master that sends more is told to take them elsewhere.
 constexpr std::size_t kMaxWaiting = 4096;
 
@@ -64,7 +68,7 @@ TimePoint WorkerState::NextTick() const {
 
 const Lease* WorkerState::LeaseIn(int slot) const {
   const Slot& there = slots_.at(static_cast<std::size_t>(slot));
-  return there.state == SlotState::kRunning ? &there.lease : nullptr;
+  return there.state == SlotState::kRunning ? &there.runs.front().lease : nullptr;
 }
 
 std::vector<Fence> WorkerState::HeldLeases() const {
@@ -72,7 +76,9 @@ std::vector<Fence> WorkerState::HeldLeases() const {
   fences.reserve(finished_.size() + slots_.size() + waiting_.size());
   for (const auto& [fence, finished] : finished_) fences.push_back(fence);
   for (const Slot& slot : slots_) {
-    if (slot.state == SlotState::kRunning) fences.push_back(slot.lease.fence);
+    for (const Given& run : slot.runs) {
+      if (run.wanted) fences.push_back(run.lease.fence);
+    }
   }
   for (const Lease& lease : waiting_) fences.push_back(lease.fence);
   std::sort(fences.begin(), fences.end());
@@ -148,9 +154,14 @@ void WorkerState::On(const SlotBecameReady& ready) {
 void WorkerState::On(RunFinished& finished) {
   Slot& slot = slots_.at(static_cast<std::size_t>(finished.slot));
   if (slot.state != SlotState::kRunning) return;  // its lease was given up while the report was under way
-  slot.state = SlotState::kIdle;
-  HandIn({.fence = slot.lease.fence,
-          .run_id = slot.lease.run_id,
+  const Given run = std::move(slot.runs.front());
+  slot.runs.pop_front();
+  slot.begun = awake_;
+  if (slot.runs.empty()) slot.state = SlotState::kIdle;
+  lately_longest_ = std::max(finished.cpu_seconds, kForget * lately_longest_);
+  if (!run.wanted) return;
+  HandIn({.fence = run.lease.fence,
+          .run_id = run.lease.run_id,
           .result = std::move(finished.result),
           .failure = std::nullopt,
           .cpu_seconds = finished.cpu_seconds});
@@ -161,8 +172,11 @@ void WorkerState::On(RunnerDied& died) {
   const bool reported = slot.state == SlotState::kRunning;
   slot.state = SlotState::kStarting;
   if (!reported) return;
-  HandIn({.fence = slot.lease.fence,
-          .run_id = slot.lease.run_id,
+  const Given run = std::move(slot.runs.front());
+  EndRuns(slot);
+  if (!run.wanted) return;
+  HandIn({.fence = run.lease.fence,
+          .run_id = run.lease.run_id,
           .result = {},
           .failure = std::move(died.failure),
           .cpu_seconds = died.cpu_seconds});
@@ -170,7 +184,9 @@ void WorkerState::On(RunnerDied& died) {
 
 void WorkerState::On(const AllRunnersLost&) {
   for (Slot& slot : slots_) {
-    if (slot.state == SlotState::kRunning) GiveBack(slot.lease, "the fork server ended");
+    for (const Given& run : std::exchange(slot.runs, {})) {
+      if (run.wanted) GiveBack(run.lease, "the fork server ended");
+    }
     slot.state = SlotState::kStarting;
   }
   const bool tell = !drain_;
@@ -214,8 +230,11 @@ void WorkerState::EndBlockedRuns() {
     if (slot.state != SlotState::kRunning || Seconds(awake_ - slot.begun) < limit) continue;
     slot.state = SlotState::kKilling;
     Act(KillRunner{static_cast<int>(i)});
-    HandIn({.fence = slot.lease.fence,
-            .run_id = slot.lease.run_id,
+    const Given run = std::move(slot.runs.front());
+    EndRuns(slot);
+    if (!run.wanted) continue;
+    HandIn({.fence = run.lease.fence,
+            .run_id = run.lease.run_id,
             .result = {},
             .failure = RunnerFailure{.kind = FailureKind::kHung,
                                      .signal = 0,
@@ -274,34 +293,70 @@ void WorkerState::ResendLateResults() {
 // --- Leases ---
 
 bool WorkerState::Holds(Fence fence) const {
-  const auto held = HeldLeases();
-  return std::binary_search(held.begin(), held.end(), fence);
+  const auto given = [fence](const Given& run) { return run.wanted && run.lease.fence == fence; };
+  return finished_.contains(fence) ||
+         std::any_of(waiting_.begin(), waiting_.end(),
+                     [fence](const Lease& lease) { return lease.fence == fence; }) ||
+         std::any_of(slots_.begin(), slots_.end(), [&given](const Slot& slot) {
+           return std::any_of(slot.runs.begin(), slot.runs.end(), given);
+         });
 }
 
 void WorkerState::Forget(Fence fence) {
-  finished_.erase(fence);
+  if (finished_.erase(fence) > 0) return;
   std::erase_if(waiting_, [&](const Lease& lease) { return lease.fence == fence; });
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
-    if (slot.state != SlotState::kRunning || slot.lease.fence != fence) continue;
+    const auto run = std::find_if(slot.runs.begin(), slot.runs.end(),
+                                  [fence](const Given& given) { return given.lease.fence == fence; });
+    if (run == slot.runs.end()) continue;
+    run->wanted = false;
+    if (run != slot.runs.begin()) continue;  // it is short: not worth a runner
     slot.state = SlotState::kKilling;
     Act(KillRunner{static_cast<int>(i)});
+    EndRuns(slot);
   }
+}
+
+void WorkerState::EndRuns(Slot& slot) {
+  // From the end, so that the order stays.
+  for (; slot.runs.size() > 1; slot.runs.pop_back()) {
+    if (slot.runs.back().wanted) waiting_.push_front(std::move(slot.runs.back().lease));
+  }
+  slot.runs.clear();
+}
+
+std::size_t WorkerState::RunsAhead() const {
+  if (lately_longest_ < 0.0) return 1;
+  const double runs = kWorkAhead / std::max(lately_longest_, 1e-9);
+  return runs >= static_cast<double>(kMostAhead) ? kMostAhead
+                                                 : std::max<std::size_t>(1, static_cast<std::size_t>(runs));
+}
+
+void WorkerState::StartNext(std::size_t index) {
+  Slot& slot = slots_[index];
+  if (slot.runs.empty()) slot.begun = awake_;
+  slot.state = SlotState::kRunning;
+  slot.runs.push_back({std::move(waiting_.front())});
+  waiting_.pop_front();
+  Act(StartRun{.slot = static_cast<int>(index),
+               .spec = slot.runs.back().lease.spec,
+               .cpu_limit_seconds = welcome_.cpu_limit_seconds,
+               .memory_limit_bytes = welcome_.memory_limit_bytes});
 }
 
 void WorkerState::StartWaitingRuns() {
   if (drain_) return;
   for (std::size_t i = 0; i < slots_.size() && !waiting_.empty(); ++i) {
-    Slot& slot = slots_[i];
-    if (slot.state != SlotState::kIdle) continue;
-    slot.state = SlotState::kRunning;
-    slot.begun = awake_;
-    slot.lease = std::move(waiting_.front());
-    waiting_.pop_front();
-    Act(StartRun{.slot = static_cast<int>(i),
-                 .spec = std::move(slot.lease.spec),
-                 .cpu_limit_seconds = welcome_.cpu_limit_seconds,
-                 .memory_limit_bytes = welcome_.memory_limit_bytes});
+    if (slots_[i].state == SlotState::kIdle) StartNext(i);
+  }
+  // Refilled when half empty, so that many go at once.
+  const std::size_t ahead = RunsAhead();
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    const Slot& slot = slots_[i];
+    if (slot.state != SlotState::kRunning || slot.runs.size() > ahead / 2) continue;
+    if (slot.runs.front().lease.attempt > 1) continue;
+    while (slot.runs.size() < ahead && !waiting_.empty() && waiting_.front().attempt == 1) StartNext(i);
   }
 }
 
@@ -326,7 +381,9 @@ void WorkerState::DropRunning(const std::string& why) {
     if (slot.state != SlotState::kRunning) continue;
     slot.state = SlotState::kKilling;
     Act(KillRunner{static_cast<int>(i)});
-    GiveBack(slot.lease, why);
+    for (const Given& run : std::exchange(slot.runs, {})) {
+      if (run.wanted) GiveBack(run.lease, why);
+    }
   }
 }
 

@@ -62,6 +62,7 @@ void ScriptedWorker::Say(const worker::WorkerMessage& message) {
 
 void ScriptedWorker::SayBytes(std::string bytes) {
   connection_.Send(std::move(bytes));
+  connection_.Flush();
 }
 
 void ScriptedWorker::Beat(const std::vector<worker::Fence>& held) {

@@ -173,6 +173,28 @@ TEST_P(OutsideSignalTest, ToARunnerIsNotTheRunsFault) {
 INSTANTIATE_TEST_SUITE_P(Worker, OutsideSignalTest, testing::Values(SIGTERM, SIGKILL),
                          [](const auto& test) { return test.param == SIGTERM ? "Term" : "Kill"; });
 
+TEST_F(WorkerProcessTest, CrashAmongShortRunsIsHeldAgainstTheRunThatCrashed) {
+  FakeMaster master(access_path_, 1);
+  const auto worker = StartWorker();
+  const std::string peer = master.WelcomeOne();
+  constexpr std::uint64_t kRuns = 60;
+  const auto crashes = [](std::uint64_t fence) { return fence % 20 == 10; };
+  for (std::uint64_t fence = 1; fence <= kRuns; ++fence) {
+    master.Lease(peer, fence, crashes(fence) ? kAbort : kComplete);
+  }
+  std::set<std::uint64_t> answered;
+  while (answered.size() < kRuns) {
+    const auto answer = master.Await(v1::Envelope::kLeaseResult);
+    ASSERT_TRUE(answer.has_value()) << worker->Err();
+    const v1::LeaseResult& result = answer->envelope.lease_result();
+    EXPECT_TRUE(answered.insert(result.fence()).second) << result.fence();
+    EXPECT_EQ(result.has_failure(), crashes(result.fence())) << result.fence();
+    if (result.has_failure()) {
+      EXPECT_THAT(result.failure().stderr_tail(), HasSubstr("about to abort"));
+    }
+  }
+}
+
 TEST_F(WorkerProcessTest, HeartbeatsKeepComingWhileARunSpins) {
   FakeMaster master(access_path_, 1);
   const auto worker = StartWorker();
