@@ -214,7 +214,12 @@ void Scheduler::List(InstanceId id, Worker& worker) {
   Count(worker);
   Unlist(id, worker);
   if (worker.lost || worker.draining || worker.blocked) return;
-  if (worker.live.size() >= std::size_t{worker.slots} * Credit()) return;
+  const std::uint32_t credit = Credit();
+  const std::size_t most = std::size_t{worker.slots} * credit;
+  // Many short runs are leased at once, when half of them are done: then a message costs a fraction.
+  worker.filled = worker.live.size() >= most ||
+                  (worker.filled && credit > options_.credit && worker.live.size() > most / 2);
+  if (worker.filled) return;
   worker.level = static_cast<std::uint32_t>(worker.live.size() / worker.slots);
   worker.listed = true;
   available_.emplace(worker.level, id);

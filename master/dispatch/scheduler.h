@@ -189,6 +189,7 @@ class Scheduler {
     bool lost = false;
     bool draining = false;
     bool blocked = false;  // the last lease could not be delivered
+    bool filled = false;   // was given as many leases as it may have, and has not worked off half of them
     SlotUsage::Share usage;
     // Its place in available_, when it has one.
     bool listed = false;

@@ -408,6 +408,20 @@ TEST_F(SchedulerTest, ShortRunsAreLeasedAheadUntilEnoughWorkWaits) {
   EXPECT_THAT(leases, SizeIs(512)) << "most_credit for each slot";
 }
 
+TEST_F(SchedulerTest, WorkerWithManyShortRunsIsGivenMoreWhenHalfOfThemAreDone) {
+  SubmitRuns(1, 2000);
+  for (int i = 0; i < 200; ++i) scheduler_.RunTook(0.0005);
+  Join(10);
+  const std::vector<LeaseOrder> leases = Decide().leases;
+  ASSERT_THAT(leases, SizeIs(20)) << "10 ms of work";
+  for (int i = 0; i < 9; ++i) {
+    scheduler_.Completed(10, leases[i].fence, leases[i].run, 111);
+    EXPECT_THAT(Decide().leases, IsEmpty());
+  }
+  scheduler_.Completed(10, leases[9].fence, leases[9].run, 111);
+  EXPECT_THAT(Decide().leases, SizeIs(10));
+}
+
 TEST_F(SchedulerTest, TheLongestRunsOfABatchGoFirstButNoBatchOvertakesAnother) {
   Join(1, 8);
   scheduler_.BeginBatch();
