@@ -93,6 +93,7 @@ Status SearchDriver::Ask() {
   for (EvaluationRequest& request : parts_.search.Ask()) {
     PendingEvaluation evaluation;
     const double length = PredictedLength(request);
+    SeededSpecs specs(SpecOf(parts_.experiment, request.test_case, 0));
     for (std::uint32_t replicate = 0; replicate < request.replicates; ++replicate) {
       StoredRun run;
       run.id = ++last_asked_;
@@ -103,7 +104,7 @@ Status SearchDriver::Ask() {
       run.generation = request.generation;
       run.seed = sim::DeriveSeed(parts_.experiment.seed, PurposeOf(parts_.experiment.search.kind),
                                  kOnlySearch, request.individual, request.evaluation, replicate);
-      run.spec = EncodeRunSpec(SpecOf(parts_.experiment, request.test_case, run.seed));
+      run.spec = specs.Encode(run.seed);
       run.spec_hash = SpecHash(run.spec);
 
       const auto stored = stored_ahead_.find(run.id);
@@ -133,11 +134,12 @@ Status SearchDriver::Ask() {
 
 SearchDriver::PendingRun* SearchDriver::Find(RunId id) {
   // Runs of pending evaluations are numbered without gaps, each evaluation holding `replicates` of them.
-  for (PendingEvaluation& evaluation : pending_) {
-    const RunId first = evaluation.runs.front().run.id;
-    if (id < first + evaluation.runs.size()) return id < first ? nullptr : &evaluation.runs[id - first];
-  }
-  return nullptr;
+  const auto holder = std::partition_point(
+      pending_.begin(), pending_.end(),
+      [id](const PendingEvaluation& evaluation) { return evaluation.runs.back().run.id < id; });
+  if (holder == pending_.end()) return nullptr;
+  const RunId first = holder->runs.front().run.id;
+  return id < first ? nullptr : &holder->runs[id - first];
 }
 
 void SearchDriver::Count(const StoredRun& run) {

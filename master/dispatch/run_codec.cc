@@ -154,10 +154,7 @@ Status TrajectoryFromProto(const v1::Trajectory& message, sim::RunResult& result
   return Ok{};
 }
 
-}  // namespace
-
-std::string EncodeRunSpec(const sim::RunSpec& spec) {
-  v1::RunSpec message;
+void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
   ToProto(spec.test_case, *message.mutable_test_case());
   message.set_scenario(spec.scenario);
   for (const auto& [name, value] : spec.scenario_parameters) {
@@ -175,7 +172,24 @@ std::string EncodeRunSpec(const sim::RunSpec& spec) {
   message.set_record_trajectory(spec.record_trajectory);
   if (spec.physics == sim::PhysicsKind::kRelaxation) message.set_physics(v1::PHYSICS_RELAXATION);
   ToProto(spec.disturbances, message);
+}
+
+}  // namespace
+
+std::string EncodeRunSpec(const sim::RunSpec& spec) {
+  v1::RunSpec message;
+  ToProto(spec, message);
   return message.SerializeAsString();
+}
+
+SeededSpecs::SeededSpecs(const sim::RunSpec& spec) : message_(std::make_unique<v1::RunSpec>()) {
+  ToProto(spec, *message_);
+}
+SeededSpecs::~SeededSpecs() = default;
+
+std::string SeededSpecs::Encode(std::uint64_t seed) {
+  message_->set_seed(seed);
+  return message_->SerializeAsString();
 }
 
 Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {

@@ -55,6 +55,15 @@ RC_GTEST_PROP(RunCodecProperty, CasesOfAllKindsOfGenesSurviveFilesAndSpecs, ()) 
   RC_ASSERT(decoded->test_case.obstacles == spec.test_case.obstacles);
 }
 
+TEST(RunCodecTest, SeededSpecsHaveTheBytesOfWholeOnes) {
+  sim::RunSpec spec = SampleSpec();
+  SeededSpecs specs(spec);
+  for (const std::uint64_t seed : {std::uint64_t{1}, ~std::uint64_t{0}, std::uint64_t{0}, std::uint64_t{5}}) {
+    spec.seed = seed;
+    EXPECT_EQ(specs.Encode(seed), EncodeRunSpec(spec)) << seed;
+  }
+}
+
 TEST(RunCodecTest, AnObstacleMayMoveAndShine) {
   const Result<sim::TestCase> read = ParseCaseJson(
       R"({"obstacles": [{"x": 1, "y": 0, "length": 1, "width": 0.2, "light": "red",
