@@ -4,12 +4,11 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "tests/perf/noop_runs.h"
 #include "worker/command_line.h"
 
 namespace gauntlet::worker {
 namespace {
-
-constexpr std::uint64_t kGoldenHash = 0x6e6f6f70;  // "noop"
 
 double CpuSeconds() {
   timespec time{};
@@ -23,10 +22,7 @@ sim::RunResult DoNothing(const sim::RunSpec& spec) {
     const double end = CpuSeconds() + 1e-3 * std::strtod(milliseconds, nullptr);
     while (CpuSeconds() < end) continue;
   }
-  sim::RunResult result;
-  result.fitness = static_cast<double>(spec.seed % 1000) / 1000.0;
-  result.hash = sim::HashOf(result);
-  return result;
+  return perf::NoopResult(spec.seed);
 }
 
 }  // namespace
@@ -34,5 +30,5 @@ sim::RunResult DoNothing(const sim::RunSpec& spec) {
 
 int main(int argc, char** argv) {
   return gauntlet::worker::RunWorkerCommandLine(
-      argc, argv, {gauntlet::worker::DoNothing, [] { return gauntlet::worker::kGoldenHash; }});
+      argc, argv, {gauntlet::worker::DoNothing, [] { return gauntlet::perf::kNoopGoldenHash; }});
 }

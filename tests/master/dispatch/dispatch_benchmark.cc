@@ -1,8 +1,5 @@
-// What a run costs besides its simulation, three times over the same number of worker processes on loopback:
-//
-//   bare       a ROUTER and DEALERs that exchange messages of a lease's and a result's size
-//   dispatch   protobuf, leases, scheduler; workers that answer at once; nothing stored
-//   whole      gauntlet with gauntlet-worker-noop: supervisors, runners, search, every result durable
+// What dispatch alone costs: protobuf, leases and scheduler, with worker processes on loopback that answer at
+// once; nothing is stored. throughput_report measures the whole service and the bare messages.
 //
 //   dispatch_benchmark [RUNS [WORKERS [CREDIT [MILLISECONDS]]]]      MILLISECONDS: how long a run takes
 #include <fmt/format.h>
@@ -14,8 +11,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -66,21 +61,6 @@ using std::chrono::milliseconds;
   }
 }
 
-[[noreturn]] void ActAsBareWorker(int endpoint_fd, std::size_t result_bytes) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  char endpoint[256] = {};
-  if (read(endpoint_fd, endpoint, sizeof endpoint - 1) <= 0) _exit(1);
-  zmq::context_t context(1);
-  zmq::socket_t socket(context, zmq::socket_type::dealer);
-  socket.connect(endpoint);
-  const std::string result(result_bytes, 'r');
-  while (true) {
-    socket.send(zmq::buffer(result), zmq::send_flags::none);
-    zmq::message_t lease;
-    (void)socket.recv(lease);
-  }
-}
-
 double Seconds(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
@@ -89,78 +69,6 @@ double CpuSeconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return Seconds(usage.ru_utime) + Seconds(usage.ru_stime);
-}
-
-void RunBare(std::size_t runs, int workers, std::uint32_t credit) {
-  sim::RunResult result = SampleResult(0.5);
-  result.trajectory.clear();
-  const std::size_t result_bytes = EncodeRunResult(result).size();
-  std::vector<std::pair<pid_t, int>> children;
-  for (int i = 0; i < workers; ++i) {
-    int fds[2];
-    if (pipe(fds) != 0) return;
-    const pid_t pid = fork();
-    if (pid == 0) ActAsBareWorker(fds[0], result_bytes);
-    close(fds[0]);
-    children.emplace_back(pid, fds[1]);
-  }
-  zmq::context_t context(1);
-  zmq::socket_t router(context, zmq::socket_type::router);
-  router.bind("tcp://127.0.0.1:*");
-  const std::string endpoint = router.get(zmq::sockopt::last_endpoint);
-  for (const auto& [pid, fd] : children) {
-    if (write(fd, endpoint.data(), endpoint.size()) < 0) return;
-  }
-  const std::string lease = EncodeRunSpec(SampleSpec());
-  zmq::message_t identity;
-  zmq::message_t message;
-  const auto answer = [&](std::uint32_t leases) {
-    (void)router.recv(identity);
-    (void)router.recv(message);
-    for (std::uint32_t i = 0; i < leases; ++i) {
-      router.send(zmq::buffer(identity.data(), identity.size()), zmq::send_flags::sndmore);
-      router.send(zmq::buffer(lease), zmq::send_flags::none);
-    }
-  };
-  for (int i = 0; i < workers; ++i) answer(credit);
-  const auto start = std::chrono::steady_clock::now();
-  const double cpu = CpuSeconds();
-  for (std::size_t done = 0; done < runs; ++done) answer(1);
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const auto count = static_cast<double>(runs);
-  fmt::print("bare:     {:.0f}/s, master CPU {:.1f} us per run\n", count / wall,
-             1e6 * (CpuSeconds() - cpu) / count);
-  for (const auto& [pid, fd] : children) {
-    kill(pid, SIGKILL);
-    waitpid(pid, nullptr, 0);
-    close(fd);
-  }
-}
-
-// The programs beside this one; the figures are those that gauntlet prints.
-void RunWhole(std::size_t runs, int workers, milliseconds duration) {
-  const std::string bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  const std::string scratch = fmt::format("{}/gauntlet-dispatch-benchmark.{}",
-                                          std::filesystem::temp_directory_path().string(), getpid());
-  std::filesystem::create_directories(scratch);
-  constexpr std::size_t kMostReplicates = 10000;
-  const std::size_t cases = (runs + kMostReplicates - 1) / kMostReplicates;
-  std::string files;
-  for (std::size_t i = 0; i < cases; ++i) {
-    const std::string file = fmt::format("{}/case-{}.json", scratch, i);
-    std::ofstream(file) << "{\"name\": \"empty\"}";
-    files += " " + file;
-  }
-  const std::string delay =
-      duration.count() > 0 ? fmt::format("GAUNTLET_NOOP_MS={} ", duration.count()) : std::string();
-  fmt::print("whole:    ");
-  std::fflush(stdout);
-  const std::string command = fmt::format(
-      "{0}GAUNTLET_WORKER={1}/gauntlet-worker-noop {1}/gauntlet evaluate flocking --case{5} "
-      "--replicates {3} --workers {4} --dir {2}/campaign --no-progress 2>&1 >/dev/null | tail -n 1",
-      delay, bin, scratch, runs / cases, workers, files);
-  if (std::system(command.c_str()) != 0) fmt::print("failed\n");
-  std::filesystem::remove_all(scratch);
 }
 
 int Run(std::size_t runs, int workers, std::uint32_t credit, milliseconds duration) {
@@ -232,10 +140,6 @@ int main(int argc, char** argv) {
   const auto credit = static_cast<std::uint32_t>(number(3, 2));
   const std::chrono::milliseconds duration(number(4, 0));
   fmt::print("{} runs of {} ms, {} workers, credit {}\n", runs, duration.count(), workers, credit);
-  if (duration.count() == 0) gauntlet::master::RunBare(runs, workers, credit);
   std::fflush(stdout);
-  const int failed = gauntlet::master::Run(runs, workers, credit, duration);
-  std::fflush(stdout);
-  gauntlet::master::RunWhole(runs, workers, duration);
-  return failed;
+  return gauntlet::master::Run(runs, workers, credit, duration);
 }

@@ -1,0 +1,149 @@
+#include "tests/integration/worker_crowd.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <zmq.hpp>
+
+#include "worker/access_file.h"
+#include "worker/message_codec.h"
+#include "worker/run_codec.h"
+
+namespace gauntlet::testing_support {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+struct WorkerCrowd::Shared {
+  zmq::context_t context{1};
+  worker::Access access;
+  worker::Hello hello;
+};
+
+struct WorkerCrowd::Worker {
+  zmq::socket_t socket;
+  bool welcomed = false;
+  std::vector<worker::Lease> leases;     // not answered
+  std::vector<worker::Fence> handed_in;  // not acknowledged
+
+  void Say(const worker::WorkerMessage& message) {
+    socket.send(zmq::buffer(worker::EncodeWorkerMessage(message)), zmq::send_flags::none);
+  }
+};
+
+WorkerCrowd::WorkerCrowd(const std::string& dir, int workers, std::uint64_t golden_hash)
+    : shared_(std::make_unique<Shared>()) {
+  Result<worker::Access> access = worker::ReadAccess(dir + "/access.json");
+  EXPECT_TRUE(access.ok()) << (access.ok() ? "" : access.error().message);
+  if (!access) return;
+  shared_->access = *std::move(access);
+  shared_->context.set(zmq::ctxopt::max_sockets, workers + 16);
+  shared_->hello.campaign_id = shared_->access.campaign_id;
+  shared_->hello.software_version = GAUNTLET_VERSION;
+  shared_->hello.golden_hash = golden_hash;
+  shared_->hello.host = "crowd";
+  shared_->hello.pid = getpid();
+  // A connection and a mailbox for each.
+  rlimit limit{};
+  const auto needed = static_cast<rlim_t>(4 * workers + 256);
+  if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < needed) {
+    limit.rlim_cur = std::min(limit.rlim_max, needed);
+    setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  for (int i = 0; i < workers; ++i) workers_.push_back(std::make_unique<Worker>());
+}
+
+WorkerCrowd::~WorkerCrowd() = default;
+
+bool WorkerCrowd::Join(milliseconds patience) {
+  const auto end = steady_clock::now() + patience;
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    zmq::socket_t& socket = workers_[i]->socket;
+    socket = zmq::socket_t(shared_->context, zmq::socket_type::dealer);
+    socket.set(zmq::sockopt::linger, 0);
+    if (const auto& curve = shared_->access.curve) {
+      socket.set(zmq::sockopt::curve_serverkey, curve->server_public);
+      socket.set(zmq::sockopt::curve_publickey, curve->worker_public);
+      socket.set(zmq::sockopt::curve_secretkey, curve->worker_secret);
+    }
+    socket.connect(shared_->access.endpoints.front());
+    worker::Hello hello = shared_->hello;
+    hello.instance_id = i + 1;
+    workers_[i]->Say(hello);
+  }
+  next_beat_ = steady_clock::now() + std::chrono::seconds(1);
+  while (!workers_.empty() && steady_clock::now() < end) {
+    Listen();
+    if (std::all_of(workers_.begin(), workers_.end(), [](const auto& one) { return one->welcomed; }))
+      return true;
+  }
+  return false;
+}
+
+double WorkerCrowd::AwaitLeases(std::size_t leases, milliseconds patience) {
+  const auto start = steady_clock::now();
+  while (steady_clock::now() - start < patience) {
+    std::size_t held = 0;
+    bool all = true;
+    for (const auto& one : workers_) {
+      held += one->leases.size();
+      all = all && !one->leases.empty();
+    }
+    if (all && held >= leases) return std::chrono::duration<double>(steady_clock::now() - start).count();
+    Listen();
+  }
+  return -1.0;
+}
+
+std::size_t WorkerCrowd::AnswerAll(const sim::RunResult& result, double cpu_seconds) {
+  const std::string bytes = worker::EncodeRunResult(result, worker::TrajectoryEncoding::kLeaveOut);
+  std::size_t answers = 0;
+  for (const auto& one : workers_) {
+    for (const worker::Lease& lease : one->leases) {
+      one->Say(worker::LeaseResult{lease.fence, lease.run_id, bytes, std::nullopt, cpu_seconds});
+      one->handed_in.push_back(lease.fence);
+      ++answers;
+    }
+    one->leases.clear();
+  }
+  return answers;
+}
+
+void WorkerCrowd::Beat() {
+  if (steady_clock::now() < next_beat_) return;
+  next_beat_ = steady_clock::now() + std::chrono::seconds(1);
+  for (const auto& one : workers_) {
+    worker::Heartbeat beat{1, one->handed_in};
+    for (const worker::Lease& lease : one->leases) beat.held_leases.push_back(lease.fence);
+    one->Say(beat);
+  }
+}
+
+// Waits a little for messages, and takes in what is there.
+void WorkerCrowd::Listen() {
+  std::vector<zmq::pollitem_t> items;
+  items.reserve(workers_.size());
+  for (const auto& one : workers_) items.push_back({one->socket.handle(), 0, ZMQ_POLLIN, 0});
+  zmq::poll(items.data(), items.size(), milliseconds(20));
+  for (std::size_t i = 0; i < workers_.size(); ++i) {
+    Worker& one = *workers_[i];
+    if ((items[i].revents & ZMQ_POLLIN) == 0) continue;
+    zmq::message_t frame;
+    while (one.socket.recv(frame, zmq::recv_flags::dontwait)) {
+      Result<worker::MasterMessage> message = worker::DecodeMasterMessage(frame.to_string_view());
+      EXPECT_TRUE(message.ok()) << (message.ok() ? "" : message.error().message);
+      if (!message) continue;
+      if (std::holds_alternative<worker::Welcome>(*message)) one.welcomed = true;
+      if (auto* lease = std::get_if<worker::Lease>(&*message)) one.leases.push_back(std::move(*lease));
+      if (const auto* refused = std::get_if<worker::Refused>(&*message)) ADD_FAILURE() << refused->reason;
+      if (const auto* acknowledge = std::get_if<worker::Acknowledge>(&*message)) {
+        for (const worker::Fence fence : acknowledge->fences) std::erase(one.handed_in, fence);
+      }
+    }
+  }
+  Beat();
+}
+
+}  // namespace gauntlet::testing_support

@@ -1,0 +1,42 @@
+// Hundreds of workers in one thread: they speak the workers' protocol over real sockets, with the campaign's
+// keys when it has some, and answer when they are told to.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/run_result.h"
+
+namespace gauntlet::testing_support {
+
+class WorkerCrowd {
+ public:
+  // For the campaign in `dir`, whose access.json must be there; `golden_hash` is that of its workers.
+  WorkerCrowd(const std::string& dir, int workers, std::uint64_t golden_hash);
+  WorkerCrowd(const WorkerCrowd&) = delete;
+  WorkerCrowd& operator=(const WorkerCrowd&) = delete;
+  ~WorkerCrowd();
+
+  // Connects all; true when all have been welcomed.
+  bool Join(std::chrono::milliseconds patience);
+  // Listens until every worker has a lease that is not answered, and all together at least `leases`; seconds
+  // since the call, negative when the time was over before.
+  double AwaitLeases(std::size_t leases, std::chrono::milliseconds patience);
+  // Answers all leases with this result, as one that took so much CPU time. How many there were.
+  std::size_t AnswerAll(const sim::RunResult& result, double cpu_seconds);
+
+ private:
+  struct Worker;
+  struct Shared;
+  void Listen();
+  void Beat();
+
+  std::unique_ptr<Shared> shared_;  // its context ends after all sockets
+  std::vector<std::unique_ptr<Worker>> workers_;
+  std::chrono::steady_clock::time_point next_beat_{};
+};
+
+}  // namespace gauntlet::testing_support
