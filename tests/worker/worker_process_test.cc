@@ -1,6 +1,7 @@
 // Real workers against a fake master: results, broken runs, signals, a master that moves, nobody left behind.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <csignal>
@@ -207,6 +208,16 @@ TEST_F(WorkerProcessTest, HeartbeatsKeepComingWhileARunSpins) {
       EXPECT_THAT(heartbeat->envelope.heartbeat().held_leases(), ElementsAre(5));
     }
   }
+}
+
+TEST_F(WorkerProcessTest, RunnersAreNicerThanTheirSupervisor) {
+  FakeMaster master(access_path_, 1);
+  const auto worker = StartWorker();
+  master.WelcomeOne();
+  ASSERT_TRUE(Eventually([&] { return RunnersOf(*worker).size() == 1; }, kDeadline));
+  const auto niceness = [](pid_t pid) { return getpriority(PRIO_PROCESS, static_cast<id_t>(pid)); };
+  EXPECT_TRUE(
+      Eventually([&] { return niceness(RunnersOf(*worker)[0]) > niceness(worker->pid()); }, kDeadline));
 }
 
 TEST_F(WorkerProcessTest, SlotsRunAtTheSameTime) {
