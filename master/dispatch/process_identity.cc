@@ -3,8 +3,10 @@
 #include <unistd.h>
 
 #include <array>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 namespace gauntlet::master {
 namespace {
@@ -28,25 +30,38 @@ std::string TargetOf(const char* link) {
   return size > 0 ? std::string(target.data(), static_cast<std::size_t>(size)) : std::string();
 }
 
+// The fields of a stat file of /proc from the third, the state, on; empty when there is none. The second
+// field is the program's name in parentheses, which may hold anything.
+std::string StatFromState(const std::string& path) {
+  std::ifstream file(path);
+  std::ostringstream stat;
+  if (!(stat << file.rdbuf())) return "";
+  const std::string text = stat.str();
+  const std::size_t name_end = text.rfind(") ");
+  return name_end == std::string::npos ? "" : text.substr(name_end + 2);
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> StartTimeOf(pid_t pid) {
-  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
-  std::ostringstream stat;
-  if (!(stat << file.rdbuf())) return std::nullopt;
-  const std::string text = stat.str();
-  // The second field is the program's name in parentheses, which may hold anything.
-  const std::size_t name_end = text.rfind(')');
-  if (name_end == std::string::npos) return std::nullopt;
-  std::istringstream fields(text.substr(name_end + 1));
+  std::istringstream fields(StatFromState("/proc/" + std::to_string(pid) + "/stat"));
   std::string state;
-  fields >> state;
+  if (!(fields >> state)) return std::nullopt;
   if (state == "Z" || state == "X") return std::nullopt;
   std::string skipped;
   for (int field = 4; field < 22; ++field) fields >> skipped;
   std::uint64_t start_time = 0;
   if (!(fields >> start_time)) return std::nullopt;
   return start_time;
+}
+
+bool AnyThreadIsRunnable(pid_t pid) {
+  std::error_code gone;
+  std::filesystem::directory_iterator thread("/proc/" + std::to_string(pid) + "/task", gone);
+  for (; !gone && thread != std::filesystem::directory_iterator(); thread.increment(gone)) {
+    if (StatFromState(thread->path().string() + "/stat").starts_with("R")) return true;
+  }
+  return false;
 }
 
 ProcessIdentity IdentifyThisProcess() {

@@ -11,13 +11,13 @@ namespace gauntlet::master {
 ProcessWatch::ProcessWatch() : epoll_(epoll_create1(EPOLL_CLOEXEC)), self_(IdentifyThisProcess()) {}
 
 ProcessWatch::~ProcessWatch() {
-  for (const auto& [name, pidfd] : pidfds_) close(pidfd);
+  for (const auto& [name, process] : watched_) close(process.pidfd);
   if (epoll_ >= 0) close(epoll_);
 }
 
 bool ProcessWatch::Watch(std::uint64_t name, const ProcessIdentity& process) {
   Forget(name);
-  if (pidfds_.size() >= kMost || process.pid <= 0) return false;
+  if (watched_.size() >= kMost || process.pid <= 0) return false;
   if (LivenessOf(process, self_) != Liveness::kAlive) return false;
   // By number: the header of glibc 2.36 gives pidfd_open C++ linkage. Closed on exec.
   const int pidfd = static_cast<int>(syscall(SYS_pidfd_open, process.pid, 0));
@@ -31,15 +31,20 @@ bool ProcessWatch::Watch(std::uint64_t name, const ProcessIdentity& process) {
     close(pidfd);
     return false;
   }
-  pidfds_.emplace(name, pidfd);
+  watched_.emplace(name, Watched{pidfd, process.pid});
   return true;
 }
 
 void ProcessWatch::Forget(std::uint64_t name) {
-  const auto found = pidfds_.find(name);
-  if (found == pidfds_.end()) return;
-  close(found->second);  // which takes it out of the epoll set too
-  pidfds_.erase(found);
+  const auto found = watched_.find(name);
+  if (found == watched_.end()) return;
+  close(found->second.pidfd);  // which takes it out of the epoll set too
+  watched_.erase(found);
+}
+
+bool ProcessWatch::WaitsForProcessor(std::uint64_t name) const {
+  const auto found = watched_.find(name);
+  return found != watched_.end() && AnyThreadIsRunnable(found->second.pid);
 }
 
 std::vector<std::uint64_t> ProcessWatch::TakeEnded() {

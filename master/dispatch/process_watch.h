@@ -1,4 +1,5 @@
-// Notices at once when a process of this machine ends that is not our child.
+// Notices at once when a process of this machine ends that is not our child, and tells a starving one from a
+// frozen one.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +28,20 @@ class ProcessWatch {
   // Names of processes that have ended since the last call; they are forgotten.
   std::vector<std::uint64_t> TakeEnded();
 
+  // Is the watched process ready to run, and does it wait for a processor that others have? Not when it is
+  // stopped, sleeps or is not watched.
+  bool WaitsForProcessor(std::uint64_t name) const;
+
   static constexpr std::size_t kMost = 1024;
 
  private:
   int epoll_;
   ProcessIdentity self_;
-  std::map<std::uint64_t, int> pidfds_;
+  struct Watched {
+    int pidfd;
+    pid_t pid;
+  };
+  std::map<std::uint64_t, Watched> watched_;
 };
 
 }  // namespace gauntlet::master

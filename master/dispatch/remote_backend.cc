@@ -110,6 +110,7 @@ Status RemoteBackend::Step() {
   Status supervised = SupervisePool(now);
   for (int batch = 0; batch < kBatchesPerStep && ReceiveMessages(now); ++batch) continue;
   BuryEnded(now);
+  ExcuseStarving(now);
   SendHeartbeats(now);
   GiveLeases(now);
   return supervised;
@@ -129,6 +130,13 @@ Status RemoteBackend::SupervisePool(TimePoint now) {
     }
   }
   return Ok{};
+}
+
+// On a machine with far more to do than it can, a worker may get no turn for seconds.
+void RemoteBackend::ExcuseStarving(TimePoint now) {
+  for (const InstanceId worker : scheduler_.Silent(now)) {
+    if (processes_.WaitsForProcessor(worker)) scheduler_.Excuse(worker);
+  }
 }
 
 void RemoteBackend::BuryEnded(TimePoint now) {

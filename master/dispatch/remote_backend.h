@@ -56,6 +56,7 @@ class RemoteBackend final : public EvaluationBackend {
   Status Step();
   Status SupervisePool(TimePoint now);
   void BuryEnded(TimePoint now);
+  void ExcuseStarving(TimePoint now);
   PoolView ViewForPool() const;
   bool ReceiveMessages(TimePoint now);
   void Handle(const PeerMessage& message, TimePoint now);

@@ -9,6 +9,7 @@
 namespace gauntlet::master {
 namespace {
 
+constexpr int kMostExcuses = 10;
 // A lease that was sent and is not in a heartbeat of its worker was lost on the way, unless the two crossed.
 constexpr int kCrossingHeartbeats = 2;
 constexpr double kPredictionGain = 0.05;  // weight of the newest run in the predicted length
@@ -433,14 +434,34 @@ void Scheduler::Purge() {
   }
 }
 
+bool Scheduler::IsSilent(const Worker& worker) const {
+  return !worker.lost &&
+         listening_ - std::max(worker.heard, worker.excused) >= options_.lost_after * options_.heartbeat;
+}
+
+std::vector<InstanceId> Scheduler::Silent(TimePoint now) {
+  Advance(now);
+  std::vector<InstanceId> silent;
+  if (listening_ < next_check_) return silent;
+  for (const auto& [id, worker] : workers_) {
+    if (IsSilent(worker)) silent.push_back(id);
+  }
+  return silent;
+}
+
+void Scheduler::Excuse(InstanceId id) {
+  Worker& worker = workers_.at(id);
+  if (listening_ - worker.heard < kMostExcuses * options_.lost_after * options_.heartbeat) {
+    worker.excused = listening_;
+  }
+}
+
 SchedulerOrders Scheduler::Decide(TimePoint now) {
   Advance(now);
   if (listening_ >= next_check_) {
     next_check_ = listening_ + Duration(options_.heartbeat) / kChecksPerHeartbeat;
     for (auto& [id, worker] : workers_) {
-      if (!worker.lost && listening_ - worker.heard >= options_.lost_after * options_.heartbeat) {
-        Lose(id, worker);
-      }
+      if (IsSilent(worker)) Lose(id, worker);
     }
     Purge();
     Assign();

@@ -130,6 +130,11 @@ class Scheduler {
   // The lease could not be sent. The worker gets no other before it is heard of again.
   void Undelivered(Fence fence);
 
+  // Workers that the next Decide takes for lost, unless they are heard or excused before.
+  std::vector<InstanceId> Silent(TimePoint now);
+  // It lives and merely waits for a processor: it may be silent as long again, ten times at most.
+  void Excuse(InstanceId id);
+
   // Looks for silent workers, gives leases, and hands over all orders since the last call.
   SchedulerOrders Decide(TimePoint now);
 
@@ -186,6 +191,7 @@ class Scheduler {
     std::vector<Fence> live;
     std::vector<Fence> loose;  // orphaned and cancelled
     Duration heard{};
+    Duration excused{};  // value of listening_ at the last excuse
     bool lost = false;
     bool draining = false;
     bool blocked = false;  // the last lease could not be delivered
@@ -207,6 +213,7 @@ class Scheduler {
   bool Requeue(RunId id, Run& run);
   void Count(Worker& worker);  // its slots and leases, for the statistics
   std::vector<RunId> ReleaseAll(Worker& worker);
+  bool IsSilent(const Worker& worker) const;
   void Lose(InstanceId id, Worker& worker);
   void Finish(RunId id, Run& run, InstanceId worker, Fence fence);
   Answer CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);

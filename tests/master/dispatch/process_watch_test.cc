@@ -55,6 +55,28 @@ TEST_F(ProcessWatchTest, TellsAnEndAtOnceAndOnce) {
   EXPECT_THAT(watch_.TakeEnded(), IsEmpty());
 }
 
+TEST_F(ProcessWatchTest, TellsARunnableProcessFromASleepingAndAStoppedOne) {
+  ASSERT_TRUE(watch_.Watch(7, child_));
+  while (StartTimeOf(child_.pid) && watch_.WaitsForProcessor(7)) continue;  // until it pauses
+  EXPECT_FALSE(watch_.WaitsForProcessor(7));
+  EXPECT_FALSE(watch_.WaitsForProcessor(8)) << "not watched";
+  ProcessIdentity busy = IdentifyThisProcess();
+  busy.pid = fork();
+  if (busy.pid == 0) {
+    while (true) continue;
+  }
+  busy.start_time = StartTimeOf(busy.pid).value_or(0);
+  ASSERT_TRUE(watch_.Watch(9, busy));
+  EXPECT_TRUE(watch_.WaitsForProcessor(9));
+  kill(busy.pid, SIGSTOP);
+  int status = 0;
+  EXPECT_EQ(waitpid(busy.pid, &status, WUNTRACED), busy.pid);
+  EXPECT_FALSE(watch_.WaitsForProcessor(9));
+  kill(busy.pid, SIGKILL);
+  waitpid(busy.pid, &status, 0);
+  EXPECT_FALSE(watch_.WaitsForProcessor(9));
+}
+
 TEST_F(ProcessWatchTest, WatchesNobodyWhoIsNotCertainlyMeant) {
   const std::ptrdiff_t files = OpenFiles();
   ProcessIdentity other = child_;

@@ -100,6 +100,22 @@ TEST_F(SchedulerTest, LosesAWorkerAfterThreeSilentHeartbeatsAndLeasesItsRunsElse
   EXPECT_EQ(statistics.connected, 1);
 }
 
+// A starving worker of this machine is excused again and again, but not for ever.
+TEST_F(SchedulerTest, AnExcusedWorkerMayBeSilentTenTimesAsLong) {
+  SubmitRuns(1, 1);
+  Join(10);
+  Decide();
+  milliseconds silent(0);
+  while (silent < minutes(2)) {
+    clock_.Advance(milliseconds(250));
+    silent += milliseconds(250);
+    for (const InstanceId id : scheduler_.Silent(clock_.Now())) scheduler_.Excuse(id);
+    if (!Decide().lost.empty()) break;
+  }
+  EXPECT_GE(silent, seconds(30));
+  EXPECT_LE(silent, seconds(34));
+}
+
 TEST_F(SchedulerTest, AMasterThatWasFrozenTakesNobodyForLost) {
   SubmitRuns(1, 1);
   Join(10);
