@@ -11,7 +11,9 @@ namespace {
 
 constexpr int kMostExcuses = 10;
 // A lease that was sent and is not in a heartbeat of its worker was lost on the way, unless the two crossed.
-constexpr int kCrossingHeartbeats = 2;
+// A worker that gets no turn reads it seconds later. Waiting costs little: messages are lost with their
+// connection, and then the worker says hello.
+constexpr int kCrossingHeartbeats = 10;
 constexpr double kPredictionGain = 0.05;  // weight of the newest run in the predicted length
 
 // The same runs in every session and for any number of workers.

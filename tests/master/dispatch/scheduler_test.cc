@@ -339,6 +339,9 @@ TEST_F(SchedulerTest, ALeaseThatCrossedAHeartbeatIsNotTakenBackButALostOneIs) {
   Decide();
   scheduler_.WorkerHeartbeat(10, {}, clock_.Now());
   EXPECT_THAT(Decide().leases, IsEmpty());
+  PassTime(seconds(8), {10});
+  scheduler_.WorkerHeartbeat(10, {}, clock_.Now());
+  EXPECT_THAT(Decide().leases, IsEmpty());
   PassTime(seconds(2), {10});
   scheduler_.WorkerHeartbeat(10, {}, clock_.Now());
   EXPECT_THAT(RunsOf(Decide()), ElementsAre(1));
