@@ -20,7 +20,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "sim/run_result.h"
@@ -32,7 +31,6 @@
 namespace gauntlet::perf {
 namespace {
 
-using std::chrono::milliseconds;
 using testing_support::Eventually;
 using testing_support::Process;
 using testing_support::TemporaryDirectory;
@@ -155,16 +153,18 @@ void PrintMemory(std::size_t runs) {
   const Campaign campaign{.generations = static_cast<int>(runs / 10'000)};
   Service service(campaign);
   const auto total = static_cast<double>(runs);
-  std::vector<double> marks{0.1, 0.5, 0.98};
   double first = 0.0;
-  while (!marks.empty() && service.master().Running()) {
-    std::this_thread::sleep_for(milliseconds(200));
-    std::ifstream file(service.dir() + "/status.json");
-    const auto status = nlohmann::json::parse(file, nullptr, false);
-    if (!status.is_object()) continue;
-    const double done = status.value("runs_done", 0.0);
-    if (done < marks.front() * total) continue;
-    marks.erase(marks.begin());
+  for (const double mark : {0.1, 0.5, 0.98}) {
+    double done = 0.0;
+    Eventually(
+        [&] {
+          std::ifstream file(service.dir() + "/status.json");
+          const auto status = nlohmann::json::parse(file, nullptr, false);
+          if (status.is_object()) done = status.value("runs_done", 0.0);
+          return done >= mark * total || !service.master().Running();
+        },
+        kPatience);
+    if (done < mark * total) break;  // it had ended before it was seen
     const double resident = testing_support::ResidentMebibytes(service.master().pid());
     if (first == 0.0) first = resident;
     fmt::print("memory of the master after {:9.0f} runs: {:6.1f} MiB ({:+.1f})\n", done, resident,
