@@ -258,7 +258,7 @@ void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimeP
   // Said again before our welcome arrived: what was leased meanwhile is on its way, not lost.
   const bool repeated = known && connection.peer == peer;
   if (known && !repeated) instances_.erase(connection.peer);
-  connection = {peer, label, hello.pid, Shorten(hello.allocation), 0};
+  connection = {peer, label, hello.pid, Shorten(hello.allocation), 0, {}};
   instances_[peer] = hello.instance_id;
   processes_.Watch(hello.instance_id, {hello.host, hello.boot_id, hello.pid_namespace,
                                        static_cast<pid_t>(hello.pid), hello.start_time});
@@ -353,15 +353,22 @@ bool RemoteBackend::Perform(const SchedulerOrders& orders) {
   for (const RunGivenUp& order : orders.given_up) GiveUp(order);
   for (const FenceOrder& cancel : orders.cancels) SendTo(cancel.worker, EncodeCancel(cancel.fence));
 
-  std::map<InstanceId, std::vector<Fence>> acknowledged;
-  for (const FenceOrder& order : orders.acknowledgements) acknowledged[order.worker].push_back(order.fence);
-  for (const auto& [worker, fences] : acknowledged) SendTo(worker, EncodeAcknowledge(fences));
+  for (const FenceOrder& order : orders.acknowledgements) {
+    const auto connection = connections_.find(order.worker);
+    if (connection != connections_.end()) connection->second.acknowledged.push_back(order.fence);
+  }
 
   bool delivered = true;
   for (const LeaseOrder& lease : orders.leases) {
     if (SendTo(lease.worker, EncodeLease(lease, specs_.at(lease.run))) == SendOutcome::kSent) continue;
     scheduler_.Undelivered(lease.fence);
     delivered = false;
+  }
+  for (const FenceOrder& order : orders.acknowledgements) {
+    const auto connection = connections_.find(order.worker);
+    if (connection != connections_.end() && !scheduler_.Works(order.worker)) {
+      SendAcknowledgements(connection->second);
+    }
   }
   for (const InstanceId worker : orders.forgotten) Disconnect(worker);
   return delivered;
@@ -389,6 +396,7 @@ void RemoteBackend::SendHeartbeats(TimePoint now) {
   next_heartbeat_ = now + options_.heartbeat;
   const std::string heartbeat = EncodeHeartbeat(++heartbeats_);
   for (auto& [worker, connection] : connections_) {
+    SendAcknowledgements(connection);
     const bool reached = transport_.Send(connection.peer, heartbeat) != SendOutcome::kUnreachable;
     connection.unreachable = reached ? 0 : connection.unreachable + 1;
     if (connection.unreachable >= kUnreachableBeats) scheduler_.WorkerDied(worker);
@@ -398,7 +406,14 @@ void RemoteBackend::SendHeartbeats(TimePoint now) {
 SendOutcome RemoteBackend::SendTo(InstanceId worker, std::string_view bytes) {
   const auto connection = connections_.find(worker);
   if (connection == connections_.end()) return SendOutcome::kUnreachable;
+  SendAcknowledgements(connection->second);
   return transport_.Send(connection->second.peer, bytes);
+}
+
+void RemoteBackend::SendAcknowledgements(Connection& connection) {
+  if (connection.acknowledged.empty()) return;
+  transport_.Send(connection.peer, EncodeAcknowledge(connection.acknowledged));
+  connection.acknowledged.clear();
 }
 
 WaitOutcome RemoteBackend::WaitForSomething(milliseconds timeout, bool watch) {
@@ -436,7 +451,7 @@ void RemoteBackend::Shutdown(milliseconds deadline) {
   GiveLeases(start);  // none are given, but what was acknowledged last is sent
   shutting_down_ = true;
   const std::string drain = EncodeDrain("the master is leaving", false);
-  for (const auto& [worker, connection] : connections_) transport_.Send(connection.peer, drain);
+  for (const auto& [worker, connection] : connections_) SendTo(worker, drain);
 
   // Goodbye, then SIGTERM, then SIGKILL; each stage ends early when there is nobody left.
   const auto pool_runs = [this] { return pool_ != nullptr && pool_->running() > 0; };

@@ -51,6 +51,9 @@ class RemoteBackend final : public EvaluationBackend {
     std::int64_t pid = 0;
     std::string allocation;
     int unreachable = 0;  // heartbeats in a row that found no connection
+    // Leases whose acknowledgement goes along with the next message, a heartbeat later at most: woken for
+    // each, workers and master took another half percent of runs of 50 ms.
+    std::vector<Fence> acknowledged;
   };
 
   Status Step();
@@ -71,6 +74,7 @@ class RemoteBackend final : public EvaluationBackend {
   void GiveUp(const RunGivenUp& order);
   void SendHeartbeats(TimePoint now);
   SendOutcome SendTo(InstanceId worker, std::string_view bytes);
+  void SendAcknowledgements(Connection& connection);
   WaitOutcome WaitForSomething(std::chrono::milliseconds timeout, bool watch);
   void Disconnect(InstanceId worker);
   std::string LabelOf(InstanceId worker) const;

@@ -394,6 +394,11 @@ void Scheduler::Undelivered(Fence fence) {
   Requeue(lease.run, run);
 }
 
+bool Scheduler::Works(InstanceId worker) const {
+  const auto found = workers_.find(worker);
+  return found != workers_.end() && !found->second.live.empty();
+}
+
 std::uint32_t Scheduler::LeasesOf(RunId run) const {
   const auto found = runs_.find(run);
   return found == runs_.end() ? 0 : found->second.leases;

@@ -139,6 +139,7 @@ class Scheduler {
   SchedulerOrders Decide(TimePoint now);
 
   bool Known(InstanceId worker) const { return workers_.contains(worker); }
+  bool Works(InstanceId worker) const;  // has a lease that it has not answered
   std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown runs
   std::size_t queued() const { return queue_.size(); }
   std::size_t unfinished() const { return unfinished_; }

@@ -233,6 +233,29 @@ TEST_F(RemoteBackendTest, AResultComesOutAndIsAcknowledgedWhenStored) {
   EXPECT_THAT(sent[0].acknowledge().fences(), ElementsAre(lease.fence()));
 }
 
+TEST_F(RemoteBackendTest, AcknowledgementsForABusyWorkerGoAlongWithTheNextMessage) {
+  v1::Hello hello = HelloOf(kAnna);
+  hello.set_slots(2);
+  SayHello("p", hello);
+  backend_->Submit({{1, "spec"}, {2, "spec"}, {3, "spec"}});
+  Poll();
+  const auto leases = LeasesSentTo("p");
+  ASSERT_GE(leases.size(), 2U);
+  SendResult("p", leases[0], result_);
+  ASSERT_THAT(Poll(seconds(1)), SizeIs(1));
+  Poll();
+  Sent("p");
+  backend_->Acknowledge({leases[0].run_id()});
+  Poll();
+  EXPECT_THAT(Sent("p"), IsEmpty()) << "it has something to do";
+  clock_.Advance(DispatchOptions{}.heartbeat);
+  Poll();
+  const std::vector<v1::Envelope> sent = Sent("p");
+  ASSERT_THAT(sent, SizeIs(2));
+  EXPECT_THAT(sent[0].acknowledge().fences(), ElementsAre(leases[0].fence()));
+  EXPECT_TRUE(sent[1].has_heartbeat());
+}
+
 TEST_F(RemoteBackendTest, PollReturnsAtOnceWithResultsAndAtItsTimeoutWithout) {
   const TimePoint start = clock_.Now();
   EXPECT_THAT(Poll(milliseconds(730)), IsEmpty());
