@@ -1,10 +1,13 @@
 #include "worker/run_codec.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/arena.h>
 #include <google/protobuf/stubs/logging.h>
 #include <google/protobuf/unknown_field_set.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -15,6 +18,9 @@ namespace gauntlet::worker {
 namespace {
 
 namespace v1 = gauntlet::v1;
+
+// A decoded spec of today's scenarios takes half of it; what does not fit is allocated.
+constexpr std::size_t kUsualSpecMemory = 16 * 1024;
 
 // The first complaint about a spec wins; later ones are not computed.
 class SpecReader {
@@ -32,7 +38,8 @@ class SpecReader {
   }
   template <typename Message>
   void RequireKnownFields(const Message& message, const char* name) {
-    if (ok() && !message.GetReflection()->GetUnknownFields(message).empty()) {
+    static const auto* const reflection = Message::default_instance().GetReflection();
+    if (ok() && !reflection->GetUnknownFields(message).empty()) {
       error_ = fmt::format("{} has fields that this version does not know", name);
     }
   }
@@ -113,7 +120,9 @@ sim::Parameters ReadParameters(const List& wire, const char* owner, SpecReader& 
     reader.RequireKnownFields(parameter, "parameter");
     const std::string& name = reader.Name(parameter.name(), "a parameter's name");
     reader.Finite(parameter.value(), name.c_str());
-    if (reader.ok() && !parameters.emplace(name, parameter.value()).second) {
+    const std::size_t before = parameters.size();
+    parameters.emplace_hint(parameters.end(), name, parameter.value());  // they come in order
+    if (reader.ok() && parameters.size() == before) {
       reader.Require(false, fmt::format("{} parameter '{}' is given twice", owner, name));
     }
   }
@@ -187,7 +196,12 @@ void WriteTrajectory(const sim::RunResult& result, v1::Trajectory& wire) {
 
 Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   const google::protobuf::LogSilencer silencer;  // the error says enough
-  v1::RunSpec wire;
+  alignas(std::max_align_t) std::array<char, kUsualSpecMemory> memory;
+  google::protobuf::ArenaOptions in_memory;
+  in_memory.initial_block = memory.data();
+  in_memory.initial_block_size = memory.size();
+  google::protobuf::Arena arena(in_memory);
+  v1::RunSpec& wire = *google::protobuf::Arena::CreateMessage<v1::RunSpec>(&arena);
   if (bytes.size() > INT32_MAX || !wire.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return InvalidInput(fmt::format("spec: {} bytes that are no RunSpec", bytes.size()));
   }

@@ -41,11 +41,10 @@ double SecondsOf(clockid_t clock) {
 // so that most runs cost no system call.
 class Limits {
  public:
-  void Set(const RunnerJob& job) {
+  // `used`: the CPU time that this process has had, s.
+  void Set(const RunnerJob& job, double used) {
     rlim_t cpu = RLIM_INFINITY;
-    if (job.cpu_limit_seconds > 0.0) {
-      cpu = static_cast<rlim_t>(std::ceil(SecondsOf(CLOCK_PROCESS_CPUTIME_ID) + job.cpu_limit_seconds));
-    }
+    if (job.cpu_limit_seconds > 0.0) cpu = static_cast<rlim_t>(std::ceil(used + job.cpu_limit_seconds));
     Set(RLIMIT_CPU, cpu, cpu_);
     if (!kMemoryLimitWorks) return;
     Set(RLIMIT_AS, job.memory_limit_bytes == 0 ? RLIM_INFINITY : rlim_t{job.memory_limit_bytes}, memory_);
@@ -188,6 +187,7 @@ void RunnerMain(int pipe, const RunFunction& run) {
   Limits::ForbidCoreDumps();
   Limits limits;
   FrameBuffer messages;
+  double used = SecondsOf(CLOCK_PROCESS_CPUTIME_ID);
   while (true) {
     const std::optional<std::string> message = messages.Next();
     if (!message) {
@@ -196,9 +196,11 @@ void RunnerMain(int pipe, const RunFunction& run) {
     }
     const std::optional<RunnerJob> job = DecodeJob(*message);
     GAUNTLET_CHECK(job.has_value(), "a job that does not decode");
-    limits.Set(*job);
+    limits.Set(*job, used);
     try {
-      if (!WriteFrame(pipe, EncodeReport(Execute(*job, run)))) _exit(0);
+      const RunnerReport report = Execute(*job, run);
+      used = report.process_cpu_seconds;
+      if (!WriteFrame(pipe, EncodeReport(report))) _exit(0);
     } catch (const std::bad_alloc&) {
       OutOfMemory();
     } catch (const std::exception& error) {

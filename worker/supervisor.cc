@@ -13,6 +13,7 @@
 #include <deque>
 #include <optional>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -66,6 +67,7 @@ class Supervisor::Loop {
     // What was decided since goes now, all at once.
     connection_.Flush();
     pool_.Flush();
+    if (const auto nap = state_.Nap(); nap > nap.zero()) std::this_thread::sleep_for(nap);
     polled_ = pool_.Descriptors();
     polled_.push_back({.fd = signals_, .events = POLLIN, .revents = 0});
     polled_.push_back({.fd = connection_.fd(), .events = POLLIN, .revents = 0});

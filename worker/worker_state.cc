@@ -360,6 +360,16 @@ void WorkerState::StartWaitingRuns() {
   }
 }
 
+Duration WorkerState::Nap() const {
+  const std::size_t ahead = RunsAhead();
+  if (ahead < 4 || drain_ || slots_.empty()) return Duration::zero();
+  const bool all_busy = std::all_of(slots_.begin(), slots_.end(), [&](const Slot& slot) {
+    return slot.state == SlotState::kRunning && slot.runs.size() > ahead / 2;
+  });
+  if (!all_busy) return Duration::zero();
+  return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(kWorkAhead / 2));
+}
+
 void WorkerState::HandIn(LeaseResult result) {
   const Fence fence = result.fence;
   if (phase_ == Phase::kWelcomed) Act(Send{result});

@@ -110,6 +110,10 @@ class WorkerState {
   // When the next ClockTick is due at the latest.
   TimePoint NextTick() const;
 
+  // So long nobody needs this process, whatever happens: every runner has more very short runs ahead. Waking
+  // for each of their reports would cost more than the runs.
+  Duration Nap() const;
+
   bool welcomed() const { return phase_ == Phase::kWelcomed; }
   bool draining() const { return drain_.has_value(); }
   std::vector<Fence> HeldLeases() const;

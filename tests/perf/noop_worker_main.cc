@@ -20,8 +20,9 @@ double CpuSeconds() {
 
 sim::RunResult DoNothing(const sim::RunSpec& spec) {
   static const char* const milliseconds = std::getenv("GAUNTLET_NOOP_MS");
-  if (milliseconds != nullptr) {
-    const double end = CpuSeconds() + 1e-3 * std::strtod(milliseconds, nullptr);
+  static const double seconds = milliseconds == nullptr ? 0.0 : 1e-3 * std::strtod(milliseconds, nullptr);
+  if (seconds > 0.0) {
+    const double end = CpuSeconds() + seconds;
     while (CpuSeconds() < end) continue;
   }
   return perf::NoopResult(spec.seed);
