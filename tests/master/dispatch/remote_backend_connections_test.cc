@@ -1,0 +1,90 @@
+// Connections that come back, close, or do not read.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/master/dispatch/remote_backend_fixture.h"
+
+namespace gauntlet::master {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+TEST_F(RemoteBackendTest, AReconnectedWorkerContinuesUnderItsNewPeer) {
+  backend_->Submit({{1, "spec"}, {2, "spec"}});
+  SayHello("old", HelloOf(kAnna));
+  Poll();
+  const v1::Lease lease = LeasesSentTo("old").at(0);
+  v1::Hello again = HelloOf(kAnna);
+  again.add_held_leases(lease.fence());
+  SayHello("new", again);
+  SendResult("new", lease, result_);
+  EXPECT_THAT(Poll(), SizeIs(1));
+  EXPECT_THAT(LeasesSentTo("new"), SizeIs(1));
+  EXPECT_EQ(backend_->Statistics().connected, 1);
+  EXPECT_EQ(backend_->Statistics().releases, 0U);
+  SendHeartbeat("old");
+  Poll();
+  EXPECT_EQ(backend_->Statistics().rejected_messages, 1U) << "the old connection speaks for nobody";
+}
+
+// A worker says hello every second until it is welcomed, on the same connection.
+TEST_F(RemoteBackendTest, AHelloThatCrossedTheWelcomeIsNoReconnect) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("a", HelloOf(kAnna));
+  Poll();
+  const v1::Lease lease = LeasesSentTo("a").at(0);
+  EXPECT_THAT(EventsOf("worker-joined"), HasSubstr("joined"));
+  SayHello("a", HelloOf(kAnna));
+  Poll();
+  const std::vector<v1::Envelope> sent = Sent("a");
+  ASSERT_THAT(sent, SizeIs(1)) << "no second lease";
+  EXPECT_TRUE(sent[0].has_welcome()) << "the first may have been lost";
+  EXPECT_THAT(EventsOf("worker-joined"), IsEmpty());
+  EXPECT_EQ(backend_->Statistics().releases, 0U);
+  SendResult("a", lease, result_);
+  EXPECT_THAT(Poll(), SizeIs(1));
+}
+
+TEST_F(RemoteBackendTest, HeartbeatsGoToEveryWorkerOncePerSecond) {
+  SayHello("p", HelloOf(kAnna));
+  transport_.on_wait = [this] { SendHeartbeat("p"); };
+  Poll(seconds(10));
+  std::uint64_t beats = 0;
+  for (const v1::Envelope& envelope : Sent("p")) beats += envelope.has_heartbeat() ? 1U : 0U;
+  EXPECT_GE(beats, 9U);
+  EXPECT_LE(beats, 11U);
+}
+
+TEST_F(RemoteBackendTest, AClosedConnectionIsNoticedBeforeThreeHeartbeats) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("a", HelloOf(kAnna));
+  Poll();
+  SayHello("b", HelloOf(kBert));
+  transport_.SetUnreachable("a");
+  transport_.on_wait = [this] { SendHeartbeat("b"); };
+  Poll(milliseconds(2200));
+  EXPECT_THAT(LeasesSentTo("b"), SizeIs(1));
+}
+
+TEST_F(RemoteBackendTest, AWorkerThatDoesNotReadGetsNoLease) {
+  SayHello("a", HelloOf(kAnna));
+  Poll();
+  transport_.SetFull("a", true);
+  backend_->Submit({{1, "spec"}});
+  Poll();
+  SayHello("b", HelloOf(kBert));
+  Poll();
+  EXPECT_EQ(LeasesSentTo("b").at(0).attempt(), 1U);
+  transport_.SetFull("a", false);
+  backend_->Submit({{2, "spec"}});
+  SendHeartbeat("a");
+  Poll();
+  EXPECT_THAT(LeasesSentTo("a"), SizeIs(1));
+}
+
+}  // namespace
+}  // namespace gauntlet::master

@@ -1,0 +1,130 @@
+// What the master makes of failed runs and of messages that are not what they should be.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/master/dispatch/remote_backend_fixture.h"
+
+namespace gauntlet::master {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+TEST_F(RemoteBackendTest, ThreeCrashesBecomeAVerdictWithAReproducibleMessage) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("p", HelloOf(kAnna));
+  std::vector<FinishedRun> finished;
+  for (int attempt = 1; attempt <= 3; ++attempt) {
+    EXPECT_THAT(finished, IsEmpty());
+    Poll();
+    SendFailure("p", LeasesSentTo("p").at(0), v1::RunnerFailure::KIND_CRASHED, 11,
+                fmt::format("assertion failed at 0x{}", attempt));
+    finished = Poll();
+  }
+  ASSERT_THAT(finished, SizeIs(1));
+  EXPECT_EQ(finished[0].result.verdict, sim::Verdict::kCrashed);
+  EXPECT_EQ(finished[0].result.message, "crashed with signal 11");
+  EXPECT_EQ(finished[0].result.hash, sim::HashOf(finished[0].result));
+  EXPECT_EQ(finished[0].attempt, 3U);
+  EXPECT_THAT(EventsOf("runner-failure"), HasSubstr("assertion failed at 0x2"));
+}
+
+TEST_F(RemoteBackendTest, EveryKindOfOwnFailureHasItsVerdict) {
+  struct Expectation {
+    v1::RunnerFailure::Kind kind;
+    sim::Verdict verdict;
+    std::string message;
+  };
+  const std::vector<Expectation> expectations = {
+      {v1::RunnerFailure::KIND_CRASHED, sim::Verdict::kCrashed, "crashed with exit code 0"},
+      {v1::RunnerFailure::KIND_HUNG, sim::Verdict::kHung, "exceeded its CPU time"},
+      {v1::RunnerFailure::KIND_OUT_OF_MEMORY, sim::Verdict::kOutOfMemory, "exceeded its memory"}};
+  SayHello("p", HelloOf(kAnna));
+  RunId run = 0;
+  for (const Expectation& expectation : expectations) {
+    backend_->Submit({{++run, "spec"}});
+    std::vector<FinishedRun> finished;
+    for (int attempt = 1; attempt <= 3; ++attempt) {
+      Poll();
+      SendFailure("p", LeasesSentTo("p").at(0), expectation.kind, 0, "");
+      finished = Poll();
+    }
+    ASSERT_THAT(finished, SizeIs(1));
+    EXPECT_EQ(finished[0].result.verdict, expectation.verdict);
+    EXPECT_EQ(finished[0].result.message, expectation.message);
+  }
+}
+
+TEST_F(RemoteBackendTest, ExternalFailuresNeverBecomeAVerdict) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("p", HelloOf(kAnna));
+  for (int attempt = 1; attempt <= 10; ++attempt) {
+    Poll();
+    SendFailure("p", LeasesSentTo("p").at(0), v1::RunnerFailure::KIND_EXTERNAL, 15, "");
+  }
+  EXPECT_THAT(Poll(), IsEmpty());
+  SendResult("p", LeasesSentTo("p").at(0), result_);
+  EXPECT_EQ(Poll().at(0).attempt, 11U);
+}
+
+TEST_F(RemoteBackendTest, AnUnreadableOrForgedResultIsAFailureOfTheRun) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("p", HelloOf(kAnna));
+  Poll();
+  SendResult("p", LeasesSentTo("p").at(0), "\xff\xff");
+  EXPECT_THAT(Poll(), IsEmpty());
+  EXPECT_THAT(EventsOf("runner-failure"), HasSubstr("run 1 gave an unreadable result"));
+  sim::RunResult forged = SampleResult(0.5);
+  forged.fitness = 0.0;
+  SendResult("p", LeasesSentTo("p").at(0), EncodeRunResult(forged));
+  EXPECT_THAT(Poll(), IsEmpty());
+  EXPECT_THAT(EventsOf("runner-failure"), HasSubstr("its content's hash is"));
+  SendResult("p", LeasesSentTo("p").at(0), "");
+  const std::vector<FinishedRun> finished = Poll();
+  ASSERT_THAT(finished, SizeIs(1));
+  EXPECT_EQ(finished[0].result.message, "gave an unreadable result");
+}
+
+TEST_F(RemoteBackendTest, GarbageIsDroppedCountedAndReportedOncePerKind) {
+  transport_.Deliver("x", "\xff\xfe garbage");
+  transport_.Deliver("x", "more \xff garbage");
+  SendHeartbeat("stranger");
+  v1::Envelope envelope;
+  envelope.mutable_welcome()->set_epoch(1);
+  transport_.Deliver("x", envelope.SerializeAsString());
+  transport_.Deliver("x", "");
+  Poll();
+  EXPECT_EQ(backend_->Statistics().rejected_messages, 5U);
+  EXPECT_THAT(backend_->TakeEvents(), SizeIs(2));
+  transport_.rejections.oversized = 3;
+  Poll(milliseconds(10));
+  EXPECT_EQ(backend_->Statistics().rejected_messages, 8U);
+  EXPECT_THAT(EventsOf("rejected-message"), HasSubstr("longer than allowed"));
+  EXPECT_THAT(Sent("x"), IsEmpty());
+}
+
+TEST_F(RemoteBackendTest, AStrangersLongMessageIsNotEvenParsed) {
+  v1::Hello hello = HelloOf(kAnna);
+  hello.set_host(std::string(2 << 20, 'x'));
+  SayHello("a", hello);
+  Poll();
+  EXPECT_THAT(Sent("a"), IsEmpty());
+  EXPECT_EQ(backend_->Statistics().rejected_messages, 1U);
+  EXPECT_THAT(EventsOf("rejected-message"), HasSubstr("a peer that has not said hello sent 2097"));
+}
+
+TEST_F(RemoteBackendTest, AnAnswerToSomebodyElsesLeaseIsRejected) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("a", HelloOf(kAnna));
+  SayHello("b", HelloOf(kBert));
+  Poll();
+  SendResult("b", LeasesSentTo("a").at(0), result_);
+  EXPECT_THAT(Poll(), IsEmpty());
+  EXPECT_EQ(backend_->Statistics().rejected_messages, 1U);
+}
+
+}  // namespace
+}  // namespace gauntlet::master
