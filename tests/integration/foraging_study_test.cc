@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "tests/integration/study.h"
 
 namespace gauntlet {
@@ -14,20 +12,9 @@ using testing_support::CompareSamples;
 using testing_support::Comparison;
 using testing_support::MeanFitness;
 using testing_support::PrintSample;
+using testing_support::ShareOf;
 using testing_support::SimulatedCase;
 using testing_support::Study;
-using testing_support::StudySample;
-
-double ShareOf(const StudySample& sample, bool SimulatedCase::*condition) {
-  double holds = 0.0;
-  double count = 0.0;
-  for (const auto& cluster : sample) {
-    holds += static_cast<double>(std::count_if(cluster.begin(), cluster.end(),
-                                               [&](const SimulatedCase& one) { return one.*condition; }));
-    count += static_cast<double>(cluster.size());
-  }
-  return holds / count;
-}
 
 TEST(ForagingStudy, EvolvedCasesAreTougherAndTheImprovedControllerStandsThemBetter) {
   const Study study("foraging");

@@ -13,13 +13,13 @@
 namespace gauntlet {
 namespace {
 
+using testing_support::BroughtNothing;
 using testing_support::CompareSamples;
 using testing_support::Comparison;
 using testing_support::MeanFitness;
 using testing_support::PrintSample;
-using testing_support::SimulatedCase;
+using testing_support::ShareOf;
 using testing_support::Study;
-using testing_support::StudySample;
 
 constexpr const char* kStatic = "task-partitioning";
 constexpr const char* kImproved = "task-partitioning-improved";
@@ -28,17 +28,6 @@ constexpr const char* kImproved = "task-partitioning-improved";
 const Study& TheStudy() {
   static const Study study("task-partitioning");
   return study;
-}
-
-double ShareOfZeros(const StudySample& sample) {
-  double zeros = 0.0;
-  double count = 0.0;
-  for (const auto& cluster : sample) {
-    zeros += static_cast<double>(std::count_if(cluster.begin(), cluster.end(),
-                                               [](const SimulatedCase& one) { return one.fitness == 0.0; }));
-    count += static_cast<double>(cluster.size());
-  }
-  return zeros / count;
 }
 
 TEST(PartitioningStudy, EvolvedCasesAreTougherAndBugSStandsThemBetter) {
@@ -59,7 +48,7 @@ TEST(PartitioningStudy, EvolvedCasesAreTougherAndBugSStandsThemBetter) {
   EXPECT_LE(MeanFitness(random[0]), 10.0);
   EXPECT_LT(tougher.test.p_greater, 0.01);
   EXPECT_GT(tougher.lower_bound, 0.56);
-  EXPECT_GT(ShareOfZeros(evolved[0]), ShareOfZeros(random[0]));
+  EXPECT_GT(ShareOf(evolved[0], BroughtNothing), ShareOf(random[0], BroughtNothing));
   EXPECT_LT(better.test.p_greater, 0.01);
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -58,15 +59,17 @@ void MustSucceed(const ProcessResult& result) {
 }  // namespace
 
 double MeanFitness(const StudySample& sample) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const StudyCluster& cluster : sample) {
-    for (const SimulatedCase& one : cluster) {
-      sum += one.fitness;
-      count += 1.0;
-    }
-  }
-  return sum / count;
+  const std::vector<double> values = FlatFitness(sample);
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double ShareOf(const StudySample& sample, const std::function<bool(const SimulatedCase&)>& holds) {
+  const StudyCluster all = Flatten(sample);
+  return static_cast<double>(std::count_if(all.begin(), all.end(), holds)) / static_cast<double>(all.size());
+}
+
+bool BroughtNothing(const SimulatedCase& one) {
+  return one.fitness == 0.0;
 }
 
 void PrintSample(const std::string& name, const StudySample& sample) {
@@ -75,14 +78,10 @@ void PrintSample(const std::string& name, const StudySample& sample) {
   const double mean = MeanFitness(sample);
   double squares = 0.0;
   for (const SimulatedCase& one : all) squares += (one.fitness - mean) * (one.fitness - mean);
-  const auto share = [&](auto&& holds) {
-    return 100.0 * static_cast<double>(std::count_if(all.begin(), all.end(), holds)) / n;
-  };
   fmt::print("{:<34} n {:>4}  mean {:.3f}  sd {:.3f}  zeros {:.1f} %  condition 1 {:.1f} %  2 {:.1f} %\n",
-             name, all.size(), mean, std::sqrt(squares / (n - 1.0)),
-             share([](const SimulatedCase& one) { return one.fitness == 0.0; }),
-             share([](const SimulatedCase& one) { return one.condition_1; }),
-             share([](const SimulatedCase& one) { return one.condition_2; }));
+             name, all.size(), mean, std::sqrt(squares / (n - 1.0)), 100.0 * ShareOf(sample, BroughtNothing),
+             100.0 * ShareOf(sample, &SimulatedCase::condition_1),
+             100.0 * ShareOf(sample, &SimulatedCase::condition_2));
 }
 
 Comparison CompareSamples(const std::string& name, const StudySample& first, const StudySample& second) {

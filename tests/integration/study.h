@@ -2,6 +2,7 @@
 // random ones, all simulated again with fresh seeds and compared.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -23,6 +24,8 @@ using StudyCluster = std::vector<SimulatedCase>;
 using StudySample = std::vector<StudyCluster>;
 
 double MeanFitness(const StudySample& sample);
+double ShareOf(const StudySample& sample, const std::function<bool(const SimulatedCase&)>& holds);
+bool BroughtNothing(const SimulatedCase& one);  // fitness 0
 // Prints one row of the table: n, mean, standard deviation, zeros, and the conditions where there are any.
 void PrintSample(const std::string& name, const StudySample& sample);
 
