@@ -1,36 +1,61 @@
 #include "worker/access_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "worker/pipe.h"
 
 namespace gauntlet::worker {
 namespace {
 
 constexpr int kFormat = 1;
 constexpr std::size_t kKeyCharacters = 40;
+constexpr std::size_t kMaxBytes = 1U << 20;
 
 bool IsEndpoint(const std::string& text) {
   return (text.starts_with("tcp://") || text.starts_with("ipc://")) && text.size() > 6;
 }
 
+// Z85 (https://rfc.zeromq.org/spec/32/).
+bool IsKey(const std::string& text) {
+  constexpr std::string_view kOthers = ".-:+=^!/*?&<>()[]{}@%$#";
+  return text.size() == kKeyCharacters && std::all_of(text.begin(), text.end(), [&](char c) {
+           return std::isalnum(static_cast<unsigned char>(c)) != 0 || kOthers.find(c) != kOthers.npos;
+         });
+}
+
+// "line 2, column 7" of the last of the first `bytes` bytes.
+std::string PositionIn(const std::string& text, std::size_t bytes) {
+  const std::string_view read = std::string_view(text).substr(0, std::max<std::size_t>(bytes, 1) - 1);
+  const auto line = std::count(read.begin(), read.end(), '\n') + 1;
+  const std::size_t break_before = read.rfind('\n');
+  const std::size_t column = break_before == read.npos ? read.size() + 1 : read.size() - break_before;
+  return fmt::format("line {}, column {}", line, column);
+}
+
 }  // namespace
 
 Result<Access> ParseAccess(const std::string& text, const std::string& place) {
-  nlohmann::json json;
-  try {
-    json = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::exception& error) {  // parse errors, and numbers beyond all ranges
-    return InvalidInput(fmt::format("{}: {}", place, error.what()));
-  }
   const auto wrong = [&](const std::string& what) {
     return InvalidInput(fmt::format("{}: {}", place, what));
   };
+  nlohmann::json json;
+  // The library's own messages repeat what they read, and that may be a part of a key.
+  try {
+    json = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    return wrong(fmt::format("no complete JSON, at {}", PositionIn(text, error.byte)));
+  } catch (const nlohmann::json::exception&) {
+    return wrong("a number beyond all ranges");
+  }
   if (!json.is_object()) return wrong("an object is needed");
 
   const auto format = json.find("format");
@@ -67,8 +92,9 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
       // What stands there is not repeated: messages end in logs.
       const bool is_text = curve->is_object() && curve->contains(name) && (*curve)[name].is_string();
       if (is_text) *key = (*curve)[name].get<std::string>();
-      if (key->size() != kKeyCharacters) {
-        return wrong(fmt::format("\"curve\".\"{}\" must be a key of {} characters", name, kKeyCharacters));
+      if (!IsKey(*key)) {
+        return wrong(
+            fmt::format("\"curve\".\"{}\" must be a key of {} characters of Z85", name, kKeyCharacters));
       }
     }
     access.curve = std::move(keys);
@@ -77,18 +103,19 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
 }
 
 Result<Access> ReadAccess(const std::string& path) {
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
+  // A named pipe would keep a blocking open waiting.
+  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  struct stat status {};
+  if (!file.valid() || fstat(file.get(), &status) != 0) {
     const int error = errno;
     return Error{error == ENOENT || error == ENOTDIR ? ErrorKind::kNotFound : ErrorKind::kIo,
                  fmt::format("{}: {}", path, std::strerror(error))};
   }
-  const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  if (in.bad()) return Error{ErrorKind::kIo, fmt::format("{}: cannot be read", path)};
-  Result<Access> access = ParseAccess(text, path);
-  struct stat status {};
-  if (access.ok() && access->curve && stat(path.c_str(), &status) == 0 && (status.st_mode & 077) != 0) {
+  if (!S_ISREG(status.st_mode)) return Error{ErrorKind::kIo, fmt::format("{} is no regular file", path)};
+  const Result<std::string> text = ReadAll(file.get(), path, kMaxBytes);
+  if (!text.ok()) return text.error();
+  Result<Access> access = ParseAccess(*text, path);
+  if (access.ok() && access->curve && (status.st_mode & 077) != 0) {
     return InvalidInput(fmt::format(
         "{} holds keys and has mode {:03o}: others may read it; make it 600 (chmod 600), or better "
         "let a new master write new keys",

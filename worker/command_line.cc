@@ -1,6 +1,8 @@
 #include "worker/command_line.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -30,9 +32,32 @@ constexpr const char* kFooter =
     "  gauntlet-worker --access /shared/access.json --slots 8\n"
     "  gauntlet-worker --run-spec spec.bin > result.bin      simulate one stored spec\n";
 
+// CLI::Range lets "nan" through.
+CLI::Validator Seconds() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double seconds = 0.0;
+        const bool number = CLI::detail::lexical_cast(text, seconds);
+        return number && seconds >= 0.0 && seconds <= 1e9
+                   ? std::string()
+                   : fmt::format("'{}' is no number of seconds from 0 to 1e9", text);
+      },
+      "S");
+}
+
+// Whatever is opened next would become a standard stream that is closed, and take what is written there.
+// Writing to a stand-in for stdout fails, as it should.
+void OccupyStandardStreams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(fd, F_GETFD) >= 0) continue;
+    [[maybe_unused]] const int opened = open("/dev/null", fd == STDERR_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
 }  // namespace
 
 int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions) {
+  OccupyStandardStreams();
   CLI::App app(kDescription, "gauntlet-worker");
   app.footer(kFooter);
   app.set_version_flag("--version", "gauntlet-worker " GAUNTLET_VERSION);
@@ -57,15 +82,14 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
                            ->check(CLI::Range(1, 1024));
   auto* orphan_option = app.add_option("--orphan-timeout", worker.orphan_timeout_seconds,
                                        "Seconds without a master before giving up")
-                            ->type_name("S")
                             ->capture_default_str()
-                            ->check(CLI::Range(0.0, 1e9));
+                            ->check(Seconds());
   auto* die_option =
       app.add_option(
              "--die-with-parent", worker.parent,
              "End at once when the process PID, which started this one, ends (its thread, to be exact)")
           ->type_name("PID")
-          ->check(CLI::PositiveNumber);
+          ->check(CLI::Range(1, 1 << 22));  // Linux' largest
   auto* log_option =
       app.add_option("--log", worker.log_file, "Log to this file, errors to stderr too")->type_name("FILE");
   auto* allocation_option =
@@ -84,13 +108,13 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
           ->type_name("FILE");
   auto* cpu_option =
       app.add_option("--cpu-limit", spec.cpu_limit_seconds, "With --run-spec: CPU seconds, 0 = no limit")
-          ->type_name("S")
           ->capture_default_str()
-          ->check(CLI::Range(0.0, 1e9));
+          ->check(Seconds());
   auto* memory_option = app.add_option("--memory-limit", spec.memory_limit_bytes,
                                        "With --run-spec: bytes of address space, 0 = no limit")
                             ->type_name("BYTES")
-                            ->capture_default_str();
+                            ->capture_default_str()
+                            ->check(CLI::NonNegativeNumber);
   dir_option->excludes(access_option);
   cpu_option->needs(spec_option);
   memory_option->needs(spec_option);
@@ -107,7 +131,9 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
   }
   if (golden) {
     fmt::print("{:016x}\n", functions.golden_hash());
-    return 0;
+    if (std::fflush(stdout) == 0) return 0;
+    fmt::print(stderr, "gauntlet-worker: the golden hash cannot be written to stdout\n");
+    return 4;
   }
   if (*spec_option) {
     spec.spec_file = run_spec;
@@ -116,6 +142,11 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
   }
   if (!*dir_option && !*access_option) {
     fmt::print(stderr, "gauntlet-worker: --dir DIR or --access FILE is needed: where to find the master\n");
+    return 2;
+  }
+  if ((*dir_option ? directory : worker.access_path).empty()) {
+    fmt::print(stderr, "gauntlet-worker: {} is empty: a path is needed\n",
+               *dir_option ? "--dir" : "--access");
     return 2;
   }
   if (*dir_option) worker.access_path = directory + "/access.json";

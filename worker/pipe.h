@@ -32,6 +32,10 @@ class UniqueFd {
   int fd_ = -1;
 };
 
+// Reads to the end, without a position to return to. `place` is named in errors: kIo; kInvalidInput when
+// there is more than `limit` bytes.
+Result<std::string> ReadAll(int fd, const std::string& place, std::size_t limit);
+
 struct SocketPair {
   UniqueFd first;
   UniqueFd second;

@@ -223,6 +223,14 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   return spec;
 }
 
+std::string DescribeResult(std::string_view encoded) {
+  v1::RunResult wire;
+  if (!wire.ParseFromArray(encoded.data(), static_cast<int>(encoded.size())))
+    return "gave no readable result";
+  if (wire.verdict() == v1::VERDICT_REFUSED) return "was refused: " + wire.message();
+  return fmt::format("completed: fitness {}, hash {:016x}", wire.fitness(), wire.hash());
+}
+
 std::string EncodeRunResult(const sim::RunResult& result, TrajectoryEncoding trajectory) {
   v1::RunResult wire;
   wire.set_verdict(static_cast<v1::Verdict>(result.verdict));

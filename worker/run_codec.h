@@ -29,4 +29,7 @@ enum class TrajectoryEncoding { kLeaveOut, kInclude };
 // UTF-8 end the process: no reader would accept them.
 std::string EncodeRunResult(const sim::RunResult& result, TrajectoryEncoding trajectory);
 
+// How an encoded result ended: "completed: fitness 0.25, hash 0123456789abcdef", "was refused: ...".
+std::string DescribeResult(std::string_view encoded);
+
 }  // namespace gauntlet::worker

@@ -174,10 +174,12 @@ class Supervisor::Loop {
     ++attempts_;
     Connect();
   }
-  void Do(const Note& note) { LogOnce(note.kind, note.text); }
+  void Do(const Note& note) { LogOnce(note.kind, fmt::format("{} ({})", note.text, endpoint_)); }
   void Do(const Exit& exit) {
     if (exit.code == kExitRefused) {
       spdlog::error("refused by the master: {}", exit.reason);
+    } else if (exit.code != kExitDone) {
+      spdlog::error("leaving: {}", exit.reason);
     } else {
       spdlog::info("leaving: {}", exit.reason);
     }

@@ -49,6 +49,11 @@ bool DieWithParent(pid_t parent) {
   return getppid() == parent;
 }
 
+int WithoutParent(pid_t parent) {
+  return Complain(fmt::format("process {} is not the one that started this one, or has ended", parent),
+                  kExitDone);
+}
+
 // A signalfd of the signals that stop a worker; they are blocked in this thread and those it starts.
 UniqueFd BlockStopSignals() {
   sigset_t set;
@@ -59,15 +64,26 @@ UniqueFd BlockStopSignals() {
   return UniqueFd(signalfd(-1, &set, SFD_CLOEXEC | SFD_NONBLOCK));
 }
 
-// nullopt: a signal asked to stop. Error: the file is wrong, or has not come in time (kNotFound).
+// nullopt: a signal asked to stop. Error: the file is wrong, or has not come in time (kNotFound), or could
+// not be read all that time (kIo).
 Result<std::optional<Access>> WaitForAccess(const WorkerOptions& options, int signals) {
   const auto deadline = steady_clock::now() + std::chrono::duration<double>(options.orphan_timeout_seconds);
-  bool told = false;
+  bool told_missing = false;
+  bool told_unreadable = false;
   while (true) {
     Result<Access> access = ReadAccess(options.access_path);
     if (access.ok()) return std::optional(std::move(*access));
-    if (access.error().kind != ErrorKind::kNotFound || steady_clock::now() >= deadline) return access.error();
-    if (!std::exchange(told, true)) spdlog::info("waiting for {}", options.access_path);
+    const bool missing = access.error().kind == ErrorKind::kNotFound;
+    // On a network file system what cannot be read now may be there in a moment.
+    if (!missing && access.error().kind != ErrorKind::kIo) return access.error();
+    if (steady_clock::now() >= deadline) return access.error();
+    if (!std::exchange(missing ? told_missing : told_unreadable, true)) {
+      if (missing) {
+        spdlog::info("waiting for {}: no master serves this campaign now", options.access_path);
+      } else {
+        spdlog::warn("{}; trying again", access.error().message);
+      }
+    }
     pollfd stop{.fd = signals, .events = POLLIN, .revents = 0};
     if (poll(&stop, 1, static_cast<int>(kAccessPollInterval.count())) > 0) return std::optional<Access>();
   }
@@ -93,18 +109,7 @@ Result<std::string> ReadSpec(const std::string& file) {
   const UniqueFd opened(file == "-" ? dup(STDIN_FILENO) : open(file.c_str(), O_RDONLY | O_CLOEXEC));
   const std::string place = file == "-" ? "stdin" : file;
   if (!opened.valid()) return Error{ErrorKind::kIo, fmt::format("{}: {}", place, std::strerror(errno))};
-  std::string bytes;
-  std::array<char, 64 * 1024> chunk;
-  while (true) {
-    const ssize_t got = read(opened.get(), chunk.data(), chunk.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return Error{ErrorKind::kIo, fmt::format("{}: {}", place, std::strerror(errno))};
-    if (got == 0) return bytes;
-    bytes.append(chunk.data(), static_cast<std::size_t>(got));
-    if (bytes.size() > kMaxMessageBytes) {
-      return InvalidInput(fmt::format("{}: more than {} bytes, which no spec has", place, kMaxMessageBytes));
-    }
-  }
+  return ReadAll(opened.get(), place, kMaxMessageBytes);
 }
 
 bool WriteToStdout(std::string_view bytes) {
@@ -150,7 +155,7 @@ std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const 
 }  // namespace
 
 int RunWorker(const WorkerOptions& options, const RunFunction& run) {
-  if (options.parent > 0 && !DieWithParent(options.parent)) return kExitDone;
+  if (options.parent > 0 && !DieWithParent(options.parent)) return WithoutParent(options.parent);
   Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
   if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
   const UniqueFd signals = BlockStopSignals();
@@ -189,7 +194,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
 }
 
 int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
-  if (options.parent > 0 && !DieWithParent(options.parent)) return kExitDone;
+  if (options.parent > 0 && !DieWithParent(options.parent)) return WithoutParent(options.parent);
   Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
   if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
   Result<std::string> spec = ReadSpec(options.spec_file);
@@ -202,6 +207,7 @@ int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
   std::string result;
   if (const auto* report = std::get_if<RunnerReport>(&outcome)) {
     result = report->result;
+    fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeResult(result));
   } else {
     const RunnerFailure& failure = std::get<RunnerFailure>(outcome);
     fmt::print(stderr, "gauntlet-worker: the run {}\n{}", Describe(failure), failure.stderr_tail);

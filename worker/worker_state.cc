@@ -252,6 +252,13 @@ void WorkerState::On(const ClockTick&) {
       return Leave(kExitOrphaned, fmt::format("no word from a master for {:.0f} s", Seconds(silence)));
     }
     if (now_ - last_hello_ < settings_.hello_interval) return;
+    if (silence >= kUneasyHeartbeats * settings_.hello_interval) {
+      Act(Note{
+          "unanswered",
+          fmt::format("no master answers: it has ended, cannot be reached from here, or does not know this "
+                      "worker's keys; trying for {:.0f} s in all",
+                      Seconds(settings_.orphan_timeout))});
+    }
     if (now_ - connected_ >= kHellosPerConnection * settings_.hello_interval) return GreetAgain();
     Act(CheckAccess{});
     return Greet();

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 
@@ -84,6 +86,38 @@ TEST(AccessFileTest, MissingFileIsNotFound) {
   EXPECT_EQ(ReadAccess(directory / "access.json").error().kind, ErrorKind::kNotFound);
   std::ofstream(directory / "access.json") << kGood;
   EXPECT_TRUE(ReadAccess(directory / "access.json").ok());
+}
+
+TEST(AccessFileTest, NoErrorRepeatsWhatMayBeAPartOfAKey) {
+  const std::string secret(40, 's');
+  const std::string whole = R"({"format": 1, "campaign": "c", "epoch": 1, "endpoints": ["tcp://10.0.0.1:5"],
+      "curve": {"server_public": ")" +
+                            secret + R"(", "worker_public": ")" + secret + R"(", "worker_secret": ")" +
+                            secret + "\"}}";
+  ASSERT_TRUE(ParseAccess(whole, "a.json").ok());
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const Result<Access> torn = ParseAccess(whole.substr(0, length), "a.json");
+    ASSERT_FALSE(torn.ok());
+    EXPECT_THAT(torn.error().message, testing::Not(HasSubstr("sss"))) << length;
+  }
+  std::string no_key = whole;
+  no_key[whole.rfind('s')] = '"';
+  EXPECT_THAT(ParseAccess(no_key, "a.json").error().message, testing::Not(HasSubstr("sss")));
+  no_key[whole.rfind('s')] = '~';
+  EXPECT_THAT(ParseAccess(no_key, "a.json").error().message,
+              HasSubstr("\"worker_secret\" must be a key of 40 characters of Z85"));
+}
+
+TEST(AccessFileTest, WhatIsNoRegularFileCannotBeReadAndKeepsNobodyWaiting) {
+  const testing_support::TemporaryDirectory scratch;
+  std::filesystem::create_directory(scratch / "directory");
+  ASSERT_EQ(mkfifo((scratch / "pipe").c_str(), 0600), 0);
+  for (const char* name : {"directory", "pipe"}) {
+    const Result<Access> access = ReadAccess(scratch / name);
+    ASSERT_FALSE(access.ok());
+    EXPECT_EQ(access.error().kind, ErrorKind::kIo);
+    EXPECT_THAT(access.error().message, HasSubstr("is no regular file"));
+  }
 }
 
 TEST(AccessFileTest, ANumberBeyondAllRangesIsRefusedLikeAnyOther) {

@@ -55,6 +55,11 @@ INSTANTIATE_TEST_SUITE_P(
                     BadLine{"AbsurdSlots", {"--dir", "x", "--slots", "100000"}, "--slots"},
                     BadLine{"BothPlaces", {"--dir", "x", "--access", "y"}, "--access"},
                     BadLine{"NegativeTimeout", {"--dir", "x", "--orphan-timeout", "-1"}, "--orphan-timeout"},
+                    BadLine{"TimeoutThatIsNoNumber", {"--dir", "x", "--orphan-timeout", "nan"}, "'nan'"},
+                    BadLine{"EmptyDirectory", {"--dir", ""}, "--dir is empty"},
+                    BadLine{"LimitThatIsNoNumber", {"--run-spec", "x", "--cpu-limit", "nan"}, "'nan'"},
+                    BadLine{"NegativeMemory", {"--run-spec", "x", "--memory-limit", "-1"}, "--memory-limit"},
+                    BadLine{"NoParent", {"--dir", "x", "--die-with-parent", "0"}, "1 to 4194304"},
                     BadLine{"LimitWithoutSpec", {"--dir", "x", "--cpu-limit", "3"}, "--run-spec"},
                     BadLine{"LogNowhere", {"--dir", "x", "--log", "/proc/none/x"}, "/proc/none/x"}),
     [](const auto& test) { return test.param.name; });
@@ -70,6 +75,18 @@ TEST(CommandLineTest, UnknownScenarioIsRefusedByNameInTheResult) {
   ASSERT_TRUE(result.ParseFromString(ended.out));
   EXPECT_EQ(result.verdict(), v1::VERDICT_REFUSED);
   EXPECT_THAT(result.message(), HasSubstr("floking"));
+  EXPECT_THAT(ended.err, HasSubstr("the run was refused: "));
+  EXPECT_THAT(ended.err, HasSubstr("floking"));
+}
+
+TEST(CommandLineTest, AnOutcomeThatCannotBeWrittenIsAnError) {
+  const std::string worker(kWorker);
+  for (const char* arguments : {" --golden >&-", " --golden >/dev/full", " --run-spec /dev/null >&-",
+                                " --run-spec /dev/null >/dev/full"}) {
+    const ProcessResult ended = RunProcess({"/bin/sh", "-c", worker + arguments});
+    EXPECT_EQ(ended.exit_code, 4) << arguments;
+    EXPECT_THAT(ended.err, HasSubstr("cannot be written to stdout")) << arguments;
+  }
 }
 
 }  // namespace

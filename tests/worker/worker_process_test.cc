@@ -394,6 +394,30 @@ TEST_F(WorkerProcessTest, WaitsForAnAccessFileThatComesLate) {
   EXPECT_NE(master.WelcomeOne(), "");
 }
 
+TEST_F(WorkerProcessTest, AnAccessFileThatCannotBeReadMayBeReadableLater) {
+  std::filesystem::create_directory(access_path_);
+  const auto worker = StartWorker();
+  const auto complaints = [&] {
+    const std::string log = worker->Err();
+    const std::string complaint = "is no regular file";
+    int count = 0;
+    for (auto at = log.find(complaint); at != log.npos; at = log.find(complaint, at + 1)) ++count;
+    return count;
+  };
+  ASSERT_TRUE(Eventually([&] { return complaints() == 1; }, kDeadline)) << worker->Err();
+  std::filesystem::remove(access_path_);
+  auto first = std::make_unique<FakeMaster>(access_path_, 1);
+  ASSERT_NE(first->WelcomeOne(), "");
+  // The same while it waits for a successor.
+  first.reset();
+  std::filesystem::remove(access_path_);
+  std::filesystem::create_directory(access_path_);
+  ASSERT_TRUE(Eventually([&] { return complaints() == 2; }, kDeadline)) << worker->Err();
+  std::filesystem::remove(access_path_);
+  FakeMaster second(access_path_, 2);
+  EXPECT_NE(second.WelcomeOne(), "");
+}
+
 TEST_F(WorkerProcessTest, GivesUpWithoutAMasterAfterTheOrphanTimeout) {
   EXPECT_EQ(StartWorker(1, "0.3")->Wait(seconds(60)).exit_code, 3) << "no access.json";
   std::ofstream(access_path_)

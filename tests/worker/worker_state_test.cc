@@ -50,6 +50,15 @@ TEST(WorkerStateTest, ExitsWhenNoMasterIsHeardForTheOrphanTimeout) {
   EXPECT_THAT(worker.Pass(seconds(5)), IsEmpty());
 }
 
+TEST(WorkerStateTest, SaysThatNobodyAnswersAfterThreeSeconds) {
+  Worker worker(1, seconds(50));
+  EXPECT_THAT(Only<Note>(worker.Pass(milliseconds(2900))), IsEmpty());
+  const auto notes = Only<Note>(worker.Pass(milliseconds(1200)));
+  ASSERT_FALSE(notes.empty());
+  EXPECT_THAT(notes[0].text, testing::HasSubstr("no master answers"));
+  EXPECT_THAT(notes[0].text, testing::HasSubstr("trying for 50 s in all"));
+}
+
 TEST(WorkerStateTest, OrphanTimeIsCountedFromTheMastersLastWord) {
   Worker worker(1, seconds(30));
   worker.Pass(seconds(25));
