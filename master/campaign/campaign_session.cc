@@ -288,9 +288,11 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   }
   const WorkerStatistics workers = backend.Statistics();
   if (workers.audits > 0) {
-    store.AddEvent({UnixMilliseconds(), "audit",
-                    fmt::format("{} runs were simulated on a second worker, {} ended differently",
-                                workers.audits, workers.nondeterministic)});
+    store.AddEvent(
+        {UnixMilliseconds(), "audit",
+         fmt::format("{} runs were simulated on a second worker, {} again on the only one there "
+                     "was, {} ended differently",
+                     workers.audits - workers.audits_alone, workers.audits_alone, workers.nondeterministic)});
   }
   store.AddEvent({UnixMilliseconds(), *end == CampaignEnd::kFinished ? "finished" : "stop",
                   fmt::format("{} runs stored", runner.runs_done())});

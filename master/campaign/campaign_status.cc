@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "master/campaign/atomic_file.h"
@@ -14,10 +16,30 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::size_t RunsOf(const BackendView& backend) {
-  std::size_t runs = 0;
-  for (const WorkerView& worker : backend.workers) runs += worker.leases.size();
-  return runs;
+// Runs that workers have: being simulated, or waiting there.
+std::size_t RunsOf(const BackendView& backend, bool waiting) {
+  std::ptrdiff_t runs = 0;
+  for (const WorkerView& worker : backend.workers) {
+    runs += std::count_if(worker.leases.begin(), worker.leases.end(),
+                          [&](const WorkerView::Lease& lease) { return lease.waits == waiting; });
+  }
+  return static_cast<std::size_t>(runs);
+}
+
+// Who wanted to work and may not: "; 2 workers were refused, the last because ...". "" for nobody.
+std::string TurnedAway(const BackendView& backend) {
+  std::string text;
+  const auto were = [](std::uint64_t count, const char* what) {
+    return fmt::format("; {} {}{}", count, what, count == 1 ? " was" : "s were");
+  };
+  if (backend.refused_workers > 0)
+    text += were(backend.refused_workers, "worker") + " refused, the last because " + backend.last_refusal;
+  if (backend.unknown_keys > 0)
+    text += were(backend.unknown_keys, "connection") + " turned away for keys that are not this campaign's";
+  if (backend.failed_handshakes > 0)
+    text += were(backend.failed_handshakes, "connection") +
+            " dropped in the greeting (no keys, wrong ones, or no worker)";
+  return text;
 }
 
 std::string_view StateOf(const WorkerView& worker) {
@@ -29,7 +51,11 @@ std::string_view StateOf(const WorkerView& worker) {
 ordered_json Json(const WorkerView& worker) {
   ordered_json runs = ordered_json::array();
   for (const WorkerView::Lease& lease : worker.leases) {
-    runs.push_back({{"run", lease.run}, {"lease", lease.lease}, {"seconds", lease.seconds}});
+    runs.push_back({{"run", lease.run},
+                    {"lease", fmt::format("{:x}", lease.fence)},
+                    {"attempt", lease.attempt},
+                    {"state", lease.waits ? "waiting" : "running"},
+                    {"seconds", lease.seconds}});
   }
   return {{"worker", worker.label},   {"pid", worker.pid},
           {"slots", worker.slots},    {"allocation", worker.allocation},
@@ -52,7 +78,7 @@ std::int64_t UnixMilliseconds() {
 
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
                            const BackendView& backend) {
-  if (RunsOf(backend) > 0) return "";
+  if (RunsOf(backend, false) > 0) return "";
   if (progress.search.finished) return "the search has finished";
   if (master.stopping) return "the campaign is stopping: no more runs are given away";
   int connected = 0;
@@ -70,11 +96,15 @@ std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& pro
     const std::string gone =
         lost > 0 ? fmt::format(" ({} {} silent now)", lost, lost == 1 ? "is" : "are") : "";
     if (!backend.pool_trouble.empty())
-      return fmt::format("no worker is connected{}: {}", gone, backend.pool_trouble);
+      return fmt::format("no worker is connected{}: {}{}", gone, backend.pool_trouble, TurnedAway(backend));
     if (!backend.allocations.empty())
-      return fmt::format("no worker is connected{}: {} allocations are starting or ending", gone,
-                         backend.allocations.size());
-    return fmt::format("no worker is connected{}: start some with `gauntlet-worker --dir DIR`", gone);
+      return fmt::format("no worker is connected{}: {} allocations are starting or ending{}", gone,
+                         backend.allocations.size(), TurnedAway(backend));
+    if (backend.own_workers > 0)
+      return fmt::format("no worker is connected{}: {} of the master's own {} starting{}", gone,
+                         backend.own_workers, backend.own_workers == 1 ? "is" : "are", TurnedAway(backend));
+    return fmt::format("no worker is connected{}: start some with `gauntlet-worker --dir DIR`{}", gone,
+                       TurnedAway(backend));
   }
   if (leaving == connected) return fmt::format("all {} connected workers are leaving", connected);
   if (backend.queued == 0)
@@ -110,7 +140,8 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
       {"searches_finished", progress.searches_finished},
       {"runs_done", progress.runs_done},
       {"runs_planned", progress.runs_planned},
-      {"runs_running", RunsOf(backend)},
+      {"runs_running", RunsOf(backend, false)},
+      {"runs_ahead", RunsOf(backend, true)},
       {"runs_queued", backend.queued},
       {"runs_per_second", progress.runs_per_second},
       {"remaining_seconds", progress.remaining_seconds ? ordered_json(*progress.remaining_seconds) : nullptr},
@@ -124,11 +155,15 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
       {"nondeterministic", progress.workers.nondeterministic},
       {"copies", progress.workers.copies},
       {"audits", progress.workers.audits},
+      {"audits_alone", progress.workers.audits_alone},
       {"audits_waiting", progress.workers.audits_open},
       {"worker_seconds", progress.workers.slot_seconds},
       {"worker_seconds_idle", progress.workers.idle_seconds},
       {"worker_seconds_at_barriers", progress.workers.barrier_seconds},
       {"rejected_messages", progress.workers.rejected_messages},
+      {"workers_refused", backend.refused_workers},
+      {"connections_with_unknown_keys", backend.unknown_keys},
+      {"connections_dropped_in_the_greeting", backend.failed_handshakes},
       {"why_nothing_runs", why.empty() ? ordered_json(nullptr) : ordered_json(why)},
       {"pool_trouble",
        backend.pool_trouble.empty() ? ordered_json(nullptr) : ordered_json(backend.pool_trouble)},

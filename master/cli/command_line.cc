@@ -24,9 +24,10 @@ void AddMessageOptions(CLI::App& command, CommonOptions& options) {
 
 void AddAuditOption(CLI::App& command, CommonOptions& options) {
   command
-      .add_option(
-          "--audit", options.audit,
-          "share of runs, 0 to 1, that a second worker simulates too; a difference is told (default: 0)")
+      .add_option("--audit", options.audit,
+                  "share of runs, 0 to 1, that a second worker simulates too; a difference is told (default: "
+                  "0; not kept: "
+                  "tell `resume` too)")
       ->type_name("P");
 }
 

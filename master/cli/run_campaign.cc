@@ -35,10 +35,13 @@ std::string Timing(const SessionReport& report) {
                     100.0 * workers.barrier_seconds / workers.slot_seconds);
   }
   if (workers.audits > 0) {
-    line += fmt::format("; {} runs simulated on a second worker, {}", FormatCount(workers.audits),
-                        workers.nondeterministic == 0
-                            ? "all equal"
-                            : fmt::format("{} ENDED DIFFERENTLY", workers.nondeterministic));
+    line += fmt::format("; {} runs simulated on a second worker",
+                        FormatCount(workers.audits - workers.audits_alone));
+    if (workers.audits_alone > 0)
+      line += fmt::format(", {} again on the only one there was", FormatCount(workers.audits_alone));
+    line += fmt::format(", {}", workers.nondeterministic == 0
+                                    ? "all equal"
+                                    : fmt::format("{} ENDED DIFFERENTLY", workers.nondeterministic));
   }
   return line;
 }

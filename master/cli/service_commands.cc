@@ -36,9 +36,11 @@ std::string Seconds(double seconds) {
 std::string RunsOf(const Json& worker) {
   std::string text;
   for (const Json& run : worker["runs"]) {
+    const bool waits = run.value("state", "") == "waiting";  // behind those that run there
+    const int attempt = run.value("attempt", 1);
     text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", run["run"].get<std::uint64_t>(),
-                        Seconds(run["seconds"]),
-                        run["lease"] > 1 ? fmt::format(", lease {}", run["lease"].get<int>()) : "");
+                        waits ? "next" : Seconds(run["seconds"]),
+                        attempt > 1 ? fmt::format(", attempt {}", attempt) : "");
   }
   return text.empty() ? "-" : text;
 }
@@ -79,11 +81,11 @@ std::string StatusText(const Json& status, const std::string& directory) {
   }
   text += "\n";
   if (status.contains("runs_done")) {
-    text +=
-        fmt::format("generation {}/{}, {} runs done, {} running, {} waiting, {:.1f}/s\n",
-                    status.value("generation", 0), status.value("generations", 0),
-                    FormatCount(status.value("runs_done", std::uint64_t{0})), status.value("runs_running", 0),
-                    status.value("runs_queued", 0), status.value("runs_per_second", 0.0));
+    text += fmt::format(
+        "generation {}/{}, {} runs done, {} running, {} waiting, {:.1f}/s\n", status.value("generation", 0),
+        status.value("generations", 0), FormatCount(status.value("runs_done", std::uint64_t{0})),
+        status.value("runs_running", 0), status.value("runs_queued", 0) + status.value("runs_ahead", 0),
+        status.value("runs_per_second", 0.0));
   }
   if (status.value("nondeterministic", 0) > 0) {
     text += fmt::format("NONDETERMINISTIC: {} runs ended differently on two workers, see log/master.log\n",

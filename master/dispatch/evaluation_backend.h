@@ -41,6 +41,7 @@ struct WorkerStatistics {
   std::uint64_t nondeterministic = 0;  // duplicates whose result differed from the first one
   std::uint64_t copies = 0;            // runs that an idle worker got although another had them
   std::uint64_t audits = 0;            // runs simulated twice on purpose, and compared
+  std::uint64_t audits_alone = 0;      // of these, by the same worker: there was no other
   std::uint64_t audits_open = 0;       // and those that wait for it
   double slot_seconds = 0.0;           // of connected workers, since the first lease
   double idle_seconds = 0.0;           // of these, without a run
@@ -51,8 +52,10 @@ struct WorkerStatistics {
 struct WorkerView {
   struct Lease {
     RunId run = 0;
-    std::uint32_t lease = 1;  // 1 = the run's first
-    double seconds = 0.0;     // since it was given
+    std::uint64_t fence = 0;
+    std::uint32_t attempt = 1;  // 1 = the run's first lease
+    double seconds = 0.0;       // since it was given
+    bool waits = false;         // there, behind as many others as the worker has slots
   };
   std::string label;  // instance id and host
   std::int64_t pid = 0;
@@ -80,6 +83,12 @@ struct BackendView {
   std::uint64_t queued = 0;  // runs that wait for a worker
   std::vector<AllocationView> allocations;
   std::string pool_trouble;  // why there are fewer workers than could be used; "" when all is well
+  int own_workers = 0;       // processes that the master keeps running itself
+  // Since the master's start:
+  std::uint64_t refused_workers = 0;
+  std::string last_refusal;             // why the last of them may not work here
+  std::uint64_t unknown_keys = 0;       // connections whose keys the campaign does not know
+  std::uint64_t failed_handshakes = 0;  // connections that did not get through the greeting otherwise
 };
 
 // Something a person or the store's event table should know of.

@@ -243,6 +243,8 @@ void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimeP
   const std::string label = fmt::format("{:016x}@{}", hello.instance_id, Shorten(hello.host));
   if (const std::string reason = ReasonToRefuse(hello); !reason.empty()) {
     transport_.Send(peer, EncodeRefused(reason));
+    ++refused_;
+    last_refusal_ = reason;
     Report("worker-refused", fmt::format("worker {} was refused: {}", label, reason));
     return;
   }
@@ -440,7 +442,11 @@ WaitOutcome RemoteBackend::WaitForSomething(milliseconds timeout, bool watch) {
   count(rejections.oversized, reported_rejections_.oversized, "oversized",
         "a message was longer than allowed");
   count(rejections.handshakes, reported_rejections_.handshakes, "handshake",
-        "a connection did not speak ZeroMQ's protocol");
+        "a connection did not get through ZeroMQ's greeting: it has no keys or those of another master, or "
+        "speaks something else");
+  count(rejections.keys, reported_rejections_.keys, "keys",
+        "a connection's keys are not the campaign's: its access.json is another campaign's, or older than a "
+        "change of keys");
   return outcome;
 }
 
@@ -498,6 +504,10 @@ WorkerStatistics RemoteBackend::Statistics() const {
 BackendView RemoteBackend::Describe() const {
   BackendView view;
   view.queued = scheduler_.queued();
+  view.refused_workers = refused_;
+  view.last_refusal = last_refusal_;
+  view.unknown_keys = reported_rejections_.keys;
+  view.failed_handshakes = reported_rejections_.handshakes;
   for (auto& [worker, described] : scheduler_.DescribeWorkers()) {
     const auto connection = connections_.find(worker);
     described.label = LabelOf(worker);
@@ -510,6 +520,7 @@ BackendView RemoteBackend::Describe() const {
   if (pool_ != nullptr) {
     view.allocations = pool_->Allocations();
     view.pool_trouble = pool_->Trouble(clock_.Now());
+    view.own_workers = pool_->running();
   }
   return view;
 }

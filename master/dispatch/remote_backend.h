@@ -105,6 +105,8 @@ class RemoteBackend final : public EvaluationBackend {
   std::uint64_t heartbeats_ = 0;
   bool shutting_down_ = false;
   std::uint64_t rejected_ = 0;
+  std::uint64_t refused_ = 0;
+  std::string last_refusal_;
   std::set<std::string> rejected_kinds_;  // already reported
   TransportRejections reported_rejections_;
   // Kept to reuse their memory.

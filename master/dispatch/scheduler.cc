@@ -308,7 +308,7 @@ Answer Scheduler::CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence 
     ++mismatches_;
     orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, hash});
   }
-  if (run.audit && (worker != run.finished_by || Alone(worker))) EndAudit(id, run);
+  if (run.audit && (worker != run.finished_by || Alone(worker))) EndAudit(id, run, worker);
   // Its only worker audited itself, and then others came.
   if (run.audit) Requeue(id, run);
   ForgetIfDone(id);
@@ -363,7 +363,7 @@ Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const RunFail
     if (run.audit && failure.kind != FailureKind::kExternal && ++run.audit_failures >= options_.attempts) {
       ++mismatches_;
       orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, 0});
-      EndAudit(id, run);
+      EndAudit(id, run, worker);
     }
     Requeue(id, run);
     ForgetIfDone(id);
@@ -404,7 +404,8 @@ std::uint32_t Scheduler::LeasesOf(RunId run) const {
   return found == runs_.end() ? 0 : found->second.leases;
 }
 
-void Scheduler::EndAudit(RunId id, Run& run) {
+void Scheduler::EndAudit(RunId id, Run& run, InstanceId by) {
+  if (by == run.finished_by) ++audited_alone_;
   run.audit = false;
   audits_.erase(id);
   --audits_open_;

@@ -139,7 +139,7 @@ class Scheduler {
   SchedulerOrders Decide(TimePoint now);
 
   bool Known(InstanceId worker) const { return workers_.contains(worker); }
-  bool Works(InstanceId worker) const;  // has a lease that it has not answered
+  bool Works(InstanceId worker) const;      // has a lease that it has not answered
   std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown runs
   std::size_t queued() const { return queue_.size(); }
   std::size_t unfinished() const { return unfinished_; }
@@ -218,7 +218,7 @@ class Scheduler {
   void Lose(InstanceId id, Worker& worker);
   void Finish(RunId id, Run& run, InstanceId worker, Fence fence);
   Answer CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);
-  void EndAudit(RunId id, Run& run);
+  void EndAudit(RunId id, Run& run, InstanceId by);
   void ForgetIfDone(RunId id);
   void Purge();
   void Grant(InstanceId worker_id, RunId id);
@@ -259,6 +259,7 @@ class Scheduler {
   std::uint64_t mismatches_ = 0;
   std::uint64_t copies_ = 0;
   std::uint64_t audited_ = 0;
+  std::uint64_t audited_alone_ = 0;
   SlotUsage usage_;
 };
 

@@ -20,7 +20,8 @@ std::vector<std::pair<InstanceId, WorkerView>> Scheduler::DescribeWorkers() cons
     std::sort(fences.begin(), fences.end());
     for (const Fence fence : fences) {
       const Lease& lease = leases_.at(fence);
-      view.leases.push_back({lease.run, runs_.at(lease.run).leases, seconds_since(lease.granted)});
+      view.leases.push_back({lease.run, fence, runs_.at(lease.run).leases, seconds_since(lease.granted),
+                             view.leases.size() >= view.slots});
     }
     views.emplace_back(id, std::move(view));
   }
@@ -41,6 +42,7 @@ WorkerStatistics Scheduler::Statistics() const {
   statistics.nondeterministic = mismatches_;
   statistics.copies = copies_;
   statistics.audits = audited_;
+  statistics.audits_alone = audited_alone_;
   statistics.audits_open = audits_open_;
   statistics.slot_seconds = usage_.slot_seconds();
   statistics.idle_seconds = usage_.idle_seconds();

@@ -35,7 +35,8 @@ struct WaitOutcome {
 struct TransportRejections {
   std::uint64_t malformed = 0;   // not exactly one frame
   std::uint64_t oversized = 0;   // longer than the limit of a message
-  std::uint64_t handshakes = 0;  // connections that never spoke the protocol
+  std::uint64_t handshakes = 0;  // connections that did not get through ZeroMQ's greeting
+  std::uint64_t keys = 0;        // connections whose keys are not admitted
 };
 
 // Thread-safety: one thread, but WakeUp may be called from any thread and from a signal handler.

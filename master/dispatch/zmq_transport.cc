@@ -86,7 +86,9 @@ struct ZmqTransport::Sockets {
     zmq::message_t event;
     zmq::message_t address;
     while (monitor.recv(event, zmq::recv_flags::dontwait)) {
-      ++rejections.handshakes;
+      std::uint16_t kind = 0;
+      if (event.size() >= sizeof kind) std::memcpy(&kind, event.data(), sizeof kind);
+      ++(kind == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH ? rejections.keys : rejections.handshakes);
       if (event.more()) (void)monitor.recv(address, zmq::recv_flags::dontwait);
     }
   }

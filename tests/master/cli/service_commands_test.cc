@@ -75,12 +75,13 @@ TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
                 "generation": 3, "generations": 50, "runs_done": 1234, "runs_running": 1, "runs_queued": 5,
                 "runs_per_second": 12.5, "why_nothing_runs": null, "worker_list": [
                  {"worker": "ab@n2", "state": "running", "silent_seconds": 0.2,
-                  "runs": [{"run": 812, "lease": 2, "seconds": 1.5}]},
+                  "runs": [{"run": 812, "lease": "100000002", "attempt": 2, "state": "running", "seconds": 1.5},
+                           {"run": 813, "lease": "100000003", "attempt": 1, "state": "waiting", "seconds": 1.5}]},
                  {"worker": "cd@n3", "state": "idle", "silent_seconds": 0.4, "runs": []}]})";
   EXPECT_EQ(Run({"status", "c"}), kExitDone);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("master 7 on n1 (start number 2), encrypted"),
                                 HasSubstr("generation 3/50, 1,234 runs done, 1 running, 5 waiting"),
-                                HasSubstr("812 (1.5 s, lease 2)"), HasSubstr("idle")));
+                                HasSubstr("812 (1.5 s, attempt 2), 813 (next)"), HasSubstr("idle")));
   EXPECT_EQ(Run({"status", "c", "--json"}), kExitDone);
   EXPECT_EQ(out_.str(), status_);
   status_ = R"({"state": "stopped", "master": null, "why_nothing_runs": "no master serves the campaign",

@@ -66,6 +66,7 @@ TEST_F(SchedulerAuditTest, AnOnlyWorkerAuditsItself) {
   ASSERT_EQ(audit.leases.size(), 1U);
   EXPECT_EQ(scheduler_.Completed(1, audit.leases[0].fence, 1, 55), Answer::kDuplicate);
   EXPECT_EQ(scheduler_.Statistics().audits, 1U);
+  EXPECT_EQ(scheduler_.Statistics().audits_alone, 1U);
 }
 
 TEST_F(SchedulerAuditTest, GoesToAnotherWorkerThatJoinsWhileTheOnlyOneAuditsItself) {
@@ -81,6 +82,7 @@ TEST_F(SchedulerAuditTest, GoesToAnotherWorkerThatJoinsWhileTheOnlyOneAuditsItse
   EXPECT_EQ(audit.leases[0].worker, 2U);
   scheduler_.Completed(2, audit.leases[0].fence, 1, 55);
   EXPECT_EQ(scheduler_.Statistics().audits_open, 0U);
+  EXPECT_EQ(scheduler_.Statistics().audits_alone, 0U);
 }
 
 TEST_F(SchedulerAuditTest, OutlivesTheWorkerThatDoesIt) {
