@@ -93,8 +93,8 @@ struct BackendView {
 
 // Something a person or the store's event table should know of.
 struct DispatchEvent {
-  std::string kind;  // "worker-joined", "worker-lost", "worker-left", "worker-refused", "worker-died",
-                     // "runner-failure", "run-returned", "run-given-up", "nondeterministic",
+  std::string kind;  // "worker-joined", "worker-lost", "worker-back", "worker-left", "worker-refused",
+                     // "worker-died", "runner-failure", "run-returned", "run-given-up", "nondeterministic",
                      // "rejected-message"
   std::string text;  // one sentence
 };

@@ -346,6 +346,8 @@ bool RemoteBackend::Perform(const SchedulerOrders& orders) {
     Report("worker-lost", fmt::format("worker {} is lost; {} of its runs wait for another worker{}",
                                       LabelOf(lost.worker), lost.released.size(), ListRuns(lost.released)));
   }
+  for (const InstanceId worker : orders.back)
+    Report("worker-back", fmt::format("worker {} was lost and is heard again", LabelOf(worker)));
   for (const ResultMismatch& mismatch : orders.mismatches) {
     Report("nondeterministic",
            fmt::format("run {} ended differently on two workers: {} gave {:016x}, {} gave {:016x}",

@@ -122,7 +122,7 @@ bool Scheduler::WorkerHeartbeat(InstanceId id, const std::vector<Fence>& held, T
   Advance(now);
   const auto found = workers_.find(id);
   if (found == workers_.end()) return false;
-  found->second.lost = false;
+  if (std::exchange(found->second.lost, false)) orders_.back.push_back(id);
   Heard(id, found->second);
   Reconcile(id, found->second, held, kCrossingHeartbeats * options_.heartbeat);
   return true;

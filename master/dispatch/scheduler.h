@@ -88,6 +88,7 @@ struct SchedulerOrders {
   std::vector<RunGivenUp> given_up;
   std::vector<WorkerLost> lost;
   std::vector<ResultMismatch> mismatches;
+  std::vector<InstanceId> back;       // these were lost, and are heard again
   std::vector<InstanceId> forgotten;  // these lost workers are unknown from now on
 };
 

@@ -177,6 +177,11 @@ TEST_F(RemoteBackendTest, ASilentWorkersRunGoesElsewhereAndItsLateResultIsADupli
   EXPECT_THAT(Poll(), IsEmpty());
   EXPECT_EQ(backend_->Statistics().duplicates, 1U);
   EXPECT_EQ(backend_->Statistics().nondeterministic, 0U);
+  EXPECT_EQ(EventsOf("worker-back"), "") << "only a heartbeat says that it works on";
+  SendHeartbeat("a");
+  Poll();
+  EXPECT_THAT(EventsOf("worker-back"),
+              HasSubstr("worker 000000000000000a@node7 was lost and is heard again"));
 }
 
 TEST_F(RemoteBackendTest, ALateResultIsTakenAndTheOtherWorkerIsTold) {
