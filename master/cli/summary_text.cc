@@ -64,7 +64,7 @@ std::string Overview(const CampaignSummary& summary) {
 }
 
 // "6 of 8 refused: no-room-to-spawn: ...", the most frequent first.
-std::string RunsWithoutAResult(const CampaignSummary& summary) {
+std::string RunsWithoutAResult(const CampaignSummary& summary, const std::string& directory) {
   if (summary.runs_without_result.empty()) return {};
   constexpr std::size_t kMostGroups = 8;
   const auto& groups = summary.runs_without_result;
@@ -73,7 +73,9 @@ std::string RunsWithoutAResult(const CampaignSummary& summary) {
     text += fmt::format("  {} of {} {}: {}\n", FormatCount(groups[i].runs), FormatCount(summary.runs_done),
                         NameOf(groups[i].verdict), Printable(groups[i].message));
     if (LeavesBundle(groups[i].verdict))
-      text += fmt::format("    to see it again: {}/README.txt\n", BundleName(groups[i].first_run));
+      text += fmt::format(
+          "    to see {} again: {}\n", groups[i].runs == 1 ? "it" : "the first",
+          ShellQuoted(fmt::format("{}/{}/README.txt", directory, BundleName(groups[i].first_run))));
   }
   if (groups.size() > kMostGroups)
     text += fmt::format("  and {} more reasons; see show --json\n", groups.size() - kMostGroups);
@@ -205,7 +207,8 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
                         FormatCount(summary.runs_done));
   }
-  text += Overview(summary) + RunsWithoutAResult(summary) + Generations(summary) + Members(summary);
+  text += Overview(summary) + RunsWithoutAResult(summary, context.directory) + Generations(summary) +
+          Members(summary);
 
   std::vector<Hint> hints;
   if (!summary.finished) {

@@ -56,7 +56,7 @@ TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
   ASSERT_EQ(shown.size(), 1U) << shown;
   EXPECT_EQ(shown[0]["verdict"], "crashed");
   ASSERT_EQ(shown[0]["bundle"], "bundles/run-1");
-  EXPECT_THAT(Gauntlet({"show", dir}).out, HasSubstr("to see it again: bundles/run-1/README.txt"));
+  EXPECT_THAT(Gauntlet({"show", dir}).out, HasSubstr("again: " + dir + "/bundles/run-1/README.txt"));
 
   const std::string bundle = dir + "/bundles/run-1";
   const std::string readme = ReadFile(bundle + "/README.txt");
