@@ -56,8 +56,9 @@ ProcessResult Gauntlet(const std::vector<std::string>& arguments, std::chrono::s
   return RunProcess(WithProgram(arguments), {}, deadline);
 }
 
-std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments) {
-  return std::make_unique<Process>(WithProgram(arguments));
+std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments,
+                                       const std::vector<std::string>& environment) {
+  return std::make_unique<Process>(WithProgram(arguments), environment);
 }
 
 SmallCampaign SmallForaging() {

@@ -20,7 +20,8 @@ std::string FaultShimPath();
 // gauntlet ARGUMENTS..., waited for.
 ProcessResult Gauntlet(const std::vector<std::string>& arguments,
                        std::chrono::seconds deadline = std::chrono::seconds(300));
-std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments);
+std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments,
+                                       const std::vector<std::string>& environment = {});
 
 // A whole file; "" when it cannot be read.
 std::string ReadFile(const std::string& path);

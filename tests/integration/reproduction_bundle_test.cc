@@ -42,7 +42,9 @@ TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
   // Long enough to be hit three times.
   const std::unique_ptr<Process> master =
       StartGauntlet({"evaluate", "foraging", "--case", scratch / "empty.json", "--set",
-                     "scenario_parameters.time_limit=3600", "--workers", "1", "--dir", dir, "--quiet"});
+                     "scenario_parameters.time_limit=3600", "--workers", "1", "--dir", dir, "--quiet"},
+                    // Sanitizers would make exits of the signals.
+                    {"ASAN_OPTIONS=handle_segv=0", "TSAN_OPTIONS=handle_segv=0"});
   pid_t hit = 0;
   ASSERT_TRUE(Eventually(
       [&] {
