@@ -13,6 +13,7 @@
 #include "controllers/registry.h"
 #include "master/campaign/access_file.h"
 #include "master/campaign/atomic_file.h"
+#include "master/campaign/bind_endpoint.h"
 #include "master/campaign/campaign_keys.h"
 #include "master/campaign/campaign_ownership.h"
 #include "master/campaign/campaign_status.h"
@@ -362,6 +363,8 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
 Result<SessionReport> StartCampaign(const std::string& dir, const Experiment& experiment,
                                     const std::vector<sim::TestCase>& cases, const SessionOptions& options) {
   const std::vector<SearchPlan> plans = {{"", experiment}};
+  // Before anything is made: the corrected command is to find the directory as this one did.
+  if (Status possible = TryToListen(options.bind); !possible) return possible.error();
   Result<NewCampaign> created = Create(dir, plans, cases, "");
   if (!created) return created.error();
   return Serve(created->ownership, plans, created->golden_hash, options);

@@ -49,7 +49,8 @@ void AddRunningOptions(CLI::App& command, CommonOptions& options) {
 void AddBindOptions(CLI::App& command, CommonOptions& options) {
   command
       .add_option("--bind", options.bind,
-                  "where workers connect, e.g. tcp://0.0.0.0:5555 (port *: any free one)")
+                  "where workers connect: tcp://ADDRESS:PORT (IPv4, 0.0.0.0: all; port *: any free one) or "
+                  "ipc://PATH")
       ->type_name("ENDPOINT");
   command.add_flag("--insecure", options.insecure,
                    "plaintext, open to everybody, also on an address that other machines can reach");

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "master/campaign/bind_endpoint.h"
 #include "master/campaign/metrics_server.h"
 #include "master/cli/progress.h"
 #include "master/cli/stop_signal.h"
@@ -51,6 +52,10 @@ std::string Timing(const SessionReport& report) {
 ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, const CampaignRun& campaign) {
   const Result<double> audit_share = ParseShare("--audit", options.audit);
   if (!audit_share) return Fail(context, audit_share.error());
+  if (!campaign.bind.empty()) {
+    if (const Status possible = CheckBindEndpoint(campaign.bind); !possible)
+      return Fail(context, possible.error());
+  }
   if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
 
   const SteadyClock clock;

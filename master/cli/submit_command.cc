@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "master/campaign/atomic_file.h"
+#include "master/campaign/bind_endpoint.h"
 #include "master/cli/commands.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/sweep.h"
@@ -30,6 +31,9 @@ Result<SlurmSettings> ReadSettings(const SubmitOptions& options, const Experimen
   if (!options.master.empty()) sets.push_back("master=" + options.master);
   Result<SlurmSettings> settings = ReadSlurmSettings(sources, sets);
   if (!settings) return settings;
+  const ListenOn where =
+      settings->master == MasterPlace::kHere ? ListenOn::kThisMachine : ListenOn::kAnotherMachine;
+  if (const Status possible = CheckBindEndpoint(settings->bind, where); !possible) return possible.error();
   if (settings->tag.empty()) settings->tag = DrawTag(experiment.name);
   for (std::string* path : {&settings->worker_template, &settings->master_template}) {
     std::error_code error;
@@ -88,6 +92,9 @@ ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
   if (!possible) return Fail(context, possible.error());
   if (options.dry_run) return kExitDone;
 
+  if (!as_job) {
+    if (const Status free = TryToListen(settings->bind); !free) return Fail(context, free.error());
+  }
   const Status prepared = context.service.prepare(*directory, *searches, WriteSlurmSettings(*settings));
   if (!prepared) return Fail(context, prepared.error());
   if (!as_job) {

@@ -192,6 +192,24 @@ TEST(ServiceTest, MetricsAreServedOnThisMachinesOwnAddress) {
   EXPECT_FALSE(std::filesystem::exists(scratch / "none"));
 }
 
+TEST(ServiceTest, ARefusedAddressLeavesNothingSoThatTheCorrectedCommandWorks) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  const testing_support::ListeningSocket taken;
+  const std::string in_use = "tcp://127.0.0.1:" + std::to_string(taken.port());
+  // 203.0.113.77 belongs to no machine (RFC 5737).
+  for (const std::string& bad :
+       std::vector<std::string>{in_use, "tcp://203.0.113.77:*", "tcp://127.0.0.1:99999"}) {
+    const ProcessResult refused = Gauntlet(MasterArguments(SmallCampaign(), dir, bad));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("cannot listen on '" + bad + "'"));
+    EXPECT_FALSE(std::filesystem::exists(dir)) << bad;
+  }
+  const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(SmallCampaign(), dir));
+  const std::unique_ptr<Process> worker = StartWorker(dir);
+  EXPECT_EQ(master->Wait().exit_code, 0) << master->Err();
+}
+
 TEST(ServiceTest, PlaintextOnAnOuterAddressIsAskedForAndSaid) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;

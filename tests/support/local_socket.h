@@ -9,4 +9,33 @@ namespace gauntlet::testing_support {
 // Waits at most ten seconds.
 std::string Converse(int port, const std::string& request);
 
+// Connects, sends `bytes` and stays, without reading.
+class OpenConnection {
+ public:
+  OpenConnection(int port, const std::string& bytes);
+  OpenConnection(const OpenConnection&) = delete;
+  OpenConnection& operator=(const OpenConnection&) = delete;
+  ~OpenConnection();
+  // Whether it was made, and all was sent.
+  bool ok() const { return ok_; }
+
+ private:
+  int fd_ = -1;
+  bool ok_ = false;
+};
+
+// Listens on a free port of 127.0.0.1 and answers nobody.
+class ListeningSocket {
+ public:
+  ListeningSocket();
+  ListeningSocket(const ListeningSocket&) = delete;
+  ListeningSocket& operator=(const ListeningSocket&) = delete;
+  ~ListeningSocket();
+  int port() const { return port_; }
+
+ private:
+  int fd_ = -1;
+  int port_ = 0;
+};
+
 }  // namespace gauntlet::testing_support

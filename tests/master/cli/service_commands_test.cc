@@ -49,6 +49,17 @@ TEST_F(CommandLine, PlaintextToTheOutsideIsSaidInRedOnATerminal) {
   EXPECT_THAT(err_.str(), testing::ContainsRegex("^\x1b\\[1;31mgauntlet: INSECURE: [^\x1b]*\x1b\\[0m$"));
 }
 
+TEST_F(CommandLine, AnAddressThatNobodyCouldConnectToIsRefusedBeforeAnythingBegins) {
+  for (const char* bad : {"tcp://127.0.0.1:99999", "tcp://127.0.0.1:-1", "tcp://localhost:*", "tcp://[::1]:*",
+                          "tcp://nohost.invalid:*", "inproc://x"}) {
+    EXPECT_EQ(Run({"master", "flocking", "--bind", bad, "--dir", Path("c")}), kExitUsage);
+    EXPECT_THAT(err_.str(), AllOf(HasSubstr(bad), HasSubstr("it must be tcp://ADDRESS:PORT")));
+    EXPECT_EQ(Run({"resume", directory_.string(), "--bind", bad}), kExitUsage);
+    EXPECT_THAT(err_.str(), AllOf(HasSubstr(bad), HasSubstr("it must be tcp://ADDRESS:PORT")));
+  }
+  EXPECT_EQ(std::pair(starts_, resumes_), std::pair(0, 0));
+}
+
 TEST_F(CommandLine, MasterResumesOnlyWhenThereIsACampaignAndItIsAskedTo) {
   const std::vector<std::string> arguments = {"master", "flocking",          "--bind",  "tcp://127.0.0.1:*",
                                               "--dir",  directory_.string(), "--resume"};

@@ -7,6 +7,7 @@
 
 #include "master/cli/command_line.h"
 #include "master/cli/sweep.h"
+#include "tests/support/local_socket.h"
 
 namespace gauntlet::master {
 namespace {
@@ -132,6 +133,19 @@ TEST_F(Submit, ADryRunPrintsScriptsAndAnswersAndChangesNothing) {
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitUsage);
   EXPECT_THAT(requests_.submitted, IsEmpty());
   EXPECT_FALSE(std::filesystem::exists(dir()));
+}
+
+TEST_F(Submit, AnAddressThatNoMasterCouldListenOnIsRefusedBeforeAnythingIsMade) {
+  for (const std::string bad : {"tcp://0.0.0.0:99999", "tcp://localhost:*", "inproc://x"}) {
+    EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--slurm", "bind=" + bad}), kExitUsage);
+    EXPECT_THAT(err_.str(), HasSubstr("cannot listen on '" + bad + "'"));
+  }
+  const testing_support::ListeningSocket taken;
+  const std::string in_use = "bind=tcp://127.0.0.1:" + std::to_string(taken.port());
+  EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--master", "here", "--slurm", in_use}), kExitUsage);
+  EXPECT_THAT(err_.str(), HasSubstr("Address already in use"));
+  EXPECT_FALSE(std::filesystem::exists(dir()));
+  EXPECT_THAT(requests_.submitted, IsEmpty());
 }
 
 TEST_F(Submit, ResumeGivesTheMasterToSlurmAgainUnlessOneIsThere) {
