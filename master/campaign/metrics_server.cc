@@ -10,11 +10,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "master/campaign/atomic_file.h"
 
@@ -23,40 +25,8 @@ namespace {
 
 using RequestClock = std::chrono::steady_clock;
 
-constexpr int kQueue = 16;
 constexpr std::size_t kLongestRequest = 4096;
 constexpr std::chrono::milliseconds kLongestTalk{1000};
-
-int MillisecondsUntil(RequestClock::time_point end) {
-  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - RequestClock::now()).count();
-  return left > 0 ? static_cast<int>(left) : 0;
-}
-
-bool WaitFor(int fd, short events, RequestClock::time_point end) {
-  pollfd item{fd, events, 0};
-  return poll(&item, 1, MillisecondsUntil(end)) > 0;
-}
-
-// Up to the empty line; "" when it is too long, too slow or cut off.
-std::string ReadRequest(int fd, RequestClock::time_point end) {
-  std::string request;
-  std::array<char, 1024> buffer{};
-  while (request.size() < kLongestRequest && WaitFor(fd, POLLIN, end)) {
-    const ssize_t size = recv(fd, buffer.data(), buffer.size(), MSG_DONTWAIT);
-    if (size <= 0) return "";
-    request.append(buffer.data(), static_cast<std::size_t>(size));
-    if (request.find("\r\n\r\n") != std::string::npos) return request;
-  }
-  return "";
-}
-
-void WriteAnswer(int fd, std::string_view bytes, RequestClock::time_point end) {
-  while (!bytes.empty() && WaitFor(fd, POLLOUT, end)) {
-    const ssize_t size = send(fd, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (size <= 0) return;
-    bytes.remove_prefix(static_cast<std::size_t>(size));
-  }
-}
 
 std::string Response(std::string_view status, std::string_view body, std::string_view more = "") {
   return fmt::format(
@@ -79,7 +49,7 @@ Result<std::unique_ptr<MetricsServer>> MetricsServer::Start(int port) {
   socklen_t size = sizeof address;
   const int wake_up = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if (wake_up < 0 || bind(listener, reinterpret_cast<const sockaddr*>(&address), size) != 0 ||
-      listen(listener, kQueue) != 0 ||
+      listen(listener, SOMAXCONN) != 0 ||
       getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
     Error error = SystemError(fmt::format("cannot serve metrics on 127.0.0.1:{}", port), errno);
     if (errno == EADDRINUSE) error.kind = ErrorKind::kInUse;
@@ -119,39 +89,114 @@ void MetricsServer::Publish(std::string text) {
   text_ = std::move(text);
 }
 
-void MetricsServer::Loop() {
-  while (true) {
-    std::array<pollfd, 2> items{{{listener_, POLLIN, 0}, {wake_up_, POLLIN, 0}}};
-    if (poll(items.data(), items.size(), -1) < 0 && errno != EINTR) return;
-    if (items[1].revents != 0) return;
-    if (items[0].revents == 0) continue;
-    const int connection = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-    if (connection < 0) {
-      // Out of descriptors, perhaps: the connection waits, and so do we, for it would be announced again.
-      poll(&items[1], 1, static_cast<int>(kLongestTalk.count()));
-      continue;
+// Reads one request and writes one answer, as far as the peer lets it without waiting.
+class MetricsServer::Connection {
+ public:
+  explicit Connection(int fd) : fd_(fd), end_(RequestClock::now() + kLongestTalk) {}
+  Connection(const Connection&) = delete;
+  Connection& operator=(const Connection&) = delete;
+  ~Connection() { close(fd_); }
+
+  pollfd Wish() const { return {fd_, static_cast<short>(idle() ? POLLIN : POLLOUT), 0}; }
+  // Nothing whole was asked yet.
+  bool idle() const { return answer_.empty(); }
+  RequestClock::time_point end() const { return end_; }
+  // Answered, broken off or too long.
+  bool over() const { return over_; }
+
+  void Advance(MetricsServer& server) {
+    if (idle()) Read(server);
+    if (!idle()) Write();
+  }
+
+ private:
+  void Read(MetricsServer& server) {
+    std::array<char, kLongestRequest> buffer{};
+    const ssize_t size = recv(fd_, buffer.data(), buffer.size() - request_.size(), MSG_DONTWAIT);
+    if (size <= 0) {
+      over_ = size == 0 || (errno != EAGAIN && errno != EINTR);
+      return;
     }
-    Answer(connection);
-    close(connection);
+    request_.append(buffer.data(), static_cast<std::size_t>(size));
+    if (request_.find("\r\n\r\n") != std::string::npos) {
+      answer_ = server.AnswerTo(request_);
+    } else {
+      over_ = request_.size() == kLongestRequest;
+    }
+  }
+
+  void Write() {
+    const std::string_view rest = std::string_view(answer_).substr(written_);
+    const ssize_t size = send(fd_, rest.data(), rest.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (size < 0) {
+      over_ = errno != EAGAIN && errno != EINTR;
+      return;
+    }
+    written_ += static_cast<std::size_t>(size);
+    over_ = written_ == answer_.size();
+  }
+
+  const int fd_;
+  const RequestClock::time_point end_;
+  std::string request_;
+  std::string answer_;
+  std::size_t written_ = 0;
+  bool over_ = false;
+};
+
+void MetricsServer::Loop() {
+  std::list<Connection> connections;  // the oldest first, so that the first ends first
+  std::vector<pollfd> items;
+  bool may_accept = true;
+  while (true) {
+    items.assign({{wake_up_, POLLIN, 0}, {listener_, static_cast<short>(may_accept ? POLLIN : 0), 0}});
+    for (const Connection& connection : connections) items.push_back(connection.Wish());
+    int patience = may_accept ? -1 : static_cast<int>(kLongestTalk.count());
+    if (!connections.empty()) {
+      const auto left =
+          std::chrono::ceil<std::chrono::milliseconds>(connections.front().end() - RequestClock::now());
+      patience = static_cast<int>(std::max<std::int64_t>(left.count(), 0));
+    }
+    if (poll(items.data(), items.size(), patience) < 0 && errno != EINTR) return;
+    if (items[0].revents != 0) return;
+    std::size_t next = 2;
+    for (Connection& connection : connections) {
+      if (items[next++].revents != 0) connection.Advance(*this);
+    }
+    const auto now = RequestClock::now();
+    std::erase_if(connections, [now](const Connection& connection) {
+      return connection.over() || connection.end() <= now;
+    });
+    // Out of descriptors: those that wait are announced again at once, so they are not looked at for a while.
+    may_accept = !may_accept || items[1].revents == 0 || Accept(connections);
   }
 }
 
-void MetricsServer::Answer(int connection) {
-  const auto end = RequestClock::now() + kLongestTalk;
-  const std::string request = ReadRequest(connection, end);
-  if (request.empty()) return;
-  const std::string_view line = std::string_view(request).substr(0, request.find("\r\n"));
-  std::string response;
-  if (!line.starts_with("GET ")) {
-    response = Response("405 Method Not Allowed", "only GET is answered here\n", "Allow: GET\r\n");
-  } else if (!line.starts_with("GET /metrics ") && !line.starts_with("GET /metrics?")) {
-    response = Response("404 Not Found", "only /metrics is served here\n");
-  } else {
-    const std::lock_guard lock(mutex_);
-    response = text_.empty() ? Response("503 Service Unavailable", "the master is starting\n")
-                             : Response("200 OK", text_);
+bool MetricsServer::Accept(std::list<Connection>& connections) {
+  // So many at most, lest a crowd that comes faster than it is served keeps the others waiting.
+  for (std::size_t i = 0; i < kMostConnections; ++i) {
+    const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (fd < 0) return errno == EAGAIN || errno == EINTR || errno == ECONNABORTED;
+    if (connections.size() == kMostConnections) {
+      const auto idle = std::ranges::find_if(connections, &Connection::idle);
+      connections.erase(idle == connections.end() ? connections.begin() : idle);
+    }
+    // Most have asked already: the answer goes before others can crowd it out.
+    connections.emplace_back(fd).Advance(*this);
+    if (connections.back().over()) connections.pop_back();
   }
-  WriteAnswer(connection, response, end);
+  return true;
+}
+
+std::string MetricsServer::AnswerTo(std::string_view request) {
+  const std::string_view line = request.substr(0, request.find("\r\n"));
+  if (!line.starts_with("GET "))
+    return Response("405 Method Not Allowed", "only GET is answered here\n", "Allow: GET\r\n");
+  if (!line.starts_with("GET /metrics ") && !line.starts_with("GET /metrics?"))
+    return Response("404 Not Found", "only /metrics is served here\n");
+  const std::lock_guard lock(mutex_);
+  return text_.empty() ? Response("503 Service Unavailable", "the master is starting\n")
+                       : Response("200 OK", text_);
 }
 
 }  // namespace gauntlet::master

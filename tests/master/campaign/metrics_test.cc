@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <list>
 #include <set>
 #include <sstream>
 
@@ -95,6 +97,27 @@ TEST_F(MetricsServerTest, AnythingElseIsRefused) {
   // Half a request is waited for a second, and then dropped; the next is answered.
   EXPECT_EQ(Ask("GET /metr"), "");
   EXPECT_THAT(Ask("GET /metrics HTTP/1.0\r\n\r\n"), HasSubstr("secret 1\n"));
+}
+
+// A scraper gives up after ten seconds; whoever has it wait for strangers that say nothing needs their number
+// of seconds.
+TEST_F(MetricsServerTest, IdleConnectionsKeepNobodyWaiting) {
+  server_->Publish("fresh 1\n");
+  for (const std::size_t strangers : {200UL, 3 * MetricsServer::kMostConnections}) {
+    std::list<testing_support::OpenConnection> idle;
+    for (std::size_t i = 0; i < strangers; ++i)
+      ASSERT_TRUE(idle.emplace_back(server_->port(), i % 2 == 0 ? "GET /me" : "").ok()) << i;
+    const auto asked = std::chrono::steady_clock::now();
+    EXPECT_THAT(Ask("GET /metrics HTTP/1.1\r\n\r\n"), HasSubstr("fresh 1\n"));
+    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(5)) << strangers;
+  }
+}
+
+TEST_F(MetricsServerTest, AnAnswerLongerThanTheSocketTakesArrivesWhole) {
+  const std::string text(8 << 20, 'x');
+  server_->Publish(text);
+  const std::string answer = Ask("GET /metrics HTTP/1.1\r\n\r\n");
+  EXPECT_EQ(answer.size() - answer.find("\r\n\r\n") - 4, text.size());
 }
 
 TEST_F(MetricsServerTest, APortThatIsTakenIsNamed) {
