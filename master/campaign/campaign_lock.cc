@@ -96,6 +96,12 @@ std::optional<Error> Objection(const LockOwner& owner, const std::string& campai
   return InUse(campaign, owner, true, now);
 }
 
+// The owner lives here, and is the master of another directory, of which this one is a copy.
+bool BelongsToOriginal(const LockOwner& owner, const CampaignLock::Options& options) {
+  return options.is_copy && LivenessOf(owner.process, IdentifyThisProcess()) == Liveness::kAlive &&
+         options.is_copy();
+}
+
 enum class FlockAnswer { kLocked, kHeldByOther, kUnsupported };
 
 FlockAnswer TryFlock(int fd, bool exclusive) {
@@ -162,7 +168,8 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path
     // anyway.
     const std::optional<LockOwner> owner = ReadOwner(fd);
     if (owner) {
-      if (std::optional<Error> objection = Objection(*owner, campaign, complete.unix_time()))
+      std::optional<Error> objection = Objection(*owner, campaign, complete.unix_time());
+      if (objection && !(answer != FlockAnswer::kUnsupported && BelongsToOriginal(*owner, complete)))
         return *objection;
     }
     if (answer != FlockAnswer::kHeldByOther) return lock;

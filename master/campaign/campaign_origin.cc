@@ -99,4 +99,14 @@ Result<CampaignOrigin> ConfirmOrigin(const CampaignDirectory& directory, const s
   return CampaignOrigin{*std::move(id), recorded->campaign_id};
 }
 
+bool IsUntakenCopy(const CampaignDirectory& directory) {
+  const Result<std::string> text = ReadSmallFile(directory.origin_path());
+  if (!text) return false;
+  const Result<Recorded> recorded = Parse(*text, directory.origin_path());
+  const Result<std::uint64_t> directory_inode = InodeOf(directory.path());
+  const Result<std::uint64_t> database_inode = InodeOf(directory.database_path());
+  return recorded && directory_inode && database_inode &&
+         (recorded->directory_inode != *directory_inode || recorded->database_inode != *database_inode);
+}
+
 }  // namespace gauntlet::master

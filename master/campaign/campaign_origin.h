@@ -22,4 +22,8 @@ struct CampaignOrigin {
 // is.
 Result<CampaignOrigin> ConfirmOrigin(const CampaignDirectory& directory, const std::string& born_as);
 
+// Whether the directory was copied and has had no master since, by the same signs. False when origin.json is
+// missing or does not read back. Changes nothing.
+bool IsUntakenCopy(const CampaignDirectory& directory);
+
 }  // namespace gauntlet::master

@@ -11,6 +11,12 @@
 namespace gauntlet::master {
 namespace {
 
+CampaignLock::Options LockOptions(const CampaignDirectory& directory) {
+  CampaignLock::Options options;
+  options.is_copy = [directory] { return IsUntakenCopy(directory); };
+  return options;
+}
+
 // The epoch is counted before the database is opened: from then on no former master commits anything that we
 // might not have read.
 Status OpenStore(CampaignOwnership& ownership) {
@@ -69,14 +75,14 @@ Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster othe
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
   Result<std::unique_ptr<CampaignLock>> lock =
-      CampaignLock::Acquire(directory->lock_path(), directory->path());
+      CampaignLock::Acquire(directory->lock_path(), directory->path(), LockOptions(*directory));
   if (!lock && lock.error().kind == ErrorKind::kInUse && other == LivingMaster::kFence) {
     if (Result<std::uint64_t> fence = directory->StartEpoch(); !fence) return fence.error();
     const auto deadline =
         std::chrono::steady_clock::now() + CampaignLock::kStaleAfter + std::chrono::seconds(10);
     while (!lock && lock.error().kind == ErrorKind::kInUse && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
-      lock = CampaignLock::Acquire(directory->lock_path(), directory->path());
+      lock = CampaignLock::Acquire(directory->lock_path(), directory->path(), LockOptions(*directory));
     }
   }
   if (!lock) return lock.error();
@@ -91,7 +97,7 @@ Result<CampaignView> ViewCampaign(const std::string& dir) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
   Result<std::unique_ptr<CampaignLock>> lock =
-      CampaignLock::AcquireForReading(directory->lock_path(), directory->path());
+      CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), LockOptions(*directory));
   if (!lock) return lock.error();
   Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(directory->database_path());
   if (!store) return store.error();

@@ -9,6 +9,7 @@
 
 #include "master/campaign/atomic_file.h"
 #include "master/campaign/campaign_lock.h"
+#include "master/campaign/campaign_origin.h"
 #include "master/campaign/campaign_session.h"
 
 namespace gauntlet::master {
@@ -177,6 +178,7 @@ Result<bool> MasterLives(const std::string& dir) {
   if (!directory) return directory.error();
   CampaignLock::Options options;
   options.patience = std::chrono::milliseconds(0);
+  options.is_copy = [&directory] { return IsUntakenCopy(*directory); };
   const Result<std::unique_ptr<CampaignLock>> lock =
       CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), options);
   if (lock) return false;

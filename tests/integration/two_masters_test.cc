@@ -49,6 +49,37 @@ TEST(TwoMasters, OnOneHostAFrozenMasterKeepsItsCampaign) {
   EXPECT_EQ(StateHash(dir), UndisturbedHash(Campaign()));
 }
 
+// A copy that was made while the master served: it serves the original only.
+TEST(TwoMasters, ACopyOfARunningCampaignHasNoMaster) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  const std::string copy = scratch / "copy";
+  const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(Campaign(), dir));
+  const std::unique_ptr<Process> worker = StartSlowWorker(dir, 50);
+  ASSERT_TRUE(testing_support::RunsDone(dir, 8));
+  // Files do not change while they are copied: as a snapshot of the file system would be.
+  master->Signal(SIGSTOP);
+  std::filesystem::copy(dir, copy, std::filesystem::copy_options::recursive);
+  master->Signal(SIGCONT);
+
+  EXPECT_EQ(testing_support::StatusOf(dir).value("state", ""), "running");
+  const nlohmann::json status = testing_support::StatusOf(copy);
+  EXPECT_EQ(status.value("state", ""), "stopped") << status;
+  EXPECT_TRUE(status.at("master").is_null());
+  const ProcessResult stop = Gauntlet({"stop", copy}, std::chrono::seconds(30));
+  EXPECT_EQ(stop.exit_code, 0);
+  EXPECT_THAT(stop.err, HasSubstr("no master serves " + copy));
+  EXPECT_FALSE(std::filesystem::exists(copy + "/stop"));
+
+  const ProcessResult resumed = Gauntlet({"resume", copy, "--workers", "2", "--quiet"});
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_EQ(master->Wait().exit_code, 0) << master->Err();
+  EXPECT_EQ(StateHash(copy), UndisturbedHash(Campaign()));
+  EXPECT_EQ(StateHash(dir), UndisturbedHash(Campaign()));
+  EXPECT_NE(testing_support::ReadFile(copy + "/origin.json"),
+            testing_support::ReadFile(dir + "/origin.json"));
+}
+
 // A job that Slurm has started again fences its twin: woken, the twin sees the newer number and stops.
 TEST(TwoMasters, OnOneHostAFrozenTwinThatIsFencedStopsWhenItWakes) {
   const TemporaryDirectory scratch;

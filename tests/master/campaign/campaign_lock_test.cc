@@ -116,6 +116,29 @@ TEST_F(CampaignLockTest, TheNameOfALivingProcessIsEnough) {
   EXPECT_FALSE(Read().ok());
 }
 
+// A campaign that was copied while its master lived: nobody holds the copy, whatever its lock file says.
+TEST_F(CampaignLockTest, TheOwnerOfTheOriginalDoesNotKeepACopyFromBeingTaken) {
+  CampaignLock::Options options = Options();
+  options.is_copy = [] { return true; };
+  LeaveOwner(json::object(), now_);
+  EXPECT_TRUE(CampaignLock::AcquireForReading(path_, "camp", options).ok());
+  const Result<std::unique_ptr<CampaignLock>> first = CampaignLock::Acquire(path_, "camp", options);
+  EXPECT_TRUE(first.ok());
+  // Whoever has taken the copy holds it, also as long as it still looks like one.
+  EXPECT_EQ(CampaignLock::Acquire(path_, "camp", options).error().kind, ErrorKind::kInUse);
+  EXPECT_EQ(CampaignLock::AcquireForReading(path_, "camp", options).error().kind, ErrorKind::kInUse);
+}
+
+// Locks of another host may not be seen here: its master is believed, wherever the file came from.
+TEST_F(CampaignLockTest, AnOwnerElsewhereKeepsACopyUntilItIsStale) {
+  CampaignLock::Options options = Options();
+  options.is_copy = [] { return true; };
+  LeaveOwner(kElsewhere, now_ - 59);
+  EXPECT_FALSE(CampaignLock::Acquire(path_, "camp", options).ok());
+  ++now_;
+  EXPECT_TRUE(CampaignLock::Acquire(path_, "camp", options).ok());
+}
+
 TEST_F(CampaignLockTest, AnOwnerElsewhereCountsAsDeadAfterAMinute) {
   LeaveOwner(kElsewhere, now_ - 59);
   for (const bool reading : {false, true}) {

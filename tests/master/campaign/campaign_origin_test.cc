@@ -70,6 +70,23 @@ TEST_F(CampaignOriginTest, ACopyIsAnotherCampaignWithoutTheOldKeys) {
   EXPECT_TRUE(fs::exists(first_ + "/master.key"));
 }
 
+TEST_F(CampaignOriginTest, ACopyIsToldFromItsOriginalWithoutChangingIt) {
+  const auto is_copy = [](const std::string& dir) { return IsUntakenCopy(*CampaignDirectory::Open(dir)); };
+  EXPECT_FALSE(is_copy(first_));
+  fs::copy(first_, second_, fs::copy_options::recursive);
+  EXPECT_TRUE(is_copy(second_));
+  EXPECT_TRUE(fs::exists(second_ + "/master.key"));
+  EXPECT_TRUE(is_copy(second_));
+  Confirm(second_);
+  EXPECT_FALSE(is_copy(second_));
+  for (const std::string text : {"", "{}"}) {
+    Put(second_ + "/origin.json", text);
+    EXPECT_FALSE(is_copy(second_)) << "nothing is known";
+  }
+  fs::remove(second_ + "/origin.json");
+  EXPECT_FALSE(is_copy(second_)) << "nothing is known";
+}
+
 TEST_F(CampaignOriginTest, AFileThatDoesNotReadBackIsReported) {
   for (const std::string text : {"", "{}", "[1]", R"({"campaign": "x", "directory_inode": "y"})"}) {
     Put(first_ + "/origin.json", text);
