@@ -117,9 +117,10 @@ Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
     if (IsUnfinished(directory.path_)) {
       return Error{
           ErrorKind::kNotFound,
-          fmt::format("{0} is no campaign yet: its master was killed before it had made campaign.db, and "
-                      "nothing was simulated. The same command with --dir {0} starts anew there",
-                      directory.path_)};
+          fmt::format(
+              "{0} is no campaign yet: its master was killed, or its disk was full, before it had made "
+              "campaign.db, and nothing was simulated. The same command with --dir {0} starts anew there",
+              directory.path_)};
     }
     return Error{ErrorKind::kNotFound,
                  fmt::format("{} is not a campaign: it holds no campaign.db", directory.path_)};
@@ -150,6 +151,12 @@ Status CampaignDirectory::CheckEpoch(std::uint64_t mine) const {
     // Strangers have used up the descriptors (with connections): looking at the file needs none. A newer
     // master would have put another one in its place.
     if (IdentifyFile(epoch_path()) == epoch_file_) return Ok{};
+  }
+  // Of a directory that is gone, workers that start may make the folder of logs again.
+  if (std::error_code ignored; fd < 0 && error == ENOENT && !fs::exists(database_path(), ignored)) {
+    return Error{ErrorKind::kIo, fmt::format("the directory {} is gone: removed, or moved to a place that "
+                                             "this master does not know",
+                                             path_)};
   }
   if (fd < 0) return SystemError(fmt::format("cannot open {}", epoch_path()), error);
   const Result<std::uint64_t> newest =

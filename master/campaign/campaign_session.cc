@@ -189,6 +189,10 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   AllowManyConnections();
   Result<Serving> serving = Listen(campaign, options);
   if (!serving) return serving.error();
+  if (!serving->access.curve && !IsLocalEndpoint(options.bind)) {
+    spdlog::warn("INSECURE: whoever reaches {} can read this campaign and feed it results",
+                 serving->access.endpoints.front());
+  }
   const SteadyClock clock;
   Result<std::unique_ptr<WorkerPool>> made_pool = MakePool(campaign.directory, options, clock);
   if (!made_pool) return made_pool.error();

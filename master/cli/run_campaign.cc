@@ -1,6 +1,7 @@
 #include "master/cli/run_campaign.h"
 
 #include <cstdlib>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -18,6 +19,21 @@ namespace {
 
 std::string ResumeHint(const CommandContext& context, const std::string& directory) {
   return fmt::format("{} resume {}", context.program, ShellQuoted(directory));
+}
+
+// Whether there is anything to resume decides how to go on after an error.
+std::string HowToGoOn(const CommandContext& context, const std::string& directory, bool began) {
+  std::error_code ignored;
+  if (std::filesystem::exists(directory + "/campaign.db", ignored)) {
+    return fmt::format("stopped; what was finished is stored. Go on with: {}",
+                       ResumeHint(context, directory));
+  }
+  if (began) {
+    return fmt::format("stopped; what was finished is stored where {} is now. Go on with: {} resume THERE",
+                       directory, context.program);
+  }
+  return fmt::format("nothing was simulated. When there is space, the same command with --dir {} starts anew",
+                     ShellQuoted(directory));
 }
 
 std::string Timing(const SessionReport& report) {
@@ -122,8 +138,7 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
         kind == ErrorKind::kNoSpace || (began && (kind == ErrorKind::kIo || kind == ErrorKind::kInUse));
     const ExitCode code = Fail(context, report.error());
     if (!resumable) return code;
-    PrintMessage(context, fmt::format("stopped; what was finished is stored. Go on with: {}",
-                                      ResumeHint(context, campaign.directory)));
+    PrintMessage(context, HowToGoOn(context, campaign.directory, began));
     return kExitStopped;
   }
   if (!options.quiet && report->runs_this_session > 0) PrintMessage(context, Timing(*report));

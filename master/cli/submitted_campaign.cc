@@ -10,6 +10,8 @@
 namespace gauntlet::master {
 
 Result<std::optional<SlurmCampaign>> FindSubmitted(const std::string& directory) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(directory, ignored)) return std::optional<SlurmCampaign>();
   Result<SlurmCampaign> campaign = SlurmCampaign::Load(directory);
   if (campaign) return std::optional(*std::move(campaign));
   if (campaign.error().kind == ErrorKind::kNotFound) return std::optional<SlurmCampaign>();

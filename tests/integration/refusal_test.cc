@@ -161,5 +161,54 @@ TEST(FullDiskTest, StopsWithExit3AndResumesWhenThereIsSpace) {
   EXPECT_EQ(shown["state_hash"], StateHash(undisturbed / "c"));
 }
 
+// Too small even for campaign.db: there is nothing to resume, and the directory is as good as new.
+TEST(FullDiskTest, ACampaignThatCouldNotBeMadeIsMadeByTheSameCommandWhenThereIsSpace) {
+  const TemporaryDirectory scratch;
+  const std::string mount = scratch / "small";
+  std::filesystem::create_directory(mount);
+  std::string script = fmt::format("mount -t tmpfs -o size=8k none {} || exit 77\n", mount);
+  const std::string command = fmt::format(
+      "{} evolve flocking --dir {}/c --workers 1 --population 4 --generations 1 --quiet 2>> {}/err; echo $1 "
+      "$?\n",
+      GauntletPath(), mount, scratch.path());
+  script += "again() {\n" + command + "}\n";
+  for (const std::string size : {"8k", "40k", "100k", "64m"})
+    script += fmt::format("mount -o remount,size={} {}\nagain {}\n", size, mount, size);
+  const ProcessResult result =
+      RunProcess({"/usr/bin/unshare", "--mount", "--map-root-user", "/bin/sh", "-c", script}, {},
+                 std::chrono::seconds(100));
+  if (result.exit_code == 77 || result.exit_code == 1)
+    GTEST_SKIP() << "no mount namespace to be had here: " << result.err;
+  const std::string said = ReadFile(scratch / "err");
+  for (const std::string code : {"8k 3\n", "40k 3\n", "100k 3\n", "64m 0\n"})
+    EXPECT_THAT(result.out, HasSubstr(code)) << said;
+  EXPECT_THAT(said, HasSubstr("nothing was simulated. When there is space, the same command with --dir " +
+                              mount + "/c starts anew"));
+  EXPECT_THAT(said, testing::Not(HasSubstr("resume")));
+}
+
+TEST(RefusalTest, AFileIsNoCampaignForAnyCommand) {
+  for (const std::string command : {"resume", "show", "status", "stop"}) {
+    const ProcessResult refused = Gauntlet({command, "/etc/passwd"});
+    EXPECT_EQ(refused.exit_code, 2) << command;
+    EXPECT_THAT(refused.err, HasSubstr("there is no directory /etc/passwd")) << command;
+  }
+}
+
+TEST(RefusalTest, AMasterWhoseDirectoryIsMovedAwaySaysSoAndStops) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(LongerCampaign(), dir, 2));
+  ASSERT_TRUE(
+      Eventually([&] { return std::filesystem::exists(dir + "/status.json"); }, std::chrono::seconds(60)));
+  std::filesystem::rename(dir, scratch / "moved");
+  std::filesystem::create_directories(dir + "/log");  // as a worker that starts then does
+  const ProcessResult stopped = master->Wait();
+  EXPECT_EQ(stopped.exit_code, 3);
+  EXPECT_THAT(stopped.err, HasSubstr("the directory " + dir + " is gone"));
+  EXPECT_THAT(stopped.err, HasSubstr("resume THERE"));
+  EXPECT_EQ(Show(scratch / "moved").value("finished", true), false);
+}
+
 }  // namespace
 }  // namespace gauntlet

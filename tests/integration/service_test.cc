@@ -222,6 +222,7 @@ TEST(ServiceTest, PlaintextOnAnOuterAddressIsAskedForAndSaid) {
   const ProcessResult result = master->Wait();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("INSECURE"));
+  EXPECT_THAT(testing_support::MasterLog(scratch / "c"), HasSubstr("INSECURE: whoever reaches tcp://"));
   EXPECT_EQ(worker->Wait().exit_code, 0);
 }
 

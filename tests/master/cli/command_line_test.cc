@@ -251,13 +251,20 @@ TEST_F(CommandLine, ErrorsExitByTheirKind) {
                                       {ErrorKind::kInternal, true, kExitInternal}}) {
     error_ = Error{expected.kind, "what went wrong"};
     during_ = [&](const SessionOptions& options) {
-      if (expected.began) options.on_progress({});
+      if (!expected.began) return;
+      std::filesystem::create_directories(Path("c"));
+      std::ofstream(Path("c") + "/campaign.db") << "made";
+      options.on_progress({});
     };
     EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), expected.code)
         << static_cast<int>(expected.kind);
     EXPECT_THAT(err_.str(), HasSubstr("gauntlet: what went wrong\n"));
-    const bool resumable = expected.code == kExitStopped;
-    EXPECT_EQ(err_.str().find("gauntlet resume") != std::string::npos, resumable);
+    const bool stopped = expected.code == kExitStopped;
+    EXPECT_EQ(err_.str().find("gauntlet resume " + Path("c")) != std::string::npos,
+              stopped && expected.began);
+    EXPECT_EQ(err_.str().find("the same command with --dir " + Path("c")) != std::string::npos,
+              stopped && !expected.began);
+    std::filesystem::remove_all(Path("c"));
     EXPECT_THAT(out_.str(), IsEmpty());
   }
 }
