@@ -132,7 +132,7 @@ void WorkerCrowd::Listen() {
     if ((items[i].revents & ZMQ_POLLIN) == 0) continue;
     zmq::message_t frame;
     while (one.socket.recv(frame, zmq::recv_flags::dontwait)) {
-      Result<worker::MasterMessage> message = worker::DecodeMasterMessage(frame.to_string_view());
+      Result<worker::MasterMessage> message = worker::DecodeMasterMessage(frame.to_string());
       EXPECT_TRUE(message.ok()) << (message.ok() ? "" : message.error().message);
       if (!message) continue;
       if (std::holds_alternative<worker::Welcome>(*message)) one.welcomed = true;
