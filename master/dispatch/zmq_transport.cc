@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <set>
+#include <string_view>
 #include <utility>
 #include <zmq.hpp>
 
@@ -27,6 +30,24 @@ constexpr int kLingerMilliseconds = 100;  // for the last messages to leave
 constexpr const char* kMonitorAddress = "inproc://gauntlet-transport-monitor";
 constexpr int kMonitoredEvents = ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
                                  ZMQ_EVENT_HANDSHAKE_FAILED_AUTH;
+
+// libzmq would remove the socket file of whoever listens on an ipc endpoint, and listen there itself.
+bool SomebodyListens(const std::string& endpoint) {
+  constexpr std::string_view kScheme = "ipc://";
+  sockaddr_un address{};
+  if (!endpoint.starts_with(kScheme) || endpoint.size() - kScheme.size() >= sizeof address.sun_path) {
+    return false;
+  }
+  address.sun_family = AF_UNIX;
+  endpoint.copy(address.sun_path, sizeof address.sun_path - 1, kScheme.size());
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (fd < 0) return false;
+  // EAGAIN: somebody does, and has a full queue.
+  const bool answered =
+      connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 || errno == EAGAIN;
+  close(fd);
+  return answered;
+}
 
 }  // namespace
 
@@ -102,6 +123,10 @@ ZmqTransport::ZmqTransport(std::unique_ptr<Sockets> sockets) : sockets_(std::mov
 ZmqTransport::~ZmqTransport() = default;
 
 Result<std::unique_ptr<ZmqTransport>> ZmqTransport::Bind(const ZmqTransportOptions& options) {
+  if (SomebodyListens(options.endpoint)) {
+    return Error{ErrorKind::kInUse,
+                 fmt::format("cannot listen on '{}': another process does", options.endpoint)};
+  }
   try {
     auto sockets = std::make_unique<Sockets>();
     zmq::socket_t& router = sockets->router;

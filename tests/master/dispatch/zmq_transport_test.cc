@@ -6,12 +6,15 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <functional>
 #include <thread>
 #include <zmq.hpp>
+
+#include "tests/support/process.h"
 
 namespace gauntlet::master {
 namespace {
@@ -101,6 +104,29 @@ TEST_F(ZmqTransportTest, ReceivesNoMoreThanAskedFor) {
   EXPECT_THAT(messages, SizeIs(2));
   ASSERT_TRUE(Eventually([this] { return received_.size() == 3; }));
   EXPECT_EQ(received_[2].bytes, "4");
+}
+
+TEST(IpcTransportTest, NobodyIsPushedFromHisSocketButADeadOnesIsTakenOver) {
+  const testing_support::TemporaryDirectory scratch;
+  ZmqTransportOptions options;
+  options.endpoint = "ipc://" + scratch / "socket";
+  Result<std::unique_ptr<ZmqTransport>> first = ZmqTransport::Bind(options);
+  ASSERT_TRUE(first.ok()) << first.error().message;
+  const Result<std::unique_ptr<ZmqTransport>> second = ZmqTransport::Bind(options);
+  ASSERT_FALSE(second.ok());
+  EXPECT_EQ(second.error().kind, ErrorKind::kInUse);
+  EXPECT_THAT(second.error().message, HasSubstr("another process does"));
+  // What a killed process leaves: a socket file without a listener.
+  const std::string left = scratch / "left";
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  left.copy(address.sun_path, sizeof address.sun_path - 1);
+  const int fd = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  ASSERT_EQ(bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  close(fd);
+  options.endpoint = "ipc://" + left;
+  const Result<std::unique_ptr<ZmqTransport>> successor = ZmqTransport::Bind(options);
+  EXPECT_TRUE(successor.ok()) << successor.error().message;
 }
 
 // A transport with keys, and dealers that try to get in.
