@@ -167,7 +167,7 @@ class WorkerState {
   void Forget(Fence fence);
   bool Holds(Fence fence) const;
   void StartWaitingRuns();
-  void StartNext(std::size_t slot);
+  void StartNext(std::size_t index);
   std::size_t RunsAhead() const;  // how many runs a runner may have, 1 or more
   void EndRuns(Slot& slot);       // all but the first wait again
   void HandIn(LeaseResult result);
