@@ -64,7 +64,8 @@ std::vector<PoolEvent> RunnerPool::Process(std::span<const pollfd> polled, TimeP
 
 void RunnerPool::StartJob(int slot_index, const RunnerJob& job) {
   Slot& slot = slots_[static_cast<std::size_t>(slot_index)];
-  GAUNTLET_CHECK(slot.pid >= 0, fmt::format("slot {} cannot take a job", slot_index));
+  // Its runner has ended, and the event that says so follows those that are being worked off.
+  if (slot.pid < 0) return;
   if (slot.jobs == 0) {
     ReadOutput(slot);
     slot.output_tail.clear();
@@ -90,6 +91,9 @@ void RunnerPool::HandleServer(std::vector<PoolEvent>& events, TimePoint now) {
       Started(std::move(*started), events);
     } else if (const auto* exited = std::get_if<RunnerExited>(&*event)) {
       Exited(*exited, events);
+      // Whoever works these events off may give the slot another job before he comes to its end: that must
+      // not reach the next runner.
+      return;
     } else if (std::holds_alternative<RunnerNotStarted>(*event)) {
       ++to_retry_;
       retry_at_ = now + kForkRetryDelay;

@@ -133,7 +133,9 @@ class Supervisor::Loop {
         }
         Tell(RunnerDied{failed->slot, std::move(failed->failure), failed->cpu_seconds});
       } else if (const auto* emptied = std::get_if<SlotEmptied>(&event)) {
-        Tell(RunnerDied{emptied->slot, {}, 0.0});
+        // It had nothing to do; what it was given since has not begun.
+        Tell(RunnerDied{
+            emptied->slot, {.kind = FailureKind::kExternal, .stderr_tail = "its runner had ended"}, 0.0});
       } else {
         spdlog::error("the fork server ended: this worker cannot simulate any more");
         Tell(AllRunnersLost{});
