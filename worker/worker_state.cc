@@ -18,6 +18,8 @@ constexpr int kResendHeartbeats = 10;
 // CPU time of the runs that a runner may have ahead, s, and how many at most.
 constexpr double kWorkAhead = 1e-3;
 constexpr std::size_t kMostAhead = 64;
+// With fewer ahead there is nothing to gain from a nap.
+constexpr std::size_t kLeastAheadForNap = 4;
 constexpr double kForget = 0.95;  // per run: so fast a long run is forgotten
 // Leases beyond the slots wait here; a master that sends more is told to take them elsewhere.
 constexpr std::size_t kMaxWaiting = 4096;
@@ -369,7 +371,7 @@ void WorkerState::StartWaitingRuns() {
 
 Duration WorkerState::Nap() const {
   const std::size_t ahead = RunsAhead();
-  if (ahead < 4 || drain_ || slots_.empty()) return Duration::zero();
+  if (ahead < kLeastAheadForNap || drain_ || slots_.empty()) return Duration::zero();
   const bool all_busy = std::all_of(slots_.begin(), slots_.end(), [&](const Slot& slot) {
     return slot.state == SlotState::kRunning && slot.runs.size() > ahead / 2;
   });

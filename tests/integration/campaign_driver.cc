@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "sim/random/random_stream.h"
+#include "tests/support/sanitizer.h"
 
 namespace gauntlet::testing_support {
 
@@ -65,7 +66,8 @@ SmallCampaign SmallForaging() {
   SmallCampaign campaign;
   campaign.name = "foraging";
   campaign.experiment = "foraging";
-  campaign.settings = {"scenario_parameters.time_limit=120"};
+  campaign.settings = {kSanitized ? "scenario_parameters.time_limit=20"
+                                  : "scenario_parameters.time_limit=120"};
   return campaign;
 }
 
@@ -73,7 +75,8 @@ SmallCampaign SmallPartitioning() {
   SmallCampaign campaign;
   campaign.name = "task_partitioning";
   campaign.experiment = "task-partitioning";
-  campaign.settings = {"scenario_parameters.time_limit=300"};
+  campaign.settings = {kSanitized ? "scenario_parameters.time_limit=40"
+                                  : "scenario_parameters.time_limit=300"};
   return campaign;
 }
 

@@ -35,7 +35,8 @@ struct SmallCampaign {
   std::string experiment = "flocking";
   std::vector<std::string> settings;  // key=value, as given to --set
 };
-// Foraging of the same size: the runs are cut short, because 20 robots over 800 s take 0.1 s each.
+// Foraging of the same size: the runs are cut short, because 20 robots over 800 s take 0.1 s each; under a
+// sanitizer, where they take seconds, once more.
 SmallCampaign SmallForaging();
 // Task partitioning, likewise.
 SmallCampaign SmallPartitioning();

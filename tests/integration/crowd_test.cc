@@ -23,12 +23,9 @@ std::unique_ptr<Process> StartNoopMaster(const std::string& dir, const std::stri
       std::vector<std::string>{std::string("GAUNTLET_WORKER=") + kNoopWorker});
 }
 
-bool Serves(const std::string& dir) {
-  return Eventually([&] { return std::ifstream(dir + "/access.json").good(); }, kPatience);
-}
-
 TEST(CrowdTest, FiveHundredEncryptedWorkersAreAllLeasedWhenAGenerationIsQueued) {
-  constexpr int kCrowd = 512;
+  // The crowd shakes hands 512 times in this process; with a sanitizer it would be silent for too long.
+  constexpr int kCrowd = kSanitized ? 32 : 512;
   const TemporaryDirectory scratch;
   const auto master = StartNoopMaster(scratch / "c", "tcp://0.0.0.0:*", 2 * kCrowd, 1, 2);
   ASSERT_TRUE(Serves(scratch / "c"));

@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <filesystem>
 #include <map>
 
-#include "tests/integration/campaign_driver.h"
+#include "tests/integration/service_driver.h"
 
 namespace gauntlet {
 namespace {
 
-using testing_support::Eventually;
 using testing_support::EvolveArguments;
 using testing_support::Gauntlet;
 using testing_support::Process;
@@ -85,8 +83,7 @@ TEST_P(DeterminismDrill, InterruptedCampaignExitsWith3AndResumesToTheSameStateHa
   const SmallCampaign& campaign = GetParam();
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 2));
-  ASSERT_TRUE(
-      Eventually([&] { return std::filesystem::exists(dir + "/access.json"); }, std::chrono::seconds(20)));
+  ASSERT_TRUE(testing_support::Serves(dir)) << master->Err();
   master->Signal(SIGINT);
   const ProcessResult stopped = master->Wait();
   EXPECT_EQ(stopped.exit_code, 3) << stopped.err;

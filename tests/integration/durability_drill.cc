@@ -145,7 +145,7 @@ DurabilityReport EvolveThroughPowerLosses(const SmallCampaign& campaign, const s
 
 MassacreReport EvolveThroughMassacre(const SmallCampaign& campaign, const std::string& dir, int workers,
                                      int master_kills, int worker_kills, std::uint64_t seed,
-                                     milliseconds longest_life) {
+                                     milliseconds longest_life, milliseconds run) {
   sim::RandomStream random(seed, sim::StreamPurpose::kTest);
   const auto random_time = [&random](milliseconds longest) {
     return milliseconds(1 + random.Below(static_cast<std::uint32_t>(longest.count())));
@@ -153,8 +153,9 @@ MassacreReport EvolveThroughMassacre(const SmallCampaign& campaign, const std::s
   MassacreReport report;
   const TemporaryDirectory scratch;
   const std::string run_log = scratch / "runs";
-  const std::vector<std::string> environment = {"GAUNTLET_WORKER=" + WorkerPath() + "-slow",
-                                                "GAUNTLET_TEST_RUN_LOG=" + run_log};
+  const std::vector<std::string> environment = {
+      "GAUNTLET_WORKER=" + WorkerPath() + "-slow", "GAUNTLET_TEST_RUN_LOG=" + run_log,
+      "GAUNTLET_TEST_RUN_MILLISECONDS=" + std::to_string(run.count())};
   std::vector<std::string> arguments = EvolveArguments(campaign, dir, workers);
   std::set<std::uint64_t> stored;  // before the present master began
   for (bool finished = false; !finished;) {

@@ -32,8 +32,10 @@ struct MassacreReport {
 
 // Evolves with a local pool of workers that log every run they begin. Random workers and runners are killed,
 // `worker_kills` in all, and the master `master_kills` times, until both are used up or the search has ended.
+// A run takes `run` at least, so that how many kills a campaign can take does not depend on the machine: the
+// masters live (longest_life / 2 + longest_life / 6) on average.
 MassacreReport EvolveThroughMassacre(const SmallCampaign& campaign, const std::string& dir, int workers,
                                      int master_kills, int worker_kills, std::uint64_t seed,
-                                     std::chrono::milliseconds longest_life);
+                                     std::chrono::milliseconds longest_life, std::chrono::milliseconds run);
 
 }  // namespace gauntlet::testing_support

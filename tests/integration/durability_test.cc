@@ -45,11 +45,13 @@ TEST(Durability, KillsOfMastersAndWorkersTogetherLoseNothing) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;
   campaign.generations = 10;
-  const MassacreReport report = testing_support::EvolveThroughMassacre(campaign, scratch / "c", 2, 5, 10, 2,
-                                                                       std::chrono::milliseconds(700));
+  const MassacreReport report = testing_support::EvolveThroughMassacre(
+      campaign, scratch / "c", 2, 5, 10, 2, std::chrono::milliseconds(700), std::chrono::milliseconds(100));
   fmt::print("{} masters and {} workers killed, {} runs, {} evaluations, {} of stored runs\n",
              report.master_kills, report.worker_kills, report.runs, report.evaluations,
              report.evaluated_after_stored);
+  EXPECT_EQ(report.master_kills, 5);
+  EXPECT_EQ(report.worker_kills, 10);
   EXPECT_EQ(report.evaluated_after_stored, 0);
   EXPECT_GE(report.evaluations, report.runs);
 }

@@ -11,13 +11,13 @@
 
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/hostile_sockets.h"
+#include "tests/integration/service_driver.h"
 
 namespace gauntlet {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using testing_support::Eventually;
 using testing_support::EvolveArguments;
 using testing_support::Gauntlet;
 using testing_support::GauntletPath;
@@ -43,8 +43,7 @@ TEST(RefusalTest, ACampaignInUseIsRefusedWithItsOwner) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(LongerCampaign(), dir, 2));
-  ASSERT_TRUE(
-      Eventually([&] { return std::filesystem::exists(dir + "/access.json"); }, std::chrono::seconds(20)));
+  ASSERT_TRUE(testing_support::Serves(dir)) << master->Err();
   const ProcessResult second = Gauntlet({"resume", dir, "--quiet"});
   EXPECT_EQ(second.exit_code, 2);
   char host[256] = {};
@@ -110,8 +109,7 @@ TEST(HostilePortTest, GarbageAndOversizedMessagesAreDroppedAndTheCampaignGoesOn)
   SmallCampaign campaign;
   campaign.generations = 12;
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 2));
-  ASSERT_TRUE(
-      Eventually([&] { return std::filesystem::exists(dir + "/access.json"); }, std::chrono::seconds(20)));
+  ASSERT_TRUE(testing_support::Serves(dir)) << master->Err();
   const json access = json::parse(ReadFile(dir + "/access.json"), nullptr, false);
   const std::string endpoint = access["endpoints"][0].get<std::string>();
   const int port = std::stoi(endpoint.substr(endpoint.rfind(':') + 1));
@@ -199,8 +197,7 @@ TEST(RefusalTest, AMasterWhoseDirectoryIsMovedAwaySaysSoAndStops) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(LongerCampaign(), dir, 2));
-  ASSERT_TRUE(
-      Eventually([&] { return std::filesystem::exists(dir + "/status.json"); }, std::chrono::seconds(60)));
+  ASSERT_TRUE(testing_support::Serves(dir)) << master->Err();
   std::filesystem::rename(dir, scratch / "moved");
   std::filesystem::create_directories(dir + "/log");  // as a worker that starts then does
   const ProcessResult stopped = master->Wait();

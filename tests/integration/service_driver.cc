@@ -4,12 +4,17 @@
 #include <signal.h>
 #include <sqlite3.h>
 
+#include <filesystem>
 #include <fstream>
 #include <map>
 
 namespace gauntlet::testing_support {
 
 using nlohmann::json;
+
+bool Serves(const std::string& dir) {
+  return Eventually([&] { return std::filesystem::exists(dir + "/access.json"); }, kPatience);
+}
 
 std::vector<std::string> MasterArguments(const SmallCampaign& campaign, const std::string& dir,
                                          const std::string& endpoint) {

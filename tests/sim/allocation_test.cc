@@ -6,13 +6,8 @@
 #include <vector>
 
 #include "sim/simulation.h"
+#include "tests/support/sanitizer.h"
 #include "tests/support/toy_scenario.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define GAUNTLET_SANITIZED 1
-#else
-#define GAUNTLET_SANITIZED 0
-#endif
 
 namespace {
 long allocations = 0;
@@ -66,7 +61,7 @@ void ExpectNoneAfterTheFirst(const std::vector<long>& per_tick) {
 }
 
 TEST(Simulation, AllocatesNothingWithEveryDevice) {
-  if (GAUNTLET_SANITIZED) GTEST_SKIP() << "sanitizers bring their own malloc";
+  if (testing_support::kSanitized) GTEST_SKIP() << "sanitizers bring their own malloc";
   for (const int count : {20, 50}) {  // few robots are asked pair by pair, more of them through a grid
     RandomStream random(2, StreamPurpose::kTest);
     TestCase test_case;
@@ -99,7 +94,7 @@ TEST(Simulation, AllocatesNothingWithEveryDevice) {
 }
 
 TEST(Simulation, AllocatesNothingAfterTheFirstTick) {
-  if (GAUNTLET_SANITIZED) GTEST_SKIP() << "sanitizers bring their own malloc";
+  if (testing_support::kSanitized) GTEST_SKIP() << "sanitizers bring their own malloc";
   constexpr Tick kTicks = 2000;
   RandomStream random(1, StreamPurpose::kTest);
   TestCase test_case;
