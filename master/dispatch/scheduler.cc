@@ -443,8 +443,9 @@ void Scheduler::Purge() {
 }
 
 bool Scheduler::IsSilent(const Worker& worker) const {
-  return !worker.lost &&
-         listening_ - std::max(worker.heard, worker.excused) >= options_.lost_after * options_.heartbeat;
+  const Duration limit =
+      options_.lost_after * options_.heartbeat - Duration(options_.heartbeat) / kChecksPerHeartbeat;
+  return !worker.lost && listening_ - std::max(worker.heard, worker.excused) >= limit;
 }
 
 std::vector<InstanceId> Scheduler::Silent(TimePoint now) {

@@ -215,6 +215,7 @@ class Scheduler {
   bool Requeue(RunId id, Run& run);
   void Count(Worker& worker);  // its slots and leases, for the statistics
   std::vector<RunId> ReleaseAll(Worker& worker);
+  // Or will be before the next check, so that silence is noticed within its limit, not after it.
   bool IsSilent(const Worker& worker) const;
   void Lose(InstanceId id, Worker& worker);
   void Finish(RunId id, Run& run, InstanceId worker, Fence fence);

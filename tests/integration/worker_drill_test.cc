@@ -77,7 +77,7 @@ TEST_F(WorkerDrill, AFrozenWorkersRunsGoElsewhereWithin3HeartbeatsAndItIsTakenBa
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   RecordProperty("noticed_after_seconds", fmt::format("{:.2f}", seconds));
   fmt::print("a frozen worker was noticed after {:.2f} s\n", seconds);
-  // Three heartbeats of a second, an eighth of one between checks, and the time to read the log.
+  // Three heartbeats of a second, and the time to read the log on a busy machine.
   EXPECT_LT(seconds, 3.4);
   // Unless they had been already, as copies of runs that take long.
   ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) {
