@@ -149,7 +149,7 @@ int EvolveThroughWorkerKills(const SmallCampaign& campaign, const std::string& d
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, workers));
   // Before there are workers the only child is the one that tells the golden hash.
   EXPECT_TRUE(Eventually([&] { return std::filesystem::exists(dir + "/access.json") || !master->Running(); },
-                         std::chrono::seconds(60)));
+                         kPatience));
   int hits = 0;
   while (hits < kills && !Eventually([&] { return !master->Running(); }, RandomTime(random, between_kills))) {
     const std::vector<pid_t> family = DescendantsOf(master->pid());

@@ -52,7 +52,7 @@ TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
         if (runner != 0 && runner != hit && kill(runner, SIGSEGV) == 0) hit = runner;
         return !master->Running();
       },
-      std::chrono::seconds(60)));
+      testing_support::kPatience));
 
   const nlohmann::json shown = Show(dir)["runs_without_result"];
   ASSERT_EQ(shown.size(), 1U) << shown;

@@ -44,7 +44,7 @@ bool ScriptedWorker::Connect(std::uint64_t epoch) {
                access_ = *std::move(access);
                return true;
              },
-             std::chrono::seconds(60)) &&
+             kPatience) &&
          connection_.Open(access_.endpoints.front(), access_.curve).ok();
 }
 

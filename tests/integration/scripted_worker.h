@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/process.h"
 #include "worker/access_file.h"
 #include "worker/connection.h"
 #include "worker/messages.h"
@@ -32,10 +33,10 @@ class ScriptedWorker {
   void SayBytes(std::string bytes);
   void Beat(const std::vector<worker::Fence>& held);
   // The next message; none within the time. Heartbeats are skipped.
-  std::optional<worker::MasterMessage> Hear(std::chrono::milliseconds patience = std::chrono::seconds(10));
+  std::optional<worker::MasterMessage> Hear(std::chrono::milliseconds patience = kPatience);
   // The next message of a kind; others are lost.
   template <typename Message>
-  std::optional<Message> HearA(std::chrono::milliseconds patience = std::chrono::seconds(10)) {
+  std::optional<Message> HearA(std::chrono::milliseconds patience = kPatience) {
     const auto end = std::chrono::steady_clock::now() + patience;
     while (std::chrono::steady_clock::now() < end) {
       std::optional<worker::MasterMessage> message = Hear(std::chrono::milliseconds(100));

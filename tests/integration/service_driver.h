@@ -7,12 +7,8 @@
 #include <vector>
 
 #include "tests/integration/campaign_driver.h"
-#include "tests/support/sanitizer.h"
 
 namespace gauntlet::testing_support {
-
-// Long enough for anything on a busy machine.
-inline constexpr std::chrono::seconds kPatience{kSanitized ? 300 : 60};
 
 // Whether the campaign's master listens before too long.
 bool Serves(const std::string& dir);

@@ -273,7 +273,7 @@ TEST_F(WorkerDrill, MessagesOfAnEarlierMasterChangeNothing) {
   master_ = StartGauntlet(testing_support::ResumeArguments(dir_));
 
   ScriptedWorker stranger(dir_, kSecondWorker);
-  ASSERT_TRUE(stranger.Connect(2));
+  ASSERT_TRUE(stranger.Connect(2)) << master_->Err();
   for (const worker::LeaseResult& result : recorded) stranger.Say(result);
   stranger.Beat({recorded.front().fence});
   EXPECT_FALSE(stranger.Hear(milliseconds(300))) << "who has not said hello is not answered";

@@ -8,7 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/sanitizer.h"
+
 namespace gauntlet::testing_support {
+
+// Long enough for anything on a busy machine.
+inline constexpr std::chrono::seconds kPatience{kSanitized ? 300 : 60};
 
 struct ProcessResult {
   int exit_code = -1;  // -1 when it ended by a signal
@@ -31,7 +36,7 @@ class Process {
   bool Running();
   void Signal(int signal) const;
   // Waits for its end; kills it at the deadline and reports signal 9.
-  ProcessResult Wait(std::chrono::seconds deadline = std::chrono::seconds(120));
+  ProcessResult Wait(std::chrono::seconds deadline = 2 * kPatience);
   // What it has written so far.
   std::string Out() const;
   std::string Err() const;
@@ -49,7 +54,7 @@ class Process {
 // Process and Wait in one.
 ProcessResult RunProcess(const std::vector<std::string>& argv,
                          const std::vector<std::string>& environment = {},
-                         std::chrono::seconds deadline = std::chrono::seconds(120));
+                         std::chrono::seconds deadline = 2 * kPatience);
 
 // Polls until `condition` holds; false at the deadline.
 bool Eventually(const std::function<bool()>& condition, std::chrono::milliseconds deadline);
