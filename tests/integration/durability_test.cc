@@ -19,8 +19,8 @@ TEST(Durability, WhatWasAcknowledgedSurvivesLossesOfPower) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;
   campaign.generations = 8;
-  const DurabilityReport report = testing_support::EvolveThroughPowerLosses(campaign, scratch / "c", 8, 1,
-                                                                            std::chrono::milliseconds(400));
+  const DurabilityReport report = testing_support::EvolveThroughPowerLosses(
+      campaign, scratch / "c", 8, 1, std::chrono::milliseconds(testing_support::kSanitized ? 4000 : 400));
   fmt::print("{} kills, {} runs acknowledged before one, {} of them leased again, {} simulated, {} runs\n",
              report.kills, report.acknowledged, report.leased_again, report.simulated, report.runs);
   EXPECT_GE(report.kills, 4);
