@@ -12,7 +12,7 @@
 #include <optional>
 
 #include "proto/run.pb.h"
-#include "worker/utf8.h"
+#include "sim/base/utf8.h"
 
 namespace gauntlet::worker {
 namespace {

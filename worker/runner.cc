@@ -14,9 +14,9 @@
 #include <new>
 
 #include "sim/base/canonical_encoder.h"
+#include "sim/base/utf8.h"
 #include "worker/pipe.h"
 #include "worker/run_codec.h"
-#include "worker/utf8.h"
 
 namespace gauntlet::worker {
 namespace {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "master/campaign/atomic_file.h"
+#include "master/campaign/json_text.h"
 
 namespace gauntlet::master {
 namespace {
@@ -25,7 +26,7 @@ Status WriteAccessFile(const std::string& path, const AccessInfo& info) {
                      {"worker_public", info.curve->worker_public},
                      {"worker_secret", info.curve->worker_secret}};
   }
-  return WriteFileAtomically(path, json.dump(2) + "\n", kOwnerOnly);
+  return WriteFileAtomically(path, JsonText(json), kOwnerOnly);
 }
 
 Status RemoveAccessFile(const std::string& path, std::uint64_t epoch) {

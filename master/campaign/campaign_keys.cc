@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "master/campaign/atomic_file.h"
+#include "master/campaign/json_text.h"
 
 namespace gauntlet::master {
 namespace {
@@ -20,7 +21,7 @@ Result<CampaignKeys> Make(const std::string& path) {
                                        {"server_secret", keys.master.secret_key},
                                        {"worker_public", keys.worker.public_key},
                                        {"worker_secret", keys.worker.secret_key}};
-  if (Status written = WriteFileAtomically(path, json.dump(2) + "\n", kOwnerOnly); !written)
+  if (Status written = WriteFileAtomically(path, JsonText(json), kOwnerOnly); !written)
     return written.error();
   return keys;
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "master/campaign/atomic_file.h"
+#include "master/campaign/json_text.h"
 
 namespace gauntlet::master {
 namespace {
@@ -32,7 +33,7 @@ Status Write(const std::string& path, const Recorded& recorded) {
                                        {"campaign", recorded.campaign_id},
                                        {"directory_inode", std::to_string(recorded.directory_inode)},
                                        {"database_inode", std::to_string(recorded.database_inode)}};
-  return WriteFileAtomically(path, json.dump(2) + "\n", kReadableByAll);
+  return WriteFileAtomically(path, JsonText(json), kReadableByAll);
 }
 
 Result<Recorded> Parse(const std::string& text, const std::string& path) {

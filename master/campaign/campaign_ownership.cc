@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <filesystem>
 #include <thread>
 #include <utility>
 
@@ -86,6 +87,10 @@ Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster othe
     }
   }
   if (!lock) return lock.error();
+  // What a former master has left. Whoever asks from now on means this one.
+  std::error_code ignored;
+  std::filesystem::remove(directory->stop_path(), ignored);
+  std::filesystem::remove(directory->status_path(), ignored);
   Result<std::uint64_t> epoch = directory->StartEpoch();
   if (!epoch) return epoch.error();
   CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, {}, nullptr};

@@ -43,7 +43,7 @@ CampaignSummary TotalsOf(const std::vector<CampaignSummary>& searches) {
     totals.progress.evaluations_done += one.progress.evaluations_done;
     totals.progress.evaluations_planned += one.progress.evaluations_planned;
     totals.finished = totals.finished && one.finished;
-    totals.nondeterministic = totals.nondeterministic || one.nondeterministic;
+    totals.nondeterministic = std::max(totals.nondeterministic, one.nondeterministic);  // each has all
     totals.best_fitness = std::fmin(totals.best_fitness, one.best_fitness);
     totals.worst_fitness = std::fmax(totals.worst_fitness, one.worst_fitness);
   }

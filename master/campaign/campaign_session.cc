@@ -123,10 +123,7 @@ Status CheckAllStored(const std::vector<SearchPlan>& plans, ResultStore& store) 
 class LivingMasterFiles {
  public:
   LivingMasterFiles(const CampaignDirectory& directory, std::uint64_t epoch)
-      : directory_(directory), epoch_(epoch) {
-    std::error_code ignored;
-    std::filesystem::remove(directory.stop_path(), ignored);  // meant for a former master
-  }
+      : directory_(directory), epoch_(epoch) {}
   LivingMasterFiles(const LivingMasterFiles&) = delete;
   LivingMasterFiles& operator=(const LivingMasterFiles&) = delete;
   ~LivingMasterFiles() {
@@ -246,6 +243,9 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   view.endpoints = serving->access.endpoints;
   view.encrypted = serving->access.curve.has_value();
   view.batch_job = options.batch_job;
+  const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
+  if (!nondeterministic) return nondeterministic.error();
+  view.nondeterministic_before = *nondeterministic;
   if (options.metrics != nullptr) view.metrics_url = options.metrics->url();
   options.on_serving({view.endpoints, view.encrypted});
 

@@ -11,6 +11,7 @@
 #include "master/campaign/campaign_lock.h"
 #include "master/campaign/campaign_origin.h"
 #include "master/campaign/campaign_session.h"
+#include "master/campaign/json_text.h"
 
 namespace gauntlet::master {
 namespace {
@@ -153,7 +154,7 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
       {"workers_lost", progress.workers.lost},
       {"leased_again", progress.workers.releases},
       {"duplicates", progress.workers.duplicates},
-      {"nondeterministic", progress.workers.nondeterministic},
+      {"nondeterministic", master.nondeterministic_before + progress.workers.nondeterministic},
       {"copies", progress.workers.copies},
       {"audits", progress.workers.audits},
       {"audits_alone", progress.workers.audits_alone},
@@ -170,7 +171,7 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
        backend.pool_trouble.empty() ? ordered_json(nullptr) : ordered_json(backend.pool_trouble)},
       {"allocations", std::move(allocations)},
       {"worker_list", std::move(workers)}};
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 Result<bool> MasterLives(const std::string& dir) {
@@ -195,11 +196,9 @@ Result<std::string> ReadStatus(const std::string& dir) {
     const Result<std::string> text = ReadSmallFile(directory->status_path(), 16U << 20);
     if (!text) {
       if (text.error().kind != ErrorKind::kNotFound) return text.error();
-      return ordered_json{{"state", "starting"},
-                          {"why_nothing_runs", "the master has just started, or is about to end"},
-                          {"worker_list", ordered_json::array()}}
-                 .dump(2) +
-             "\n";
+      return JsonText({{"state", "starting"},
+                       {"why_nothing_runs", "the master has just started, or is about to end"},
+                       {"worker_list", ordered_json::array()}});
     }
     ordered_json json = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
     if (!json.is_object()) {
@@ -207,7 +206,7 @@ Result<std::string> ReadStatus(const std::string& dir) {
     }
     json["status_age_seconds"] =
         static_cast<double>(UnixMilliseconds() - json.value("unix_ms", std::int64_t{0})) / 1000.0;
-    return json.dump(2) + "\n";
+    return JsonText(json);
   }
   const Result<CampaignSummary> summary = ReadCampaign(dir);
   if (!summary) return summary.error();
@@ -221,12 +220,12 @@ Result<std::string> ReadStatus(const std::string& dir) {
       {"total_failures", summary->total_failures},
       {"runs_failed", summary->runs_failed},
       {"workers", 0},
-      {"nondeterministic", summary->nondeterministic ? 1 : 0},
+      {"nondeterministic", summary->nondeterministic},
       {"why_nothing_runs", summary->finished
                                ? "the search has finished"
                                : "no master serves the campaign: go on with `gauntlet resume DIR`"},
       {"worker_list", ordered_json::array()}};
-  return json.dump(2) + "\n";
+  return JsonText(json);
 }
 
 Status RequestStop(const std::string& dir) {

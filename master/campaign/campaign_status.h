@@ -26,9 +26,10 @@ struct MasterView {
   std::int64_t now_unix_ms = 0;
   std::vector<std::string> endpoints;
   bool encrypted = false;
-  std::string batch_job;         // that it is, "" = none
-  std::string metrics_url = "";  // "" = none
-  bool stopping = false;         // lets the runs that have begun end
+  std::string batch_job;                      // that it is, "" = none
+  std::string metrics_url = "";               // "" = none
+  std::uint64_t nondeterministic_before = 0;  // results that differed, under former masters
+  bool stopping = false;                      // lets the runs that have begun end
 };
 
 // The document of status.json, README section "Status".

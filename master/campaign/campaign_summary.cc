@@ -88,6 +88,14 @@ std::string EncodePopulation(const std::vector<Individual>& population) {
 
 }  // namespace
 
+Result<std::uint64_t> CountNondeterministic(ResultStore& store) {
+  const Result<std::vector<StoredEvent>> events = store.LoadEvents();
+  if (!events) return events.error();
+  return static_cast<std::uint64_t>(
+      std::count_if(events->begin(), events->end(),
+                    [](const StoredEvent& event) { return event.kind == "nondeterministic"; }));
+}
+
 Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
                                   ResultStore& store) {
   CampaignSummary summary;
@@ -147,11 +155,9 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
 
   summary.state_hash =
       StateHash(EncodeExperiment(experiment), digest, EncodePopulation(population), search_state);
-  Result<std::vector<StoredEvent>> events = store.LoadEvents();
-  if (!events) return events.error();
-  summary.nondeterministic = std::any_of(events->begin(), events->end(), [](const StoredEvent& event) {
-    return event.kind == "nondeterministic";
-  });
+  const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
+  if (!nondeterministic) return nondeterministic.error();
+  summary.nondeterministic = *nondeterministic;
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
   for (const StoredSearch& stored : *searches) {

@@ -62,12 +62,15 @@ struct CampaignSummary {
   std::vector<GenerationSummary> generations;
   std::vector<PopulationMember> population;
   std::string state_hash;
-  bool nondeterministic = false;  // two results of one spec differed
+  std::uint64_t nondeterministic = 0;  // second results of a spec that differed from the first
   bool finished = false;
   // Of a sweep, one for each search, in the order of their numbers; the rest are then totals, and what has no
   // meaning over several searches is empty.
   std::vector<CampaignSummary> searches;
 };
+
+// Results in the events of all masters that differed from another of the same spec.
+Result<std::uint64_t> CountNondeterministic(ResultStore& store);
 
 // Gathers the summary of a search from what is stored. `search` is freshly made for the experiment; it is
 // brought to the newest saved state. Population, fitness figures and state_hash are those of the last

@@ -126,7 +126,8 @@ std::string MetricsText(const MasterView& master, const CampaignProgress& progre
   page.Add("gauntlet_duplicate_results_total", "counter", "Second results of a run, compared with the first.",
            count(workers.duplicates));
   page.Add("gauntlet_nondeterministic_results_total", "counter",
-           "Second results that differed from the first.", count(workers.nondeterministic));
+           "Second results that differed from the first, since the campaign began.",
+           count(master.nondeterministic_before + workers.nondeterministic));
   page.Add("gauntlet_rejected_messages_total", "counter", "Messages and connections that were dropped.",
            count(workers.rejected_messages));
   page.Add("gauntlet_stopping", "gauge", "1 while the master lets the runs that have begun end.",

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "controllers/registry.h"
+#include "master/campaign/json_text.h"
 #include "master/cli/commands.h"
 #include "master/cli/table.h"
 #include "master/experiment/experiment_file.h"
@@ -287,7 +288,7 @@ ExitCode RunList(CommandContext& context, const ListOptions& options) {
       text += (text.empty() ? "" : "\n") + section.text();
     }
   }
-  if (options.json) text = json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  if (options.json) text = JsonText(json);
   context.out << text << std::flush;
   return kExitDone;
 }

@@ -7,12 +7,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "master/campaign/json_text.h"
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/stop_signal.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/table.h"
+#include "sim/base/printable.h"
 
 namespace gauntlet::master {
 namespace {
@@ -92,10 +94,10 @@ std::string StatusText(const Json& status, const std::string& directory) {
                         status["nondeterministic"].get<std::uint64_t>());
   }
   if (const Json& why = status.value("why_nothing_runs", Json()); why.is_string())
-    text += "nothing runs: " + WithDirectory(why.get<std::string>(), directory) + "\n";
+    text += "nothing runs: " + WithDirectory(Printable(why.get<std::string>()), directory) + "\n";
   if (const Json& trouble = status.value("pool_trouble", Json());
       trouble.is_string() && !status.value("why_nothing_runs", Json()).is_string())
-    text += "fewer workers than could be used: " + trouble.get<std::string>() + "\n";
+    text += "fewer workers than could be used: " + Printable(trouble.get<std::string>()) + "\n";
   if (const double age = status.value("status_age_seconds", 0.0); age > 5.0)
     text += fmt::format("the master has said nothing for {:.0f} s: frozen, or its disk is slow\n", age);
   text += JobsText(status);
@@ -119,7 +121,7 @@ std::string WithJobs(CommandContext& context, const SlurmCampaign& campaign, Jso
   const Result<std::vector<slurm::JobStatus>> jobs = LivingJobs(*context.slurm(), campaign);
   if (!jobs) {
     status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message);
-    return status.dump(2) + "\n";
+    return JsonText(status);
   }
   status["allocations"] = Json::array();
   for (const slurm::JobStatus& job : *jobs) {
@@ -135,7 +137,7 @@ std::string WithJobs(CommandContext& context, const SlurmCampaign& campaign, Jso
     status["why_nothing_runs"] = fmt::format("job {}, which is to be the master, is {}{}", job.id, job.state,
                                              job.reason.empty() ? "" : " (" + job.reason + ")");
   }
-  return status.dump(2) + "\n";
+  return JsonText(status);
 }
 
 Result<std::string> Read(CommandContext& context, const StatusOptions& options) {

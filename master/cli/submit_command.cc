@@ -7,6 +7,7 @@
 
 #include "master/campaign/atomic_file.h"
 #include "master/campaign/bind_endpoint.h"
+#include "master/campaign/json_text.h"
 #include "master/cli/commands.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/sweep.h"
@@ -106,7 +107,7 @@ ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
   const Result<std::string> job = SubmitMasterJob(context, *directory, *campaign);
   if (!job) return Fail(context, job.error());
   if (common.json) {
-    context.out << nlohmann::ordered_json{{"directory", *directory}, {"job", *job}}.dump(2) << "\n";
+    context.out << JsonText({{"directory", *directory}, {"job", *job}});
   } else {
     const std::string place = ShellQuoted(*directory);
     context.out << fmt::format(

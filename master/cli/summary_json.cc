@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "master/campaign/json_text.h"
 #include "master/campaign/reproduction_bundle.h"
 
 namespace gauntlet::master {
@@ -70,11 +71,6 @@ Json RunJson(const EvaluatedRun& run) {
                {"hash", fmt::format("{:016x}", result.hash)}};
   if (!completed) json["message"] = result.message;
   return json;
-}
-
-// Text from files and workers may be anything; what is not UTF-8 is replaced rather than refused.
-std::string Dump(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json TextOrNull(const std::string& text) {
@@ -143,29 +139,29 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
           {"history", std::move(generations)},
           {"population", std::move(population)},
           {"state_hash", summary.state_hash},
-          {"nondeterministic", summary.nondeterministic},
+          {"nondeterministic", summary.nondeterministic > 0},
           {"finished", summary.finished}};
 }
 
 }  // namespace
 
 std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
-  if (summary.searches.empty()) return Dump(OneSearch(summary, directory));
+  if (summary.searches.empty()) return JsonText(OneSearch(summary, directory));
   Json searches = Json::array();
   for (std::size_t i = 0; i < summary.searches.size(); ++i) {
     Json search = {{"number", i + 1}, {"settings", summary.searches[i].settings}};
     search.update(OneSearch(summary.searches[i], directory));
     searches.push_back(std::move(search));
   }
-  return Dump({{"experiment", summary.experiment},
-               {"directory", directory},
-               {"search", summary.search},
-               {"runs_done", summary.runs_done},
-               {"runs_failed", summary.runs_failed},
-               {"total_failures", summary.total_failures},
-               {"nondeterministic", summary.nondeterministic},
-               {"finished", summary.finished},
-               {"searches", std::move(searches)}});
+  return JsonText({{"experiment", summary.experiment},
+                   {"directory", directory},
+                   {"search", summary.search},
+                   {"runs_done", summary.runs_done},
+                   {"runs_failed", summary.runs_failed},
+                   {"total_failures", summary.total_failures},
+                   {"nondeterministic", summary.nondeterministic > 0},
+                   {"finished", summary.finished},
+                   {"searches", std::move(searches)}});
 }
 
 std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const CampaignSummary* summary,
@@ -189,7 +185,7 @@ std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const Campai
     json["state_hash"] = summary->state_hash;
     json["finished"] = summary->finished;
   }
-  return Dump(json);
+  return JsonText(json);
 }
 
 std::string ReplayJson(const ReplayReport& report) {
@@ -198,18 +194,18 @@ std::string ReplayJson(const ReplayReport& report) {
   const bool completed = report.replayed.verdict == sim::Verdict::kCompleted;
   Json metrics = Json::object();
   for (const auto& [name, value] : report.replayed.metrics) metrics[name] = FitnessJson(value);
-  return Dump({{"run", IdJson(report.stored.id)},
-               {"reproduced", report.differences.empty()},
-               {"stored_hash", fmt::format("{:016x}", report.stored_result.hash)},
-               {"hash", fmt::format("{:016x}", report.replayed.hash)},
-               {"differences", report.differences},
-               {"disturbances", std::move(disturbances)},
-               {"verdict", NameOf(report.replayed.verdict)},
-               {"message", TextOrNull(report.replayed.message)},
-               {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json(nullptr)},
-               {"total_failure", report.replayed.failure.total},
-               {"failure", TextOrNull(report.replayed.failure.label)},
-               {"metrics", std::move(metrics)}});
+  return JsonText({{"run", IdJson(report.stored.id)},
+                   {"reproduced", report.differences.empty()},
+                   {"stored_hash", fmt::format("{:016x}", report.stored_result.hash)},
+                   {"hash", fmt::format("{:016x}", report.replayed.hash)},
+                   {"differences", report.differences},
+                   {"disturbances", std::move(disturbances)},
+                   {"verdict", NameOf(report.replayed.verdict)},
+                   {"message", TextOrNull(report.replayed.message)},
+                   {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json(nullptr)},
+                   {"total_failure", report.replayed.failure.total},
+                   {"failure", TextOrNull(report.replayed.failure.label)},
+                   {"metrics", std::move(metrics)}});
 }
 
 }  // namespace gauntlet::master

@@ -167,7 +167,7 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
   std::string text = fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
                                  Printable(summary.experiment), summary.searches.size(), finished,
                                  FormatCount(summary.runs_done), FormatCount(summary.total_failures));
-  if (summary.nondeterministic) text += kNotReproducible;
+  if (summary.nondeterministic > 0) text += kNotReproducible;
   Table table({{"search", Align::kRight},
                {"settings", Align::kLeft},
                {"generation", Align::kRight},
@@ -202,7 +202,7 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
   std::string text =
       fmt::format("{}: {}, seed {}, {}\n\n", Printable(summary.experiment), NameOfSearch(summary),
                   summary.seed, summary.finished ? "finished" : "not finished");
-  if (summary.nondeterministic) text += kNotReproducible;
+  if (summary.nondeterministic > 0) text += kNotReproducible;
   if (summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
                         FormatCount(summary.runs_done));

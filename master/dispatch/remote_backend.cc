@@ -9,6 +9,7 @@
 #include "master/dispatch/run_codec.h"
 #include "master/dispatch/run_failure.h"
 #include "sim/base/check.h"
+#include "sim/base/printable.h"
 
 namespace gauntlet::master {
 namespace {
@@ -25,10 +26,17 @@ constexpr int kUnreachableBeats = 2;             // a connection gets this long 
 // What a process said just before its end, its goodbye above all, is heard first.
 constexpr milliseconds kLastWords{200};
 constexpr std::size_t kShownBytes = 300;  // of a text that came from a worker
+// Workers turned away of which events are made, for each of these times; the others are counted.
+constexpr int kRefusalsTold = 10;
+constexpr std::chrono::minutes kRefusalsToldFor{1};
 
-std::string Shorten(const std::string& text) {
-  if (text.size() <= kShownBytes) return text;
-  return "..." + text.substr(text.size() - kShownBytes);
+// The end of a text, fit for a line of a log or a terminal.
+std::string Shorten(std::string_view text) {
+  if (text.size() <= kShownBytes) return Printable(text);
+  text.remove_prefix(text.size() - kShownBytes);
+  const auto in_character = [&text] { return (static_cast<unsigned char>(text.front()) & 0xC0U) == 0x80U; };
+  while (!text.empty() && in_character()) text.remove_prefix(1);
+  return "..." + Printable(text);
 }
 
 // Those of `names` that are not in `others`, "a, b".
@@ -121,7 +129,7 @@ Status RemoteBackend::SupervisePool(TimePoint now) {
   next_supervision_ = now + kLongestWait;
   pool_->Observe(ViewForPool(), now);
   Result<std::vector<pid_t>> ended = pool_->Supervise(now);
-  for (DispatchEvent& event : pool_->TakeEvents()) Report(std::move(event.kind), std::move(event.text));
+  for (DispatchEvent& event : pool_->TakeEvents()) Report(std::move(event.kind), event.text);
   if (!ended) return ended.error();
   for (const pid_t pid : *ended) {
     // Should a worker elsewhere have the same pid, it is taken back at its next heartbeat.
@@ -243,9 +251,7 @@ void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimeP
   const std::string label = fmt::format("{:016x}@{}", hello.instance_id, Shorten(hello.host));
   if (const std::string reason = ReasonToRefuse(hello); !reason.empty()) {
     transport_.Send(peer, EncodeRefused(reason));
-    ++refused_;
-    last_refusal_ = reason;
-    Report("worker-refused", fmt::format("worker {} was refused: {}", label, reason));
+    ReportRefusal(label, reason, now);
     return;
   }
   const auto other = instances_.find(peer);
@@ -292,13 +298,13 @@ void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
   }
 
   if (!result) {
-    if (specs_.contains(message.run)) stderr_tails_[message.run] = message.stderr_tail;
     const Answer answer = scheduler_.Failed(worker, message.fence, message.run, *message.failure);
     if (answer == Answer::kUnwanted) ForgetSpec(message.run);
     if (answer == Answer::kRejected) {
       Reject("lease", fmt::format("worker {} reported on a lease that is not its own", LabelOf(worker)));
     } else if (answer == Answer::kAccepted) {
       const bool own = message.failure->kind != FailureKind::kExternal;
+      if (own) stderr_tails_[message.run] = message.stderr_tail;
       Report(own ? "runner-failure" : "run-returned",
              fmt::format("run {} {} on worker {} (lease {:x}){}{}", message.run,
                          DescribeFailure(*message.failure), LabelOf(worker), message.fence,
@@ -318,6 +324,7 @@ void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
       FinishedRun& finished = finished_.back();
       finished.encoded = as_it_came ? std::move(message.result) : EncodeStoredResult(finished.result);
       ForgetSpec(message.run);
+      stderr_tails_.erase(message.run);
       break;
     }
     case Answer::kRejected:
@@ -333,7 +340,6 @@ void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
 void RemoteBackend::ForgetSpec(RunId run) {
   if (scheduler_.Wanted(run)) return;
   specs_.erase(run);
-  stderr_tails_.erase(run);
 }
 
 void RemoteBackend::GiveLeases(TimePoint now) {
@@ -388,7 +394,7 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
   run.encoded = EncodeStoredResult(run.result);
   run.worker = LabelOf(order.worker);
   run.attempt = order.leases;
-  run.stderr_tail = stderr_tails_[order.run];
+  if (auto tail = stderr_tails_.extract(order.run)) run.stderr_tail = std::move(tail.mapped());
   Report("run-given-up", fmt::format("run {} {} in {} of {} attempts", order.run, run.result.message,
                                      order.of_last_kind, order.attempts));
   finished_.push_back(std::move(run));
@@ -531,9 +537,28 @@ std::vector<DispatchEvent> RemoteBackend::TakeEvents() {
   return std::exchange(events_, {});
 }
 
-void RemoteBackend::Report(std::string kind, std::string text) {
+void RemoteBackend::Report(std::string kind, const std::string& text) {
   if (events_.size() >= kMaxEvents) events_.erase(events_.begin(), events_.begin() + kMaxEvents / 2);
-  events_.push_back({std::move(kind), std::move(text)});
+  events_.push_back({std::move(kind), Printable(text)});
+}
+
+void RemoteBackend::ReportRefusal(const std::string& label, const std::string& reason, TimePoint now) {
+  ++refused_;
+  last_refusal_ = reason;
+  if (refusals_told_ == 0 || now >= refusals_told_since_ + kRefusalsToldFor) {
+    refusals_told_ = 0;
+    refusals_told_since_ = now;
+  }
+  if (refusals_told_ == kRefusalsTold) {
+    ++refusals_untold_;
+    return;
+  }
+  ++refusals_told_;
+  const std::uint64_t untold = std::exchange(refusals_untold_, 0);
+  Report(
+      "worker-refused",
+      fmt::format("worker {} was refused: {}{}", label, reason,
+                  untold == 0 ? "" : fmt::format(" (and {} others since the last that was told)", untold)));
 }
 
 void RemoteBackend::Reject(const std::string& kind, const std::string& text) {

@@ -78,7 +78,9 @@ class RemoteBackend final : public EvaluationBackend {
   WaitOutcome WaitForSomething(std::chrono::milliseconds timeout, bool watch);
   void Disconnect(InstanceId worker);
   std::string LabelOf(InstanceId worker) const;
-  void Report(std::string kind, std::string text);
+  // An event, its text made fit for one line.
+  void Report(std::string kind, const std::string& text);
+  void ReportRefusal(const std::string& label, const std::string& reason, TimePoint now);
   void Reject(const std::string& kind, const std::string& text);
 
   CampaignIdentity identity_;
@@ -91,7 +93,7 @@ class RemoteBackend final : public EvaluationBackend {
   Scheduler scheduler_;
   std::unordered_map<RunId, std::string> specs_;  // of runs that somebody may have to simulate
   std::unordered_map<RunId, std::string>
-      stderr_tails_;  // of those of them that failed, their newest failure's
+      stderr_tails_;  // of a run's newest failure of its own, until it ends
   std::map<InstanceId, Connection> connections_;
   std::unordered_map<PeerId, InstanceId> instances_;
   ProcessWatch processes_;                               // of the workers on this machine
@@ -107,6 +109,9 @@ class RemoteBackend final : public EvaluationBackend {
   std::uint64_t rejected_ = 0;
   std::uint64_t refused_ = 0;
   std::string last_refusal_;
+  int refusals_told_ = 0;
+  TimePoint refusals_told_since_{};
+  std::uint64_t refusals_untold_ = 0;
   std::set<std::string> rejected_kinds_;  // already reported
   TransportRejections reported_rejections_;
   // Kept to reuse their memory.

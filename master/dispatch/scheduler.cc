@@ -57,7 +57,7 @@ void Scheduler::Advance(TimePoint now) {
 }
 
 void Scheduler::RunTook(double seconds) {
-  if (!(seconds >= 0.0)) return;
+  if (!(seconds >= 0.0) || !std::isfinite(seconds)) return;
   predicted_seconds_ = predicted_seconds_ < 0.0
                            ? seconds
                            : predicted_seconds_ + kPredictionGain * (seconds - predicted_seconds_);
@@ -218,7 +218,8 @@ void Scheduler::List(InstanceId id, Worker& worker) {
   Unlist(id, worker);
   if (worker.lost || worker.draining || worker.blocked) return;
   const std::uint32_t credit = Credit();
-  const std::size_t most = std::size_t{worker.slots} * credit;
+  const std::size_t least = std::size_t{worker.slots} * options_.credit;
+  const std::size_t most = std::max(least, std::min(std::size_t{worker.slots} * credit, kMostAtAWorker));
   // Many short runs are leased at once, when half of them are done: then a message costs a fraction.
   worker.filled = worker.live.size() >= most ||
                   (worker.filled && credit > options_.credit && worker.live.size() > most / 2);

@@ -154,6 +154,8 @@ class Scheduler {
 
  private:
   static constexpr int kChecksPerHeartbeat = 8;  // for what is silent or slow
+  // Leases, unless its slots need more: a worker keeps 4,096 that wait, and gives the others back.
+  static constexpr std::size_t kMostAtAWorker = 4096;
 
   enum class LeaseState { kLive, kOrphaned, kCancelled, kAnswered };
   struct Lease {

@@ -52,6 +52,8 @@ ResultMessage From(v1::LeaseResult& result) {
     v1::RunnerFailure& failure = *result.mutable_failure();
     message.failure = RunFailure{KindOf(failure.kind()), failure.signal(), failure.exit_code()};
     message.stderr_tail = std::move(*failure.mutable_stderr_tail());
+    if (message.stderr_tail.size() > kMostStderrTail)
+      message.stderr_tail.erase(0, message.stderr_tail.size() - kMostStderrTail);
   }
   return message;
 }

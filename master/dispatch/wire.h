@@ -37,12 +37,15 @@ struct HeartbeatMessage {
   std::vector<Fence> held;
 };
 
+// Workers send no more; of a longer one the end is kept.
+inline constexpr std::size_t kMostStderrTail = 4096;
+
 struct ResultMessage {
   Fence fence = 0;
   RunId run = 0;
   std::string result;  // serialized RunResult; empty when the runner failed
   std::optional<RunFailure> failure;
-  std::string stderr_tail;
+  std::string stderr_tail;  // at most kMostStderrTail bytes, the end
   double cpu_seconds = 0.0;
 };
 

@@ -1,5 +1,9 @@
 #include "sim/base/printable.h"
 
+#include <algorithm>
+
+#include "sim/base/utf8.h"
+
 namespace gauntlet {
 namespace {
 
@@ -12,21 +16,21 @@ std::string HexEscape(unsigned byte) {
 
 std::string Printable(std::string_view text) {
   std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
+  for (std::size_t i = 0; i < text.size();) {
     const auto byte = static_cast<unsigned char>(text[i]);
-    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0U;
+    const std::size_t length = Utf8Length(text, i);
     if (byte == '\n') {
       out += "\\n";
     } else if (byte == '\t') {
       out += "\\t";
-    } else if (byte < 0x20U || byte == 0x7FU) {
+    } else if (length == 0 || byte < 0x20U || byte == 0x7FU) {
       out += HexEscape(byte);
-    } else if (byte == 0xC2U && next >= 0x80U && next < 0xA0U) {  // a control character of two bytes
-      out += HexEscape(next);
-      ++i;
+    } else if (length == 2 && byte == 0xC2U && static_cast<unsigned char>(text[i + 1]) < 0xA0U) {
+      out += HexEscape(static_cast<unsigned char>(text[i + 1]));
     } else {
-      out += text[i];
+      out += text.substr(i, length);
     }
+    i += std::max<std::size_t>(length, 1);
   }
   return out;
 }

@@ -6,8 +6,8 @@
 
 namespace gauntlet {
 
-// The text with its control characters (ESC, line breaks, also U+0080 to U+009F) written as escapes of C:
-// names of files may hold anything, and a terminal obeys some of it.
+// The text with its control characters (ESC, line breaks, also U+0080 to U+009F) and its bytes that are not
+// UTF-8 written as escapes of C: names of files may hold anything, and a terminal obeys some of it.
 std::string Printable(std::string_view text);
 
 }  // namespace gauntlet

@@ -246,6 +246,7 @@ TEST_F(WorkerDrill, TwoAnswersThatDifferMarkTheCampaignAndNameBothWorkers) {
   EXPECT_THAT(MasterLog(dir_), HasSubstr("0000000000001111@scripted gave"));
   EXPECT_EQ(master_->Wait().exit_code, 0);
   EXPECT_TRUE(Show(dir_).value("nondeterministic", false));
+  EXPECT_EQ(StatusOf(dir_).at("nondeterministic"), 1);
 }
 
 // What an eavesdropper of the first master's time could send to the second: results, heartbeats and a hello

@@ -1,4 +1,4 @@
-// Parts of runners that need no process: what an exit means, the frames of the pipe, texts.
+// Parts of runners that need no process: what an exit means, the frames of the pipe.
 #include "worker/runner.h"
 
 #include <gmock/gmock.h>
@@ -9,7 +9,6 @@
 #include <csignal>
 
 #include "worker/pipe.h"
-#include "worker/utf8.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -110,22 +109,6 @@ TEST(FrameBufferTest, AnAbsurdLengthIsDamage) {
   SocketPair pair = std::move(MakeSocketPair(SOCK_STREAM)).value();
   ASSERT_EQ(send(pair.first.get(), "\xff\xff\xff\xffxxxx", 8, 0), 8);
   EXPECT_EQ(FrameBuffer().ReadFrom(pair.second.get(), FrameBuffer::Wait::kYes), FrameBuffer::State::kDamaged);
-}
-
-TEST(Utf8Test, KeepsWhatIsWellFormedAndReplacesTheRest) {
-  EXPECT_EQ(ToUtf8("Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\xa4\x96\n"),
-            "Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\xa4\x96\n");
-  EXPECT_EQ(ToUtf8("a\xff\xc3"), "a??") << "a lone lead byte at the end";
-  EXPECT_EQ(ToUtf8("\xc0\xaf"), "??") << "overlong form of '/'";
-  EXPECT_EQ(ToUtf8("\xed\xa0\x80"), "???") << "surrogate";
-  EXPECT_EQ(ToUtf8("\xf4\x90\x80\x80"), "????") << "beyond U+10FFFF";
-  EXPECT_EQ(ToUtf8("\x1b[31mred\t"), "?[31mred\t") << "no terminal commands from a run";
-}
-
-RC_GTEST_PROP(Utf8Property, TheResultIsAlwaysUtf8AndNoLonger, (const std::string& bytes)) {
-  const std::string clean = ToUtf8(bytes);
-  RC_ASSERT(IsUtf8(clean));
-  RC_ASSERT(clean.size() == bytes.size());
 }
 
 }  // namespace

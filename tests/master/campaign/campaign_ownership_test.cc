@@ -10,6 +10,7 @@
 
 #include <array>
 #include <filesystem>
+#include <fstream>
 
 #include "tests/master/store/store_records.h"
 
@@ -87,6 +88,24 @@ TEST_F(CampaignOwnershipTest, OneMasterAtATimeAndNoReadersMeanwhile) {
     EXPECT_THAT(error.message, HasSubstr(dir_));
   }
   EXPECT_TRUE(owner->directory.CheckEpoch(1).ok()) << "a refused master counted an epoch";
+}
+
+// `stop` of a user who saw the former master is not for the next; one that comes while the next checks what
+// is stored is.
+TEST_F(CampaignOwnershipTest, WhatTheFormerMasterLeftIsGoneOnceTheNextHasTheCampaign) {
+  std::string stop;
+  std::string status;
+  {
+    const Result<CampaignOwnership> former = Create();
+    ASSERT_TRUE(former.ok());
+    stop = former->directory.stop_path();
+    status = former->directory.status_path();
+  }
+  for (const std::string& path : {stop, status}) std::ofstream(path) << "{}";
+  const Result<CampaignOwnership> next = TakeCampaign(dir_);
+  ASSERT_TRUE(next.ok());
+  EXPECT_FALSE(std::filesystem::exists(stop));
+  EXPECT_FALSE(std::filesystem::exists(status));
 }
 
 TEST_F(CampaignOwnershipTest, AnExistingCampaignIsNotMadeAnew) {

@@ -46,5 +46,23 @@ TEST(CampaignStatusTest, ALeaseBeyondTheSlotsWaits) {
   EXPECT_EQ(runs.at(1).at("attempt"), 3);
 }
 
+TEST(CampaignStatusTest, WordsOfOthersThatAreNotUtf8AreShownAllTheSame) {
+  BackendView backend;
+  backend.pool_trouble = "sbatch: erreur \xe9";
+  backend.allocations.push_back({"12", "PENDING", "\xff", "\xff", 0, false});
+  backend.workers.emplace_back().label = "\xff";
+  const auto json = nlohmann::json::parse(StatusJson({}, {}, backend));
+  EXPECT_EQ(json.at("pool_trouble"), "sbatch: erreur \ufffd");
+}
+
+// A master's own count begins at 0 when it starts; what its predecessors found still voids the claims.
+TEST(CampaignStatusTest, DifferencesUnderFormerMastersCount) {
+  MasterView master;
+  master.nondeterministic_before = 2;
+  CampaignProgress progress;
+  progress.workers.nondeterministic = 1;
+  EXPECT_EQ(nlohmann::json::parse(StatusJson(master, progress, {})).at("nondeterministic"), 3);
+}
+
 }  // namespace
 }  // namespace gauntlet::master

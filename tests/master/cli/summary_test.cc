@@ -144,7 +144,7 @@ TEST(SummaryText, AnEmptyCampaignIsNoProblem) {
 
 TEST(SummaryText, NondeterminismIsShouted) {
   CampaignSummary summary = Evolved();
-  summary.nondeterministic = true;
+  summary.nondeterministic = 1;
   EXPECT_THAT(SummaryText(summary, {"gauntlet", "d"}),
               HasSubstr("WARNING: the same run gave different results"));
 }

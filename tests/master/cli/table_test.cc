@@ -6,8 +6,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "sim/base/printable.h"
-
 namespace gauntlet::master {
 namespace {
 
@@ -37,15 +35,6 @@ TEST(Table, CountsCharactersNotBytes) {
   EXPECT_EQ(table.ToText(0),
             "D\u00fcsseldorf   |\n"
             "Duesseldorf  |\n");
-}
-
-TEST(Printable, EscapesWhatATerminalWouldObey) {
-  EXPECT_EQ(Printable("plain \u00fcber"), "plain \u00fcber");
-  EXPECT_EQ(Printable("a\nb\tc\x1b[31m\x7f"), "a\\nb\\tc\\x1b[31m\\x7f");
-  EXPECT_EQ(Printable("\xc2\x9b"
-                      "31m"),
-            "\\x9b31m");
-  EXPECT_EQ(Printable("\u00a0"), "\u00a0");
 }
 
 TEST(Wrapped, BreaksAtBlanksAndIndents) {

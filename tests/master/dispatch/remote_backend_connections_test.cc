@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "sim/base/printable.h"
+#include "sim/base/utf8.h"
 #include "tests/master/dispatch/remote_backend_fixture.h"
 
 namespace gauntlet::master {
@@ -84,6 +88,50 @@ TEST_F(RemoteBackendTest, AWorkerThatDoesNotReadGetsNoLease) {
   SendHeartbeat("a");
   Poll();
   EXPECT_THAT(LeasesSentTo("a"), SizeIs(1));
+}
+
+// 150 characters of two bytes each, one more than is shown, and a terminal's command.
+TEST_F(RemoteBackendTest, WhatAStrangerSaysOfItselfIsShownAsOneLineOfUtf8) {
+  std::string text = "\x1b[2J\n";
+  for (int i = 0; i < 150; ++i) text += "\u00e9";
+  text += "x";
+  v1::Hello hello = HelloOf(kAnna);
+  hello.set_host(text);
+  hello.set_allocation(text);
+  SayHello("a", hello);
+  hello = HelloOf(kBert);
+  hello.set_campaign_id(text);
+  SayHello("b", hello);
+  Poll();
+  const BackendView view = backend_->Describe();
+  ASSERT_THAT(view.workers, SizeIs(1));
+  EXPECT_TRUE(IsUtf8(view.workers[0].label)) << view.workers[0].label;
+  EXPECT_TRUE(IsUtf8(view.workers[0].allocation));
+  EXPECT_TRUE(IsUtf8(view.last_refusal)) << view.last_refusal;
+  ASSERT_THAT(Sent("b"), SizeIs(1)) << "and protobuf takes it";
+  hello.set_campaign_id("\x1b[2J\nNONDETERMINISTIC");
+  SayHello("b", hello);
+  Poll();
+  EXPECT_THAT(backend_->Describe().last_refusal, HasSubstr("\\x1b[2J\\nNONDETERMINISTIC"));
+  for (const DispatchEvent& event : backend_->TakeEvents()) EXPECT_EQ(event.text, Printable(event.text));
+}
+
+TEST_F(RemoteBackendTest, StrangersCannotFillTheLog) {
+  v1::Hello hello = HelloOf(kAnna);
+  hello.set_campaign_id("other");
+  const auto refused = [&](int times) {
+    for (int i = 0; i < times; ++i) SayHello("a", hello);
+    Poll();
+    const std::string told = EventsOf("worker-refused");
+    return std::pair(std::count(told.begin(), told.end(), '\n'), told);
+  };
+  EXPECT_EQ(refused(25).first, 10);
+  EXPECT_EQ(refused(25).first, 0) << "and none again within the minute";
+  EXPECT_EQ(backend_->Describe().refused_workers, 50U) << "but all are counted";
+  clock_.Advance(std::chrono::minutes(1));
+  const auto [count, told] = refused(1);
+  EXPECT_EQ(count, 1);
+  EXPECT_THAT(told, HasSubstr("(and 40 others since the last that was told)"));
 }
 
 }  // namespace

@@ -126,5 +126,50 @@ TEST_F(RemoteBackendTest, AnAnswerToSomebodyElsesLeaseIsRejected) {
   EXPECT_EQ(backend_->Statistics().rejected_messages, 1U);
 }
 
+// What the bundle of a run shows is what its own last failure printed: neither a worker without its lease nor
+// one that gives the run back replaces it.
+TEST_F(RemoteBackendTest, OnlyAFailureThatCountsLeavesItsOutput) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("a", HelloOf(kAnna));
+  SayHello("b", HelloOf(kBert));
+  Poll();
+  PeerId holder;
+  v1::Lease lease;
+  const auto see_who_has_it = [&] {
+    for (const PeerId peer : {"a", "b"}) {
+      for (const v1::Lease& given : LeasesSentTo(peer)) {
+        holder = peer;
+        lease = given;
+      }
+    }
+  };
+  std::vector<FinishedRun> finished;
+  for (int attempt = 1; attempt <= 3; ++attempt) {
+    see_who_has_it();
+    SendFailure(holder, lease, v1::RunnerFailure::KIND_EXTERNAL, 15, "drained");
+    Poll();
+    see_who_has_it();
+    SendFailure(holder, lease, v1::RunnerFailure::KIND_CRASHED, 6, fmt::format("attempt {}", attempt));
+    SendFailure(holder == "a" ? "b" : "a", lease, v1::RunnerFailure::KIND_CRASHED, 6, "not mine");
+    finished = Poll();
+  }
+  ASSERT_THAT(finished, SizeIs(1));
+  EXPECT_EQ(finished[0].stderr_tail, "attempt 3");
+}
+
+TEST_F(RemoteBackendTest, OfALongOutputTheEndIsKept) {
+  backend_->Submit({{1, "spec"}});
+  SayHello("p", HelloOf(kAnna));
+  std::vector<FinishedRun> finished;
+  for (int attempt = 1; attempt <= 3; ++attempt) {
+    Poll();
+    SendFailure("p", LeasesSentTo("p").at(0), v1::RunnerFailure::KIND_CRASHED, 6,
+                std::string(100'000, 'x') + "the end");
+    finished = Poll();
+  }
+  ASSERT_THAT(finished, SizeIs(1));
+  EXPECT_EQ(finished[0].stderr_tail, std::string(4096 - 7, 'x') + "the end");
+}
+
 }  // namespace
 }  // namespace gauntlet::master

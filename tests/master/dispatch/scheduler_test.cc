@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <algorithm>
 #include <cmath>
 
@@ -419,12 +421,20 @@ TEST_F(SchedulerTest, ShortRunsAreLeasedAheadUntilEnoughWorkWaits) {
   complete_all(0.001);
   EXPECT_THAT(leases, SizeIs(20));
   scheduler_.RunTook(std::nan(""));
+  scheduler_.RunTook(std::numeric_limits<double>::infinity());
   for (int i = 0; i < 200; ++i) scheduler_.RunTook(60.0);
   complete_all(60.0);
   EXPECT_THAT(leases, SizeIs(2)) << "one at a time again";
   for (int i = 0; i < 2000; ++i) scheduler_.RunTook(0.0);
   complete_all(0.0);
   EXPECT_THAT(leases, SizeIs(512)) << "most_credit for each slot";
+}
+
+TEST_F(SchedulerTest, NoWorkerIsGivenMoreShortRunsThanItKeeps) {
+  SubmitRuns(1, 9000);
+  for (int i = 0; i < 200; ++i) scheduler_.RunTook(0.0);
+  Join(10, 64);
+  EXPECT_THAT(Decide().leases, SizeIs(4096)) << "not 64 * 256";
 }
 
 TEST_F(SchedulerTest, WorkerWithManyShortRunsIsGivenMoreWhenHalfOfThemAreDone) {

@@ -1,13 +1,10 @@
-#include "worker/utf8.h"
+#include "sim/base/utf8.h"
 
-#include <cstddef>
 #include <cstdint>
 
-namespace gauntlet::worker {
-namespace {
+namespace gauntlet {
 
-// Length of the well-formed sequence that begins at `position`, 0 when there is none (RFC 3629, section 4).
-std::size_t SequenceLength(std::string_view text, std::size_t position) {
+std::size_t Utf8Length(std::string_view text, std::size_t position) {
   const auto byte = [&](std::size_t i) -> unsigned {
     return position + i < text.size() ? static_cast<std::uint8_t>(text[position + i]) : 0u;
   };
@@ -28,6 +25,8 @@ std::size_t SequenceLength(std::string_view text, std::size_t position) {
   return 0;
 }
 
+namespace {
+
 bool IsControl(char c) {
   const auto value = static_cast<std::uint8_t>(c);
   return (value < 0x20 && c != '\n' && c != '\t') || value == 0x7F;
@@ -37,7 +36,7 @@ bool IsControl(char c) {
 
 bool IsUtf8(std::string_view text) {
   for (std::size_t position = 0; position < text.size();) {
-    const std::size_t length = SequenceLength(text, position);
+    const std::size_t length = Utf8Length(text, position);
     if (length == 0) return false;
     position += length;
   }
@@ -48,7 +47,7 @@ std::string ToUtf8(std::string_view text) {
   std::string clean;
   clean.reserve(text.size());
   for (std::size_t position = 0; position < text.size();) {
-    const std::size_t length = SequenceLength(text, position);
+    const std::size_t length = Utf8Length(text, position);
     if (length == 0 || (length == 1 && IsControl(text[position]))) {
       clean.push_back('?');
       ++position;
@@ -60,4 +59,4 @@ std::string ToUtf8(std::string_view text) {
   return clean;
 }
 
-}  // namespace gauntlet::worker
+}  // namespace gauntlet
