@@ -100,6 +100,31 @@ TEST_F(HostilePeer, AWorkerThatDiffersIsToldInWhatAndGetsNothing) {
   EXPECT_THAT(MasterLog(dir_), HasSubstr("worker-refused"));
 }
 
+// Words of 302 bytes, of which the end is shown: it begins inside a character. And a terminal's command.
+TEST_F(HostilePeer, WordsThatNobodyCanReadAreShownToPeopleAndEndNothing) {
+  campaign_.generations = 5;
+  hash_ = UndisturbedHash(campaign_);
+  Begin();
+  std::string words = "\x1b";
+  for (int i = 0; i < 150; ++i) words += "\u00e9";
+  words += "x";
+  ScriptedWorker admitted(dir_, 0x666);
+  admitted.hello().host = words;
+  admitted.hello().allocation = words;
+  ASSERT_TRUE(admitted.Join());
+  EXPECT_TRUE(testing_support::StatusBecomes(
+      dir_, [](const nlohmann::json& status) { return status.value("workers", 0) == 2; }));
+  EXPECT_THAT(testing_support::Gauntlet({"status", dir_}).out, testing::Not(HasSubstr("\x1b")));
+  admitted.Say(worker::Goodbye{words});
+  ScriptedWorker refused(dir_, 0x667);
+  ASSERT_TRUE(refused.Connect());
+  refused.hello().campaign_id = words;
+  refused.Say(refused.hello());
+  EXPECT_TRUE(refused.HearA<worker::Refused>());
+  ExpectTheUndisturbedResult();
+  EXPECT_THAT(MasterLog(dir_), testing::Not(HasSubstr("\x1b")));
+}
+
 // Each sort of connection that costs its owner nothing: silent, half a greeting, a whole one, a whole
 // handshake, a handshake and garbage.
 TEST_F(HostilePeer, TenThousandConnectionsAndHalfGreetings) {
