@@ -172,9 +172,7 @@ class Supervisor::Loop {
   }
   void Do(const Reconnect&) {
     RereadAccess();
-    if (exit_code_) return;
-    ++attempts_;
-    Connect();
+    if (!exit_code_) Connect();
   }
   void Do(const Note& note) { LogOnce(note.kind, fmt::format("{} ({})", note.text, endpoint_)); }
   void Do(const Exit& exit) {
@@ -204,12 +202,12 @@ class Supervisor::Loop {
     }
     if (*access == access_) return false;
     access_ = std::move(*access);
-    attempts_ = 0;
+    next_endpoint_ = 0;
     return true;
   }
 
   bool Connect() {
-    endpoint_ = access_.endpoints[attempts_ % access_.endpoints.size()];
+    endpoint_ = access_.endpoints[next_endpoint_++ % access_.endpoints.size()];
     const Status opened = connection_.Open(endpoint_, access_.curve);
     if (opened.ok()) {
       spdlog::debug("connecting to {}", endpoint_);
@@ -227,7 +225,7 @@ class Supervisor::Loop {
   SupervisorOptions options_;
   Access access_;
   int signals_;
-  std::size_t attempts_ = 0;  // connections made since access.json changed: picks the endpoint
+  std::size_t next_endpoint_ = 0;  // modulo their number; a changed access.json is tried from its first one
   std::string endpoint_;
   Connection connection_;
   RunnerPool pool_;

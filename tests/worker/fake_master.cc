@@ -24,14 +24,14 @@ FakeMaster::FakeMaster(const std::string& access_path, std::uint64_t epoch, cons
     : socket_(std::make_unique<Socket>()), epoch_(epoch) {
   socket_->router.set(zmq::sockopt::linger, 0);
   socket_->router.bind("tcp://127.0.0.1:*");
-  const std::string temporary = access_path + ".new";
-  std::ofstream(temporary) << fmt::format(
-      R"({{"format": 1, "campaign": "{}", "epoch": {}, "endpoints": ["{}"]}})", campaign, epoch,
-      socket_->router.get(zmq::sockopt::last_endpoint));
-  std::rename(temporary.c_str(), access_path.c_str());
+  WriteAccess(access_path, epoch, {endpoint()}, campaign);
 }
 
 FakeMaster::~FakeMaster() = default;
+
+std::string FakeMaster::endpoint() const {
+  return socket_->router.get(zmq::sockopt::last_endpoint);
+}
 
 std::optional<Incoming> FakeMaster::Next(milliseconds deadline) {
   zmq::pollitem_t item{socket_->router.handle(), 0, ZMQ_POLLIN, 0};
@@ -117,6 +117,15 @@ std::optional<v1::LeaseResult> FakeMaster::AwaitResult(const std::string& peer, 
     return incoming->envelope.lease_result();
   }
   return std::nullopt;
+}
+
+void WriteAccess(const std::string& path, std::uint64_t epoch, const std::vector<std::string>& endpoints,
+                 const std::string& campaign) {
+  const std::string temporary = path + ".new";
+  std::ofstream(temporary) << fmt::format(
+      R"({{"format": 1, "campaign": "{}", "epoch": {}, "endpoints": ["{}"]}})", campaign, epoch,
+      fmt::join(endpoints, R"(", ")"));
+  std::rename(temporary.c_str(), path.c_str());
 }
 
 std::string SpecBytes(std::uint64_t what, const std::string& scenario, bool record_trajectory) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "proto/protocol.pb.h"
 
@@ -22,6 +23,7 @@ class FakeMaster {
   // Listens on a free port and writes `access_path`.
   FakeMaster(const std::string& access_path, std::uint64_t epoch, const std::string& campaign = "c0ffee");
   ~FakeMaster();
+  std::string endpoint() const;
 
   // The next message of any worker; nullopt at the deadline. Garbage fails the test.
   std::optional<Incoming> Next(std::chrono::milliseconds deadline);
@@ -49,6 +51,10 @@ class FakeMaster {
   std::unique_ptr<Socket> socket_;
   std::uint64_t epoch_;
 };
+
+// In one step, as a master does.
+void WriteAccess(const std::string& path, std::uint64_t epoch, const std::vector<std::string>& endpoints,
+                 const std::string& campaign = "c0ffee");
 
 std::string SpecBytes(std::uint64_t what, const std::string& scenario = "", bool record_trajectory = false);
 

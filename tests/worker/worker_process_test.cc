@@ -387,6 +387,20 @@ TEST_F(WorkerProcessTest, RunOutlivesItsMasterAndIsHandedToTheNextOne) {
   EXPECT_TRUE(second.AwaitResult(peer, 6).has_value());
 }
 
+TEST_F(WorkerProcessTest, SuccessorIsSoughtAtItsFirstEndpointFirst) {
+  auto former = std::make_unique<FakeMaster>(access_path_, 1);
+  const auto worker = StartWorker();
+  former->WelcomeOne();
+  former.reset();
+  FakeMaster first(directory_ / "first.json", 2);
+  FakeMaster second(directory_ / "second.json", 2);
+  WriteAccess(access_path_, 2, {first.endpoint(), second.endpoint()});
+  EXPECT_NE(first.WelcomeOne(), "") << worker->Err();
+  EXPECT_FALSE(second.Next(milliseconds(0)).has_value()) << "the first one had its turn later";
+  // Nobody answers any more: the next one has its turn.
+  EXPECT_TRUE(second.Await(v1::Envelope::kHello).has_value());
+}
+
 TEST_F(WorkerProcessTest, WaitsForAnAccessFileThatComesLate) {
   const auto worker = StartWorker();
   ASSERT_TRUE(Eventually([&] { return worker->Err().find("waiting for") != std::string::npos; }, kDeadline));
