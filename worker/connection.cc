@@ -20,6 +20,8 @@ constexpr int kReconnectMaxMs = 2000;
 struct Connection::Socket {
   zmq::context_t context{1};
   zmq::socket_t dealer;
+  zmq::socket_t monitor;  // tells of every handshake of `dealer`
+  int opened = 0;
 };
 
 Connection::Connection() : socket_(std::make_unique<Socket>()) {}
@@ -44,9 +46,19 @@ Status Connection::Open(const std::string& endpoint, const std::optional<CurveKe
       dealer.set(zmq::sockopt::curve_publickey, curve->worker_public);
       dealer.set(zmq::sockopt::curve_secretkey, curve->worker_secret);
     }
+    const std::string events = fmt::format("inproc://connection-{}", ++socket_->opened);
+    if (zmq_socket_monitor(dealer.handle(), events.c_str(), ZMQ_EVENT_HANDSHAKE_SUCCEEDED) != 0) {
+      throw zmq::error_t();
+    }
+    zmq::socket_t monitor(socket_->context, zmq::socket_type::pair);
+    monitor.set(zmq::sockopt::linger, 0);
+    monitor.connect(events);
     dealer.connect(endpoint);
     fd_ = dealer.get(zmq::sockopt::fd);
+    monitor_fd_ = monitor.get(zmq::sockopt::fd);
+    stood_ = false;
     socket_->dealer = std::move(dealer);
+    socket_->monitor = std::move(monitor);
   } catch (const zmq::error_t& error) {
     return InvalidInput(fmt::format("cannot connect to {}: {}", endpoint, error.what()));
   }
@@ -79,6 +91,21 @@ std::optional<std::string> Connection::Receive() {
   } catch (const zmq::error_t&) {
     return std::nullopt;
   }
+}
+
+bool Connection::TakeRestored() {
+  bool restored = false;
+  try {
+    zmq::message_t event;
+    while (socket_->monitor && socket_->monitor.recv(event, zmq::recv_flags::dontwait)) {
+      // An event has two frames, of which the second, the address, is the last.
+      if (!event.more()) restored = std::exchange(stood_, true) || restored;
+    }
+  } catch (const zmq::error_t&) {
+    // Interrupted by a signal: the next call reads on.
+  }
+  if (restored) outbox_.clear();
+  return restored;
 }
 
 bool Connection::Readable() {

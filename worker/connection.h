@@ -32,15 +32,22 @@ class Connection {
   std::optional<std::string> Receive();
   // Whether Receive has something.
   bool Readable();
+  // True once after the connection broke and stands again, which ZeroMQ does by itself: for the other side it
+  // is a new one, of a stranger. Nothing waits to be sent then, for it was meant for the former connection.
+  bool TakeRestored();
   // Readable when the state of the connection may have changed: ask Readable() and Flush() before sleeping on
   // it, for a change is announced once. -1 before Open.
   int fd() const { return fd_; }
+  // The same for TakeRestored.
+  int monitor_fd() const { return monitor_fd_; }
 
  private:
   struct Socket;
   std::unique_ptr<Socket> socket_;
   std::deque<std::string> outbox_;
   int fd_ = -1;
+  int monitor_fd_ = -1;
+  bool stood_ = false;  // since Open
 };
 
 }  // namespace gauntlet::worker

@@ -53,6 +53,10 @@ class Supervisor::Loop {
         return kExitDone;
       }
       ReadSignals();
+      if (connection_.TakeRestored()) {
+        LogOnce("restored", "the connection to the master broke and stands again: saying hello again");
+        Tell(ConnectionRestored{});
+      }
       connection_.Flush();
       ReadMessages();
       HandlePoolEvents();
@@ -70,6 +74,7 @@ class Supervisor::Loop {
     if (const auto nap = state_.Nap(); nap > nap.zero()) std::this_thread::sleep_for(nap);
     polled_ = pool_.Descriptors();
     polled_.push_back({.fd = signals_, .events = POLLIN, .revents = 0});
+    polled_.push_back({.fd = connection_.monitor_fd(), .events = POLLIN, .revents = 0});
     polled_.push_back({.fd = connection_.fd(), .events = POLLIN, .revents = 0});
     message_came_ = connection_.Readable();
     if (connection_.congested()) {
@@ -86,7 +91,7 @@ class Supervisor::Loop {
       for (pollfd& item : polled_) item.revents = 0;
     }
     const bool connection_changed = polled_.back().revents != 0;
-    polled_.pop_back();
+    polled_.resize(polled_.size() - 2);
     signal_came_ = interrupted || polled_.back().revents != 0;
     polled_.pop_back();
     message_came_ = message_came_ || interrupted || (connection_changed && connection_.Readable());

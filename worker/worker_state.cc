@@ -10,7 +10,8 @@
 namespace gauntlet::worker {
 namespace {
 
-// Silence after which access.json is looked at, and after which the connection is given up.
+// Silence after which access.json is looked at and Hello said again, in case the master has forgotten this
+// worker, and after which the connection is given up.
 constexpr int kUneasyHeartbeats = 3;
 constexpr int kSilentHeartbeats = 10;
 constexpr int kHellosPerConnection = 10;
@@ -91,6 +92,7 @@ std::vector<Fence> WorkerState::HeldLeases() const {
 
 void WorkerState::On(MasterMessage& message) {
   last_heard_ = now_;
+  asked_ = false;
   std::visit([this](auto& concrete) { On(concrete); }, message);
 }
 
@@ -101,12 +103,13 @@ void WorkerState::On(const Welcome& welcome) {
     return;
   }
   welcome_ = welcome;
-  if (phase_ == Phase::kWelcomed) return;  // the answer to a repeated Hello
-  phase_ = Phase::kWelcomed;
-  last_heartbeat_ = now_;
-  for (auto& [fence, finished] : finished_) {
-    finished.sent = now_;
-    Act(Send{finished.result});
+  if (phase_ != Phase::kWelcomed) {  // otherwise the answer to a repeated Hello
+    phase_ = Phase::kWelcomed;
+    last_heartbeat_ = now_;
+    for (auto& [fence, finished] : finished_) {
+      finished.sent = now_;
+      Act(Send{finished.result});
+    }
   }
   if (drain_) Act(Send{Drain{drain_->reason, true}});
 }
@@ -205,6 +208,11 @@ void WorkerState::On(const MasterMoved&) {
   GreetAgain();
 }
 
+void WorkerState::On(const ConnectionRestored&) {
+  connected_ = now_;
+  Greet();
+}
+
 void WorkerState::On(const StopRequested& stop) {
   if (!drain_) {
     drain_ = DrainPlan{.reason = stop.reason,
@@ -274,12 +282,19 @@ void WorkerState::On(const ClockTick&) {
   last_heartbeat_ = now_;
   Act(Send{Heartbeat{++sequence_, HeldLeases()}});
   ResendLateResults();
-  if (silence >= kUneasyHeartbeats * welcome_.heartbeat) Act(CheckAccess{});
+  if (silence < kUneasyHeartbeats * welcome_.heartbeat) return;
+  // Once: before a master that is merely frozen they would pile up.
+  if (!std::exchange(asked_, true)) SayHello();
+  Act(CheckAccess{});
 }
 
 void WorkerState::Greet() {
   phase_ = Phase::kGreeting;
   last_hello_ = now_;
+  SayHello();
+}
+
+void WorkerState::SayHello() {
   Hello hello = settings_.identity;
   hello.held_leases = HeldLeases();
   Act(Send{std::move(hello)});

@@ -64,14 +64,15 @@ struct RunnerDied {  // with or without a job
   RunnerFailure failure;
   double cpu_seconds = 0.0;
 };
-struct AllRunnersLost {};  // the fork server is gone: this process cannot simulate any more
-struct MasterMoved {};     // access.json names another endpoint or epoch
-struct StopRequested {     // SIGTERM, SIGINT, SIGHUP; the second one does not wait for runs
+struct AllRunnersLost {};      // the fork server is gone: this process cannot simulate any more
+struct MasterMoved {};         // access.json names another endpoint or epoch
+struct ConnectionRestored {};  // it broke and stands again: the master does not know yet whose it is
+struct StopRequested {         // SIGTERM, SIGINT, SIGHUP; the second one does not wait for runs
   std::string reason;
 };
 struct ClockTick {};
 using WorkerEvent = std::variant<MasterMessage, SlotBecameReady, RunFinished, RunnerDied, AllRunnersLost,
-                                 MasterMoved, StopRequested, ClockTick>;
+                                 MasterMoved, ConnectionRestored, StopRequested, ClockTick>;
 
 // What the driver shall do, in this order.
 struct Send {
@@ -156,10 +157,12 @@ class WorkerState {
   void On(RunnerDied& died);
   void On(const AllRunnersLost& lost);
   void On(const MasterMoved& moved);
+  void On(const ConnectionRestored& restored);
   void On(const StopRequested& stop);
   void On(const ClockTick& tick);
 
   void Act(WorkerAction action) { actions_.push_back(std::move(action)); }
+  void SayHello();
   void Greet();
   void GreetAgain();
   void ResendLateResults();
@@ -183,6 +186,7 @@ class WorkerState {
   Duration awake_{};  // time that passed, without what passed while this process was frozen
   TimePoint last_heard_;
   TimePoint connected_;  // last (re)connect while greeting
+  bool asked_ = false;   // Hello was said for the silence that lasts
   TimePoint last_hello_;
   TimePoint last_heartbeat_;
   std::uint64_t sequence_ = 0;

@@ -9,6 +9,7 @@
 
 #include "proto/run.pb.h"
 #include "sim/base/thread_sanitizer.h"
+#include "tests/support/process.h"
 
 namespace gauntlet::worker {
 
@@ -31,6 +32,24 @@ FakeMaster::~FakeMaster() = default;
 
 std::string FakeMaster::endpoint() const {
   return socket_->router.get(zmq::sockopt::last_endpoint);
+}
+
+bool FakeMaster::BreakConnections() {
+  const std::string same = endpoint();
+  socket_->router.close();
+  socket_->router = zmq::socket_t(socket_->context, zmq::socket_type::router);
+  socket_->router.set(zmq::sockopt::linger, 0);
+  // The former socket is closed by another thread.
+  return testing_support::Eventually(
+      [&] {
+        try {
+          socket_->router.bind(same);
+          return true;
+        } catch (const zmq::error_t&) {
+          return false;
+        }
+      },
+      kPatience);
 }
 
 std::optional<Incoming> FakeMaster::Next(milliseconds deadline) {

@@ -24,6 +24,8 @@ class FakeMaster {
   FakeMaster(const std::string& access_path, std::uint64_t epoch, const std::string& campaign = "c0ffee");
   ~FakeMaster();
   std::string endpoint() const;
+  // Breaks all connections and listens again at the same endpoint. False when that was not free any more.
+  bool BreakConnections();
 
   // The next message of any worker; nullopt at the deadline. Garbage fails the test.
   std::optional<Incoming> Next(std::chrono::milliseconds deadline);

@@ -387,6 +387,23 @@ TEST_F(WorkerProcessTest, RunOutlivesItsMasterAndIsHandedToTheNextOne) {
   EXPECT_TRUE(second.AwaitResult(peer, 6).has_value());
 }
 
+TEST_F(WorkerProcessTest, BrokenConnectionMakesItSayHelloAgainLongBeforeItNoticesSilence) {
+  FakeMaster master(access_path_, 1);
+  const auto worker = StartWorker();
+  std::string peer = master.WelcomeOne(0.0, 0, 600'000);
+  for (std::uint64_t fence = 5; fence < 7; ++fence) {  // it breaks twice
+    master.Lease(peer, fence, kComplete);
+    ASSERT_TRUE(master.Await(v1::Envelope::kLeaseResult).has_value());  // never acknowledged
+    ASSERT_TRUE(master.BreakConnections());
+    const auto hello = master.Await(v1::Envelope::kHello);
+    ASSERT_TRUE(hello.has_value()) << worker->Err();
+    EXPECT_THAT(hello->envelope.hello().held_leases(), testing::Contains(fence));
+    peer = master.WelcomeOne(0.0, 0, 600'000);
+    ASSERT_NE(peer, "");
+    EXPECT_TRUE(master.AwaitResult(peer, fence).has_value()) << "sent again, it may have been lost";
+  }
+}
+
 TEST_F(WorkerProcessTest, SuccessorIsSoughtAtItsFirstEndpointFirst) {
   auto former = std::make_unique<FakeMaster>(access_path_, 1);
   const auto worker = StartWorker();

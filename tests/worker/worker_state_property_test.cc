@@ -42,7 +42,7 @@ RC_GTEST_PROP(WorkerStateProperty, NoLeaseIsLostAndNoneRunsTwice, ()) {
   const int steps = *rc::gen::inRange(1, 60);
   for (int step = 0; step < steps; ++step) {
     const int slot = *rc::gen::inRange(0, slots);
-    switch (*rc::gen::inRange(0, 9)) {
+    switch (*rc::gen::inRange(0, 10)) {
       case 0:
       case 7:
       case 8:
@@ -76,6 +76,9 @@ RC_GTEST_PROP(WorkerStateProperty, NoLeaseIsLostAndNoneRunsTwice, ()) {
       }
       case 5:
         note(worker.Pass(milliseconds(*rc::gen::inRange(1, 12'000))));
+        break;
+      case 9:
+        note(worker.Do(ConnectionRestored{}));
         break;
       default:
         note(worker.Hear(Welcome{}));

@@ -231,6 +231,39 @@ TEST(WorkerStateTest, SilenceOfThreeHeartbeatsMakesItLookAtTheAccessFile) {
   EXPECT_EQ(Only<CheckAccess>(worker.Pass(milliseconds(200))).size(), 1u);
 }
 
+TEST(WorkerStateTest, SilenceOfThreeHeartbeatsMakesItSayHelloOnceAndGoOnMeanwhile) {
+  Worker worker = WelcomedWorker();
+  worker.Lease(5);
+  EXPECT_THAT(Sent<Hello>(worker.Pass(milliseconds(2900))), IsEmpty());
+  const auto hellos = Sent<Hello>(worker.Pass(seconds(7)));
+  ASSERT_EQ(hellos.size(), 1u) << "a frozen master finds one, not one for every second";
+  EXPECT_THAT(hellos[0].held_leases, ElementsAre(5));
+  EXPECT_TRUE(worker.state().welcomed());
+  EXPECT_EQ(Sent<LeaseResult>(worker.Finish(0)).size(), 1u);
+  // Another silence, another hello.
+  worker.Welcome();
+  EXPECT_EQ(Sent<Hello>(worker.Pass(seconds(4))).size(), 1u);
+}
+
+TEST(WorkerStateTest, RestoredConnectionMakesItSayHelloAtOnceAndSendAgainWhatMayBeLost) {
+  Worker worker = WelcomedWorker();
+  worker.Lease(5);
+  worker.Finish(0);
+  worker.Lease(6);
+  const auto restored = worker.Do(ConnectionRestored{});
+  EXPECT_THAT(Only<Reconnect>(restored), IsEmpty());
+  EXPECT_THAT(Only<KillRunner>(restored), IsEmpty());
+  const auto hellos = Sent<Hello>(restored);
+  ASSERT_EQ(hellos.size(), 1u);
+  EXPECT_THAT(hellos[0].held_leases, ElementsAre(5, 6));
+  EXPECT_THAT(Sent<LeaseResult>(worker.Finish(0)), IsEmpty()) << "a stranger's result is not listened to";
+  worker.Welcome();
+  const auto results = Sent<LeaseResult>(worker.last());
+  ASSERT_EQ(results.size(), 2u);
+  EXPECT_EQ(results[0].fence, 5u);
+  EXPECT_EQ(results[1].fence, 6u);
+}
+
 TEST(WorkerStateTest, SilenceOfTenHeartbeatsMakesItReconnectAndSayHelloWithWhatItHolds) {
   Worker worker = WelcomedWorker();
   worker.Lease(5);
