@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 #include <utility>
 
 #include "sim/base/check.h"
@@ -26,6 +27,15 @@ pollfd Watch(int fd, bool writing = false) {
 }
 
 }  // namespace
+
+std::string Describe(const SlotNotStarted& event) {
+  const char* hint = event.error == EAGAIN   ? " (too many processes? ulimit -u, pids.max)"
+                     : event.error == ENOMEM ? " (too little memory? ulimit -v, memory.max)"
+                     : event.error == EMFILE || event.error == ENFILE || event.error == ETOOMANYREFS
+                         ? " (too many open files? ulimit -n)"
+                         : "";
+  return fmt::format("cannot start a runner: {}{}", std::strerror(event.error), hint);
+}
 
 RunnerPool::RunnerPool(ForkServer& server, int slots)
     : server_(server), slots_(static_cast<std::size_t>(slots)) {
@@ -94,7 +104,8 @@ void RunnerPool::HandleServer(std::vector<PoolEvent>& events, TimePoint now) {
       // Whoever works these events off may give the slot another job before he comes to its end: that must
       // not reach the next runner.
       return;
-    } else if (std::holds_alternative<RunnerNotStarted>(*event)) {
+    } else if (const auto* failed = std::get_if<RunnerNotStarted>(&*event)) {
+      events.emplace_back(SlotNotStarted{failed->error});
       ++to_retry_;
       retry_at_ = now + kForkRetryDelay;
     } else {

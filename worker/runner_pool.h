@@ -36,9 +36,16 @@ struct SlotFailed {
 struct SlotEmptied {
   int slot = 0;
 };
+// No runner could be started for some slot; it is tried again.
+struct SlotNotStarted {
+  int error = 0;  // errno
+};
 // The fork server is gone and all runners with it; nothing more will come.
 struct RunnersLost {};
-using PoolEvent = std::variant<SlotReady, SlotFinished, SlotFailed, SlotEmptied, RunnersLost>;
+using PoolEvent = std::variant<SlotReady, SlotFinished, SlotFailed, SlotEmptied, SlotNotStarted, RunnersLost>;
+
+// For a person, with what may be the matter: "cannot start a runner: Resource temporarily unavailable (...)".
+std::string Describe(const SlotNotStarted& event);
 
 // Thread-safety: one calling thread.
 class RunnerPool {

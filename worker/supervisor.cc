@@ -141,6 +141,10 @@ class Supervisor::Loop {
         // It had nothing to do; what it was given since has not begun.
         Tell(RunnerDied{
             emptied->slot, {.kind = FailureKind::kExternal, .stderr_tail = "its runner had ended"}, 0.0});
+      } else if (const auto* not_started = std::get_if<SlotNotStarted>(&event)) {
+        const std::string reason = Describe(*not_started);
+        LogOnce(reason, fmt::format("{}; trying again", reason));
+        Tell(NoRunnerStarted{reason});
       } else {
         spdlog::error("the fork server ended: this worker cannot simulate any more");
         Tell(AllRunnersLost{});

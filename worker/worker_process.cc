@@ -129,6 +129,11 @@ sim::RunResult ResultOf(const RunnerFailure& failure) {
 // One job in one fresh runner.
 std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const RunnerJob& job) {
   RunnerPool pool(server, 1);
+  const auto external = [](std::string why) {
+    return RunnerFailure{
+        .kind = FailureKind::kExternal, .signal = 0, .exit_code = 0, .stderr_tail = std::move(why)};
+  };
+  std::optional<steady_clock::time_point> not_started;
   while (true) {
     pool.Flush();
     std::vector<pollfd> polled = pool.Descriptors();
@@ -143,10 +148,11 @@ std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const 
       } else if (auto* failed = std::get_if<SlotFailed>(&event)) {
         return std::move(failed->failure);
       } else if (std::holds_alternative<RunnersLost>(event)) {
-        return RunnerFailure{.kind = FailureKind::kExternal,
-                             .signal = 0,
-                             .exit_code = 0,
-                             .stderr_tail = "the fork server ended"};
+        return external("the fork server ended");
+      } else if (const auto* missing = std::get_if<SlotNotStarted>(&event)) {
+        const auto now = steady_clock::now();
+        if (!not_started) not_started = now;
+        if (now - *not_started >= kNoRunnerPatience) return external(Describe(*missing));
       }
     }
   }

@@ -153,6 +153,7 @@ void WorkerState::On(const Drain& drain) {
 // --- Runners ---
 
 void WorkerState::On(const SlotBecameReady& ready) {
+  without_runners_.reset();
   slots_.at(static_cast<std::size_t>(ready.slot)).state = SlotState::kIdle;
 }
 
@@ -187,15 +188,33 @@ void WorkerState::On(RunnerDied& died) {
           .cpu_seconds = died.cpu_seconds});
 }
 
+void WorkerState::On(const NoRunnerStarted& failed) {
+  const bool none = std::all_of(slots_.begin(), slots_.end(),
+                                [](const Slot& slot) { return slot.state == SlotState::kStarting; });
+  if (!none) {
+    without_runners_.reset();
+  } else if (!without_runners_) {
+    without_runners_ = awake_;
+  } else if (awake_ - *without_runners_ >= kNoRunnerPatience) {
+    LeaveWithoutRunners(failed.reason);
+  }
+}
+
 void WorkerState::On(const AllRunnersLost&) {
+  LeaveWithoutRunners("the fork server ended");
+}
+
+void WorkerState::LeaveWithoutRunners(const std::string& reason) {
+  if (drain_ && drain_->exit_code == kExitInternal) return;
   for (Slot& slot : slots_) {
     for (const Given& run : std::exchange(slot.runs, {})) {
-      if (run.wanted) GiveBack(run.lease, "the fork server ended");
+      if (run.wanted) GiveBack(run.lease, reason);
     }
     slot.state = SlotState::kStarting;
   }
+  for (const Lease& lease : std::exchange(waiting_, {})) GiveBack(lease, reason);
   const bool tell = !drain_;
-  drain_ = DrainPlan{.reason = "the fork server ended",
+  drain_ = DrainPlan{.reason = reason,
                      .exit_code = kExitInternal,
                      .drop_at = now_,
                      .leave_at = now_ + settings_.acknowledge_wait};

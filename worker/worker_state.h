@@ -38,6 +38,10 @@ inline constexpr int kExitRefused = 2;   // by the master, or a wrong command li
 inline constexpr int kExitOrphaned = 3;  // no master within orphan_timeout
 inline constexpr int kExitInternal = 4;
 
+// A worker that has had no runner for so long, and could start none, gives its leases back and leaves. A full
+// process table may empty itself within seconds, when other jobs of the node end.
+inline constexpr std::chrono::seconds kNoRunnerPatience{10};
+
 struct WorkerSettings {
   Hello identity;  // all but held_leases
   Duration orphan_timeout = std::chrono::seconds(600);
@@ -64,6 +68,9 @@ struct RunnerDied {  // with or without a job
   RunnerFailure failure;
   double cpu_seconds = 0.0;
 };
+struct NoRunnerStarted {  // and tried again; comes again every second or so while that fails
+  std::string reason;
+};
 struct AllRunnersLost {};      // the fork server is gone: this process cannot simulate any more
 struct MasterMoved {};         // access.json names another endpoint or epoch
 struct ConnectionRestored {};  // it broke and stands again: the master does not know yet whose it is
@@ -71,8 +78,8 @@ struct StopRequested {         // SIGTERM, SIGINT, SIGHUP; the second one does n
   std::string reason;
 };
 struct ClockTick {};
-using WorkerEvent = std::variant<MasterMessage, SlotBecameReady, RunFinished, RunnerDied, AllRunnersLost,
-                                 MasterMoved, ConnectionRestored, StopRequested, ClockTick>;
+using WorkerEvent = std::variant<MasterMessage, SlotBecameReady, RunFinished, RunnerDied, NoRunnerStarted,
+                                 AllRunnersLost, MasterMoved, ConnectionRestored, StopRequested, ClockTick>;
 
 // What the driver shall do, in this order.
 struct Send {
@@ -155,6 +162,7 @@ class WorkerState {
   void On(const SlotBecameReady& ready);
   void On(RunFinished& finished);
   void On(RunnerDied& died);
+  void On(const NoRunnerStarted& failed);
   void On(const AllRunnersLost& lost);
   void On(const MasterMoved& moved);
   void On(const ConnectionRestored& restored);
@@ -176,6 +184,7 @@ class WorkerState {
   void HandIn(LeaseResult result);
   void GiveBack(const Lease& lease, const std::string& why);
   void DropRunning(const std::string& why);
+  void LeaveWithoutRunners(const std::string& reason);
   void ContinueDrain();
   void Leave(int code, const std::string& reason);
   std::size_t RunningCount() const;
@@ -192,6 +201,7 @@ class WorkerState {
   std::uint64_t sequence_ = 0;
   Welcome welcome_;  // the newest; its heartbeat also paces what happens before the first
   std::vector<Slot> slots_;
+  std::optional<Duration> without_runners_;  // since this value of awake_, and none could be started
   std::deque<Lease> waiting_;
   double lately_longest_ = -1.0;  // CPU time of recent runs, s; negative: none has ended
   std::map<Fence, Finished> finished_;

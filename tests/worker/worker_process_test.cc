@@ -308,6 +308,31 @@ TEST_F(WorkerProcessTest, DeadRunnersAreReapedAndReplaced) {
   }
 }
 
+TEST_F(WorkerProcessTest, RunnerThatCannotBeStartedIsLoggedOnceAndStartedLater) {
+  FakeMaster master(access_path_, 1);
+  const auto worker = StartWorker();
+  const std::string peer = master.WelcomeOne();
+  ASSERT_TRUE(Eventually([&] { return RunnersOf(*worker).size() == 1; }, kDeadline));
+  const pid_t server = ChildrenOf(worker->pid())[0];
+  rlimit usual{};
+  rlimit none{};
+  ASSERT_EQ(prlimit(server, RLIMIT_NOFILE, nullptr, &usual), 0);
+  none.rlim_cur = 3;  // what it has already
+  none.rlim_max = usual.rlim_max;
+  ASSERT_EQ(prlimit(server, RLIMIT_NOFILE, &none, nullptr), 0);
+  kill(RunnersOf(*worker)[0], SIGKILL);
+  const std::string complaint = "cannot start a runner: Too many open files (too many open files? ulimit -n)";
+  ASSERT_TRUE(Eventually([&] { return worker->Err().find(complaint) != std::string::npos; }, kDeadline))
+      << worker->Err();
+  ASSERT_EQ(prlimit(server, RLIMIT_NOFILE, &usual, nullptr), 0);
+  master.Lease(peer, 5, kComplete);
+  const auto result = master.AwaitResult(peer, 5);
+  ASSERT_TRUE(result.has_value()) << worker->Err();
+  EXPECT_FALSE(result->has_failure());
+  const std::string log = worker->Err();
+  EXPECT_EQ(log.find(complaint, log.find(complaint) + 1), std::string::npos) << log;
+}
+
 TEST_F(WorkerProcessTest, DrainFinishesTheRunThenSaysGoodbye) {
   FakeMaster master(access_path_, 1);
   const auto worker = StartWorker();

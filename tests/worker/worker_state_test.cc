@@ -323,6 +323,50 @@ TEST(WorkerStateTest, WithoutRunnersItGivesEverythingBackAndExitsWithAnError) {
   EXPECT_EQ(exits[0].code, kExitInternal);
 }
 
+TEST(WorkerStateTest, WithoutARunnerForTenSecondsItGivesItsLeasesBackAndExitsWithTheReason) {
+  Worker worker(2);
+  worker.Welcome();
+  worker.Lease(5);
+  worker.Lease(6);
+  const auto fail = [&worker](int seconds_of_it) {
+    std::vector<WorkerAction> all;
+    for (int second = 0; second < seconds_of_it; ++second) {
+      for (WorkerAction& action : worker.Do(NoRunnerStarted{"no runner: because"}))
+        all.push_back(std::move(action));
+      worker.Hear(Heartbeat{});
+      worker.Pass(seconds(1));
+    }
+    return all;
+  };
+  EXPECT_THAT(fail(10), IsEmpty());
+  const auto actions = fail(1);
+  const auto results = Sent<LeaseResult>(actions);
+  ASSERT_EQ(results.size(), 2u);
+  for (const LeaseResult& result : results) {
+    EXPECT_EQ(result.failure->kind, FailureKind::kExternal);
+    EXPECT_EQ(result.failure->stderr_tail, "no runner: because");
+  }
+  ASSERT_EQ(Sent<Drain>(actions).size(), 1u);
+  EXPECT_FALSE(Sent<Drain>(actions)[0].finish_current);
+  const auto exits = Only<Exit>(worker.Hear(Acknowledge{{5, 6}}));
+  ASSERT_EQ(exits.size(), 1u);
+  EXPECT_EQ(exits[0].code, kExitInternal);
+  EXPECT_EQ(exits[0].reason, "no runner: because");
+}
+
+TEST(WorkerStateTest, OneRunnerIsEnoughToStay) {
+  Worker worker(2);
+  worker.Welcome();
+  worker.Lease(5);
+  for (int second = 0; second < 30; ++second) {
+    worker.Do(NoRunnerStarted{"no runner: because"});
+    worker.Hear(Heartbeat{});
+    if (second == 8) worker.Do(SlotBecameReady{1});
+    EXPECT_THAT(Only<Exit>(worker.Pass(seconds(1))), IsEmpty());
+  }
+  EXPECT_THAT(worker.state().HeldLeases(), ElementsAre(5));
+}
+
 TEST(WorkerStateTest, LongStopOfTheProcessGivesOneHeartbeatNotMany) {
   Worker worker = WelcomedWorker();
   worker.Hear(Heartbeat{});
