@@ -65,15 +65,34 @@ ForkServer::~ForkServer() {
 }
 
 void ForkServer::RequestRunner() {
-  const ForkServerMessage message{
-      .type = ForkServerMessage::kStart, .pid = 0, .value = 0, .cpu_seconds = 0.0};
-  send(control_.get(), &message, sizeof message, MSG_NOSIGNAL);
+  Send({});
 }
 
 void ForkServer::Kill(pid_t runner, int signal) {
-  const ForkServerMessage message{
-      .type = ForkServerMessage::kKill, .pid = runner, .value = signal, .cpu_seconds = 0.0};
-  send(control_.get(), &message, sizeof message, MSG_NOSIGNAL);
+  Send({runner, signal});
+}
+
+// The server waits until its answers are read. If we waited likewise until it has read our requests, both
+// would for ever, once there are more of them than the two sockets hold (about 280 each way).
+void ForkServer::Send(Request request) {
+  unsent_.push_back(request);
+  Flush();
+}
+
+void ForkServer::Flush() {
+  while (!unsent_.empty()) {
+    const Request& request = unsent_.front();
+    const ForkServerMessage message{
+        .type = request.runner == 0 ? ForkServerMessage::kStart : ForkServerMessage::kKill,
+        .pid = request.runner,
+        .value = request.signal,
+        .cpu_seconds = 0.0};
+    const ssize_t sent = send(control_.get(), &message, sizeof message, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (sent < 0) return unsent_.clear();  // it is gone, as Receive will tell
+    unsent_.pop_front();
+  }
 }
 
 std::optional<ForkServerEvent> ForkServer::Receive() {
@@ -91,6 +110,11 @@ std::optional<ForkServerEvent> ForkServer::Receive() {
   const ForkServerMessage& message = received.message;
   switch (message.type) {
     case ForkServerMessage::kStarted:
+      if (!received.first.valid() || !received.second.valid()) {
+        // This process has no room for them (RLIMIT_NOFILE), so nobody could talk to that runner.
+        Kill(message.pid, SIGKILL);
+        return RunnerNotStarted{EMFILE};
+      }
       return RunnerStarted{message.pid, std::move(received.first), std::move(received.second)};
     case ForkServerMessage::kNotStarted:
       return RunnerNotStarted{message.value};

@@ -10,6 +10,7 @@
 
 #include <sys/types.h>
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <variant>
@@ -49,18 +50,29 @@ class ForkServer {
   // Readable when Receive has something.
   int fd() const { return control_.get(); }
   pid_t pid() const { return pid_; }
+  // Neither this nor Kill waits: what the socket does not take yet is sent by Flush.
   // Answered by RunnerStarted or RunnerNotStarted.
   void RequestRunner();
   // A signal to a runner; to nobody when it has ended meanwhile.
   void Kill(pid_t runner, int signal);
+  // Sends what waits, as far as possible; again when fd() is writable.
+  void Flush();
+  bool congested() const { return !unsent_.empty(); }
   // Does not wait. nullopt: nothing has come. After ForkServerGone nothing follows.
   std::optional<ForkServerEvent> Receive();
 
  private:
+  struct Request {
+    pid_t runner = 0;  // 0: start one
+    int signal = 0;    // to the runner
+  };
+
   ForkServer(pid_t pid, UniqueFd control) : pid_(pid), control_(std::move(control)) {}
+  void Send(Request request);
 
   pid_t pid_;
   UniqueFd control_;
+  std::deque<Request> unsent_;
   bool gone_ = false;
 };
 

@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -199,10 +200,11 @@ ReceiveState ReceiveMessage(int control, int flags, ReceivedMessage& received) {
   if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return ReceiveState::kNothing;
   if (got != static_cast<ssize_t>(sizeof received.message)) return ReceiveState::kEnded;
   const cmsghdr* rights = CMSG_FIRSTHDR(&header);
-  if (rights != nullptr && rights->cmsg_type == SCM_RIGHTS &&
-      rights->cmsg_len == CMSG_LEN(kDescriptorBytes)) {
-    std::array<int, kDescriptors> fds{};
-    std::memcpy(fds.data(), CMSG_DATA(rights), kDescriptorBytes);
+  if (rights != nullptr && rights->cmsg_type == SCM_RIGHTS) {
+    // The second one is missing when there was room for one only (MSG_CTRUNC).
+    std::array<int, kDescriptors> fds{-1, -1};
+    std::memcpy(fds.data(), CMSG_DATA(rights),
+                std::min<std::size_t>(rights->cmsg_len - CMSG_LEN(0), kDescriptorBytes));
     received.first.Reset(fds[0]);
     received.second.Reset(fds[1]);
   }

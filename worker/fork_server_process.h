@@ -33,6 +33,7 @@ struct ReceivedMessage {
 enum class ReceiveState { kNothing, kEnded, kMessage };
 
 // `flags` as for recvmsg. kEnded also when the packet is damaged.
+// Descriptors that did not come along, or found no room here, are invalid.
 ReceiveState ReceiveMessage(int control, int flags, ReceivedMessage& received);
 
 // The process' life; returns never. Ends, with all runners, when `control` ends or `supervisor` dies.

@@ -45,7 +45,7 @@ RunnerPool::RunnerPool(ForkServer& server, int slots)
 std::vector<pollfd> RunnerPool::Descriptors() const {
   std::vector<pollfd> descriptors;
   descriptors.reserve(1 + kDescriptorsPerSlot * slots_.size());
-  descriptors.push_back(Watch(lost_ ? -1 : server_.fd()));
+  descriptors.push_back(Watch(lost_ ? -1 : server_.fd(), server_.congested()));
   for (const Slot& slot : slots_) {
     descriptors.push_back(Watch(slot.pipe.get(), !slot.unsent.empty()));
     descriptors.push_back(Watch(slot.output.get()));
@@ -64,7 +64,8 @@ std::vector<PoolEvent> RunnerPool::Process(std::span<const pollfd> polled, TimeP
     if ((pipe.revents & POLLOUT) != 0) SendRest(slots_[i]);
     if ((pipe.revents & ~POLLOUT) != 0) ReadReports(static_cast<int>(i), events);
   }
-  if (polled[0].revents != 0) HandleServer(events, now);
+  if ((polled[0].revents & POLLOUT) != 0) server_.Flush();
+  if ((polled[0].revents & ~POLLOUT) != 0) HandleServer(events, now);
   if (retry_at_ && now >= *retry_at_) {
     retry_at_.reset();
     for (; to_retry_ > 0; --to_retry_) server_.RequestRunner();

@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <spdlog/spdlog.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -52,6 +53,28 @@ bool DieWithParent(pid_t parent) {
 int WithoutParent(pid_t parent) {
   return Complain(fmt::format("process {} is not the one that started this one, or has ended", parent),
                   kExitDone);
+}
+
+// A runner's pipe and output.
+constexpr rlim_t kDescriptorsPerSlot = 2;
+// Everything else: sockets, logs, ZeroMQ, and what we inherited.
+constexpr rlim_t kOtherDescriptors = 128;
+
+// Raises the soft limit of open files to what so many slots need. Error: the hard one is below.
+Status AllowDescriptors(int slots) {
+  const rlim_t needed = kDescriptorsPerSlot * static_cast<rlim_t>(slots) + kOtherDescriptors;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return Ok{};
+  if (limit.rlim_max < needed) {
+    return InvalidInput(
+        fmt::format("{} slots need up to {} open files, and at most {} are allowed here (ulimit -Hn): "
+                    "use fewer slots in each of several workers, or raise the limit",
+                    slots, needed, limit.rlim_max));
+  }
+  limit.rlim_cur = needed;
+  if (setrlimit(RLIMIT_NOFILE, &limit) == 0) return Ok{};
+  return Error{ErrorKind::kIo,
+               fmt::format("{} open files cannot be allowed: {}", needed, std::strerror(errno))};
 }
 
 // A signalfd of the signals that stop a worker; they are blocked in this thread and those it starts.
@@ -162,6 +185,9 @@ std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const 
 
 int RunWorker(const WorkerOptions& options, const RunFunction& run) {
   if (options.parent > 0 && !DieWithParent(options.parent)) return WithoutParent(options.parent);
+  if (const Status allowed = AllowDescriptors(options.slots); !allowed.ok()) {
+    return Complain(allowed.error().message, kExitRefused);
+  }
   Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
   if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
   const UniqueFd signals = BlockStopSignals();

@@ -333,6 +333,29 @@ TEST_F(WorkerProcessTest, RunnerThatCannotBeStartedIsLoggedOnceAndStartedLater) 
   EXPECT_EQ(log.find(complaint, log.find(complaint) + 1), std::string::npos) << log;
 }
 
+TEST_F(WorkerProcessTest, ManySlotsStartAndEndWithFewOpenFilesAllowedAtFirst) {
+  FakeMaster master(access_path_, 1);
+  // More than twice what a socket pair holds of the fork server's messages.
+  const Process worker(
+      {"/bin/sh", "-c",
+       "ulimit -Sn 256; exec " + std::string(kFaultyWorker) + " '" + access_path_ + "' 600 600"});
+  const std::string peer = master.WelcomeOne();
+  ASSERT_NE(peer, "") << worker.Err();
+  for (std::uint64_t fence = 1; fence <= 600; ++fence)
+    master.Lease(peer, fence, kWaitForFile, directory_ / "never");
+  ASSERT_TRUE(Eventually([&] { return RunnersOf(worker).size() == 600; }, kDeadline)) << worker.Err();
+  master.Drain(peer, false);  // ends all of them at once
+  EXPECT_TRUE(master.Await(v1::Envelope::kLeaseResult).has_value()) << worker.Err();
+}
+
+TEST_F(WorkerProcessTest, SlotsThatNeedMoreOpenFilesThanAllowedAreRefused) {
+  const ProcessResult ended = testing_support::RunProcess(
+      {"/bin/sh", "-c",
+       "ulimit -n 256; exec " + std::string(kFaultyWorker) + " '" + access_path_ + "' 100 600"});
+  EXPECT_EQ(ended.exit_code, 2);
+  EXPECT_THAT(ended.err, HasSubstr("100 slots need up to 328 open files, and at most 256 are allowed here"));
+}
+
 TEST_F(WorkerProcessTest, DrainFinishesTheRunThenSaysGoodbye) {
   FakeMaster master(access_path_, 1);
   const auto worker = StartWorker();
