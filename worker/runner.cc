@@ -166,6 +166,13 @@ RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail) {
   return failure;
 }
 
+RunnerFailure WaitedTooLong(double wall_seconds) {
+  return {.kind = FailureKind::kHung,
+          .signal = 0,
+          .exit_code = 0,
+          .stderr_tail = fmt::format("no end after {:.0f} s: it waits", wall_seconds)};
+}
+
 std::string Describe(const RunnerFailure& failure) {
   switch (failure.kind) {
     case FailureKind::kCrashed:

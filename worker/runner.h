@@ -62,6 +62,12 @@ std::optional<RunnerReport> DecodeReport(std::string_view bytes);
 // else sends are external.
 RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail);
 
+// A run that sleeps or waits uses no CPU time, so its limit never ends it. So many times its CPU limit of
+// wall time does: so late that a run at work on a crowded machine has met its CPU limit long before.
+inline constexpr double kWallPerCpu = 20.0;
+// Of a run that had not ended after `wall_seconds`.
+RunnerFailure WaitedTooLong(double wall_seconds);
+
 // One line for a person, the same for the same failure: "crashed with signal 11". The message of a run whose
 // verdict is crashed, hung or out of memory (proto/README.md).
 std::string Describe(const RunnerFailure& failure);

@@ -9,6 +9,7 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -37,6 +38,8 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kAccessPollInterval{200};
+// Between two looks at a run passes a second; what lies much further apart, this process was stopped.
+constexpr double kLongestWaitSeconds = 5.0;
 
 int Complain(const std::string& text, int code) {
   fmt::print(stderr, "gauntlet-worker: {}\n", text);
@@ -157,7 +160,19 @@ std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const 
         .kind = FailureKind::kExternal, .signal = 0, .exit_code = 0, .stderr_tail = std::move(why)};
   };
   std::optional<steady_clock::time_point> not_started;
+  const double wall_limit = kWallPerCpu * job.cpu_limit_seconds;  // 0: none
+  std::optional<double> awake;  // s since it began, without what passed while this process was stopped
+  auto before = steady_clock::now();
   while (true) {
+    const auto woken = steady_clock::now();
+    if (awake) {
+      *awake += std::min(std::chrono::duration<double>(woken - before).count(), kLongestWaitSeconds);
+      if (wall_limit > 0.0 && *awake >= wall_limit) {
+        pool.Kill(0);
+        return WaitedTooLong(wall_limit);
+      }
+    }
+    before = woken;
     pool.Flush();
     std::vector<pollfd> polled = pool.Descriptors();
     if (poll(polled.data(), polled.size(), 1000) < 0) {
@@ -166,6 +181,7 @@ std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const 
     for (PoolEvent& event : pool.Process(polled, steady_clock::now())) {
       if (std::holds_alternative<SlotReady>(event)) {
         pool.StartJob(0, job);
+        awake = 0.0;
       } else if (auto* finished = std::get_if<SlotFinished>(&event)) {
         return std::move(finished->report);
       } else if (auto* failed = std::get_if<SlotFailed>(&event)) {
@@ -242,7 +258,9 @@ int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
     fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeResult(result));
   } else {
     const RunnerFailure& failure = std::get<RunnerFailure>(outcome);
-    fmt::print(stderr, "gauntlet-worker: the run {}\n{}", Describe(failure), failure.stderr_tail);
+    const bool whole_lines = failure.stderr_tail.empty() || failure.stderr_tail.ends_with('\n');
+    fmt::print(stderr, "gauntlet-worker: the run {}\n{}{}", Describe(failure), failure.stderr_tail,
+               whole_lines ? "" : "\n");
     if (failure.kind == FailureKind::kExternal) return kExitInternal;
     result = EncodeRunResult(ResultOf(failure), TrajectoryEncoding::kLeaveOut);
   }

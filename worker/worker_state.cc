@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/base/check.h"
+#include "worker/runner.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -25,9 +26,6 @@ constexpr double kForget = 0.95;  // per run: so fast a long run is forgotten
 // Leases beyond the slots wait here; a master that sends more is told to take them elsewhere.
 constexpr std::size_t kMaxWaiting = 4096;
 
-// A run that sleeps or waits uses no CPU time, so its limit never ends it. This does: so late that a run at
-// work on a crowded machine has met its CPU limit long before.
-constexpr double kWallPerCpu = 20.0;
 // Ticks come at least every heartbeat; whatever lies further apart, this process was frozen in between.
 constexpr Duration kLongestStep = std::chrono::seconds(5);
 
@@ -265,10 +263,7 @@ void WorkerState::EndBlockedRuns() {
     HandIn({.fence = run.lease.fence,
             .run_id = run.lease.run_id,
             .result = {},
-            .failure = RunnerFailure{.kind = FailureKind::kHung,
-                                     .signal = 0,
-                                     .exit_code = 0,
-                                     .stderr_tail = fmt::format("no end after {:.0f} s: it waits", limit)},
+            .failure = WaitedTooLong(limit),
             .cpu_seconds = 0.0});
   }
 }

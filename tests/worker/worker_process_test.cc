@@ -613,6 +613,15 @@ TEST_F(RunSpecTest, EndlessRunHangs) {
   EXPECT_EQ(result.verdict(), v1::VERDICT_HUNG);
 }
 
+TEST_F(RunSpecTest, RunThatOnlyWaitsHangsAfterTwentyTimesItsCpuTime) {
+  const ProcessResult ended = RunSpec(SpecBytes(kWaitForFile, directory_ / "never"), "0.05");
+  EXPECT_EQ(ended.exit_code, 0);
+  v1::RunResult result;
+  ASSERT_TRUE(result.ParseFromString(ended.out));
+  EXPECT_EQ(result.verdict(), v1::VERDICT_HUNG);
+  EXPECT_TRUE(ended.err.ends_with("no end after 1 s: it waits\n")) << ended.err;
+}
+
 TEST_F(RunSpecTest, MissingFileExitsTwo) {
   const ProcessResult ended =
       testing_support::RunProcess({kFaultyWorker, "--run-spec", directory_ / "none", "1", "0"});
