@@ -339,7 +339,7 @@ TEST_F(WorkerProcessTest, ManySlotsStartAndEndWithFewOpenFilesAllowedAtFirst) {
   const Process worker(
       {"/bin/sh", "-c",
        "ulimit -Sn 256; exec " + std::string(kFaultyWorker) + " '" + access_path_ + "' 600 600"});
-  const std::string peer = master.WelcomeOne();
+  const std::string peer = master.WelcomeOne(0.0, 0, 600'000);
   ASSERT_NE(peer, "") << worker.Err();
   for (std::uint64_t fence = 1; fence <= 600; ++fence)
     master.Lease(peer, fence, kWaitForFile, directory_ / "never");
