@@ -14,6 +14,8 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "sim/base/printable.h"
+
 namespace gauntlet::master {
 namespace {
 
@@ -76,7 +78,7 @@ class Importer {
     const auto line = std::count(before.begin(), before.end(), '\n') + 1;
     const auto last_break = before.rfind('\n');
     const auto column = last_break == std::string_view::npos ? end + 1 : end - last_break;
-    return InvalidInput(fmt::format("{}:{}:{}: {}", file_name_, line, column, message));
+    return InvalidInput(Printable(fmt::format("{}:{}:{}: {}", file_name_, line, column, message)));
   }
   Error Fail(const pugi::xml_node& node, std::string_view message) const {
     return Fail(node.offset_debug(), message);

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "sim/base/printable.h"
+
 namespace gauntlet::master {
 namespace {
 
@@ -306,7 +308,7 @@ std::string_view JsonValue::Kind() const {
 }
 
 Error ErrorAt(const std::string& file_name, TextPlace place, const std::string& what) {
-  return InvalidInput(fmt::format("{}:{}:{}: {}", file_name, place.line, place.column, what));
+  return InvalidInput(Printable(fmt::format("{}:{}:{}: {}", file_name, place.line, place.column, what)));
 }
 
 Result<JsonValue> ParseJson(std::string_view text, const std::string& file_name) {

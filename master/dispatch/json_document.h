@@ -39,7 +39,7 @@ struct JsonMember {
   JsonValue value;
 };
 
-// "file:line:column: what", an invalid input.
+// "file:line:column: what" as one line, an invalid input.
 Error ErrorAt(const std::string& file_name, TextPlace place, const std::string& what);
 
 // Strict: no comments, no trailing commas, no repeated keys, valid UTF-8, nesting up to 64. A byte order mark
