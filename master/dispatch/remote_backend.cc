@@ -266,7 +266,11 @@ void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimeP
   // Said again before our welcome arrived: what was leased meanwhile is on its way, not lost.
   const bool repeated = known && connection.peer == peer;
   if (known && !repeated) instances_.erase(connection.peer);
-  connection = {peer, label, hello.pid, Shorten(hello.allocation), 0, {}};
+  connection.peer = peer;
+  connection.label = label;
+  connection.pid = hello.pid;
+  connection.allocation = Shorten(hello.allocation);
+  connection.unreachable = 0;
   instances_[peer] = hello.instance_id;
   processes_.Watch(hello.instance_id, {hello.host, hello.boot_id, hello.pid_namespace,
                                        static_cast<pid_t>(hello.pid), hello.start_time});

@@ -121,6 +121,10 @@ TEST_F(RemoteBackendTest, AcknowledgementsForABusyWorkerGoAlongWithTheNextMessag
   backend_->Acknowledge({leases[0].run_id()});
   Poll();
   EXPECT_THAT(Sent("p"), IsEmpty()) << "it has something to do";
+  hello.mutable_held_leases()->Add(leases[1].fence());
+  SayHello("p", hello);
+  Poll();
+  EXPECT_TRUE(Sent("p").at(0).has_welcome()) << "and a hello said again loses none";
   clock_.Advance(DispatchOptions{}.heartbeat);
   Poll();
   const std::vector<v1::Envelope> sent = Sent("p");
