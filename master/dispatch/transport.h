@@ -33,7 +33,7 @@ struct WaitOutcome {
 
 // Frames that were dropped before anybody saw them, since the start.
 struct TransportRejections {
-  std::uint64_t malformed = 0;   // not exactly one frame
+  std::uint64_t malformed = 0;   // not exactly one frame, or without end
   std::uint64_t oversized = 0;   // longer than the limit of a message
   std::uint64_t handshakes = 0;  // connections that did not get through ZeroMQ's greeting
   std::uint64_t keys = 0;        // connections whose keys are not admitted

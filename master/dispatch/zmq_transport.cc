@@ -9,12 +9,16 @@
 
 #include <array>
 #include <cerrno>
+#include <charconv>
+#include <chrono>
 #include <cstring>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 #include <zmq.hpp>
 
+#include "master/dispatch/connection_watch.h"
 #include "sim/base/thread_sanitizer.h"
 
 namespace gauntlet::master {
@@ -26,6 +30,12 @@ constexpr std::size_t kConnectionMargin = 1U << 20;
 // Messages of the longest sort that Receive takes at once: whoever sends only such must not keep the master
 // from everybody else.
 constexpr std::size_t kLongestAtOnce = 4;
+// A message of several parts is none of ours. Beyond so many of the longest messages its connection is closed
+// although it has not ended; looked for so often when nothing waits to be received, and less often when
+// something always does.
+constexpr std::uint64_t kLongestUnended = 4;
+constexpr std::chrono::milliseconds kWatchEvery{250};
+constexpr std::chrono::milliseconds kWatchAtLeast{2000};
 constexpr int kLingerMilliseconds = 100;  // for the last messages to leave
 constexpr const char* kMonitorAddress = "inproc://gauntlet-transport-monitor";
 constexpr int kMonitoredEvents = ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
@@ -49,6 +59,15 @@ bool SomebodyListens(const std::string& endpoint) {
   return answered;
 }
 
+// Of "tcp://ADDRESS:PORT"; 0 for others.
+std::uint16_t PortOf(std::string_view endpoint) {
+  std::uint16_t port = 0;
+  if (!endpoint.starts_with("tcp://")) return port;
+  endpoint.remove_prefix(endpoint.rfind(':') + 1);
+  std::from_chars(endpoint.data(), endpoint.data() + endpoint.size(), port);
+  return port;
+}
+
 }  // namespace
 
 struct ZmqTransport::Sockets {
@@ -65,6 +84,19 @@ struct ZmqTransport::Sockets {
   int router_fd = -1;
   int monitor_fd = -1;
   std::vector<pollfd> poll_items;
+  std::optional<ConnectionWatch> watch;  // none: not of TCP
+  std::chrono::steady_clock::time_point watched{};
+
+  void NoteWhole(zmq::message_t& last_part) {
+    if (watch) watch->Completed(zmq_msg_get(last_part.handle(), ZMQ_SRCFD));
+  }
+  void WatchConnections(std::chrono::milliseconds every) {
+    if (!watch) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now < watched + every) return;
+    watched = now;
+    rejections.malformed += static_cast<std::uint64_t>(watch->Check());
+  }
 
   void UseCurve(const CurveServer& curve) {
     for (const std::string& key : curve.admitted_keys) {
@@ -150,6 +182,8 @@ Result<std::unique_ptr<ZmqTransport>> ZmqTransport::Bind(const ZmqTransportOptio
     sockets->monitor_fd = sockets->monitor.get(zmq::sockopt::fd);
     sockets->endpoint = router.get(zmq::sockopt::last_endpoint);
     sockets->max_message_bytes = options.max_message_bytes;
+    if (const std::uint16_t port = PortOf(sockets->endpoint); port != 0)
+      sockets->watch.emplace(port, kLongestUnended * options.max_message_bytes);
     sockets->wake_up = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (sockets->wake_up < 0) {
       return Error{ErrorKind::kIo, fmt::format("cannot make an eventfd: {}", std::strerror(errno))};
@@ -188,9 +222,11 @@ void ZmqTransport::Receive(std::size_t limit, std::vector<PeerMessage>& messages
   zmq::message_t frame;
   std::size_t bytes = 0;
   for (std::size_t received = 0; received < limit; ++received) {
-    if (bytes >= kLongestAtOnce * sockets_->max_message_bytes) return;
+    if (bytes >= kLongestAtOnce * sockets_->max_message_bytes) break;
     try {
-      if (!sockets_->router.recv(identity, zmq::recv_flags::dontwait)) return;
+      if (!sockets_->router.recv(identity, zmq::recv_flags::dontwait)) {
+        return sockets_->WatchConnections(kWatchEvery);
+      }
       if (!identity.more()) {
         ++sockets_->rejections.malformed;
         continue;
@@ -200,11 +236,13 @@ void ZmqTransport::Receive(std::size_t limit, std::vector<PeerMessage>& messages
       if (frame.more()) {
         ++sockets_->rejections.malformed;
         while (frame.more() && sockets_->router.recv(frame, zmq::recv_flags::dontwait)) continue;
+        sockets_->NoteWhole(frame);
         continue;
       }
     } catch (const zmq::error_t&) {
       return;  // interrupted by a signal: what is there is received next time
     }
+    sockets_->NoteWhole(frame);
     bytes += frame.size();
     if (frame.size() > sockets_->max_message_bytes) {
       ++sockets_->rejections.oversized;
@@ -212,6 +250,7 @@ void ZmqTransport::Receive(std::size_t limit, std::vector<PeerMessage>& messages
     }
     messages.push_back({identity.to_string(), frame.to_string()});
   }
+  sockets_->WatchConnections(kWatchAtLeast);
 }
 
 // Our own poll over libzmq's descriptors: zmq_poll asks every socket for its state before and after, some ten

@@ -23,7 +23,8 @@ struct CurveServer {
 struct ZmqTransportOptions {
   std::string endpoint = "tcp://127.0.0.1:*";  // "*" as port: any free one
   // A longer message is dropped and counted; a connection that announces one longer than this and a mebibyte
-  // is closed before its bytes are read.
+  // is closed before its bytes are read. A connection whose message of many parts comes to four times this
+  // without ending is closed and counted (TCP only: an ipc endpoint's folder says who may connect).
   std::size_t max_message_bytes = 16U << 20;
   int peer_queue = 1000;  // messages per peer and direction before it counts as not reading
   // A connection on which nothing has come for so long is asked for a sign of life, which every peer that

@@ -323,6 +323,38 @@ std::string WholeHandshake(char minor_version) {
   return bytes + "\x04" + static_cast<char>(ready.size()) + ready;
 }
 
+// ZeroMQ limits each part alone. A worker beside it that sends as much in whole messages is left alone.
+TEST_F(ZmqTransportTest, AMessageThatDoesNotEndClosesItsConnectionOnly) {
+  zmq::socket_t good = Connect();
+  const int fd = ConnectRaw();
+  const std::string handshake = WholeHandshake(0);
+  ASSERT_GT(send(fd, handshake.data(), handshake.size(), MSG_NOSIGNAL), 0);
+  // The answer is a greeting of 64 bytes and a READY; whoever sends messages before it is thrown out.
+  std::string answer(65, '\0');
+  ASSERT_EQ(recv(fd, answer.data(), answer.size(), MSG_WAITALL), std::ssize(answer));
+  const std::string part = std::string("\x03\0\0\0\0\0\0\x80\0", 9) + std::string(0x8000, 'x');  // and more
+  std::size_t at = 0;  // in the part
+  std::size_t sent = 0;
+  std::size_t whole = 0;
+  const bool closed = Eventually([&] {
+    if (good.send(zmq::message_t(kLimit / 4), zmq::send_flags::dontwait)) ++whole;
+    for (int i = 0; i < 16; ++i) {
+      const ssize_t now = send(fd, part.data() + at, part.size() - at, MSG_NOSIGNAL | MSG_DONTWAIT);
+      if (now < 0) break;
+      sent += static_cast<std::size_t>(now);
+      at = (at + static_cast<std::size_t>(now)) % part.size();
+    }
+    const ssize_t heard = recv(fd, answer.data(), answer.size(), MSG_DONTWAIT);
+    return heard == 0 || (heard < 0 && errno != EAGAIN);
+  });
+  close(fd);
+  EXPECT_TRUE(closed) << sent;
+  EXPECT_GT(sent, 4 * kLimit);
+  EXPECT_EQ(transport_->Rejections().malformed, 1U);
+  EXPECT_GT(whole * kLimit / 4, 4 * kLimit) << "as much as the other";
+  EXPECT_TRUE(Eventually([&] { return received_.size() == whole; })) << received_.size() << " of " << whole;
+}
+
 TEST_F(ZmqTransportTest, AConnectionWithoutASignOfLifeIsClosedButAWorkerThatSaysNothingIsKept) {
   ZmqTransportOptions options;
   options.sign_of_life = milliseconds(150);

@@ -1,0 +1,75 @@
+#include "master/dispatch/connection_watch.h"
+
+#include <dirent.h>
+#include <linux/tcp.h>
+#include <sys/socket.h>
+
+#include <charconv>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+namespace gauntlet::master {
+namespace {
+
+struct CloseDirectory {
+  void operator()(DIR* directory) const { closedir(directory); }
+};
+
+// -1 for "." and "..".
+int NumberOf(const char* name) {
+  int number = -1;
+  std::from_chars(name, name + std::strlen(name), number);
+  return number;
+}
+
+}  // namespace
+
+void ConnectionWatch::Completed(int fd) {
+  if (fd < 0) return;
+  const auto index = static_cast<std::size_t>(fd);
+  if (index >= completed_.size()) completed_.resize(index + 1);
+  completed_[index] = true;
+}
+
+int ConnectionWatch::Check() {
+  const std::unique_ptr<DIR, CloseDirectory> directory(opendir("/proc/self/fd"));
+  if (directory == nullptr) return 0;  // no descriptor is left; those who connect now are closed by ZeroMQ
+  std::unordered_map<int, Connection> present;
+  int closed = 0;
+  while (const dirent* entry = readdir(directory.get())) {
+    const int fd = NumberOf(entry->d_name);
+    sockaddr_in local{};
+    socklen_t length = sizeof local;
+    if (fd < 0 || getsockname(fd, reinterpret_cast<sockaddr*>(&local), &length) != 0) continue;
+    if (local.sin_family != AF_INET || ntohs(local.sin_port) != port_) continue;
+    sockaddr_in peer{};
+    length = sizeof peer;
+    if (getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &length) != 0) continue;  // it listens
+    tcp_info info{};
+    length = sizeof info;
+    if (getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &length) != 0) continue;
+
+    Connection connection{peer.sin_addr.s_addr, peer.sin_port, 0};
+    const auto former = connections_.find(fd);
+    if (former != connections_.end() && former->second.address == connection.address &&
+        former->second.port == connection.port) {
+      connection.whole = former->second.whole;
+    }
+    const auto index = static_cast<std::size_t>(fd);
+    if (index < completed_.size() && completed_[index]) connection.whole = info.tcpi_bytes_received;
+    if (info.tcpi_bytes_received - connection.whole > most_bytes_) {
+      // What the kernel still holds of it goes too, when ZeroMQ closes it.
+      const linger reset{.l_onoff = 1, .l_linger = 0};
+      setsockopt(fd, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
+      closed += shutdown(fd, SHUT_RDWR) == 0 ? 1 : 0;
+      continue;
+    }
+    present.emplace(fd, connection);
+  }
+  connections_ = std::move(present);
+  completed_.assign(completed_.size(), false);
+  return closed;
+}
+
+}  // namespace gauntlet::master
