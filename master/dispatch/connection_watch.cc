@@ -2,8 +2,10 @@
 
 #include <dirent.h>
 #include <linux/tcp.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <memory>
@@ -48,7 +50,13 @@ int ConnectionWatch::Check() {
     if (getpeername(fd, reinterpret_cast<sockaddr*>(&peer), &length) != 0) continue;  // it listens
     tcp_info info{};
     length = sizeof info;
-    if (getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &length) != 0) continue;
+    int unread = 0;
+    if (getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &length) != 0 || ioctl(fd, FIONREAD, &unread) != 0) {
+      continue;
+    }
+    // Read later than the former figure, what is unread may exceed it.
+    const std::uint64_t read =
+        info.tcpi_bytes_received - std::min<std::uint64_t>(unread, info.tcpi_bytes_received);
 
     Connection connection{peer.sin_addr.s_addr, peer.sin_port, 0};
     const auto former = connections_.find(fd);
@@ -57,8 +65,8 @@ int ConnectionWatch::Check() {
       connection.whole = former->second.whole;
     }
     const auto index = static_cast<std::size_t>(fd);
-    if (index < completed_.size() && completed_[index]) connection.whole = info.tcpi_bytes_received;
-    if (info.tcpi_bytes_received - connection.whole > most_bytes_) {
+    if (index < completed_.size() && completed_[index]) connection.whole = read;
+    if (read > connection.whole + most_bytes_) {
       // What the kernel still holds of it goes too, when ZeroMQ closes it.
       const linger reset{.l_onoff = 1, .l_linger = 0};
       setsockopt(fd, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);

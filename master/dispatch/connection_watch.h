@@ -10,9 +10,9 @@
 namespace gauntlet::master {
 
 // ZeroMQ limits each part of a message, not their sum, and hands over none of them before the last has come:
-// one peer could fill the memory of the process that listens. This compares the bytes that each connection to
-// a port has received (TCP_INFO, tcp(7)) with those at its last whole message, and shuts down a connection
-// that is too far ahead; ZeroMQ then forgets what it had of the message.
+// one peer could fill the memory of the process that listens. This compares the bytes that ZeroMQ has read
+// from each connection to a port (TCP_INFO and FIONREAD, tcp(7)) with those at its last whole message, and
+// shuts down a connection that is too far ahead; ZeroMQ then forgets what it had of the message.
 //
 // The descriptors are ZeroMQ's, and its thread closes them when it likes. Each is looked at and shut down in
 // one go; should another connection to the port get the number in that moment, it has to be made anew.
@@ -32,7 +32,7 @@ class ConnectionWatch {
   struct Connection {
     in_addr_t address = 0;
     in_port_t port = 0;
-    std::uint64_t whole = 0;  // bytes received at its last whole message, or later
+    std::uint64_t whole = 0;  // bytes read at its last whole message, or later
   };
 
   std::uint16_t port_;

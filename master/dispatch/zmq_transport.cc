@@ -85,7 +85,7 @@ struct ZmqTransport::Sockets {
   int monitor_fd = -1;
   std::vector<pollfd> poll_items;
   std::optional<ConnectionWatch> watch;  // none: not of TCP
-  std::chrono::steady_clock::time_point watched{};
+  std::chrono::steady_clock::time_point watched = std::chrono::steady_clock::now();
 
   void NoteWhole(zmq::message_t& last_part) {
     if (watch) watch->Completed(zmq_msg_get(last_part.handle(), ZMQ_SRCFD));

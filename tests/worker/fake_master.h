@@ -34,7 +34,7 @@ class FakeMaster {
                                 std::chrono::milliseconds deadline = kPatience);
   // Waits for a hello and welcomes its sender; the sender, "" at the deadline.
   std::string WelcomeOne(double cpu_limit_seconds = 0.0, std::uint64_t memory_limit_bytes = 0,
-                         std::uint32_t heartbeat_ms = 200);
+                         std::uint32_t heartbeat_ms = 500);
 
   void Send(const std::string& peer, const v1::Envelope& envelope);
   void SendRaw(const std::string& peer, const std::string& bytes);

@@ -18,6 +18,7 @@ enum FaultyRun : std::uint64_t {
   kWaitForFile,   // sleeps until the file named by the scenario exists, then completes
   kClosePipe,     // closes all its descriptors, then sleeps
   kWriteGarbage,  // writes nonsense to every socket it has
+  kSleep,         // until it is killed, at no cost
 };
 
 // kWaitForFile creates the scenario's file name with this ending first.

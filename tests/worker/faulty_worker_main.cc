@@ -61,10 +61,12 @@ sim::RunResult FaultyRunFunction(const sim::RunSpec& spec) {
       break;
     case kClosePipe:
       for (int fd = 3; fd < 1024; ++fd) close(fd);
-      while (true) Nap();
+      while (true) pause();
     case kWriteGarbage:
       for (int fd = 3; fd < 1024; ++fd) send(fd, "\x02\0\0\0??", 6, MSG_NOSIGNAL);
-      while (true) Nap();
+      while (true) pause();
+    case kSleep:
+      while (true) pause();
     default:
       break;
   }

@@ -199,7 +199,7 @@ TEST_F(WorkerProcessTest, CrashAmongShortRunsIsHeldAgainstTheRunThatCrashed) {
 TEST_F(WorkerProcessTest, HeartbeatsKeepComingWhileARunSpins) {
   FakeMaster master(access_path_, 1);
   const auto worker = StartWorker();
-  const std::string peer = master.WelcomeOne();
+  const std::string peer = master.WelcomeOne(0.0, 0, 200);
   master.Lease(peer, 5, kSpin);
   for (int i = 0; i < 10; ++i) {
     const auto heartbeat = master.Await(v1::Envelope::kHeartbeat);
@@ -342,7 +342,7 @@ TEST_F(WorkerProcessTest, ManySlotsStartAndEndWithFewOpenFilesAllowedAtFirst) {
   const std::string peer = master.WelcomeOne(0.0, 0, 600'000);
   ASSERT_NE(peer, "") << worker.Err();
   for (std::uint64_t fence = 1; fence <= 600; ++fence)
-    master.Lease(peer, fence, kWaitForFile, directory_ / "never");
+    master.Lease(peer, fence, kSleep, "");
   ASSERT_TRUE(Eventually([&] { return RunnersOf(worker).size() == 600; }, kDeadline)) << worker.Err();
   master.Drain(peer, false);  // ends all of them at once
   EXPECT_TRUE(master.Await(v1::Envelope::kLeaseResult).has_value()) << worker.Err();
@@ -614,7 +614,7 @@ TEST_F(RunSpecTest, EndlessRunHangs) {
 }
 
 TEST_F(RunSpecTest, RunThatOnlyWaitsHangsAfterTwentyTimesItsCpuTime) {
-  const ProcessResult ended = RunSpec(SpecBytes(kWaitForFile, directory_ / "never"), "0.05");
+  const ProcessResult ended = RunSpec(SpecBytes(kSleep), "0.05");
   EXPECT_EQ(ended.exit_code, 0);
   v1::RunResult result;
   ASSERT_TRUE(result.ParseFromString(ended.out));
