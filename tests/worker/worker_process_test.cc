@@ -341,8 +341,7 @@ TEST_F(WorkerProcessTest, ManySlotsStartAndEndWithFewOpenFilesAllowedAtFirst) {
        "ulimit -Sn 256; exec " + std::string(kFaultyWorker) + " '" + access_path_ + "' 600 600"});
   const std::string peer = master.WelcomeOne(0.0, 0, 600'000);
   ASSERT_NE(peer, "") << worker.Err();
-  for (std::uint64_t fence = 1; fence <= 600; ++fence)
-    master.Lease(peer, fence, kSleep, "");
+  for (std::uint64_t fence = 1; fence <= 600; ++fence) master.Lease(peer, fence, kSleep, "");
   ASSERT_TRUE(Eventually([&] { return RunnersOf(worker).size() == 600; }, kDeadline)) << worker.Err();
   master.Drain(peer, false);  // ends all of them at once
   EXPECT_TRUE(master.Await(v1::Envelope::kLeaseResult).has_value()) << worker.Err();
