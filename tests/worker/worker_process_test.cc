@@ -577,56 +577,5 @@ TEST_F(WorkerProcessTest, DieWithParentMeansTheWholeFamily) {
   EXPECT_TRUE(AllGone(family));
 }
 
-class RunSpecTest : public WorkerProcessTest {
- protected:
-  ProcessResult RunSpec(const std::string& bytes, const std::string& cpu = "1") {
-    std::ofstream(directory_ / "spec.bin", std::ios::binary) << bytes;
-    return testing_support::RunProcess(
-        {kFaultyWorker, "--run-spec", directory_ / "spec.bin", cpu, std::to_string(kMemoryLimit)});
-  }
-};
-
-TEST_F(RunSpecTest, WritesTheResultToStdout) {
-  const ProcessResult ended = RunSpec(SpecBytes(kComplete, "", true));
-  EXPECT_EQ(ended.exit_code, 0) << ended.err;
-  v1::RunResult result;
-  ASSERT_TRUE(result.ParseFromString(ended.out));
-  EXPECT_EQ(result.fitness(), 0.5);
-  EXPECT_EQ(result.trajectory().states_size(), 20'000 * 50 * 4) << "no size limit here";
-}
-
-TEST_F(RunSpecTest, BrokenRunIsAResultWithItsVerdictAndItsOutputOnStderr) {
-  const ProcessResult ended = RunSpec(SpecBytes(kAbort));
-  EXPECT_EQ(ended.exit_code, 0);
-  v1::RunResult result;
-  ASSERT_TRUE(result.ParseFromString(ended.out));
-  EXPECT_EQ(result.verdict(), v1::VERDICT_CRASHED);
-  EXPECT_EQ(result.message(), "crashed with signal 6");
-  EXPECT_NE(result.hash(), 0u);
-  EXPECT_THAT(ended.err, HasSubstr("about to abort"));
-}
-
-TEST_F(RunSpecTest, EndlessRunHangs) {
-  v1::RunResult result;
-  ASSERT_TRUE(result.ParseFromString(RunSpec(SpecBytes(kSpin)).out));
-  EXPECT_EQ(result.verdict(), v1::VERDICT_HUNG);
-}
-
-TEST_F(RunSpecTest, RunThatOnlyWaitsHangsAfterTwentyTimesItsCpuTime) {
-  const ProcessResult ended = RunSpec(SpecBytes(kSleep), "0.05");
-  EXPECT_EQ(ended.exit_code, 0);
-  v1::RunResult result;
-  ASSERT_TRUE(result.ParseFromString(ended.out));
-  EXPECT_EQ(result.verdict(), v1::VERDICT_HUNG);
-  EXPECT_TRUE(ended.err.ends_with("no end after 1 s: it waits\n")) << ended.err;
-}
-
-TEST_F(RunSpecTest, MissingFileExitsTwo) {
-  const ProcessResult ended =
-      testing_support::RunProcess({kFaultyWorker, "--run-spec", directory_ / "none", "1", "0"});
-  EXPECT_EQ(ended.exit_code, 2);
-  EXPECT_THAT(ended.err, HasSubstr("none: No such file"));
-}
-
 }  // namespace
 }  // namespace gauntlet::worker
