@@ -90,6 +90,7 @@ std::vector<Fence> WorkerState::HeldLeases() const {
 
 void WorkerState::On(MasterMessage& message) {
   last_heard_ = now_;
+  heard_awake_ = awake_;
   asked_ = false;
   std::visit([this](auto& concrete) { On(concrete); }, message);
 }
@@ -152,7 +153,9 @@ void WorkerState::On(const Drain& drain) {
 
 void WorkerState::On(const SlotBecameReady& ready) {
   without_runners_.reset();
-  slots_.at(static_cast<std::size_t>(ready.slot)).state = SlotState::kIdle;
+  Slot& slot = slots_.at(static_cast<std::size_t>(ready.slot));
+  slot.state = SlotState::kIdle;
+  slot.used = false;
 }
 
 void WorkerState::On(RunFinished& finished) {
@@ -272,8 +275,9 @@ void WorkerState::On(const ClockTick&) {
   EndBlockedRuns();
   const Duration silence = now_ - last_heard_;
   if (phase_ == Phase::kGreeting) {
-    if (silence >= settings_.orphan_timeout) {
-      return Leave(kExitOrphaned, fmt::format("no word from a master for {:.0f} s", Seconds(silence)));
+    // Of the time that this process was frozen, the master's silence says nothing.
+    if (const Duration unheard = awake_ - heard_awake_; unheard >= settings_.orphan_timeout) {
+      return Leave(kExitOrphaned, fmt::format("no word from a master for {:.0f} s", Seconds(unheard)));
     }
     if (now_ - last_hello_ < settings_.hello_interval) return;
     if (silence >= kUneasyHeartbeats * settings_.hello_interval) {
@@ -375,6 +379,7 @@ void WorkerState::StartNext(std::size_t index) {
   Slot& slot = slots_[index];
   if (slot.runs.empty()) slot.begun = awake_;
   slot.state = SlotState::kRunning;
+  slot.used = true;
   slot.runs.push_back({std::move(waiting_.front())});
   waiting_.pop_front();
   Act(StartRun{.slot = static_cast<int>(index),
@@ -383,10 +388,21 @@ void WorkerState::StartNext(std::size_t index) {
                .memory_limit_bytes = welcome_.memory_limit_bytes});
 }
 
+void WorkerState::Renew(std::size_t index) {
+  slots_[index].state = SlotState::kKilling;
+  Act(KillRunner{static_cast<int>(index)});
+}
+
 void WorkerState::StartWaitingRuns() {
   if (drain_) return;
   for (std::size_t i = 0; i < slots_.size() && !waiting_.empty(); ++i) {
-    if (slots_[i].state == SlotState::kIdle) StartNext(i);
+    if (slots_[i].state != SlotState::kIdle) continue;
+    // What former runs have left in a runner must not be what fails a run again.
+    if (waiting_.front().attempt > 1 && slots_[i].used) {
+      Renew(i);
+    } else {
+      StartNext(i);
+    }
   }
   // Refilled when half empty, so that many go at once.
   const std::size_t ahead = RunsAhead();

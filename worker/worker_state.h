@@ -139,6 +139,7 @@ class WorkerState {
     SlotState state = SlotState::kStarting;
     std::deque<Given> runs;  // when running: the first is being simulated, the others follow
     Duration begun{};        // value of awake_ when the first began
+    bool used = false;       // its runner has had a run
   };
   struct Finished {
     LeaseResult result;
@@ -179,6 +180,7 @@ class WorkerState {
   bool Holds(Fence fence) const;
   void StartWaitingRuns();
   void StartNext(std::size_t index);
+  void Renew(std::size_t index);  // its runner, which has nothing to do
   std::size_t RunsAhead() const;  // how many runs a runner may have, 1 or more
   void EndRuns(Slot& slot);       // all but the first wait again
   void HandIn(LeaseResult result);
@@ -194,8 +196,9 @@ class WorkerState {
   TimePoint now_;
   Duration awake_{};  // time that passed, without what passed while this process was frozen
   TimePoint last_heard_;
-  TimePoint connected_;  // last (re)connect while greeting
-  bool asked_ = false;   // Hello was said for the silence that lasts
+  Duration heard_awake_{};  // value of awake_ then
+  TimePoint connected_;     // last (re)connect while greeting
+  bool asked_ = false;      // Hello was said for the silence that lasts
   TimePoint last_hello_;
   TimePoint last_heartbeat_;
   std::uint64_t sequence_ = 0;

@@ -104,6 +104,33 @@ TEST(WorkerStateTest, AFrozenWorkerDoesNotHoldTheTimeAgainstItsRun) {
   EXPECT_THAT(Only<KillRunner>(worker.Jump(std::chrono::hours(2))), IsEmpty());
 }
 
+TEST(WorkerStateTest, AFrozenWorkerDoesNotHoldTheTimeAgainstItsMaster) {
+  Worker worker = WelcomedWorker();
+  worker.Lease(5);
+  worker.Finish(0);
+  EXPECT_EQ(Only<Reconnect>(worker.Jump(std::chrono::hours(2))).size(), 1u);
+  EXPECT_THAT(Only<Exit>(worker.Pass(seconds(590))), IsEmpty());
+  worker.Welcome();
+  EXPECT_EQ(Sent<LeaseResult>(worker.last()).size(), 1u);
+}
+
+TEST(WorkerStateTest, ARepeatedRunGetsARunnerThatHasSimulatedNothing) {
+  Worker worker = WelcomedWorker(2);
+  worker.Lease(1);
+  worker.Finish(0);
+  const auto renewed = worker.Do(RunnerDied{1, {FailureKind::kExternal, 9, 0, ""}, 0.0});
+  EXPECT_THAT(Only<StartRun>(renewed), IsEmpty());
+  const auto kills = Only<KillRunner>(worker.Lease(2, /*attempt=*/2));
+  ASSERT_EQ(kills.size(), 1u);
+  EXPECT_EQ(kills[0].slot, 0) << "what run 1 left in it may be what fails run 2";
+  EXPECT_THAT(Only<StartRun>(worker.last()), IsEmpty());
+  EXPECT_THAT(Sent<LeaseResult>(worker.Do(RunnerDied{0, {FailureKind::kExternal, 9, 0, ""}, 0.0})),
+              IsEmpty());
+  const auto starts = Only<StartRun>(worker.Do(SlotBecameReady{0}));
+  ASSERT_EQ(starts.size(), 1u);
+  EXPECT_EQ(starts[0].spec, "spec2");
+}
+
 TEST(WorkerStateTest, LeaseWaitsUntilARunnerIsReady) {
   Worker worker;
   worker.Welcome();
