@@ -19,6 +19,9 @@ using std::chrono::milliseconds;
 constexpr std::size_t kBatch = 512;        // messages taken from the socket at once
 constexpr int kBatchesPerStep = 8;         // then leases and heartbeats get their turn
 constexpr milliseconds kLongestWait{100};  // so that silence and pool deaths are noticed
+// Deaths and connections that ask to be admitted are heard of while waiting; with results without pause, so
+// often too.
+constexpr milliseconds kLookEvery{50};
 constexpr std::uint32_t kMaxSlots = 4096;
 constexpr std::size_t kMaxEvents = 1000;         // kept until somebody takes them
 constexpr std::size_t kLongestHello = 1U << 20;  // bytes; what is longer is not even parsed for a stranger
@@ -101,7 +104,10 @@ Result<std::vector<FinishedRun>> RemoteBackend::Poll(milliseconds timeout) {
   const TimePoint deadline = clock_.Now() + timeout;
   while (true) {
     Status stepped = Step();
-    if (!finished_.empty()) break;
+    if (!finished_.empty()) {
+      if (clock_.Now() >= next_look_) WaitForSomething(milliseconds(0), false);
+      break;
+    }
     if (!stepped) return stepped.error();
     const TimePoint now = clock_.Now();
     if (now >= deadline) break;
@@ -437,6 +443,7 @@ WaitOutcome RemoteBackend::WaitForSomething(milliseconds timeout, bool watch) {
   const std::size_t others = wait_fds_.size();
   if (pool_ != nullptr) pool_->AppendWaitFds(wait_fds_);
   WaitOutcome outcome = transport_.Wait(timeout, wait_fds_);
+  next_look_ = clock_.Now() + kLookEvery;
   for (const int fd : outcome.ready_fds) {
     if (fd == processes_.fd()) {
       const TimePoint heard_until = clock_.Now() + kLastWords;

@@ -104,6 +104,7 @@ class RemoteBackend final : public EvaluationBackend {
 
   TimePoint next_heartbeat_{};
   TimePoint next_supervision_{};
+  TimePoint next_look_{};
   std::uint64_t heartbeats_ = 0;
   bool shutting_down_ = false;
   std::uint64_t rejected_ = 0;

@@ -53,6 +53,23 @@ TEST_F(RemoteBackendTest, AHelloThatCrossedTheWelcomeIsNoReconnect) {
   EXPECT_THAT(Poll(), SizeIs(1));
 }
 
+// Whoever wants to be admitted, and deaths, are heard of in Wait alone.
+TEST_F(RemoteBackendTest, ResultsWithoutPauseDoNotKeepTheRestFromBeingHeard) {
+  std::vector<RunRequest> runs;
+  for (RunId run = 1; run <= 101; ++run) runs.push_back({run, "spec"});
+  backend_->Submit(std::move(runs));
+  SayHello("a", HelloOf(kAnna));
+  Poll();
+  int looks = 0;
+  transport_.on_wait = [&looks] { ++looks; };
+  for (int run = 1; run <= 100; ++run) {
+    clock_.Advance(milliseconds(10));
+    SendResult("a", LeasesSentTo("a").at(0), result_);
+    ASSERT_THAT(Poll(), SizeIs(1));
+  }
+  EXPECT_GE(looks, 19) << "in a second";
+}
+
 TEST_F(RemoteBackendTest, HeartbeatsGoToEveryWorkerOncePerSecond) {
   SayHello("p", HelloOf(kAnna));
   transport_.on_wait = [this] { SendHeartbeat("p"); };
