@@ -85,6 +85,12 @@ class SpawnSetup {
   posix_spawnattr_t attributes_{};
 };
 
+// The first failure in a row costs no time.
+milliseconds DelayAfter(int failed_starts) {
+  if (failed_starts <= 1) return milliseconds(0);
+  return std::min(kLongestDelay, kFirstDelay * (1 << std::min(failed_starts - 2, 10)));
+}
+
 }  // namespace
 
 std::string WorkerProgramPath() {
@@ -183,14 +189,21 @@ void LocalPool::Bury(Slot& slot, int status, TimePoint now) {
                     slot.log_file, tail.empty() ? "is empty" : "ends: " + tail)};
     return;
   }
-  milliseconds delay{0};
-  if (slot.failed_starts > 1) {
-    delay = std::min(kLongestDelay, kFirstDelay * (1 << std::min(slot.failed_starts - 2, 10)));
-  }
-  slot.start_again = now + delay;
+  slot.start_again = now + DelayAfter(slot.failed_starts);
   events_.push_back(
       {"worker-died",
        fmt::format("worker process {} ended with {}; another one takes its place", pid, EndingOf(status))});
+}
+
+void LocalPool::Postpone(Slot& slot, const Status& failure, TimePoint now) {
+  if (++slot.failed_starts > options_.start_attempts && running() == 0) {
+    error_ = failure;
+    return;
+  }
+  slot.start_again = now + DelayAfter(slot.failed_starts + 1);
+  if (slot.failed_starts == 1) {
+    events_.push_back({"worker-not-started", fmt::format("{}; trying again", failure.error().message)});
+  }
 }
 
 Result<std::vector<pid_t>> LocalPool::Supervise(TimePoint now) {
@@ -212,7 +225,7 @@ Result<std::vector<pid_t>> LocalPool::Supervise(TimePoint now) {
   }
   for (Slot& slot : slots_) {
     if (slot.pid >= 0 || !replacing_ || !error_ || slot.start_again > now) continue;
-    if (Status started = StartWorker(slot, now); !started) error_ = started;
+    if (Status started = StartWorker(slot, now); !started) Postpone(slot, started, now);
   }
   return ended;
 }

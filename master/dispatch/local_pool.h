@@ -61,6 +61,8 @@ class LocalPool final : public WorkerPool {
   Status StartWorker(Slot& slot, TimePoint now);
   // What to say about an ended worker; sets error_ when it is one too many.
   void Bury(Slot& slot, int status, TimePoint now);
+  // After the system refused a process (or its log file): sets error_ when that lasts and none is left.
+  void Postpone(Slot& slot, const Status& failure, TimePoint now);
 
   LocalPoolOptions options_;
   std::vector<Slot> slots_;

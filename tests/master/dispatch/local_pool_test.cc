@@ -74,6 +74,17 @@ class LocalPoolTest : public testing::Test {
     return ended;
   }
 
+  // Until every worker has become `sleep`, and needs its script no more.
+  static void AwaitSleeping(const LocalPool& pool) {
+    for (const pid_t pid : pool.pids()) {
+      EXPECT_TRUE(Eventually([pid] {
+        std::string name;
+        std::ifstream("/proc/" + std::to_string(pid) + "/comm") >> name;
+        return name == "sleep";
+      }));
+    }
+  }
+
   testing_support::FakeClock clock_;
   std::string directory_;
   LocalPoolOptions options_;
@@ -143,6 +154,43 @@ TEST_F(LocalPoolTest, AWorkerThatLivedLongEnoughMayDieAnyNumberOfTimes) {
     kill(pool->pids()[0], SIGKILL);
     ASSERT_TRUE(NextEnds(*pool).ok());
   }
+}
+
+TEST_F(LocalPoolTest, AProcessThatCannotBeHadIsTriedForAgainWhileOthersWork) {
+  WriteWorker("exec sleep 1000");
+  options_.workers = 2;
+  const std::unique_ptr<LocalPool> pool = Start();
+  AwaitSleeping(*pool);
+  std::filesystem::rename(options_.program, options_.program + ".away");
+  kill(pool->pids()[0], SIGKILL);
+  ASSERT_THAT(*NextEnds(*pool), SizeIs(1));
+  for (int attempt = 0; attempt < 20; ++attempt) {
+    clock_.Advance(seconds(10));
+    ASSERT_TRUE(pool->Supervise(clock_.Now()).ok()) << attempt;
+    EXPECT_EQ(pool->running(), 1);
+  }
+  const std::vector<DispatchEvent> events = pool->TakeEvents();
+  ASSERT_THAT(events, SizeIs(2));
+  EXPECT_EQ(events[1].kind, "worker-not-started");
+  EXPECT_THAT(events[1].text, HasSubstr("No such file"));
+
+  std::filesystem::rename(options_.program + ".away", options_.program);
+  clock_.Advance(seconds(10));
+  ASSERT_TRUE(pool->Supervise(clock_.Now()).ok());
+  EXPECT_EQ(pool->running(), 2);
+}
+
+TEST_F(LocalPoolTest, GivesUpWhenNoProcessCanBeHadAndNoneIsLeft) {
+  WriteWorker("exec sleep 1000");
+  const std::unique_ptr<LocalPool> pool = Start();
+  AwaitSleeping(*pool);
+  std::filesystem::rename(options_.program, options_.program + ".away");
+  kill(pool->pids()[0], SIGKILL);
+  int attempts = 0;
+  for (; attempts < 1000 && pool->Supervise(clock_.Now()).ok(); ++attempts) clock_.Advance(seconds(10));
+  const Result<std::vector<pid_t>> error = pool->Supervise(clock_.Now());
+  ASSERT_FALSE(error.ok()) << attempts;
+  EXPECT_THAT(error.error().message, HasSubstr("No such file"));
 }
 
 TEST_F(LocalPoolTest, WaitsLongerAndLongerBeforeItStartsAFailingWorkerAgain) {
