@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <nlohmann/json.hpp>
@@ -78,8 +79,8 @@ Error InUse(const std::string& campaign, const LockOwner& owner, bool elsewhere,
           fmt::format(
               "campaign {} is in use by a master elsewhere (host {}, pid {}, last sign of life {} s ago; it "
               "counts as dead after {} s without one); stop it there with Ctrl-C or `kill {}`",
-              campaign, process.host, process.pid, now - owner.heartbeat, CampaignLock::kStaleAfter.count(),
-              process.pid)};
+              campaign, process.host, process.pid, std::max<std::int64_t>(0, now - owner.heartbeat),
+              CampaignLock::kStaleAfter.count(), process.pid)};
 }
 
 // The error that a named owner gives rise to, if it lives.
@@ -94,6 +95,23 @@ std::optional<Error> Objection(const LockOwner& owner, const std::string& campai
   }
   if (now - owner.heartbeat >= CampaignLock::kStaleAfter.count()) return std::nullopt;
   return InUse(campaign, owner, true, now);
+}
+
+// Of an owner elsewhere whose clock was ahead of ours: its last sign of life will not be old for a long time.
+// Whether it gives no newer one within `patience`.
+bool IsSilentThoughAhead(int fd, const LockOwner& owner, std::int64_t now,
+                         std::chrono::milliseconds patience) {
+  if (owner.heartbeat - now < CampaignLock::kStaleAfter.count() ||
+      LivenessOf(owner.process, IdentifyThisProcess()) != Liveness::kUnknown) {
+    return false;
+  }
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::sleep_for(kRetryAfter);
+    const std::optional<LockOwner> later = ReadOwner(fd);
+    if (!later || later->process != owner.process || later->heartbeat != owner.heartbeat) return false;
+  }
+  return true;
 }
 
 // The owner lives here, and is the master of another directory, of which this one is a copy.
@@ -168,8 +186,10 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path
     // anyway.
     const std::optional<LockOwner> owner = ReadOwner(fd);
     if (owner) {
-      std::optional<Error> objection = Objection(*owner, campaign, complete.unix_time());
-      if (objection && !(answer != FlockAnswer::kUnsupported && BelongsToOriginal(*owner, complete)))
+      const std::int64_t now = complete.unix_time();
+      const std::optional<Error> objection = Objection(*owner, campaign, now);
+      if (objection && !(answer != FlockAnswer::kUnsupported && BelongsToOriginal(*owner, complete)) &&
+          !(exclusive && IsSilentThoughAhead(fd, *owner, now, complete.beat_patience)))
         return *objection;
     }
     if (answer != FlockAnswer::kHeldByOther) return lock;

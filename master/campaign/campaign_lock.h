@@ -34,6 +34,8 @@ class CampaignLock {
     std::chrono::milliseconds heartbeat_every{5000};  // 0 = only when Heartbeat is called
     // How long to wait for an owner that has not said its name yet, or for readers.
     std::chrono::milliseconds patience{2000};
+    // How long a master looks for the next heartbeat of an owner elsewhere whose last one lies in its future.
+    std::chrono::milliseconds beat_patience{15000};
     // Whether the lock file was copied together with its campaign, so that the owner it names is that of the
     // original; default: it was not. Believed only of an owner of this machine, whose hold on this very
     // file the system would have told.

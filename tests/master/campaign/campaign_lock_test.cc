@@ -1,5 +1,6 @@
 #include "master/campaign/campaign_lock.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +11,10 @@
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/master/store/store_records.h"
+#include "tests/support/process.h"
 
 namespace gauntlet::master {
 namespace {
@@ -35,6 +38,9 @@ class CampaignLockTest : public testing::Test {
 
   // What a former owner has left: this process, changed by `changes`.
   void LeaveOwner(const json& changes, std::int64_t heartbeat) {
+    WriteFile(path_, Owner(changes, heartbeat));
+  }
+  std::string Owner(const json& changes, std::int64_t heartbeat) {
     const ProcessIdentity self = IdentifyThisProcess();
     json owner = {{"format", 1},
                   {"host", self.host},
@@ -44,7 +50,7 @@ class CampaignLockTest : public testing::Test {
                   {"start_time", self.start_time},
                   {"heartbeat", heartbeat}};
     owner.update(changes);
-    WriteFile(path_, owner.dump());
+    return owner.dump();
   }
 
   ScratchDirectory scratch_;
@@ -151,6 +157,38 @@ TEST_F(CampaignLockTest, AnOwnerElsewhereCountsAsDeadAfterAMinute) {
   ++now_;
   EXPECT_TRUE(Read().ok());
   EXPECT_TRUE(Acquire().ok());
+}
+
+TEST_F(CampaignLockTest, AnOwnerElsewhereWhoseClockWasAheadCountsAsDeadWhenItBeatsNoMore) {
+  CampaignLock::Options options = Options();
+  options.beat_patience = std::chrono::milliseconds(1);
+  LeaveOwner(kElsewhere, now_ + 59);
+  EXPECT_FALSE(CampaignLock::Acquire(path_, "camp", options).ok()) << "clocks differ a little everywhere";
+  LeaveOwner(kElsewhere, now_ + 3600);
+  EXPECT_FALSE(Read().ok()) << "whoever reads does not wait that long";
+  EXPECT_TRUE(CampaignLock::Acquire(path_, "camp", options).ok());
+}
+
+TEST_F(CampaignLockTest, AnOwnerElsewhereWhoseClockIsAheadKeepsTheLockWhileItBeats) {
+  CampaignLock::Options options = Options();
+  options.beat_patience = testing_support::kPatience;
+  LeaveOwner(kElsewhere, now_ + 3600);
+  std::jthread beating([this](const std::stop_token& stop) {
+    const int fd = open(path_.c_str(), O_WRONLY);
+    for (int beat = 1; !stop.stop_requested(); ++beat) {
+      const std::string content = Owner(kElsewhere, now_ + 3600 + beat);  // always of one length
+      EXPECT_EQ(pwrite(fd, content.data(), content.size(), 0), static_cast<ssize_t>(content.size()));
+    }
+    close(fd);
+  });
+  EXPECT_FALSE(CampaignLock::Acquire(path_, "camp", options).ok());
+}
+
+TEST_F(CampaignLockTest, AFrozenOwnerHereIsNoneWhoseClockWasAhead) {
+  CampaignLock::Options options = Options();
+  options.beat_patience = std::chrono::milliseconds(1);
+  LeaveOwner(json::object(), now_ + 3600);
+  EXPECT_FALSE(CampaignLock::Acquire(path_, "camp", options).ok()) << "the process lives";
 }
 
 TEST_F(CampaignLockTest, AnotherPidNamespaceIsElsewhere) {
