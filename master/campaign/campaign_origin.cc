@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
@@ -45,19 +46,18 @@ Result<Recorded> Parse(const std::string& text, const std::string& path) {
   Recorded recorded{field("campaign"), 0, 0};
   const std::string directory = field("directory_inode");
   const std::string database = field("database_inode");
-  const auto is_number = [](const std::string& digits) {
-    return !digits.empty() && digits.size() < 20 &&
-           digits.find_first_not_of("0123456789") == std::string::npos;
+  const auto read = [](const std::string& digits, std::uint64_t& inode) {
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), inode);
+    return error == std::errc() && end == digits.data() + digits.size();
   };
-  if (recorded.campaign_id.empty() || !is_number(directory) || !is_number(database)) {
+  if (recorded.campaign_id.empty() || !read(directory, recorded.directory_inode) ||
+      !read(database, recorded.database_inode)) {
     return Error{
         ErrorKind::kCorrupt,
         fmt::format("{} does not say which campaign this is. Delete it: the campaign then keeps the id "
                     "that it began with",
                     path)};
   }
-  recorded.directory_inode = std::stoull(directory);
-  recorded.database_inode = std::stoull(database);
   return recorded;
 }
 

@@ -87,8 +87,19 @@ TEST_F(CampaignOriginTest, ACopyIsToldFromItsOriginalWithoutChangingIt) {
   EXPECT_FALSE(is_copy(second_)) << "nothing is known";
 }
 
+// File systems that spread their numbers over 64 bits.
+TEST_F(CampaignOriginTest, TheLargestInodeReadsBack) {
+  Put(first_ + "/origin.json",
+      R"({"campaign": "x", "directory_inode": "18446744073709551615", "database_inode": "2"})");
+  EXPECT_TRUE(IsUntakenCopy(*CampaignDirectory::Open(first_)));
+}
+
 TEST_F(CampaignOriginTest, AFileThatDoesNotReadBackIsReported) {
-  for (const std::string text : {"", "{}", "[1]", R"({"campaign": "x", "directory_inode": "y"})"}) {
+  for (const std::string text : {"", "{}", "[1]", R"({"campaign": "x", "directory_inode": "y"})",
+                                 R"({"campaign": "x", "directory_inode": "1", "database_inode": "-1"})",
+                                 R"({"campaign": "x", "directory_inode": "1 ", "database_inode": "2"})",
+                                 R"({"campaign": "x", "directory_inode": "18446744073709551616",
+                                     "database_inode": "2"})"}) {
     Put(first_ + "/origin.json", text);
     const Result<CampaignOrigin> origin = ConfirmOrigin(*CampaignDirectory::Open(first_), "born");
     ASSERT_FALSE(origin.ok()) << text;
