@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <filesystem>
@@ -22,6 +23,7 @@
 #include "master/campaign/metrics_text.h"
 #include "master/campaign/reachable_endpoints.h"
 #include "master/campaign/reproduction_bundle.h"
+#include "master/campaign/run_limits.h"
 #include "master/campaign/stored_check.h"
 #include "master/campaign/worker_program.h"
 #include "master/dispatch/local_pool.h"
@@ -130,6 +132,7 @@ class LivingMasterFiles {
     if (Status removed = RemoveAccessFile(directory_.access_path(), epoch_); !removed) {
       spdlog::warn("{}", removed.error().message);
     }
+    if (!directory_.CheckEpoch(epoch_)) return;  // the rest is a newer master's
     std::error_code ignored;
     std::filesystem::remove(directory_.status_path(), ignored);
     std::filesystem::remove(directory_.stop_path(), ignored);
@@ -199,10 +202,14 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
                                   golden_hash, NamesOfControllers()};
   DispatchOptions dispatch;
   dispatch.audit_share = options.audit_share;
+  for (const SearchPlan& plan : plans) {
+    dispatch.cpu_limit_seconds =
+        std::max(dispatch.cpu_limit_seconds, CpuLimitSeconds(plan.experiment.scenario_parameters));
+  }
   RemoteBackend backend(identity, dispatch, *serving->transport, clock, pool.get());
   backend.WatchFd(store.CommitNotifier());
   const BundleContext bundles{campaign.directory.path(), campaign.origin.campaign_id,
-                              std::string(kSoftwareVersion), HashText(golden_hash)};
+                              std::string(kSoftwareVersion), HashText(golden_hash), dispatch};
   const auto keep_bundle = [&bundles](const Experiment& experiment) {
     return [&bundles, &experiment](const StoredRun& run, const FinishedRun& finished) {
       if (!LeavesBundle(finished.result.verdict)) return;
@@ -258,13 +265,15 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   };
   Result<CampaignEnd> end = runner.Run(stop, [&](const CampaignProgress& progress) {
     if (const TimePoint now = clock.Now(); now - last_status >= kStatusEvery) {
+      last_status = now;
+      const Status newest = campaign.directory.CheckEpoch(campaign.epoch);
+      outdated = !newest && newest.error().kind == ErrorKind::kInUse;
+      if (outdated) return;  // what lies there is the newer one's
       std::error_code ignored;
       if (!view.stopping && std::filesystem::exists(campaign.directory.stop_path(), ignored)) {
         view.stopping = true;
         spdlog::info("asked to stop");
       }
-      const Status newest = campaign.directory.CheckEpoch(campaign.epoch);
-      outdated = !newest && newest.error().kind == ErrorKind::kInUse;
       view.now_unix_ms = UnixMilliseconds();
       const BackendView seen = backend.Describe();
       const Status written =
@@ -272,7 +281,6 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
       if (!written) spdlog::debug("status: {}", written.error().message);
       if (options.metrics != nullptr)
         options.metrics->Publish(MetricsText(view, progress, seen, CostOfThisProcess()));
-      last_status = now;
     }
     options.on_progress(progress);
   });
@@ -291,6 +299,7 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
     spdlog::error("stopped: {}", end.error().message);
     return end.error();
   }
+  runner.StoreEvents();  // of the time since
   const WorkerStatistics workers = backend.Statistics();
   if (workers.audits > 0) {
     store.AddEvent(

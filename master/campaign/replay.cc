@@ -82,7 +82,7 @@ Result<ReplayReport> ReplayRun(ResultStore& store, RunId run) {
 
   sim::RunSpec recorded = report.spec;
   recorded.record_trajectory = true;
-  Result<sim::RunResult> replayed = SimulateInRunner(EncodeRunSpec(recorded));
+  Result<sim::RunResult> replayed = SimulateInRunner(recorded);
   if (!replayed) return replayed.error();
   report.replayed = std::move(*replayed);
 

@@ -31,10 +31,9 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
 
   const Result<sim::RunSpec> spec = DecodeRunSpec(run.spec);
   if (!spec) return spec.error();
-  const DispatchOptions limits;
   const std::string command =
       fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
-                  limits.cpu_limit_seconds, limits.memory_limit_bytes);
+                  context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
   const std::string readme = fmt::format(
       "Run {} of the campaign {} {} ({}), in every attempt; the last was on worker {}.\n\n"
       "See it again, in this folder:\n    {} > result\n"

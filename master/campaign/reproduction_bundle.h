@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/experiment/experiment.h"
 #include "master/store/result_store.h"
@@ -22,6 +23,7 @@ struct BundleContext {
   std::string campaign_id;
   std::string software_version;
   std::string golden_hash;  // 16 hexadecimal digits
+  DispatchOptions limits;   // that its runs had
 };
 
 // Writes bundles/run-N: README.txt (what failed, where, by which signal, the one command that reproduces it),

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "master/campaign/run_limits.h"
 #include "master/dispatch/local_pool.h"
 #include "master/dispatch/run_codec.h"
 #include "slurm/process_call.h"
@@ -36,8 +37,10 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
 
 }  // namespace
 
-Result<sim::RunResult> SimulateInRunner(std::string_view spec) {
-  Result<std::string> output = RunWorkerProgram({"--run-spec", "-"}, spec);
+Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec) {
+  const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec.scenario_parameters));
+  Result<std::string> output =
+      RunWorkerProgram({"--run-spec", "-", "--cpu-limit", cpu_limit}, EncodeRunSpec(spec));
   if (!output) return output.error();
   return DecodeRunResult(*output);
 }

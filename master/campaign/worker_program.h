@@ -8,12 +8,13 @@
 
 #include "sim/base/result.h"
 #include "sim/run_result.h"
+#include "sim/run_spec.h"
 
 namespace gauntlet::master {
 
-// Simulates a serialized RunSpec in a runner, under the limits of any run, and returns the result (not
-// checked against anything).
-Result<sim::RunResult> SimulateInRunner(std::string_view spec);
+// Simulates a run in a runner, under the limits of any run, and returns the result (not checked against
+// anything).
+Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec);
 
 // The hash of a fixed set of runs on this machine, as `gauntlet-worker --golden` prints it.
 Result<std::uint64_t> GoldenHashOfThisMachine();

@@ -26,7 +26,8 @@ struct DispatchOptions {
   double copy_after = 2.0;
   // Share of runs, 0 to 1, that another worker simulates once more, to be compared.
   double audit_share = 0.0;
-  // CPU time of one runner on one run, s; only there to end what would never end. At least 60 in campaigns.
+  // CPU time of one runner on one run, s; only there to end what would never end. Campaigns give more for
+  // long runs (run_limits.h).
   double cpu_limit_seconds = 60.0;
   std::uint64_t memory_limit_bytes = 2ULL << 30;  // address space of one runner; 0 = no limit
   // How long a vanished worker is remembered: its late results are still taken. Longer than the time for
