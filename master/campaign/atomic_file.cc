@@ -32,14 +32,6 @@ std::string DirectoryOf(const std::string& path) {
   return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
 }
 
-int SyncDirectory(const std::string& directory) {
-  const int fd = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return errno;
-  const int error = fsync(fd) == 0 ? 0 : errno;
-  close(fd);
-  return error;
-}
-
 }  // namespace
 
 Error SystemError(const std::string& what, int error_number) {
@@ -66,12 +58,18 @@ Status Replace(const std::string& path, std::string_view bytes, mode_t mode, boo
     unlink(temporary.c_str());
     return SystemError(fmt::format("cannot write {}", path), error);
   }
-  if (durable) error = SyncDirectory(directory);
-  if (error != 0) return SystemError(fmt::format("cannot synchronise {}", directory), error);
-  return Ok{};
+  return durable ? SyncDirectory(directory) : Ok{};
 }
 
 }  // namespace
+
+Status SyncDirectory(const std::string& directory) {
+  const int fd = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int error = fd < 0 || fsync(fd) != 0 ? errno : 0;
+  if (fd >= 0) close(fd);
+  if (error != 0) return SystemError(fmt::format("cannot synchronise {}", directory), error);
+  return Ok{};
+}
 
 Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode_t mode) {
   return Replace(path, bytes, mode, /*durable=*/true);

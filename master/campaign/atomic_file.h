@@ -23,6 +23,9 @@ Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode
 // content.
 Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode);
 
+// The names in a directory survive a loss of power from now on.
+Status SyncDirectory(const std::string& directory);
+
 // A whole file of at most `limit` bytes. Errors: kNotFound, kIo, kCorrupt when it is longer.
 Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit = 1 << 20);
 

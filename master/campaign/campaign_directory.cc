@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "master/campaign/atomic_file.h"
 
@@ -34,6 +35,21 @@ bool IsOwnName(const std::string& name) {
   return std::any_of(kOwnNames.begin(), kOwnNames.end(), [&name](std::string_view own) {
     return name == own || (name.starts_with(own) && name[own.size()] == '.');
   });
+}
+
+// With those above it that are missing. A loss of power leaves them, unless their place cannot be
+// synchronised: one may be allowed to write into a directory and not to open it.
+Status MakeDirectories(const std::string& path) {
+  std::error_code error;
+  std::vector<fs::path> missing;
+  for (fs::path there = fs::absolute(path, error); !error && !fs::exists(there, error);
+       there = there.parent_path()) {
+    missing.push_back(there);
+  }
+  fs::create_directories(path, error);
+  if (error) return SystemError(fmt::format("cannot make the directory {}", path), error.value());
+  for (const fs::path& made : missing) (void)SyncDirectory(made.parent_path());
+  return Ok{};
 }
 
 // A directory in which a master was killed before it had made the database: all there is, is ours.
@@ -101,9 +117,7 @@ Status CampaignDirectory::CheckCreatable(const std::string& dir) {
 Result<CampaignDirectory> CampaignDirectory::Create(const std::string& dir) {
   if (Status creatable = CheckCreatable(dir); !creatable) return creatable.error();
   CampaignDirectory directory(WithoutSlash(dir));
-  std::error_code error;
-  fs::create_directories(directory.path_, error);
-  if (error) return SystemError(fmt::format("cannot make the directory {}", directory.path_), error.value());
+  if (Status made = MakeDirectories(directory.path_); !made) return made.error();
   return directory;
 }
 

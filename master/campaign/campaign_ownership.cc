@@ -12,6 +12,10 @@
 namespace gauntlet::master {
 namespace {
 
+// A master waits so long for those who read. `show` of a large campaign takes its time, and `status` may come
+// again and again.
+constexpr std::chrono::seconds kReadersPatience{30};
+
 CampaignLock::Options LockOptions(const CampaignDirectory& directory) {
   CampaignLock::Options options;
   options.is_copy = [directory] { return IsUntakenCopy(directory); };
@@ -75,15 +79,17 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
+  CampaignLock::Options options = LockOptions(*directory);
+  options.patience = kReadersPatience;
   Result<std::unique_ptr<CampaignLock>> lock =
-      CampaignLock::Acquire(directory->lock_path(), directory->path(), LockOptions(*directory));
+      CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
   if (!lock && lock.error().kind == ErrorKind::kInUse && other == LivingMaster::kFence) {
     if (Result<std::uint64_t> fence = directory->StartEpoch(); !fence) return fence.error();
     const auto deadline =
         std::chrono::steady_clock::now() + CampaignLock::kStaleAfter + std::chrono::seconds(10);
     while (!lock && lock.error().kind == ErrorKind::kInUse && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
-      lock = CampaignLock::Acquire(directory->lock_path(), directory->path(), LockOptions(*directory));
+      lock = CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
     }
   }
   if (!lock) return lock.error();

@@ -57,6 +57,8 @@ class CampaignRunner {
   Result<CampaignEnd> Run(const std::function<StopWish()>& stop,
                           const std::function<void(const CampaignProgress&)>& on_progress);
 
+  // What the backend has reported since: into the store and the log. Run does so by itself.
+  void StoreEvents();
   // Runs stored, earlier sessions included.
   std::uint64_t runs_done() const;
 
@@ -64,7 +66,6 @@ class CampaignRunner {
   SearchDriver& DriverOf(RunId run) { return *parts_.searches.at(SearchOf(run) - 1); }
   Status Advance();
   Status ApplyCommits();
-  void StoreEvents();
   Status EndSession();
   CampaignProgress Progress(TimePoint started);
 
