@@ -142,8 +142,7 @@ TEST(FullDiskTest, StopsWithExit3AndResumesWhenThereIsSpace) {
       "{1} show {0}/c --json > {2}/show.json\n",
       mount, GauntletPath(), scratch.path());
   const ProcessResult result =
-      RunProcess({"/usr/bin/unshare", "--mount", "--map-root-user", "/bin/sh", "-c", script}, {},
-                 std::chrono::seconds(280));
+      RunProcess({"/usr/bin/unshare", "--mount", "--map-root-user", "/bin/sh", "-c", script});
   if (result.exit_code == 77 || result.exit_code == 1)
     GTEST_SKIP() << "no mount namespace to be had here: " << result.err;
   EXPECT_THAT(result.out, HasSubstr("first 3")) << result.err;
@@ -173,8 +172,7 @@ TEST(FullDiskTest, ACampaignThatCouldNotBeMadeIsMadeByTheSameCommandWhenThereIsS
   for (const std::string size : {"8k", "40k", "100k", "64m"})
     script += fmt::format("mount -o remount,size={} {}\nagain {}\n", size, mount, size);
   const ProcessResult result =
-      RunProcess({"/usr/bin/unshare", "--mount", "--map-root-user", "/bin/sh", "-c", script}, {},
-                 std::chrono::seconds(100));
+      RunProcess({"/usr/bin/unshare", "--mount", "--map-root-user", "/bin/sh", "-c", script});
   if (result.exit_code == 77 || result.exit_code == 1)
     GTEST_SKIP() << "no mount namespace to be had here: " << result.err;
   const std::string said = ReadFile(scratch / "err");
