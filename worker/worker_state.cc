@@ -252,14 +252,18 @@ void WorkerState::On(const StopRequested& stop) {
       earlier(drain_->leave_at, now_ + (hurry ? settings_.acknowledge_wait : settings_.stop_leave));
 }
 
+void WorkerState::Kill(std::size_t index) {
+  slots_[index].state = SlotState::kKilling;
+  Act(KillRunner{static_cast<int>(index)});
+}
+
 void WorkerState::EndBlockedRuns() {
   if (welcome_.cpu_limit_seconds <= 0.0) return;
   const double limit = kWallPerCpu * welcome_.cpu_limit_seconds;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
     if (slot.state != SlotState::kRunning || Seconds(awake_ - slot.begun) < limit) continue;
-    slot.state = SlotState::kKilling;
-    Act(KillRunner{static_cast<int>(i)});
+    Kill(i);
     const Given run = std::move(slot.runs.front());
     EndRuns(slot);
     if (!run.wanted) continue;
@@ -354,8 +358,7 @@ void WorkerState::Forget(Fence fence) {
     if (run == slot.runs.end()) continue;
     run->wanted = false;
     if (run != slot.runs.begin()) continue;  // it is short: not worth a runner
-    slot.state = SlotState::kKilling;
-    Act(KillRunner{static_cast<int>(i)});
+    Kill(i);
     EndRuns(slot);
   }
 }
@@ -388,18 +391,13 @@ void WorkerState::StartNext(std::size_t index) {
                .memory_limit_bytes = welcome_.memory_limit_bytes});
 }
 
-void WorkerState::Renew(std::size_t index) {
-  slots_[index].state = SlotState::kKilling;
-  Act(KillRunner{static_cast<int>(index)});
-}
-
 void WorkerState::StartWaitingRuns() {
   if (drain_) return;
   for (std::size_t i = 0; i < slots_.size() && !waiting_.empty(); ++i) {
     if (slots_[i].state != SlotState::kIdle) continue;
     // What former runs have left in a runner must not be what fails a run again.
     if (waiting_.front().attempt > 1 && slots_[i].used) {
-      Renew(i);
+      Kill(i);
     } else {
       StartNext(i);
     }
@@ -443,8 +441,7 @@ void WorkerState::DropRunning(const std::string& why) {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
     if (slot.state != SlotState::kRunning) continue;
-    slot.state = SlotState::kKilling;
-    Act(KillRunner{static_cast<int>(i)});
+    Kill(i);
     for (const Given& run : std::exchange(slot.runs, {})) {
       if (run.wanted) GiveBack(run.lease, why);
     }

@@ -175,12 +175,12 @@ class WorkerState {
   void Greet();
   void GreetAgain();
   void ResendLateResults();
+  void Kill(std::size_t index);  // the slot's runner; another takes its place
   void EndBlockedRuns();
   void Forget(Fence fence);
   bool Holds(Fence fence) const;
   void StartWaitingRuns();
   void StartNext(std::size_t index);
-  void Renew(std::size_t index);  // its runner, which has nothing to do
   std::size_t RunsAhead() const;  // how many runs a runner may have, 1 or more
   void EndRuns(Slot& slot);       // all but the first wait again
   void HandIn(LeaseResult result);

@@ -97,21 +97,10 @@ std::optional<Error> Objection(const LockOwner& owner, const std::string& campai
   return InUse(campaign, owner, true, now);
 }
 
-// Of an owner elsewhere whose clock was ahead of ours: its last sign of life will not be old for a long time.
-// Whether it gives no newer one within `patience`.
-bool IsSilentThoughAhead(int fd, const LockOwner& owner, std::int64_t now,
-                         std::chrono::milliseconds patience) {
-  if (owner.heartbeat - now < CampaignLock::kStaleAfter.count() ||
-      LivenessOf(owner.process, IdentifyThisProcess()) != Liveness::kUnknown) {
-    return false;
-  }
-  const auto deadline = std::chrono::steady_clock::now() + patience;
-  while (std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(kRetryAfter);
-    const std::optional<LockOwner> later = ReadOwner(fd);
-    if (!later || later->process != owner.process || later->heartbeat != owner.heartbeat) return false;
-  }
-  return true;
+// An owner elsewhere whose last sign of life, of a clock ahead of ours, will not be old for a long time.
+bool IsAhead(const LockOwner& owner, std::int64_t now) {
+  return owner.heartbeat - now >= CampaignLock::kStaleAfter.count() &&
+         LivenessOf(owner.process, IdentifyThisProcess()) == Liveness::kUnknown;
 }
 
 // The owner lives here, and is the master of another directory, of which this one is a copy.
@@ -179,21 +168,27 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path
   std::unique_ptr<CampaignLock> lock(new CampaignLock(path, campaign, complete, fd));
   if (fd < 0) return lock;
 
-  const auto deadline = std::chrono::steady_clock::now() + complete.patience;
+  const auto started = std::chrono::steady_clock::now();
+  std::optional<LockOwner> ahead;  // an owner whose clock is ahead, as it was seen last
   while (true) {
+    const auto waited = std::chrono::steady_clock::now() - started;
     const FlockAnswer answer = TryFlock(fd, exclusive);
     // A name that is read while somebody else holds the file may be the former owner's; a living one counts
     // anyway.
     const std::optional<LockOwner> owner = ReadOwner(fd);
+    bool undecided = false;
     if (owner) {
       const std::int64_t now = complete.unix_time();
       const std::optional<Error> objection = Objection(*owner, campaign, now);
-      if (objection && !(answer != FlockAnswer::kUnsupported && BelongsToOriginal(*owner, complete)) &&
-          !(exclusive && IsSilentThoughAhead(fd, *owner, now, complete.beat_patience)))
-        return *objection;
+      if (objection && !(answer != FlockAnswer::kUnsupported && BelongsToOriginal(*owner, complete))) {
+        const bool beats = ahead && ahead->heartbeat != owner->heartbeat;
+        if (!exclusive || beats || !(ahead || IsAhead(*owner, now))) return *objection;
+        ahead = owner;
+        undecided = waited < complete.beat_patience;
+      }
     }
-    if (answer != FlockAnswer::kHeldByOther) return lock;
-    if (std::chrono::steady_clock::now() >= deadline) {
+    if (answer != FlockAnswer::kHeldByOther && !undecided) return lock;
+    if (waited >= complete.patience && !undecided) {
       const std::string last =
           owner ? fmt::format(" (its last master: host {}, pid {})", owner->process.host, owner->process.pid)
                 : "";

@@ -2,20 +2,17 @@
 
 #include <algorithm>
 
+#include "master/dispatch/dispatch_options.h"
 #include "sim/robot/foot_bot.h"
 
 namespace gauntlet::master {
-namespace {
-
-constexpr double kLeastSeconds = 60.0;
-constexpr double kSecondsPerTick = 0.01;
-
-}  // namespace
 
 double CpuLimitSeconds(const sim::Parameters& scenario_parameters) {
+  constexpr double kSecondsPerTick = 0.01;
+  const double least = DispatchOptions().cpu_limit_seconds;
   const auto time_limit = scenario_parameters.find("time_limit");
-  if (time_limit == scenario_parameters.end()) return kLeastSeconds;
-  return std::max(kLeastSeconds, time_limit->second * sim::kTicksPerSecond * kSecondsPerTick);
+  if (time_limit == scenario_parameters.end()) return least;
+  return std::max(least, time_limit->second * sim::kTicksPerSecond * kSecondsPerTick);
 }
 
 }  // namespace gauntlet::master

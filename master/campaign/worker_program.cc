@@ -5,6 +5,8 @@
 #include <charconv>
 #include <csignal>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
