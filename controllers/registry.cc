@@ -4,12 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "base/nearest_name.h"
+#include "base/number_text.h"
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/flocking/flocking_registry.h"
 #include "controllers/foraging/foraging_registry.h"
 #include "controllers/partitioning/partitioning_registry.h"
-#include "sim/base/nearest_name.h"
-#include "sim/base/number_text.h"
 
 namespace gauntlet::controllers {
 namespace {

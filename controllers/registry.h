@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/result.h"
 #include "sim/arena/validity.h"
-#include "sim/base/result.h"
 #include "sim/run_spec.h"
 #include "sim/scenario.h"
 

@@ -1,6 +1,6 @@
 #include "sim/observer.h"
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::sim {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/base/number_text.h"
+#include "base/number_text.h"
 #include "sim/simulation.h"
 
 namespace gauntlet::sim {

@@ -1,6 +1,6 @@
 #include "sim/run_result.h"
 
-#include "sim/base/hash.h"
+#include "base/hash.h"
 
 namespace gauntlet::sim {
 namespace {

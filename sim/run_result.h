@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/base/canonical_encoder.h"
+#include "base/canonical_encoder.h"
 #include "sim/observer.h"
 #include "sim/robot/foot_bot.h"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "sim/arena/arena.h"
 #include "sim/arena/validity.h"
-#include "sim/base/result.h"
 #include "sim/headquarters.h"
 #include "sim/observer.h"
 #include "sim/robot/controller.h"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/hash.h"
-#include "sim/base/number_text.h"
+#include "base/hash.h"
+#include "base/number_text.h"
 #include "sim/physics/physics_engine.h"
 #include "sim/robot/obstacle_course.h"
 #include "sim/run_checks.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "sim/base/result.h"
+#include "base/result.h"
 
 namespace gauntlet::slurm {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "slurm/process_call.h"
+#include "base/system/process_call.h"
 
 namespace gauntlet::slurm {
 namespace {

@@ -5,8 +5,8 @@
 #include <utility>
 #include <zmq.hpp>
 
-#include "sim/base/thread_sanitizer.h"
-#include "worker/message_codec.h"
+#include "base/thread_sanitizer.h"
+#include "proto/message_codec.h"
 
 namespace gauntlet::worker {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "sim/base/result.h"
-#include "worker/access_file.h"
+#include "base/result.h"
+#include "proto/access_file.h"
 
 namespace gauntlet::worker {
 

@@ -15,7 +15,7 @@
 #include <optional>
 #include <variant>
 
-#include "sim/base/result.h"
+#include "base/result.h"
 #include "worker/pipe.h"
 #include "worker/runner.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/hash.h"
 #include "controllers/registry.h"
-#include "sim/base/hash.h"
 #include "sim/geometry/trigonometry.h"
 #include "sim/random/random_stream.h"
 #include "worker/run_executor.h"

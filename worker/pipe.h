@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "sim/base/result.h"
+#include "base/result.h"
 
 namespace gauntlet::worker {
 

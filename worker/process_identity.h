@@ -1,7 +1,7 @@
 // Who this process is, so that a master on the same machine can watch it.
 #pragma once
 
-#include "worker/messages.h"
+#include "proto/messages.h"
 
 namespace gauntlet::worker {
 

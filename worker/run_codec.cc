@@ -11,8 +11,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/utf8.h"
 #include "proto/run.pb.h"
-#include "sim/base/utf8.h"
 
 namespace gauntlet::worker {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/base/result.h"
+#include "base/result.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
 

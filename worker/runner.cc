@@ -13,8 +13,8 @@
 #include <exception>
 #include <new>
 
-#include "sim/base/canonical_encoder.h"
-#include "sim/base/utf8.h"
+#include "base/canonical_encoder.h"
+#include "base/utf8.h"
 #include "worker/pipe.h"
 #include "worker/run_codec.h"
 

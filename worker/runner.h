@@ -8,9 +8,9 @@
 #include <string>
 #include <string_view>
 
+#include "proto/messages.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
-#include "worker/messages.h"
 
 namespace gauntlet::worker {
 

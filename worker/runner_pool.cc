@@ -12,7 +12,7 @@
 #include <cstring>
 #include <utility>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::worker {
 namespace {

@@ -17,9 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include "sim/base/check.h"
+#include "base/check.h"
+#include "proto/message_codec.h"
 #include "worker/connection.h"
-#include "worker/message_codec.h"
 #include "worker/runner_pool.h"
 
 namespace gauntlet::worker {

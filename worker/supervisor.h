@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "worker/access_file.h"
+#include "proto/access_file.h"
 #include "worker/fork_server.h"
 #include "worker/worker_state.h"
 

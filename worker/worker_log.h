@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "sim/base/result.h"
+#include "base/result.h"
 
 namespace gauntlet::worker {
 

@@ -22,9 +22,9 @@
 #include <utility>
 #include <vector>
 
-#include "worker/access_file.h"
+#include "proto/access_file.h"
+#include "proto/message_codec.h"
 #include "worker/fork_server.h"
-#include "worker/message_codec.h"
 #include "worker/process_identity.h"
 #include "worker/run_codec.h"
 #include "worker/runner_pool.h"

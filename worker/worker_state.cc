@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "worker/runner.h"
 
 namespace gauntlet::worker {

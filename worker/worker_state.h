@@ -25,7 +25,7 @@
 #include <variant>
 #include <vector>
 
-#include "worker/messages.h"
+#include "proto/messages.h"
 
 namespace gauntlet::worker {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "analysis/statistics/rank_test.h"
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::analysis {

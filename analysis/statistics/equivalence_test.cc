@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::analysis {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::analysis {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "base/number_text.h"
 #include "controllers/common/parameters.h"
-#include "sim/base/number_text.h"
 
 namespace gauntlet::controllers {
 namespace {

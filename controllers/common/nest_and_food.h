@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/result.h"
 #include "sim/arena/validity.h"
-#include "sim/base/result.h"
 #include "sim/run_spec.h"
 
 namespace gauntlet::controllers {

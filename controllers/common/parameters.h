@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/robot/foot_bot.h"
 #include "sim/run_spec.h"
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <span>
 
+#include "base/bits.h"
 #include "controllers/common/proximity.h"
 #include "controllers/common/steering.h"
-#include "sim/base/bits.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {

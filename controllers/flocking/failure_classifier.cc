@@ -4,7 +4,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {

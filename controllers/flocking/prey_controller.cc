@@ -3,10 +3,10 @@
 #include <cmath>
 #include <utility>
 
+#include "base/check.h"
 #include "controllers/common/steering.h"
 #include "controllers/flocking/bird_controller.h"
 #include "sim/arena/path_planner.h"
-#include "sim/base/check.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {

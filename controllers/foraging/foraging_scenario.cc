@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
+#include "base/number_text.h"
 #include "controllers/common/stillness.h"
 #include "sim/arena/spawn.h"
-#include "sim/base/number_text.h"
 
 namespace gauntlet::controllers {
 namespace {

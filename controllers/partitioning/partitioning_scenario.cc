@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "base/number_text.h"
 #include "controllers/common/stillness.h"
-#include "sim/base/number_text.h"
 
 namespace gauntlet::controllers {
 namespace {

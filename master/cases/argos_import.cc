@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
-#include "sim/base/printable.h"
+#include "base/printable.h"
 
 namespace gauntlet::master {
 namespace {

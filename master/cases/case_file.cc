@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "master/cases/argos_import.h"
-#include "master/dispatch/run_codec.h"
+#include "proto/run_codec.h"
 
 namespace gauntlet::master {
 namespace {

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
+#include "base/result.h"
 #include "sim/arena/test_case.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

@@ -1,7 +1,7 @@
 #include "master/cli/command_context.h"
 
+#include "base/printable.h"
 #include "master/cli/table.h"
-#include "sim/base/printable.h"
 
 namespace gauntlet::master {
 

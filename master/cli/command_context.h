@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "master/campaign/campaign_session.h"
-#include "master/campaign/campaign_status.h"
-#include "sim/base/result.h"
+#include "base/result.h"
+#include "master/report/campaign_status.h"
+#include "master/session/campaign_session.h"
 #include "slurm/slurm_client.h"
 
 namespace gauntlet::master {

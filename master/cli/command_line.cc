@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "base/nearest_name.h"
 #include "master/cli/commands.h"
-#include "master/slurm/slurm_settings.h"
-#include "sim/base/nearest_name.h"
+#include "slurm/slurm_settings.h"
 
 namespace gauntlet::master {
 namespace {

@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "master/campaign/campaign_directory.h"
 #include "master/cli/table.h"
+#include "master/directory/campaign_directory.h"
 #include "master/experiment/experiment_file.h"
 
 namespace gauntlet::master {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "master/experiment/experiment.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

@@ -8,15 +8,15 @@
 #include <fmt/format.h>
 
 #include "controllers/registry.h"
-#include "master/campaign/verdict_text.h"
 #include "master/cases/case_file.h"
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/summary_json.h"
 #include "master/cli/summary_text.h"
-#include "master/dispatch/run_codec.h"
+#include "master/report/verdict_text.h"
 #include "master/search/make_search.h"
+#include "proto/run_codec.h"
 #include "sim/arena/validity.h"
 
 namespace gauntlet::master {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "master/campaign/verdict_text.h"
 #include "master/dispatch/evaluation_backend.h"
+#include "master/report/verdict_text.h"
 #include "sim/run_result.h"
 
 namespace gauntlet::master {

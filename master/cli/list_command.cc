@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "controllers/registry.h"
-#include "master/campaign/json_text.h"
 #include "master/cli/commands.h"
 #include "master/cli/table.h"
 #include "master/experiment/experiment_file.h"
 #include "master/experiment/schema.h"
+#include "proto/json_text.h"
 
 namespace gauntlet::master {
 namespace {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "master/campaign/campaign_runner.h"
-#include "master/dispatch/clock.h"
+#include "base/system/clock.h"
+#include "master/session/campaign_runner.h"
 
 namespace gauntlet::master {
 

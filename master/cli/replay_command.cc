@@ -10,13 +10,13 @@
 #include "analysis/figures/run_figure.h"
 #include "analysis/figures/timeline_figure.h"
 #include "analysis/figures/trajectory_csv.h"
+#include "base/printable.h"
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
 #include "master/cli/evaluation.h"
 #include "master/cli/metric_text.h"
 #include "master/cli/summary_json.h"
 #include "master/cli/table.h"
-#include "sim/base/printable.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {

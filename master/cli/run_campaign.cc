@@ -5,14 +5,14 @@
 
 #include <fmt/format.h>
 
-#include "master/campaign/bind_endpoint.h"
-#include "master/campaign/metrics_server.h"
 #include "master/cli/progress.h"
 #include "master/cli/stop_signal.h"
 #include "master/cli/summary_json.h"
 #include "master/cli/summary_text.h"
 #include "master/cli/table.h"
 #include "master/dispatch/curve_keys.h"
+#include "master/session/bind_endpoint.h"
+#include "master/session/metrics_server.h"
 
 namespace gauntlet::master {
 namespace {

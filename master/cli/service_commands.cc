@@ -7,14 +7,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "master/campaign/json_text.h"
+#include "base/printable.h"
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/stop_signal.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/table.h"
-#include "sim/base/printable.h"
+#include "proto/json_text.h"
 
 namespace gauntlet::master {
 namespace {

@@ -5,14 +5,14 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "master/campaign/atomic_file.h"
-#include "master/campaign/bind_endpoint.h"
-#include "master/campaign/json_text.h"
+#include "base/system/atomic_file.h"
 #include "master/cli/commands.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/sweep.h"
 #include "master/cli/table.h"
 #include "master/experiment/experiment_file.h"
+#include "master/session/bind_endpoint.h"
+#include "proto/json_text.h"
 
 namespace gauntlet::master {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "master/cli/command_context.h"
 #include "master/cli/common_options.h"
-#include "master/slurm/slurm_campaign.h"
+#include "slurm/slurm_campaign.h"
 
 namespace gauntlet::master {
 

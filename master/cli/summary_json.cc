@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "master/campaign/json_text.h"
-#include "master/campaign/reproduction_bundle.h"
+#include "master/session/reproduction_bundle.h"
+#include "proto/json_text.h"
 
 namespace gauntlet::master {
 namespace {

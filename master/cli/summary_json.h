@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "master/campaign/campaign_summary.h"
-#include "master/campaign/replay.h"
 #include "master/cli/evaluation.h"
+#include "master/report/campaign_summary.h"
+#include "master/report/replay.h"
 
 namespace gauntlet::master {
 

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include "master/campaign/reproduction_bundle.h"
-#include "master/campaign/verdict_text.h"
+#include "base/printable.h"
 #include "master/cli/table.h"
-#include "sim/base/printable.h"
+#include "master/report/verdict_text.h"
+#include "master/session/reproduction_bundle.h"
 
 namespace gauntlet::master {
 namespace {

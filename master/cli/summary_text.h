@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "master/campaign/campaign_summary.h"
 #include "master/cli/evaluation.h"
+#include "master/report/campaign_summary.h"
 
 namespace gauntlet::master {
 

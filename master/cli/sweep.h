@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "master/campaign/campaign_searches.h"
+#include "base/result.h"
 #include "master/cli/common_options.h"
-#include "sim/base/result.h"
+#include "master/session/campaign_searches.h"
 
 namespace gauntlet::master {
 

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "sim/base/check.h"
-#include "sim/base/printable.h"
+#include "base/check.h"
+#include "base/printable.h"
 
 namespace gauntlet::master {
 

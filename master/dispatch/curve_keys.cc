@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::master {
 namespace {

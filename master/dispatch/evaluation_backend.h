@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/base/result.h"
+#include "base/result.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
 
@@ -16,7 +16,7 @@ using RunId = std::uint64_t;  // 1, 2, 3, ... in logical order within a campaign
 
 struct RunRequest {
   RunId id = 0;
-  std::string spec;  // serialized gauntlet.v1.RunSpec (master/dispatch/run_codec.h)
+  std::string spec;  // serialized gauntlet.v1.RunSpec (proto/run_codec.h)
   // How long it will probably take, compared with the others that are submitted with it, in any unit; the
   // longest go first, equals in the order of their ids.
   double length = 0.0;

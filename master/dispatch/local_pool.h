@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "master/dispatch/clock.h"
+#include "base/result.h"
+#include "base/system/clock.h"
 #include "master/dispatch/worker_pool.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

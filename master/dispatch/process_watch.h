@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "master/dispatch/process_identity.h"
+#include "base/system/process_identity.h"
 
 namespace gauntlet::master {
 

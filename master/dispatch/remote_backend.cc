@@ -6,10 +6,10 @@
 #include <csignal>
 #include <utility>
 
-#include "master/dispatch/run_codec.h"
-#include "master/dispatch/run_failure.h"
-#include "sim/base/check.h"
-#include "sim/base/printable.h"
+#include "base/check.h"
+#include "base/printable.h"
+#include "proto/run_codec.h"
+#include "proto/run_failure.h"
 
 namespace gauntlet::master {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "master/dispatch/clock.h"
+#include "base/system/clock.h"
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/dispatch/process_watch.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <string>
 
-#include "sim/base/check.h"
-#include "sim/base/hash.h"
+#include "base/check.h"
+#include "base/hash.h"
 
 namespace gauntlet::master {
 namespace {

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/result.h"
 #include "master/dispatch/scheduler.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

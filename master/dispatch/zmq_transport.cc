@@ -18,8 +18,8 @@
 #include <utility>
 #include <zmq.hpp>
 
+#include "base/thread_sanitizer.h"
 #include "master/dispatch/connection_watch.h"
-#include "sim/base/thread_sanitizer.h"
 
 namespace gauntlet::master {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "master/dispatch/curve_keys.h"
 #include "master/dispatch/transport.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

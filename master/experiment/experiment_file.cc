@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
+#include "base/nearest_name.h"
+#include "base/printable.h"
 #include "master/experiment/toml_text.h"
-#include "sim/base/nearest_name.h"
-#include "sim/base/printable.h"
 
 namespace gauntlet::master {
 namespace {

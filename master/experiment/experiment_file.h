@@ -7,13 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "base/result.h"
 #include "master/experiment/experiment.h"
 #include "master/experiment/schema.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 
-// Reads an experiment; its [slurm] table is left to master/slurm/slurm_settings.h. `sets` are "key=value" and
+// Reads an experiment; its [slurm] table is left to slurm/slurm_settings.h. `sets` are "key=value" and
 // win over the file, the last of one key over the earlier. Whatever is not given has its default, so all
 // parameters of scenario and controller are resolved; the name defaults to the file's. Errors begin with the
 // place, "file:line:column" or "--set key=value", and name key, value and what is allowed; an unknown key

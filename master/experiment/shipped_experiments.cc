@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/nearest_name.h"
 #include "master/experiment/experiment_file.h"
-#include "sim/base/nearest_name.h"
 
 namespace gauntlet::master {
 namespace {

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "sim/base/result.h"
+#include "base/result.h"
 
 namespace gauntlet::master {
 

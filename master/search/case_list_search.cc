@@ -4,9 +4,9 @@
 
 #include <set>
 
+#include "base/check.h"
+#include "base/hash.h"
 #include "sim/arena/genome_codec.h"
-#include "sim/base/check.h"
-#include "sim/base/hash.h"
 
 namespace gauntlet::master {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <optional>
 
+#include "base/result.h"
 #include "master/experiment/experiment.h"
 #include "sim/arena/test_case.h"
 #include "sim/arena/validity.h"
-#include "sim/base/result.h"
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::master {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "base/check.h"
+#include "base/hash.h"
 #include "sim/arena/genome_codec.h"
-#include "sim/base/check.h"
-#include "sim/base/hash.h"
 
 namespace gauntlet::master {
 namespace {

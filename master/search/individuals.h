@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <deque>
 
+#include "base/canonical_encoder.h"
 #include "master/experiment/experiment.h"
 #include "master/search/search_algorithm.h"
-#include "sim/base/canonical_encoder.h"
 
 namespace gauntlet::master {
 

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "base/result.h"
 #include "master/experiment/experiment.h"
 #include "master/search/search_algorithm.h"
 #include "sim/arena/validity.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

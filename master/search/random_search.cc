@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "sim/arena/genome_codec.h"
-#include "sim/base/check.h"
 
 namespace gauntlet::master {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "base/canonical_encoder.h"
+#include "base/result.h"
 #include "sim/arena/test_case.h"
-#include "sim/base/canonical_encoder.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

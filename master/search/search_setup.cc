@@ -5,7 +5,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {

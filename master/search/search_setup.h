@@ -4,12 +4,12 @@
 #include <cstdint>
 #include <string>
 
+#include "base/canonical_encoder.h"
+#include "base/result.h"
 #include "master/experiment/experiment.h"
 #include "master/search/genome_generator.h"
 #include "sim/arena/test_case.h"
 #include "sim/arena/validity.h"
-#include "sim/base/canonical_encoder.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::master {
 

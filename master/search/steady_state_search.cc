@@ -7,10 +7,10 @@
 #include <iterator>
 #include <optional>
 
+#include "base/check.h"
 #include "master/search/selection.h"
 #include "master/search/variation.h"
 #include "sim/arena/genome_codec.h"
-#include "sim/base/check.h"
 
 namespace gauntlet::master {
 namespace {

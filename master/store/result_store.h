@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/search/search_algorithm.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

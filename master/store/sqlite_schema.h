@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "base/result.h"
 #include "master/store/sqlite_connection.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

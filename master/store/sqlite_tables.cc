@@ -6,9 +6,9 @@
 #include <limits>
 #include <utility>
 
+#include "base/canonical_encoder.h"
+#include "base/hash.h"
 #include "sim/arena/genome_codec.h"
-#include "sim/base/canonical_encoder.h"
-#include "sim/base/hash.h"
 
 namespace gauntlet::master {
 namespace {

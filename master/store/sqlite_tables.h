@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "base/result.h"
 #include "master/store/result_store.h"
 #include "master/store/sqlite_connection.h"
-#include "sim/base/result.h"
 
 namespace gauntlet::master {
 

@@ -1,6 +1,6 @@
 #include "sim/arena/arena.h"
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/geometry/ray_cast.h"
 
 namespace gauntlet::sim {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/base/hash.h"
+#include "base/hash.h"
 
 namespace gauntlet::sim {
 namespace {

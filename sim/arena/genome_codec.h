@@ -2,8 +2,8 @@
 // genome of fixed, dark obstacles has the bytes it had before there were others.
 #pragma once
 
+#include "base/canonical_encoder.h"
 #include "sim/arena/obstacle_gene.h"
-#include "sim/base/canonical_encoder.h"
 
 namespace gauntlet::sim {
 

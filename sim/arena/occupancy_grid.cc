@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/base/number_text.h"
+#include "base/number_text.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::sim {

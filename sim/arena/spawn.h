@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "base/result.h"
 #include "sim/arena/occupancy_grid.h"
 #include "sim/arena/test_case.h"
-#include "sim/base/result.h"
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::sim {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/geometry/trigonometry.h"
 #include "sim/physics/differential_drive.h"
 #include "sim/physics/nearby_boxes.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::sim {

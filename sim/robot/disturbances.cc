@@ -6,9 +6,9 @@
 #include <charconv>
 #include <cmath>
 
-#include "sim/base/bits.h"
-#include "sim/base/nearest_name.h"
-#include "sim/base/number_text.h"
+#include "base/bits.h"
+#include "base/nearest_name.h"
+#include "base/number_text.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "sim/base/result.h"
+#include "base/result.h"
 #include "sim/robot/devices.h"
 #include "sim/robot/foot_bot.h"
 

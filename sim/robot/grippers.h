@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/robot/devices.h"
 #include "sim/robot/foot_bot.h"
 

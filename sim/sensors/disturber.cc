@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 #include "sim/sensors/ground_sensor.h"
 
 namespace gauntlet::sim {

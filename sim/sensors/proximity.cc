@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/base/bits.h"
+#include "base/bits.h"
 #include "sim/robot/controller.h"
 
 namespace gauntlet::sim {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/base/bits.h"
+#include "base/bits.h"
 #include "sim/sensors/ground_sensor.h"
 #include "sim/sensors/light_sensor.h"
 #include "sim/sensors/proximity.h"

@@ -3,13 +3,13 @@
 #include <array>
 #include <cmath>
 
+#include "base/check.h"
 #include "master/cases/argos_import.h"
-#include "master/dispatch/run_codec.h"
 #include "master/dispatch/wire.h"
 #include "master/experiment/experiment_file.h"
-#include "sim/base/check.h"
-#include "worker/access_file.h"
-#include "worker/message_codec.h"
+#include "proto/access_file.h"
+#include "proto/message_codec.h"
+#include "proto/run_codec.h"
 #include "worker/run_codec.h"
 
 namespace gauntlet::fuzz {

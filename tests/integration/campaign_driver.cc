@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "sim/random/random_stream.h"
+#include "tests/support/paths.h"
 #include "tests/support/sanitizer.h"
 
 namespace gauntlet::testing_support {

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "tests/integration/campaign_driver.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet {
 namespace {

@@ -6,6 +6,7 @@
 #include "tests/integration/service_driver.h"
 #include "tests/integration/worker_crowd.h"
 #include "tests/perf/noop_runs.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
 namespace {

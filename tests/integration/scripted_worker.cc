@@ -4,10 +4,10 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include "proto/message_codec.h"
 #include "sim/run_result.h"
 #include "tests/integration/campaign_driver.h"
 #include "worker/golden_hash.h"
-#include "worker/message_codec.h"
 #include "worker/run_codec.h"
 #include "worker/run_executor.h"
 

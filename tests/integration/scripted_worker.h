@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "proto/access_file.h"
+#include "proto/messages.h"
 #include "tests/support/process.h"
-#include "worker/access_file.h"
 #include "worker/connection.h"
-#include "worker/messages.h"
 
 namespace gauntlet::testing_support {
 

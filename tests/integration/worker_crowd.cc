@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <zmq.hpp>
 
-#include "worker/access_file.h"
-#include "worker/message_codec.h"
+#include "proto/access_file.h"
+#include "proto/message_codec.h"
 #include "worker/run_codec.h"
 
 namespace gauntlet::testing_support {

@@ -13,6 +13,7 @@
 
 #include "proto/protocol.pb.h"
 #include "proto/run.pb.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet {
 namespace {

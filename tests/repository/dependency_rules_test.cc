@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/support/paths.h"
+
 namespace gauntlet {
 namespace {
 
@@ -108,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
         LayerRule{"sim", {"sim/"}, kWorldOutside},
         LayerRule{
             "controllers",
-            {"controllers/", "sim/base/", "sim/geometry/", "sim/random/", "sim/arena/", "sim/robot/",
+            {"controllers/", "base/", "sim/geometry/", "sim/random/", "sim/arena/", "sim/robot/",
              "sim/scenario.h", "sim/observer.h", "sim/headquarters.h", "sim/run_spec.h", "sim/run_result.h"},
             [] {
               std::vector<std::string> libraries = kWorldOutside;
@@ -117,16 +119,16 @@ INSTANTIATE_TEST_SUITE_P(
             }()},
         LayerRule{"worker", {"worker/", "sim/", "controllers/registry.h", "proto/"}, {"box2d", "sqlite3"}},
         LayerRule{"analysis",
-                  {"analysis/", "sim/base/", "sim/geometry/", "sim/arena/", "sim/random/", "sim/run_spec.h",
+                  {"analysis/", "base/", "sim/geometry/", "sim/arena/", "sim/random/", "sim/run_spec.h",
                    "sim/run_result.h", "sim/observer.h", "sim/robot/foot_bot.h"},
                   {"zmq", "google/", "sqlite3", "box2d", "thread", "sys/"}},
         LayerRule{
             "master",
-            {"master/", "analysis/", "slurm/", "proto/", "sim/base/", "sim/geometry/", "sim/arena/",
+            {"master/", "analysis/", "slurm/", "proto/", "base/", "sim/geometry/", "sim/arena/",
              "sim/random/", "sim/run_spec.h", "sim/run_result.h", "sim/observer.h", "sim/robot/foot_bot.h",
              "sim/robot/disturbances.h", "sim/robot/color.h", "controllers/registry.h"},
             {"box2d"}},
-        LayerRule{"slurm", {"slurm/", "sim/base/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
+        LayerRule{"slurm", {"slurm/", "base/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
     [](const testing::TestParamInfo<LayerRule>& parameter) { return parameter.param.layer; });
 
 // Libraries that stay behind one door.

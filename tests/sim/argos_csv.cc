@@ -1,4 +1,5 @@
 #include "tests/sim/argos_csv.h"
+#include "tests/support/paths.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "sim/base/number_text.h"
+#include "base/number_text.h"
 #include "tests/support/toy_scenario.h"
 
 namespace gauntlet::sim {

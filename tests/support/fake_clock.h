@@ -1,7 +1,7 @@
 // A clock that is advanced by hand.
 #pragma once
 
-#include "master/dispatch/clock.h"
+#include "base/system/clock.h"
 
 namespace gauntlet::testing_support {
 

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::testing_support {
 namespace {

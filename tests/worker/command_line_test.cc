@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "proto/run.pb.h"
+#include "tests/support/paths.h"
 #include "tests/support/process.h"
 
 namespace gauntlet::worker {

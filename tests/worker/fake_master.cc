@@ -7,8 +7,8 @@
 #include <fstream>
 #include <zmq.hpp>
 
+#include "base/thread_sanitizer.h"
 #include "proto/run.pb.h"
-#include "sim/base/thread_sanitizer.h"
 #include "tests/support/process.h"
 
 namespace gauntlet::worker {

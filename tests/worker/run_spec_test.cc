@@ -6,6 +6,7 @@
 #include <string>
 
 #include "proto/run.pb.h"
+#include "tests/support/paths.h"
 #include "tests/support/process.h"
 #include "tests/worker/fake_master.h"
 #include "tests/worker/faulty_runs.h"

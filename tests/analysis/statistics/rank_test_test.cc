@@ -1,4 +1,5 @@
 #include "analysis/statistics/rank_test.h"
+#include "tests/support/paths.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

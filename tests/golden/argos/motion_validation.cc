@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "tests/sim/physics/argos_scenes.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet {
 namespace {

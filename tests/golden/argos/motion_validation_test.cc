@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "tests/golden/argos/sensor_validation.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet {
 namespace {

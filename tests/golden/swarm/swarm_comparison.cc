@@ -14,6 +14,7 @@
 #include "controllers/examples/light_flocking_scenario.h"
 #include "master/cases/case_file.h"
 #include "sim/simulation.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::golden {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "sim/arena/test_case.h"
-#include "sim/base/result.h"
 #include "sim/geometry/vec2.h"
 #include "sim/robot/foot_bot.h"
 

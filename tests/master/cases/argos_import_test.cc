@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "master/cases/case_file.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::master {
 namespace {

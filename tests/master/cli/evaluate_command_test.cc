@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "master/dispatch/run_codec.h"
+#include "proto/run_codec.h"
 #include "tests/master/cli/command_line_fixture.h"
 
 namespace gauntlet::master {

@@ -17,9 +17,9 @@
 #include <zmq.hpp>
 
 #include "master/dispatch/remote_backend.h"
-#include "master/dispatch/run_codec.h"
 #include "master/dispatch/zmq_transport.h"
 #include "proto/protocol.pb.h"
+#include "proto/run_codec.h"
 #include "tests/master/dispatch/sample_runs.h"
 
 namespace gauntlet::master {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "sim/base/printable.h"
-#include "sim/base/utf8.h"
+#include "base/printable.h"
+#include "base/utf8.h"
 #include "tests/master/dispatch/remote_backend_fixture.h"
 
 namespace gauntlet::master {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "master/dispatch/remote_backend.h"
-#include "master/dispatch/run_codec.h"
 #include "proto/protocol.pb.h"
+#include "proto/run_codec.h"
 #include "tests/master/dispatch/sample_runs.h"
 #include "tests/support/fake_clock.h"
 #include "tests/support/fake_transport.h"

@@ -4,10 +4,10 @@
 #include <functional>
 #include <vector>
 
+#include "base/canonical_encoder.h"
+#include "base/hash.h"
 #include "master/search/search_algorithm.h"
 #include "master/search/search_setup.h"
-#include "sim/base/canonical_encoder.h"
-#include "sim/base/hash.h"
 
 namespace gauntlet::master {
 

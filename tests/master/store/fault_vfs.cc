@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "sim/base/check.h"
+#include "base/check.h"
 
 namespace gauntlet::master {
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "tests/slurm/cluster/slurm_cluster.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "master/slurm/slurm_pool.h"
+#include "slurm/slurm_pool.h"
 #include "tests/slurm/cluster/slurm_cluster.h"
 
 namespace gauntlet::testing_support {

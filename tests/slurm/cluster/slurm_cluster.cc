@@ -3,7 +3,8 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "sim/base/check.h"
+#include "base/check.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
 namespace {

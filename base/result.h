@@ -1,0 +1,74 @@
+// Errors as values: bad input from outside is answered with a Result, never with an exception.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "base/check.h"
+
+namespace gauntlet {
+
+enum class ErrorKind {
+  kInvalidInput,  // a file, a message or an argument is wrong; the message names the value and what would be
+                  // right
+  kNotFound,
+  kIo,
+  kNoSpace,   // the disk is full
+  kCorrupt,   // stored data does not read back
+  kInUse,     // another living process owns it
+  kVersion,   // made by a newer or an incompatible version
+  kInternal,  // a defect of ours
+};
+
+struct Error {
+  ErrorKind kind = ErrorKind::kInternal;
+  std::string message;  // one line, names the offending value and its place
+};
+
+inline Error InvalidInput(std::string message) {
+  return {ErrorKind::kInvalidInput, std::move(message)};
+}
+
+// A value or an Error. Value() on an error aborts with its message.
+template <typename T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : value_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+  Result(Error error) : value_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
+
+  bool ok() const { return std::holds_alternative<T>(value_); }
+  explicit operator bool() const { return ok(); }
+
+  const T& value() const& {
+    GAUNTLET_CHECK(ok(), std::get<Error>(value_).message);
+    return std::get<T>(value_);
+  }
+  T& value() & {
+    GAUNTLET_CHECK(ok(), std::get<Error>(value_).message);
+    return std::get<T>(value_);
+  }
+  T&& value() && {
+    GAUNTLET_CHECK(ok(), std::get<Error>(value_).message);
+    return std::get<T>(std::move(value_));
+  }
+  const T& operator*() const& { return value(); }
+  T& operator*() & { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+  const T* operator->() const { return &value(); }
+  T* operator->() { return &value(); }
+
+  const Error& error() const {
+    GAUNTLET_CHECK(!ok(), "Result::error() called on a value");
+    return std::get<Error>(value_);
+  }
+
+ private:
+  std::variant<T, Error> value_;
+};
+
+struct Ok {};
+// Success, or an Error.
+using Status = Result<Ok>;
+
+}  // namespace gauntlet

@@ -1,0 +1,107 @@
+#include "base/system/atomic_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace gauntlet::master {
+namespace {
+
+// Its number is the errno, 0 = none.
+int WriteAll(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(fd, bytes.data(), bytes.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      return errno;
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return 0;
+}
+
+std::string DirectoryOf(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
+}
+
+}  // namespace
+
+Error SystemError(const std::string& what, int error_number) {
+  ErrorKind kind = ErrorKind::kIo;
+  if (error_number == ENOSPC || error_number == EDQUOT) kind = ErrorKind::kNoSpace;
+  if (error_number == ENOENT) kind = ErrorKind::kNotFound;
+  const char* hint = kind == ErrorKind::kNoSpace ? "the disk is full: " : "";
+  return {kind, fmt::format("{}{}: {}", hint, what, std::strerror(error_number))};
+}
+
+namespace {
+
+Status Replace(const std::string& path, std::string_view bytes, mode_t mode, bool durable) {
+  const std::string directory = DirectoryOf(path);
+  std::string temporary = path + ".XXXXXX";
+  const int fd = mkostemp(temporary.data(), O_CLOEXEC);
+  if (fd < 0) return SystemError(fmt::format("cannot create a file in {}", directory), errno);
+  int error = WriteAll(fd, bytes);
+  if (error == 0 && fchmod(fd, mode) != 0) error = errno;
+  if (error == 0 && durable && fsync(fd) != 0) error = errno;
+  if (close(fd) != 0 && error == 0) error = errno;
+  if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) {
+    unlink(temporary.c_str());
+    return SystemError(fmt::format("cannot write {}", path), error);
+  }
+  return durable ? SyncDirectory(directory) : Ok{};
+}
+
+}  // namespace
+
+Status SyncDirectory(const std::string& directory) {
+  const int fd = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const int error = fd < 0 || fsync(fd) != 0 ? errno : 0;
+  if (fd >= 0) close(fd);
+  if (error != 0) return SystemError(fmt::format("cannot synchronise {}", directory), error);
+  return Ok{};
+}
+
+Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode_t mode) {
+  return Replace(path, bytes, mode, /*durable=*/true);
+}
+
+Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode) {
+  return Replace(path, bytes, mode, /*durable=*/false);
+}
+
+Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return SystemError(fmt::format("cannot open {}", path), errno);
+  return ReadAndClose(fd, path, limit);
+}
+
+Result<std::string> ReadAndClose(int fd, const std::string& path, std::size_t limit) {
+  std::string bytes;
+  std::array<char, 4096> buffer{};
+  int error = 0;
+  while (bytes.size() <= limit) {
+    const ssize_t size = read(fd, buffer.data(), buffer.size());
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) error = errno;
+    if (size <= 0) break;
+    bytes.append(buffer.data(), static_cast<std::size_t>(size));
+  }
+  close(fd);
+  if (error != 0) return SystemError(fmt::format("cannot read {}", path), error);
+  if (bytes.size() > limit) {
+    return Error{ErrorKind::kCorrupt, fmt::format("{} is longer than the {} bytes it may have", path, limit)};
+  }
+  return bytes;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,38 @@
+// Small files that other processes read while we write them.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace gauntlet::master {
+
+// Permissions of the files of a campaign.
+inline constexpr mode_t kReadableByAll = 0644;
+inline constexpr mode_t kOwnerOnly = 0600;
+
+// Readers see the old content or the new one, also after a loss of power: temporary file in the same
+// directory, fsync, rename, fsync of the directory. `mode`: permissions of the new file. Errors: kNoSpace,
+// kIo; the old content then stands (only when nothing but the last fsync failed, the new one may).
+Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode_t mode);
+// The same without fsync, for what is worthless after a loss of power: readers see the old or the new
+// content.
+Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode);
+
+// The names in a directory survive a loss of power from now on.
+Status SyncDirectory(const std::string& directory);
+
+// A whole file of at most `limit` bytes. Errors: kNotFound, kIo, kCorrupt when it is longer.
+Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit = 1 << 20);
+
+// The same of a file that is open; closes it. `path` is for messages.
+Result<std::string> ReadAndClose(int fd, const std::string& path, std::size_t limit);
+
+// The error of a failed system call, by errno.
+Error SystemError(const std::string& what, int error_number);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,208 @@
+#include "base/system/process_call.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+
+extern char** environ;
+
+namespace gauntlet::slurm {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kMostOutput = std::size_t{16} << 20;
+constexpr std::size_t kMostOfOurs = std::size_t{1} << 30;  // a run's result with every pose of every tick
+
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() { Close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  void Reset(int fd) {
+    Close();
+    fd_ = fd;
+  }
+  void Close() {
+    if (fd_ >= 0) close(fd_);
+    fd_ = -1;
+  }
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+struct Pipe {
+  Descriptor read;
+  Descriptor write;
+  bool Open() {
+    std::array<int, 2> ends{};
+    return pipe2(ends.data(), O_CLOEXEC) == 0 && Take(ends);
+  }
+  // Writing to a socket whose other end is gone is an error, to a pipe a signal that ends the process.
+  bool OpenSockets() {
+    std::array<int, 2> ends{};
+    return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0 && Take(ends);
+  }
+
+ private:
+  bool Take(const std::array<int, 2>& ends) {
+    read.Reset(ends[0]);
+    write.Reset(ends[1]);
+    return true;
+  }
+};
+
+std::vector<char*> EnvironmentOf(Callee callee) {
+  std::vector<char*> result;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text = *entry;
+    const bool of_a_job = text.starts_with("SLURM_") || text.starts_with("SBATCH_");
+    if (callee == Callee::kPartOfUs || !of_a_job || text.starts_with("SLURM_CONF=")) result.push_back(*entry);
+  }
+  result.push_back(nullptr);
+  return result;
+}
+
+Error Failure(const std::string& program, const std::string& what) {
+  return {ErrorKind::kIo, "cannot call " + program + ": " + what};
+}
+
+std::string LastLine(std::string text) {
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  constexpr std::size_t kMost = 300;
+  const std::size_t begin = text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1;
+  return text.substr(begin, kMost);
+}
+
+// False at its end.
+bool ReadSome(int fd, std::string& into, std::size_t most) {
+  std::array<char, 65536> buffer{};
+  const ssize_t count = read(fd, buffer.data(), buffer.size());
+  if (count < 0) return errno == EINTR || errno == EAGAIN;
+  if (count == 0) return false;
+  into.append(buffer.data(), std::min(static_cast<std::size_t>(count), most - std::min(most, into.size())));
+  return true;
+}
+
+// False when all is written or nobody reads.
+bool WriteSome(int fd, std::string_view& rest) {
+  const ssize_t count = send(fd, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (count < 0) return errno == EINTR || errno == EAGAIN;
+  rest.remove_prefix(static_cast<std::size_t>(count));
+  return !rest.empty();
+}
+
+// Serves the three pipes until both outputs are at their end, and keeps `most` bytes of each. False at the
+// deadline.
+bool Converse(Pipe& in, Pipe& out, Pipe& err, std::string_view input, CallOutput& result, std::size_t most,
+              Clock::time_point deadline) {
+  if (input.empty()) in.write.Close();
+  while (out.read.get() >= 0 || err.read.get() >= 0) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return false;
+    std::array<pollfd, 3> waiting = {pollfd{in.write.get(), POLLOUT, 0}, pollfd{out.read.get(), POLLIN, 0},
+                                     pollfd{err.read.get(), POLLIN, 0}};
+    if (poll(waiting.data(), waiting.size(), static_cast<int>(std::min<long>(left, 1000))) < 0 &&
+        errno != EINTR)
+      return false;
+    if (waiting[0].revents != 0 && !WriteSome(in.write.get(), input)) in.write.Close();
+    if (waiting[1].revents != 0 && !ReadSome(out.read.get(), result.out, most)) out.read.Close();
+    if (waiting[2].revents != 0 && !ReadSome(err.read.get(), result.err, most)) err.read.Close();
+  }
+  return true;
+}
+
+// Waits for the child until the deadline, then kills it. False when it had to be killed.
+bool Reap(pid_t child, Clock::time_point deadline, int& status) {
+  constexpr int kPollMilliseconds = 5;
+  while (true) {
+    const pid_t ended = waitpid(child, &status, WNOHANG);
+    if (ended == child || (ended < 0 && errno != EINTR)) return true;
+    if (Clock::now() >= deadline) break;
+    poll(nullptr, 0, kPollMilliseconds);
+  }
+  kill(child, SIGKILL);
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  return false;
+}
+
+}  // namespace
+
+Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::string_view input,
+                               std::optional<std::chrono::milliseconds> deadline, Callee callee) {
+  const std::string& program = arguments.at(0);
+  const bool part_of_us = callee == Callee::kPartOfUs;
+  const Clock::time_point end = deadline ? Clock::now() + *deadline : Clock::time_point::max();
+  Pipe in;
+  Pipe out;
+  Pipe err;
+  if (!in.OpenSockets() || !out.Open() || !err.Open()) return Failure(program, std::strerror(errno));
+
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, in.read.get(), STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, out.write.get(), STDOUT_FILENO);
+  if (!part_of_us) posix_spawn_file_actions_adddup2(&actions, err.write.get(), STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  sigset_t defaults;
+  sigemptyset(&defaults);
+  sigaddset(&defaults, SIGPIPE);
+  sigaddset(&defaults, SIGINT);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &defaults);
+  const int group = part_of_us ? 0 : POSIX_SPAWN_SETPGROUP;
+  posix_spawnattr_setflags(&attributes,
+                           static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | group));
+
+  std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  std::vector<char*> environment = EnvironmentOf(callee);
+  pid_t child = -1;
+  const int failed =
+      posix_spawnp(&child, program.c_str(), &actions, &attributes, argv.data(), environment.data());
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  if (failed == ENOENT)
+    return Error{
+        ErrorKind::kNotFound,
+        "there is no " + program + (part_of_us ? "" : " in PATH: is Slurm installed on this machine?")};
+  if (failed != 0) return Failure(program, std::strerror(failed));
+  in.read.Close();
+  out.write.Close();
+  err.write.Close();
+
+  CallOutput result;
+  const bool spoken = Converse(in, out, err, input, result, part_of_us ? kMostOfOurs : kMostOutput, end);
+  int status = 0;
+  const bool ended = Reap(child, spoken ? end : Clock::now(), status);
+  if (!deadline && !spoken) return Failure(program, "its output could not be read");
+  if (!spoken || !ended) {
+    // A full queue makes sbatch wait and say so.
+    const std::string said = result.err.empty() ? "" : "; so far it said: " + LastLine(result.err);
+    return Failure(program,
+                   "no answer within " + std::to_string(deadline ? deadline->count() : 0) + " ms" + said);
+  }
+  constexpr int kSignalBase = 128;
+  result.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : kSignalBase + WTERMSIG(status);
+  return result;
+}
+
+}  // namespace gauntlet::slurm

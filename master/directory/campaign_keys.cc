@@ -1,0 +1,61 @@
+#include "master/directory/campaign_keys.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/system/atomic_file.h"
+#include "proto/json_text.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr int kKeysFormat = 1;
+constexpr mode_t kOthers = 077;
+
+Result<CampaignKeys> Make(const std::string& path) {
+  const CampaignKeys keys{NewCurveKeyPair(), NewCurveKeyPair()};
+  const nlohmann::ordered_json json = {{"format", kKeysFormat},
+                                       {"server_public", keys.master.public_key},
+                                       {"server_secret", keys.master.secret_key},
+                                       {"worker_public", keys.worker.public_key},
+                                       {"worker_secret", keys.worker.secret_key}};
+  if (Status written = WriteFileAtomically(path, JsonText(json), kOwnerOnly); !written)
+    return written.error();
+  return keys;
+}
+
+}  // namespace
+
+Result<CampaignKeys> LoadOrMakeKeys(const std::string& path) {
+  const Result<std::string> text = ReadSmallFile(path);
+  if (!text) {
+    if (text.error().kind == ErrorKind::kNotFound) return Make(path);
+    return text.error();
+  }
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && (status.st_mode & kOthers) != 0) {
+    return InvalidInput(fmt::format(
+        "{} holds the campaign's secret keys and has mode {:03o}: others may read it. Delete it, and "
+        "new keys are made",
+        path, status.st_mode & 0777));
+  }
+  const nlohmann::json json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  CampaignKeys keys;
+  for (const auto& [name, key] : {std::pair{"server_public", &keys.master.public_key},
+                                  std::pair{"server_secret", &keys.master.secret_key},
+                                  std::pair{"worker_public", &keys.worker.public_key},
+                                  std::pair{"worker_secret", &keys.worker.secret_key}}) {
+    if (json.is_object() && json.contains(name) && json[name].is_string())
+      *key = json[name].get<std::string>();
+    if (!IsCurveKey(*key)) {
+      return Error{
+          ErrorKind::kCorrupt,
+          fmt::format("{}: \"{}\" is not a key. Delete the file, and new keys are made", path, name)};
+    }
+  }
+  return keys;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,270 @@
+#include "master/directory/campaign_lock.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/system/atomic_file.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr int kLockFormat = 1;
+// An owner is always written in one piece of this size, so that nobody reads half of one.
+constexpr std::size_t kContentSize = 1024;
+constexpr std::chrono::milliseconds kRetryAfter{20};
+
+std::int64_t SystemUnixTime() {
+  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string WriteContent(const ProcessIdentity& process, std::int64_t heartbeat) {
+  const nlohmann::ordered_json json = {{"format", kLockFormat},      {"host", process.host},
+                                       {"boot_id", process.boot_id}, {"pid_namespace", process.pid_namespace},
+                                       {"pid", process.pid},         {"start_time", process.start_time},
+                                       {"heartbeat", heartbeat}};
+  std::string content = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  GAUNTLET_CHECK(content.size() < kContentSize, "a lock's owner is too long: " + content);
+  content.resize(kContentSize - 1, ' ');
+  content += '\n';
+  return content;
+}
+
+std::optional<LockOwner> ParseContent(std::string_view content) {
+  const nlohmann::json json = nlohmann::json::parse(content, nullptr, /*allow_exceptions=*/false);
+  if (!json.is_object()) return std::nullopt;
+  const auto text = [&json](const char* key) {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+  };
+  const auto number = [&json](const char* key) -> std::int64_t {
+    const auto found = json.find(key);
+    return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
+  };
+  LockOwner owner;
+  owner.process.host = text("host");
+  owner.process.boot_id = text("boot_id");
+  owner.process.pid_namespace = text("pid_namespace");
+  owner.process.pid = static_cast<pid_t>(number("pid"));
+  owner.process.start_time = static_cast<std::uint64_t>(number("start_time"));
+  owner.heartbeat = number("heartbeat");
+  if (owner.process.host.empty() || owner.process.pid <= 0) return std::nullopt;
+  return owner;
+}
+
+std::optional<LockOwner> ReadOwner(int fd) {
+  std::array<char, kContentSize> content{};
+  const ssize_t size = pread(fd, content.data(), content.size(), 0);
+  if (size <= 0) return std::nullopt;
+  return ParseContent({content.data(), static_cast<std::size_t>(size)});
+}
+
+Error InUse(const std::string& campaign, const LockOwner& owner, bool elsewhere, std::int64_t now) {
+  const ProcessIdentity& process = owner.process;
+  if (!elsewhere) {
+    return {ErrorKind::kInUse, fmt::format("campaign {0} is in use by a living master (host {1}, pid {2}): "
+                                           "`gauntlet status {0}` says how it "
+                                           "goes, `gauntlet stop {0}` ends it",
+                                           campaign, process.host, process.pid)};
+  }
+  return {ErrorKind::kInUse,
+          fmt::format(
+              "campaign {} is in use by a master elsewhere (host {}, pid {}, last sign of life {} s ago; it "
+              "counts as dead after {} s without one); stop it there with Ctrl-C or `kill {}`",
+              campaign, process.host, process.pid, std::max<std::int64_t>(0, now - owner.heartbeat),
+              CampaignLock::kStaleAfter.count(), process.pid)};
+}
+
+// The error that a named owner gives rise to, if it lives.
+std::optional<Error> Objection(const LockOwner& owner, const std::string& campaign, std::int64_t now) {
+  switch (LivenessOf(owner.process, IdentifyThisProcess())) {
+    case Liveness::kAlive:
+      return InUse(campaign, owner, false, now);
+    case Liveness::kDead:
+      return std::nullopt;
+    case Liveness::kUnknown:
+      break;
+  }
+  if (now - owner.heartbeat >= CampaignLock::kStaleAfter.count()) return std::nullopt;
+  return InUse(campaign, owner, true, now);
+}
+
+// An owner elsewhere whose last sign of life, of a clock ahead of ours, will not be old for a long time.
+bool IsAhead(const LockOwner& owner, std::int64_t now) {
+  return owner.heartbeat - now >= CampaignLock::kStaleAfter.count() &&
+         LivenessOf(owner.process, IdentifyThisProcess()) == Liveness::kUnknown;
+}
+
+// The owner lives here, and is the master of another directory, of which this one is a copy.
+bool BelongsToOriginal(const LockOwner& owner, const CampaignLock::Options& options) {
+  return options.is_copy && LivenessOf(owner.process, IdentifyThisProcess()) == Liveness::kAlive &&
+         options.is_copy();
+}
+
+enum class FlockAnswer { kLocked, kHeldByOther, kUnsupported };
+
+FlockAnswer TryFlock(int fd, bool exclusive) {
+  while (flock(fd, (exclusive ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    return errno == EWOULDBLOCK ? FlockAnswer::kHeldByOther : FlockAnswer::kUnsupported;
+  }
+  return FlockAnswer::kLocked;
+}
+
+}  // namespace
+
+std::optional<LockOwner> ReadLockOwner(const std::string& path) {
+  const Result<std::string> content = ReadSmallFile(path);
+  return content ? ParseContent(*content) : std::nullopt;
+}
+
+CampaignLock::CampaignLock(std::string path, std::string campaign, Options options, int fd)
+    : path_(std::move(path)), campaign_(std::move(campaign)), options_(std::move(options)), fd_(fd) {}
+
+Result<std::unique_ptr<CampaignLock>> CampaignLock::Acquire(const std::string& path,
+                                                            const std::string& campaign) {
+  return Acquire(path, campaign, Options());
+}
+
+Result<std::unique_ptr<CampaignLock>> CampaignLock::AcquireForReading(const std::string& path,
+                                                                      const std::string& campaign) {
+  return AcquireForReading(path, campaign, Options());
+}
+
+Result<std::unique_ptr<CampaignLock>> CampaignLock::Acquire(const std::string& path,
+                                                            const std::string& campaign,
+                                                            const Options& options) {
+  Result<std::unique_ptr<CampaignLock>> lock = Wait(path, campaign, options, /*exclusive=*/true);
+  if (!lock) return lock;
+  CampaignLock& taken = **lock;
+  taken.identity_ = IdentifyThisProcess();
+  Status written = taken.WriteOwner(WriteContent(*taken.identity_, taken.options_.unix_time()));
+  if (!written) return written.error();
+  if (options.heartbeat_every.count() > 0)
+    taken.heartbeat_ = std::thread([&taken] { taken.HeartbeatLoop(); });
+  return lock;
+}
+
+Result<std::unique_ptr<CampaignLock>> CampaignLock::AcquireForReading(const std::string& path,
+                                                                      const std::string& campaign,
+                                                                      const Options& options) {
+  return Wait(path, campaign, options, /*exclusive=*/false);
+}
+
+Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path, const std::string& campaign,
+                                                         const Options& options, bool exclusive) {
+  Options complete = options;
+  if (!complete.unix_time) complete.unix_time = SystemUnixTime;
+  const int fd = open(path.c_str(), exclusive ? O_RDWR | O_CREAT | O_CLOEXEC : O_RDONLY | O_CLOEXEC, 0644);
+  if (fd < 0 && exclusive) return SystemError(fmt::format("cannot open {}", path), errno);
+  std::unique_ptr<CampaignLock> lock(new CampaignLock(path, campaign, complete, fd));
+  if (fd < 0) return lock;
+
+  const auto started = std::chrono::steady_clock::now();
+  std::optional<LockOwner> ahead;  // an owner whose clock is ahead, as it was seen last
+  while (true) {
+    const auto waited = std::chrono::steady_clock::now() - started;
+    const FlockAnswer answer = TryFlock(fd, exclusive);
+    // A name that is read while somebody else holds the file may be the former owner's; a living one counts
+    // anyway.
+    const std::optional<LockOwner> owner = ReadOwner(fd);
+    bool undecided = false;
+    if (owner) {
+      const std::int64_t now = complete.unix_time();
+      const std::optional<Error> objection = Objection(*owner, campaign, now);
+      if (objection && !(answer != FlockAnswer::kUnsupported && BelongsToOriginal(*owner, complete))) {
+        const bool beats = ahead && ahead->heartbeat != owner->heartbeat;
+        if (!exclusive || beats || !(ahead || IsAhead(*owner, now))) return *objection;
+        ahead = owner;
+        undecided = waited < complete.beat_patience;
+      }
+    }
+    if (answer != FlockAnswer::kHeldByOther && !undecided) return lock;
+    if (waited >= complete.patience && !undecided) {
+      const std::string last =
+          owner ? fmt::format(" (its last master: host {}, pid {})", owner->process.host, owner->process.pid)
+                : "";
+      return Error{
+          ErrorKind::kInUse,
+          fmt::format(
+              "campaign {} is held by another process, which reads it, or starts or ends just now{}; try "
+              "again in a moment",
+              campaign, last)};
+    }
+    std::this_thread::sleep_for(kRetryAfter);
+  }
+}
+
+CampaignLock::~CampaignLock() {
+  if (heartbeat_.joinable()) {
+    {
+      const std::lock_guard guard(mutex_);
+      closing_ = true;
+    }
+    closing_changed_.notify_all();
+    heartbeat_.join();
+  }
+  if (fd_ < 0) return;
+  if (identity_ && Check()) {
+    const std::optional<LockOwner> owner = ReadOwner(fd_);
+    // A failed truncation leaves the name of a process that will be dead in a moment.
+    if (owner && owner->process == *identity_ && ftruncate(fd_, 0) != 0) fsync(fd_);
+  }
+  close(fd_);
+}
+
+Status CampaignLock::WriteOwner(const std::string& content) const {
+  const ssize_t size = pwrite(fd_, content.data(), content.size(), 0);
+  if (size < 0) return SystemError(fmt::format("cannot write {}", path_), errno);
+  if (size < static_cast<ssize_t>(content.size())) {
+    return SystemError(fmt::format("cannot write {}", path_), ENOSPC);
+  }
+  if (fsync(fd_) != 0) return SystemError(fmt::format("cannot synchronise {}", path_), errno);
+  return Ok{};
+}
+
+Status CampaignLock::Heartbeat() {
+  const std::lock_guard beating(heartbeat_mutex_);
+  if (Status checked = Check(); !checked || !identity_) return checked;
+  const std::optional<LockOwner> owner = ReadOwner(fd_);
+  if (owner && owner->process == *identity_)
+    return WriteOwner(WriteContent(*identity_, options_.unix_time()));
+
+  const std::string successor = owner
+                                    ? fmt::format("host {}, pid {}", owner->process.host, owner->process.pid)
+                                    : "which has ended since";
+  Error error{ErrorKind::kInUse,
+              fmt::format("campaign {} was taken over by another master ({}) while this one gave no "
+                          "sign of life; this one stops",
+                          campaign_, successor)};
+  const std::lock_guard guard(mutex_);
+  lost_ = error;
+  return error;
+}
+
+Status CampaignLock::Check() const {
+  const std::lock_guard guard(mutex_);
+  if (lost_) return *lost_;
+  return Ok{};
+}
+
+void CampaignLock::HeartbeatLoop() {
+  while (true) {
+    {
+      std::unique_lock guard(mutex_);
+      if (closing_changed_.wait_for(guard, options_.heartbeat_every, [this] { return closing_; })) return;
+    }
+    // A heartbeat that cannot be written (a full disk) is tried again; Check() reports a lost lock.
+    (void)Heartbeat();
+  }
+}
+
+}  // namespace gauntlet::master

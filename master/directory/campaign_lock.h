@@ -1,0 +1,94 @@
+// One master per campaign: a lock file that names its owner, held with flock(2) where the file system has it.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "base/result.h"
+#include "base/system/process_identity.h"
+
+namespace gauntlet::master {
+
+struct LockOwner {
+  ProcessIdentity process;
+  std::int64_t heartbeat = 0;  // Unix time, s, of its last sign of life
+};
+
+// Whoever holds it is the campaign's master. It is taken from an owner that is dead (a process of this
+// machine's present boot that is gone) or, on another host or boot, has given no sign of life for
+// kStaleAfter; never from a living one. The file stays when the lock is released, empty: deleting it would
+// let two masters lock two files. Thread-safety: Check may be called from any thread, the rest from one.
+class CampaignLock {
+ public:
+  static constexpr std::chrono::seconds kStaleAfter{60};
+
+  struct Options {
+    std::function<std::int64_t()> unix_time;          // s; default: the system's clock
+    std::chrono::milliseconds heartbeat_every{5000};  // 0 = only when Heartbeat is called
+    // How long to wait for an owner that has not said its name yet, or for readers.
+    std::chrono::milliseconds patience{2000};
+    // How long a master looks for the next heartbeat of an owner elsewhere whose last one lies in its future.
+    std::chrono::milliseconds beat_patience{15000};
+    // Whether the lock file was copied together with its campaign, so that the owner it names is that of the
+    // original; default: it was not. Believed only of an owner of this machine, whose hold on this very
+    // file the system would have told.
+    std::function<bool()> is_copy;
+  };
+
+  // `path`: the lock file, made when it is missing. `campaign`: what messages call it. kInUse names host and
+  // pid of the owner.
+  static Result<std::unique_ptr<CampaignLock>> Acquire(const std::string& path, const std::string& campaign,
+                                                       const Options& options);
+  static Result<std::unique_ptr<CampaignLock>> Acquire(const std::string& path, const std::string& campaign);
+
+  // Keeps masters away while a campaign without one is looked at; several readers may hold it at once. kInUse
+  // names the owner when a master lives. Changes nothing; a missing or unreadable lock file locks nothing.
+  static Result<std::unique_ptr<CampaignLock>> AcquireForReading(const std::string& path,
+                                                                 const std::string& campaign,
+                                                                 const Options& options);
+  static Result<std::unique_ptr<CampaignLock>> AcquireForReading(const std::string& path,
+                                                                 const std::string& campaign);
+
+  CampaignLock(const CampaignLock&) = delete;
+  CampaignLock& operator=(const CampaignLock&) = delete;
+  // Releases it.
+  ~CampaignLock();
+
+  // Writes a sign of life. kInUse when another master has taken the lock meanwhile (this one was frozen for
+  // longer than kStaleAfter); from then on nothing is written any more.
+  Status Heartbeat();
+  // What the last heartbeat met: an error when the lock is lost. Costs no system call.
+  Status Check() const;
+
+ private:
+  CampaignLock(std::string path, std::string campaign, Options options, int fd);
+  static Result<std::unique_ptr<CampaignLock>> Wait(const std::string& path, const std::string& campaign,
+                                                    const Options& options, bool exclusive);
+  Status WriteOwner(const std::string& content) const;
+  void HeartbeatLoop();
+
+  const std::string path_;
+  const std::string campaign_;
+  const Options options_;
+  const int fd_;
+  std::optional<ProcessIdentity> identity_;  // none: held for reading
+
+  std::mutex heartbeat_mutex_;  // one heartbeat at a time
+  mutable std::mutex mutex_;    // guards the two below
+  std::optional<Error> lost_;
+  bool closing_ = false;
+  std::condition_variable closing_changed_;
+  std::thread heartbeat_;
+};
+
+// The owner that a lock file names; empty when it is free, absent or does not read back.
+std::optional<LockOwner> ReadLockOwner(const std::string& path);
+
+}  // namespace gauntlet::master

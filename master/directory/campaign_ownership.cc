@@ -1,0 +1,118 @@
+#include "master/directory/campaign_ownership.h"
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+#include <utility>
+
+#include "base/system/atomic_file.h"
+
+namespace gauntlet::master {
+namespace {
+
+// A master waits so long for those who read. `show` of a large campaign takes its time, and `status` may come
+// again and again.
+constexpr std::chrono::seconds kReadersPatience{30};
+
+CampaignLock::Options LockOptions(const CampaignDirectory& directory) {
+  CampaignLock::Options options;
+  options.is_copy = [directory] { return IsUntakenCopy(directory); };
+  return options;
+}
+
+// The epoch is counted before the database is opened: from then on no former master commits anything that we
+// might not have read.
+Status OpenStore(CampaignOwnership& ownership) {
+  SqliteStore::Options options;
+  options.guard = [directory = ownership.directory, lock = ownership.lock.get(),
+                   epoch = ownership.epoch]() -> Status {
+    if (Status held = lock->Check(); !held) return held;
+    return directory.CheckEpoch(epoch);
+  };
+  Result<std::unique_ptr<SqliteStore>> store =
+      SqliteStore::Open(ownership.directory.database_path(), std::move(options));
+  if (!store) return store.error();
+  ownership.store = *std::move(store);
+  Result<CampaignOrigin> origin = ConfirmOrigin(ownership.directory, ownership.store->meta().campaign_id);
+  if (!origin) return origin.error();
+  ownership.origin = *std::move(origin);
+  return Ok{};
+}
+
+}  // namespace
+
+Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignTexts& texts,
+                                         CampaignMeta meta) {
+  Result<CampaignDirectory> directory = CampaignDirectory::Create(dir);
+  if (!directory) return directory.error();
+  Result<std::unique_ptr<CampaignLock>> lock =
+      CampaignLock::Acquire(directory->lock_path(), directory->path());
+  if (!lock) return lock.error();
+  // Another master may have made the campaign, and left it, between the two lines above.
+  if (Result<CampaignDirectory> unchanged = CampaignDirectory::Create(dir); !unchanged)
+    return unchanged.error();
+
+  Result<std::string> id = NewCampaignId();
+  if (!id) return id.error();
+  meta.campaign_id = *std::move(id);
+  meta.created_unix_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
+                             std::chrono::system_clock::now().time_since_epoch())
+                             .count();
+  for (const auto& [path, text] : {std::pair(directory->experiment_path(), texts.experiment),
+                                   std::pair(directory->searches_path(), texts.searches),
+                                   std::pair(directory->slurm_path(), texts.slurm)}) {
+    if (text.empty()) continue;
+    if (Status written = WriteFileAtomically(path, text, kReadableByAll); !written) return written.error();
+  }
+  Result<std::uint64_t> epoch = directory->StartEpoch();
+  if (!epoch) return epoch.error();
+  if (Status created = SqliteStore::Create(directory->database_path(), meta); !created)
+    return created.error();
+
+  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, {}, nullptr};
+  if (Status opened = OpenStore(ownership); !opened) return opened.error();
+  return ownership;
+}
+
+Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other) {
+  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  CampaignLock::Options options = LockOptions(*directory);
+  options.patience = kReadersPatience;
+  Result<std::unique_ptr<CampaignLock>> lock =
+      CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
+  if (!lock && lock.error().kind == ErrorKind::kInUse && other == LivingMaster::kFence) {
+    if (Result<std::uint64_t> fence = directory->StartEpoch(); !fence) return fence.error();
+    const auto deadline =
+        std::chrono::steady_clock::now() + CampaignLock::kStaleAfter + std::chrono::seconds(10);
+    while (!lock && lock.error().kind == ErrorKind::kInUse && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      lock = CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
+    }
+  }
+  if (!lock) return lock.error();
+  // What a former master has left. Whoever asks from now on means this one.
+  std::error_code ignored;
+  std::filesystem::remove(directory->stop_path(), ignored);
+  std::filesystem::remove(directory->status_path(), ignored);
+  Result<std::uint64_t> epoch = directory->StartEpoch();
+  if (!epoch) return epoch.error();
+  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, {}, nullptr};
+  if (Status opened = OpenStore(ownership); !opened) return opened.error();
+  return ownership;
+}
+
+Result<CampaignView> ViewCampaign(const std::string& dir) {
+  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  Result<std::unique_ptr<CampaignLock>> lock =
+      CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), LockOptions(*directory));
+  if (!lock) return lock.error();
+  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(directory->database_path());
+  if (!store) return store.error();
+  return CampaignView{*std::move(directory), *std::move(lock), *std::move(store)};
+}
+
+}  // namespace gauntlet::master

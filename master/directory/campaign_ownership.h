@@ -1,0 +1,59 @@
+// Lock, epoch and store of a campaign, taken in the one order that is safe.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "master/directory/campaign_directory.h"
+#include "master/directory/campaign_lock.h"
+#include "master/directory/campaign_origin.h"
+#include "master/store/sqlite_store.h"
+
+namespace gauntlet::master {
+
+// What a master holds while it serves a campaign. Destroying it commits what still waits, closes the store
+// and releases the lock, in this order.
+struct CampaignOwnership {
+  CampaignDirectory directory;
+  std::unique_ptr<CampaignLock> lock;
+  std::uint64_t epoch = 0;
+  CampaignOrigin origin;
+  // Commits nothing any more once a newer master has started or the lock is lost (kInUse).
+  std::unique_ptr<SqliteStore> store;
+};
+
+// Files of a campaign that never change; "" = there is none.
+struct CampaignTexts {
+  std::string experiment;     // experiment.toml
+  std::string searches = "";  // searches.json
+  std::string slurm = "";     // slurm.toml
+};
+
+// Makes a campaign in `dir` and takes it. `meta.campaign_id` and
+// `meta.created_unix_ms` are filled in. A master that is killed in here leaves nothing that keeps the next
+// one from doing the same again. Errors: those of CampaignDirectory::Create and CampaignLock::Acquire;
+// kNoSpace, kIo.
+Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignTexts& texts,
+                                         CampaignMeta meta);
+
+enum class LivingMaster {
+  kRespect,  // kInUse
+  kFence,    // its epoch becomes outdated, which makes it stop; waited for until its lock is stale
+};
+
+// Takes an existing campaign. Errors: those of CampaignDirectory::Open, CampaignLock::Acquire and
+// SqliteStore::Open.
+Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other = LivingMaster::kRespect);
+
+// A campaign without a living master, to look at; masters wait meanwhile. Changes no byte of the directory,
+// which may be read-only.
+struct CampaignView {
+  CampaignDirectory directory;
+  std::unique_ptr<CampaignLock> lock;
+  std::unique_ptr<SqliteStore> store;
+};
+Result<CampaignView> ViewCampaign(const std::string& dir);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,237 @@
+#include "master/report/campaign_status.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+
+#include "base/system/atomic_file.h"
+#include "master/directory/campaign_lock.h"
+#include "master/directory/campaign_origin.h"
+#include "master/session/campaign_session.h"
+#include "proto/json_text.h"
+
+namespace gauntlet::master {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Runs that workers have: being simulated, or waiting there.
+std::size_t RunsOf(const BackendView& backend, bool waiting) {
+  std::ptrdiff_t runs = 0;
+  for (const WorkerView& worker : backend.workers) {
+    runs += std::count_if(worker.leases.begin(), worker.leases.end(),
+                          [&](const WorkerView::Lease& lease) { return lease.waits == waiting; });
+  }
+  return static_cast<std::size_t>(runs);
+}
+
+// Who wanted to work and may not: "; 2 workers were refused, the last because ...". "" for nobody.
+std::string TurnedAway(const BackendView& backend) {
+  std::string text;
+  const auto were = [](std::uint64_t count, const char* what) {
+    return fmt::format("; {} {}{}", count, what, count == 1 ? " was" : "s were");
+  };
+  if (backend.refused_workers > 0)
+    text += were(backend.refused_workers, "worker") + " refused, the last because " + backend.last_refusal;
+  if (backend.unknown_keys > 0)
+    text += were(backend.unknown_keys, "connection") + " turned away for keys that are not this campaign's";
+  if (backend.failed_handshakes > 0)
+    text += were(backend.failed_handshakes, "connection") +
+            " dropped in the greeting (no keys, wrong ones, or no worker)";
+  return text;
+}
+
+std::string_view StateOf(const WorkerView& worker) {
+  if (worker.lost) return "lost";
+  if (worker.leaving) return "leaving";
+  return worker.leases.empty() ? "idle" : "running";
+}
+
+ordered_json Json(const WorkerView& worker) {
+  ordered_json runs = ordered_json::array();
+  for (const WorkerView::Lease& lease : worker.leases) {
+    runs.push_back({{"run", lease.run},
+                    {"lease", fmt::format("{:x}", lease.fence)},
+                    {"attempt", lease.attempt},
+                    {"state", lease.waits ? "waiting" : "running"},
+                    {"seconds", lease.seconds}});
+  }
+  return {{"worker", worker.label},   {"pid", worker.pid},
+          {"slots", worker.slots},    {"allocation", worker.allocation},
+          {"state", StateOf(worker)}, {"silent_seconds", worker.silent_seconds},
+          {"runs", std::move(runs)}};
+}
+
+ordered_json Json(const AllocationView& allocation) {
+  return {{"job", allocation.job},     {"state", allocation.state},     {"reason", allocation.reason},
+          {"nodes", allocation.nodes}, {"workers", allocation.workers}, {"cancelled", allocation.cancelled}};
+}
+
+}  // namespace
+
+std::int64_t UnixMilliseconds() {
+  return std::chrono::duration_cast<std::chrono::milliseconds>(
+             std::chrono::system_clock::now().time_since_epoch())
+      .count();
+}
+
+std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
+                           const BackendView& backend) {
+  if (RunsOf(backend, false) > 0) return "";
+  if (progress.search.finished) return "the search has finished";
+  if (master.stopping) return "the campaign is stopping: no more runs are given away";
+  int connected = 0;
+  int leaving = 0;
+  int lost = 0;
+  for (const WorkerView& worker : backend.workers) {
+    if (worker.lost) {
+      ++lost;
+    } else {
+      ++connected;
+      if (worker.leaving) ++leaving;
+    }
+  }
+  if (connected == 0) {
+    const std::string gone =
+        lost > 0 ? fmt::format(" ({} {} silent now)", lost, lost == 1 ? "is" : "are") : "";
+    if (!backend.pool_trouble.empty())
+      return fmt::format("no worker is connected{}: {}{}", gone, backend.pool_trouble, TurnedAway(backend));
+    if (!backend.allocations.empty())
+      return fmt::format("no worker is connected{}: {} allocations are starting or ending{}", gone,
+                         backend.allocations.size(), TurnedAway(backend));
+    if (backend.own_workers > 0)
+      return fmt::format("no worker is connected{}: {} of the master's own {} starting{}", gone,
+                         backend.own_workers, backend.own_workers == 1 ? "is" : "are", TurnedAway(backend));
+    return fmt::format("no worker is connected{}: start some with `gauntlet-worker --dir DIR`{}", gone,
+                       TurnedAway(backend));
+  }
+  if (leaving == connected) return fmt::format("all {} connected workers are leaving", connected);
+  if (backend.queued == 0)
+    return "all runs that were asked for are done; the master stores them and asks for more";
+  return fmt::format("nothing is wrong, {} runs are just being given to {} workers", backend.queued,
+                     connected - leaving);
+}
+
+std::string StatusJson(const MasterView& master, const CampaignProgress& progress,
+                       const BackendView& backend) {
+  ordered_json workers = ordered_json::array();
+  for (const WorkerView& worker : backend.workers) workers.push_back(Json(worker));
+  ordered_json allocations = ordered_json::array();
+  for (const AllocationView& allocation : backend.allocations) allocations.push_back(Json(allocation));
+  const std::string why = WhyNothingRuns(master, progress, backend);
+  ordered_json json = {
+      {"state", master.stopping ? "stopping" : "running"},
+      {"campaign", master.campaign_id},
+      {"experiment", master.experiment},
+      {"master",
+       {{"host", master.host},
+        {"pid", master.pid},
+        {"epoch", master.epoch},
+        {"started_unix_ms", master.started_unix_ms},
+        {"endpoints", master.endpoints},
+        {"encrypted", master.encrypted},
+        {"batch_job", master.batch_job},
+        {"metrics", master.metrics_url.empty() ? ordered_json(nullptr) : ordered_json(master.metrics_url)}}},
+      {"unix_ms", master.now_unix_ms},
+      {"generation", progress.search.generation},
+      {"generations", progress.search.generations},
+      {"searches", progress.searches},
+      {"searches_finished", progress.searches_finished},
+      {"runs_done", progress.runs_done},
+      {"runs_planned", progress.runs_planned},
+      {"runs_running", RunsOf(backend, false)},
+      {"runs_ahead", RunsOf(backend, true)},
+      {"runs_queued", backend.queued},
+      {"runs_per_second", progress.runs_per_second},
+      {"remaining_seconds", progress.remaining_seconds ? ordered_json(*progress.remaining_seconds) : nullptr},
+      {"total_failures", progress.total_failures},
+      {"runs_failed", progress.runs_failed},
+      {"workers", progress.workers.connected},
+      {"workers_busy", progress.workers.busy},
+      {"workers_lost", progress.workers.lost},
+      {"leased_again", progress.workers.releases},
+      {"duplicates", progress.workers.duplicates},
+      {"nondeterministic", master.nondeterministic_before + progress.workers.nondeterministic},
+      {"copies", progress.workers.copies},
+      {"audits", progress.workers.audits},
+      {"audits_alone", progress.workers.audits_alone},
+      {"audits_waiting", progress.workers.audits_open},
+      {"worker_seconds", progress.workers.slot_seconds},
+      {"worker_seconds_idle", progress.workers.idle_seconds},
+      {"worker_seconds_at_barriers", progress.workers.barrier_seconds},
+      {"rejected_messages", progress.workers.rejected_messages},
+      {"workers_refused", backend.refused_workers},
+      {"connections_with_unknown_keys", backend.unknown_keys},
+      {"connections_dropped_in_the_greeting", backend.failed_handshakes},
+      {"why_nothing_runs", why.empty() ? ordered_json(nullptr) : ordered_json(why)},
+      {"pool_trouble",
+       backend.pool_trouble.empty() ? ordered_json(nullptr) : ordered_json(backend.pool_trouble)},
+      {"allocations", std::move(allocations)},
+      {"worker_list", std::move(workers)}};
+  return JsonText(json);
+}
+
+Result<bool> MasterLives(const std::string& dir) {
+  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  CampaignLock::Options options;
+  options.patience = std::chrono::milliseconds(0);
+  options.is_copy = [&directory] { return IsUntakenCopy(*directory); };
+  const Result<std::unique_ptr<CampaignLock>> lock =
+      CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), options);
+  if (lock) return false;
+  if (lock.error().kind == ErrorKind::kInUse) return true;
+  return lock.error();
+}
+
+Result<std::string> ReadStatus(const std::string& dir) {
+  Result<bool> lives = MasterLives(dir);
+  if (!lives) return lives.error();
+  const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  if (*lives) {
+    const Result<std::string> text = ReadSmallFile(directory->status_path(), 16U << 20);
+    if (!text) {
+      if (text.error().kind != ErrorKind::kNotFound) return text.error();
+      return JsonText({{"state", "starting"},
+                       {"why_nothing_runs", "the master has just started, or is about to end"},
+                       {"worker_list", ordered_json::array()}});
+    }
+    ordered_json json = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
+    if (!json.is_object()) {
+      return Error{ErrorKind::kCorrupt, fmt::format("{} does not parse", directory->status_path())};
+    }
+    json["status_age_seconds"] =
+        static_cast<double>(UnixMilliseconds() - json.value("unix_ms", std::int64_t{0})) / 1000.0;
+    return JsonText(json);
+  }
+  const Result<CampaignSummary> summary = ReadCampaign(dir);
+  if (!summary) return summary.error();
+  const ordered_json json = {
+      {"state", summary->finished ? "finished" : "stopped"},
+      {"experiment", summary->experiment},
+      {"master", nullptr},
+      {"generation", summary->progress.generation},
+      {"generations", summary->progress.generations},
+      {"runs_done", summary->runs_done},
+      {"total_failures", summary->total_failures},
+      {"runs_failed", summary->runs_failed},
+      {"workers", 0},
+      {"nondeterministic", summary->nondeterministic},
+      {"why_nothing_runs", summary->finished
+                               ? "the search has finished"
+                               : "no master serves the campaign: go on with `gauntlet resume DIR`"},
+      {"worker_list", ordered_json::array()}};
+  return JsonText(json);
+}
+
+Status RequestStop(const std::string& dir) {
+  const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+  if (!directory) return directory.error();
+  return ReplaceFile(directory->stop_path(), "stop\n", 0644);
+}
+
+}  // namespace gauntlet::master

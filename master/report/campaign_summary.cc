@@ -1,0 +1,169 @@
+#include "master/report/campaign_summary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "master/report/state_digest.h"
+#include "master/report/verdict_text.h"
+#include "proto/run_codec.h"
+#include "sim/arena/genome_codec.h"
+#include "sim/run_result.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+void AddToGeneration(const StoredRun& run, std::map<std::uint32_t, GenerationSummary>& generations) {
+  GenerationSummary& generation = generations[run.generation];
+  generation.generation = run.generation;
+  ++generation.runs;
+  if (run.total_failure) ++generation.total_failures;
+  if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) return;
+  if (generation.completed == 0) generation.best = generation.worst = run.fitness;
+  generation.best = std::min(generation.best, run.fitness);
+  generation.worst = std::max(generation.worst, run.fitness);
+  ++generation.completed;
+  generation.mean += (run.fitness - generation.mean) / static_cast<double>(generation.completed);
+}
+
+void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
+  if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) ++summary.runs_failed;
+  if (!run.total_failure) return;
+  ++summary.total_failures;
+  const auto type = static_cast<std::size_t>(run.failure_type);
+  if (run.failure_type >= 0 && type < summary.failure_types.size()) {
+    ++summary.failure_types[type];
+  } else {
+    ++summary.unclassified_failures;
+  }
+}
+
+void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
+  if (run.verdict == static_cast<int>(sim::Verdict::kCompleted)) return;
+  const Result<sim::RunResult> result = DecodeRunResult(run.result);
+  const std::string message = result ? result->message : result.error().message;
+  const auto verdict = static_cast<sim::Verdict>(run.verdict);
+  const std::string rule = RuleOf(message);
+  auto group = std::find_if(groups.begin(), groups.end(), [&](const RunsWithoutResult& one) {
+    return one.verdict == verdict && one.rule == rule && (!rule.empty() || one.message == message);
+  });
+  if (group == groups.end()) group = groups.insert(groups.end(), {verdict, rule, message, 0, run.id});
+  ++group->runs;
+}
+
+// What every run of the campaign depends on; how test cases are found is part of the search's own state.
+std::string EncodeExperiment(const Experiment& experiment) {
+  CanonicalEncoder encoder;
+  encoder.Uint(experiment.seed);
+  encoder.String(experiment.scenario);
+  encoder.String(experiment.controller);
+  for (const sim::Parameters* parameters :
+       {&experiment.scenario_parameters, &experiment.controller_parameters}) {
+    encoder.Uint(parameters->size());
+    for (const auto& [name, value] : *parameters) {
+      encoder.String(name);
+      encoder.Double(value);
+    }
+  }
+  for (const auto& [key, value] : sim::DisturbanceTexts(experiment.disturbances)) {
+    encoder.String(key);
+    encoder.String(value);
+  }
+  return encoder.Take();
+}
+
+std::string EncodePopulation(const std::vector<Individual>& population) {
+  CanonicalEncoder encoder;
+  encoder.Uint(population.size());
+  for (const Individual& individual : population) {
+    encoder.Uint(individual.id);
+    encoder.Double(individual.fitness);
+    sim::EncodeGenome(individual.test_case.obstacles, encoder);
+  }
+  return encoder.Take();
+}
+
+}  // namespace
+
+Result<std::uint64_t> CountNondeterministic(ResultStore& store) {
+  const Result<std::vector<StoredEvent>> events = store.LoadEvents();
+  if (!events) return events.error();
+  return static_cast<std::uint64_t>(
+      std::count_if(events->begin(), events->end(),
+                    [](const StoredEvent& event) { return event.kind == "nondeterministic"; }));
+}
+
+Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
+                                  ResultStore& store) {
+  CampaignSummary summary;
+  summary.experiment = experiment.name;
+  summary.search = NameOf(experiment.search.kind);
+  summary.seed = experiment.seed;
+
+  Result<std::optional<SavedState>> saved = store.LoadNewestState(search_id);
+  if (!saved) return saved.error();
+  ResultsDigest digest;
+  std::string search_state;
+  if (saved->has_value()) {
+    search_state = (*saved)->state;
+    CanonicalDecoder decoder(search_state);
+    if (Status restored = search.Restore(decoder); !restored) return restored.error();
+    Result<ResultsDigest> restored = ResultsDigest::Restore((*saved)->results_digest);
+    if (!restored) return restored.error();
+    digest = *restored;
+  }
+
+  std::map<IndividualId, std::vector<RunId>> runs_of;
+  std::map<std::uint32_t, GenerationSummary> generations;
+  Status read = store.ForEachRun(search_id, 0, [&](const StoredRun& run) {
+    ++summary.runs_done;
+    runs_of[run.individual].push_back(run.id);
+    AddToFailures(run, summary);
+    AddToRunsWithoutResult(run, summary.runs_without_result);
+    AddToGeneration(run, generations);
+  });
+  if (!read) return read.error();
+  std::stable_sort(summary.runs_without_result.begin(), summary.runs_without_result.end(),
+                   [](const RunsWithoutResult& a, const RunsWithoutResult& b) { return a.runs > b.runs; });
+  for (const auto& [number, generation] : generations) summary.generations.push_back(generation);
+
+  summary.progress = search.Progress();
+  summary.statistics = search.Statistics();
+  summary.distinct_individuals = runs_of.size();
+  for (const auto& [name, value] : summary.statistics) {
+    if (name == "distinct_individuals") summary.distinct_individuals = static_cast<std::uint64_t>(value);
+  }
+
+  const std::vector<Individual> population = search.Population();
+  double sum = 0.0;
+  double counted = 0.0;
+  summary.best_fitness = summary.mean_fitness = summary.worst_fitness = kNone;
+  for (const Individual& individual : population) {
+    summary.population.push_back({individual.id, individual.parents, individual.birth_generation,
+                                  individual.fitness, individual.test_case.obstacles,
+                                  runs_of[individual.id]});
+    if (!std::isfinite(individual.fitness)) continue;
+    summary.best_fitness = std::fmin(summary.best_fitness, individual.fitness);
+    summary.worst_fitness = std::fmax(summary.worst_fitness, individual.fitness);
+    sum += individual.fitness;
+    counted += 1.0;
+  }
+  if (counted > 0.0) summary.mean_fitness = sum / counted;
+
+  summary.state_hash =
+      StateHash(EncodeExperiment(experiment), digest, EncodePopulation(population), search_state);
+  const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
+  if (!nondeterministic) return nondeterministic.error();
+  summary.nondeterministic = *nondeterministic;
+  Result<std::vector<StoredSearch>> searches = store.LoadSearches();
+  if (!searches) return searches.error();
+  for (const StoredSearch& stored : *searches) {
+    if (stored.id == search_id) summary.finished = stored.finished;
+  }
+  return summary;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,81 @@
+// What `show` says of a campaign: a plain struct, so that the terminal table, the JSON and reports agree.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "master/experiment/experiment.h"
+#include "master/search/search_algorithm.h"
+#include "master/store/result_store.h"
+#include "sim/run_result.h"
+
+namespace gauntlet::master {
+
+struct PopulationMember {
+  IndividualId id = 0;
+  std::vector<IndividualId> parents;
+  std::uint32_t birth_generation = 0;
+  double fitness = 0.0;
+  sim::Genome genome;
+  std::vector<RunId> runs;  // of this individual, in logical order
+};
+
+struct GenerationSummary {
+  std::uint32_t generation = 0;
+  std::uint64_t runs = 0;
+  std::uint64_t completed = 0;  // runs with the verdict completed; best, mean and worst are over these
+  double best = 0.0;
+  double mean = 0.0;
+  double worst = 0.0;
+  std::uint64_t total_failures = 0;
+};
+
+// Runs that ended alike without a result: the same verdict and, of refusals, the same rule.
+struct RunsWithoutResult {
+  sim::Verdict verdict = sim::Verdict::kRefused;
+  std::string rule;     // "no-room-to-spawn"; "" when the messages do not begin with one
+  std::string message;  // of the first of them
+  std::uint64_t runs = 0;
+  RunId first_run = 0;  // the first of them
+};
+
+struct CampaignSummary {
+  std::string settings;  // of a search in a sweep, what tells it from the others
+  std::string experiment;
+  std::string search;  // "genetic", "random", "cases"; "sweep" of several
+  std::uint64_t seed = 0;
+  SearchProgress progress;
+  std::uint64_t runs_done = 0;                         // stored
+  std::uint64_t runs_failed = 0;                       // verdict other than completed
+  std::vector<RunsWithoutResult> runs_without_result;  // most frequent first
+  std::uint64_t distinct_individuals = 0;
+  double best_fitness = 0.0;  // of the population; lower = tougher
+  double mean_fitness = 0.0;
+  double worst_fitness = 0.0;
+  std::uint64_t total_failures = 0;
+  std::array<std::uint64_t, 20> failure_types{};           // total failures per type
+  std::uint64_t unclassified_failures = 0;                 // total failures without a split event
+  std::vector<std::pair<std::string, double>> statistics;  // of the search itself
+  std::vector<GenerationSummary> generations;
+  std::vector<PopulationMember> population;
+  std::string state_hash;
+  std::uint64_t nondeterministic = 0;  // second results of a spec that differed from the first
+  bool finished = false;
+  // Of a sweep, one for each search, in the order of their numbers; the rest are then totals, and what has no
+  // meaning over several searches is empty.
+  std::vector<CampaignSummary> searches;
+};
+
+// Results in the events of all masters that differed from another of the same spec.
+Result<std::uint64_t> CountNondeterministic(ResultStore& store);
+
+// Gathers the summary of a search from what is stored. `search` is freshly made for the experiment; it is
+// brought to the newest saved state. Population, fitness figures and state_hash are those of the last
+// complete generation; runs and failures count everything stored.
+Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
+                                  ResultStore& store);
+
+}  // namespace gauntlet::master

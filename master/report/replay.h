@@ -1,0 +1,32 @@
+// Simulates a stored run again and holds the new result against the stored one.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "master/directory/campaign_directory.h"
+#include "master/experiment/experiment.h"
+#include "master/store/result_store.h"
+#include "sim/run_result.h"
+#include "sim/run_spec.h"
+
+namespace gauntlet::master {
+
+struct ReplayReport {
+  StoredRun stored;
+  sim::RunSpec spec;
+  sim::RunResult stored_result;
+  sim::RunResult replayed;               // with the whole trajectory
+  std::vector<std::string> differences;  // one sentence each; empty = reproduced bit for bit
+  // Why nothing could be compared: the stored spec or result does not even decode. What stands above from
+  // `spec` on is then empty. "" = it was compared.
+  std::string damage;
+};
+
+// Error: the run is not there (kNotFound), or its row contradicts the result stored in it (kCorrupt).
+Result<ReplayReport> ReplayRun(ResultStore& store, RunId run);
+
+// What differs between two results of one spec, field by field; empty when the hashes are equal.
+std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::RunResult& replayed);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,135 @@
+#include "master/report/stored_check.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "master/report/verdict_text.h"
+#include "master/session/search_driver.h"
+#include "proto/run_codec.h"
+#include "sim/random/random_stream.h"
+
+namespace gauntlet::master {
+namespace {
+
+Error Damaged(const std::string& what) {
+  return {ErrorKind::kCorrupt, "the campaign's database was changed or is damaged: " + what};
+}
+
+template <typename Value>
+Status Same(const StoredRun& run, const char* column, const Value& in_row, const Value& in_result) {
+  if (in_row == in_result) return Ok{};
+  return Damaged(
+      fmt::format("run {} has {} {} in its row, {} in its result", run.id, column, in_row, in_result));
+}
+
+Status CheckRun(const Experiment& experiment, const StoredRun& run) {
+  if (const std::uint64_t hash = SpecHash(run.spec); hash != run.spec_hash) {
+    return Damaged(fmt::format("the spec of run {} has hash {:016x}, when it was stored it had {:016x}",
+                               run.id, hash, run.spec_hash));
+  }
+  if (Status belongs = CheckSeed(experiment, run); !belongs) return belongs;
+  const Result<sim::RunResult> result = DecodeRunResult(run.result);
+  if (!result) return Damaged(fmt::format("the result of run {}: {}", run.id, result.error().message));
+  return CheckCopies(run, *result);
+}
+
+// Test cases by individual; a run's spec must hold that of its individual.
+Status CheckTestCase(const std::map<IndividualId, sim::TestCase>& test_cases, const StoredRun& run) {
+  const auto known = test_cases.find(run.individual);
+  if (known == test_cases.end()) return Ok{};  // individuals are stored at the end of their generation
+  Result<sim::RunSpec> spec = DecodeRunSpec(run.spec);
+  if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));
+  spec->test_case = known->second;
+  if (EncodeRunSpec(*spec) == run.spec) return Ok{};
+  return Damaged(fmt::format("the stored test case of individual {} is not the one that run {} simulated",
+                             run.individual, run.id));
+}
+
+}  // namespace
+
+Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
+  if (run.hash != result.hash) {
+    return Damaged(fmt::format("run {} has hash {:016x} in its row, {:016x} in its result", run.id, run.hash,
+                               result.hash));
+  }
+  if (run.verdict != static_cast<int>(result.verdict)) {
+    return Damaged(fmt::format("run {} has verdict {} in its row, '{}' in its result", run.id, run.verdict,
+                               NameOf(result.verdict)));
+  }
+  if (std::bit_cast<std::uint64_t>(run.fitness) != std::bit_cast<std::uint64_t>(result.fitness)) {
+    return Damaged(fmt::format("run {} has fitness {} in its row, {} in its result", run.id, run.fitness,
+                               result.fitness));
+  }
+  if (Status same = Same(run, "total_failure", run.total_failure, result.failure.total); !same) return same;
+  return Same(run, "failure_type", run.failure_type, result.failure.type);
+}
+
+Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
+  const std::uint64_t seed = sim::DeriveSeed(experiment.seed, PurposeOf(experiment.search.kind), kOnlySearch,
+                                             run.individual, run.evaluation, run.replicate);
+  if (seed == run.seed) return Ok{};
+  return Damaged(fmt::format(
+      "run {} has seed {}, but replicate {} of evaluation {} of individual {} has {} (campaign seed {})",
+      run.id, run.seed, run.replicate, run.evaluation, run.individual, seed, experiment.seed));
+}
+
+Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store) {
+  Result<std::vector<StoredSearch>> searches = store.LoadSearches();
+  if (!searches) return searches.error();
+  bool finished = false;
+  for (const StoredSearch& stored : *searches) {
+    if (stored.id == search) finished = stored.finished;
+  }
+  Result<std::optional<SavedState>> state = store.LoadNewestState(search);
+  if (!state) return state.error();
+  if (finished && !state->has_value()) return Damaged("the search has finished, but its states are missing");
+  const RunId last_seen = state->has_value() ? (*state)->last_run : 0;
+
+  std::map<IndividualId, sim::TestCase> test_cases;
+  {
+    Result<std::vector<Individual>> individuals = store.LoadIndividuals(search);
+    if (!individuals) return individuals.error();
+    for (Individual& individual : *individuals)
+      test_cases.emplace(individual.id, std::move(individual.test_case));
+  }
+  std::optional<Error> damage;
+  RunId expected = RunIdOf(search, 1);
+  RunId last = 0;
+  const auto note = [&damage](const Status& status) {
+    if (!status && !damage) damage = status.error();
+  };
+  Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
+    last = run.id;
+    if (damage) return;
+    if (run.id != expected && expected <= last_seen) {
+      damage =
+          Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
+                              expected, (*state)->generation, last_seen));
+      return;
+    }
+    expected = run.id + 1;
+    note(CheckRun(experiment, run));
+    if (damage) return;
+    note(CheckTestCase(test_cases, run));
+    test_cases.erase(run.individual);
+  });
+  if (!read) return read;
+  if (damage) return *damage;
+  if (expected <= last_seen) {
+    return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
+                               expected, (*state)->generation, last_seen));
+  }
+  if (finished && last > last_seen) {
+    return Damaged(fmt::format(
+        "the search has finished with run {}, but the newest state has seen only the runs up to {}", last,
+        last_seen));
+  }
+  return Ok{};
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,87 @@
+#include "master/session/bind_endpoint.h"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <sys/un.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+#include <string_view>
+
+#include "master/dispatch/zmq_transport.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::string_view kTcpScheme = "tcp://";
+constexpr std::string_view kIpcScheme = "ipc://";
+// The system's limit, with the zero at its end.
+constexpr std::size_t kLongestSocketPath = sizeof(sockaddr_un::sun_path) - 1;
+
+bool IsPort(std::string_view text) {
+  if (text == "*") return true;
+  if (text.empty() || !std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) return false;
+  int port = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  return error == std::errc() && port >= 1 && port <= 65535;
+}
+
+bool IsInterface(const std::string& host, ListenOn where) {
+  in_addr address{};
+  if (host == "*" || inet_pton(AF_INET, host.c_str(), &address) == 1) return true;
+  if (where == ListenOn::kThisMachine) return if_nametoindex(host.c_str()) != 0;
+  // No interface is called so anywhere, but every machine calls itself so.
+  return !host.empty() && host.size() < IFNAMSIZ && host != "localhost";
+}
+
+// "" when there is nothing.
+std::string WhatIsWrong(const std::string& endpoint, ListenOn where) {
+  if (endpoint.find('\0') != std::string::npos) return "it holds a zero byte";
+  if (endpoint.starts_with(kIpcScheme)) {
+    const std::size_t length = endpoint.size() - kIpcScheme.size();
+    if (length == 0) return "the path is missing";
+    if (length <= kLongestSocketPath) return "";
+    return fmt::format("the path has {} bytes, the system allows {}", length, kLongestSocketPath);
+  }
+  if (!endpoint.starts_with(kTcpScheme)) return "workers connect by tcp:// or ipc:// only";
+  const std::string rest = endpoint.substr(kTcpScheme.size());
+  if (rest.starts_with('[')) return "IPv6 is not supported";
+  const std::size_t colon = rest.rfind(':');
+  if (colon == std::string::npos) return "the port is missing";
+  const std::string host = rest.substr(0, colon);
+  const std::string port = rest.substr(colon + 1);
+  if (host.find(':') != std::string::npos) return "IPv6 is not supported";
+  if (!IsInterface(host, where)) {
+    return fmt::format(
+        "'{}' is neither an IPv4 address nor an interface of this machine; names of hosts "
+        "are not looked up",
+        host);
+  }
+  if (!IsPort(port)) return fmt::format("'{}' is no port", port);
+  return "";
+}
+
+}  // namespace
+
+Status CheckBindEndpoint(const std::string& endpoint, ListenOn where) {
+  const std::string wrong = WhatIsWrong(endpoint, where);
+  if (wrong.empty()) return Ok{};
+  return InvalidInput(
+      fmt::format("cannot listen on '{}': {}; it must be tcp://ADDRESS:PORT with an IPv4 address of this "
+                  "machine (0.0.0.0: "
+                  "all of them) and a port from 1 to 65535, or * for any free one, or ipc://PATH",
+                  endpoint, wrong));
+}
+
+Status TryToListen(const std::string& endpoint) {
+  ZmqTransportOptions options;
+  options.endpoint = endpoint;
+  const Result<std::unique_ptr<ZmqTransport>> transport = ZmqTransport::Bind(options);
+  if (!transport) return transport.error();
+  return Ok{};
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,22 @@
+// Where a master is asked to listen, judged before anything is made for it.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+
+namespace gauntlet::master {
+
+enum class ListenOn { kThisMachine, kAnotherMachine };
+
+// Whether `endpoint` has a form that workers can be served on: tcp://ADDRESS:PORT with an IPv4 address, the
+// name of a network interface (which must be there, unless it is another machine that is to listen), or *
+// (all interfaces), and a port from 1 to 65535 or * (any free one); or ipc://PATH. kInvalidInput names the
+// endpoint, what is wrong and what would be right. Nothing is opened.
+Status CheckBindEndpoint(const std::string& endpoint, ListenOn where = ListenOn::kThisMachine);
+
+// Listens there for a moment. What the system refuses (an address in use, or not of this machine) is an error
+// then, and not only after a campaign was made.
+Status TryToListen(const std::string& endpoint);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,163 @@
+#include "master/session/campaign_runner.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::chrono::milliseconds kPollTime{100};
+constexpr std::chrono::seconds kRateWindow{5};
+// A search waits at the end of each generation for its slowest run; others fill the gap.
+constexpr std::size_t kSearchesAtOnce = 64;
+
+}  // namespace
+
+Status CampaignRunner::Restore(const std::vector<SearchId>& finished) {
+  for (SearchDriver* search : parts_.searches) {
+    if (Status restored = search->Restore(); !restored) return restored;
+    if (std::find(finished.begin(), finished.end(), search->id()) == finished.end())
+      waiting_.push_back(search);
+  }
+  return Ok{};
+}
+
+// Lets every search that runs go on, and others begin where some have finished.
+Status CampaignRunner::Advance() {
+  while (running_.size() < kSearchesAtOnce && !waiting_.empty()) {
+    running_.push_back(waiting_.front());
+    waiting_.pop_front();
+  }
+  for (SearchDriver* search : running_) {
+    if (Status advanced = search->Advance(); !advanced) return advanced;
+    if (search->finished()) parts_.store.MarkFinished(search->id());
+  }
+  const std::size_t before = running_.size();
+  std::erase_if(running_, [](const SearchDriver* search) { return search->finished(); });
+  return running_.size() < before && !waiting_.empty() ? Advance() : Ok{};
+}
+
+void CampaignRunner::StoreEvents() {
+  for (const DispatchEvent& event : parts_.backend.TakeEvents()) {
+    spdlog::info("{}: {}", event.kind, event.text);
+    const auto now = std::chrono::system_clock::now().time_since_epoch();
+    parts_.store.AddEvent(
+        {std::chrono::duration_cast<std::chrono::milliseconds>(now).count(), event.kind, event.text});
+  }
+}
+
+Status CampaignRunner::ApplyCommits() {
+  Result<std::vector<RunId>> committed = parts_.store.Committed();
+  if (!committed) return committed.error();
+  if (committed->empty()) return Ok{};
+  for (const RunId id : *committed) DriverOf(id).Committed(id);
+  parts_.backend.Acknowledge(*committed);
+  return Ok{};
+}
+
+std::uint64_t CampaignRunner::runs_done() const {
+  std::uint64_t runs = 0;
+  for (const SearchDriver* search : parts_.searches) runs += search->runs_done();
+  return runs;
+}
+
+CampaignProgress CampaignRunner::Progress(TimePoint started) {
+  CampaignProgress progress;
+  progress.searches = parts_.searches.size();
+  progress.search.finished = true;
+  progress.best_fitness = std::numeric_limits<double>::quiet_NaN();
+  double sum = 0.0;
+  int counted = 0;
+  for (const SearchDriver* search : parts_.searches) {
+    const SearchProgress one = search->Progress();
+    progress.search.generation += one.generation;
+    progress.search.generations += one.generations;
+    progress.search.evaluations_done += one.evaluations_done;
+    progress.search.evaluations_planned += one.evaluations_planned;
+    progress.search.finished = progress.search.finished && one.finished;
+    if (one.finished) ++progress.searches_finished;
+    progress.runs_planned += search->runs_planned();
+    progress.total_failures += search->total_failures();
+    progress.runs_failed += search->runs_failed();
+    if (!std::isfinite(search->best_fitness())) continue;
+    progress.best_fitness = std::fmin(progress.best_fitness, search->best_fitness());
+    sum += search->mean_fitness();
+    ++counted;
+  }
+  progress.mean_fitness = counted > 0 ? sum / counted : std::numeric_limits<double>::quiet_NaN();
+  progress.runs_done = runs_done();
+  progress.workers = parts_.backend.Statistics();
+
+  const TimePoint now = parts_.clock.Now();
+  rate_samples_.emplace_back(now, progress.runs_done);
+  while (rate_samples_.size() > 2 && now - rate_samples_.front().first > kRateWindow)
+    rate_samples_.pop_front();
+  progress.elapsed_seconds = std::chrono::duration<double>(now - started).count();
+  const auto& [oldest, runs_then] = rate_samples_.front();
+  const double seconds = std::chrono::duration<double>(now - oldest).count();
+  if (seconds > 0.0) progress.runs_per_second = static_cast<double>(progress.runs_done - runs_then) / seconds;
+  if (progress.runs_per_second > 0.0 && progress.runs_planned >= progress.runs_done) {
+    progress.remaining_seconds =
+        static_cast<double>(progress.runs_planned - progress.runs_done) / progress.runs_per_second;
+  }
+  return progress;
+}
+
+// What is durable is told once more, and what follows from it is stored.
+Status CampaignRunner::EndSession() {
+  if (Status flushed = parts_.store.Flush(); !flushed) return flushed;
+  if (Status applied = ApplyCommits(); !applied) return applied;
+  for (SearchDriver* search : running_) search->TellCompleted();
+  return parts_.store.Flush();
+}
+
+Result<CampaignEnd> CampaignRunner::Run(const std::function<StopWish()>& stop,
+                                        const std::function<void(const CampaignProgress&)>& on_progress) {
+  const TimePoint started = parts_.clock.Now();
+  TimePoint last_report = started - kPollTime;
+  while (true) {
+    if (Status applied = ApplyCommits(); !applied) return applied.error();
+    if (Status advanced = Advance(); !advanced) return advanced.error();
+    if (const TimePoint now = parts_.clock.Now(); now - last_report >= kPollTime) {
+      on_progress(Progress(started));
+      last_report = now;
+    }
+    const bool searched = running_.empty();
+    if (searched && parts_.backend.Statistics().audits_open == 0) break;
+    const StopWish wish = stop();
+    if (wish == StopWish::kAfterRuns) parts_.backend.StopLeasing();
+    if (wish == StopWish::kNow || (wish == StopWish::kAfterRuns && parts_.backend.Statistics().busy == 0)) {
+      if (Status ended = EndSession(); !ended) return ended.error();
+      return searched ? CampaignEnd::kFinished : CampaignEnd::kStopped;
+    }
+    if (!searched && std::none_of(running_.begin(), running_.end(),
+                                  [](const SearchDriver* search) { return search->pending(); }))
+      continue;
+    Result<std::vector<FinishedRun>> finished = parts_.backend.Poll(kPollTime);
+    if (!finished) {
+      if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();
+      return finished.error();
+    }
+    std::set<SearchDriver*> fed;
+    for (FinishedRun& run : *finished) {
+      SearchDriver& search = DriverOf(run.id);
+      fed.insert(&search);
+      search.Store(std::move(run));
+    }
+    // A search cannot go on before its last results are durable.
+    if (std::any_of(fed.begin(), fed.end(),
+                    [](const SearchDriver* search) { return search->at_backend() == 0; }))
+      parts_.store.Hurry();
+    StoreEvents();
+  }
+  if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();
+  on_progress(Progress(started));
+  return CampaignEnd::kFinished;
+}
+
+}  // namespace gauntlet::master

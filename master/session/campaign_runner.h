@@ -1,0 +1,78 @@
+// Drives the searches of a campaign, which share one backend and one store, until they have finished.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "base/system/clock.h"
+#include "master/session/search_driver.h"
+
+namespace gauntlet::master {
+
+enum class StopWish {
+  kNone,
+  kAfterRuns,  // let the runs that have begun end
+  kNow,        // what runs is simulated again some day
+};
+
+enum class CampaignEnd { kFinished, kStopped };
+
+// What a person wants to see while it runs. Of several searches, generations and counts are sums.
+struct CampaignProgress {
+  SearchProgress search;
+  std::size_t searches = 1;
+  std::size_t searches_finished = 0;
+  std::uint64_t runs_done = 0;     // stored, earlier sessions included
+  std::uint64_t runs_planned = 0;  // 0 = unknown
+  double runs_per_second = 0.0;    // over the last seconds
+  double best_fitness = 0.0;       // of the population at the last complete generation; NaN before the first
+  double mean_fitness = 0.0;       // of several searches: the mean over them
+  std::uint64_t total_failures = 0;  // runs so far
+  std::uint64_t runs_failed = 0;     // verdict other than completed
+  WorkerStatistics workers;
+  double elapsed_seconds = 0.0;             // of this session
+  std::optional<double> remaining_seconds;  // at the present rate
+};
+
+class CampaignRunner {
+ public:
+  // The drivers are those of searches 1, 2, ... in this order; all parts outlive the runner.
+  struct Parts {
+    std::vector<SearchDriver*> searches;
+    EvaluationBackend& backend;
+    ResultStore& store;
+    const Clock& clock;
+  };
+  explicit CampaignRunner(const Parts& parts) : parts_(parts) {}
+
+  // Call once, before Run: restores all searches. `finished`: those that the store calls finished.
+  Status Restore(const std::vector<SearchId>& finished);
+
+  // Until all searches have finished and the backend's audits are done, `stop` answers kNow, or it has
+  // answered kAfterRuns and what was running has ended. `on_progress` is called about ten times a second.
+  // Error: the store or the backend failed; whatever was acknowledged is stored.
+  Result<CampaignEnd> Run(const std::function<StopWish()>& stop,
+                          const std::function<void(const CampaignProgress&)>& on_progress);
+
+  // What the backend has reported since: into the store and the log. Run does so by itself.
+  void StoreEvents();
+  // Runs stored, earlier sessions included.
+  std::uint64_t runs_done() const;
+
+ private:
+  SearchDriver& DriverOf(RunId run) { return *parts_.searches.at(SearchOf(run) - 1); }
+  Status Advance();
+  Status ApplyCommits();
+  Status EndSession();
+  CampaignProgress Progress(TimePoint started);
+
+  Parts parts_;
+  std::deque<SearchDriver*> waiting_;   // have not begun
+  std::vector<SearchDriver*> running_;  // at most a few at a time, so that no more specs are held than needed
+  std::deque<std::pair<TimePoint, std::uint64_t>> rate_samples_;
+};
+
+}  // namespace gauntlet::master

@@ -1,0 +1,60 @@
+#include "master/session/reproduction_bundle.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "base/system/atomic_file.h"
+#include "master/dispatch/dispatch_options.h"
+#include "master/experiment/experiment_file.h"
+#include "master/report/verdict_text.h"
+#include "proto/run_codec.h"
+
+namespace gauntlet::master {
+
+bool LeavesBundle(sim::Verdict verdict) {
+  return verdict == sim::Verdict::kCrashed || verdict == sim::Verdict::kHung ||
+         verdict == sim::Verdict::kOutOfMemory;
+}
+
+std::string BundleName(RunId run) {
+  return fmt::format("bundles/run-{}", run);
+}
+
+Status WriteBundle(const BundleContext& context, const Experiment& experiment, const StoredRun& run,
+                   const FinishedRun& finished) {
+  const std::filesystem::path folder = std::filesystem::path(context.directory) / BundleName(run.id);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return SystemError(fmt::format("cannot make {}", folder.string()), error.value());
+
+  const Result<sim::RunSpec> spec = DecodeRunSpec(run.spec);
+  if (!spec) return spec.error();
+  const std::string command =
+      fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
+                  context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
+  const std::string readme = fmt::format(
+      "Run {} of the campaign {} {} ({}), in every attempt; the last was on worker {}.\n\n"
+      "See it again, in this folder:\n    {} > result\n"
+      "It says on stderr how the run ends. `result` is a serialized gauntlet.v1.RunResult.\n\n"
+      "scenario      {}\ncontroller    {}\nseed          {}\nindividual    {}, evaluation {}, replicate {}\n"
+      "version       gauntlet {}\ngolden hash   {}\n\n"
+      "run.spec         all the run depends on, as a serialized gauntlet.v1.RunSpec\n"
+      "case.json        the test case, for gauntlet evaluate --case\n"
+      "experiment.toml  the experiment, every default written out\n"
+      "stderr.txt       what the last attempt printed\n",
+      run.id, context.campaign_id, finished.result.message, NameOf(finished.result.verdict), finished.worker,
+      command, spec->scenario, spec->controller, run.seed, run.individual, run.evaluation, run.replicate,
+      context.software_version, context.golden_hash);
+  const auto write = [&](const char* name, const std::string& text) {
+    return ReplaceFile((folder / name).string(), text, kReadableByAll);
+  };
+  if (Status written = write("run.spec", run.spec); !written) return written;
+  if (Status written = write("case.json", WriteCaseJson(spec->test_case)); !written) return written;
+  if (Status written = write("experiment.toml", WriteExperiment(experiment, {})); !written) return written;
+  if (Status written = write("stderr.txt", finished.stderr_tail); !written) return written;
+  return write("README.txt", readme);
+}
+
+}  // namespace gauntlet::master

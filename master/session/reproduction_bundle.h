@@ -1,0 +1,35 @@
+// What is needed to see a run fail again, anywhere: left in the campaign's directory for every run that
+// crashed, hung or ran out of memory in all its attempts.
+#pragma once
+
+#include <string>
+
+#include "base/result.h"
+#include "master/dispatch/dispatch_options.h"
+#include "master/dispatch/evaluation_backend.h"
+#include "master/experiment/experiment.h"
+#include "master/store/result_store.h"
+
+namespace gauntlet::master {
+
+// Whether runs with this verdict leave a bundle.
+bool LeavesBundle(sim::Verdict verdict);
+
+// "bundles/run-17", in the campaign's directory.
+std::string BundleName(RunId run);
+
+struct BundleContext {
+  std::string directory;  // of the campaign
+  std::string campaign_id;
+  std::string software_version;
+  std::string golden_hash;  // 16 hexadecimal digits
+  DispatchOptions limits;   // that its runs had
+};
+
+// Writes bundles/run-N: README.txt (what failed, where, by which signal, the one command that reproduces it),
+// run.spec (the serialized gauntlet.v1.RunSpec), case.json, experiment.toml, stderr.txt. `run` still has its
+// spec. A bundle that is there already is replaced. Error: kIo, kNoSpace.
+Status WriteBundle(const BundleContext& context, const Experiment& experiment, const StoredRun& run,
+                   const FinishedRun& finished);
+
+}  // namespace gauntlet::master

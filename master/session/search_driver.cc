@@ -1,0 +1,253 @@
+#include "master/session/search_driver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "base/hash.h"
+#include "proto/run_codec.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr int kSequenceBits = 40;
+
+// As the campaign's only search would have it.
+StoredRun AsOnlySearch(const StoredRun& run) {
+  StoredRun only;
+  only.search = kOnlySearch;
+  only.id = run.id - RunIdOf(run.search, 1) + RunIdOf(kOnlySearch, 1);
+  only.individual = run.individual;
+  only.evaluation = run.evaluation;
+  only.replicate = run.replicate;
+  only.seed = run.seed;
+  only.hash = run.hash;
+  only.verdict = run.verdict;
+  return only;
+}
+
+}  // namespace
+
+sim::SeedPurpose PurposeOf(SearchKind kind) {
+  return kind == SearchKind::kCases ? sim::SeedPurpose::kEvaluate : sim::SeedPurpose::kSearch;
+}
+
+std::uint64_t SpecHash(std::string_view spec) {
+  Fnv1a64 hash;
+  hash.AddBytes(spec);
+  return hash.value();
+}
+
+RunId RunIdOf(SearchId search, std::uint64_t sequence) {
+  GAUNTLET_CHECK(search >= 1 && sequence >= 1 && sequence < (1ULL << kSequenceBits),
+                 "run number out of range");
+  return (static_cast<RunId>(search - 1) << kSequenceBits) + sequence;
+}
+
+SearchId SearchOf(RunId run) {
+  return static_cast<SearchId>(run >> kSequenceBits) + 1;
+}
+
+SearchDriver::SearchDriver(const Parts& parts)
+    : parts_(parts),
+      last_asked_(RunIdOf(parts.search_id, 1) - 1),
+      last_told_(last_asked_),
+      saved_until_(last_asked_),
+      best_fitness_(std::numeric_limits<double>::quiet_NaN()),
+      mean_fitness_(std::numeric_limits<double>::quiet_NaN()) {}
+
+Status SearchDriver::Restore() {
+  Result<std::optional<SavedState>> saved = parts_.store.LoadNewestState(parts_.search_id);
+  if (!saved) return saved.error();
+  if (saved->has_value()) {
+    const SavedState& state = **saved;
+    CanonicalDecoder decoder(state.state);
+    if (Status restored = parts_.search.Restore(decoder); !restored) return restored;
+    Result<ResultsDigest> digest = ResultsDigest::Restore(state.results_digest);
+    if (!digest) return digest.error();
+    digest_ = *digest;
+    last_asked_ = last_told_ = saved_until_ = state.last_run;
+  }
+  Status read = parts_.store.ForEachRun(parts_.search_id, 0, [this](const StoredRun& run) {
+    Count(run);
+    if (run.id > saved_until_) stored_ahead_.emplace(run.id, run);
+  });
+  return read;
+}
+
+double SearchDriver::PredictedLength(const EvaluationRequest& request) const {
+  if (const auto own = ticks_.find(request.individual); own != ticks_.end()) return own->second;
+  double longest = 0.0;
+  for (const IndividualId parent : request.parents) {
+    if (const auto found = ticks_.find(parent); found != ticks_.end())
+      longest = std::max(longest, found->second);
+  }
+  return longest;
+}
+
+Status SearchDriver::Ask() {
+  std::vector<RunRequest> submissions;
+  for (EvaluationRequest& request : parts_.search.Ask()) {
+    PendingEvaluation evaluation;
+    const double length = PredictedLength(request);
+    SeededSpecs specs(SpecOf(parts_.experiment, request.test_case, 0));
+    for (std::uint32_t replicate = 0; replicate < request.replicates; ++replicate) {
+      StoredRun run;
+      run.id = ++last_asked_;
+      run.search = parts_.search_id;
+      run.individual = request.individual;
+      run.evaluation = request.evaluation;
+      run.replicate = replicate;
+      run.generation = request.generation;
+      run.seed = sim::DeriveSeed(parts_.experiment.seed, PurposeOf(parts_.experiment.search.kind),
+                                 kOnlySearch, request.individual, request.evaluation, replicate);
+      run.spec = specs.Encode(run.seed);
+      run.spec_hash = SpecHash(run.spec);
+
+      const auto stored = stored_ahead_.find(run.id);
+      if (stored == stored_ahead_.end()) {
+        submissions.push_back({run.id, run.spec, length});
+        evaluation.runs.push_back({std::move(run), false});
+      } else {
+        if (stored->second.spec != run.spec) {
+          return Error{
+              ErrorKind::kCorrupt,
+              fmt::format(
+                  "run {} is stored with another spec than the search asks for: the campaign was made by "
+                  "another version, or its files were changed",
+                  run.id)};
+        }
+        evaluation.runs.push_back({std::move(stored->second), true});
+        stored_ahead_.erase(stored);
+      }
+    }
+    evaluation.request = std::move(request);
+    pending_.push_back(std::move(evaluation));
+  }
+  at_backend_ += submissions.size();
+  if (!submissions.empty()) parts_.backend.Submit(std::move(submissions));
+  return Ok{};
+}
+
+SearchDriver::PendingRun* SearchDriver::Find(RunId id) {
+  // Runs of pending evaluations are numbered without gaps, each evaluation holding `replicates` of them.
+  const auto holder = std::partition_point(
+      pending_.begin(), pending_.end(),
+      [id](const PendingEvaluation& evaluation) { return evaluation.runs.back().run.id < id; });
+  if (holder == pending_.end()) return nullptr;
+  const RunId first = holder->runs.front().run.id;
+  return id < first ? nullptr : &holder->runs[id - first];
+}
+
+void SearchDriver::Count(const StoredRun& run) {
+  ++runs_done_;
+  if (run.total_failure) ++total_failures_;
+  if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) ++runs_failed_;
+}
+
+void SearchDriver::Store(FinishedRun finished) {
+  PendingRun* pending = Find(finished.id);
+  GAUNTLET_CHECK(pending != nullptr && !pending->durable, fmt::format("run {} finished twice", finished.id));
+  StoredRun& run = pending->run;
+  --at_backend_;
+  if (parts_.experiment.search.kind == SearchKind::kGenetic)
+    ticks_[run.individual] = static_cast<double>(finished.result.ticks);
+  if (parts_.on_run) parts_.on_run(run, finished);
+  run.result = std::move(finished.encoded);
+  run.hash = finished.result.hash;
+  run.worker = std::move(finished.worker);
+  run.attempt = finished.attempt;
+  run.verdict = static_cast<int>(finished.result.verdict);
+  run.fitness = finished.result.fitness;
+  run.total_failure = finished.result.failure.total;
+  run.failure_type = finished.result.failure.type;
+  parts_.store.AddRun(run);
+  run.spec.clear();
+  run.result.clear();
+}
+
+void SearchDriver::Committed(RunId id) {
+  PendingRun* pending = Find(id);
+  GAUNTLET_CHECK(pending != nullptr, fmt::format("run {} was committed but never asked for", id));
+  pending->durable = true;
+  Count(pending->run);
+}
+
+void SearchDriver::TellCompleted() {
+  while (!pending_.empty()) {
+    const PendingEvaluation& evaluation = pending_.front();
+    // From the end, where what is missing usually stands: evaluations of thousands of runs are looked at
+    // often.
+    if (std::any_of(evaluation.runs.rbegin(), evaluation.runs.rend(),
+                    [](const PendingRun& pending) { return !pending.durable; })) {
+      return;
+    }
+    EvaluationOutcome outcome;
+    outcome.individual = evaluation.request.individual;
+    outcome.evaluation = evaluation.request.evaluation;
+    double sum = 0.0;
+    std::uint32_t completed = 0;
+    for (const PendingRun& pending : evaluation.runs) {
+      if (pending.run.verdict == static_cast<int>(sim::Verdict::kCompleted)) {
+        sum += pending.run.fitness;
+        ++completed;
+      }
+      if (pending.run.total_failure) ++outcome.total_failures;
+    }
+    outcome.runs_failed = static_cast<std::uint32_t>(evaluation.runs.size()) - completed;
+    outcome.completed = completed > 0;
+    if (outcome.completed) outcome.fitness = sum / completed;
+    for (const PendingRun& pending : evaluation.runs) digest_.Add(AsOnlySearch(pending.run));
+    last_told_ = evaluation.runs.back().run.id;
+    pending_.pop_front();
+    parts_.search.Tell(outcome);
+    if (parts_.search.AtBoundary()) SaveState();
+  }
+}
+
+void SearchDriver::SaveState() {
+  const std::vector<Individual> newborns = parts_.search.TakeNewborns();
+  parts_.store.AddIndividuals(parts_.search_id, newborns);
+  SavedState state;
+  state.search = parts_.search_id;
+  state.generation = parts_.search.Progress().generation;
+  state.last_run = last_told_;
+  CanonicalEncoder encoder;
+  parts_.search.Save(encoder);
+  state.state = encoder.Take();
+  state.results_digest = digest_.bytes();
+  parts_.store.SaveState(state);
+  saved_until_ = last_told_;
+
+  double sum = 0.0;
+  int counted = 0;
+  best_fitness_ = std::numeric_limits<double>::infinity();
+  std::map<IndividualId, double> ticks;
+  for (const Individual& individual : parts_.search.Population()) {
+    if (const auto known = ticks_.find(individual.id); known != ticks_.end()) ticks.insert(*known);
+    if (!std::isfinite(individual.fitness)) continue;
+    best_fitness_ = std::min(best_fitness_, individual.fitness);
+    sum += individual.fitness;
+    ++counted;
+  }
+  mean_fitness_ = counted > 0 ? sum / counted : std::numeric_limits<double>::quiet_NaN();
+  if (counted == 0) best_fitness_ = mean_fitness_;
+  ticks_ = std::move(ticks);
+}
+
+Status SearchDriver::Advance() {
+  TellCompleted();
+  if (Status asked = Ask(); !asked) return asked;
+  TellCompleted();  // what a former session had stored may complete evaluations at once
+  return Ok{};
+}
+
+std::uint64_t SearchDriver::runs_planned() const {
+  return parts_.search.Progress().evaluations_planned *
+         static_cast<std::uint64_t>(parts_.experiment.search.replicates);
+}
+
+}  // namespace gauntlet::master

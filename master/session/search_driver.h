@@ -1,0 +1,117 @@
+// One search of a campaign: asks it, hands its runs to the backend, stores what comes back, and tells the
+// search once it is durable, in logical order. Everything it decides is a function of the experiment and the
+// stored results.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <string_view>
+#include <vector>
+
+#include "master/dispatch/evaluation_backend.h"
+#include "master/experiment/experiment.h"
+#include "master/report/state_digest.h"
+#include "master/search/search_algorithm.h"
+#include "master/store/result_store.h"
+#include "sim/random/random_stream.h"
+
+namespace gauntlet::master {
+
+// Random numbers and state hash of a search are those it would have as the only one of a campaign, whatever
+// its number is.
+inline constexpr SearchId kOnlySearch = 1;
+
+// The id of run number `sequence` (1, 2, ...) of a search: searches do not share numbers, so ids do not
+// depend on which search was faster.
+RunId RunIdOf(SearchId search, std::uint64_t sequence);
+// The search of a run.
+SearchId SearchOf(RunId run);
+
+// What the seeds of a campaign's runs are derived for.
+sim::SeedPurpose PurposeOf(SearchKind kind);
+
+// StoredRun::spec_hash.
+std::uint64_t SpecHash(std::string_view spec);
+
+class SearchDriver {
+ public:
+  struct Parts {
+    const Experiment& experiment;
+    SearchId search_id = kOnlySearch;
+    SearchAlgorithm& search;
+    EvaluationBackend& backend;
+    ResultStore& store;
+    // A run that has come back, before it is stored; it still has its spec.
+    std::function<void(const StoredRun&, const FinishedRun&)> on_run = {};
+  };
+  explicit SearchDriver(const Parts& parts);
+
+  // Brings the search to the newest stored state and takes up the results stored after it. Call once, before
+  // the rest. Error: what is stored does not fit the experiment (kCorrupt) or cannot be read.
+  Status Restore();
+
+  // Tells the search what is complete, asks for more and submits it; saves state at boundaries. Error: what
+  // is stored contradicts what the search asks for.
+  Status Advance();
+  // A run of this search has come back: hands it to the store.
+  void Store(FinishedRun finished);
+  // A run of this search has become durable.
+  void Committed(RunId id);
+  // Advance, for the last time: tells what is complete without asking for more.
+  void TellCompleted();
+
+  SearchId id() const { return parts_.search_id; }
+  bool finished() const { return pending_.empty() && parts_.search.Progress().finished; }
+  // Evaluations that have been asked for and not been told.
+  bool pending() const { return !pending_.empty(); }
+  // Runs that have been submitted and not come back.
+  std::uint64_t at_backend() const { return at_backend_; }
+
+  SearchProgress Progress() const { return parts_.search.Progress(); }
+  std::uint64_t runs_planned() const;
+  std::uint64_t runs_done() const { return runs_done_; }  // stored, earlier sessions included
+  std::uint64_t total_failures() const { return total_failures_; }
+  std::uint64_t runs_failed() const { return runs_failed_; }  // verdict other than completed
+  double best_fitness() const {
+    return best_fitness_;
+  }  // of the last complete generation; NaN before the first
+  double mean_fitness() const { return mean_fitness_; }
+
+ private:
+  // The fields of a result that the search and the digest need.
+  struct PendingRun {
+    StoredRun run;  // `spec` and `result` are handed to the store and empty afterwards
+    bool durable = false;
+  };
+  struct PendingEvaluation {
+    EvaluationRequest request;
+    std::vector<PendingRun> runs;
+  };
+
+  Status Ask();
+  // Ticks that the individual's runs took so far, or its parents'; 0 = unknown.
+  double PredictedLength(const EvaluationRequest& request) const;
+  void SaveState();
+  void Count(const StoredRun& run);
+  PendingRun* Find(RunId id);
+
+  Parts parts_;
+  std::deque<PendingEvaluation> pending_;
+  std::map<RunId, StoredRun>
+      stored_ahead_;  // results that a former session stored and the saved state has not seen
+  std::uint64_t at_backend_ = 0;
+  std::map<IndividualId, double> ticks_;  // of the newest run of those who may run or breed again
+  RunId last_asked_ = 0;
+  RunId last_told_ = 0;
+  RunId saved_until_ = 0;
+  ResultsDigest digest_;
+  std::uint64_t runs_done_ = 0;
+  std::uint64_t total_failures_ = 0;
+  std::uint64_t runs_failed_ = 0;
+  double best_fitness_;
+  double mean_fitness_;
+};
+
+}  // namespace gauntlet::master

@@ -1,0 +1,63 @@
+#include "master/session/worker_program.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <csignal>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/system/process_call.h"
+#include "master/dispatch/local_pool.h"
+#include "master/session/run_limits.h"
+#include "proto/run_codec.h"
+
+namespace gauntlet::master {
+namespace {
+
+// A kill comes from outside (a memory killer, an operator): the pure question may be asked again this often.
+constexpr int kTries = 3;
+
+// stdout of gauntlet-worker with these arguments; its stderr is ours.
+Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::string_view input) {
+  const std::string program = WorkerProgramPath();
+  arguments.insert(arguments.begin(), program);
+  for (int attempt = 1;; ++attempt) {
+    Result<slurm::CallOutput> output =
+        slurm::CallProcess(arguments, input, std::nullopt, slurm::Callee::kPartOfUs);
+    if (!output) return output.error();
+    if (output->exit_code == 0) return std::move(output->out);
+    if (output->signal == SIGKILL && attempt < kTries) continue;
+    return Error{ErrorKind::kInternal,
+                 fmt::format("{} ended {} {}", program, output->signal != 0 ? "by signal" : "with status",
+                             output->signal != 0 ? output->signal : output->exit_code)};
+  }
+}
+
+}  // namespace
+
+Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec) {
+  const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec.scenario_parameters));
+  Result<std::string> output =
+      RunWorkerProgram({"--run-spec", "-", "--cpu-limit", cpu_limit}, EncodeRunSpec(spec));
+  if (!output) return output.error();
+  return DecodeRunResult(*output);
+}
+
+Result<std::uint64_t> GoldenHashOfThisMachine() {
+  Result<std::string> output = RunWorkerProgram({"--golden"}, {});
+  if (!output) return output.error();
+  std::uint64_t hash = 0;
+  const std::string& text = *output;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+  if (error != std::errc() || end - text.data() != 16) {
+    return Error{ErrorKind::kInternal,
+                 fmt::format("gauntlet-worker --golden printed '{}', not a hash", text)};
+  }
+  return hash;
+}
+
+}  // namespace gauntlet::master

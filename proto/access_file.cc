@@ -1,0 +1,127 @@
+#include "proto/access_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "worker/pipe.h"
+
+namespace gauntlet::worker {
+namespace {
+
+constexpr int kFormat = 1;
+constexpr std::size_t kKeyCharacters = 40;
+constexpr std::size_t kMaxBytes = 1U << 20;
+
+bool IsEndpoint(const std::string& text) {
+  return (text.starts_with("tcp://") || text.starts_with("ipc://")) && text.size() > 6;
+}
+
+// Z85 (https://rfc.zeromq.org/spec/32/).
+bool IsKey(const std::string& text) {
+  constexpr std::string_view kOthers = ".-:+=^!/*?&<>()[]{}@%$#";
+  return text.size() == kKeyCharacters && std::all_of(text.begin(), text.end(), [&](char c) {
+           return std::isalnum(static_cast<unsigned char>(c)) != 0 || kOthers.find(c) != kOthers.npos;
+         });
+}
+
+// "line 2, column 7" of the last of the first `bytes` bytes.
+std::string PositionIn(const std::string& text, std::size_t bytes) {
+  const std::string_view read = std::string_view(text).substr(0, std::max<std::size_t>(bytes, 1) - 1);
+  const auto line = std::count(read.begin(), read.end(), '\n') + 1;
+  const std::size_t break_before = read.rfind('\n');
+  const std::size_t column = break_before == read.npos ? read.size() + 1 : read.size() - break_before;
+  return fmt::format("line {}, column {}", line, column);
+}
+
+}  // namespace
+
+Result<Access> ParseAccess(const std::string& text, const std::string& place) {
+  const auto wrong = [&](const std::string& what) {
+    return InvalidInput(fmt::format("{}: {}", place, what));
+  };
+  nlohmann::json json;
+  // The library's own messages repeat what they read, and that may be a part of a key.
+  try {
+    json = nlohmann::json::parse(text);
+  } catch (const nlohmann::json::parse_error& error) {
+    return wrong(fmt::format("no complete JSON, at {}", PositionIn(text, error.byte)));
+  } catch (const nlohmann::json::exception&) {
+    return wrong("a number beyond all ranges");
+  }
+  if (!json.is_object()) return wrong("an object is needed");
+
+  const auto format = json.find("format");
+  if (format == json.end() || !format->is_number_integer()) return wrong("\"format\" must be a whole number");
+  if (*format != kFormat) {
+    return Error{ErrorKind::kVersion,
+                 fmt::format("{}: format {}, this version reads format {}", place, format->dump(), kFormat)};
+  }
+  Access access;
+  const auto campaign = json.find("campaign");
+  if (campaign == json.end() || !campaign->is_string() || campaign->get_ref<const std::string&>().empty()) {
+    return wrong("\"campaign\" must be the campaign's id, a text");
+  }
+  access.campaign_id = campaign->get<std::string>();
+  const auto epoch = json.find("epoch");
+  if (epoch == json.end() || !epoch->is_number_unsigned())
+    return wrong("\"epoch\" must be a whole number from 0");
+  access.epoch = epoch->get<std::uint64_t>();
+  const auto endpoints = json.find("endpoints");
+  if (endpoints == json.end() || !endpoints->is_array() || endpoints->empty()) {
+    return wrong("\"endpoints\" must be a list with at least one address");
+  }
+  for (const nlohmann::json& endpoint : *endpoints) {
+    if (!endpoint.is_string() || !IsEndpoint(endpoint.get_ref<const std::string&>())) {
+      return wrong(fmt::format("endpoint {} is neither tcp://HOST:PORT nor ipc://PATH", endpoint.dump()));
+    }
+    access.endpoints.push_back(endpoint.get<std::string>());
+  }
+  if (const auto curve = json.find("curve"); curve != json.end()) {
+    CurveKeys keys;
+    for (const auto& [name, key] :
+         {std::pair{"server_public", &keys.server_public}, std::pair{"worker_public", &keys.worker_public},
+          std::pair{"worker_secret", &keys.worker_secret}}) {
+      // What stands there is not repeated: messages end in logs.
+      const bool is_text = curve->is_object() && curve->contains(name) && (*curve)[name].is_string();
+      if (is_text) *key = (*curve)[name].get<std::string>();
+      if (!IsKey(*key)) {
+        return wrong(
+            fmt::format("\"curve\".\"{}\" must be a key of {} characters of Z85", name, kKeyCharacters));
+      }
+    }
+    access.curve = std::move(keys);
+  }
+  return access;
+}
+
+Result<Access> ReadAccess(const std::string& path) {
+  // A named pipe would keep a blocking open waiting.
+  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  struct stat status {};
+  if (!file.valid() || fstat(file.get(), &status) != 0) {
+    const int error = errno;
+    return Error{error == ENOENT || error == ENOTDIR ? ErrorKind::kNotFound : ErrorKind::kIo,
+                 fmt::format("{}: {}", path, std::strerror(error))};
+  }
+  if (!S_ISREG(status.st_mode)) return Error{ErrorKind::kIo, fmt::format("{} is no regular file", path)};
+  const Result<std::string> text = ReadAll(file.get(), path, kMaxBytes);
+  if (!text.ok()) return text.error();
+  Result<Access> access = ParseAccess(*text, path);
+  if (access.ok() && access->curve && (status.st_mode & 077) != 0) {
+    return InvalidInput(fmt::format(
+        "{} holds keys and has mode {:03o}: others may read it; make it 600 (chmod 600), or better "
+        "let a new master write new keys",
+        path, status.st_mode & 0777));
+  }
+  return access;
+}
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,37 @@
+// access.json: where a campaign's master listens. Written by the master, atomically; read by workers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+
+namespace gauntlet::worker {
+
+// The keys of CurveZMQ (Z85, 40 characters each): the master's public one and the pair that it admits.
+struct CurveKeys {
+  std::string server_public;
+  std::string worker_public;
+  std::string worker_secret;
+  bool operator==(const CurveKeys&) const = default;
+};
+
+struct Access {
+  std::string campaign_id;                        // hexadecimal
+  std::uint64_t epoch = 0;                        // number of the master's start
+  std::vector<std::string> endpoints;             // "tcp://host:port" or "ipc://path", at least one
+  std::optional<CurveKeys> curve = std::nullopt;  // none: plaintext
+  bool operator==(const Access&) const = default;
+};
+
+// `place` is named in errors. Unknown keys are ignored. Errors: kInvalidInput names line and column or the
+// key; kVersion for another "format".
+Result<Access> ParseAccess(const std::string& text, const std::string& place);
+
+// Error kNotFound when there is no such file: the master may not have written it yet; kInvalidInput when it
+// holds keys and others than its owner may read it.
+Result<Access> ReadAccess(const std::string& path);
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,137 @@
+#include "slurm/slurm_campaign.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <utility>
+
+#include "base/hash.h"
+#include "base/system/atomic_file.h"
+#include "master/dispatch/local_pool.h"
+#include "slurm/slurm_pool.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::size_t kMostTemplateBytes = 1 << 20;
+
+bool MayStandInAJobName(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
+         c == '-';
+}
+
+std::string AsJobName(std::string text) {
+  for (char& c : text) {
+    if (!MayStandInAJobName(c)) c = '-';
+  }
+  return text;
+}
+
+Result<std::string> Template(const std::string& path, std::string_view shipped, std::string_view key) {
+  if (path.empty()) return std::string(shipped);
+  Result<std::string> text = ReadSmallFile(path, kMostTemplateBytes);
+  if (!text) return InvalidInput(fmt::format("slurm.{}: {}", key, text.error().message));
+  return text;
+}
+
+// How a job starts this program; a bundle's wrapper says it.
+std::string ThisProgram() {
+  if (const char* wrapper = std::getenv("GAUNTLET_PROGRAM"); wrapper != nullptr && *wrapper != '\0')
+    return wrapper;
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  return error ? "gauntlet" : program.string();
+}
+
+}  // namespace
+
+std::string DrawTag(const std::string& experiment_name) {
+  std::random_device device;
+  return fmt::format("{}-{:08x}", AsJobName(experiment_name), device());
+}
+
+SlurmCampaign::SlurmCampaign(SlurmSettings settings, std::string directory)
+    : settings_(std::move(settings)), directory_(std::move(directory)) {
+  Fnv1a64 hash;
+  hash.AddBytes(directory_);
+  job_prefix_ = fmt::format("gauntlet-{}-{:06x}-", AsJobName(settings_.tag), hash.value() & 0xffffff);
+}
+
+Result<SlurmCampaign> SlurmCampaign::Make(const SlurmSettings& settings, const std::string& directory) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::weakly_canonical(directory, error);
+  if (error) return SystemError(fmt::format("cannot find {}", directory), error.value());
+  SlurmCampaign campaign(settings, absolute.string());
+  if (Status made = campaign.MakeScripts(); !made) return made.error();
+  return campaign;
+}
+
+Result<SlurmCampaign> SlurmCampaign::Load(const std::string& directory) {
+  const std::string path = directory + "/slurm.toml";
+  const Result<std::string> text = ReadSmallFile(path);
+  if (!text) return text.error();
+  const Result<SlurmSettings> settings = ReadSlurmSettings({{*text, path, true}}, {});
+  if (!settings) return settings.error();
+  return Make(*settings, directory);
+}
+
+slurm::WorkerJob SlurmCampaign::WorkersJob() const {
+  return {.name = job_prefix_ + "w",
+          .worker = settings_.worker_command.empty() ? slurm::ShellQuoted(WorkerProgramPath())
+                                                     : settings_.worker_command,
+          .access_file = directory_ + "/access.json",
+          .log_directory = directory_ + "/log",
+          .slots = settings_.pool.workers_per_allocation};
+}
+
+Status SlurmCampaign::MakeScripts() {
+  Result<std::string> worker_template =
+      Template(settings_.worker_template, slurm::kWorkerTemplate, "worker_template");
+  if (!worker_template) return worker_template.error();
+  worker_template_ = *std::move(worker_template);
+  Result<std::string> worker = slurm::WorkerScript(worker_template_, WorkersJob(), settings_.worker_job);
+  if (!worker) return worker.error();
+  worker_script_ = *std::move(worker);
+
+  const Result<std::string> master_template =
+      Template(settings_.master_template, slurm::kMasterTemplate, "master_template");
+  if (!master_template) return master_template.error();
+  // Of what the workers ask for, the master needs the account and the software.
+  slurm::JobRequest request;
+  request.account = settings_.worker_job.account;
+  request.qos = settings_.worker_job.qos;
+  request.setup = settings_.worker_job.setup;
+  request.partition =
+      settings_.master_partition.empty() ? settings_.worker_job.partition : settings_.master_partition;
+  request.time_limit = settings_.master_time_limit;
+  Result<std::string> master =
+      slurm::MasterScript(*master_template,
+                          {.name = master_job_name(),
+                           .command = {ThisProgram(), "resume", directory_, "--as-job", "--no-progress"},
+                           .log_file = directory_ + "/log/master-job-%j.log"},
+                          request);
+  if (!master) return master.error();
+  master_script_ = *std::move(master);
+  return Ok{};
+}
+
+std::unique_ptr<WorkerPool> SlurmCampaign::MakePool(std::unique_ptr<slurm::SlurmClient> client) const {
+  SlurmPoolOptions options;
+  options.limits = settings_.pool;
+  options.request = settings_.worker_job;
+  options.job_template = worker_template_;
+  options.job = WorkersJob();
+  return std::make_unique<SlurmPool>(std::move(options), std::move(client));
+}
+
+Result<std::vector<slurm::JobStatus>> LivingJobs(slurm::SlurmClient& client, const SlurmCampaign& campaign) {
+  Result<std::vector<slurm::JobStatus>> jobs = client.Queue(campaign.job_prefix());
+  if (!jobs) return jobs;
+  std::erase_if(*jobs, [](const slurm::JobStatus& job) { return job.phase == slurm::JobPhase::kEnded; });
+  return jobs;
+}
+
+}  // namespace gauntlet::master

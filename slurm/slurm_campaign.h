@@ -1,0 +1,54 @@
+// A campaign directory as Slurm's jobs see it: their names, their scripts, and which of a user's jobs belong
+// to the campaign.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "master/dispatch/worker_pool.h"
+#include "slurm/slurm_client.h"
+#include "slurm/slurm_settings.h"
+
+namespace gauntlet::master {
+
+class SlurmCampaign {
+ public:
+  // `directory` need not exist yet. Error: a template of the site cannot be read, or does not give a script.
+  static Result<SlurmCampaign> Make(const SlurmSettings& settings, const std::string& directory);
+  // Of a submitted campaign, from its slurm.toml. kNotFound when it was not submitted.
+  static Result<SlurmCampaign> Load(const std::string& directory);
+
+  const SlurmSettings& settings() const { return settings_; }
+  // All jobs of the campaign have names that begin so. Made of the settings' tag and the directory's absolute
+  // path: a copy of the directory has other jobs than its original.
+  const std::string& job_prefix() const { return job_prefix_; }
+  std::string master_job_name() const { return job_prefix_ + "master"; }
+
+  const std::string& worker_script() const { return worker_script_; }
+  const std::string& master_script() const { return master_script_; }
+
+  // The pool of the campaign's workers.
+  std::unique_ptr<WorkerPool> MakePool(std::unique_ptr<slurm::SlurmClient> client) const;
+
+ private:
+  SlurmCampaign(SlurmSettings settings, std::string directory);
+  Status MakeScripts();
+  slurm::WorkerJob WorkersJob() const;
+
+  SlurmSettings settings_;
+  std::string directory_;  // absolute
+  std::string job_prefix_;
+  std::string worker_template_;
+  std::string worker_script_;
+  std::string master_script_;
+};
+
+// "flocking-1a2b3c4d": the name, as far as it can stand in a job's, and random digits.
+std::string DrawTag(const std::string& experiment_name);
+
+// This user's jobs of the campaign that Slurm has not ended yet.
+Result<std::vector<slurm::JobStatus>> LivingJobs(slurm::SlurmClient& client, const SlurmCampaign& campaign);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,246 @@
+#include "slurm/slurm_pool.h"
+
+#include <fmt/format.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "base/check.h"
+
+namespace gauntlet::master {
+
+SlurmPool::SlurmPool(SlurmPoolOptions options, std::unique_ptr<slurm::SlurmClient> client)
+    : options_(std::move(options)),
+      client_(std::move(client)),
+      policy_(options_.limits),
+      answer_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  GAUNTLET_CHECK(answer_fd_ >= 0, "no eventfd can be had");
+  thread_ = std::thread([this] { CallSlurm(); });
+}
+
+SlurmPool::~SlurmPool() {
+  StopReplacing();
+  if (!released_) PostCancelAll();
+  {
+    const std::lock_guard lock(mutex_);
+    leaving_ = true;
+    if (released_) tasks_.clear();
+  }
+  work_.notify_all();
+  thread_.join();
+  close(answer_fd_);
+}
+
+// By name, so that a submission whose answer was lost goes too.
+void SlurmPool::PostCancelAll() {
+  Post([this]() -> std::function<void(TimePoint)> {
+    const Result<std::vector<slurm::JobStatus>> jobs = client_->Queue(options_.job.name);
+    if (!jobs) return [](TimePoint) {};
+    std::vector<std::string> living;
+    for (const slurm::JobStatus& job : *jobs) {
+      if (job.phase != slurm::JobPhase::kEnded) living.push_back(job.id);
+    }
+    (void)client_->Cancel(living).ok();
+    return [](TimePoint) {};
+  });
+}
+
+void SlurmPool::Post(Task task) {
+  {
+    const std::lock_guard lock(mutex_);
+    tasks_.push_back(std::move(task));
+  }
+  work_.notify_all();
+}
+
+// The thread: one call after the other, until there are none and the pool is leaving.
+void SlurmPool::CallSlurm() {
+  while (true) {
+    Task task;
+    {
+      std::unique_lock lock(mutex_);
+      work_.wait(lock, [this] { return leaving_ || !tasks_.empty(); });
+      if (tasks_.empty()) return;
+      task = std::move(tasks_.front());
+      tasks_.pop_front();
+    }
+    std::function<void(TimePoint)> answer = task();
+    const std::lock_guard lock(mutex_);
+    answers_.push_back(std::move(answer));
+    const std::uint64_t one = 1;
+    GAUNTLET_CHECK(write(answer_fd_, &one, sizeof one) == sizeof one, "the eventfd of the pool broke");
+  }
+}
+
+void SlurmPool::TakeAnswers(TimePoint now) {
+  std::vector<std::function<void(TimePoint)>> answers;
+  {
+    const std::lock_guard lock(mutex_);
+    answers.swap(answers_);
+    std::uint64_t count = 0;
+    (void)!read(answer_fd_, &count, sizeof count);
+  }
+  for (const auto& answer : answers) answer(now);
+}
+
+Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
+  TakeAnswers(now);
+  if (released_) return std::vector<pid_t>{};
+  if (!adopted_) {
+    const bool may_ask = !last_query_ || now - *last_query_ >= options_.limits.query_interval;
+    if (!adopting_ && may_ask) {
+      adopting_ = true;
+      last_query_ = now;
+      PostQuery();
+    }
+  } else if (!stopped_growing_) {
+    const slurm::Decisions decisions = policy_.Decide(demand_, now);
+    if (decisions.query) last_query_ = now;
+    CarryOut(decisions);
+  }
+  if (std::string trouble = Trouble(now); trouble != reported_trouble_) {
+    // The seconds to the next try change all the time: the words before them are the news.
+    const auto words = [](const std::string& text) { return text.substr(0, text.find("; the next try")); };
+    if (!trouble.empty() && words(trouble) != words(reported_trouble_)) Report("slurm", trouble);
+    reported_trouble_ = std::move(trouble);
+  }
+  return std::vector<pid_t>{};
+}
+
+void SlurmPool::CarryOut(const slurm::Decisions& decisions) {
+  PostCancel(decisions.cancel);
+  if (decisions.submit > submitting_) PostSubmit(decisions.submit - submitting_, decisions.exclude_nodes);
+  if (decisions.query) PostQuery();
+}
+
+void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excluded_nodes) {
+  slurm::WorkerJob job = options_.job;
+  job.name += fmt::format("{}", next_number_++);
+  job.array = allocations;
+  const Result<std::string> script = slurm::WorkerScript(options_.job_template, job, options_.request);
+  GAUNTLET_CHECK(script.ok(), "the worker script was checked when the campaign began");
+  std::vector<std::string> arguments;
+  if (!excluded_nodes.empty())
+    arguments.push_back(fmt::format("--exclude={}", fmt::join(excluded_nodes, ",")));
+  submitting_ += allocations;
+  Post([this, text = *script, arguments, allocations]() -> std::function<void(TimePoint)> {
+    return [this, id = client_->Submit(text, arguments), allocations](TimePoint now) {
+      submitting_ -= allocations;
+      if (id) {
+        if (allocations == 1) policy_.Submitted(*id, now);
+        for (int task = 1; allocations > 1 && task <= allocations; ++task)
+          policy_.Submitted(fmt::format("{}_{}", *id, task), now);
+        Report("slurm", fmt::format("job {} submitted: {} allocation{} of {} slot{}", *id, allocations,
+                                    allocations == 1 ? "" : "s", options_.job.slots,
+                                    options_.job.slots == 1 ? "" : "s"));
+      } else {
+        policy_.SubmissionFailed(id.error().message, now);
+        // It may have been accepted all the same: look before the next one.
+        adopted_ = false;
+      }
+    };
+  });
+}
+
+void SlurmPool::PostQuery() {
+  Post([this]() -> std::function<void(TimePoint)> {
+    return [this, jobs = client_->Queue(options_.job.name)](TimePoint now) {
+      adopting_ = false;
+      if (jobs) {
+        OnQueue(*jobs, now);
+      } else {
+        policy_.QueryFailed(jobs.error().message, now);
+      }
+    };
+  });
+}
+
+void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
+  if (jobs.empty()) return;
+  for (const std::string& job : jobs) {
+    if (std::find(cancelled_.begin(), cancelled_.end(), job) == cancelled_.end()) cancelled_.push_back(job);
+  }
+  Report("slurm", fmt::format("cancelled job{} {}", jobs.size() == 1 ? "" : "s", fmt::join(jobs, ", ")));
+  Post([this, jobs]() -> std::function<void(TimePoint)> {
+    return [this, done = client_->Cancel(jobs)](TimePoint now) {
+      if (!done) policy_.QueryFailed(done.error().message, now);
+    };
+  });
+}
+
+void SlurmPool::OnQueue(const std::vector<slurm::JobStatus>& jobs, TimePoint now) {
+  adopted_ = true;
+  const std::set<std::string> cancelled(cancelled_.begin(), cancelled_.end());
+  std::set<std::string> known = cancelled;
+  std::vector<std::string> undead;
+  for (const slurm::Allocation& allocation : policy_.allocations()) known.insert(allocation.job);
+  for (const slurm::JobStatus& job : jobs) {
+    const bool lives = job.phase == slurm::JobPhase::kQueued || job.phase == slurm::JobPhase::kRunning;
+    // A cancellation that the controller never got.
+    if (lives && cancelled.contains(job.id)) undead.push_back(job.id);
+    // While a submission is under way its job may be in the queue before its answer is here.
+    if (!lives || submitting_ > 0 || known.contains(job.id)) continue;
+    policy_.Adopt(job, now);
+    Report("slurm", fmt::format("adopted job {} ({})", job.id, job.state));
+  }
+  if (!undead.empty()) PostCancel(undead);
+  policy_.Observed(jobs, now);
+}
+
+void SlurmPool::Observe(const PoolView& view, TimePoint now) {
+  demand_.unfinished_runs = view.unfinished_runs;
+  for (const slurm::Allocation& allocation : policy_.allocations()) {
+    int connected = 0;
+    int busy = 0;
+    for (const PoolView::Worker& worker : view.workers) {
+      // "job:restart:node", as slurm/worker.sbatch passes it.
+      if (worker.allocation.substr(0, worker.allocation.find(':')) != allocation.job) continue;
+      ++connected;
+      if (worker.busy) ++busy;
+    }
+    policy_.Workers(allocation.job, connected, busy, now);
+  }
+}
+
+std::string SlurmPool::Trouble(TimePoint now) const {
+  const std::string trouble = policy_.Trouble(now);
+  return trouble.empty() ? "" : trouble + slurm::NextStep(trouble);
+}
+
+std::vector<AllocationView> SlurmPool::Allocations() const {
+  std::vector<AllocationView> views;
+  for (const slurm::Allocation& allocation : policy_.allocations()) {
+    views.push_back({allocation.job, allocation.state, allocation.reason, allocation.nodes,
+                     allocation.workers, allocation.cancelled});
+  }
+  return views;
+}
+
+void SlurmPool::AppendWaitFds(std::vector<int>& fds) const {
+  fds.push_back(answer_fd_);
+}
+
+int SlurmPool::running() const {
+  int living = submitting_;
+  for (const slurm::Allocation& allocation : policy_.allocations()) living += allocation.cancelled ? 0 : 1;
+  return living;
+}
+
+void SlurmPool::SignalAll(int /*signal*/) {
+  if (released_) return;
+  policy_.Stop();
+  CarryOut(policy_.Decide({}, {}));
+}
+
+std::vector<DispatchEvent> SlurmPool::TakeEvents() {
+  return std::exchange(events_, {});
+}
+
+void SlurmPool::Report(std::string kind, std::string text) {
+  events_.push_back({std::move(kind), std::move(text)});
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,49 @@
+// Text that came from outside.
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <string>
+
+#include "base/printable.h"
+#include "base/utf8.h"
+
+namespace gauntlet {
+namespace {
+
+TEST(Utf8Test, KeepsWhatIsWellFormedAndReplacesTheRest) {
+  EXPECT_EQ(ToUtf8("Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\xa4\x96\n"),
+            "Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\xa4\x96\n");
+  EXPECT_EQ(ToUtf8("a\xff\xc3"), "a??") << "a lone lead byte at the end";
+  EXPECT_EQ(ToUtf8("\xc0\xaf"), "??") << "overlong form of '/'";
+  EXPECT_EQ(ToUtf8("\xed\xa0\x80"), "???") << "surrogate";
+  EXPECT_EQ(ToUtf8("\xf4\x90\x80\x80"), "????") << "beyond U+10FFFF";
+  EXPECT_EQ(ToUtf8("\x1b[31mred\t"), "?[31mred\t") << "no terminal commands from a run";
+}
+
+RC_GTEST_PROP(Utf8Property, TheResultIsAlwaysUtf8AndNoLonger, (const std::string& bytes)) {
+  const std::string clean = ToUtf8(bytes);
+  RC_ASSERT(IsUtf8(clean));
+  RC_ASSERT(clean.size() == bytes.size());
+}
+
+TEST(Printable, EscapesWhatATerminalWouldObey) {
+  EXPECT_EQ(Printable("plain \u00fcber"), "plain \u00fcber");
+  EXPECT_EQ(Printable("a\nb\tc\x1b[31m\x7f"), "a\\nb\\tc\\x1b[31m\\x7f");
+  EXPECT_EQ(Printable("\xc2\x9b"
+                      "31m"),
+            "\\x9b31m");
+  EXPECT_EQ(Printable("\u00a0"), "\u00a0");
+  EXPECT_EQ(Printable("half of a \xc3"), "half of a \\xc3");
+  EXPECT_EQ(Printable("\xa9\xff"), "\\xa9\\xff");
+}
+
+RC_GTEST_PROP(PrintableProperty, TheResultIsUtf8WithoutControlCharactersAndStaysAsItIs,
+              (const std::string& bytes)) {
+  const std::string shown = Printable(bytes);
+  RC_ASSERT(IsUtf8(shown));
+  for (const char c : shown) RC_ASSERT(static_cast<unsigned char>(c) >= 0x20U && c != '\x7f');
+  RC_ASSERT(Printable(shown) == shown);
+}
+
+}  // namespace
+}  // namespace gauntlet

@@ -1,0 +1,93 @@
+// Every run of the shipped experiments gives the result that it gave before (shipped_runs.txt), whoever
+// rearranges the code. When results are meant to change, the list is replaced by what this test prints.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/integration/campaign_driver.h"
+#include "tests/support/paths.h"
+
+namespace gauntlet {
+namespace {
+
+using testing_support::Gauntlet;
+using testing_support::ProcessResult;
+using testing_support::TemporaryDirectory;
+
+struct RecordedRuns {
+  std::string command;            // arguments of gauntlet
+  std::vector<std::string> runs;  // "12 2784cf76d5400fa7"
+};
+
+void PrintTo(const RecordedRuns& recorded, std::ostream* os) {
+  *os << recorded.command;
+}
+
+std::vector<RecordedRuns> Recorded() {
+  std::ifstream file(GAUNTLET_SOURCE_DIR "/tests/integration/shipped_runs.txt");
+  std::vector<RecordedRuns> all;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with("#")) continue;
+    if (line.starts_with("  ")) {
+      all.back().runs.push_back(line.substr(2));
+    } else {
+      all.push_back({line, {}});
+    }
+  }
+  return all;
+}
+
+std::vector<std::string> StoredRuns(const std::string& dir) {
+  std::vector<std::string> runs;
+  sqlite3* db = nullptr;
+  EXPECT_EQ(sqlite3_open((dir + "/campaign.db").c_str(), &db), SQLITE_OK);
+  EXPECT_EQ(sqlite3_exec(
+                db, "SELECT id || ' ' || printf('%016x', hash) FROM runs ORDER BY id",
+                [](void* to, int, char** values, char**) {
+                  static_cast<std::vector<std::string>*>(to)->emplace_back(values[0]);
+                  return 0;
+                },
+                &runs, nullptr),
+            SQLITE_OK);
+  sqlite3_close(db);
+  return runs;
+}
+
+class ShippedRunsTest : public testing::TestWithParam<RecordedRuns> {};
+
+TEST_P(ShippedRunsTest, GiveTheRecordedResults) {
+  const TemporaryDirectory scratch;
+  // The example ships without an experiment file; its README gives this line.
+  const std::string example = scratch / "light-flocking.toml";
+  std::ofstream(example) << "scenario = 'light-flocking'\n";
+  std::vector<std::string> arguments;
+  std::istringstream words(GetParam().command);
+  for (std::string word; words >> word;) arguments.push_back(word == "light-flocking.toml" ? example : word);
+  const std::string dir = scratch / "campaign";
+  arguments.insert(arguments.end(), {"--dir", dir, "--workers", "2", "--quiet"});
+  const ProcessResult result = Gauntlet(arguments);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(StoredRuns(dir), testing::ElementsAreArray(GetParam().runs));
+}
+
+INSTANTIATE_TEST_SUITE_P(ShippedRuns, ShippedRunsTest, testing::ValuesIn(Recorded()));
+
+TEST(ShippedRunsList, HasEveryShippedExperimentAndAtLeast200Runs) {
+  std::size_t runs = 0;
+  std::string commands;
+  for (const RecordedRuns& recorded : Recorded()) {
+    runs += recorded.runs.size();
+    commands += recorded.command + "\n";
+  }
+  EXPECT_GE(runs, 200u);
+  for (const std::string name :
+       {"flocking", "flocking-improved", "foraging", "task-partitioning", "task-partitioning-convergence"}) {
+    EXPECT_THAT(commands, testing::HasSubstr("evolve " + name + " "));
+  }
+}
+
+}  // namespace
+}  // namespace gauntlet

@@ -1,0 +1,158 @@
+#include "master/directory/campaign_directory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+
+#include "tests/master/store/store_records.h"
+
+namespace gauntlet::master {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST(CampaignDirectoryTest, MakesTheDirectoriesAbove) {
+  const ScratchDirectory scratch;
+  Result<CampaignDirectory> made = CampaignDirectory::Create(scratch / "a/b/c/");
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  EXPECT_EQ(made->path(), scratch / "a/b/c");
+  EXPECT_TRUE(fs::is_directory(scratch / "a/b/c"));
+  EXPECT_EQ(made->database_path(), scratch / "a/b/c/campaign.db");
+}
+
+TEST(CampaignDirectoryTest, ACampaignIsNotMadeTwiceAndResumeIsNamed) {
+  const ScratchDirectory scratch;
+  WriteFile(scratch / "campaign.db", "x");
+  Result<CampaignDirectory> made = CampaignDirectory::Create(scratch.path());
+  ASSERT_FALSE(made.ok());
+  EXPECT_EQ(made.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_THAT(made.error().message, HasSubstr("gauntlet resume " + scratch.path()));
+}
+
+TEST(CampaignDirectoryTest, AnUnfinishedBeginningSaysHowToStartAnew) {
+  const ScratchDirectory scratch;
+  WriteFile(scratch / "lock", "");
+  WriteFile(scratch / "campaign.db.new", "x");
+  Result<CampaignDirectory> opened = CampaignDirectory::Open(scratch.path());
+  ASSERT_FALSE(opened.ok());
+  EXPECT_THAT(opened.error().message, HasSubstr("--dir " + scratch.path() + " starts anew"));
+}
+
+TEST(CampaignDirectoryTest, ADirectoryWithOtherFilesIsRefused) {
+  for (const std::string name : {"notes.txt", "experiment.toml", "lock.txt"}) {
+    const ScratchDirectory scratch;
+    WriteFile(scratch / name, "mine");
+    Result<CampaignDirectory> made = CampaignDirectory::Create(scratch.path());
+    ASSERT_FALSE(made.ok()) << name;
+    EXPECT_EQ(made.error().kind, ErrorKind::kInvalidInput);
+    EXPECT_THAT(made.error().message, HasSubstr("gauntlet resume " + scratch.path()));
+    EXPECT_EQ(ReadFile(scratch / name), "mine");
+  }
+}
+
+TEST(CampaignDirectoryTest, ACreationThatWasKilledIsNoObstacle) {
+  const ScratchDirectory scratch;
+  for (const std::string name :
+       {"lock", "experiment.toml", "epoch", "epoch.Xa81bc", "campaign.db.new", "campaign.db.new-wal"}) {
+    WriteFile(scratch / name, "half");
+  }
+  fs::create_directory(scratch / "log");
+  EXPECT_TRUE(CampaignDirectory::Create(scratch.path()).ok());
+  WriteFile(scratch / "thesis.pdf", "mine");
+  EXPECT_FALSE(CampaignDirectory::Create(scratch.path()).ok());
+}
+
+TEST(CampaignDirectoryTest, AFileIsNoDirectory) {
+  const ScratchDirectory scratch;
+  WriteFile(scratch / "file", "x");
+  for (const std::string& path : {scratch / "file", scratch / "file/below"}) {
+    Result<CampaignDirectory> made = CampaignDirectory::Create(path);
+    ASSERT_FALSE(made.ok());
+    EXPECT_THAT(made.error().message, HasSubstr(path));
+  }
+}
+
+TEST(CampaignDirectoryTest, OpeningSaysWhatIsMissing) {
+  const ScratchDirectory scratch;
+  Result<CampaignDirectory> opened = CampaignDirectory::Open(scratch / "none");
+  ASSERT_FALSE(opened.ok());
+  EXPECT_EQ(opened.error().kind, ErrorKind::kNotFound);
+  EXPECT_THAT(opened.error().message, HasSubstr("there is no directory " + scratch / "none"));
+  opened = CampaignDirectory::Open(scratch.path());
+  ASSERT_FALSE(opened.ok());
+  EXPECT_EQ(opened.error().kind, ErrorKind::kNotFound);
+  EXPECT_THAT(opened.error().message, HasSubstr("is not a campaign"));
+}
+
+class EpochTest : public testing::Test {
+ protected:
+  ScratchDirectory scratch_;
+  CampaignDirectory directory_ = *CampaignDirectory::Create(scratch_.path());
+};
+
+TEST_F(EpochTest, EveryStartHasTheNextNumber) {
+  for (std::uint64_t expected = 1; expected <= 12; ++expected) {
+    Result<std::uint64_t> epoch = directory_.StartEpoch();
+    ASSERT_TRUE(epoch.ok()) << epoch.error().message;
+    EXPECT_EQ(*epoch, expected);
+    EXPECT_TRUE(directory_.CheckEpoch(expected).ok());
+  }
+  EXPECT_EQ(ReadFile(directory_.epoch_path()), "12\n");
+}
+
+TEST_F(EpochTest, AnOlderMasterLearnsOfTheNewer) {
+  ASSERT_TRUE(directory_.StartEpoch().ok());
+  ASSERT_TRUE(directory_.StartEpoch().ok());
+  const Status checked = directory_.CheckEpoch(1);
+  ASSERT_FALSE(checked.ok());
+  EXPECT_EQ(checked.error().kind, ErrorKind::kInUse);
+  EXPECT_THAT(checked.error().message, HasSubstr("newer master (start number 2; this one is number 1)"));
+}
+
+// Strangers may use up a master's descriptors; that a newer one has begun is noticed all the same.
+TEST_F(EpochTest, ItIsCheckedWithoutADescriptorToo) {
+  ASSERT_TRUE(directory_.StartEpoch().ok());
+  CampaignDirectory newer = directory_;
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const rlimit none{0, limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const Status same = directory_.CheckEpoch(1);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  EXPECT_TRUE(same.ok()) << same.error().message;
+
+  ASSERT_TRUE(newer.StartEpoch().ok());
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const Status outdated = directory_.CheckEpoch(1);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  EXPECT_FALSE(outdated.ok());
+}
+
+TEST_F(EpochTest, AFileThatIsGoneOrDamagedStopsTheMaster) {
+  // Without the file alone somebody has deleted it; without the database too the directory is elsewhere.
+  EXPECT_THAT(directory_.CheckEpoch(1).error().message, HasSubstr("is gone"));
+  WriteFile(directory_.database_path(), "");
+  EXPECT_EQ(directory_.CheckEpoch(1).error().kind, ErrorKind::kNotFound);
+  for (const std::string text : {"", "x", "-1\n", "0\n", "1 2\n", "99999999999999999999999\n"}) {
+    WriteFile(directory_.epoch_path(), text);
+    EXPECT_EQ(directory_.CheckEpoch(1).error().kind, ErrorKind::kCorrupt) << text;
+    const Result<std::uint64_t> started = directory_.StartEpoch();
+    ASSERT_FALSE(started.ok()) << text;
+    EXPECT_THAT(started.error().message, HasSubstr(directory_.epoch_path()));
+  }
+}
+
+TEST(CampaignIdTest, IsNewEveryTime) {
+  Result<std::string> first = NewCampaignId();
+  Result<std::string> second = NewCampaignId();
+  ASSERT_TRUE(first.ok() && second.ok());
+  EXPECT_THAT(*first, testing::MatchesRegex("[0-9a-f]+"));
+  EXPECT_EQ(first->size(), 32u);
+  EXPECT_NE(*first, *second);
+}
+
+}  // namespace
+}  // namespace gauntlet::master

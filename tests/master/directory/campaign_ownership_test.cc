@@ -1,0 +1,194 @@
+#include "master/directory/campaign_ownership.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sqlite3.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/master/store/store_records.h"
+
+namespace gauntlet::master {
+namespace {
+
+using testing::HasSubstr;
+
+class CampaignOwnershipTest : public testing::Test {
+ protected:
+  Result<CampaignOwnership> Create() {
+    return CreateCampaign(dir_, {"seed = 1\n"}, {"", "0.1.0", "cafe", 0});
+  }
+  // A child that does `work` and is killed once it has written a byte.
+  template <typename Work>
+  void Kill(const Work& work) {
+    std::array<int, 2> ready{};
+    ASSERT_EQ(pipe(ready.data()), 0);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      work();
+      (void)!write(ready[1], "x", 1);
+      pause();
+      _exit(0);
+    }
+    char byte = 0;
+    close(ready[1]);
+    ASSERT_EQ(read(ready[0], &byte, 1), 1);
+    close(ready[0]);
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
+
+  ScratchDirectory scratch_;
+  std::string dir_ = scratch_ / "campaign";
+};
+
+TEST_F(CampaignOwnershipTest, ACampaignIsMadeTakenAndViewed) {
+  std::string id;
+  {
+    Result<CampaignOwnership> made = Create();
+    ASSERT_TRUE(made.ok()) << made.error().message;
+    EXPECT_EQ(made->epoch, 1u);
+    EXPECT_EQ(ReadFile(made->directory.experiment_path()), "seed = 1\n");
+    id = made->store->meta().campaign_id;
+    EXPECT_EQ(id.size(), 32u);
+    EXPECT_EQ(made->store->meta().golden_hash, "cafe");
+    EXPECT_GT(made->store->meta().created_unix_ms, 1700000000000);
+    made->store->AddSearch(MakeSearch(1));
+    made->store->AddRun(MakeRun(1));
+  }
+  {
+    Result<CampaignOwnership> taken = TakeCampaign(dir_);
+    ASSERT_TRUE(taken.ok()) << taken.error().message;
+    EXPECT_EQ(taken->epoch, 2u);
+    EXPECT_EQ(taken->store->meta().campaign_id, id);
+    EXPECT_EQ(RunsOf(*taken->store).size(), 1u);
+  }
+  Result<CampaignView> view = ViewCampaign(dir_);
+  ASSERT_TRUE(view.ok()) << view.error().message;
+  EXPECT_EQ(RunsOf(*view->store).size(), 1u);
+}
+
+TEST_F(CampaignOwnershipTest, OneMasterAtATimeAndNoReadersMeanwhile) {
+  Result<CampaignOwnership> owner = Create();
+  ASSERT_TRUE(owner.ok());
+  const Result<CampaignOwnership> taken = TakeCampaign(dir_);
+  const Result<CampaignView> view = ViewCampaign(dir_);
+  ASSERT_FALSE(taken.ok());
+  ASSERT_FALSE(view.ok());
+  for (const Error& error : {taken.error(), view.error()}) {
+    EXPECT_EQ(error.kind, ErrorKind::kInUse);
+    EXPECT_THAT(error.message, HasSubstr(fmt::format("pid {}", getpid())));
+    EXPECT_THAT(error.message, HasSubstr(dir_));
+  }
+  EXPECT_TRUE(owner->directory.CheckEpoch(1).ok()) << "a refused master counted an epoch";
+}
+
+// `stop` of a user who saw the former master is not for the next; one that comes while the next checks what
+// is stored is.
+TEST_F(CampaignOwnershipTest, WhatTheFormerMasterLeftIsGoneOnceTheNextHasTheCampaign) {
+  std::string stop;
+  std::string status;
+  {
+    const Result<CampaignOwnership> former = Create();
+    ASSERT_TRUE(former.ok());
+    stop = former->directory.stop_path();
+    status = former->directory.status_path();
+  }
+  for (const std::string& path : {stop, status}) std::ofstream(path) << "{}";
+  const Result<CampaignOwnership> next = TakeCampaign(dir_);
+  ASSERT_TRUE(next.ok());
+  EXPECT_FALSE(std::filesystem::exists(stop));
+  EXPECT_FALSE(std::filesystem::exists(status));
+}
+
+TEST_F(CampaignOwnershipTest, AnExistingCampaignIsNotMadeAnew) {
+  ASSERT_TRUE(Create().ok());
+  Result<CampaignOwnership> again = Create();
+  ASSERT_FALSE(again.ok());
+  EXPECT_EQ(again.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_THAT(again.error().message, HasSubstr("gauntlet resume " + dir_));
+}
+
+TEST_F(CampaignOwnershipTest, AfterAKillTheNextMasterGoesOn) {
+  Kill([this] {
+    Result<CampaignOwnership> owner = Create();
+    owner->store->AddSearch(MakeSearch(1));
+    for (RunId id = 1; id <= 20; ++id) owner->store->AddRun(MakeRun(id));
+    if (!owner->store->Flush()) _exit(1);
+    new CampaignOwnership(*std::move(owner));  // killed, not closed
+  });
+  ASSERT_TRUE(std::filesystem::file_size(dir_ + "/campaign.db-wal") > 0) << "the log was to be left behind";
+  const std::string before = ContentOf(dir_);
+  {
+    Result<CampaignView> view = ViewCampaign(dir_);
+    ASSERT_TRUE(view.ok()) << view.error().message;
+    EXPECT_EQ(RunsOf(*view->store).size(), 20u);
+  }
+  EXPECT_TRUE(ContentOf(dir_) == before) << "looking changed the campaign";
+  Result<CampaignOwnership> owner = TakeCampaign(dir_);
+  ASSERT_TRUE(owner.ok()) << owner.error().message;
+  EXPECT_EQ(owner->epoch, 2u);
+  EXPECT_EQ(RunsOf(*owner->store).size(), 20u);
+}
+
+TEST_F(CampaignOwnershipTest, AMasterKilledWhileItMakesTheCampaignIsNoObstacle) {
+  Kill([this] {
+    Result<CampaignOwnership> owner = Create();
+    new CampaignOwnership(*std::move(owner));
+  });
+  // As if it had been killed a moment before the database got its name.
+  std::filesystem::rename(dir_ + "/campaign.db", dir_ + "/campaign.db.new");
+  std::filesystem::remove(dir_ + "/campaign.db-wal");
+  Result<CampaignOwnership> owner = Create();
+  ASSERT_TRUE(owner.ok()) << owner.error().message;
+}
+
+TEST_F(CampaignOwnershipTest, ANewerEpochStopsTheOlderMaster) {
+  Result<CampaignOwnership> owner = Create();
+  ASSERT_TRUE(owner.ok());
+  owner->store->AddSearch(MakeSearch(1));
+  ASSERT_TRUE(owner->store->Flush().ok());
+  // What a master does that takes this one for dead.
+  ASSERT_TRUE(owner->directory.StartEpoch().ok());
+  const std::string before = ContentOf(dir_);
+  owner->store->AddRun(MakeRun(1));
+  const Status flushed = owner->store->Flush();
+  ASSERT_FALSE(flushed.ok());
+  EXPECT_EQ(flushed.error().kind, ErrorKind::kInUse);
+  EXPECT_THAT(flushed.error().message, HasSubstr("newer master"));
+  owner->store.reset();
+  EXPECT_TRUE(ContentOf(dir_) == before) << "the older master still wrote";
+}
+
+TEST_F(CampaignOwnershipTest, ANewerFormatIsLeftAsItIs) {
+  ASSERT_TRUE(Create().ok());
+  sqlite3* db = nullptr;
+  ASSERT_EQ(sqlite3_open((dir_ + "/campaign.db").c_str(), &db), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version = 2", nullptr, nullptr, nullptr), SQLITE_OK);
+  sqlite3_close(db);
+  const std::string before = ReadFile(dir_ + "/campaign.db");
+  const Result<CampaignOwnership> taken = TakeCampaign(dir_);
+  const Result<CampaignView> view = ViewCampaign(dir_);
+  ASSERT_FALSE(taken.ok());
+  ASSERT_FALSE(view.ok());
+  EXPECT_EQ(taken.error().kind, ErrorKind::kVersion);
+  EXPECT_EQ(view.error().kind, ErrorKind::kVersion);
+  EXPECT_TRUE(ReadFile(dir_ + "/campaign.db") == before);
+  EXPECT_FALSE(std::filesystem::exists(dir_ + "/campaign.db-wal"));
+}
+
+TEST_F(CampaignOwnershipTest, ACampaignCanBeMoved) {
+  ASSERT_TRUE(Create().ok());
+  std::filesystem::rename(dir_, scratch_ / "moved");
+  EXPECT_TRUE(TakeCampaign(scratch_ / "moved").ok());
+}
+
+}  // namespace
+}  // namespace gauntlet::master

@@ -1,0 +1,142 @@
+#include "proto/message_codec.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "proto/protocol.pb.h"
+
+namespace gauntlet::worker {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+v1::Envelope Encoded(const WorkerMessage& message) {
+  v1::Envelope envelope;
+  EXPECT_TRUE(envelope.ParseFromString(EncodeWorkerMessage(message)));
+  return envelope;
+}
+
+TEST(MessageCodecTest, HelloCarriesTheProtocolVersionAndWhoTheWorkerIs) {
+  const v1::Hello hello = Encoded(Hello{.campaign_id = "c0ffee",
+                                        .instance_id = 1ULL << 63,
+                                        .software_version = "1.2.3",
+                                        .golden_hash = 77,
+                                        .slots = 4,
+                                        .host = "node1",
+                                        .pid = 4321,
+                                        .held_leases = {9, 1ULL << 60},
+                                        .allocation = "12_3:0:node1",
+                                        .controllers = {"boids", "foragers"}})
+                              .hello();
+  EXPECT_EQ(hello.protocol_version(), 1u);
+  EXPECT_EQ(hello.campaign_id(), "c0ffee");
+  EXPECT_EQ(hello.instance_id(), 1ULL << 63);
+  EXPECT_EQ(hello.software_version(), "1.2.3");
+  EXPECT_EQ(hello.golden_hash(), 77u);
+  EXPECT_EQ(hello.slots(), 4u);
+  EXPECT_EQ(hello.host(), "node1");
+  EXPECT_EQ(hello.pid(), 4321);
+  EXPECT_THAT(hello.held_leases(), ElementsAre(9, 1ULL << 60));
+  EXPECT_EQ(hello.allocation(), "12_3:0:node1");
+  EXPECT_THAT(hello.controllers(), ElementsAre("boids", "foragers"));
+}
+
+TEST(MessageCodecTest, ResultWithoutFailureHasNoFailureOnTheWire) {
+  const v1::LeaseResult result =
+      Encoded(LeaseResult{.fence = 5, .run_id = 6, .result = "bytes\xff", .failure = {}, .cpu_seconds = 0.25})
+          .lease_result();
+  EXPECT_EQ(result.fence(), 5u);
+  EXPECT_EQ(result.run_id(), 6u);
+  EXPECT_EQ(result.result(), "bytes\xff");
+  EXPECT_FALSE(result.has_failure());
+  EXPECT_EQ(result.cpu_seconds(), 0.25);
+}
+
+TEST(MessageCodecTest, KindsOfFailureAreTheWires) {
+  const auto kind_of = [](FailureKind kind) {
+    return Encoded(LeaseResult{.fence = 5,
+                               .run_id = 6,
+                               .result = {},
+                               .failure = RunnerFailure{kind, 6, 0, "tail"},
+                               .cpu_seconds = 0})
+        .lease_result()
+        .failure()
+        .kind();
+  };
+  EXPECT_EQ(kind_of(FailureKind::kCrashed), v1::RunnerFailure::KIND_CRASHED);
+  EXPECT_EQ(kind_of(FailureKind::kHung), v1::RunnerFailure::KIND_HUNG);
+  EXPECT_EQ(kind_of(FailureKind::kOutOfMemory), v1::RunnerFailure::KIND_OUT_OF_MEMORY);
+  EXPECT_EQ(kind_of(FailureKind::kExternal), v1::RunnerFailure::KIND_EXTERNAL);
+}
+
+TEST(MessageCodecTest, DecodesWhatMastersSend) {
+  v1::Envelope envelope;
+  envelope.mutable_lease()->set_fence(3);
+  envelope.mutable_lease()->set_run_id(4);
+  envelope.mutable_lease()->set_spec(std::string("a\0b", 3));
+  envelope.mutable_lease()->set_attempt(2);
+  const auto lease = DecodeMasterMessage(envelope.SerializeAsString());
+  ASSERT_TRUE(lease.ok());
+  EXPECT_EQ(std::get<Lease>(*lease).spec, std::string("a\0b", 3));
+  EXPECT_EQ(std::get<Lease>(*lease).attempt, 2u);
+
+  envelope.mutable_welcome()->set_heartbeat_ms(250);
+  envelope.mutable_welcome()->set_memory_limit_bytes(1 << 20);
+  const auto welcome = DecodeMasterMessage(envelope.SerializeAsString());
+  ASSERT_TRUE(welcome.ok());
+  EXPECT_EQ(std::get<Welcome>(*welcome).heartbeat, std::chrono::milliseconds(250));
+
+  envelope.mutable_acknowledge()->add_fences(8);
+  EXPECT_THAT(std::get<Acknowledge>(*DecodeMasterMessage(envelope.SerializeAsString())).fences,
+              ElementsAre(8));
+  envelope.mutable_cancel()->set_fence(9);
+  EXPECT_EQ(std::get<Cancel>(*DecodeMasterMessage(envelope.SerializeAsString())).fence, 9u);
+  envelope.mutable_drain()->set_finish_current(true);
+  EXPECT_TRUE(std::get<Drain>(*DecodeMasterMessage(envelope.SerializeAsString())).finish_current);
+  envelope.mutable_refused()->set_reason("no");
+  EXPECT_EQ(std::get<Refused>(*DecodeMasterMessage(envelope.SerializeAsString())).reason, "no");
+  envelope.mutable_heartbeat()->set_sequence(12);
+  EXPECT_EQ(std::get<Heartbeat>(*DecodeMasterMessage(envelope.SerializeAsString())).sequence, 12u);
+}
+
+TEST(MessageCodecTest, RefusesWhatOnlyWorkersSend) {
+  for (const WorkerMessage& message :
+       {WorkerMessage(Hello{}), WorkerMessage(LeaseResult{}), WorkerMessage(Goodbye{})}) {
+    const auto decoded = DecodeMasterMessage(EncodeWorkerMessage(message));
+    ASSERT_FALSE(decoded.ok());
+    EXPECT_THAT(decoded.error().message, HasSubstr("only workers send"));
+  }
+}
+
+TEST(MessageCodecTest, RefusesHeartbeatsThatWouldFloodOrNeverCome) {
+  for (const std::uint32_t heartbeat : {0u, 9u, 4'000'000u}) {
+    v1::Envelope envelope;
+    envelope.mutable_welcome()->set_heartbeat_ms(heartbeat);
+    const auto decoded = DecodeMasterMessage(envelope.SerializeAsString());
+    ASSERT_FALSE(decoded.ok());
+    EXPECT_THAT(decoded.error().message, HasSubstr("heartbeat_ms is " + std::to_string(heartbeat)));
+  }
+}
+
+TEST(MessageCodecTest, RefusesAnUnknownMessageOfALaterVersion) {
+  v1::Envelope envelope;
+  envelope.GetReflection()->MutableUnknownFields(&envelope)->AddLengthDelimited(99, "future");
+  EXPECT_THAT(DecodeMasterMessage(envelope.SerializeAsString()).error().message,
+              HasSubstr("this version knows"));
+  EXPECT_FALSE(DecodeMasterMessage("").ok());
+}
+
+TEST(MessageCodecTest, RefusesAnOversizedMessage) {
+  EXPECT_THAT(DecodeMasterMessage(std::string(kMaxMessageBytes + 1, 'x')).error().message,
+              HasSubstr("16777216 are allowed"));
+}
+
+RC_GTEST_PROP(MessageCodecProperty, GarbageIsAnErrorNeverACrash, (const std::string& bytes)) {
+  const auto decoded = DecodeMasterMessage(bytes);
+  if (!decoded.ok()) RC_ASSERT(!decoded.error().message.empty());
+}
+
+}  // namespace
+}  // namespace gauntlet::worker

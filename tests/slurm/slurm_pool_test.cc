@@ -1,0 +1,304 @@
+#include "slurm/slurm_pool.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <mutex>
+
+namespace gauntlet::master {
+namespace {
+
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+// A cluster in memory. Shared with the pool's thread.
+class FakeCluster {
+ public:
+  std::vector<slurm::JobStatus> jobs;
+  std::vector<std::string> cancelled;
+  std::vector<std::vector<std::string>> options;
+  std::string refusal;           // of the next submissions; "" = accepted
+  bool loses_answers = false;    // accepts, but the answer does not arrive
+  std::string controller_error;  // of queries
+  int next_id = 1;
+  int queries = 0;
+  bool deaf = false;  // cancellations do not arrive
+  std::mutex mutex;
+
+  void Set(const std::string& id, const std::string& state, const std::string& reason = "") {
+    const std::lock_guard lock(mutex);
+    for (slurm::JobStatus& job : jobs) {
+      if (job.id != id) continue;
+      job.state = state;
+      job.phase = slurm::PhaseOf(state);
+      job.reason = reason;
+    }
+  }
+  std::vector<std::string> names() {
+    const std::lock_guard lock(mutex);
+    std::vector<std::string> result;
+    for (const slurm::JobStatus& job : jobs) result.push_back(job.name);
+    return result;
+  }
+};
+
+class FakeClient final : public slurm::SlurmClient {
+ public:
+  explicit FakeClient(FakeCluster& cluster) : cluster_(cluster) {}
+  Result<std::string> Submit(const std::string& script, const std::vector<std::string>& options) override {
+    const std::lock_guard lock(cluster_.mutex);
+    if (!cluster_.refusal.empty()) return Error{ErrorKind::kInvalidInput, cluster_.refusal};
+    constexpr std::string_view kName = "--job-name=";
+    const std::size_t begin = script.find(kName) + kName.size();
+    const std::string id = std::to_string(cluster_.next_id++);
+    cluster_.options.push_back(options);
+    constexpr std::string_view kArray = "--array=1-";
+    const std::size_t array = script.find(kArray);
+    const int tasks = array == std::string::npos ? 1 : std::stoi(script.substr(array + kArray.size()));
+    for (int task = 1; task <= tasks; ++task) {
+      cluster_.jobs.push_back({.id = tasks == 1 ? id : id + "_" + std::to_string(task),
+                               .name = script.substr(begin, script.find('\n', begin) - begin),
+                               .state = "PENDING",
+                               .phase = slurm::JobPhase::kQueued,
+                               .reason = "",
+                               .nodes = ""});
+    }
+    if (cluster_.loses_answers) return Error{ErrorKind::kIo, "no answer within 15000 ms"};
+    return id;
+  }
+  Result<std::string> TestOnly(const std::string&, const std::vector<std::string>&) override {
+    return std::string();
+  }
+  Result<std::vector<slurm::JobStatus>> Queue(const std::string& prefix) override {
+    const std::lock_guard lock(cluster_.mutex);
+    ++cluster_.queries;
+    if (!cluster_.controller_error.empty()) return Error{ErrorKind::kIo, cluster_.controller_error};
+    std::vector<slurm::JobStatus> found;
+    for (const slurm::JobStatus& job : cluster_.jobs) {
+      if (job.name.starts_with(prefix)) found.push_back(job);
+    }
+    return found;
+  }
+  Status Cancel(const std::vector<std::string>& jobs) override {
+    const std::lock_guard lock(cluster_.mutex);
+    if (cluster_.deaf) return Error{ErrorKind::kIo, "scancel: connect failure"};
+    for (const std::string& id : jobs) {
+      cluster_.cancelled.push_back(id);
+      std::erase_if(cluster_.jobs, [&](const slurm::JobStatus& job) { return job.id == id; });
+    }
+    return Ok{};
+  }
+
+ private:
+  FakeCluster& cluster_;
+};
+
+class SlurmPoolTest : public testing::Test {
+ protected:
+  SlurmPoolTest() { Restart(); }
+  void Restart() {
+    pool_.reset();
+    SlurmPoolOptions options;
+    options.limits.max_allocations = 3;
+    options.limits.max_queued = 3;
+    options.job = {
+        .name = "gauntlet-ab12-w", .worker = "w", .access_file = "/a", .log_directory = "/l", .slots = 1};
+    options.job_template = std::string(slurm::kWorkerTemplate);
+    pool_ = std::make_unique<SlurmPool>(options, std::make_unique<FakeClient>(cluster_));
+  }
+  // Supervises, with the clock going on, until the pool's thread has nothing to say for a while.
+  void Settle() {
+    constexpr int kQuietMilliseconds = 100;
+    for (int i = 0; i < 100; ++i) {
+      now_ += seconds(1);
+      pool_->Observe(view_, now_);
+      ASSERT_TRUE(pool_->Supervise(now_).ok());
+      for (DispatchEvent& event : pool_->TakeEvents()) events_ += event.text + "\n";
+      std::vector<int> fds;
+      pool_->AppendWaitFds(fds);
+      pollfd waiting{fds.at(0), POLLIN, 0};
+      if (poll(&waiting, 1, kQuietMilliseconds) == 0) return;
+    }
+    FAIL() << "the pool never comes to rest";
+  }
+  // One interval of queries further.
+  void Later() {
+    now_ += seconds(10);
+    Settle();
+  }
+
+  FakeCluster cluster_;
+  PoolView view_;
+  TimePoint now_ = TimePoint{} + std::chrono::hours(1);
+  std::string events_;
+  std::unique_ptr<SlurmPool> pool_;
+};
+
+TEST_F(SlurmPoolTest, SubmitsWhatTheRunsNeedUnderNamesOfTheCampaign) {
+  view_.unfinished_runs = 2;
+  Settle();
+  EXPECT_THAT(cluster_.names(), ElementsAre("gauntlet-ab12-w1", "gauntlet-ab12-w1"))
+      << "two equal ones are an array";
+  view_.unfinished_runs = 100;
+  Settle();
+  EXPECT_THAT(cluster_.names(), ElementsAre("gauntlet-ab12-w1", "gauntlet-ab12-w1", "gauntlet-ab12-w2"));
+  EXPECT_EQ(pool_->running(), 3);
+}
+
+TEST_F(SlurmPoolTest, AdoptsTheJobsOfAnEarlierMasterBeforeItSubmitsAny) {
+  cluster_.jobs = {{.id = "70",
+                    .name = "gauntlet-ab12-w9",
+                    .state = "RUNNING",
+                    .phase = slurm::JobPhase::kRunning,
+                    .reason = "",
+                    .nodes = "node1"},
+                   {.id = "71",
+                    .name = "somebody-else",
+                    .state = "RUNNING",
+                    .phase = slurm::JobPhase::kRunning,
+                    .reason = "",
+                    .nodes = "node1"}};
+  view_.unfinished_runs = 1;
+  Settle();
+  EXPECT_EQ(cluster_.names().size(), 2U) << "one run, one allocation: the adopted one";
+  EXPECT_THAT(events_, HasSubstr("adopted job 70 (RUNNING)"));
+  pool_.reset();
+  EXPECT_THAT(cluster_.cancelled, ElementsAre("70"));
+}
+
+TEST_F(SlurmPoolTest, AJobWhoseSubmissionsAnswerWasLostIsFoundByItsName) {
+  cluster_.loses_answers = true;
+  view_.unfinished_runs = 1;
+  Settle();
+  Later();
+  Later();
+  EXPECT_EQ(cluster_.names().size(), 1U) << "not submitted twice";
+  EXPECT_EQ(pool_->running(), 1);
+}
+
+TEST_F(SlurmPoolTest, SaysWhyNothingStartsAndTriesAgain) {
+  cluster_.refusal = "sbatch refused (exit code 1): Invalid account";
+  view_.unfinished_runs = 1;
+  Settle();
+  EXPECT_THAT(pool_->Trouble(now_), HasSubstr("Invalid account"));
+  EXPECT_THAT(events_, HasSubstr("Invalid account"));
+  cluster_.refusal = "";
+  now_ += seconds(15);
+  Settle();
+  EXPECT_EQ(cluster_.names().size(), 1U);
+}
+
+TEST_F(SlurmPoolTest, CountsWorkersByTheirAllocation) {
+  view_.unfinished_runs = 1;
+  Settle();
+  view_.workers = {{.allocation = "1:0:node1", .busy = true}, {.allocation = "", .busy = true}};
+  Settle();
+  ASSERT_EQ(pool_->Allocations().size(), 1U);
+  EXPECT_EQ(pool_->Allocations()[0].workers, 1);
+  EXPECT_EQ(pool_->Trouble(now_), "");
+}
+
+TEST_F(SlurmPoolTest, GivesIdleAllocationsBackAndNeverAdoptsThemAgain) {
+  view_.unfinished_runs = 1;
+  Settle();
+  cluster_.Set("1", "RUNNING");
+  view_.workers = {{.allocation = "1:0:node1", .busy = false}};
+  view_.unfinished_runs = 0;
+  Later();
+  now_ += seconds(300);
+  Settle();
+  EXPECT_THAT(cluster_.cancelled, ElementsAre("1"));
+  Later();
+  EXPECT_EQ(pool_->running(), 0);
+}
+
+TEST_F(SlurmPoolTest, ACancelledJobThatSlurmStillShowsIsNotAdopted) {
+  view_.unfinished_runs = 1;
+  Settle();
+  pool_->SignalAll(15);
+  Settle();
+  EXPECT_EQ(pool_->running(), 0);
+  EXPECT_THAT(cluster_.names(), IsEmpty());
+}
+
+TEST_F(SlurmPoolTest, CancelsATaskOfAnArrayAloneAndTellsItsWorkersFromTheOthers) {
+  view_.unfinished_runs = 2;
+  Settle();
+  cluster_.Set("1_1", "RUNNING");
+  cluster_.Set("1_2", "RUNNING");
+  view_.unfinished_runs = 1;
+  for (int i = 0; i < 35; ++i) {
+    view_.workers = {{.allocation = "1_1:0:node1", .busy = true},
+                     {.allocation = "1_2:0:node1", .busy = false}};
+    Later();
+  }
+  EXPECT_THAT(cluster_.cancelled, ElementsAre("1_2"));
+  EXPECT_EQ(pool_->running(), 1);
+}
+
+TEST_F(SlurmPoolTest, CancelsAgainWhatTheControllerDidNotHear) {
+  view_.unfinished_runs = 1;
+  Settle();
+  cluster_.Set("1", "RUNNING");
+  Later();
+  cluster_.deaf = true;
+  for (int i = 0; i < 15; ++i) Later();  // no worker ever says hello
+  EXPECT_THAT(cluster_.cancelled, IsEmpty());
+  cluster_.deaf = false;
+  Later();
+  EXPECT_THAT(cluster_.cancelled, ElementsAre("1"));
+}
+
+TEST_F(SlurmPoolTest, AsksSlurmAtMostOncePerIntervalWhateverGoesWrong) {
+  view_.unfinished_runs = 50;
+  cluster_.controller_error = "Unable to contact slurm controller (connect failure)";
+  cluster_.refusal = cluster_.controller_error;
+  const TimePoint start = now_;
+  for (int i = 0; i < 30; ++i) {
+    Settle();
+    if (i == 10) cluster_.controller_error = "";
+    if (i == 20) cluster_.refusal = "";
+  }
+  const auto elapsed = std::chrono::duration_cast<seconds>(now_ - start).count();
+  EXPECT_LE(cluster_.queries, elapsed / 10 + 1);
+  EXPECT_GE(cluster_.queries, 2);
+}
+
+TEST_F(SlurmPoolTest, LeavesItsJobsToASuccessorWhenReleased) {
+  view_.unfinished_runs = 2;
+  Settle();
+  EXPECT_TRUE(pool_->Release());
+  pool_->SignalAll(15);
+  Restart();
+  EXPECT_EQ(cluster_.names().size(), 2U);
+  EXPECT_THAT(cluster_.cancelled, IsEmpty());
+  Settle();
+  EXPECT_EQ(pool_->running(), 2) << "adopted";
+}
+
+TEST_F(SlurmPoolTest, LeavesNothingBehind) {
+  view_.unfinished_runs = 3;
+  Settle();
+  cluster_.Set("1_2", "RUNNING");
+  pool_.reset();
+  EXPECT_THAT(cluster_.names(), IsEmpty());
+}
+
+TEST_F(SlurmPoolTest, ASilentControllerLosesNoAllocation) {
+  view_.unfinished_runs = 1;
+  Settle();
+  cluster_.controller_error = "Unable to contact slurm controller (connect failure)";
+  for (int i = 0; i < 5; ++i) Later();
+  EXPECT_EQ(pool_->running(), 1);
+  EXPECT_THAT(pool_->Trouble(now_), HasSubstr("connect failure"));
+  cluster_.controller_error = "";
+  Later();
+  EXPECT_EQ(cluster_.names().size(), 1U);
+}
+
+}  // namespace
+}  // namespace gauntlet::master
