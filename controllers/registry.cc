@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/check.h"
 #include "base/nearest_name.h"
 #include "base/number_text.h"
 #include "controllers/examples/light_flocking_registry.h"
@@ -53,6 +54,14 @@ Status CheckRange(const ParameterInfo& info, double value) {
 }
 
 }  // namespace
+
+double ScenarioInfo::TimeLimit(const sim::Parameters& given) const {
+  const auto found = given.find(std::string(time_limit));
+  if (found != given.end()) return found->second;
+  const ParameterInfo* info = FindByName(parameters, time_limit);
+  GAUNTLET_CHECK(info != nullptr, std::string(name) + " has no parameter " + std::string(time_limit));
+  return info->default_value;
+}
 
 std::span<const ScenarioInfo> Scenarios() {
   static const std::array scenarios = {FlockingScenarioInfo(), ForagingScenarioInfo(),

@@ -1,56 +1,18 @@
 // One table of what can be tested: scenarios and controllers by name, each parameter with its unit, default
-// and range. The master reads names and parameters; only a runner builds scenarios.
+// and range. A runner builds the scenario of a run; the master does so only to see whether a swarm finds room
+// (CountSwarm).
 #pragma once
 
 #include <memory>
 #include <span>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "base/result.h"
-#include "sim/arena/validity.h"
+#include "controllers/behaviour.h"
 #include "sim/run_spec.h"
 #include "sim/scenario.h"
 
 namespace gauntlet::controllers {
-
-struct ParameterInfo {
-  std::string_view name;
-  std::string_view unit;  // "m", "m/s", "s", "rad", "" for counts, "bool" for 0/1
-  double default_value = 0.0;
-  double min = 0.0;
-  double max = 0.0;
-  bool integer = false;
-  std::string_view description;  // one line, with the source of the default
-};
-
-// One of the values that a scenario reports of a run.
-struct MetricInfo {
-  std::string_view name;     // "food_window_*" stands for a family, food_window_1, food_window_2...
-  std::string_view unit;     // "m", "s", "deg", "yes/no" for 0/1, "" for counts and ratios
-  bool may_be_none = false;  // -1 then says that there was nothing to measure
-  std::string_view description;
-};
-
-struct ControllerInfo {
-  std::string_view name;
-  std::string_view scenario;  // the scenario it is written for
-  std::string_view description;
-  std::span<const ParameterInfo> parameters;
-};
-
-struct ScenarioInfo {
-  std::string_view name;
-  std::string_view description;
-  std::string_view default_controller;
-  std::span<const ParameterInfo> parameters;
-  std::span<const MetricInfo> metrics;
-  // What arenas of this scenario must offer, given its resolved parameters and the test case.
-  sim::ArenaRequirements (*requirements)(const sim::Parameters& parameters, const sim::TestCase& test_case);
-  // Builds the scenario of a resolved, valid spec.
-  std::unique_ptr<sim::Scenario> (*create)(const sim::RunSpec& spec);
-};
 
 std::span<const ScenarioInfo> Scenarios();
 std::span<const ControllerInfo> Controllers();

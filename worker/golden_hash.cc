@@ -1,6 +1,5 @@
 #include "worker/golden_hash.h"
 
-#include <algorithm>
 #include <vector>
 
 #include "base/hash.h"
@@ -27,11 +26,6 @@ std::vector<sim::TestCase> Cases() {
   return cases;
 }
 
-bool HasTimeLimit(const controllers::ScenarioInfo& scenario) {
-  return std::any_of(scenario.parameters.begin(), scenario.parameters.end(),
-                     [](const controllers::ParameterInfo& info) { return info.name == "time_limit"; });
-}
-
 void AddRuns(Fnv1a64& hash) {
   const std::vector<sim::TestCase> cases = Cases();
   for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
@@ -42,7 +36,7 @@ void AddRuns(Fnv1a64& hash) {
       spec.scenario = controller.scenario;
       spec.controller = controller.name;
       spec.seed = 1000 + i;
-      if (HasTimeLimit(*scenario)) spec.scenario_parameters["time_limit"] = kRunSeconds;
+      spec.scenario_parameters.emplace(scenario->time_limit, kRunSeconds);
       const sim::RunResult result = Run(spec);
       hash.AddUint64(static_cast<std::uint64_t>(result.verdict));
       hash.AddUint64(result.hash);

@@ -28,8 +28,8 @@ constexpr std::array kScenarioParameters = std::to_array<ParameterInfo>({
 
 constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"light_distance", "m", false, "mean distance of the robots to the light at the end"},
-    {"stopped", "", false, "share of the robots that moved less than 2 cm in the last 30 s"},
-    {"clusters", "", false, "groups of robots that are linked by line of sight at the end"},
+    {"stopped", "", false, "share of the robots that moved less than 2 cm in the last 30 s", true},
+    {"clusters", "", false, "groups of robots that are linked by line of sight at the end", true},
 });
 
 constexpr std::array kControllerParameters = std::to_array<ParameterInfo>({
@@ -91,10 +91,14 @@ LightFlockingSettings LightFlockingSettingsFrom(const sim::Parameters& parameter
 
 const ScenarioInfo& LightFlockingScenarioInfo() {
   static const ScenarioInfo info = {
-      "light-flocking", "example: robots flock from corner to corner, to a light (ARGoS' sample behaviour)",
-      "light-flocking", kScenarioParameters,
-      kMetrics,         Requirements,
-      Create,
+      .name = "light-flocking",
+      .description = "example: robots flock from corner to corner, to a light (ARGoS' sample behaviour)",
+      .default_controller = "light-flocking",
+      .parameters = kScenarioParameters,
+      .time_limit = "time_limit",
+      .metrics = kMetrics,
+      .requirements = Requirements,
+      .create = Create,
   };
   return info;
 }

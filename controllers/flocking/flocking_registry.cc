@@ -48,8 +48,9 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"timeout", "yes/no", false, "whether the prey never arrived"},
     {"prey_path_length", "m", false, "of the planned path"},
     {"splits", "", false, "times birds left the prey's cluster for good"},
-    {"split_time", "s", true, "of the last split"},
-    {"split_angle", "rad", true, "between the headings of both clusters around the last split, 0 to pi"},
+    {"split_time", "s", true, "of the last split", true},
+    {"split_angle", "rad", true, "between the headings of both clusters around the last split, 0 to pi",
+     true},
     {"split_speed_ratio", "", true, "slower cluster over faster one around the last split"},
 });
 
@@ -85,6 +86,15 @@ constexpr auto kImprovedBirdParameters = [] {
             std::copy(kBirdParameters.begin(), kBirdParameters.end(), all.begin()));
   return all;
 }();
+
+const std::vector<FailureType>& FailureTypes() {
+  static const std::vector<FailureType> types = [] {
+    std::vector<FailureType> all;
+    for (int type = 0; type < kFailureTypes; ++type) all.push_back({type, FailureLabel(type)});
+    return all;
+  }();
+  return types;
+}
 
 sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& test_case) {
   const double corner_distance = GetParameter(parameters, "corner_distance");
@@ -142,10 +152,17 @@ BirdSettings BirdSettingsFrom(const sim::Parameters& parameters) {
 
 const ScenarioInfo& FlockingScenarioInfo() {
   static const ScenarioInfo info = {
-      "flocking", "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
-      "flocking", kScenarioParameters,
-      kMetrics,   Requirements,
-      Create,
+      .name = "flocking",
+      .description = "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
+      .default_controller = "flocking",
+      .words = {.member = "bird"},
+      .parameters = kScenarioParameters,
+      .time_limit = "time_limit",
+      .metrics = kMetrics,
+      .failure_types = FailureTypes(),
+      .untyped_failure = "without a split",
+      .requirements = Requirements,
+      .create = Create,
   };
   return info;
 }

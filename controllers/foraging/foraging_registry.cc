@@ -43,11 +43,11 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"food_carried", "", false, "items in the robots' hands at the end"},
     {"food_lost", "", false, "items that a robot lost on its way"},
     {"first_item_time", "s", true, "when the first item was dropped at the nest"},
-    {"first_path_time", "s", true, "when beacons first joined nest and food"},
+    {"first_path_time", "s", true, "when beacons first joined nest and food", true},
     {"condition_1", "yes/no", false, "no path of beacons ever (thesis 5.4.2)"},
     {"condition_2", "yes/no", false, "no item dropped at the nest (thesis 5.4.2)"},
-    {"trapped_robots", "", false,
-     "robots that stayed within a small place for the last 120 s, beacons aside"},
+    {"trapped_robots", "", false, "robots that stayed within a small place for the last 120 s, beacons aside",
+     true},
     {"food_window_*", "", false, "items dropped in each 120 s"},
     {"mean_robots_*", "", false, "robots in that state, mean over the run"},
 });
@@ -159,10 +159,16 @@ ForagerSettings ForagerSettingsFrom(std::string_view controller, const sim::Para
 
 const ScenarioInfo& ForagingScenarioInfo() {
   static const ScenarioInfo info = {
-      "foraging", "robots bring items from a source of food to the nest (thesis chapter 5)",
-      "foraging", kScenarioParameters,
-      kMetrics,   Requirements,
-      Create,
+      .name = "foraging",
+      .description = "robots bring items from a source of food to the nest (thesis chapter 5)",
+      .default_controller = "foraging",
+      .words = {.lost = "trapped", .lost_is_failure = false},
+      .parameters = kScenarioParameters,
+      .time_limit = "time_limit",
+      .metrics = kMetrics,
+      .failure_types = ForagingFailureTypes(),
+      .requirements = Requirements,
+      .create = Create,
   };
   return info;
 }

@@ -1,6 +1,7 @@
 #include "controllers/foraging/foraging_scenario.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -18,6 +19,11 @@ FoodSourceSettings SourceSettings(const ForagingSettings& settings) {
 }
 
 }  // namespace
+
+std::span<const FailureType> ForagingFailureTypes() {
+  static const std::array<FailureType, 3> types = {{{1, "no path"}, {2, "no food"}, {3, "no path, no food"}}};
+  return types;
+}
 
 ForagingScenario::ForagingScenario(const sim::TestCase& test_case, const ForagingSettings& settings,
                                    const ForagerSettings& forager, std::uint64_t seed)
@@ -159,7 +165,7 @@ sim::Outcome ForagingScenario::Evaluate(const sim::Observer& observer) {
   outcome.failure.total = no_path || no_food;
   if (outcome.failure.total) {
     outcome.failure.type = (no_path ? 1 : 0) + (no_food ? 2 : 0);
-    outcome.failure.label = no_path && no_food ? "no path, no food" : (no_path ? "no path" : "no food");
+    outcome.failure.label = ForagingFailureTypes()[static_cast<std::size_t>(outcome.failure.type) - 1].name;
   }
   outcome.metrics = Metrics(trapped);
   outcome.annotations = Annotate(observer, outcome.lost);

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "controllers/behaviour.h"
 #include "controllers/common/food_source.h"
 #include "controllers/common/nest_and_food.h"
 #include "controllers/common/state_log.h"
@@ -19,6 +21,9 @@ struct ForagingSettings : NestAndFood {
   bool bodies_block_radio = false;
   sim::Tick serving_interval = 0;
 };
+
+// 1: no path of beacons ever, 2: no item in the nest, 3: both (thesis 5.4.2).
+std::span<const FailureType> ForagingFailureTypes();
 
 class ForagingScenario : public sim::Scenario {
  public:

@@ -48,13 +48,13 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"food_carried", "", false, "items in the robots' hands at the end"},
     {"food_lost", "", false, "items that a robot lost on its way"},
     {"first_item_time", "s", true, "when the first item was dropped in the nest"},
-    {"transfers", "", false, "items handed over from robot to robot"},
+    {"transfers", "", false, "items handed over from robot to robot", true},
     {"broken_transfers", "", false, "hand-overs that were begun and not finished"},
     {"waits", "", false, "how often a robot stopped to offer an item"},
     {"wait_timeouts", "", false, "how often it carried on because nobody came"},
     {"mean_waiting_time", "s", true, "from stopping to the beginning of a hand-over or carrying on"},
     {"transfer_time", "s", false, "spent in hand-overs, sum over the givers"},
-    {"trapped_robots", "", false, "robots that stayed within a small place for the last 120 s"},
+    {"trapped_robots", "", false, "robots that stayed within a small place for the last 120 s", true},
     {"partition_length", "m", false, "mean of the robots at the end"},
     {"food_window_*", "", false, "items dropped in each 120 s"},
     {"partition_length_window_*", "m", false,
@@ -240,13 +240,16 @@ PartitionerSettings PartitionerSettingsFrom(std::string_view controller, const s
 
 const ScenarioInfo& PartitioningScenarioInfo() {
   static const ScenarioInfo info = {
-      "task-partitioning",
-      "robots bring items to the nest and hand them over on the way (thesis chapter 6)",
-      "task-partitioning",
-      kScenarioParameters,
-      kMetrics,
-      Requirements,
-      Create,
+      .name = "task-partitioning",
+      .description = "robots bring items to the nest and hand them over on the way (thesis chapter 6)",
+      .default_controller = "task-partitioning",
+      .words = {.lost = "trapped", .lost_is_failure = false},
+      .parameters = kScenarioParameters,
+      .time_limit = "time_limit",
+      .metrics = kMetrics,
+      .failure_types = PartitioningFailureTypes(),
+      .requirements = Requirements,
+      .create = Create,
   };
   return info;
 }

@@ -1,6 +1,7 @@
 #include "controllers/partitioning/partitioning_scenario.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -26,6 +27,11 @@ double IntensityFor(const sim::Arena& arena, const sim::Vec2& lamp, double heigh
 }
 
 }  // namespace
+
+std::span<const FailureType> PartitioningFailureTypes() {
+  static const std::array<FailureType, 1> types = {{{1, "no food"}}};
+  return types;
+}
 
 PartitioningScenario::PartitioningScenario(const sim::TestCase& test_case,
                                            const PartitioningSettings& settings,
@@ -235,8 +241,9 @@ sim::Outcome PartitioningScenario::Evaluate(const sim::Observer& observer) {
   }
   outcome.failure.total = record_.food().dropped() == 0;
   if (outcome.failure.total) {
-    outcome.failure.type = 1;
-    outcome.failure.label = "no food";
+    const FailureType& no_food = PartitioningFailureTypes().front();
+    outcome.failure.type = no_food.type;
+    outcome.failure.label = no_food.name;
   }
   const auto trapped = static_cast<int>(std::count(outcome.lost.begin(), outcome.lost.end(), true));
   const auto carried = static_cast<int>(std::count(carrying_.begin(), carrying_.end(), 1));

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "controllers/behaviour.h"
 #include "controllers/common/food_source.h"
 #include "controllers/common/nest_and_food.h"
 #include "controllers/partitioning/partitioning_controller.h"
@@ -29,6 +30,9 @@ struct PartitioningSettings : NestAndFood {
   double lamp_height = 0.0;                   // m
   double lamp_intensity = 0.0;                // at least; larger where the arena needs it
 };
+
+// 1: no item in the nest (thesis 6.1.1).
+std::span<const FailureType> PartitioningFailureTypes();
 
 class PartitioningScenario : public sim::Scenario {
  public:

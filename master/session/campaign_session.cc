@@ -204,7 +204,8 @@ Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<Searc
   dispatch.audit_share = options.audit_share;
   for (const SearchPlan& plan : plans) {
     dispatch.cpu_limit_seconds =
-        std::max(dispatch.cpu_limit_seconds, CpuLimitSeconds(plan.experiment.scenario_parameters));
+        std::max(dispatch.cpu_limit_seconds,
+                 CpuLimitSeconds(plan.experiment.scenario, plan.experiment.scenario_parameters));
   }
   RemoteBackend backend(identity, dispatch, *serving->transport, clock, pool.get());
   backend.WatchFd(store.CommitNotifier());

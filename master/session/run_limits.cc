@@ -2,17 +2,18 @@
 
 #include <algorithm>
 
+#include "controllers/registry.h"
 #include "master/dispatch/dispatch_options.h"
 #include "sim/robot/foot_bot.h"
 
 namespace gauntlet::master {
 
-double CpuLimitSeconds(const sim::Parameters& scenario_parameters) {
+double CpuLimitSeconds(std::string_view scenario, const sim::Parameters& scenario_parameters) {
   constexpr double kSecondsPerTick = 0.01;
   const double least = DispatchOptions().cpu_limit_seconds;
-  const auto time_limit = scenario_parameters.find("time_limit");
-  if (time_limit == scenario_parameters.end()) return least;
-  return std::max(least, time_limit->second * sim::kTicksPerSecond * kSecondsPerTick);
+  const controllers::ScenarioInfo* info = controllers::FindScenario(scenario);
+  if (info == nullptr) return least;
+  return std::max(least, info->TimeLimit(scenario_parameters) * sim::kTicksPerSecond * kSecondsPerTick);
 }
 
 }  // namespace gauntlet::master

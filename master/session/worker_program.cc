@@ -40,7 +40,7 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
 }  // namespace
 
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec) {
-  const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec.scenario_parameters));
+  const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters));
   Result<std::string> output =
       RunWorkerProgram({"--run-spec", "-", "--cpu-limit", cpu_limit}, EncodeRunSpec(spec));
   if (!output) return output.error();

@@ -1,5 +1,6 @@
 #include "controllers/registry.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -156,12 +157,47 @@ TEST(BirdSettingsFrom, OnlyTheImprovedBirdCatchesUp) {
   EXPECT_EQ(improved.catch_up->gain, 1.5);
 }
 
+TEST(Registry, EveryScenarioSaysHowLongItsRunsMayBe) {
+  for (const ScenarioInfo& scenario : Scenarios()) {
+    SCOPED_TRACE(scenario.name);
+    const auto resolved = ResolveParameters(scenario.parameters, {{std::string(scenario.time_limit), 7.0}});
+    ASSERT_TRUE(resolved.ok()) << resolved.error().message;
+    EXPECT_EQ(scenario.TimeLimit(*resolved), 7.0);
+    EXPECT_EQ(scenario.TimeLimit({}),
+              ResolveParameters(scenario.parameters, {})->at(std::string(scenario.time_limit)));
+  }
+}
+
+TEST(Registry, EveryFailureTypeHasItsOwnNumberAndName) {
+  for (const ScenarioInfo& scenario : Scenarios()) {
+    SCOPED_TRACE(scenario.name);
+    std::set<int> numbers;
+    std::set<std::string> labels;
+    for (const FailureType& failure : scenario.failure_types) {
+      EXPECT_GE(failure.type, 0);
+      EXPECT_FALSE(failure.name.empty());
+      EXPECT_TRUE(numbers.insert(failure.type).second) << failure.type;
+      EXPECT_TRUE(labels.insert(failure.name).second) << failure.name;
+    }
+  }
+  EXPECT_EQ(FindScenario("flocking")->failure_types.size(), 20U);
+  EXPECT_EQ(FindScenario("foraging")->failure_types.size(), 3U);
+  EXPECT_EQ(FindScenario("task-partitioning")->failure_types.size(), 1U);
+  EXPECT_TRUE(FindScenario("light-flocking")->failure_types.empty());
+}
+
+TEST(Registry, EveryScenarioHasMetricsThatDescribeBehaviour) {
+  for (const ScenarioInfo& scenario : Scenarios()) {
+    EXPECT_TRUE(std::ranges::any_of(scenario.metrics, &MetricInfo::descriptor)) << scenario.name;
+  }
+}
+
 TEST(Registry, EveryMetricAScenarioReportsIsDescribed) {
   for (const ScenarioInfo& info : Scenarios()) {
     sim::RunSpec spec;
     spec.scenario = info.name;
     spec.controller = info.default_controller;
-    spec.scenario_parameters["time_limit"] = 2.0;
+    spec.scenario_parameters[std::string(info.time_limit)] = 2.0;
     const sim::RunResult result = worker::Run(spec);
     ASSERT_EQ(result.verdict, sim::Verdict::kCompleted) << result.message;
     EXPECT_FALSE(result.metrics.empty());
