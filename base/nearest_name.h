@@ -1,4 +1,4 @@
-// "Unknown key 'bird_sped'; did you mean 'bird_speed'?": finds the known name nearest to an unknown one.
+// Names that a user wrote, looked up in a table; of an unknown one, the known name nearest to it.
 #pragma once
 
 #include <algorithm>
@@ -56,6 +56,34 @@ inline std::string NearestName(std::string_view unknown, std::span<const std::st
     }
   }
   return std::string(best);
+}
+
+// The entry of a table whose `name` is this one; nullptr when there is none. The table outlives the answer.
+template <typename Infos>
+auto FindByName(const Infos& infos, std::string_view name) {
+  const auto found =
+      std::find_if(infos.begin(), infos.end(), [&](const auto& info) { return info.name == name; });
+  return found == infos.end() ? nullptr : &*found;
+}
+
+// "a, b, c": the names of a table.
+template <typename Infos>
+std::string NamesOf(const Infos& infos) {
+  std::string names;
+  for (const auto& info : infos) names.append(names.empty() ? "" : ", ").append(info.name);
+  return names;
+}
+
+// "unknown scenario 'floking'; did you mean 'flocking'?", or with all names that there are.
+template <typename Infos>
+std::string UnknownName(std::string_view what, std::string_view name, const Infos& infos) {
+  std::vector<std::string_view> known;
+  for (const auto& info : infos) known.push_back(info.name);
+  const std::string nearest = NearestName(name, known);
+  std::string message = "unknown ";
+  message.append(what).append(" '").append(name).append("'; ");
+  if (nearest.empty()) return message.append("known: ").append(NamesOf(infos));
+  return message.append("did you mean '").append(nearest).append("'?");
 }
 
 }  // namespace gauntlet

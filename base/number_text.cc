@@ -10,6 +10,12 @@ std::string NumberText(double value) {
   return std::string(buffer, result.ptr);
 }
 
+std::string FormatCount(std::uint64_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  return digits;
+}
+
 std::string PointText(double x, double y) {
   std::string text = "(";
   text.append(NumberText(x)).append(", ").append(NumberText(y)).append(")");

@@ -2,11 +2,14 @@
 // in every locale.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace gauntlet {
 
 std::string NumberText(double value);
+// "1,234,567".
+std::string FormatCount(std::uint64_t count);
 // "(x, y)"
 std::string PointText(double x, double y);
 

@@ -15,31 +15,6 @@
 namespace gauntlet::controllers {
 namespace {
 
-// "unknown parameter 'bird_sped'; did you mean 'bird_speed'?", or the list of what there is.
-template <typename Infos>
-Error Unknown(const char* what, std::string_view name, const Infos& infos) {
-  std::vector<std::string_view> known;
-  for (const auto& info : infos) known.push_back(info.name);
-  std::string message = "unknown ";
-  message.append(what).append(" '").append(name).append("'");
-  const std::string nearest = NearestName(name, known);
-  if (!nearest.empty()) {
-    message.append("; did you mean '").append(nearest).append("'?");
-    return InvalidInput(std::move(message));
-  }
-  message.append("; known:");
-  for (const std::string_view candidate : known) message.append(" ").append(candidate);
-  return InvalidInput(std::move(message));
-}
-
-template <typename Info>
-const Info* FindByName(std::span<const Info> infos, std::string_view name) {
-  for (const Info& info : infos) {
-    if (info.name == name) return &info;
-  }
-  return nullptr;
-}
-
 Status CheckRange(const ParameterInfo& info, double value) {
   std::string given = "parameter '";
   given.append(info.name).append("' = ").append(NumberText(value));
@@ -104,7 +79,7 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos,
   for (const ParameterInfo& info : infos) resolved.emplace(info.name, info.default_value);
   for (const auto& [name, value] : given) {
     const ParameterInfo* info = FindByName(infos, name);
-    if (info == nullptr) return Unknown("parameter", name, infos);
+    if (info == nullptr) return InvalidInput(UnknownName("parameter", name, infos));
     const Status in_range = CheckRange(*info, value);
     if (!in_range.ok()) return in_range.error();
     resolved[name] = value;
@@ -114,9 +89,9 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos,
 
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) {
   const ScenarioInfo* scenario = FindScenario(spec.scenario);
-  if (scenario == nullptr) return Unknown("scenario", spec.scenario, Scenarios());
+  if (scenario == nullptr) return InvalidInput(UnknownName("scenario", spec.scenario, Scenarios()));
   const ControllerInfo* controller = FindController(spec.controller);
-  if (controller == nullptr) return Unknown("controller", spec.controller, Controllers());
+  if (controller == nullptr) return InvalidInput(UnknownName("controller", spec.controller, Controllers()));
   if (controller->scenario != scenario->name) {
     std::string message = "controller '";
     message.append(spec.controller).append("' is written for the scenario '").append(controller->scenario);

@@ -75,12 +75,6 @@ std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent
   return out;
 }
 
-std::string FormatCount(std::uint64_t count) {
-  std::string digits = fmt::format("{}", count);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return digits;
-}
-
 std::string FormatFitness(double fitness) {
   return std::isfinite(fitness) ? fmt::format("{:.3f}", fitness) : "-";
 }

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/number_text.h"
+
 namespace gauntlet::master {
 
 enum class Align { kLeft, kRight };
@@ -36,8 +38,6 @@ std::size_t DisplayWidth(std::string_view text);
 // Text broken at blanks into lines of at most `width` columns, each after the first indented.
 std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent);
 
-// "1,234,567".
-std::string FormatCount(std::uint64_t count);
 // Three decimals; "-" for NaN and infinity.
 std::string FormatFitness(double fitness);
 // "0.8 s", "42 s", "3 min 05 s", "2 h 10 min", "5 d 3 h"; "-" when not finite or negative.

@@ -105,24 +105,6 @@ std::string NameFromFile(const std::string& file_name) {
   return name;
 }
 
-template <typename Infos>
-std::string NamesOf(const Infos& infos) {
-  std::string names;
-  for (const auto& info : infos) names += (names.empty() ? "" : ", ") + std::string(info.name);
-  return names;
-}
-
-// "unknown scenario 'floking'; did you mean 'flocking'?", or with all there are.
-template <typename Infos>
-std::string Unknown(std::string_view what, std::string_view name, const Infos& infos) {
-  std::vector<std::string_view> known;
-  for (const auto& info : infos) known.push_back(info.name);
-  const std::string nearest = NearestName(name, known);
-  const std::string hint =
-      nearest.empty() ? "; known: " + NamesOf(infos) : "; did you mean '" + nearest + "'?";
-  return fmt::format("unknown {} '{}'{}", what, name, hint);
-}
-
 // Builds one experiment from assignments in order; the later ones win.
 class Reader {
  public:
@@ -241,13 +223,14 @@ class Reader {
     const controllers::ScenarioInfo* scenario = catalogue_.FindScenario(experiment_.scenario);
     if (scenario == nullptr) {
       return InvalidInput(fmt::format("{}: {}", PlaceOf("scenario"),
-                                      Unknown("scenario", experiment_.scenario, catalogue_.scenarios)));
+                                      UnknownName("scenario", experiment_.scenario, catalogue_.scenarios)));
     }
     if (experiment_.controller.empty()) experiment_.controller = scenario->default_controller;
     const controllers::ControllerInfo* controller = catalogue_.FindController(experiment_.controller);
     if (controller == nullptr) {
-      return InvalidInput(fmt::format("{}: {}", PlaceOf("controller"),
-                                      Unknown("controller", experiment_.controller, catalogue_.controllers)));
+      return InvalidInput(
+          fmt::format("{}: {}", PlaceOf("controller"),
+                      UnknownName("controller", experiment_.controller, catalogue_.controllers)));
     }
     if (controller->scenario != scenario->name) {
       return InvalidInput(fmt::format("{}: controller '{}' is written for the scenario '{}', not for '{}'",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/nearest_name.h"
 #include "master/experiment/toml_text.h"
 #include "master/search/genome_generator.h"
 #include "sim/robot/color.h"
@@ -271,12 +272,6 @@ std::vector<Key> ParameterKeys(std::string_view table, std::span<const controlle
     keys.push_back(std::move(key));
   }
   return keys;
-}
-
-template <typename Info>
-const Info* FindByName(std::span<const Info> infos, std::string_view name) {
-  const auto found = std::find_if(infos.begin(), infos.end(), [&](const Info& i) { return i.name == name; });
-  return found == infos.end() ? nullptr : &*found;
 }
 
 bool IsName(std::string_view name) {

@@ -95,7 +95,7 @@ TEST(ResolveParameters, NamesTheNearestKnownParameter) {
 TEST(ResolveParameters, ListsWhatThereIsWhenNothingIsNear) {
   const auto resolved = ResolveParameters(FindController("flocking")->parameters, {{"catch_up_gain", 2.0}});
   ASSERT_FALSE(resolved.ok());
-  EXPECT_THAT(resolved.error().message, HasSubstr("known: bird_speed turn_rate"));
+  EXPECT_THAT(resolved.error().message, HasSubstr("known: bird_speed, turn_rate"));
 }
 
 TEST(ResolveParameters, RefusesValuesOutOfRange) {
