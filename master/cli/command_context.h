@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "master/report/campaign_status.h"
+#include "master/report/stored_campaign.h"
 #include "master/session/campaign_session.h"
 #include "slurm/slurm_client.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/system/clock.h"
-#include "master/session/campaign_runner.h"
+#include "master/report/campaign_progress.h"
 
 namespace gauntlet::master {
 

@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 #include "master/cli/common_options.h"
-#include "master/session/campaign_searches.h"
+#include "master/directory/search_plans.h"
 
 namespace gauntlet::master {
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/system/atomic_file.h"
+#include "base/system/clock.h"
 
 namespace gauntlet::master {
 namespace {
@@ -57,9 +58,7 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
   Result<std::string> id = NewCampaignId();
   if (!id) return id.error();
   meta.campaign_id = *std::move(id);
-  meta.created_unix_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
-                             std::chrono::system_clock::now().time_since_epoch())
-                             .count();
+  meta.created_unix_ms = UnixMilliseconds();
   for (const auto& [path, text] : {std::pair(directory->experiment_path(), texts.experiment),
                                    std::pair(directory->searches_path(), texts.searches),
                                    std::pair(directory->slurm_path(), texts.slurm)}) {

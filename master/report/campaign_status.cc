@@ -8,9 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/system/atomic_file.h"
+#include "base/system/clock.h"
 #include "master/directory/campaign_lock.h"
 #include "master/directory/campaign_origin.h"
-#include "master/session/campaign_session.h"
+#include "master/report/stored_campaign.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -71,12 +72,6 @@ ordered_json Json(const AllocationView& allocation) {
 }
 
 }  // namespace
-
-std::int64_t UnixMilliseconds() {
-  return std::chrono::duration_cast<std::chrono::milliseconds>(
-             std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
 
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
                            const BackendView& backend) {

@@ -7,14 +7,10 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/directory/campaign_directory.h"
 #include "master/dispatch/evaluation_backend.h"
-#include "master/session/campaign_runner.h"
+#include "master/report/campaign_progress.h"
 
 namespace gauntlet::master {
-
-// The wall clock, ms since 1970: only ever shown, nothing is decided by it.
-std::int64_t UnixMilliseconds();
 
 struct MasterView {
   std::string campaign_id;

@@ -7,7 +7,6 @@
 
 #include "master/dispatch/evaluation_backend.h"
 #include "master/report/campaign_status.h"
-#include "master/session/campaign_runner.h"
 
 namespace gauntlet::master {
 

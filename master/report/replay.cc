@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
+#include "master/dispatch/worker_program.h"
 #include "master/report/stored_check.h"
 #include "master/report/verdict_text.h"
-#include "master/session/campaign_runner.h"
-#include "master/session/worker_program.h"
+#include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "master/report/verdict_text.h"
-#include "master/session/search_driver.h"
+#include "master/search/run_seed.h"
+#include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
-#include "sim/random/random_stream.h"
 
 namespace gauntlet::master {
 namespace {
@@ -70,8 +70,7 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
 }
 
 Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
-  const std::uint64_t seed = sim::DeriveSeed(experiment.seed, PurposeOf(experiment.search.kind), kOnlySearch,
-                                             run.individual, run.evaluation, run.replicate);
+  const std::uint64_t seed = RunSeed(experiment, run.individual, run.evaluation, run.replicate);
   if (seed == run.seed) return Ok{};
   return Damaged(fmt::format(
       "run {} has seed {}, but replicate {} of evaluation {} of individual {} has {} (campaign seed {})",

@@ -45,9 +45,7 @@ Status CampaignRunner::Advance() {
 void CampaignRunner::StoreEvents() {
   for (const DispatchEvent& event : parts_.backend.TakeEvents()) {
     spdlog::info("{}: {}", event.kind, event.text);
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    parts_.store.AddEvent(
-        {std::chrono::duration_cast<std::chrono::milliseconds>(now).count(), event.kind, event.text});
+    parts_.store.AddEvent({UnixMilliseconds(), event.kind, event.text});
   }
 }
 

@@ -18,21 +18,23 @@
 #include "master/directory/campaign_ownership.h"
 #include "master/dispatch/local_pool.h"
 #include "master/dispatch/remote_backend.h"
+#include "master/dispatch/run_limits.h"
+#include "master/dispatch/worker_program.h"
 #include "master/dispatch/zmq_transport.h"
 #include "master/experiment/experiment_file.h"
 #include "master/report/campaign_status.h"
 #include "master/report/metrics_text.h"
-#include "master/report/stored_check.h"
+#include "master/report/stored_campaign.h"
+#include "master/report/stored_search.h"
 #include "master/search/case_list_search.h"
 #include "master/search/make_search.h"
 #include "master/session/access_file.h"
 #include "master/session/bind_endpoint.h"
+#include "master/session/campaign_runner.h"
 #include "master/session/master_log.h"
 #include "master/session/metrics_server.h"
 #include "master/session/reachable_endpoints.h"
 #include "master/session/reproduction_bundle.h"
-#include "master/session/run_limits.h"
-#include "master/session/worker_program.h"
 
 namespace gauntlet::master {
 namespace {
@@ -40,7 +42,6 @@ namespace {
 constexpr std::string_view kSoftwareVersion = GAUNTLET_VERSION;
 constexpr std::chrono::milliseconds kShutdownTime{2000};
 constexpr std::chrono::milliseconds kStatusEvery{1000};
-// master.log, and master.1.log to master.4.log before it.
 
 std::string HashText(std::uint64_t hash) {
   return fmt::format("{:016x}", hash);
@@ -61,6 +62,21 @@ std::vector<std::string> NamesOfControllers() {
   for (const controllers::ControllerInfo& controller : controllers::Controllers())
     names.emplace_back(controller.name);
   return names;
+}
+
+// Adds the searches that the store does not know yet; those it knows come back.
+Result<std::vector<StoredSearch>> AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  Result<std::vector<StoredSearch>> known = store.LoadSearches();
+  if (!known) return known;
+  // A master may have died between creating the campaign and storing its searches.
+  for (std::size_t i = known->size(); i < plans.size(); ++i) {
+    const Experiment& experiment = plans[i].experiment;
+    std::string name = experiment.name;
+    if (!plans[i].settings.empty()) name += ": " + plans[i].settings;
+    store.AddSearch({static_cast<SearchId>(i + 1), name, std::string(NameOf(experiment.search.kind)),
+                     experiment.seed, false});
+  }
+  return known;
 }
 
 std::vector<SearchId> FinishedOf(const std::vector<StoredSearch>& searches) {
@@ -111,14 +127,6 @@ void OpenLog(const CampaignDirectory& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory.log_path(), error);
   OpenMasterLog(directory.log_path() + "/master.log");
-}
-
-Status CheckAllStored(const std::vector<SearchPlan>& plans, ResultStore& store) {
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    const Status whole = CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store);
-    if (!whole) return whole;
-  }
-  return Ok{};
 }
 
 // Removes what only a living master may leave in the directory.
@@ -413,39 +421,6 @@ Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOption
     return report;
   }
   return Serve(*campaign, *plans, *golden_hash, options);
-}
-
-Result<CampaignSummary> ReadCampaign(const std::string& dir) {
-  Result<CampaignView> campaign = ViewCampaign(dir);
-  if (!campaign) return campaign.error();
-  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-  if (!plans) return plans.error();
-  if (Status whole = CheckAllStored(*plans, *campaign->store); !whole) return whole.error();
-  return SummariseAll(*plans, *campaign->store);
-}
-
-Status ForEachStoredRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) {
-  Result<CampaignView> campaign = ViewCampaign(dir);
-  if (!campaign) return campaign.error();
-  return campaign->store->ForEachRun(kOnlySearch, 0, visit);
-}
-
-Result<CampaignReplay> ReplayCampaignRun(const std::string& dir, RunId run) {
-  Result<CampaignView> campaign = ViewCampaign(dir);
-  if (!campaign) return campaign.error();
-  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-  if (!plans) return plans.error();
-  Result<ReplayReport> report = ReplayRun(*campaign->store, run);
-  if (!report) return report.error();
-  const std::size_t search = SearchOf(run) - 1;
-  if (search >= plans->size())
-    return Error{ErrorKind::kCorrupt,
-                 fmt::format("run {} is of a search that the campaign does not have", run)};
-  const Experiment& experiment = (*plans)[search].experiment;
-  if (report->damage.empty()) {
-    if (Status belongs = CheckSeed(experiment, report->stored); !belongs) return belongs.error();
-  }
-  return CampaignReplay{experiment, std::move(*report)};
 }
 
 }  // namespace gauntlet::master

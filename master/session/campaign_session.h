@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "master/directory/search_plans.h"
 #include "master/dispatch/worker_pool.h"
 #include "master/experiment/experiment.h"
+#include "master/report/campaign_progress.h"
 #include "master/report/campaign_summary.h"
-#include "master/report/replay.h"
 #include "master/session/campaign_runner.h"
-#include "master/session/campaign_searches.h"
 #include "sim/arena/test_case.h"
 
 namespace gauntlet::master {
@@ -72,17 +72,5 @@ Status PrepareCampaign(const std::string& dir, const std::vector<SearchPlan>& se
 
 // Goes on where the campaign in `dir` was; a finished one is only summarised.
 Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOptions& options);
-
-// What is stored, for `show`. Error kInUse (with the owner) while a living master holds the campaign.
-Result<CampaignSummary> ReadCampaign(const std::string& dir);
-
-// A finished campaign's runs in logical order, for `evaluate --json`.
-Status ForEachStoredRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit);
-
-struct CampaignReplay {
-  Experiment experiment;
-  ReplayReport report;
-};
-Result<CampaignReplay> ReplayCampaignRun(const std::string& dir, RunId run);
 
 }  // namespace gauntlet::master

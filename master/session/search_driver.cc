@@ -7,13 +7,11 @@
 #include <limits>
 #include <utility>
 
-#include "base/hash.h"
+#include "master/search/run_seed.h"
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {
 namespace {
-
-constexpr int kSequenceBits = 40;
 
 // As the campaign's only search would have it.
 StoredRun AsOnlySearch(const StoredRun& run) {
@@ -30,26 +28,6 @@ StoredRun AsOnlySearch(const StoredRun& run) {
 }
 
 }  // namespace
-
-sim::SeedPurpose PurposeOf(SearchKind kind) {
-  return kind == SearchKind::kCases ? sim::SeedPurpose::kEvaluate : sim::SeedPurpose::kSearch;
-}
-
-std::uint64_t SpecHash(std::string_view spec) {
-  Fnv1a64 hash;
-  hash.AddBytes(spec);
-  return hash.value();
-}
-
-RunId RunIdOf(SearchId search, std::uint64_t sequence) {
-  GAUNTLET_CHECK(search >= 1 && sequence >= 1 && sequence < (1ULL << kSequenceBits),
-                 "run number out of range");
-  return (static_cast<RunId>(search - 1) << kSequenceBits) + sequence;
-}
-
-SearchId SearchOf(RunId run) {
-  return static_cast<SearchId>(run >> kSequenceBits) + 1;
-}
 
 SearchDriver::SearchDriver(const Parts& parts)
     : parts_(parts),
@@ -102,8 +80,7 @@ Status SearchDriver::Ask() {
       run.evaluation = request.evaluation;
       run.replicate = replicate;
       run.generation = request.generation;
-      run.seed = sim::DeriveSeed(parts_.experiment.seed, PurposeOf(parts_.experiment.search.kind),
-                                 kOnlySearch, request.individual, request.evaluation, replicate);
+      run.seed = RunSeed(parts_.experiment, request.individual, request.evaluation, replicate);
       run.spec = specs.Encode(run.seed);
       run.spec_hash = SpecHash(run.spec);
 

@@ -7,7 +7,6 @@
 #include <deque>
 #include <functional>
 #include <map>
-#include <string_view>
 #include <vector>
 
 #include "master/dispatch/evaluation_backend.h"
@@ -15,25 +14,9 @@
 #include "master/report/state_digest.h"
 #include "master/search/search_algorithm.h"
 #include "master/store/result_store.h"
-#include "sim/random/random_stream.h"
+#include "master/store/run_numbers.h"
 
 namespace gauntlet::master {
-
-// Random numbers and state hash of a search are those it would have as the only one of a campaign, whatever
-// its number is.
-inline constexpr SearchId kOnlySearch = 1;
-
-// The id of run number `sequence` (1, 2, ...) of a search: searches do not share numbers, so ids do not
-// depend on which search was faster.
-RunId RunIdOf(SearchId search, std::uint64_t sequence);
-// The search of a run.
-SearchId SearchOf(RunId run);
-
-// What the seeds of a campaign's runs are derived for.
-sim::SeedPurpose PurposeOf(SearchKind kind);
-
-// StoredRun::spec_hash.
-std::uint64_t SpecHash(std::string_view spec);
 
 class SearchDriver {
  public:

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "master/store/run_numbers.h"
 #include "tests/master/store/store_records.h"
 
 namespace gauntlet::master {
@@ -257,6 +258,13 @@ TEST_F(SqliteStoreTest, AStateWhoseBitsHaveTurnedIsReported) {
   ASSERT_FALSE(state.ok());
   EXPECT_EQ(state.error().kind, ErrorKind::kCorrupt);
   EXPECT_THAT(state.error().message, HasSubstr("the state of search 1 after run 20 is damaged"));
+}
+
+TEST(SearchOf, IsTheSearchOfItsRunIds) {
+  for (const SearchId search : {1U, 2U, 1000U}) {
+    EXPECT_EQ(SearchOf(RunIdOf(search, 1)), search);
+    EXPECT_EQ(SearchOf(RunIdOf(search, (1ULL << 40) - 1)), search);
+  }
 }
 
 }  // namespace

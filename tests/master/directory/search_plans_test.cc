@@ -1,4 +1,4 @@
-#include "master/session/campaign_searches.h"
+#include "master/directory/search_plans.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,6 @@
 #include <fstream>
 
 #include "master/experiment/experiment_file.h"
-#include "master/session/search_driver.h"
 
 namespace gauntlet::master {
 namespace {
@@ -63,13 +62,6 @@ TEST_F(SearchPlansTest, ADamagedListIsNamed) {
     const Result<std::vector<SearchPlan>> plans = Read();
     ASSERT_FALSE(plans.ok()) << text;
     EXPECT_THAT(plans.error().message, HasSubstr("searches.json")) << text;
-  }
-}
-
-TEST(SearchOf, IsTheSearchOfItsRunIds) {
-  for (const SearchId search : {1U, 2U, 1000U}) {
-    EXPECT_EQ(SearchOf(RunIdOf(search, 1)), search);
-    EXPECT_EQ(SearchOf(RunIdOf(search, (1ULL << 40) - 1)), search);
   }
 }
 

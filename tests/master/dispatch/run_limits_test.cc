@@ -1,4 +1,4 @@
-#include "master/session/run_limits.h"
+#include "master/dispatch/run_limits.h"
 
 #include <gtest/gtest.h>
 

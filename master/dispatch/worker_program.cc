@@ -1,4 +1,4 @@
-#include "master/session/worker_program.h"
+#include "master/dispatch/worker_program.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 
 #include "base/system/process_call.h"
 #include "master/dispatch/local_pool.h"
-#include "master/session/run_limits.h"
+#include "master/dispatch/run_limits.h"
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {

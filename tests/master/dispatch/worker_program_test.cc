@@ -1,4 +1,4 @@
-#include "master/session/worker_program.h"
+#include "master/dispatch/worker_program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,63 @@
+#include "master/directory/search_plans.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/system/atomic_file.h"
+#include "master/experiment/experiment_file.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr int kListFormat = 1;
+constexpr std::size_t kMostListBytes = std::size_t{64} << 20;
+
+Error BadList(const std::string& path, const std::string& what) {
+  return {ErrorKind::kCorrupt, fmt::format("{}: {}", path, what)};
+}
+
+}  // namespace
+
+std::string WriteSearchPlans(const std::vector<SearchPlan>& plans) {
+  nlohmann::ordered_json searches = nlohmann::ordered_json::array();
+  for (const SearchPlan& plan : plans)
+    searches.push_back({{"settings", plan.settings}, {"experiment", WriteExperiment(plan.experiment, {})}});
+  return nlohmann::ordered_json{{"format", kListFormat}, {"searches", std::move(searches)}}.dump(1) + "\n";
+}
+
+Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directory) {
+  std::vector<SearchPlan> plans;
+  const auto add = [&](const std::string& settings, const std::string& text,
+                       const std::string& place) -> Status {
+    Result<Experiment> experiment = ParseExperiment(text, place, {});
+    if (!experiment) return experiment.error();
+    plans.push_back({settings, *std::move(experiment)});
+    return Ok{};
+  };
+  const std::string path = directory.searches_path();
+  const Result<std::string> list = ReadSmallFile(path, kMostListBytes);
+  if (!list) {
+    if (list.error().kind != ErrorKind::kNotFound) return list.error();
+    const Result<std::string> text = ReadSmallFile(directory.experiment_path());
+    if (!text) return text.error();
+    if (Status added = add("", *text, directory.experiment_path()); !added) return added.error();
+    return plans;
+  }
+  const nlohmann::json json = nlohmann::json::parse(*list, nullptr, /*allow_exceptions=*/false);
+  const bool is_list = json.is_object() && json.contains("format") && json["format"] == kListFormat &&
+                       json.contains("searches") && json["searches"].is_array();
+  if (!is_list) return BadList(path, fmt::format("is no list of searches in format {}", kListFormat));
+  for (const nlohmann::json& search : json["searches"]) {
+    const auto is_text = [&](const char* key) { return search.contains(key) && search[key].is_string(); };
+    if (!search.is_object() || !is_text("experiment") || !is_text("settings"))
+      return BadList(path, "a search without settings or an experiment");
+    const Status added = add(search["settings"], search["experiment"], path);
+    if (!added) return added.error();
+  }
+  if (plans.empty()) return BadList(path, "no searches");
+  return plans;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,26 @@
+// The experiments of a campaign's searches, as its directory holds them: one, or those of a sweep.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "master/directory/campaign_directory.h"
+#include "master/experiment/experiment.h"
+
+namespace gauntlet::master {
+
+struct SearchPlan {
+  // What tells it from the others, "search.population=20, seed 3"; "" for an only search.
+  std::string settings;
+  Experiment experiment;
+};
+
+// The text of searches.json, in the order of the searches' numbers.
+std::string WriteSearchPlans(const std::vector<SearchPlan>& plans);
+
+// Of searches.json, or of experiment.toml when there is none. Error: kCorrupt, kIo, or an experiment that
+// this version does not take.
+Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directory);
+
+}  // namespace gauntlet::master
