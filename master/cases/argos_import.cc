@@ -45,7 +45,7 @@ class Importer {
  public:
   Importer(const std::string& text, std::string file_name) : text_(text), file_name_(std::move(file_name)) {}
 
-  Result<ImportedCase> Import() {
+  Result<LoadedCase> Import() {
     pugi::xml_document document;
     const pugi::xml_parse_result parsed = document.load_buffer(text_.data(), text_.size());
     if (!parsed) return Fail(parsed.offset, fmt::format("malformed XML: {}", parsed.description()));
@@ -66,7 +66,7 @@ class Importer {
     }
     if (Status read = ReadArena(arena); !read) return read.error();
     SeparateWalls();
-    return ImportedCase{test_case_, Notice()};
+    return LoadedCase{test_case_, Notice()};
   }
 
  private:
@@ -300,7 +300,7 @@ class Importer {
 
 }  // namespace
 
-Result<ImportedCase> ParseArgos(const std::string& text, const std::string& file_name) {
+Result<LoadedCase> ParseArgos(const std::string& text, const std::string& file_name) {
   return Importer(text, file_name).Import();
 }
 

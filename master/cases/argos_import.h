@@ -9,7 +9,8 @@
 
 namespace gauntlet::master {
 
-struct ImportedCase {
+// A test case out of a file.
+struct LoadedCase {
   sim::TestCase test_case;
   std::string notice;  // one line, without the file's name: what was changed and ignored; "" when nothing
 };
@@ -24,6 +25,6 @@ struct ImportedCase {
 // - Movable boxes become fixed and all boxes count as full height; the notice says so.
 // - Error "FILE:LINE:COLUMN: ..." for malformed XML, a missing arena, values that are no numbers, boxes
 //   rotated about another axis than z and cylinders.
-Result<ImportedCase> ParseArgos(const std::string& text, const std::string& file_name);
+Result<LoadedCase> ParseArgos(const std::string& text, const std::string& file_name);
 
 }  // namespace gauntlet::master

@@ -1,14 +1,12 @@
 #include "master/cases/case_file.h"
 
-#include <array>
 #include <cstddef>
-#include <fstream>
 #include <string>
 #include <system_error>
 
 #include <fmt/format.h>
 
-#include "master/cases/argos_import.h"
+#include "base/system/atomic_file.h"
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {
@@ -26,19 +24,11 @@ Result<std::string> ReadFile(const std::filesystem::path& path) {
     return InvalidInput(
         fmt::format("{} is a directory, expected a case file (.json or .argos)", path.string()));
   }
-  // The size that the file system tells is no bound: that of a device or a pipe is 0.
-  std::ifstream stream(path, std::ios::binary);
-  std::string text;
-  std::array<char, 1U << 16> part{};
-  while (stream && text.size() <= kMostBytes) {
-    stream.read(part.data(), part.size());
-    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
-  }
-  if (text.size() > kMostBytes) {
+  Result<std::string> text = ReadSmallFile(path.string(), kMostBytes);
+  if (!text && text.error().kind == ErrorKind::kCorrupt) {
     return InvalidInput(
         fmt::format("{} has more than {} bytes, the most for a case file", path.string(), kMostBytes));
   }
-  if (!stream.eof()) return Error{ErrorKind::kIo, fmt::format("{}: cannot be read", path.string())};
   return text;
 }
 
@@ -57,9 +47,9 @@ Result<LoadedCase> LoadCase(const std::filesystem::path& path) {
   if (!text) return text.error();
   LoadedCase loaded;
   if (IsArgos(path, *text)) {
-    Result<ImportedCase> imported = ParseArgos(*text, path.string());
+    Result<LoadedCase> imported = ParseArgos(*text, path.string());
     if (!imported) return imported.error();
-    loaded = {std::move(imported->test_case), std::move(imported->notice)};
+    loaded = std::move(*imported);
     loaded.test_case.name = path.filename().string();
   } else {
     Result<sim::TestCase> parsed = ParseCaseJson(*text, path.string());

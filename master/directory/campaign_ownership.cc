@@ -67,8 +67,7 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
   }
   Result<std::uint64_t> epoch = directory->StartEpoch();
   if (!epoch) return epoch.error();
-  if (Status created = SqliteStore::Create(directory->database_path(), meta); !created)
-    return created.error();
+  if (Status created = CreateDatabase(directory->database_path(), meta); !created) return created.error();
 
   CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, {}, nullptr};
   if (Status opened = OpenStore(ownership); !opened) return opened.error();

@@ -9,9 +9,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <optional>
+#include <filesystem>
 #include <string_view>
 #include <utility>
+
+#include "base/system/atomic_file.h"
 
 namespace gauntlet::master {
 namespace {
@@ -116,10 +118,7 @@ bool HasContent(const std::string& path) {
 // SQLite takes an empty or missing file for a new database; here it is none.
 Status CheckHeader(const std::string& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) {
-    const ErrorKind kind = errno == ENOENT ? ErrorKind::kNotFound : ErrorKind::kIo;
-    return Error{kind, fmt::format("cannot open {}: {}", path, std::strerror(errno))};
-  }
+  if (fd < 0) return SystemError(fmt::format("cannot open {}", path), errno);
   std::array<char, kHeaderSize> header{};
   const ssize_t size = pread(fd, header.data(), header.size(), 0);
   close(fd);
@@ -203,19 +202,6 @@ void RemoveDatabase(const std::string& path) {
   for (const char* suffix : {"", "-wal", "-journal"}) unlink((path + suffix).c_str());
 }
 
-Status SyncDirectoryOf(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  const std::string directory = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  const int fd = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const bool synced = fd >= 0 && fsync(fd) == 0;
-  const int error = errno;
-  if (fd >= 0) close(fd);
-  if (!synced) {
-    return Error{ErrorKind::kIo, fmt::format("cannot synchronise {}: {}", directory, std::strerror(error))};
-  }
-  return Ok{};
-}
-
 }  // namespace
 
 Status CreateDatabase(const std::string& path, const CampaignMeta& meta) {
@@ -228,11 +214,11 @@ Status CreateDatabase(const std::string& path, const CampaignMeta& meta) {
     return filled;
   }
   if (std::rename(draft.c_str(), path.c_str()) != 0) {
-    const int error = errno;
+    const Error error = SystemError(fmt::format("cannot create {}", path), errno);
     RemoveDatabase(draft);
-    return Error{ErrorKind::kIo, fmt::format("cannot create {}: {}", path, std::strerror(error))};
+    return error;
   }
-  return SyncDirectoryOf(path);
+  return SyncDirectory(std::filesystem::absolute(path).parent_path());
 }
 
 Result<SqliteConnection> OpenCheckedForReading(const std::string& path) {

@@ -10,10 +10,6 @@
 
 namespace gauntlet::master {
 
-Status SqliteStore::Create(const std::string& path, const CampaignMeta& meta) {
-  return CreateDatabase(path, meta);
-}
-
 Result<std::unique_ptr<SqliteStore>> SqliteStore::Open(const std::string& path, Options options) {
   Result<SqliteConnection> connection = OpenCheckedForWriting(path, options.vfs, options.checkpoint_pages);
   if (!connection) return connection.error();
@@ -66,25 +62,6 @@ SqliteStore::~SqliteStore() {
 std::uint64_t SqliteStore::Commits() const {
   const std::lock_guard lock(mutex_);
   return commits_;
-}
-
-void SqliteStore::AddSearch(const StoredSearch& search) {
-  Add(search);
-}
-void SqliteStore::AddIndividuals(SearchId search, const std::vector<Individual>& individuals) {
-  if (!individuals.empty()) Add(Newborns{search, individuals});
-}
-void SqliteStore::AddRun(StoredRun run) {
-  Add(std::move(run));
-}
-void SqliteStore::SaveState(const SavedState& state) {
-  Add(state);
-}
-void SqliteStore::MarkFinished(SearchId search) {
-  Add(Finished{search});
-}
-void SqliteStore::AddEvent(const StoredEvent& event) {
-  Add(event);
 }
 
 void SqliteStore::Add(Record record) {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -42,9 +43,8 @@ class SqliteStore final : public ResultStore {
     std::chrono::milliseconds longest_wait = kLongestWait;  // another one is for tests
   };
 
-  // Makes the file: CreateDatabase.
-  static Status Create(const std::string& path, const CampaignMeta& meta);
-  // Errors: those of OpenCheckedForWriting; the file is then left as it was.
+  // The file is made by CreateDatabase. Errors: those of OpenCheckedForWriting; the file is then left as it
+  // was.
   static Result<std::unique_ptr<SqliteStore>> Open(const std::string& path, Options options);
   // For looking at a campaign that no master serves: no byte of it is changed, and adding anything is a
   // broken invariant. Errors: those of OpenCheckedForReading.
@@ -59,12 +59,14 @@ class SqliteStore final : public ResultStore {
   // Transactions committed since it was opened.
   std::uint64_t Commits() const;
 
-  void AddSearch(const StoredSearch& search) override;
-  void AddIndividuals(SearchId search, const std::vector<Individual>& individuals) override;
-  void AddRun(StoredRun run) override;
-  void SaveState(const SavedState& state) override;
-  void MarkFinished(SearchId search) override;
-  void AddEvent(const StoredEvent& event) override;
+  void AddSearch(const StoredSearch& search) override { Add(search); }
+  void AddIndividuals(SearchId search, const std::vector<Individual>& individuals) override {
+    if (!individuals.empty()) Add(Newborns{search, individuals});
+  }
+  void AddRun(StoredRun run) override { Add(std::move(run)); }
+  void SaveState(const SavedState& state) override { Add(state); }
+  void MarkFinished(SearchId search) override { Add(Finished{search}); }
+  void AddEvent(const StoredEvent& event) override { Add(event); }
 
   // After a failure, runs that became durable before it are still reported once; from then on the error.
   Result<std::vector<RunId>> Committed() override;

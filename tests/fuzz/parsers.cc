@@ -66,7 +66,7 @@ void ReadCaseJson(std::string_view bytes) {
 }
 
 void ReadArgos(std::string_view bytes) {
-  const Result<master::ImportedCase> read = master::ParseArgos(std::string(bytes), "case.argos");
+  const Result<master::LoadedCase> read = master::ParseArgos(std::string(bytes), "case.argos");
   if (!read) return ExpectAGoodError(read);
   for (const sim::ObstacleGene& obstacle : read->test_case.obstacles) {
     GAUNTLET_CHECK(std::isfinite(obstacle.x) && std::isfinite(obstacle.y) && std::isfinite(obstacle.length) &&

@@ -40,7 +40,7 @@ std::string Document(const std::string& arena_content,
 }
 
 std::string ErrorOf(const std::string& text) {
-  const Result<ImportedCase> imported = ParseArgos(text, "case.argos");
+  const Result<LoadedCase> imported = ParseArgos(text, "case.argos");
   return imported.ok() ? "imported" : imported.error().message;
 }
 

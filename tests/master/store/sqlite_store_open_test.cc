@@ -144,7 +144,7 @@ TEST(StoreCreateTest, AnExistingFileIsNeverReplaced) {
   const ScratchDirectory scratch;
   CreateStoreWithSearch(scratch / "campaign.db");
   const std::string before = ContentOf(scratch.path());
-  const Status again = SqliteStore::Create(scratch / "campaign.db", MakeMeta());
+  const Status again = CreateDatabase(scratch / "campaign.db", MakeMeta());
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().kind, ErrorKind::kInUse);
   EXPECT_TRUE(ContentOf(scratch.path()) == before);
@@ -154,13 +154,13 @@ TEST(StoreCreateTest, ADraftOfAKilledMasterIsNoObstacle) {
   const ScratchDirectory scratch;
   WriteFile(scratch / "campaign.db.new", "half a database");
   WriteFile(scratch / "campaign.db.new-wal", "half a log");
-  ASSERT_TRUE(SqliteStore::Create(scratch / "campaign.db", MakeMeta()).ok());
+  ASSERT_TRUE(CreateDatabase(scratch / "campaign.db", MakeMeta()).ok());
   EXPECT_TRUE(SqliteStore::Open(scratch / "campaign.db", {}).ok());
   EXPECT_FALSE(std::filesystem::exists(scratch / "campaign.db.new"));
 }
 
 TEST(StoreCreateTest, AMissingDirectoryIsAnErrorWithItsPath) {
-  const Status created = SqliteStore::Create("/nonexistent/campaign.db", MakeMeta());
+  const Status created = CreateDatabase("/nonexistent/campaign.db", MakeMeta());
   ASSERT_FALSE(created.ok());
   EXPECT_THAT(created.error().message, HasSubstr("/nonexistent/campaign.db"));
 }
@@ -169,7 +169,7 @@ TEST(StoreCreateTest, PathsMayHoldWhatUrisMayNot) {
   const ScratchDirectory scratch;
   const std::string path = scratch / "100% of ?what# ü";
   std::filesystem::create_directory(path);
-  ASSERT_TRUE(SqliteStore::Create(path + "/campaign.db", MakeMeta()).ok());
+  ASSERT_TRUE(CreateDatabase(path + "/campaign.db", MakeMeta()).ok());
   EXPECT_TRUE(SqliteStore::Open(path + "/campaign.db", {}).ok());
   EXPECT_TRUE(SqliteStore::OpenReadOnly("/" + path + "/campaign.db").ok());
 }

@@ -136,7 +136,7 @@ void CreateStoreWithSearch(const std::string& path) {
   // Made once and copied: making one waits for the disk several times.
   static const std::string made = [] {
     const ScratchDirectory scratch;
-    const Status created = SqliteStore::Create(scratch / "campaign.db", MakeMeta());
+    const Status created = CreateDatabase(scratch / "campaign.db", MakeMeta());
     GAUNTLET_CHECK(created.ok(), created.error().message);
     Result<std::unique_ptr<SqliteStore>> store = SqliteStore::Open(scratch / "campaign.db", {});
     (*store)->AddSearch(MakeSearch(1));
