@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "base/number_text.h"
-#include "sim/simulation.h"
 
 namespace gauntlet::sim {
 namespace {
@@ -32,10 +31,9 @@ std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, co
   }
   if (setup.controller == nullptr) return start + ", without a controller";
   const DeviceSet devices = setup.controller->Devices();
-  for (std::uint32_t bit = 0; bit < 32; ++bit) {
-    const Device device = static_cast<Device>(1u << bit);
-    if (!devices.Has(device) || (kAllDevices.Has(device) && setup.equipment.Has(device))) continue;
-    return "unsupported-device: " + RobotName(index) + " asks in tick 0 for " + std::string(NameOf(device)) +
+  for (const DeviceInfo& info : kDevices) {
+    if (!devices.Has(info.device) || setup.equipment.Has(info.device)) continue;
+    return "unsupported-device: " + RobotName(index) + " asks in tick 0 for " + std::string(info.key) +
            ", which it does not have";
   }
   return std::nullopt;

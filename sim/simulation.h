@@ -10,9 +10,6 @@
 
 namespace gauntlet::sim {
 
-// Largest swarm of a run; a larger one is refused.
-inline constexpr int kMaxRobots = 1000;
-
 // The parts of a tick, in order.
 enum class Phase { kPhysics, kObserve, kSense, kControl };
 

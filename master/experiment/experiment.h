@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "sim/robot/color.h"
+#include "sim/arena/color.h"
 #include "sim/run_spec.h"
 
 namespace gauntlet::master {

@@ -9,7 +9,7 @@
 #include "base/nearest_name.h"
 #include "master/experiment/toml_text.h"
 #include "master/search/genome_generator.h"
-#include "sim/robot/color.h"
+#include "sim/arena/color.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
@@ -120,12 +120,12 @@ Key FaultsKey() {
 }
 
 // "noise.proximity.gaussian": one number of one device.
-Key NoiseKey(const sim::NoisyDevice& noisy, const std::string& name, double sim::DeviceNoise::*member,
+Key NoiseKey(const sim::DeviceInfo& noisy, const std::string& name, double sim::DeviceNoise::*member,
              const std::string& description) {
   Key key =
       MakeKey(fmt::format("noise.{}.{}", sim::KeyOf(noisy.device), name), KeyType::kNumber, description);
-  key.max = noisy.most;
-  key.unit = noisy.unit;
+  key.max = noisy.most_noise;
+  key.unit = noisy.noise_unit;
   key.get = [device = noisy.device, member](const Experiment& e) -> KeyValue {
     const auto found = e.disturbances.noise.find(device);
     return found == e.disturbances.noise.end() ? 0.0 : found->second.*member;
@@ -139,9 +139,10 @@ Key NoiseKey(const sim::NoisyDevice& noisy, const std::string& name, double sim:
 
 std::vector<Key> NoiseKeys() {
   std::vector<Key> keys;
-  for (const sim::NoisyDevice& noisy : sim::NoisyDevices()) {
+  for (const sim::DeviceInfo& noisy : sim::kDevices) {
+    if (noisy.most_noise == 0.0) continue;
     keys.push_back(NoiseKey(noisy, "uniform", &sim::DeviceNoise::uniform,
-                            fmt::format("half width of a uniform error {}", noisy.error)));
+                            fmt::format("half width of a uniform error {}", noisy.noise_error)));
     keys.push_back(NoiseKey(noisy, "gaussian", &sim::DeviceNoise::gaussian,
                             "standard deviation of a Gaussian one, likewise"));
     if (!noisy.drops) continue;

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "sim/arena/color.h"
 #include "sim/geometry/oriented_box.h"
-#include "sim/robot/color.h"
 
 namespace gauntlet::sim {
 

@@ -29,8 +29,8 @@ std::string AreaText(const Rectangle& area) {
 
 // What makes the request senseless, if anything.
 std::optional<Error> Refusal(const SpawnRequest& request) {
-  if (request.count < 0 || request.count > kMaxSpawnedRobots) {
-    return NoRoom(std::to_string(request.count) + " robots; want 0 to " + std::to_string(kMaxSpawnedRobots));
+  if (request.count < 0 || request.count > kMaxRobots) {
+    return NoRoom(std::to_string(request.count) + " robots; want 0 to " + std::to_string(kMaxRobots));
   }
   if (!(request.area.min.allFinite() && request.area.max.allFinite() &&
         (request.area.min.array() <= request.area.max.array()).all())) {

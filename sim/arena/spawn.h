@@ -10,9 +10,6 @@
 
 namespace gauntlet::sim {
 
-// More robots than this are refused, as "no-room-to-spawn".
-inline constexpr int kMaxSpawnedRobots = 1000;
-
 struct SpawnRequest {
   int count = 0;
   Rectangle area;                // m; clipped to the free interior

@@ -9,6 +9,9 @@
 
 namespace gauntlet::sim {
 
+// Largest swarm of a run; a larger one is refused.
+inline constexpr int kMaxRobots = 1000;
+
 struct Rectangle {
   Vec2 min = Vec2::Zero();  // m
   Vec2 max = Vec2::Zero();  // m

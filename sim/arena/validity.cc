@@ -68,10 +68,9 @@ std::optional<Violation> JudgeSwarmNumbers(const TestCase& test_case) {
                        area + "must lie within " + NumberText(kMaxCoordinate) + " m of the origin"};
     }
   }
-  if (test_case.robots && (*test_case.robots < 1 || *test_case.robots > kMaxRobotsPerCase)) {
-    return Violation{
-        ValidityRule::kLimits, -1,
-        std::to_string(*test_case.robots) + " robots; want 1 to " + std::to_string(kMaxRobotsPerCase)};
+  if (test_case.robots && (*test_case.robots < 1 || *test_case.robots > kMaxRobots)) {
+    return Violation{ValidityRule::kLimits, -1,
+                     std::to_string(*test_case.robots) + " robots; want 1 to " + std::to_string(kMaxRobots)};
   }
   if (test_case.obstacles.size() > kMaxObstacles) {
     return Violation{ValidityRule::kLimits, -1,

@@ -41,7 +41,6 @@ inline constexpr double kMinThickness = 0.001;     // m; of walls and obstacles
 inline constexpr double kMaxObstacleSize = 200.0;  // m
 inline constexpr double kMaxCoordinate = 1000.0;   // m
 inline constexpr std::size_t kMaxObstacles = 1000;
-inline constexpr int kMaxRobotsPerCase = 1000;
 
 // What a scenario demands of its arenas.
 struct ArenaRequirements {

@@ -1,12 +1,6 @@
 #include "sim/geometry/oriented_box.h"
 
-#include "sim/geometry/trigonometry.h"
-
 namespace gauntlet::sim {
-
-OrientedBox MakeBox(const Vec2& center, double length, double width, double orientation) {
-  return {center, {length / 2.0, width / 2.0}, UnitVector(orientation)};
-}
 
 std::array<Vec2, 4> Corners(const OrientedBox& box) {
   const Vec2 along = box.half_extents.x() * box.axis;

@@ -18,9 +18,6 @@ struct OrientedBox {
 // lose by rounding, so that a box contains its own corners, and far less than anything a robot can notice.
 inline constexpr double kContainsTolerance = 1e-9;
 
-// length along the box's x axis before it is turned by `orientation` (rad).
-OrientedBox MakeBox(const Vec2& center, double length, double width, double orientation);
-
 // p in the frame of the box (centre at the origin, length along x).
 inline Vec2 ToLocal(const OrientedBox& box, const Vec2& p) {
   const Vec2 d = p - box.center;

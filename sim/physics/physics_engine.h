@@ -11,11 +11,6 @@
 
 namespace gauntlet::sim {
 
-struct WheelSpeeds {
-  double left = 0.0;   // m/s
-  double right = 0.0;  // m/s
-};
-
 // Index of a movable or kinematic box, in the order in which both kinds were added.
 using BoxIndex = int;
 

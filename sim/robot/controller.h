@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <span>
 
+#include "sim/arena/color.h"
 #include "sim/geometry/trigonometry.h"
 #include "sim/geometry/vec2.h"
 #include "sim/random/random_stream.h"
-#include "sim/robot/color.h"
 #include "sim/robot/devices.h"
 #include "sim/robot/foot_bot.h"
 
@@ -110,6 +110,8 @@ class Controller {
 };
 
 // Bearing of proximity sensor i, rad in (-pi, pi].
-double ProximityBearing(int sensor);
+inline double ProximityBearing(int sensor) {
+  return WrapAngle((sensor + 0.5) * (2.0 * kPi / foot_bot::kProximitySensors));
+}
 
 }  // namespace gauntlet::sim

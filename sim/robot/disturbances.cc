@@ -1,42 +1,23 @@
 #include "sim/robot/disturbances.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
 
-#include "base/bits.h"
 #include "base/nearest_name.h"
 #include "base/number_text.h"
+#include "sim/arena/test_case.h"
 
 namespace gauntlet::sim {
 namespace {
 
 constexpr std::string_view kStopped = "stopped";
 constexpr Tick kLatestFault = 1'000'000'000;
-constexpr RobotIndex kLastRobot = 999;
+constexpr RobotIndex kLastRobot = kMaxRobots - 1;
 
-constexpr std::array<NoisyDevice, 8> kNoisyDevices = {{
-    {Device::kWheels, "", 1.0, false, "share of the commanded speed, of each wheel"},
-    {Device::kProximity, "", 1.0, false, "of full scale, of each of the 24 readings, also of zero ones"},
-    {Device::kOmnidirectionalCamera, "", 1.0, true,
-     "share of the blob's distance, by which it is shifted in a random direction"},
-    {Device::kRangeAndBearing, "m", 10.0, true,
-     "by which the sender's place is shifted in a random direction"},
-    {Device::kLight, "", 1.0, false, "of full scale, of each of the 24 readings"},
-    {Device::kMotorGround, "", 1.0, false, "of the grey, of each of the 4 readings"},
-    {Device::kBaseGround, "", 1.0, false,
-     "of the grey, of each of the 8 readings before they are cut at 0.5"},
-    {Device::kDistanceScanner, "m", 1.0, false, "of each distance that is read"},
-}};
-
-std::vector<std::string> FaultNames() {
-  std::vector<std::string> names = {std::string(kStopped)};
-  for (std::uint32_t bit = 0; bit < 32; ++bit) {
-    const Device device = static_cast<Device>(1u << bit);
-    if (kAllDevices.Has(device)) names.push_back(KeyOf(device));
-  }
+std::vector<std::string_view> FaultNames() {
+  std::vector<std::string_view> names = {kStopped};
+  for (const DeviceInfo& info : kDevices) names.push_back(info.key);
   return names;
 }
 
@@ -72,10 +53,10 @@ Result<RobotFault> ParseFault(std::string_view text) {
   if (what == kStopped) return fault;
   fault.device = DeviceOfKey(what);
   if (fault.device) return fault;
-  const std::vector<std::string> names = FaultNames();
-  const std::string nearest = NearestName(what, std::vector<std::string_view>(names.begin(), names.end()));
+  const std::vector<std::string_view> names = FaultNames();
+  const std::string nearest = NearestName(what, names);
   std::string known;
-  for (const std::string& name : names) known.append(known.empty() ? "" : ", ").append(name);
+  for (const std::string_view name : names) known.append(known.empty() ? "" : ", ").append(name);
   std::string why = "no device is called '";
   why.append(what).append("'; ");
   if (nearest.empty()) return WrongFault(text, why.append("known: ").append(known));
@@ -95,17 +76,16 @@ bool Within(double value, double most) {
 
 std::optional<std::string> RefuseNoise(Device device, const DeviceNoise& noise) {
   const std::string key = "noise." + KeyOf(device);
-  const auto* const known = std::find_if(kNoisyDevices.begin(), kNoisyDevices.end(),
-                                         [&](const NoisyDevice& one) { return one.device == device; });
-  if (known == kNoisyDevices.end()) return "bad-noise: " + key + ": no noise is defined for this device";
+  const DeviceInfo& info = kDevices[IndexOf(device)];
+  if (info.most_noise == 0.0) return "bad-noise: " + key + ": no noise is defined for this device";
   struct Field {
     const char* name;
     double value;
     double most;
   };
   for (const Field& field :
-       {Field{"uniform", noise.uniform, known->most}, Field{"gaussian", noise.gaussian, known->most},
-        Field{"drop", noise.drop, known->drops ? 1.0 : 0.0}}) {
+       {Field{"uniform", noise.uniform, info.most_noise}, Field{"gaussian", noise.gaussian, info.most_noise},
+        Field{"drop", noise.drop, info.drops ? 1.0 : 0.0}}) {
     if (Within(field.value, field.most)) continue;
     return "bad-noise: " + key + "." + field.name + " = " + NumberText(field.value) + "; 0 to " +
            NumberText(field.most) + " is possible";
@@ -114,24 +94,6 @@ std::optional<std::string> RefuseNoise(Device device, const DeviceNoise& noise) 
 }
 
 }  // namespace
-
-std::span<const NoisyDevice> NoisyDevices() {
-  return kNoisyDevices;
-}
-
-std::string KeyOf(Device device) {
-  std::string key(NameOf(device));
-  std::replace(key.begin(), key.end(), '-', '_');
-  return key;
-}
-
-std::optional<Device> DeviceOfKey(std::string_view key) {
-  for (std::uint32_t bit = 0; bit < 32; ++bit) {
-    const Device device = static_cast<Device>(1u << bit);
-    if (kAllDevices.Has(device) && KeyOf(device) == key) return device;
-  }
-  return std::nullopt;
-}
 
 Result<std::vector<RobotFault>> ParseFaults(std::string_view text) {
   std::vector<RobotFault> faults;
@@ -170,8 +132,7 @@ std::optional<std::string> RefuseDisturbances(const Disturbances& disturbances, 
     if (std::optional<std::string> reason = RefuseNoise(device, noise)) return reason;
   }
   for (const RobotFault& fault : disturbances.faults) {
-    if (fault.robot >= 0 && static_cast<std::size_t>(fault.robot) < robots && fault.tick >= 0 &&
-        (!fault.device || kAllDevices.Has(*fault.device))) {
+    if (fault.robot >= 0 && static_cast<std::size_t>(fault.robot) < robots && fault.tick >= 0) {
       continue;
     }
     return "bad-fault: " + FaultText(fault) + ": robot " + std::to_string(fault.robot) + ", tick " +

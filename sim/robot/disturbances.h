@@ -17,7 +17,7 @@
 namespace gauntlet::sim {
 
 // Errors of one kind of device on every robot, drawn anew for each reading in every tick. `uniform` and
-// `gaussian` add up. Their unit is that of NoisyDevice.
+// `gaussian` add up. Their unit is that of DeviceInfo.
 struct DeviceNoise {
   double uniform = 0.0;   // half width of a uniform error
   double gaussian = 0.0;  // standard deviation of a Gaussian one
@@ -26,17 +26,6 @@ struct DeviceNoise {
   bool Any() const { return uniform != 0.0 || gaussian != 0.0 || drop != 0.0; }
   bool operator==(const DeviceNoise&) const = default;
 };
-
-// A device that noise is defined for, and what its error is.
-struct NoisyDevice {
-  Device device;
-  std::string_view unit;  // of the error: "" is a share of the reading's full scale, or as said
-  double most;            // largest error that can be asked for
-  bool drops;             // has messages or blobs that may be lost
-  std::string_view error;
-};
-// In the order of the experiment's keys. The errors are those of ARGoS where ARGoS has them.
-std::span<const NoisyDevice> NoisyDevices();
 
 // From `tick` on, one device of one robot is dead, or the whole robot.
 //   wheels: stand still (braked); leds: dark; range-and-bearing: neither sends nor hears; gripper: open,
@@ -57,11 +46,6 @@ struct Disturbances {
   bool None() const { return noise.empty() && faults.empty(); }
   bool operator==(const Disturbances&) const = default;
 };
-
-// "range_and_bearing": the device's name in keys of experiments and in faults.
-std::string KeyOf(Device device);
-// The device of that key, or nothing.
-std::optional<Device> DeviceOfKey(std::string_view key);
 
 // "3:wheels@500 7:stopped@0": ROBOT:WHAT@TICK, several with spaces between them. WHAT is a device or
 // `stopped`. Error: what is malformed, unknown (with the nearest known name) or out of range.

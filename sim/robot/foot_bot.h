@@ -14,6 +14,11 @@ inline constexpr int kTicksPerSecond = 10;
 // Index into the swarm; spawn order. Box2D bodies are created in this order.
 using RobotIndex = int;
 
+struct WheelSpeeds {
+  double left = 0.0;   // m/s
+  double right = 0.0;  // m/s
+};
+
 namespace foot_bot {
 
 inline constexpr double kRadius = 0.085036758;  // m, FOOTBOT_RADIUS
@@ -35,11 +40,10 @@ inline constexpr double kRangeAndBearingRange = 3.0;   // m, default of ARGoS
 inline constexpr int kLightSensors = 24;               // at the bearings of the proximity sensors
 inline constexpr int kMotorGroundSensors = 4;
 inline constexpr int kBaseGroundSensors = 8;
-inline constexpr int kRingLeds = 12;                   // LED i at (i + 1/2) * 30 degrees from the heading
-inline constexpr double kRingRadius = 0.090036758;     // m
-inline constexpr double kRingHeight = 0.085;           // m
-inline constexpr double kScannerHeight = 0.123199866;  // m
-inline constexpr double kGripperRadius = 0.01;         // m, disc at the front that rays of others hit
+inline constexpr int kRingLeds = 12;                // LED i at (i + 1/2) * 30 degrees from the heading
+inline constexpr double kRingRadius = 0.090036758;  // m
+inline constexpr double kRingHeight = 0.085;        // m
+inline constexpr double kGripperRadius = 0.01;      // m, disc at the front that rays of others hit
 
 }  // namespace foot_bot
 }  // namespace gauntlet::sim

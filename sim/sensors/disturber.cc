@@ -1,7 +1,6 @@
 #include "sim/sensors/disturber.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -38,12 +37,12 @@ Disturber::Disturber(const Disturbances& disturbances, std::uint64_t seed, std::
                      const Surroundings& surroundings, std::size_t obstacle_lights)
     : seed_(seed), surroundings_(surroundings), stopped_(robots, kNever), dead_(robots) {
   for (PerDevice& ticks : dead_) ticks.fill(kNever);
-  for (const auto& [device, noise] : disturbances.noise) noise_[Index(device)] = noise;
+  for (const auto& [device, noise] : disturbances.noise) noise_[IndexOf(device)] = noise;
   for (const RobotFault& fault : disturbances.faults) {
     const std::size_t robot = Index(fault.robot);
     GAUNTLET_CHECK(robot < robots, "a fault of a robot that is not there");
     if (fault.device) {
-      Tick& dead = dead_[robot][Index(*fault.device)];
+      Tick& dead = dead_[robot][IndexOf(*fault.device)];
       dead = std::min(dead, fault.tick);
     } else {
       stopped_[robot] = std::min(stopped_[robot], fault.tick);
@@ -51,7 +50,7 @@ Disturber::Disturber(const Disturbances& disturbances, std::uint64_t seed, std::
   }
   for (std::size_t robot = 0; robot < robots; ++robot) {
     for (const Device device : {Device::kWheels, Device::kLeds, Device::kRangeAndBearing}) {
-      Tick& dead = dead_[robot][Index(device)];
+      Tick& dead = dead_[robot][IndexOf(device)];
       dead = std::min(dead, stopped_[robot]);
     }
   }
@@ -61,15 +60,9 @@ Disturber::Disturber(const Disturbances& disturbances, std::uint64_t seed, std::
   long_.reserve(kMostRays);
 }
 
-std::size_t Disturber::Index(Device device) {
-  const auto index = static_cast<std::size_t>(std::countr_zero(static_cast<std::uint32_t>(device)));
-  GAUNTLET_CHECK(index < kDevices, "a device that noise and faults do not know");
-  return index;
-}
-
 RandomStream Disturber::Stream(RobotIndex robot, Device device, Tick tick) const {
   const auto purpose = static_cast<std::uint32_t>(StreamPurpose::kFirstDeviceNoise) +
-                       static_cast<std::uint32_t>(Index(device));
+                       static_cast<std::uint32_t>(IndexOf(device));
   return {seed_, static_cast<StreamPurpose>(purpose), static_cast<std::uint32_t>(robot),
           static_cast<std::uint32_t>(tick)};
 }

@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "sim/physics/physics_engine.h"
 #include "sim/robot/disturbances.h"
 #include "sim/robot/grippers.h"
 #include "sim/robot/signals.h"
@@ -38,15 +37,13 @@ class Disturber {
                                         const Pose& pose, const SensorReadings& readings);
 
  private:
-  static constexpr std::size_t kDevices = 10;
-  using PerDevice = std::array<Tick, kDevices>;
+  using PerDevice = std::array<Tick, kDevices.size()>;
 
   static std::size_t Index(RobotIndex robot) { return static_cast<std::size_t>(robot); }
-  static std::size_t Index(Device device);
   bool Dead(RobotIndex robot, Device device, Tick tick) const {
-    return tick >= dead_[Index(robot)][Index(device)];
+    return tick >= dead_[Index(robot)][IndexOf(device)];
   }
-  const DeviceNoise& NoiseOf(Device device) const { return noise_[Index(device)]; }
+  const DeviceNoise& NoiseOf(Device device) const { return noise_[IndexOf(device)]; }
   // A device's errors of one robot in one tick: its numbers depend on nothing else.
   RandomStream Stream(RobotIndex robot, Device device, Tick tick) const;
   template <std::size_t kCount>
@@ -58,7 +55,7 @@ class Disturber {
 
   std::uint64_t seed_;
   const Surroundings& surroundings_;
-  std::array<DeviceNoise, kDevices> noise_{};
+  std::array<DeviceNoise, kDevices.size()> noise_{};
   std::vector<Tick> stopped_;    // per robot: from this tick on
   std::vector<PerDevice> dead_;  // per robot: from these ticks on
   SensorReadings readings_;      // of the last call

@@ -85,7 +85,8 @@ TEST(Simulation, AllocatesNothingWithEveryDevice) {
     scenario.radios = {{.position = {-1.0, 1.0}}};
     ExpectNoneAfterTheFirst(AllocationsPerTick(scenario, 60));
     Disturbances disturbances;
-    for (const NoisyDevice& noisy : NoisyDevices()) {
+    for (const DeviceInfo& noisy : kDevices) {
+      if (noisy.most_noise == 0.0) continue;
       disturbances.noise[noisy.device] = {.uniform = 0.02, .gaussian = 0.02, .drop = noisy.drops ? 0.1 : 0.0};
     }
     disturbances.faults = {{.robot = 3, .device = Device::kProximity, .tick = 20}, {.robot = 5, .tick = 30}};

@@ -14,6 +14,7 @@
 #include "sim/sensors/omni_camera.h"
 #include "sim/sensors/proximity.h"
 #include "sim/sensors/range_and_bearing.h"
+#include "tests/support/make_box.h"
 #include "tests/support/paths.h"
 
 namespace gauntlet {

@@ -8,6 +8,7 @@
 #include "sim/geometry/oriented_box.h"
 #include "sim/geometry/trigonometry.h"
 #include "sim/geometry/vec2.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim::testing {
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/sim/geometry/generators.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
 namespace {

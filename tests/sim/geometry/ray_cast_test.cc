@@ -9,6 +9,7 @@
 
 #include "sim/random/random_stream.h"
 #include "tests/sim/geometry/generators.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
 namespace {

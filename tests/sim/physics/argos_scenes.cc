@@ -7,6 +7,7 @@
 
 #include "sim/geometry/trigonometry.h"
 #include "tests/sim/argos_csv.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -6,6 +6,7 @@
 #include "sim/geometry/trigonometry.h"
 #include "sim/physics/differential_drive.h"
 #include "sim/physics/physics_engine.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
 namespace {

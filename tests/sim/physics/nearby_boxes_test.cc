@@ -1,4 +1,5 @@
 #include "sim/physics/nearby_boxes.h"
+#include "tests/support/make_box.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -6,6 +6,7 @@
 #include "sim/geometry/trigonometry.h"
 #include "sim/physics/physics_engine.h"
 #include "tests/sim/physics/argos_scenes.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -20,9 +20,12 @@ TEST(DeviceSet, HasWhatWasPutIn) {
 
 TEST(Devices, HaveDistinctNames) {
   std::set<std::string> names;
-  for (std::uint32_t bit = 0; bit < 10; ++bit) names.emplace(NameOf(static_cast<Device>(1u << bit)));
-  EXPECT_EQ(names.size(), 10u);
-  EXPECT_FALSE(names.contains("unknown-device"));
+  for (const DeviceInfo& info : kDevices) {
+    names.emplace(info.key);
+    EXPECT_EQ(DeviceOfKey(KeyOf(info.device)), info.device);
+  }
+  EXPECT_EQ(names.size(), kDevices.size());
+  EXPECT_EQ(DeviceOfKey("unknown_device"), std::nullopt);
 }
 
 TEST(ProximityBearing, StartsFrontLeftAndGoesRoundCounterClockwise) {

@@ -14,6 +14,7 @@
 #include "sim/random/random_stream.h"
 #include "sim/sensors/distance_scanner.h"
 #include "sim/sensors/occluders.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -1,4 +1,5 @@
 #include "sim/sensors/light_sensor.h"
+#include "tests/support/make_box.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,6 +12,7 @@
 #include "sim/geometry/ray_cast.h"
 #include "sim/robot/controller.h"
 #include "tests/sim/argos_csv.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/random/random_stream.h"
+#include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
 namespace {
