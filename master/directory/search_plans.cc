@@ -60,4 +60,17 @@ Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directo
   return plans;
 }
 
+Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  const Result<std::vector<StoredSearch>> known = store.LoadSearches();
+  if (!known) return known.error();
+  for (std::size_t i = known->size(); i < plans.size(); ++i) {
+    const Experiment& experiment = plans[i].experiment;
+    std::string name = experiment.name;
+    if (!plans[i].settings.empty()) name += ": " + plans[i].settings;
+    store.AddSearch({static_cast<SearchId>(i + 1), name, std::string(NameOf(experiment.search.kind)),
+                     experiment.seed, false});
+  }
+  return Ok{};
+}
+
 }  // namespace gauntlet::master

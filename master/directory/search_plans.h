@@ -7,6 +7,7 @@
 #include "base/result.h"
 #include "master/directory/campaign_directory.h"
 #include "master/experiment/experiment.h"
+#include "master/store/result_store.h"
 
 namespace gauntlet::master {
 
@@ -22,5 +23,8 @@ std::string WriteSearchPlans(const std::vector<SearchPlan>& plans);
 // Of searches.json, or of experiment.toml when there is none. Error: kCorrupt, kIo, or an experiment that
 // this version does not take.
 Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directory);
+
+// Adds the searches that the store does not know yet.
+Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store);
 
 }  // namespace gauntlet::master

@@ -1,4 +1,4 @@
-#include "master/session/campaign_runner.h"
+#include "master/session/search_loop.h"
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -18,17 +18,20 @@ constexpr std::size_t kSearchesAtOnce = 64;
 
 }  // namespace
 
-Status CampaignRunner::Restore(const std::vector<SearchId>& finished) {
+Status SearchLoop::Restore() {
+  const Result<std::vector<StoredSearch>> stored = parts_.store.LoadSearches();
+  if (!stored) return stored.error();
   for (SearchDriver* search : parts_.searches) {
     if (Status restored = search->Restore(); !restored) return restored;
-    if (std::find(finished.begin(), finished.end(), search->id()) == finished.end())
+    if (std::ranges::none_of(
+            *stored, [search](const StoredSearch& one) { return one.finished && one.id == search->id(); }))
       waiting_.push_back(search);
   }
   return Ok{};
 }
 
 // Lets every search that runs go on, and others begin where some have finished.
-Status CampaignRunner::Advance() {
+Status SearchLoop::Advance() {
   while (running_.size() < kSearchesAtOnce && !waiting_.empty()) {
     running_.push_back(waiting_.front());
     waiting_.pop_front();
@@ -42,14 +45,14 @@ Status CampaignRunner::Advance() {
   return running_.size() < before && !waiting_.empty() ? Advance() : Ok{};
 }
 
-void CampaignRunner::StoreEvents() {
+void SearchLoop::StoreEvents() {
   for (const DispatchEvent& event : parts_.backend.TakeEvents()) {
     spdlog::info("{}: {}", event.kind, event.text);
     parts_.store.AddEvent({UnixMilliseconds(), event.kind, event.text});
   }
 }
 
-Status CampaignRunner::ApplyCommits() {
+Status SearchLoop::ApplyCommits() {
   Result<std::vector<RunId>> committed = parts_.store.Committed();
   if (!committed) return committed.error();
   if (committed->empty()) return Ok{};
@@ -58,13 +61,13 @@ Status CampaignRunner::ApplyCommits() {
   return Ok{};
 }
 
-std::uint64_t CampaignRunner::runs_done() const {
+std::uint64_t SearchLoop::runs_done() const {
   std::uint64_t runs = 0;
   for (const SearchDriver* search : parts_.searches) runs += search->runs_done();
   return runs;
 }
 
-CampaignProgress CampaignRunner::Progress(TimePoint started) {
+CampaignProgress SearchLoop::Progress(TimePoint started) {
   CampaignProgress progress;
   progress.searches = parts_.searches.size();
   progress.search.finished = true;
@@ -107,15 +110,15 @@ CampaignProgress CampaignRunner::Progress(TimePoint started) {
 }
 
 // What is durable is told once more, and what follows from it is stored.
-Status CampaignRunner::EndSession() {
+Status SearchLoop::EndSession() {
   if (Status flushed = parts_.store.Flush(); !flushed) return flushed;
   if (Status applied = ApplyCommits(); !applied) return applied;
   for (SearchDriver* search : running_) search->TellCompleted();
   return parts_.store.Flush();
 }
 
-Result<CampaignEnd> CampaignRunner::Run(const std::function<StopWish()>& stop,
-                                        const std::function<void(const CampaignProgress&)>& on_progress) {
+Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
+                                    const std::function<void(const CampaignProgress&)>& on_progress) {
   const TimePoint started = parts_.clock.Now();
   TimePoint last_report = started - kPollTime;
   while (true) {

@@ -6,9 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/result.h"
 #include "base/system/clock.h"
+#include "master/dispatch/evaluation_backend.h"
 #include "master/report/campaign_progress.h"
 #include "master/session/search_driver.h"
+#include "master/session/session_options.h"
+#include "master/store/result_store.h"
 
 namespace gauntlet::master {
 
@@ -18,21 +22,19 @@ enum class StopWish {
   kNow,        // what runs is simulated again some day
 };
 
-enum class CampaignEnd { kFinished, kStopped };
-
-class CampaignRunner {
+class SearchLoop {
  public:
-  // The drivers are those of searches 1, 2, ... in this order; all parts outlive the runner.
+  // The drivers are those of searches 1, 2, ... in this order; all parts outlive the loop.
   struct Parts {
     std::vector<SearchDriver*> searches;
     EvaluationBackend& backend;
     ResultStore& store;
     const Clock& clock;
   };
-  explicit CampaignRunner(const Parts& parts) : parts_(parts) {}
+  explicit SearchLoop(const Parts& parts) : parts_(parts) {}
 
-  // Call once, before Run: restores all searches. `finished`: those that the store calls finished.
-  Status Restore(const std::vector<SearchId>& finished);
+  // Call once, before Run: restores all searches.
+  Status Restore();
 
   // Until all searches have finished and the backend's audits are done, `stop` answers kNow, or it has
   // answered kAfterRuns and what was running has ended. `on_progress` is called about ten times a second.

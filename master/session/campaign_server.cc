@@ -1,0 +1,297 @@
+#include "master/session/campaign_server.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include "base/system/atomic_file.h"
+#include "base/system/process_identity.h"
+#include "controllers/registry.h"
+#include "master/directory/campaign_keys.h"
+#include "master/dispatch/local_pool.h"
+#include "master/dispatch/run_limits.h"
+#include "master/report/metrics_text.h"
+#include "master/report/stored_campaign.h"
+#include "master/report/stored_search.h"
+#include "master/session/access_file.h"
+#include "master/session/master_log.h"
+#include "master/session/metrics_server.h"
+#include "master/session/reachable_endpoints.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::chrono::milliseconds kShutdownTime{2000};
+constexpr std::chrono::milliseconds kStatusEvery{1000};
+
+std::vector<std::string> NamesOfControllers() {
+  std::vector<std::string> names;
+  for (const controllers::ControllerInfo& controller : controllers::Controllers())
+    names.emplace_back(controller.name);
+  return names;
+}
+
+// The most that any of the searches needs.
+DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_share) {
+  DispatchOptions limits;
+  limits.audit_share = audit_share;
+  for (const SearchPlan& plan : plans) {
+    const Experiment& experiment = plan.experiment;
+    limits.cpu_limit_seconds = std::max(limits.cpu_limit_seconds,
+                                        CpuLimitSeconds(experiment.scenario, experiment.scenario_parameters));
+  }
+  return limits;
+}
+
+// Every connection needs a descriptor, of workers and of strangers. As many as the system allows, within
+// reason: each may cost the master some 10 KB.
+void AllowManyConnections() {
+  constexpr rlim_t kMostDescriptors = 16384;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kMostDescriptors) return;
+  limit.rlim_cur = std::min(limit.rlim_max, kMostDescriptors);
+  setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+// The master's log, beside those of its workers.
+void OpenLog(const CampaignDirectory& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory.log_path(), error);
+  OpenMasterLog(directory.log_path() + "/master.log");
+}
+
+std::string DescribePool(const SessionOptions& options) {
+  return options.make_pool ? "an elastic pool" : fmt::format("{} workers", options.workers);
+}
+
+}  // namespace
+
+CampaignServer::CampaignServer(CampaignOwnership& campaign, const std::vector<SearchPlan>& plans,
+                               const Build& build, const SessionOptions& options)
+    : campaign_(campaign),
+      plans_(plans),
+      build_(build),
+      options_(options),
+      cpu_before_(CostOfThisProcess().cpu_seconds),
+      dispatch_(LimitsFor(plans, options.audit_share)),
+      bundles_{campaign.directory.path(), campaign.origin.campaign_id, build.version,
+               fmt::format("{:016x}", build.golden_hash), dispatch_},
+      files_(campaign.directory, campaign.epoch) {
+  view_.campaign_id = campaign.origin.campaign_id;
+  view_.experiment = plans.front().experiment.name;
+  view_.host = IdentifyThisProcess().host;
+  view_.pid = getpid();
+  view_.epoch = campaign.epoch;
+  view_.started_unix_ms = UnixMilliseconds();
+  view_.batch_job = options.batch_job;
+  if (options.metrics != nullptr) view_.metrics_url = options.metrics->url();
+}
+
+Result<SessionReport> CampaignServer::Serve() {
+  OpenLog(campaign_.directory);
+  spdlog::info("master {} of campaign {} with {}", view_.epoch, view_.campaign_id, DescribePool(options_));
+  for (const auto step : {&CampaignServer::MakeSearches, &CampaignServer::Listen, &CampaignServer::StartPool,
+                          &CampaignServer::RestoreSearches, &CampaignServer::Announce}) {
+    if (Status done = (this->*step)(); !done) return done.error();
+  }
+  const Result<CampaignEnd> end = Run();
+  LetWorkersGo(end);
+  if (end) return Report(*end);
+  spdlog::error("stopped: {}", end.error().message);
+  return end.error();
+}
+
+Status CampaignServer::MakeSearches() {
+  // A master may have died between creating the campaign and storing its searches.
+  if (Status added = AddSearches(plans_, *campaign_.store); !added) return added;
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
+    Result<std::unique_ptr<SearchAlgorithm>> search =
+        MakeStoredSearch(plans_[i].experiment, static_cast<SearchId>(i + 1), *campaign_.store);
+    if (!search) return search.error();
+    searches_.push_back(*std::move(search));
+  }
+  return Ok{};
+}
+
+// A socket for workers, with keys when others than this machine can reach it.
+Status CampaignServer::Listen() {
+  AllowManyConnections();
+  AccessInfo access;
+  access.campaign = view_.campaign_id;
+  access.epoch = view_.epoch;
+  ZmqTransportOptions transport;
+  transport.endpoint = options_.bind;
+  const bool local = IsLocalEndpoint(options_.bind);
+  if (!local && !options_.insecure) {
+    Result<CampaignKeys> keys = LoadOrMakeKeys(campaign_.directory.key_path());
+    if (!keys) return keys.error();
+    access.curve = AccessKeys{keys->master.public_key, keys->worker.public_key, keys->worker.secret_key};
+    transport.curve = CurveServer{keys->master, {keys->worker.public_key}};
+  }
+  Result<std::unique_ptr<ZmqTransport>> bound = ZmqTransport::Bind(transport);
+  if (!bound) return bound.error();
+  transport_ = *std::move(bound);
+  access.endpoints = ReachableEndpoints(transport_->endpoint());
+  if (!local && options_.insecure) {
+    spdlog::warn("INSECURE: whoever reaches {} can read this campaign and feed it results",
+                 access.endpoints.front());
+  }
+  view_.endpoints = access.endpoints;
+  view_.encrypted = access.curve.has_value();
+  return WriteAccessFile(campaign_.directory.access_path(), access);
+}
+
+Status CampaignServer::StartPool() {
+  const CampaignDirectory& directory = campaign_.directory;
+  if (options_.make_pool) {
+    std::error_code error;
+    const std::filesystem::path absolute = std::filesystem::absolute(directory.path(), error);
+    if (error) return SystemError(fmt::format("cannot find {}", directory.path()), error.value());
+    Result<std::unique_ptr<WorkerPool>> pool =
+        options_.make_pool({absolute / "access.json", absolute / "log"});
+    if (!pool) return pool.error();
+    pool_ = *std::move(pool);
+  } else if (options_.workers > 0) {
+    LocalPoolOptions local;
+    local.workers = options_.workers;
+    local.access_file = directory.access_path();
+    local.log_directory = directory.log_path();
+    Result<std::unique_ptr<LocalPool>> pool = LocalPool::Start(local, clock_.Now());
+    if (!pool) return pool.error();
+    pool_ = *std::move(pool);
+  }
+  return Ok{};
+}
+
+Status CampaignServer::RestoreSearches() {
+  const CampaignIdentity identity{view_.campaign_id, view_.epoch, build_.version, build_.golden_hash,
+                                  NamesOfControllers()};
+  backend_ = std::make_unique<RemoteBackend>(identity, dispatch_, *transport_, clock_, pool_.get());
+  backend_->WatchFd(campaign_.store->CommitNotifier());
+  SearchLoop::Parts parts{{}, *backend_, *campaign_.store, clock_};
+  for (std::size_t i = 0; i < plans_.size(); ++i) {
+    const Experiment& experiment = plans_[i].experiment;
+    drivers_.emplace_back(
+        SearchDriver::Parts{.experiment = experiment,
+                            .search_id = static_cast<SearchId>(i + 1),
+                            .search = *searches_[i],
+                            .backend = *backend_,
+                            .store = *campaign_.store,
+                            .on_run = [this, &experiment](const StoredRun& run, const FinishedRun& finished) {
+                              KeepBundle(experiment, run, finished);
+                            }});
+    parts.searches.push_back(&drivers_.back());
+  }
+  loop_.emplace(parts);
+  if (Status restored = loop_->Restore(); !restored) return restored;
+  runs_before_ = loop_->runs_done();
+  return Ok{};
+}
+
+// Into the campaign's events, and to who has started this master.
+Status CampaignServer::Announce() {
+  if (!campaign_.origin.copied_from.empty()) {
+    const std::string text =
+        fmt::format("this directory is a copy of campaign {}; it is campaign {} from now on",
+                    campaign_.origin.copied_from, view_.campaign_id);
+    spdlog::info("copied: {}", text);
+    NoteEvent("copied", text);
+  }
+  NoteEvent(view_.epoch == 1 ? "start" : "resume",
+            fmt::format("master {} with {}", view_.epoch, DescribePool(options_)));
+  const Result<std::uint64_t> nondeterministic = CountNondeterministic(*campaign_.store);
+  if (!nondeterministic) return nondeterministic.error();
+  view_.nondeterministic_before = *nondeterministic;
+  options_.on_serving({view_.endpoints, view_.encrypted});
+  return Ok{};
+}
+
+Result<CampaignEnd> CampaignServer::Run() {
+  const auto stop = [this] {
+    if (outdated_ || options_.stop_requested()) return StopWish::kNow;
+    return view_.stopping ? StopWish::kAfterRuns : StopWish::kNone;
+  };
+  const auto on_progress = [this](const CampaignProgress& progress) {
+    if (const TimePoint now = clock_.Now(); now >= next_status_) {
+      next_status_ = now + kStatusEvery;
+      Publish(progress);
+    }
+    options_.on_progress(progress);
+  };
+  Result<CampaignEnd> end = loop_->Run(stop, on_progress);
+  if (outdated_ && end) return *outdated_;
+  return end;
+}
+
+void CampaignServer::Publish(const CampaignProgress& progress) {
+  if (const Status newest = files_.CheckNewest(); !newest && newest.error().kind == ErrorKind::kInUse) {
+    outdated_ = newest.error();
+    return;  // what lies there is the newer one's
+  }
+  if (!view_.stopping && files_.StopRequested()) {
+    view_.stopping = true;
+    spdlog::info("asked to stop");
+  }
+  view_.now_unix_ms = UnixMilliseconds();
+  const BackendView seen = backend_->Describe();
+  if (const Status written = files_.PublishStatus(StatusJson(view_, progress, seen)); !written)
+    spdlog::debug("status: {}", written.error().message);
+  if (options_.metrics != nullptr)
+    options_.metrics->Publish(MetricsText(view_, progress, seen, CostOfThisProcess()));
+}
+
+// Workers from elsewhere outlive this master unless there is nothing left to do, or no more is wanted.
+void CampaignServer::LetWorkersGo(const Result<CampaignEnd>& end) {
+  const bool unfinished = !view_.stopping && (!end || *end == CampaignEnd::kStopped);
+  const bool replaced = !end && end.error().kind == ErrorKind::kInUse;
+  const bool to_successor = replaced || (unfinished && !options_.batch_job.empty());
+  if (pool_ == nullptr ? unfinished : to_successor && pool_->Release()) {
+    backend_->StopLeasing();
+    (void)backend_->Poll(std::chrono::milliseconds(0));  // sends the last acknowledgements
+  } else {
+    backend_->Shutdown(kShutdownTime);
+  }
+}
+
+Result<SessionReport> CampaignServer::Report(CampaignEnd end) {
+  loop_->StoreEvents();  // of the time in which workers were let go
+  SessionReport report;
+  report.end = end;
+  report.workers = backend_->Statistics();
+  if (report.workers.audits > 0) {
+    NoteEvent("audit",
+              fmt::format("{} runs were simulated on a second worker, {} again on the only one there "
+                          "was, {} ended differently",
+                          report.workers.audits - report.workers.audits_alone, report.workers.audits_alone,
+                          report.workers.nondeterministic));
+  }
+  NoteEvent(end == CampaignEnd::kFinished ? "finished" : "stop",
+            fmt::format("{} runs stored", loop_->runs_done()));
+  if (Status flushed = campaign_.store->Flush(); !flushed) return flushed.error();
+  report.runs_this_session = loop_->runs_done() - runs_before_;
+  report.wall_seconds = std::chrono::duration<double>(clock_.Now() - started_).count();
+  report.master_cpu_seconds = CostOfThisProcess().cpu_seconds - cpu_before_;
+  Result<CampaignSummary> summary = SummariseAll(plans_, *campaign_.store);
+  if (!summary) return summary.error();
+  report.summary = *std::move(summary);
+  return report;
+}
+
+void CampaignServer::KeepBundle(const Experiment& experiment, const StoredRun& run,
+                                const FinishedRun& finished) const {
+  if (!LeavesBundle(finished.result.verdict)) return;
+  const Status written = WriteBundle(bundles_, experiment, run, finished);
+  if (!written) spdlog::warn("no bundle for run {}: {}", run.id, written.error().message);
+}
+
+void CampaignServer::NoteEvent(const std::string& kind, const std::string& text) {
+  campaign_.store->AddEvent({UnixMilliseconds(), kind, text});
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,85 @@
+// A master at work: serves a campaign that it owns to workers until its searches have finished or it is to
+// stop, and cleans up whatever happens.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "base/system/clock.h"
+#include "master/directory/campaign_ownership.h"
+#include "master/directory/search_plans.h"
+#include "master/dispatch/remote_backend.h"
+#include "master/dispatch/zmq_transport.h"
+#include "master/report/campaign_status.h"
+#include "master/search/search_algorithm.h"
+#include "master/session/master_files.h"
+#include "master/session/reproduction_bundle.h"
+#include "master/session/search_driver.h"
+#include "master/session/search_loop.h"
+#include "master/session/session_options.h"
+
+namespace gauntlet::master {
+
+// Thread-safety: one thread, the main one (LocalPool wants it).
+class CampaignServer {
+ public:
+  // What this program is, as workers, events and bundles are told.
+  struct Build {
+    std::string version;
+    std::uint64_t golden_hash = 0;
+  };
+
+  // Campaign, plans and options outlive the server.
+  CampaignServer(CampaignOwnership& campaign, const std::vector<SearchPlan>& plans, const Build& build,
+                 const SessionOptions& options);
+
+  // Takes all the steps below, once. Error: what is stored does not fit the plans (kCorrupt), workers cannot
+  // be served (kInvalidInput, kInUse), a newer master has begun (kInUse), or the store or all workers have
+  // failed (kNoSpace, kIo); whatever was acknowledged to workers is stored.
+  Result<SessionReport> Serve();
+
+ private:
+  Status MakeSearches();
+  Status Listen();
+  Status StartPool();
+  Status RestoreSearches();
+  Status Announce();
+  Result<CampaignEnd> Run();
+  void LetWorkersGo(const Result<CampaignEnd>& end);
+  Result<SessionReport> Report(CampaignEnd end);
+
+  // Every second: looks for newer masters and for who wants this one to stop, and says what goes on.
+  void Publish(const CampaignProgress& progress);
+  void KeepBundle(const Experiment& experiment, const StoredRun& run, const FinishedRun& finished) const;
+  void NoteEvent(const std::string& kind, const std::string& text);
+
+  CampaignOwnership& campaign_;
+  const std::vector<SearchPlan>& plans_;
+  const Build build_;
+  const SessionOptions& options_;
+  const SteadyClock clock_;
+  const TimePoint started_ = clock_.Now();
+  const double cpu_before_;  // s
+  DispatchOptions dispatch_;
+  MasterView view_;
+  BundleContext bundles_;
+  TimePoint next_status_ = started_;
+  std::optional<Error> outdated_;  // a newer master has begun
+  std::uint64_t runs_before_ = 0;
+
+  // From here on in the order in which they are made; they end the other way round.
+  const MasterFiles files_;
+  std::vector<std::unique_ptr<SearchAlgorithm>> searches_;
+  std::unique_ptr<ZmqTransport> transport_;
+  std::unique_ptr<WorkerPool> pool_;  // none: workers come from elsewhere
+  std::unique_ptr<RemoteBackend> backend_;
+  std::deque<SearchDriver> drivers_;
+  std::optional<SearchLoop> loop_;
+};
+
+}  // namespace gauntlet::master
