@@ -1,32 +1,80 @@
-// What a behaviour declares of itself, as rows of the registry: its scenario and the controllers written for
-// it.
+// What a behaviour declares of itself, as rows of the registry: its scenario, and the controllers that are
+// written for it. A scenario never names a controller's class: it is handed a factory from the controller's
+// row.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "base/result.h"
+#include "controllers/common/odometer.h"
+#include "controllers/parameters.h"
 #include "sim/arena/validity.h"
 #include "sim/run_spec.h"
 #include "sim/scenario.h"
 
 namespace gauntlet::controllers {
 
-struct ParameterInfo {
-  std::string_view name;
-  std::string_view unit;  // "m", "m/s", "s", "rad", "" for counts, "bool" for 0/1
-  double default_value = 0.0;
-  double min = 0.0;
-  double max = 0.0;
-  bool integer = false;
-  std::string_view description;  // one line, with the source of the default
+// What robots are told of a lamp.
+struct Lamp {
+  double height = 0.0;     // m above the floor
+  double intensity = 0.0;  // as in ARGoS: it shines with exp(-2 D / intensity) at D m in space
 };
+
+// What a scenario tells a robot's controller before the run; everything else the robot has to sense. What a
+// scenario does not have stays as it is here.
+struct ControllerContext {
+  sim::RobotIndex robot = 0;         // its own number
+  double communication_range = 0.0;  // m, of range-and-bearing
+  double pickup_distance = 0.0;      // m from the source's centre to its own, where it gets an item
+  Lamp nest_lamp = {};               // above the nest
+  bool starts_in_relay = false;      // where items pass in a swarm at work, rather than in the nest
+  std::unique_ptr<Odometer> odometer = nullptr;  // its own motion
+};
+
+// What a scenario has to know of a controller to judge its swarm.
+struct ControllerTraits {
+  bool marks_path = false;  // robots become beacons, so that a run without a path of them failed
+  bool learns_partition_length = false;
+  double handover_reach = 0.0;  // m between centres, up to which two robots may hand an item over
+  double link_range = 0.0;      // m between centres, up to which two robots are one cluster
+};
+
+// A controller with its parameters.
+struct ControllerFactory {
+  std::function<std::unique_ptr<sim::Controller>(ControllerContext context)> create;
+  ControllerTraits traits = {};
+  // Parameters that contradict one another or the arena: the message begins with a rule's name and a colon.
+  // May be empty.
+  std::function<Status(const sim::Arena& arena)> check = nullptr;
+
+  Status Check(const sim::Arena& arena) const { return check ? check(arena) : Ok{}; }
+};
+
+struct ControllerInfo {
+  std::string_view name;
+  std::string_view scenario;  // the scenario it is written for
+  std::string_view description;
+  std::span<const ParameterInfo> parameters;
+  std::function<ControllerFactory(const sim::Parameters& resolved)> make;
+};
+
+// A row whose controller gets its settings from a table, which outlives the row.
+template <typename Settings>
+ControllerInfo ControllerRow(std::string_view name, std::string_view scenario, std::string_view description,
+                             const ParameterTable<Settings>& table,
+                             ControllerFactory (*make)(const Settings& settings)) {
+  return {name, scenario, description, table.infos(),
+          [&table, make](const sim::Parameters& resolved) { return make(table.Read(resolved)); }};
+}
 
 // One of the values that a scenario reports of a run.
 struct MetricInfo {
   std::string_view name;     // "food_window_*" stands for a family, food_window_1, food_window_2...
-  std::string_view unit;     // "m", "s", "deg", "yes/no" for 0/1, "" for counts and ratios
+  std::string_view unit;     // "m", "s", "rad", "yes/no" for 0/1, "" for counts and ratios
   bool may_be_none = false;  // -1 then says that there was nothing to measure
   std::string_view description;
   bool descriptor = false;  // tells how a swarm behaved, so a search may steer by it
@@ -45,13 +93,6 @@ struct SwarmWords {
   bool lost_is_failure = true;        // total failure means that too many were lost, not something of its own
 };
 
-struct ControllerInfo {
-  std::string_view name;
-  std::string_view scenario;  // the scenario it is written for
-  std::string_view description;
-  std::span<const ParameterInfo> parameters;
-};
-
 struct ScenarioInfo {
   std::string_view name;
   std::string_view description;
@@ -65,7 +106,7 @@ struct ScenarioInfo {
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   sim::ArenaRequirements (*requirements)(const sim::Parameters& parameters, const sim::TestCase& test_case);
   // Builds the scenario of a resolved, valid spec.
-  std::unique_ptr<sim::Scenario> (*create)(const sim::RunSpec& spec);
+  std::unique_ptr<sim::Scenario> (*create)(const sim::RunSpec& spec, ControllerFactory controller);
 
   // The longest that a run with these parameters simulates, s; what they do not name has its default.
   double TimeLimit(const sim::Parameters& given) const;

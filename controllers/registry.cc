@@ -46,10 +46,11 @@ std::span<const ScenarioInfo> Scenarios() {
 
 std::span<const ControllerInfo> Controllers() {
   static const std::vector<ControllerInfo> controllers = [] {
-    std::vector<ControllerInfo> all(FlockingControllerInfos().begin(), FlockingControllerInfos().end());
-    all.insert(all.end(), ForagingControllerInfos().begin(), ForagingControllerInfos().end());
-    all.insert(all.end(), PartitioningControllerInfos().begin(), PartitioningControllerInfos().end());
-    all.push_back(LightFlockingControllerInfo());
+    std::vector<ControllerInfo> all;
+    for (const auto& behaviour : {FlockingControllers(), ForagingControllers(), PartitioningControllers(),
+                                  LightFlockingControllers()}) {
+      all.insert(all.end(), behaviour.begin(), behaviour.end());
+    }
     return all;
   }();
   return controllers;
@@ -110,7 +111,7 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
   if (const auto violation = sim::CheckValidity(spec.test_case, requirements)) {
     return InvalidInput(std::string(NameOf(violation->rule)).append(": ").append(violation->message));
   }
-  return scenario->create(resolved);
+  return scenario->create(resolved, controller->make(resolved.controller_parameters));
 }
 
 Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {

@@ -2,13 +2,9 @@
 
 #include <algorithm>
 
-#include "base/number_text.h"
-#include "controllers/common/parameters.h"
-
 namespace gauntlet::controllers {
 namespace {
 
-constexpr int kMaxRobots = 100;  // also the largest value of the parameter `robots`
 constexpr sim::Tick kFoodWindow = 120 * sim::kTicksPerSecond;
 
 }  // namespace
@@ -21,40 +17,18 @@ sim::Vec2 FoodOf(const NestAndFood& settings) {
   return {0.0, settings.nest_food_distance / 2.0};
 }
 
-void ReadNestAndFood(const sim::Parameters& parameters, NestAndFood& settings) {
-  const auto get = [&](const char* name) { return GetParameter(parameters, name); };
-  settings.robots = static_cast<int>(get("robots"));
-  settings.tick_limit = ToTicks(get("time_limit"));
-  settings.nest_radius = get("nest_radius");
-  settings.food_radius = get("food_radius");
-  settings.nest_food_distance = get("nest_food_distance");
-  settings.spawn_radius = get("spawn_radius");
-  settings.communication_range = get("communication_range");
-  settings.pickup = ToTicks(get("pickup_time"));
-  settings.trapped_window = ToTicks(get("trapped_window"));
-  settings.trapped_radius = get("trapped_radius");
-}
-
-sim::ArenaRequirements RequirementsOf(const NestAndFood& settings, const sim::Parameters& parameters) {
+sim::ArenaRequirements RequirementsOf(const NestAndFood& settings) {
   sim::ArenaRequirements requirements;
   requirements.start = NestOf(settings);
   requirements.goal = FoodOf(settings);
-  requirements.clearance = GetParameter(parameters, "clearance");
+  requirements.clearance = settings.clearance;
   return requirements;
 }
 
-Status CheckNestAndFood(const NestAndFood& settings, std::string_view food) {
-  if (settings.robots < 1 || settings.robots > kMaxRobots) {
-    return InvalidInput("swarm-size: " + std::to_string(settings.robots) + " robots; from 1 to " +
-                        std::to_string(kMaxRobots) + " can be tested");
-  }
-  if (settings.nest_food_distance <= settings.nest_radius) {
-    return InvalidInput("nest-and-food: the " + std::string(food) + " is " +
-                        NumberText(settings.nest_food_distance) +
-                        " m from the nest's centre (nest_food_distance), inside the nest (nest_radius " +
-                        NumberText(settings.nest_radius) + " m)");
-  }
-  return Ok{};
+bool StandsInNest(const sim::SensorReadings& readings) {
+  constexpr double kNestGrey = 0.5;  // the floor is nest where it is darker
+  return std::all_of(readings.motor_ground.begin(), readings.motor_ground.end(),
+                     [](double grey) { return grey < kNestGrey; });
 }
 
 std::size_t FoodCount::WindowOf(sim::Tick tick) {

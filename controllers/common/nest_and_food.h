@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "sim/arena/validity.h"
+#include "sim/robot/controller.h"
 #include "sim/run_spec.h"
 
 namespace gauntlet::controllers {
@@ -19,10 +20,12 @@ struct NestAndFood {
   double food_radius = 0.0;          // m; for pictures, and part of the pick-up distance
   double nest_food_distance = 0.0;   // m between the centres, which lie on the y axis, the nest below
   double spawn_radius = 0.0;         // m, of the discs where robots begin
+  double clearance = 0.0;            // m kept free of obstacles around the centres
   double camera_range = 0.0;         // m, half side of the square in which a robot sees food and items
   double communication_range = 0.0;  // m, of range-and-bearing
   double pickup_distance = 0.0;      // m from the food's centre to a robot's
   sim::Tick pickup = 0;              // a robot stops at the food for this long
+  sim::Tick serving_interval = 0;    // from one item to the next
   sim::Tick trapped_window = 0;      // a robot is trapped when it kept within trapped_radius for this long
   double trapped_radius = 0.0;       // m around its mean position
 };
@@ -30,14 +33,12 @@ struct NestAndFood {
 sim::Vec2 NestOf(const NestAndFood& settings);
 sim::Vec2 FoodOf(const NestAndFood& settings);
 
-// Everything but camera_range and pickup_distance, from resolved parameters of these names.
-void ReadNestAndFood(const sim::Parameters& parameters, NestAndFood& settings);
+// A way from the nest to the food, and their clearance.
+sim::ArenaRequirements RequirementsOf(const NestAndFood& settings);
 
-// A way from the nest to the food, and no obstacle nearer to their centres than the parameter `clearance`.
-sim::ArenaRequirements RequirementsOf(const NestAndFood& settings, const sim::Parameters& parameters);
-
-// Errors: "swarm-size", "nest-and-food". `food`: what the scenario calls it.
-Status CheckNestAndFood(const NestAndFood& settings, std::string_view food);
+// Whether a robot stands in the nest: all places that its ground sensor looks at are dark, so the centre
+// between them is nest, because a disc is convex.
+bool StandsInNest(const sim::SensorReadings& readings);
 
 // Items of a run. Allocates in Begin only.
 class FoodCount {

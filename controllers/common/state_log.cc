@@ -10,11 +10,12 @@ void StateLog::Begin(int robots, sim::Tick tick_limit, std::uint8_t state) {
   states_.assign(robots_, state);
 }
 
-std::vector<double> StateLog::MeanRobots(int states) const {
-  std::vector<double> means(static_cast<std::size_t>(states), 0.0);
-  for (const std::uint8_t state : states_) means[state] += 1.0;
-  for (double& mean : means) mean /= ticks();
-  return means;
+void StateLog::AddMeans(std::vector<std::pair<std::string, double>>& metrics) const {
+  std::vector<double> counts(names_.size(), 0.0);
+  for (const std::uint8_t state : states_) counts[state] += 1.0;
+  for (std::size_t state = 0; state < counts.size(); ++state) {
+    metrics.emplace_back("mean_robots_" + std::string(names_[state]), counts[state] / ticks());
+  }
 }
 
 bool StateLog::OccurredInSecondBefore(sim::RobotIndex robot, sim::Tick tick, std::uint8_t state) const {
@@ -24,8 +25,9 @@ bool StateLog::OccurredInSecondBefore(sim::RobotIndex robot, sim::Tick tick, std
   return false;
 }
 
-sim::Annotation StateLog::Line(sim::RobotIndex robot, const std::string& names,
-                               std::optional<std::uint8_t> brief) const {
+sim::Annotation StateLog::Line(sim::RobotIndex robot, std::optional<std::uint8_t> brief) const {
+  std::string names;
+  for (const std::string_view name : names_) names.append(names.empty() ? "" : ",").append(name);
   sim::Annotation line{"states", names, {}, 0.0, -1, {robot}};
   for (sim::Tick tick = 0; tick < ticks(); tick += sim::kTicksPerSecond) {
     const bool short_one = brief && OccurredInSecondBefore(robot, tick, *brief);

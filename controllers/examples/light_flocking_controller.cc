@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "controllers/common/proximity.h"
+#include "controllers/examples/light_flocking_scenario.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -32,7 +33,7 @@ Vec2 FlockingVelocity(std::span<const sim::Blob> blobs, const LightFlockingSetti
   Vec2 sum = Vec2::Zero();
   int count = 0;
   for (const sim::Blob& blob : blobs) {
-    if (blob.color != LightFlockingController::kColor) continue;
+    if (blob.color != kFlockmateColor) continue;
     if (blob.range >= settings.cutoff * settings.target_distance) continue;
     if (blob.range > 0.0) sum += Attraction(blob.range, settings) / blob.range * blob.position;
     ++count;
@@ -59,7 +60,7 @@ sim::DeviceSet LightFlockingController::Devices() const {
 void LightFlockingController::Step(const sim::ControlStep& step) {
   const Vec2 velocity =
       FlockingVelocity(step.readings.blobs, settings_) + LightVelocity(step.readings.light, settings_);
-  step.actuators.beacon = kColor;
+  step.actuators.beacon = kFlockmateColor;
   Drive(velocity, step.actuators);
 }
 

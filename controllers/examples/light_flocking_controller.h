@@ -38,8 +38,6 @@ sim::Vec2 LightVelocity(std::span<const double> readings, const LightFlockingSet
 // Not for sharing between threads.
 class LightFlockingController : public sim::Controller {
  public:
-  static constexpr sim::Color kColor = sim::Color::kRed;
-
   explicit LightFlockingController(const LightFlockingSettings& settings) : settings_(settings) {}
 
   sim::DeviceSet Devices() const override;

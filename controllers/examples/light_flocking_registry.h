@@ -1,16 +1,21 @@
 // The rows of the light flocking example in the registry.
 #pragma once
 
+#include <span>
+
+#include "controllers/behaviour.h"
+#include "controllers/examples/light_flocking_controller.h"
 #include "controllers/examples/light_flocking_scenario.h"
-#include "controllers/registry.h"
 
 namespace gauntlet::controllers {
 
 const ScenarioInfo& LightFlockingScenarioInfo();
-const ControllerInfo& LightFlockingControllerInfo();
+std::span<const ControllerInfo> LightFlockingControllers();
 
-// Settings from resolved parameters.
-LightFlockingScenarioSettings LightFlockingScenarioSettingsFrom(const sim::Parameters& parameters);
-LightFlockingSettings LightFlockingSettingsFrom(const sim::Parameters& parameters);
+const ParameterTable<LightFlockingScenarioSettings>& LightFlockingScenarioParameters();
+const ParameterTable<LightFlockingSettings>& LightFlockingParameters();
+
+// The robots of the example, as its row makes them.
+ControllerFactory MakeLightFlockers(const LightFlockingSettings& settings);
 
 }  // namespace gauntlet::controllers

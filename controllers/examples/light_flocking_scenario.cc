@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "controllers/common/corners.h"
 #include "controllers/examples/light_flocking_metrics.h"
 #include "sim/arena/spawn.h"
 
@@ -23,25 +24,21 @@ std::vector<sim::Vec2> PositionsAt(const sim::Observer& observer, sim::Tick tick
 
 LightFlockingScenario::LightFlockingScenario(const sim::TestCase& test_case,
                                              const LightFlockingScenarioSettings& settings,
-                                             const LightFlockingSettings& robot, std::uint64_t seed)
+                                             ControllerFactory robots, std::uint64_t seed)
     : arena_(test_case),
       settings_(settings),
-      robot_(robot),
+      robots_(std::move(robots)),
       seed_(seed),
-      start_(test_case.side_x / 2.0 - settings.corner_distance,
-             test_case.side_y / 2.0 - settings.corner_distance),
-      light_({.position = -start_, .height = settings.light_height, .intensity = settings.light_intensity}) {
+      start_(CornerToCorner(test_case, settings.corner_distance).start),
+      light_({.position = -start_, .height = settings.light_height, .intensity = settings.light_intensity}),
+      spawn_area_(StartArea(test_case, settings.spawn_side)) {
   settings_.robots = test_case.robots.value_or(settings.robots);
-  const sim::Vec2 corner(test_case.side_x / 2.0, test_case.side_y / 2.0);
-  const sim::Vec2 side(settings.spawn_side, settings.spawn_side);
-  spawn_area_ = test_case.spawn_area.value_or(sim::Rectangle{corner - side, corner});
 }
 
 LightFlockingScenario::LightFlockingScenario(const sim::TestCase& test_case,
                                              const LightFlockingScenarioSettings& settings,
-                                             const LightFlockingSettings& robot,
-                                             std::vector<sim::Pose> start_poses)
-    : LightFlockingScenario(test_case, settings, robot, 0) {
+                                             ControllerFactory robots, std::vector<sim::Pose> start_poses)
+    : LightFlockingScenario(test_case, settings, std::move(robots), 0) {
   given_poses_ = std::move(start_poses);
 }
 
@@ -62,14 +59,16 @@ Result<std::vector<sim::Pose>> LightFlockingScenario::StartPoses() const {
 }
 
 Result<std::vector<sim::RobotSetup>> LightFlockingScenario::CreateSwarm(const sim::Headquarters&) {
+  if (const Status checked = robots_.Check(arena_); !checked.ok()) return checked.error();
   const auto poses = StartPoses();
   if (!poses.ok()) return poses.error();
   std::vector<sim::RobotSetup> swarm;
   for (const sim::Pose& pose : *poses) {
+    const auto robot = static_cast<sim::RobotIndex>(swarm.size());
     swarm.push_back({.pose = pose,
-                     .beacon = LightFlockingController::kColor,
+                     .beacon = kFlockmateColor,
                      .camera_range = settings_.camera_range,
-                     .controller = std::make_unique<LightFlockingController>(robot_)});
+                     .controller = robots_.create({.robot = robot})});
   }
   return swarm;
 }
@@ -90,15 +89,11 @@ sim::Outcome LightFlockingScenario::Evaluate(const sim::Observer& observer) {
   outcome.metrics = {
       {"light_distance", end_distance},
       {"stopped", ShareStopped(late, kStopped)},
-      {"clusters", static_cast<double>(CountClusters(end, arena_, robot_.cutoff * robot_.target_distance,
+      {"clusters", static_cast<double>(CountClusters(end, arena_, robots_.traits.link_range,
                                                      observer.ObstaclesAt(observer.last_tick())))},
   };
   outcome.lost.assign(end.size(), false);
-  const std::vector<sim::Vec2> corners = {spawn_area_.min,
-                                          {spawn_area_.max.x(), spawn_area_.min.y()},
-                                          spawn_area_.max,
-                                          {spawn_area_.min.x(), spawn_area_.max.y()}};
-  outcome.annotations = {{"area", "start of the robots", corners, 0.0, -1, {}},
+  outcome.annotations = {{"area", "start of the robots", CornersOf(spawn_area_), 0.0, -1, {}},
                          {"disc", "light", {light_.position}, 0.1, -1, {}}};
   return outcome;
 }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "controllers/examples/light_flocking_controller.h"
+#include "controllers/behaviour.h"
 #include "sim/scenario.h"
 
 namespace gauntlet::controllers {
@@ -20,6 +20,9 @@ struct LightFlockingScenarioSettings {
   double light_intensity = 0.0;  // of ARGoS' light model
 };
 
+// The light that a robot carries from the start.
+inline constexpr sim::Color kFlockmateColor = sim::Color::kRed;
+
 class LightFlockingScenario : public sim::Scenario {
  public:
   static constexpr double kStopped = 0.02;              // m; who moved less has stopped
@@ -29,10 +32,10 @@ class LightFlockingScenario : public sim::Scenario {
   // `test_case` is valid for the scenario; its number of robots and its spawn area override the settings.
   // `seed` decides the start poses.
   LightFlockingScenario(const sim::TestCase& test_case, const LightFlockingScenarioSettings& settings,
-                        const LightFlockingSettings& robot, std::uint64_t seed);
+                        ControllerFactory robots, std::uint64_t seed);
   // From these start poses instead; for comparisons with recorded swarms.
   LightFlockingScenario(const sim::TestCase& test_case, const LightFlockingScenarioSettings& settings,
-                        const LightFlockingSettings& robot, std::vector<sim::Pose> start_poses);
+                        ControllerFactory robots, std::vector<sim::Pose> start_poses);
 
   const sim::Arena& arena() const override { return arena_; }
   sim::Tick tick_limit() const override { return settings_.tick_limit; }
@@ -48,7 +51,7 @@ class LightFlockingScenario : public sim::Scenario {
 
   sim::Arena arena_;
   LightFlockingScenarioSettings settings_;
-  LightFlockingSettings robot_;
+  ControllerFactory robots_;
   std::uint64_t seed_ = 0;
   sim::Vec2 start_;
   sim::Light light_;

@@ -8,6 +8,7 @@
 #include "base/bits.h"
 #include "controllers/common/proximity.h"
 #include "controllers/common/steering.h"
+#include "controllers/flocking/flocking_scenario.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -16,7 +17,7 @@ namespace {
 using sim::Vec2;
 
 // A proximity ray that passes a beacon nearer than this, within this distance of it, hit that robot's body
-// and not an obstacle (spec 2.3 rule 1). A fixed window of angles would turn touching neighbours, who subtend
+// and not an obstacle. A fixed window of angles would turn touching neighbours, who subtend
 // 60 degrees, into obstacles and freeze pairs.
 constexpr double kBodyMiss = 0.10;          // m from the ray to the beacon
 constexpr double kBodyDistance = 0.30;      // m from centre to centre
@@ -24,7 +25,7 @@ constexpr double kCosFrontOfCatchUp = 0.5;  // of 60 degrees
 constexpr double kNoDirection = 1e-3;       // a shorter sum of unit vectors or of readings points nowhere
 
 bool IsRobot(const sim::Blob& blob) {
-  return blob.color == BirdController::kBirdColor || blob.color == BirdController::kPreyColor;
+  return blob.color == kBirdColor || blob.color == kPreyColor;
 }
 
 // Where a bird wants to go: to the prey, else to the mean position of the visible birds, else nowhere.
@@ -32,13 +33,13 @@ class Goal {
  public:
   explicit Goal(std::span<const sim::Blob> blobs) {
     for (const sim::Blob& blob : blobs) {
-      if (blob.color != BirdController::kPreyColor) continue;
+      if (blob.color != kPreyColor) continue;
       rule_ = BirdRule::kChase;
       sum_ = blob.position;
       return;
     }
     for (const sim::Blob& blob : blobs) {
-      if (blob.color != BirdController::kBirdColor) continue;
+      if (blob.color != kBirdColor) continue;
       rule_ = BirdRule::kFlock;
       sum_ += blob.position;
     }
@@ -157,9 +158,9 @@ void BirdController::Step(const sim::ControlStep& step) {
   const std::span<const sim::Blob> blobs = step.readings.blobs;
   Reactions reactions{settings_.speed, settings_.turn_rate, settings_.straight_within,
                       settings_.turning_speed_factor};
-  if (settings_.catch_up && IsBehind(blobs, settings_.catch_up->distance)) {
-    reactions.speed *= settings_.catch_up->gain;
-    reactions.turn_rate *= settings_.catch_up->gain;
+  if (settings_.catch_up_gain != 1.0 && IsBehind(blobs, settings_.catch_up_distance)) {
+    reactions.speed *= settings_.catch_up_gain;
+    reactions.turn_rate *= settings_.catch_up_gain;
   }
 
   const Goal goal(blobs);

@@ -1,19 +1,11 @@
-// The bird: follows the prey, else its flockmates, by sight alone (thesis 4.3, 4.7.2; spec 2.3, 2.4). The
-// improved bird is the original one with a threshold more.
+// The bird: follows the prey, else its flockmates, by sight alone (thesis 4.3, 4.7.2). The improved bird is
+// the original one with a threshold more.
 #pragma once
-
-#include <optional>
 
 #include "controllers/common/random_walk.h"
 #include "sim/robot/controller.h"
 
 namespace gauntlet::controllers {
-
-// Thesis 4.7.2: a bird whose nearest robot in front is farther than a threshold moves and turns faster.
-struct CatchUp {
-  double distance = 0.0;  // m, d_new
-  double gain = 1.0;      // factor on speed and turn rate
-};
 
 struct BirdSettings {
   double speed = 0.0;                  // m/s, v_b
@@ -24,7 +16,9 @@ struct BirdSettings {
   double obstacle_speed_factor = 0.0;  // forward speed beside an obstacle
   double separation_distance = 0.0;    // m between centres, d_sep
   RandomWalkParameters wander;
-  std::optional<CatchUp> catch_up;  // the improved bird only
+  // Thesis 4.7.2, of the improved bird only: with the nearest robot in front farther than that it hurries.
+  double catch_up_distance = 0.0;  // m, d_new
+  double catch_up_gain = 1.0;      // factor on speed and turn rate; 1 = never hurries
 };
 
 // The rules in falling priority; the first that applies decides, anew in every tick.
@@ -34,9 +28,6 @@ enum class BirdRule { kObstacle, kSeparate, kChase, kFlock, kWander };
 // nothing but the angle of its random walk. Not for sharing between threads.
 class BirdController : public sim::Controller {
  public:
-  static constexpr sim::Color kBirdColor = sim::Color::kRed;
-  static constexpr sim::Color kPreyColor = sim::Color::kBlue;
-
   explicit BirdController(const BirdSettings& settings);
 
   sim::DeviceSet Devices() const override;

@@ -1,8 +1,10 @@
 #include "controllers/flocking/flocking_registry.h"
 
-#include <algorithm>
+#include <array>
+#include <utility>
 
-#include "controllers/common/parameters.h"
+#include "controllers/common/corners.h"
+#include "controllers/flocking/bird_controller.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -10,35 +12,6 @@ namespace {
 
 using sim::kDegree;
 using sim::kPi;
-
-constexpr std::array kScenarioParameters = std::to_array<ParameterInfo>({
-    {"birds", "", 10, 1, 100, true, "birds under test; a test case may override it (thesis 4.6)"},
-    {"min_swarm", "", 5, 1, 100, true, "fewer birds with the prey at the end: total failure (thesis 4.6)"},
-    {"time_limit", "s", 900, 1, 3600, false,
-     "judged then if the prey has not arrived (chosen: the released 200 s are too short for detours)"},
-    {"corner_distance", "m", 0.5, 0.2, 2.9, false,
-     "start and goal of the prey from the walls' centre lines (released test cases)"},
-    {"spawn_side", "m", 1.0, 0.3, 6.0, false,
-     "square in the corner that birds start in (released test cases)"},
-    {"goal_radius", "m", 0.15, 0.02, 1.0, false,
-     "the run ends when the prey is this near to the goal (chosen)"},
-    {"camera_range", "m", 1.6373, 0.2, 10.0, false,
-     "half side of the square a bird sees (ARGoS: 0.2887 m * tan(80 degrees), released test cases)"},
-    {"link_range", "m", 1.6373, 0.2, 10.0, false,
-     "birds farther apart do not follow each other (equal to camera_range, as a disc)"},
-    {"link_memory", "s", 2.0, 0.1, 60.0, false, "a link holds for this long without sight (chosen)"},
-    {"rejoin_time", "s", 5.0, 0.0, 600.0, false, "birds back within this time did not split off (chosen)"},
-    {"split_window", "s", 1.0, 0.2, 20.0, false,
-     "velocities of the clusters are taken over this time around a split (chosen)"},
-    {"prey_speed", "m/s", 0.05, 0.005, 0.3, false, "speed of the prey (calibrated)"},
-    {"prey_turn_rate", "rad/s", 1.5, 0.1, 4.0, false, "largest turn rate of the prey (chosen)"},
-    {"prey_drive_within", "rad", 0.5, 0.01, kPi, false,
-     "the prey turns on the spot with a larger heading error (chosen)"},
-    {"prey_waypoint_radius", "m", 0.10, 0.01, 0.5, false,
-     "the prey passes a waypoint at this distance (chosen)"},
-    {"prey_inflation", "m", 0.15, 0.10, 0.5, false,
-     "the prey plans this far from obstacles, 0.10 where that closes every way (chosen)"},
-});
 
 constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"angular_order", "", false, "agreement of the headings of the birds left, 0 to 1 (thesis 4.5.1)"},
@@ -54,39 +27,6 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"split_speed_ratio", "", true, "slower cluster over faster one around the last split"},
 });
 
-constexpr std::array kBirdParameters = std::to_array<ParameterInfo>({
-    {"bird_speed", "m/s", 0.055, 0.005, 0.3, false,
-     "forward speed (calibrated; released controller at most 0.10)"},
-    {"turn_rate", "rad/s", 45.0 * kDegree, 0.05, 2.0, false, "turn rate of the turning reactions (chosen)"},
-    {"straight_within", "rad", 10.0 * kDegree, 0.0, kPi / 2.0, false,
-     "a smaller bearing means straight on (released controller)"},
-    {"turning_speed_factor", "", 0.5, 0.0, 1.0, false, "forward speed while turning (chosen)"},
-    {"obstacle_distance", "m", 0.10, 0.005, 0.10, false,
-     "obstacles nearer than this to the body are avoided (ARGoS: range of the proximity ring)"},
-    {"obstacle_speed_factor", "", 0.5, 0.0, 1.0, false,
-     "forward speed beside an obstacle (thesis 4.7.1; chosen)"},
-    {"separation_distance", "m", 0.25, 0.18, 1.0, false,
-     "robots nearer than this are turned away from (chosen)"},
-    {"wander_turn_probability", "", 0.05, 0.0, 1.0, false,
-     "chance of a new heading per tick when nobody is visible (Buchanan's dps code)"},
-    {"wander_turn_limit", "rad", 115.0 * kDegree, 0.0, kPi, false,
-     "largest change of heading of the random walk (Buchanan's dps code)"},
-});
-
-constexpr std::array kCatchUpParameters = std::to_array<ParameterInfo>({
-    {"catch_up_distance", "m", 0.3, 0.18, 3.0, false,
-     "d_new: a bird hurries when the nearest robot in front is farther (thesis 4.7.2; calibrated)"},
-    {"catch_up_gain", "", 2.0, 1.0, 3.0, false,
-     "factor on speed and turn rate when hurrying (thesis 4.7.2; calibrated)"},
-});
-
-constexpr auto kImprovedBirdParameters = [] {
-  std::array<ParameterInfo, kBirdParameters.size() + kCatchUpParameters.size()> all;
-  std::copy(kCatchUpParameters.begin(), kCatchUpParameters.end(),
-            std::copy(kBirdParameters.begin(), kBirdParameters.end(), all.begin()));
-  return all;
-}();
-
 const std::vector<FailureType>& FailureTypes() {
   static const std::vector<FailureType> types = [] {
     std::vector<FailureType> all;
@@ -97,57 +37,98 @@ const std::vector<FailureType>& FailureTypes() {
 }
 
 sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& test_case) {
-  const double corner_distance = GetParameter(parameters, "corner_distance");
-  sim::ArenaRequirements requirements;
-  requirements.start = FlockingStart(test_case, corner_distance);
-  requirements.goal = FlockingGoal(test_case, corner_distance);
-  return requirements;
+  return CornerToCorner(test_case, FlockingParameters().Read(parameters).corner_distance);
 }
 
-std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec) {
-  return std::make_unique<FlockingScenario>(spec.test_case, FlockingSettingsFrom(spec.scenario_parameters),
-                                            BirdSettingsFrom(spec.controller_parameters), spec.seed);
+std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec, ControllerFactory controller) {
+  return std::make_unique<FlockingScenario>(
+      spec.test_case, FlockingParameters().Read(spec.scenario_parameters), std::move(controller), spec.seed);
+}
+
+ControllerFactory MakeBirds(const BirdSettings& settings) {
+  return {[settings](const ControllerContext&) { return std::make_unique<BirdController>(settings); }};
 }
 
 }  // namespace
 
-FlockingSettings FlockingSettingsFrom(const sim::Parameters& parameters) {
-  FlockingSettings settings;
-  settings.birds = static_cast<int>(GetParameter(parameters, "birds"));
-  settings.min_swarm = static_cast<int>(GetParameter(parameters, "min_swarm"));
-  settings.tick_limit = ToTicks(GetParameter(parameters, "time_limit"));
-  settings.corner_distance = GetParameter(parameters, "corner_distance");
-  settings.spawn_side = GetParameter(parameters, "spawn_side");
-  settings.goal_radius = GetParameter(parameters, "goal_radius");
-  settings.camera_range = GetParameter(parameters, "camera_range");
-  settings.prey.speed = GetParameter(parameters, "prey_speed");
-  settings.prey.turn_rate = GetParameter(parameters, "prey_turn_rate");
-  settings.prey.drive_within = GetParameter(parameters, "prey_drive_within");
-  settings.prey.waypoint_radius = GetParameter(parameters, "prey_waypoint_radius");
-  settings.prey.inflation = GetParameter(parameters, "prey_inflation");
-  settings.split.link.range = GetParameter(parameters, "link_range");
-  settings.split.link.memory = ToTicks(GetParameter(parameters, "link_memory"));
-  settings.split.rejoin = ToTicks(GetParameter(parameters, "rejoin_time"));
-  settings.split.half_window = ToTicks(GetParameter(parameters, "split_window") / 2.0);
-  return settings;
+const ParameterTable<FlockingSettings>& FlockingParameters() {
+  using S = FlockingSettings;
+  static const ParameterTable<S> table({
+      {"birds", "", 10, 1, 100, Into<&S::birds>(),
+       "birds under test; a test case may override it (thesis 4.6)"},
+      {"min_swarm", "", 5, 1, 100, Into<&S::min_swarm>(),
+       "fewer birds with the prey at the end: total failure (thesis 4.6)"},
+      {"time_limit", "s", 900, 1, 3600, IntoTicks<&S::tick_limit>(),
+       "judged then if the prey has not arrived (chosen: the released 200 s are too short for detours)"},
+      {"corner_distance", "m", 0.5, 0.2, 2.9, Into<&S::corner_distance>(),
+       "start and goal of the prey from the walls' centre lines (released test cases)"},
+      {"spawn_side", "m", 1.0, 0.3, 6.0, Into<&S::spawn_side>(),
+       "square in the corner that birds start in (released test cases)"},
+      {"goal_radius", "m", 0.15, 0.02, 1.0, Into<&S::goal_radius>(),
+       "the run ends when the prey is this near to the goal (chosen)"},
+      {"camera_range", "m", 1.6373, 0.2, 10.0, Into<&S::camera_range>(),
+       "half side of the square a bird sees (ARGoS: 0.2887 m * tan(80 degrees), released test cases)"},
+      {"link_range", "m", 1.6373, 0.2, 10.0, Into<&S::split, &SplitRule::link, &LinkRule::range>(),
+       "birds farther apart do not follow each other (equal to camera_range, as a disc)"},
+      {"link_memory", "s", 2.0, 0.1, 60.0, IntoTicks<&S::split, &SplitRule::link, &LinkRule::memory>(),
+       "a link holds for this long without sight (chosen)"},
+      {"rejoin_time", "s", 5.0, 0.0, 600.0, IntoTicks<&S::split, &SplitRule::rejoin>(),
+       "birds back within this time did not split off (chosen)"},
+      {"split_window", "s", 1.0, 0.2, 20.0,
+       Fill<S>{[](auto& settings, double time) { settings.split.half_window = ToTicks(time / 2.0); }},
+       "velocities of the clusters are taken over this time around a split (chosen)"},
+      {"prey_speed", "m/s", 0.05, 0.005, 0.3, Into<&S::prey, &PreySettings::speed>(),
+       "speed of the prey (calibrated)"},
+      {"prey_turn_rate", "rad/s", 1.5, 0.1, 4.0, Into<&S::prey, &PreySettings::turn_rate>(),
+       "largest turn rate of the prey (chosen)"},
+      {"prey_drive_within", "rad", 0.5, 0.01, kPi, Into<&S::prey, &PreySettings::drive_within>(),
+       "the prey turns on the spot with a larger heading error (chosen)"},
+      {"prey_waypoint_radius", "m", 0.10, 0.01, 0.5, Into<&S::prey, &PreySettings::waypoint_radius>(),
+       "the prey passes a waypoint at this distance (chosen)"},
+      {"prey_inflation", "m", 0.15, 0.10, 0.5, Into<&S::prey, &PreySettings::inflation>(),
+       "the prey plans this far from obstacles, 0.10 where that closes every way (chosen)"},
+  });
+  return table;
 }
 
-BirdSettings BirdSettingsFrom(const sim::Parameters& parameters) {
-  BirdSettings settings;
-  settings.speed = GetParameter(parameters, "bird_speed");
-  settings.turn_rate = GetParameter(parameters, "turn_rate");
-  settings.straight_within = GetParameter(parameters, "straight_within");
-  settings.turning_speed_factor = GetParameter(parameters, "turning_speed_factor");
-  settings.obstacle_distance = GetParameter(parameters, "obstacle_distance");
-  settings.obstacle_speed_factor = GetParameter(parameters, "obstacle_speed_factor");
-  settings.separation_distance = GetParameter(parameters, "separation_distance");
-  settings.wander.turn_probability = GetParameter(parameters, "wander_turn_probability");
-  settings.wander.turn_limit = GetParameter(parameters, "wander_turn_limit");
-  if (parameters.contains("catch_up_gain")) {
-    settings.catch_up =
-        CatchUp{GetParameter(parameters, "catch_up_distance"), GetParameter(parameters, "catch_up_gain")};
-  }
-  return settings;
+const ParameterTable<BirdSettings>& BirdParameters() {
+  using S = BirdSettings;
+  static const ParameterTable<S> table({
+      {"bird_speed", "m/s", 0.055, 0.005, 0.3, Into<&S::speed>(),
+       "forward speed (calibrated; released controller at most 0.10)"},
+      {"turn_rate", "rad/s", 45.0 * kDegree, 0.05, 2.0, Into<&S::turn_rate>(),
+       "turn rate of the turning reactions (chosen)"},
+      {"straight_within", "rad", 10.0 * kDegree, 0.0, kPi / 2.0, Into<&S::straight_within>(),
+       "a smaller bearing means straight on (released controller)"},
+      {"turning_speed_factor", "", 0.5, 0.0, 1.0, Into<&S::turning_speed_factor>(),
+       "forward speed while turning (chosen)"},
+      {"obstacle_distance", "m", 0.10, 0.005, 0.10, Into<&S::obstacle_distance>(),
+       "obstacles nearer than this to the body are avoided (ARGoS: range of the proximity ring)"},
+      {"obstacle_speed_factor", "", 0.5, 0.0, 1.0, Into<&S::obstacle_speed_factor>(),
+       "forward speed beside an obstacle (thesis 4.7.1; chosen)"},
+      {"separation_distance", "m", 0.25, 0.18, 1.0, Into<&S::separation_distance>(),
+       "robots nearer than this are turned away from (chosen)"},
+      {"wander_turn_probability", "", 0.05, 0.0, 1.0,
+       Into<&S::wander, &RandomWalkParameters::turn_probability>(),
+       "chance of a new heading per tick when nobody is visible (Buchanan's dps code)"},
+      {"wander_turn_limit", "rad", 115.0 * kDegree, 0.0, kPi,
+       Into<&S::wander, &RandomWalkParameters::turn_limit>(),
+       "largest change of heading of the random walk (Buchanan's dps code)"},
+  });
+  return table;
+}
+
+const ParameterTable<BirdSettings>& ImprovedBirdParameters() {
+  using S = BirdSettings;
+  static const ParameterTable<S> table(
+      BirdParameters(),
+      {
+          {"catch_up_distance", "m", 0.3, 0.18, 3.0, Into<&S::catch_up_distance>(),
+           "d_new: a bird hurries when the nearest robot in front is farther (thesis 4.7.2; calibrated)"},
+          {"catch_up_gain", "", 2.0, 1.0, 3.0, Into<&S::catch_up_gain>(),
+           "factor on speed and turn rate when hurrying (thesis 4.7.2; calibrated)"},
+      });
+  return table;
 }
 
 const ScenarioInfo& FlockingScenarioInfo() {
@@ -156,7 +137,7 @@ const ScenarioInfo& FlockingScenarioInfo() {
       .description = "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
       .default_controller = "flocking",
       .words = {.member = "bird"},
-      .parameters = kScenarioParameters,
+      .parameters = FlockingParameters().infos(),
       .time_limit = "time_limit",
       .metrics = kMetrics,
       .failure_types = FailureTypes(),
@@ -167,14 +148,16 @@ const ScenarioInfo& FlockingScenarioInfo() {
   return info;
 }
 
-const std::array<ControllerInfo, 2>& FlockingControllerInfos() {
-  static const std::array<ControllerInfo, 2> infos = {{
-      {"flocking", "flocking", "the bird of thesis 4.3: sees the prey or its flockmates, avoids obstacles",
-       kBirdParameters},
-      {"flocking-improved", "flocking", "the bird of thesis 4.7.2: hurries when the robots in front are far",
-       kImprovedBirdParameters},
-  }};
-  return infos;
+std::span<const ControllerInfo> FlockingControllers() {
+  static const std::array rows = {
+      ControllerRow("flocking", "flocking",
+                    "the bird of thesis 4.3: sees the prey or its flockmates, avoids obstacles",
+                    BirdParameters(), MakeBirds),
+      ControllerRow("flocking-improved", "flocking",
+                    "the bird of thesis 4.7.2: hurries when the robots in front are far",
+                    ImprovedBirdParameters(), MakeBirds),
+  };
+  return rows;
 }
 
 }  // namespace gauntlet::controllers

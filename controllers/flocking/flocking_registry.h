@@ -1,19 +1,21 @@
-// The flocking rows of the registry: parameters with units, defaults, ranges and sources.
+// The flocking rows of the registry: the scenario, its birds, and their parameters with units, defaults,
+// ranges and sources.
 #pragma once
 
-#include <array>
+#include <span>
 
+#include "controllers/behaviour.h"
+#include "controllers/flocking/bird_controller.h"
 #include "controllers/flocking/flocking_scenario.h"
-#include "controllers/registry.h"
 
 namespace gauntlet::controllers {
 
 const ScenarioInfo& FlockingScenarioInfo();
 // The original bird of thesis 4.3 and the improved one of 4.7.2.
-const std::array<ControllerInfo, 2>& FlockingControllerInfos();
+std::span<const ControllerInfo> FlockingControllers();
 
-// Settings from resolved parameters.
-FlockingSettings FlockingSettingsFrom(const sim::Parameters& parameters);
-BirdSettings BirdSettingsFrom(const sim::Parameters& parameters);
+const ParameterTable<FlockingSettings>& FlockingParameters();
+const ParameterTable<BirdSettings>& BirdParameters();
+const ParameterTable<BirdSettings>& ImprovedBirdParameters();
 
 }  // namespace gauntlet::controllers

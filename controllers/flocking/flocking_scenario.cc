@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "controllers/common/corners.h"
 #include "controllers/flocking/flocking_metrics.h"
 #include "sim/arena/spawn.h"
 #include "sim/geometry/trigonometry.h"
@@ -29,29 +30,20 @@ sim::Vec2 MeanPosition(const sim::Observer& observer, const std::vector<sim::Rob
 
 }  // namespace
 
-sim::Vec2 FlockingStart(const sim::TestCase& test_case, double corner_distance) {
-  return {test_case.side_x / 2.0 - corner_distance, test_case.side_y / 2.0 - corner_distance};
-}
-
-sim::Vec2 FlockingGoal(const sim::TestCase& test_case, double corner_distance) {
-  return -FlockingStart(test_case, corner_distance);
-}
-
 FlockingScenario::FlockingScenario(const sim::TestCase& test_case, const FlockingSettings& settings,
-                                   const BirdSettings& bird, std::uint64_t seed)
+                                   ControllerFactory birds, std::uint64_t seed)
     : arena_(test_case),
       settings_(settings),
-      bird_(bird),
+      birds_(std::move(birds)),
       seed_(seed),
-      start_(FlockingStart(test_case, settings.corner_distance)),
-      goal_(FlockingGoal(test_case, settings.corner_distance)) {
+      start_(CornerToCorner(test_case, settings.corner_distance).start),
+      goal_(-start_),
+      spawn_area_(StartArea(test_case, settings.spawn_side)) {
   settings_.birds = test_case.robots.value_or(settings.birds);
-  const sim::Vec2 corner(test_case.side_x / 2.0, test_case.side_y / 2.0);
-  const sim::Vec2 side(settings.spawn_side, settings.spawn_side);
-  spawn_area_ = test_case.spawn_area.value_or(sim::Rectangle{corner - side, corner});
 }
 
 Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::Headquarters& headquarters) {
+  if (const Status checked = birds_.Check(arena_); !checked.ok()) return checked.error();
   if (settings_.birds < settings_.min_swarm || settings_.birds > kMaxBirds) {
     return InvalidInput("swarm-size: " + std::to_string(settings_.birds) +
                         " birds; from min_swarm = " + std::to_string(settings_.min_swarm) + " to " +
@@ -76,11 +68,11 @@ Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::He
   std::vector<sim::RobotSetup> swarm;
   swarm.reserve(static_cast<std::size_t>(settings_.birds) + 1);
   for (const sim::Pose& pose : *poses) {
-    swarm.push_back(
-        {pose, BirdController::kBirdColor, settings_.camera_range, std::make_unique<BirdController>(bird_)});
+    const auto bird = static_cast<sim::RobotIndex>(swarm.size());
+    swarm.push_back({pose, kBirdColor, settings_.camera_range, birds_.create({.robot = bird})});
   }
   const sim::Pose prey_pose{start_, sim::AngleOf(goal_ - start_)};
-  swarm.push_back({prey_pose, BirdController::kPreyColor, 0.0,
+  swarm.push_back({prey_pose, kPreyColor, 0.0,
                    std::make_unique<PreyController>(headquarters, prey(), prey_path_, settings_.prey)});
   return swarm;
 }
@@ -111,12 +103,8 @@ sim::Outcome FlockingScenario::Evaluate(const sim::Observer& observer) {
   outcome.fitness = FlockingFitness(order, remaining, settings_.birds, settings_.min_swarm);
   outcome.failure.total = remaining < settings_.min_swarm;
 
-  const std::vector<sim::Vec2> spawn_corners = {spawn_area_.min,
-                                                {spawn_area_.max.x(), spawn_area_.min.y()},
-                                                spawn_area_.max,
-                                                {spawn_area_.min.x(), spawn_area_.max.y()}};
   outcome.annotations = {
-      {"area", "start of the birds", spawn_corners, 0.0, -1, {}},
+      {"area", "start of the birds", CornersOf(spawn_area_), 0.0, -1, {}},
       {"path", "planned path of the prey", prey_path_, 0.0, -1, {}},
       {"disc", "goal", {goal_}, settings_.goal_radius, -1, {}},
   };

@@ -1,14 +1,15 @@
-// The flocking scenario (thesis 4.1; spec 2.1): birds and one prey start in the corner (+,+), the prey walks
+// The flocking scenario (thesis 4.1): birds and one prey start in the corner (+,+), the prey walks
 // to the corner (-,-), the birds follow it without losing anyone.
 //
-// Robot order: birds 0 .. n-1, then the prey as robot n.
+// The birds are those of the controller under test; the prey belongs to the scenario. Robot order: birds 0 ..
+// n-1, then the prey as robot n.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "controllers/flocking/bird_controller.h"
+#include "controllers/behaviour.h"
 #include "controllers/flocking/failure_classifier.h"
 #include "controllers/flocking/prey_controller.h"
 #include "sim/scenario.h"
@@ -27,14 +28,15 @@ struct FlockingSettings {
   SplitRule split;
 };
 
-sim::Vec2 FlockingStart(const sim::TestCase& test_case, double corner_distance);
-sim::Vec2 FlockingGoal(const sim::TestCase& test_case, double corner_distance);
+// The lights that robots carry: what a bird's camera tells it.
+inline constexpr sim::Color kBirdColor = sim::Color::kRed;
+inline constexpr sim::Color kPreyColor = sim::Color::kBlue;
 
 class FlockingScenario : public sim::Scenario {
  public:
   // `test_case` is valid for the requirements of the scenario; its number of robots and its spawn area
   // override the settings. `seed` decides the start poses.
-  FlockingScenario(const sim::TestCase& test_case, const FlockingSettings& settings, const BirdSettings& bird,
+  FlockingScenario(const sim::TestCase& test_case, const FlockingSettings& settings, ControllerFactory birds,
                    std::uint64_t seed);
 
   const sim::Arena& arena() const override { return arena_; }
@@ -49,7 +51,7 @@ class FlockingScenario : public sim::Scenario {
 
   sim::Arena arena_;
   FlockingSettings settings_;
-  BirdSettings bird_;
+  ControllerFactory birds_;
   std::uint64_t seed_;
   sim::Vec2 start_;
   sim::Vec2 goal_;

@@ -5,7 +5,7 @@
 
 #include "base/check.h"
 #include "controllers/common/steering.h"
-#include "controllers/flocking/bird_controller.h"
+#include "controllers/flocking/flocking_scenario.h"
 #include "sim/arena/path_planner.h"
 #include "sim/geometry/trigonometry.h"
 
@@ -42,7 +42,7 @@ void PreyController::Step(const sim::ControlStep& step) {
     const double bearing = sim::WrapAngle(sim::AngleOf(path_[next_] - pose.position) - pose.heading);
     command = TurnThenDrive(bearing, settings_.speed, settings_.turn_rate, settings_.drive_within);
   }
-  step.actuators.beacon = BirdController::kPreyColor;
+  step.actuators.beacon = kPreyColor;
   step.actuators.Drive(command.forward, command.turn);
 }
 

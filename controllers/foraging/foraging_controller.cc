@@ -2,14 +2,22 @@
 
 #include <algorithm>
 
+#include "controllers/common/nest_and_food.h"
+#include "controllers/foraging/foraging_scenario.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
 
 using sim::Device;
 
-ForagingController::ForagingController(const ForagerSettings& settings)
-    : settings_(settings), walk_(settings.wander), turn_aside_(settings.avoidance) {}
+ForagingController::ForagingController(const ForagerSettings& settings, const ControllerContext& context)
+    : settings_(settings),
+      pickup_distance_(context.pickup_distance),
+      communication_range_(context.communication_range),
+      walk_(settings.wander),
+      turn_aside_(settings.avoidance) {
+  if (settings_.beacons) settings_.beacons->pheromone.speed = settings_.speed;
+}
 
 sim::DeviceSet ForagingController::Devices() const {
   return Device::kWheels | Device::kProximity | Device::kOmnidirectionalCamera | Device::kRangeAndBearing |
@@ -62,9 +70,7 @@ ForagingController::View ForagingController::Look(const sim::SensorReadings& rea
     view.nest_beacon.reset();
     view.food_beacon.reset();
   }
-  // All places that the sensor looks at are nest: then the centre between them is, because a disc is convex.
-  view.in_nest = std::all_of(readings.motor_ground.begin(), readings.motor_ground.end(),
-                             [](double grey) { return grey < kNestGrey; });
+  view.in_nest = StandsInNest(readings);
   view.carrying = readings.holding_item;
   return view;
 }
@@ -87,7 +93,7 @@ void ForagingController::KeepPheromone(const View& view, std::span<const sim::Me
     Pheromone& level = said.carrying ? to_food_ : to_nest_;
     level.Lay(LaidStaleness(said.first, message.range, rules.pheromone));
   }
-  if (view.nest) to_nest_.Set(NestStaleness(view.nest->range, rules.communication_range));
+  if (view.nest) to_nest_.Set(NestStaleness(view.nest->range, communication_range_));
 }
 
 // Whether this robot becomes a beacon now. By chance, because nobody sees another one's decision of the same
@@ -178,7 +184,7 @@ void ForagingController::ChangeState(const View& view, sim::RandomStream& random
 }
 
 bool ForagingController::AtFood(const View& view) const {
-  return state_ == ForagingState::kGathering && view.food && view.food->range <= settings_.pickup_distance;
+  return state_ == ForagingState::kGathering && view.food && view.food->range <= pickup_distance_;
 }
 
 DriveCommand ForagingController::Move(const View& view, const sim::ControlStep& step) {

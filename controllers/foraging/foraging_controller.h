@@ -1,4 +1,4 @@
-// The foraging robot (thesis 2.4.2.1, 5.2.1, 5.5.2; spec 3.2 to 3.5): searches for food, takes an item,
+// The foraging robot (thesis 2.4.2.1, 5.2.1, 5.5.2): searches for food, takes an item,
 // brings it to the nest; some robots stop as beacons that keep virtual pheromone for the others. Four
 // variants differ in settings only: basic (no pheromone), VP, VP with a random side, improved VP (potential
 // field).
@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "controllers/behaviour.h"
 #include "controllers/common/potential_field.h"
 #include "controllers/common/random_walk.h"
 #include "controllers/common/steering.h"
@@ -20,10 +21,9 @@ namespace gauntlet::controllers {
 // Rules about beacons; the basic algorithm has none.
 struct BeaconSettings {
   PheromoneSettings pheromone;
-  double communication_range = 0.0;  // m, of range-and-bearing
-  double follow_staleness = 0.0;     // Following needs a level towards the food above exp(-this)
-  double home_staleness = 0.0;       // F-Homing needs a level towards the nest above exp(-this)
-  double reached_distance = 0.0;     // m between centres: a beacon is reached
+  double follow_staleness = 0.0;  // Following needs a level towards the food above exp(-this)
+  double home_staleness = 0.0;    // F-Homing needs a level towards the nest above exp(-this)
+  double reached_distance = 0.0;  // m between centres: a beacon is reached
   sim::Tick bar_ticks = 0;     // no following of that kind for this long after a beacon was reached in vain
   double become_chance = 0.0;  // per tick, when fewer than two beacons are in range
   double leave_chance = 0.0;   // per tick, when more than two are
@@ -35,7 +35,6 @@ struct ForagerSettings {
   RandomWalkParameters wander;
   TurnAsideSettings avoidance;
   std::optional<PotentialFieldSettings> field;  // improved VP: how it avoids with a target in view
-  double pickup_distance = 0.0;                 // m from the food's centre: stops and waits for an item
   sim::Tick food_memory = 0;                    // Gathering ends when the food was out of sight for longer
   std::optional<BeaconSettings> beacons;
 };
@@ -45,11 +44,7 @@ struct ForagerSettings {
 // threads.
 class ForagingController : public sim::Controller {
  public:
-  static constexpr sim::Color kFoodColor = sim::Color::kGreen;
-  // The floor is nest where it is darker than this.
-  static constexpr double kNestGrey = 0.5;
-
-  explicit ForagingController(const ForagerSettings& settings);
+  ForagingController(const ForagerSettings& settings, const ControllerContext& context);
 
   sim::DeviceSet Devices() const override;
   void Step(const sim::ControlStep& step) override;
@@ -91,6 +86,8 @@ class ForagingController : public sim::Controller {
   RadioMessage Say(const View& view) const;
 
   ForagerSettings settings_;
+  double pickup_distance_;      // m from the food's centre: stops and waits for an item
+  double communication_range_;  // m
   RandomWalk walk_;
   TurnAside turn_aside_;
   ForagingState state_ = ForagingState::kWandering;

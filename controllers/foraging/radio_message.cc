@@ -21,26 +21,6 @@ float Get(const sim::Payload& payload, std::size_t at) {
 
 }  // namespace
 
-std::string_view NameOf(ForagingState state) {
-  switch (state) {
-    case ForagingState::kWandering:
-      return "wandering";
-    case ForagingState::kFollowing:
-      return "following";
-    case ForagingState::kGathering:
-      return "gathering";
-    case ForagingState::kHoming:
-      return "homing";
-    case ForagingState::kFollowingHome:
-      return "f-homing";
-    case ForagingState::kDropping:
-      return "dropping";
-    case ForagingState::kBeacon:
-      return "beacon";
-  }
-  return "unknown";
-}
-
 sim::Payload Encode(const RadioMessage& message) {
   sim::Payload payload{};
   if (message.sender == RadioMessage::Sender::kNobody) return payload;

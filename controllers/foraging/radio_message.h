@@ -8,6 +8,7 @@
 //   the nest:      0, 0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -26,8 +27,9 @@ enum class ForagingState : std::uint8_t {
   kDropping,
   kBeacon,
 };
-inline constexpr int kForagingStates = 7;
-std::string_view NameOf(ForagingState state);
+inline constexpr std::array<std::string_view, 7> kForagingStateNames = {
+    "wandering", "following", "gathering", "homing", "f-homing", "dropping", "beacon"};
+inline constexpr int kForagingStates = kForagingStateNames.size();
 
 struct RadioMessage {
   enum class Sender : std::uint8_t { kNobody, kRobot, kNest };

@@ -11,10 +11,13 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 constexpr double kDegree = sim::kDegree;
-// The side on which the obstacle is kept (spec 4.4).
+// The side on which the obstacle is kept.
 constexpr double kSideFrom = -130.0 * kDegree;
 constexpr double kSideTo = -15.0 * kDegree;
-constexpr double kBodyMargin = 0.02;  // m: a ray that ends this near to a robot's edge ended at the robot
+constexpr double kScannerRange = 0.26;  // m beyond the body, the short range (ARGoS)
+constexpr double kWallSpeed = 0.9;      // share of the speed along an obstacle
+constexpr double kLostSpeed = 0.6;      // share of the speed round its end
+constexpr double kBodyMargin = 0.02;    // m: a ray that ends this near to a robot's edge ended at the robot
 
 struct Window {
   double middle;  // rad
@@ -72,7 +75,7 @@ std::optional<DriveCommand> BugWalk::Next(const BugView& view) {
 bool BugWalk::WayIsClear(const BugView& view) const {
   if (view.scan.empty()) return false;  // the scanner has only just been switched on
   const Window way = {view.goal_bearing, settings_.goal_angle};
-  const double reach = std::min(settings_.scanner_range, view.goal_distance - sim::foot_bot::kRadius);
+  const double reach = std::min(kScannerRange, view.goal_distance - sim::foot_bot::kRadius);
   return NearestByProximity(view.proximity, way) > reach && NearestByScanner(view, way) > reach;
 }
 
@@ -81,10 +84,10 @@ DriveCommand BugWalk::Follow(const BugView& view) const {
   const bool blocked = NearestByProximity(view.proximity, front) < settings_.front_distance;
   if (blocked || view.scan.empty()) return {0.0, settings_.turn_rate};
   const double wall = std::min(NearestByProximity(view.proximity, kSide), NearestByScanner(view, kSide));
-  if (wall > settings_.scanner_range) return {settings_.lost_speed, -settings_.lost_turn};
+  if (wall > kScannerRange) return {kLostSpeed * settings_.speed, -settings_.lost_turn};
   const double turn = std::clamp(settings_.wall_gain * (settings_.wall_distance - wall), -settings_.wall_turn,
                                  settings_.wall_turn);
-  return {settings_.wall_speed, turn};
+  return {kWallSpeed * settings_.speed, turn};
 }
 
 }  // namespace gauntlet::controllers

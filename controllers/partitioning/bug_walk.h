@@ -21,13 +21,10 @@ struct BugSettings {
   double wall_distance = 0.0;   // m beyond the body, kept to the obstacle on the right
   double wall_gain = 0.0;       // rad/s per m
   double wall_turn = 0.0;       // rad/s, limit of that
-  double wall_speed = 0.0;      // m/s along the obstacle
   double front_angle = 0.0;     // rad to either side of the heading
   double front_distance = 0.0;  // m: something nearer in front: turns left on the spot
   double turn_rate = 0.0;       // rad/s, on the spot
-  double lost_speed = 0.0;      // m/s, round a corner
   double lost_turn = 0.0;       // rad/s, round a corner
-  double scanner_range = 0.0;   // m beyond the body
   sim::Tick clear_ticks = 0;    // the way must be seen clear for this long before it leaves
 };
 

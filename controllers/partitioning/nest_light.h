@@ -4,15 +4,10 @@
 #include <array>
 #include <optional>
 
+#include "controllers/behaviour.h"
 #include "sim/robot/foot_bot.h"
 
 namespace gauntlet::controllers {
-
-// What robots are told of the lamp.
-struct Lamp {
-  double height = 0.0;     // m above the floor
-  double intensity = 0.0;  // as in ARGoS: it shines with exp(-2 D / intensity) at D m in space
-};
 
 struct NestDirection {
   double bearing = 0.0;   // rad from the heading

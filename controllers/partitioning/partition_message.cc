@@ -5,22 +5,6 @@
 
 namespace gauntlet::controllers {
 
-std::string_view NameOf(PartitioningState state) {
-  switch (state) {
-    case PartitioningState::kExplore:
-      return "explore";
-    case PartitioningState::kGoToNest:
-      return "go-to-nest";
-    case PartitioningState::kWaitForTransfer:
-      return "wait-for-transfer";
-    case PartitioningState::kGoToSource:
-      return "go-to-source";
-    case PartitioningState::kNeighbourhood:
-      return "neighbourhood";
-  }
-  return "unknown";
-}
-
 sim::Payload Encode(const PartitionMessage& message) {
   sim::Payload payload{};
   if (!message.from_robot) return payload;

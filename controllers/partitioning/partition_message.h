@@ -5,6 +5,7 @@
 // precision, little endian; no robot listens to it, the scenario records it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -20,8 +21,9 @@ enum class PartitioningState : std::uint8_t {
   kGoToSource,     // Go to Source Position Estimate
   kNeighbourhood,  // Neighbourhood Exploration
 };
-inline constexpr int kPartitioningStates = 5;
-std::string_view NameOf(PartitioningState state);
+inline constexpr std::array<std::string_view, 5> kPartitioningStateNames = {
+    "explore", "go-to-nest", "wait-for-transfer", "go-to-source", "neighbourhood"};
+inline constexpr int kPartitioningStates = kPartitioningStateNames.size();
 
 // Steps of a hand-over, see handover.h.
 enum class HandoverStep : std::uint8_t {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "controllers/common/nest_and_food.h"
 #include "controllers/common/potential_field.h"
+#include "controllers/partitioning/partitioning_scenario.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -21,19 +23,27 @@ double Length(const sim::Vec2& v) {
   return std::sqrt(v.dot(v));
 }
 
+BugSettings BugOf(const PartitionerSettings& settings) {
+  BugSettings bug = settings.bug.value_or(BugSettings{});
+  bug.speed = settings.speed;
+  bug.turn_rate = settings.steering.turn_rate;
+  return bug;
+}
+
 }  // namespace
 
-PartitioningController::PartitioningController(const PartitionerSettings& settings, std::uint8_t self,
-                                               PartitioningState state, std::unique_ptr<Odometer> odometer)
+PartitioningController::PartitioningController(const PartitionerSettings& settings, ControllerContext context)
     : settings_(settings),
-      self_(self),
-      odometer_(std::move(odometer)),
+      self_(static_cast<std::uint8_t>(context.robot)),
+      pickup_distance_(context.pickup_distance),
+      lamp_(context.nest_lamp),
+      odometer_(std::move(context.odometer)),
       walk_(settings.wander),
-      bug_(settings.bug.value_or(BugSettings{})),
-      giver_(settings.handover, self),
-      receiver_(settings.handover, self),
+      bug_(BugOf(settings)),
+      giver_(settings.handover, self_),
+      receiver_(settings.handover, self_),
       length_(settings.length),
-      state_(state),
+      state_(context.starts_in_relay ? State::kNeighbourhood : State::kExplore),
       estimate_(settings.odometry_drift) {
   heard_.reserve(kMostHeard);
   bodies_.reserve(kMostHeard);
@@ -85,16 +95,14 @@ void PartitioningController::Hear(std::span<const sim::Message> messages) {
 PartitioningController::View PartitioningController::Look(const sim::SensorReadings& readings) {
   View view;
   view.carrying = readings.holding_item;
-  if (view.carrying) view.nest = ReadLamp(readings.light, settings_.lamp);
+  if (view.carrying) view.nest = ReadLamp(readings.light, lamp_);
   for (const sim::Blob& blob : readings.blobs) {
     const bool source = blob.color == kSourceColor;
     if (!source && (blob.color != kCarrierColor || receiver_.barred())) continue;
     std::optional<SeenBody>& seen = source ? view.source : view.carrier;
     if (!seen || blob.range < seen->range) seen = SeenBody{blob.range, blob.Bearing()};
   }
-  // All places that the sensor looks at are nest: then the centre between them is, because a disc is convex.
-  view.in_nest = std::all_of(readings.motor_ground.begin(), readings.motor_ground.end(),
-                             [](double grey) { return grey < kNestGrey; });
+  view.in_nest = StandsInNest(readings);
   return view;
 }
 
@@ -120,7 +128,7 @@ std::optional<SeenBody> PartitioningController::Item(const View& view) const {
 
 bool PartitioningController::AtSource(const View& view) const {
   if (view.carrying || !Receives() || receiver_.engaged() || !view.source) return false;
-  return view.source->range <= settings_.pickup_distance && Item(view)->range == view.source->range;
+  return view.source->range <= pickup_distance_ && Item(view)->range == view.source->range;
 }
 
 void PartitioningController::TakeHome(const View& view, sim::RandomStream& random) {

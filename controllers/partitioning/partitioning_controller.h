@@ -1,4 +1,4 @@
-// The task partitioning robot (thesis 6.2, Figure 6.1; Pini et al. 2014; spec 4.2 to 4.6): brings items from
+// The task partitioning robot (thesis 6.2, Figure 6.1; Pini et al. 2014): brings items from
 // the source towards the nest, offers them to others on the way, and goes back to where it got the last one.
 // Three variants differ in settings only: static with a potential field, static with BugS, dynamic.
 #pragma once
@@ -8,13 +8,13 @@
 #include <span>
 #include <vector>
 
+#include "controllers/behaviour.h"
 #include "controllers/common/proximity.h"
 #include "controllers/common/random_walk.h"
 #include "controllers/common/steering.h"
 #include "controllers/partitioning/bug_walk.h"
 #include "controllers/partitioning/handover.h"
 #include "controllers/partitioning/nest_light.h"
-#include "controllers/partitioning/odometer.h"
 #include "controllers/partitioning/partition_length.h"
 #include "controllers/partitioning/source_estimate.h"
 #include "sim/robot/controller.h"
@@ -27,7 +27,6 @@ struct PartitionerSettings {
   RandomWalkParameters wander;
   double bounce_distance = 0.0;  // m beyond the body: wandering turns away from what is nearer in front
   double bounce_front = 0.0;     // rad to either side of the heading
-  double pickup_distance = 0.0;  // m from the source's centre: stops and waits for an item
   double grab_distance = 0.0;    // m: drives straight to an item that is nearer, without the field
   PartitionLengthSettings length;
   double least_handover_distance = 0.0;  // m from the nest: would it offer nearer than that, it carries on
@@ -39,7 +38,6 @@ struct PartitionerSettings {
   sim::Tick no_progress = 0;          // gives an estimate up that it came no nearer to for this long
   double odometry_drift = 0.0;        // see SourceEstimate
   std::optional<BugSettings> bug;     // instead of the potential field, on the way to nest and estimate
-  Lamp lamp;                          // above the nest
 };
 
 // One robot. Sees the lamp above the nest, the source and waiting carriers by camera, others' messages,
@@ -47,14 +45,9 @@ struct PartitionerSettings {
 // whether its gripper holds an item. Not for sharing between threads.
 class PartitioningController : public sim::Controller {
  public:
-  static constexpr sim::Color kSourceColor = sim::Color::kYellow;
-  static constexpr sim::Color kCarrierColor = sim::Color::kGreen;
-  // The floor is nest where it is darker than this.
-  static constexpr double kNestGrey = 0.5;
-
-  // `self`: the robot's number. `state`: Explore, or Neighbourhood around the place where it starts.
-  PartitioningController(const PartitionerSettings& settings, std::uint8_t self, PartitioningState state,
-                         std::unique_ptr<Odometer> odometer);
+  // `context` has an odometer. A robot that starts in the relay begins in Neighbourhood around the place
+  // where it starts, others in Explore.
+  PartitioningController(const PartitionerSettings& settings, ControllerContext context);
 
   sim::DeviceSet Devices() const override;
   void Step(const sim::ControlStep& step) override;
@@ -97,7 +90,9 @@ class PartitioningController : public sim::Controller {
   PartitionMessage Say(const View& view) const;
 
   PartitionerSettings settings_;
-  std::uint8_t self_;
+  std::uint8_t self_;       // its number
+  double pickup_distance_;  // m from the source's centre: stops and waits for an item
+  Lamp lamp_;               // above the nest
   std::unique_ptr<Odometer> odometer_;
   RandomWalk walk_;
   BugWalk bug_;

@@ -15,25 +15,21 @@ bool Engaged(HandoverStep step) {
 }  // namespace
 
 void PartitioningRecord::Begin(int robots, PartitioningState state, sim::Tick tick_limit) {
-  states_.Begin(robots, tick_limit, static_cast<std::uint8_t>(state));
   robots_.assign(static_cast<std::size_t>(robots), {.state = state});
-  food_.Begin(tick_limit);
   length_in_window_.assign(FoodCount::Windows(tick_limit), 0.0);
   transfers_.reserve(kMostTransfers);
 }
 
 void PartitioningRecord::Hear(sim::Tick tick, std::span<const sim::Signals> signals) {
   for (std::size_t i = 0; i < signals.size(); ++i) {
-    Robot& robot = robots_[i];
-    if (const PartitionMessage message = DecodePartition(signals[i].message); message.from_robot) {
-      Hear(tick, message, robot);
-    }
-    states_.Add(static_cast<std::uint8_t>(robot.state));
+    robots_[i].at_rest = false;
+    const PartitionMessage message = DecodePartition(signals[i].message);
+    if (message.from_robot) Hear(message, robots_[i]);
   }
   length_in_window_[FoodCount::WindowOf(tick)] = MeanLength();
 }
 
-void PartitioningRecord::Hear(sim::Tick tick, const PartitionMessage& message, Robot& robot) {
+void PartitioningRecord::Hear(const PartitionMessage& message, Robot& robot) {
   constexpr auto kWait = PartitioningState::kWaitForTransfer;
   if (message.state == kWait && robot.state != kWait) ++waits_;
   if (message.state == PartitioningState::kGoToNest && robot.state == kWait) ++timeouts_;
@@ -44,7 +40,7 @@ void PartitioningRecord::Hear(sim::Tick tick, const PartitionMessage& message, R
   robot.state = message.state;
   robot.step = message.step;
   robot.length = message.partition_length;
-  if (message.state == kWait || message.step != HandoverStep::kNone) robot.at_rest = tick;
+  robot.at_rest = message.state == kWait || message.step != HandoverStep::kNone;
 }
 
 void PartitioningRecord::HandOver(const Transfer& transfer) {
@@ -58,10 +54,8 @@ double PartitioningRecord::MeanLength() const {
   return sum / static_cast<double>(robots_.size());
 }
 
-std::vector<std::pair<std::string, double>> PartitioningRecord::Metrics(int carried, int trapped,
-                                                                        bool learns) const {
+void PartitioningRecord::AddMetrics(int trapped, std::vector<std::pair<std::string, double>>& metrics) const {
   const double none = -1.0;
-  std::vector<std::pair<std::string, double>> metrics = food_.Metrics(carried);
   metrics.insert(metrics.end(),
                  {{"transfers", handed_over_},
                   {"broken_transfers", broken_},
@@ -71,16 +65,12 @@ std::vector<std::pair<std::string, double>> PartitioningRecord::Metrics(int carr
                   {"transfer_time", transferring_ * sim::kTickSeconds},
                   {"trapped_robots", trapped},
                   {"partition_length", MeanLength()}});
-  food_.AddWindows(metrics);
-  for (std::size_t i = 0; learns && i < length_in_window_.size(); ++i) {
+}
+
+void PartitioningRecord::AddWindows(std::vector<std::pair<std::string, double>>& metrics) const {
+  for (std::size_t i = 0; i < length_in_window_.size(); ++i) {
     metrics.emplace_back("partition_length_window_" + std::to_string(i + 1), length_in_window_[i]);
   }
-  const std::vector<double> means = states_.MeanRobots(kPartitioningStates);
-  for (int state = 0; state < kPartitioningStates; ++state) {
-    metrics.emplace_back("mean_robots_" + std::string(NameOf(static_cast<PartitioningState>(state))),
-                         means[static_cast<std::size_t>(state)]);
-  }
-  return metrics;
 }
 
 }  // namespace gauntlet::controllers

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "controllers/common/nest_and_food.h"
-#include "controllers/common/state_log.h"
 #include "controllers/partitioning/partition_message.h"
 #include "sim/robot/signals.h"
 
@@ -30,30 +29,26 @@ class PartitioningRecord {
   void Hear(sim::Tick tick, std::span<const sim::Signals> signals);
   void HandOver(const Transfer& transfer);
 
-  FoodCount& food() { return food_; }
-  // Newest tick at which the robot stood by its own rules: waiting, or in a hand-over; -1 = never.
-  sim::Tick last_at_rest(sim::RobotIndex robot) const {
-    return robots_[static_cast<std::size_t>(robot)].at_rest;
-  }
+  PartitioningState state(std::size_t robot) const { return robots_[robot].state; }
+  // Whether the robot said in this tick that it stands by its own rules: waiting, or in a hand-over.
+  bool at_rest(std::size_t robot) const { return robots_[robot].at_rest; }
   const std::vector<Transfer>& transfers() const { return transfers_; }
-  const StateLog& states() const { return states_; }
-  // Of the registry's MetricInfo list, in its order. `learns`: partition lengths change, so they are told
-  // over time.
-  std::vector<std::pair<std::string, double>> Metrics(int carried, int trapped, bool learns) const;
+  // From `transfers` to `partition_length` of the registry's list; `trapped` robots are among it.
+  void AddMetrics(int trapped, std::vector<std::pair<std::string, double>>& metrics) const;
+  // partition_length_window_1 and on.
+  void AddWindows(std::vector<std::pair<std::string, double>>& metrics) const;
 
  private:
   struct Robot {
     PartitioningState state;
     HandoverStep step = HandoverStep::kNone;
-    sim::Tick at_rest = -1;
+    bool at_rest = false;
     double length = 0.0;  // m, partition length
   };
-  void Hear(sim::Tick tick, const PartitionMessage& message, Robot& robot);
+  void Hear(const PartitionMessage& message, Robot& robot);
   double MeanLength() const;
 
-  StateLog states_;
   std::vector<Robot> robots_;
-  FoodCount food_;
   std::vector<double> length_in_window_;  // m, mean of the robots at the end of each
   std::vector<Transfer> transfers_;
   int handed_over_ = 0;

@@ -2,7 +2,7 @@
 // 2014 and Buchanan et al. 2016 do.
 #pragma once
 
-#include "controllers/partitioning/odometer.h"
+#include "controllers/common/odometer.h"
 #include "sim/geometry/vec2.h"
 #include "sim/random/random_stream.h"
 

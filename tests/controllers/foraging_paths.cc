@@ -166,7 +166,7 @@ int Main(int argc, char** argv) {
     }
     const std::string name = argument.substr(0, equals);
     const double value = std::strtod(argv[i] + equals + 1, nullptr);
-    const auto infos = controllers::ForagingScenarioInfo().parameters;
+    const auto infos = controllers::ForagingParameters().infos();
     if (amounts.contains(name)) {
       amounts[name] = value;
     } else if (std::any_of(infos.begin(), infos.end(), [&](const auto& info) { return info.name == name; })) {
@@ -175,13 +175,13 @@ int Main(int argc, char** argv) {
       spec.controller_parameters[name] = value;
     }
   }
-  const auto parameters = controllers::ResolveParameters(controllers::ForagingScenarioInfo().parameters,
-                                                         spec.scenario_parameters);
+  const auto parameters =
+      controllers::ResolveParameters(controllers::ForagingParameters().infos(), spec.scenario_parameters);
   if (!parameters.ok()) {
     std::fprintf(stderr, "%s\n", parameters.error().message.c_str());
     return 2;
   }
-  const ForagingSettings settings = controllers::ForagingSettingsFrom(*parameters);
+  const ForagingSettings settings = controllers::ForagingParameters().Read(*parameters);
   const auto specs = calibration::MakeSpecs(
       spec, {.seeds = static_cast<int>(amounts["seeds"]), .cases = static_cast<int>(amounts["cases"])});
   const int threads = static_cast<int>(amounts["threads"]);

@@ -140,21 +140,22 @@ TEST(CreateScenario, BeginsWithTheRuleThatTheTestCaseBreaks) {
   EXPECT_THAT(ErrorOf(spec), StartsWith("start-blocked: "));
 }
 
-TEST(FlockingSettingsFrom, TurnsSecondsIntoTicks) {
-  const auto parameters = ResolveParameters(FindScenario("flocking")->parameters, {});
-  const FlockingSettings settings = FlockingSettingsFrom(*parameters);
+TEST(FlockingParameters, TurnSecondsIntoTicks) {
+  const FlockingSettings settings =
+      FlockingParameters().Read(*ResolveParameters(FlockingParameters().infos(), {}));
   EXPECT_EQ(settings.tick_limit, 9000);
   EXPECT_EQ(settings.split.link.memory, 20);
   EXPECT_EQ(settings.split.rejoin, 50);
   EXPECT_EQ(settings.split.half_window, 5);
 }
 
-TEST(BirdSettingsFrom, OnlyTheImprovedBirdCatchesUp) {
-  EXPECT_FALSE(BirdSettingsFrom(*ResolveParameters(FindController("flocking")->parameters, {})).catch_up);
-  const auto improved = BirdSettingsFrom(
-      *ResolveParameters(FindController("flocking-improved")->parameters, {{"catch_up_gain", 1.5}}));
-  ASSERT_TRUE(improved.catch_up);
-  EXPECT_EQ(improved.catch_up->gain, 1.5);
+TEST(BirdParameters, OnlyTheImprovedBirdCatchesUp) {
+  const auto original = BirdParameters().Read(*ResolveParameters(BirdParameters().infos(), {}));
+  EXPECT_EQ(original.catch_up_gain, 1.0);
+  const auto improved = ImprovedBirdParameters().Read(
+      *ResolveParameters(ImprovedBirdParameters().infos(), {{"catch_up_gain", 1.5}}));
+  EXPECT_EQ(improved.catch_up_gain, 1.5);
+  EXPECT_EQ(improved.catch_up_distance, 0.3);
 }
 
 TEST(Registry, EveryScenarioSaysHowLongItsRunsMayBe) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "controllers/examples/light_flocking_registry.h"
+#include "controllers/registry.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -17,7 +18,7 @@ using sim::Color;
 using sim::kDegree;
 
 LightFlockingSettings Defaults() {
-  return LightFlockingSettingsFrom(*ResolveParameters(LightFlockingControllerInfo().parameters, {}));
+  return LightFlockingParameters().Read(*ResolveParameters(LightFlockingParameters().infos(), {}));
 }
 
 double ForceAhead(double range) {

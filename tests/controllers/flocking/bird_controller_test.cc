@@ -37,7 +37,8 @@ BirdSettings Original() {
 
 BirdSettings Improved() {
   BirdSettings settings = Original();
-  settings.catch_up = CatchUp{0.3, 2.0};
+  settings.catch_up_distance = 0.3;
+  settings.catch_up_gain = 2.0;
   return settings;
 }
 
@@ -264,8 +265,8 @@ TEST(BirdControllerTest, ALightOnAnObstacleIsCountedAsANeighbour) {
     sim::Simulate(scenario, 1, false);
     return bird->last_rule();
   };
-  EXPECT_EQ(last_rule(BirdController::kBirdColor), BirdRule::kFlock);
-  EXPECT_EQ(last_rule(BirdController::kPreyColor), BirdRule::kChase);
+  EXPECT_EQ(last_rule(kBirdColor), BirdRule::kFlock);
+  EXPECT_EQ(last_rule(kPreyColor), BirdRule::kChase);
   EXPECT_EQ(last_rule(Color::kGreen), BirdRule::kWander);
   EXPECT_EQ(last_rule(Color::kBlack), BirdRule::kWander);
 }

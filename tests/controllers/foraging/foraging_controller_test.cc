@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "controllers/foraging/foraging_registry.h"
+#include "controllers/registry.h"
 #include "gtest/gtest.h"
 #include "sim/geometry/trigonometry.h"
 
@@ -17,15 +18,15 @@ using State = ForagingState;
 constexpr double kSpeed = 0.05;
 constexpr double kTurnRate = 0.714;
 
-ForagerSettings SettingsOf(std::string_view controller, const sim::Parameters& given = {}) {
-  const auto scenario = ResolveParameters(ForagingScenarioInfo().parameters, {});
-  const auto parameters = ResolveParameters(FindController(controller)->parameters, given);
-  return ForagerSettingsFrom(controller, *parameters, ForagingSettingsFrom(*scenario));
+using Table = ParameterTable<ForagerSettings>;
+
+ForagerSettings SettingsOf(const Table& table, const sim::Parameters& given = {}) {
+  return table.Read(*ResolveParameters(table.infos(), given));
 }
 
 // VP without chance: it becomes and leaves a beacon at once, and never turns by itself.
-ForagerSettings Certain(std::string_view controller = "foraging") {
-  ForagerSettings settings = SettingsOf(controller);
+ForagerSettings Certain(const Table& table = ForagerParameters()) {
+  ForagerSettings settings = SettingsOf(table);
   settings.wander.turn_probability = 0.0;
   if (settings.beacons) settings.beacons->become_chance = settings.beacons->leave_chance = 1.0;
   return settings;
@@ -39,7 +40,7 @@ struct Scene {
 
   Scene() { readings.motor_ground.fill(1.0); }
   Scene& Food(double range, double bearing_deg = 0.0) {
-    blobs.push_back(sim::Blob::At(range, bearing_deg * kDegree, ForagingController::kFoodColor));
+    blobs.push_back(sim::Blob::At(range, bearing_deg * kDegree, kFoodColor));
     return *this;
   }
   Scene& Hear(double range, double bearing_deg, const RadioMessage& message) {
@@ -93,7 +94,8 @@ Scene Covered() {
 
 class Robot {
  public:
-  explicit Robot(const ForagerSettings& settings) : controller_(settings) {}
+  explicit Robot(const ForagerSettings& settings)
+      : controller_(settings, {.communication_range = 3.0, .pickup_distance = 0.335}) {}
 
   State Step(Scene scene) {
     scene.readings.blobs = scene.blobs;
@@ -365,7 +367,7 @@ TEST(Beacon, LeavesByChanceWithMoreThanTwoOthersInRange) {
   ForagerSettings settings = Certain();
   settings.beacons->leave_chance = 0.0;
   EXPECT_EQ(Robot(settings).BeBeacon().Step(crowded, 100), State::kBeacon);
-  EXPECT_NEAR(SettingsOf("foraging").beacons->leave_chance, 0.01, 1e-15) << "0.1 per second";
+  EXPECT_NEAR(SettingsOf(ForagerParameters()).beacons->leave_chance, 0.01, 1e-15) << "0.1 per second";
 }
 
 TEST(Beacon, StartsWithItsOwnTrailAndEvaporates) {
@@ -454,17 +456,17 @@ int LeftTurns(const ForagerSettings& settings) {
 }
 
 TEST(Avoidance, TheSideIsRandomOnlyInTheVariantsThatSaySo) {
-  EXPECT_EQ(LeftTurns(Certain("foraging")), 200);
-  EXPECT_EQ(LeftTurns(Certain("foraging-basic")), 200);
-  for (const char* controller : {"foraging-random-side", "foraging-improved"}) {
-    const int left = LeftTurns(Certain(controller));
-    EXPECT_GT(left, 70) << controller;
-    EXPECT_LT(left, 130) << controller;
+  EXPECT_EQ(LeftTurns(Certain()), 200);
+  EXPECT_EQ(LeftTurns(Certain(BasicForagerParameters())), 200);
+  for (const Table* table : {&RandomSideForagerParameters(), &ImprovedForagerParameters()}) {
+    const int left = LeftTurns(Certain(*table));
+    EXPECT_GT(left, 70) << table->infos().size();
+    EXPECT_LT(left, 130) << table->infos().size();
   }
 }
 
 TEST(Avoidance, TheImprovedRobotSlidesAlongWhatIsBetweenItAndItsTarget) {
-  Robot robot(Certain("foraging-improved"));
+  Robot robot(Certain(ImprovedForagerParameters()));
   const Scene target = Scene().Nest(1.0).Beacon(1.0, 0.0, 1.0, 1.0);
   robot.Step(target);
   robot.Step(Scene(target).Hit(37.5, 0.04));
@@ -475,7 +477,7 @@ TEST(Avoidance, TheImprovedRobotSlidesAlongWhatIsBetweenItAndItsTarget) {
 }
 
 TEST(Avoidance, TheImprovedRobotIsNotRepelledByItsTarget) {
-  Robot robot(Certain("foraging-improved"));
+  Robot robot(Certain(ImprovedForagerParameters()));
   robot.FollowHome();
   robot.Step(Scene().Nest(1.0, 90.0).Beacon(0.5, 0.0, 1.0).Carrying());
   const Scene touching = Scene().Beacon(0.41, 0.0, 1.0).Carrying();
@@ -486,7 +488,7 @@ TEST(Avoidance, TheImprovedRobotIsNotRepelledByItsTarget) {
 // --- The basic algorithm ---
 
 TEST(Basic, HasFourStatesOnly) {
-  Robot robot(Certain("foraging-basic"));
+  Robot robot(Certain(BasicForagerParameters()));
   EXPECT_EQ(robot.Step(Scene(), 100), State::kWandering) << "never a beacon";
   EXPECT_EQ(robot.Step(Scene().Beacon(1.0, 0.0, 1.0, 1.0), 10), State::kWandering) << "follows nobody";
   EXPECT_EQ(robot.Step(Scene().Food(1.0)), State::kGathering);
@@ -498,7 +500,7 @@ TEST(Basic, HasFourStatesOnly) {
 }
 
 TEST(Basic, MovesTowardsTheNestItHears) {
-  Robot robot(Certain("foraging-basic"));
+  Robot robot(Certain(BasicForagerParameters()));
   robot.Home();
   robot.Step(Scene().Nest(1.0, 120.0).Carrying());
   EXPECT_NEAR(robot.turn(), kTurnRate, 1e-12);

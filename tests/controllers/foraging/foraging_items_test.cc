@@ -87,7 +87,7 @@ sim::RunSpec BusySpec(std::uint64_t seed) {
 }
 
 void AddRandomObstacles(sim::RunSpec& spec, const controllers::ForagingSettings& settings) {
-  const auto requirements = RequirementsOf(settings, {{"clearance", 0.3}});
+  const auto requirements = RequirementsOf(settings);
   sim::RandomStream random(spec.seed, sim::StreamPurpose::kTest);
   const int tries = static_cast<int>(random.Below(9));
   testing_support::AddRandomBoxes(spec.test_case, requirements, random, tries, 8);
@@ -95,14 +95,14 @@ void AddRandomObstacles(sim::RunSpec& spec, const controllers::ForagingSettings&
 
 RC_GTEST_PROP(ForagingItems, AddUpInEveryTickOfRandomArenas, (std::uint64_t seed)) {
   sim::RunSpec spec = BusySpec(seed);
-  const auto& variants = controllers::ForagingControllerInfos();
+  const auto variants = controllers::ForagingControllers();
   spec.controller = std::string(variants[*rc::gen::inRange<std::size_t>(0, variants.size())].name);
   const int robots = *rc::gen::inRange(1, 13);
   spec.test_case.robots = robots;
   const auto parameters = controllers::ResolveParameters(controllers::ForagingScenarioInfo().parameters,
                                                          spec.scenario_parameters);
   RC_ASSERT(parameters.ok());
-  const controllers::ForagingSettings settings = controllers::ForagingSettingsFrom(*parameters);
+  const controllers::ForagingSettings settings = controllers::ForagingParameters().Read(*parameters);
   AddRandomObstacles(spec, settings);
   auto scenario = controllers::CreateScenario(spec);
   RC_ASSERT(scenario.ok());
@@ -128,7 +128,7 @@ TEST(ForagingItems, FlowInTheArenaOfTheProperty) {
   ASSERT_TRUE(parameters.ok());
   auto scenario = controllers::CreateScenario(spec);
   ASSERT_TRUE(scenario.ok());
-  Bookkeeper bookkeeper(std::move(*scenario), controllers::ForagingSettingsFrom(*parameters), 8);
+  Bookkeeper bookkeeper(std::move(*scenario), controllers::ForagingParameters().Read(*parameters), 8);
   sim::Simulate(bookkeeper, spec.seed, false);
   EXPECT_EQ(bookkeeper.complaint, "");
   EXPECT_GE(bookkeeper.taken, 4);

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "controllers/foraging/foraging_registry.h"
+#include "controllers/registry.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "sim/simulation.h"
@@ -35,7 +36,7 @@ sim::TestCase RandomCase(std::uint32_t index) {
 TEST(ForagingScenario, NoItemAppearsOrVanishesInRandomArenas) {
   double taken = 0.0;
   std::uint32_t index = 0;
-  for (const controllers::ControllerInfo& controller : controllers::ForagingControllerInfos()) {
+  for (const controllers::ControllerInfo& controller : controllers::ForagingControllers()) {
     for (int i = 0; i < 4; ++i, ++index) {
       sim::RunSpec spec = Spec(std::string(controller.name), 100 + index);
       spec.test_case = RandomCase(index);

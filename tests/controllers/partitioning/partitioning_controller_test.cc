@@ -15,7 +15,7 @@ using sim::kDegree;
 constexpr double kSpeed = 0.05;
 
 PartitionerSettings Static(const sim::Parameters& given = {}) {
-  return PartitionerWith("task-partitioning", given);
+  return PartitionerWith(StaticPartitionerParameters(), given);
 }
 
 // A robot that has just taken an item `distance` m from the nest.
@@ -148,7 +148,7 @@ TEST(WaitForTransfer, StandsWithAGreenBeacon) {
   EXPECT_EQ(robot.Step(Scene().Nest(1.69).Hit(7.5, 0.01).Carrying(), 100), State::kWaitForTransfer);
   EXPECT_TRUE(robot.stands());
   EXPECT_TRUE(robot.gripper_closed());
-  EXPECT_EQ(robot.beacon(), PartitioningController::kCarrierColor);
+  EXPECT_EQ(robot.beacon(), kCarrierColor);
   EXPECT_EQ(robot.says().step, HandoverStep::kOffer);
 }
 
@@ -208,7 +208,7 @@ TEST(GoToSource, ExploresWhenItComesNoNearerForItsTime) {
 }
 
 TEST(GoToSource, WithBugSItHasTimeForDetours) {
-  EXPECT_EQ(PartitionerWith("task-partitioning-improved").no_progress, 1200);
+  EXPECT_EQ(PartitionerWith(BugPartitionerParameters()).no_progress, 1200);
   EXPECT_EQ(Static().no_progress, 300);
 }
 
@@ -259,7 +259,7 @@ TEST(PartitioningController, TellsItsStateAndNumber) {
 // --- Dynamic ---
 
 PartitionerSettings Dynamic(const sim::Parameters& given = {}) {
-  return PartitionerWith("task-partitioning-dynamic", given);
+  return PartitionerWith(DynamicPartitionerParameters(), given);
 }
 
 TEST(Dynamic, LearnsFromWhatItFindsAndWhatItDoesNot) {

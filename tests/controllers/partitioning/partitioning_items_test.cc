@@ -141,22 +141,22 @@ sim::RunSpec QuickSpec(const std::string& controller, std::uint64_t seed) {
 }
 
 controllers::PartitioningSettings SettingsOf(const sim::RunSpec& spec) {
-  return controllers::PartitioningSettingsFrom(*controllers::ResolveParameters(
-      controllers::PartitioningScenarioInfo().parameters, spec.scenario_parameters));
+  const auto& table = controllers::PartitioningParameters();
+  return table.Read(*controllers::ResolveParameters(table.infos(), spec.scenario_parameters));
 }
 
 constexpr double kHandoverReach = 0.30 + 1e-9;  // m
 
 void AddBoxes(sim::RunSpec& spec) {
   const controllers::PartitioningSettings settings = SettingsOf(spec);
-  const auto requirements = RequirementsOf(settings, {{"clearance", 0.3}});
+  const auto requirements = RequirementsOf(settings);
   sim::RandomStream random(spec.seed, sim::StreamPurpose::kTest);
   const int tries = static_cast<int>(random.Below(7));
   testing_support::AddRandomBoxes(spec.test_case, requirements, random, tries, 6);
 }
 
 RC_GTEST_PROP(PartitioningItems, AddUpInEveryTickWhateverHappensToTheRobots, (std::uint64_t seed)) {
-  const auto& variants = controllers::PartitioningControllerInfos();
+  const auto variants = controllers::PartitioningControllers();
   const auto variant = *rc::gen::inRange<std::size_t>(0, variants.size());
   sim::RunSpec spec = QuickSpec(std::string(variants[variant].name), seed);
   spec.test_case.robots = *rc::gen::inRange(1, 11);
@@ -183,7 +183,7 @@ RC_GTEST_PROP(PartitioningItems, AddUpInEveryTickWhateverHappensToTheRobots, (st
 
 // What the property is worth: in its arena items do change hands.
 TEST(PartitioningItems, ChangeHandsInTheArenaOfTheProperty) {
-  for (const controllers::ControllerInfo& controller : controllers::PartitioningControllerInfos()) {
+  for (const controllers::ControllerInfo& controller : controllers::PartitioningControllers()) {
     const sim::RunSpec spec = QuickSpec(std::string(controller.name), 1);
     auto scenario = controllers::CreateScenario(spec);
     ASSERT_TRUE(scenario.ok());

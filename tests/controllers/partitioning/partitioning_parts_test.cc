@@ -4,11 +4,11 @@
 #include <limits>
 #include <vector>
 
+#include "controllers/common/odometer.h"
 #include "controllers/common/state_log.h"
 #include "controllers/common/stillness.h"
 #include "controllers/partitioning/bug_walk.h"
 #include "controllers/partitioning/nest_light.h"
-#include "controllers/partitioning/odometer.h"
 #include "controllers/partitioning/partition_length.h"
 #include "controllers/partitioning/partition_message.h"
 #include "controllers/partitioning/source_estimate.h"
@@ -214,19 +214,24 @@ TEST(PartitionMessage, WhatNobodyCanHaveSaidComesFromNobody) {
 // --- State log and stillness ---
 
 TEST(StateLog, LooksOncePerSecondAndMissesNoBriefState) {
-  StateLog log;
+  constexpr std::array<std::string_view, 3> kNames = {"a", "b", "c"};
+  StateLog log(kNames);
   log.Begin(1, 100, 0);
   for (int tick = 1; tick <= 100; ++tick) log.Add(tick == 45 ? 2 : tick > 70 ? 1 : 0);
   EXPECT_EQ(log.ticks(), 101);
-  const sim::Annotation plain = log.Line(0, "a,b,c", std::nullopt);
+  const sim::Annotation plain = log.Line(0, std::nullopt);
   ASSERT_EQ(plain.points.size(), 2u);
   EXPECT_EQ(plain.points[1], sim::Vec2(8.0, 1.0));
-  const sim::Annotation line = log.Line(0, "a,b,c", 2);
+  const sim::Annotation line = log.Line(0, 2);
   ASSERT_EQ(line.points.size(), 4u);
   EXPECT_EQ(line.points[1], sim::Vec2(5.0, 2.0));
-  const std::vector<double> means = log.MeanRobots(3);
-  EXPECT_NEAR(means[1], 30.0 / 101.0, 1e-12);
-  EXPECT_NEAR(means[0] + means[1] + means[2], 1.0, 1e-12);
+  EXPECT_EQ(line.label, "a,b,c");
+  std::vector<std::pair<std::string, double>> means;
+  log.AddMeans(means);
+  ASSERT_EQ(means.size(), 3u);
+  EXPECT_EQ(means[1].first, "mean_robots_b");
+  EXPECT_NEAR(means[1].second, 30.0 / 101.0, 1e-12);
+  EXPECT_NEAR(means[0].second + means[1].second + means[2].second, 1.0, 1e-12);
 }
 
 TEST(Stillness, IsKeepingWithinTheRadiusOfTheMeanPlace) {
@@ -250,13 +255,10 @@ constexpr BugSettings kBug = {.speed = 0.05,
                               .wall_distance = 0.08,
                               .wall_gain = 4.0,
                               .wall_turn = 0.5,
-                              .wall_speed = 0.045,
                               .front_angle = 35.0 * kDegree,
                               .front_distance = 0.06,
                               .turn_rate = 0.7,
-                              .lost_speed = 0.03,
                               .lost_turn = 0.6,
-                              .scanner_range = 0.26,
                               .clear_ticks = 3};
 
 // What it sees, angles in degrees; a scan of 12 rays that meet nothing.

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "controllers/partitioning/partitioning_registry.h"
+#include "controllers/registry.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "sim/simulation.h"
@@ -115,7 +116,7 @@ TEST(PartitioningScenario, MarksALightThatIsNotAboveTheNest) {
 }
 
 TEST(PartitioningScenario, RunsAgainBitByBit) {
-  for (const controllers::ControllerInfo& controller : controllers::PartitioningControllerInfos()) {
+  for (const controllers::ControllerInfo& controller : controllers::PartitioningControllers()) {
     sim::RunSpec spec = PartitionSpec(std::string(controller.name), 9);
     spec.test_case.obstacles = {{0.5, 0.4, 1.2, 0.2, 20.0}};
     EXPECT_EQ(worker::Run(spec).hash, worker::Run(spec).hash);

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "controllers/partitioning/partitioning_registry.h"
+#include "controllers/registry.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
 
-inline PartitionerSettings PartitionerWith(std::string_view controller, const sim::Parameters& given = {}) {
-  const auto scenario = ResolveParameters(PartitioningScenarioInfo().parameters, {});
-  const auto parameters = ResolveParameters(FindController(controller)->parameters, given);
-  PartitionerSettings settings =
-      PartitionerSettingsFrom(controller, *parameters, PartitioningSettingsFrom(*scenario));
-  settings.lamp = {1.0, 3.0};
+inline constexpr Lamp kNestLamp = {1.0, 3.0};
+
+inline PartitionerSettings PartitionerWith(const ParameterTable<PartitionerSettings>& table,
+                                           const sim::Parameters& given = {}) {
+  PartitionerSettings settings = table.Read(*ResolveParameters(table.infos(), given));
   settings.wander.turn_probability = 0.0;  // never turns by itself
   return settings;
 }
@@ -45,15 +45,11 @@ struct PartitionScene {
 
   PartitionScene() { readings.motor_ground.fill(1.0); }
   PartitionScene& Nest(double distance, double bearing = 0.0) {
-    readings.light = LampReadings({1.0, 3.0}, distance, bearing * sim::kDegree);
+    readings.light = LampReadings(kNestLamp, distance, bearing * sim::kDegree);
     return *this;
   }
-  PartitionScene& Source(double range, double bearing = 0.0) {
-    return See(range, bearing, PartitioningController::kSourceColor);
-  }
-  PartitionScene& Carrier(double range, double bearing = 0.0) {
-    return See(range, bearing, PartitioningController::kCarrierColor);
-  }
+  PartitionScene& Source(double range, double bearing = 0.0) { return See(range, bearing, kSourceColor); }
+  PartitionScene& Carrier(double range, double bearing = 0.0) { return See(range, bearing, kCarrierColor); }
   PartitionScene& See(double range, double bearing, sim::Color color) {
     blobs.push_back(sim::Blob::At(range, bearing * sim::kDegree, color));
     return *this;
@@ -101,7 +97,11 @@ class PartitionRobot {
   static constexpr std::uint8_t kNumber = 3;
 
   explicit PartitionRobot(const PartitionerSettings& settings, State state = State::kExplore)
-      : controller_(settings, kNumber, state, MakeOdometer()) {}
+      : controller_(settings, {.robot = kNumber,
+                               .pickup_distance = 0.36,
+                               .nest_lamp = kNestLamp,
+                               .starts_in_relay = state == State::kNeighbourhood,
+                               .odometer = MakeOdometer()}) {}
 
   State Step(PartitionScene scene) {
     scene.readings.blobs = scene.blobs;

@@ -12,6 +12,7 @@
 #include "controllers/examples/light_flocking_metrics.h"
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/examples/light_flocking_scenario.h"
+#include "controllers/registry.h"
 #include "master/cases/case_file.h"
 #include "sim/simulation.h"
 #include "tests/support/paths.h"
@@ -128,12 +129,13 @@ Result<std::vector<SwarmCase>> LoadSwarmCases(const fs::path& recorded, const fs
 }
 
 CaseComparison Compare(const SwarmCase& swarm_case) {
-  const auto scenario_settings = controllers::LightFlockingScenarioSettingsFrom(
-      *controllers::ResolveParameters(controllers::LightFlockingScenarioInfo().parameters, {}));
-  const auto robot_settings = controllers::LightFlockingSettingsFrom(
-      *controllers::ResolveParameters(controllers::LightFlockingControllerInfo().parameters, {}));
-  LightFlockingScenario scenario(swarm_case.test_case, scenario_settings, robot_settings,
-                                 swarm_case.argos.at(0));
+  const auto defaults = [](const auto& table) {
+    return table.Read(*controllers::ResolveParameters(table.infos(), {}));
+  };
+  LightFlockingScenario scenario(
+      swarm_case.test_case, defaults(controllers::LightFlockingScenarioParameters()),
+      controllers::MakeLightFlockers(defaults(controllers::LightFlockingParameters())),
+      swarm_case.argos.at(0));
   const sim::RunResult run = sim::Simulate(scenario, 0, true);
   GAUNTLET_CHECK(run.verdict == sim::Verdict::kCompleted, swarm_case.name + ": " + run.message);
 

@@ -1,4 +1,4 @@
-#include "controllers/partitioning/odometer.h"
+#include "controllers/common/odometer.h"
 
 #include "sim/geometry/trigonometry.h"
 
