@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
@@ -11,9 +12,11 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "worker/pipe.h"
+#include "base/system/atomic_file.h"
+#include "base/system/unique_fd.h"
+#include "proto/json_text.h"
 
-namespace gauntlet::worker {
+namespace gauntlet::proto {
 namespace {
 
 constexpr int kFormat = 1;
@@ -124,4 +127,31 @@ Result<Access> ReadAccess(const std::string& path) {
   return access;
 }
 
-}  // namespace gauntlet::worker
+Status WriteAccess(const std::string& path, const Access& access) {
+  nlohmann::ordered_json json = {{"format", kFormat},
+                                 {"campaign", access.campaign_id},
+                                 {"epoch", access.epoch},
+                                 {"endpoints", access.endpoints}};
+  if (access.curve) {
+    json["curve"] = {{"server_public", access.curve->server_public},
+                     {"worker_public", access.curve->worker_public},
+                     {"worker_secret", access.curve->worker_secret}};
+  }
+  return WriteFileAtomically(path, JsonText(json), kOwnerOnly);
+}
+
+Status RemoveAccess(const std::string& path, std::uint64_t epoch) {
+  const Result<std::string> text = ReadSmallFile(path);
+  if (!text) return text.error().kind == ErrorKind::kNotFound ? Status(Ok{}) : text.error();
+  const nlohmann::json json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  if (json.is_object()) {
+    const auto written = json.find("epoch");
+    if (written != json.end() && written->is_number_unsigned() && written->get<std::uint64_t>() > epoch)
+      return Ok{};
+  }
+  if (unlink(path.c_str()) != 0 && errno != ENOENT)
+    return SystemError(fmt::format("cannot remove {}", path), errno);
+  return Ok{};
+}
+
+}  // namespace gauntlet::proto

@@ -1,4 +1,5 @@
-// access.json: where a campaign's master listens. Written by the master, atomically; read by workers.
+// access.json: where a campaign's master listens, and the keys by which it is reached. Written by the master,
+// atomically; read by workers.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,7 @@
 
 #include "base/result.h"
 
-namespace gauntlet::worker {
+namespace gauntlet::proto {
 
 // The keys of CurveZMQ (Z85, 40 characters each): the master's public one and the pair that it admits.
 struct CurveKeys {
@@ -34,4 +35,10 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place);
 // holds keys and others than its owner may read it.
 Result<Access> ReadAccess(const std::string& path);
 
-}  // namespace gauntlet::worker
+// Writes the file for its owner alone (0600), at once and whole.
+Status WriteAccess(const std::string& path, const Access& access);
+
+// Removes it unless a newer master has written its own meanwhile. A missing file is no error.
+Status RemoveAccess(const std::string& path, std::uint64_t epoch);
+
+}  // namespace gauntlet::proto

@@ -10,7 +10,7 @@
 
 #include "base/printable.h"
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
 namespace {
 
 constexpr int kMaxDepth = 64;
@@ -315,4 +315,4 @@ Result<JsonValue> ParseJson(std::string_view text, const std::string& file_name)
   return Parser(text, file_name).Parse();
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
 
 struct TextPlace {
   int line = 1;    // from 1
@@ -46,4 +46,4 @@ Error ErrorAt(const std::string& file_name, TextPlace place, const std::string& 
 // is skipped.
 Result<JsonValue> ParseJson(std::string_view text, const std::string& file_name);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

@@ -13,7 +13,7 @@
 
 #include "base/nearest_name.h"
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
 namespace {
 
 namespace pb = google::protobuf;
@@ -139,4 +139,4 @@ Status FillMessage(const JsonValue& json, const std::string& file_name, pb::Mess
   return Filler(file_name).Fill(json, "", message);
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

@@ -10,7 +10,7 @@ namespace google::protobuf {
 class Message;
 }
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
 
 // Keys may be the field's name in the schema (orientation_deg) or its JSON name (orientationDeg); numbers may
 // be quoted; null leaves the default. Stricter than the mapping demands: numbers must be finite. Supports the
@@ -18,4 +18,4 @@ namespace gauntlet::master {
 // of the wrong kind.
 Status FillMessage(const JsonValue& json, const std::string& file_name, google::protobuf::Message& message);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

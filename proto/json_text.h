@@ -5,10 +5,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // The value on lines of its own, with a line break at the end. Never fails: a byte that is not UTF-8, in a
 // word of another program say, becomes U+FFFD.
 std::string JsonText(const nlohmann::ordered_json& value);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

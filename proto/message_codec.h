@@ -1,4 +1,4 @@
-// The worker's side of the wire: protocol.proto's envelopes to plain structs and back.
+// The one place where the envelopes of protocol.proto meet plain structs. A frame holds one envelope.
 #pragma once
 
 #include <string>
@@ -7,18 +7,19 @@
 #include "base/result.h"
 #include "proto/messages.h"
 
-namespace gauntlet::worker {
+namespace gauntlet::proto {
 
-// No message is larger, in either direction (proto/README.md).
-inline constexpr std::size_t kMaxMessageBytes = 16u << 20;
-// What a result may take of it: the rest is the envelope's.
-inline constexpr std::size_t kMaxResultBytes = kMaxMessageBytes - 64u * 1024u;
-
-// One frame from the master. Error (kInvalidInput): not an envelope, a message that only workers send or that
-// this version does not know, or a value outside its range; the message names it.
-Result<MasterMessage> DecodeMasterMessage(std::string_view frame);
-
-// One frame for the master.
+std::string EncodeMasterMessage(const MasterMessage& message);
 std::string EncodeWorkerMessage(const WorkerMessage& message);
 
-}  // namespace gauntlet::worker
+// A frame from the master, read strictly. Error (kInvalidInput): not an envelope, a message that only workers
+// send or that this version does not know, or a value outside its range; the message names it.
+Result<MasterMessage> DecodeMasterMessage(std::string_view frame);
+
+// A frame from a peer of the master's, read leniently: what its values mean is judged by who knows the
+// campaign. Of a longer stderr_tail the end is kept; a kind of failure that this version does not know is
+// kExternal. Error (kInvalidInput): not an envelope, or a message that only masters send or that this version
+// does not know.
+Result<WorkerMessage> DecodeWorkerMessage(std::string_view frame);
+
+}  // namespace gauntlet::proto

@@ -3,35 +3,42 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-namespace gauntlet::worker {
+#include "base/system/process_identity.h"
 
-// The protocol this worker speaks; a master refuses any other.
+namespace gauntlet::proto {
+
+// What both sides speak; a master refuses workers that speak another.
 inline constexpr std::uint32_t kProtocolVersion = 1;
+// No message is larger, in either direction.
+inline constexpr std::size_t kMaxMessageBytes = 16u << 20;
+// What a result may take of it: the rest is the envelope's.
+inline constexpr std::size_t kMaxResultBytes = kMaxMessageBytes - 64u * 1024u;
+// How much of what a failed run printed is kept: the end.
+inline constexpr std::size_t kMaxStderrTail = 4096;
 
-// Fencing number: names a lease within a campaign, for ever.
-using Fence = std::uint64_t;
+using RunId = std::uint64_t;       // 1, 2, 3, ... in logical order within a campaign
+using InstanceId = std::uint64_t;  // random, not 0, one per worker process
+using Fence = std::uint64_t;  // fencing number: names a lease, grows within a campaign, is never used twice
 
 struct Hello {
+  std::uint32_t protocol_version = kProtocolVersion;
   std::string campaign_id;
-  std::uint64_t instance_id = 0;  // random, one per worker process
+  InstanceId instance_id = 0;
   std::string software_version;
   std::uint64_t golden_hash = 0;
   std::uint32_t slots = 1;  // runs simulated at the same time
-  std::string host;
-  std::int64_t pid = 0;
-  std::vector<Fence> held_leases;
-  std::string allocation;  // the batch job that holds the worker, as its script says; "" for none
+  // Who the worker is, for a master on the same machine. `host` is for people; what is not known is "" or 0.
+  ProcessIdentity process;
+  std::vector<Fence> held_leases;  // that the worker works on, or holds results for
+  std::string allocation;          // the batch job that holds the worker, as its script says; "" for none
   std::vector<std::string> controllers = {};  // names of those it can simulate
-  // Who `pid` is, for a master on the same machine (worker/process_identity.h); "" and 0 when not known.
-  std::string boot_id = {};
-  std::string pid_namespace = {};
-  std::uint64_t start_time = 0;  // clock ticks since boot
   bool operator==(const Hello&) const = default;
 };
 
@@ -48,30 +55,32 @@ struct Refused {
 
 struct Lease {
   Fence fence = 0;
-  std::uint64_t run_id = 0;
-  std::string spec;  // serialized gauntlet.v1.RunSpec
-  std::uint32_t attempt = 1;
+  RunId run_id = 0;
+  std::string spec;           // serialized gauntlet.v1.RunSpec
+  std::uint32_t attempt = 1;  // 1 = the run's first lease
 };
 
-// How a runner ended that gave no result. The numbers are the wire's.
+// How a runner ended that gave no result. All but kUnreadable have the wire's numbers.
 enum class FailureKind : int {
   kCrashed = 1,      // own fault: SIGSEGV, SIGABRT, an exception, an exit
   kHung = 2,         // own fault: more CPU time than allowed
   kOutOfMemory = 3,  // own fault: more memory than allowed
-  kExternal = 4,     // not the run's fault: killed from outside, dropped by a drain
+  kExternal = 4,     // not the run's fault, never an attempt: killed from outside, dropped by a drain
+  kUnreadable = 5,   // a master's judgement: the result does not decode, or its hash is not its content's
 };
+inline constexpr std::size_t kFailureKinds = 6;  // one more than the largest number
 
 struct RunnerFailure {
   FailureKind kind = FailureKind::kExternal;
-  int signal = 0;           // 0 when it exited
-  int exit_code = 0;        // 0 when a signal ended it
-  std::string stderr_tail;  // at most kStderrTailBytes, valid UTF-8
+  int signal = 0;                // 0 when it exited
+  int exit_code = 0;             // 0 when a signal ended it
+  std::string stderr_tail = {};  // at most kMaxStderrTail bytes
   bool operator==(const RunnerFailure&) const = default;
 };
 
 struct LeaseResult {
   Fence fence = 0;
-  std::uint64_t run_id = 0;
+  RunId run_id = 0;
   std::string result;  // serialized gauntlet.v1.RunResult; empty when `failure` is set
   std::optional<RunnerFailure> failure;
   double cpu_seconds = 0.0;
@@ -103,4 +112,4 @@ struct Goodbye {
 using MasterMessage = std::variant<Welcome, Refused, Lease, Acknowledge, Heartbeat, Cancel, Drain>;
 using WorkerMessage = std::variant<Hello, LeaseResult, Heartbeat, Drain, Goodbye>;
 
-}  // namespace gauntlet::worker
+}  // namespace gauntlet::proto

@@ -1,16 +1,31 @@
 #include "proto/run_codec.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/arena.h>
 #include <google/protobuf/stubs/logging.h>
+#include <google/protobuf/unknown_field_set.h>
 #include <google/protobuf/util/json_util.h>
 
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
+#include "base/utf8.h"
 #include "proto/json_message.h"
 #include "proto/run.pb.h"
+#include "sim/arena/validity.h"
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
 namespace {
+
+Error Corrupt(std::string what) {
+  return {ErrorKind::kCorrupt, std::move(what)};
+}
+
+// --- Writing ---
 
 void ToProto(const sim::TestCase& test_case, v1::TestCase& message) {
   message.set_name(test_case.name);
@@ -44,39 +59,6 @@ void ToProto(const sim::TestCase& test_case, v1::TestCase& message) {
   if (test_case.robots) message.set_robots(*test_case.robots);
 }
 
-Result<sim::TestCase> FromProto(const v1::TestCase& message) {
-  sim::TestCase test_case;
-  test_case.name = message.name();
-  if (message.has_side_x()) test_case.side_x = message.side_x();
-  if (message.has_side_y()) test_case.side_y = message.side_y();
-  if (message.has_wall_thickness()) test_case.wall_thickness = message.wall_thickness();
-  test_case.obstacles.reserve(static_cast<std::size_t>(message.obstacles_size()));
-  for (const v1::Obstacle& obstacle : message.obstacles()) {
-    sim::ObstacleGene& gene = test_case.obstacles.emplace_back(sim::ObstacleGene{
-        obstacle.x(), obstacle.y(), obstacle.length(), obstacle.width(), obstacle.orientation_deg()});
-    gene.speed = obstacle.motion().speed();
-    for (const v1::Point& point : obstacle.motion().path()) gene.path.emplace_back(point.x(), point.y());
-    if (!obstacle.has_light()) continue;
-    const std::optional<sim::Color> light = sim::ColorNamed(obstacle.light());
-    if (!light) {
-      return InvalidInput(fmt::format("obstacle {}: '{}' is no colour of lights; known: {}",
-                                      test_case.obstacles.size(), obstacle.light(),
-                                      fmt::join(sim::kColorNames, ", ")));
-    }
-    gene.light = *light;
-  }
-  if (message.has_spawn_area()) {
-    const v1::Rectangle& area = message.spawn_area();
-    test_case.spawn_area = sim::Rectangle{{area.min_x(), area.min_y()}, {area.max_x(), area.max_y()}};
-  }
-  if (message.has_robots()) test_case.robots = message.robots();
-  return test_case;
-}
-
-Error Corrupt(const std::string& what) {
-  return {ErrorKind::kCorrupt, what};
-}
-
 void ToProto(const sim::Disturbances& disturbances, v1::RunSpec& message) {
   for (const auto& [device, noise] : disturbances.noise) {
     v1::DeviceNoise& written = *message.add_noise();
@@ -93,30 +75,10 @@ void ToProto(const sim::Disturbances& disturbances, v1::RunSpec& message) {
   }
 }
 
-Status FromProto(const v1::RunSpec& message, sim::Disturbances& disturbances) {
-  for (const v1::DeviceNoise& noise : message.noise()) {
-    const std::optional<sim::Device> device = sim::DeviceOfKey(noise.device());
-    if (!device) return Corrupt(fmt::format("the run spec has noise of '{}', no device", noise.device()));
-    disturbances.noise[*device] = {noise.uniform(), noise.gaussian(), noise.drop()};
-  }
-  for (const v1::RobotFault& fault : message.faults()) {
-    const std::optional<sim::Device> device = sim::DeviceOfKey(fault.device());
-    if (!device && !fault.device().empty()) {
-      return Corrupt(fmt::format("the run spec has a fault of '{}', no device", fault.device()));
-    }
-    disturbances.faults.push_back({fault.robot(), device, fault.tick()});
-  }
-  return Ok{};
-}
-
 void ToProto(const sim::Pose& pose, v1::Pose& message) {
   message.set_x(pose.position.x());
   message.set_y(pose.position.y());
   message.set_heading(pose.heading);
-}
-
-sim::Pose FromProto(const v1::Pose& message) {
-  return {{message.x(), message.y()}, message.heading()};
 }
 
 template <typename Repeated>
@@ -126,6 +88,191 @@ void PointsToProto(const std::vector<sim::Vec2>& points, Repeated& message) {
     message.Add(point.x());
     message.Add(point.y());
   }
+}
+
+template <typename Repeated>
+void ToProto(const sim::Parameters& parameters, Repeated& message) {
+  for (const auto& [name, value] : parameters) {
+    v1::Parameter& parameter = *message.Add();
+    parameter.set_name(name);
+    parameter.set_value(value);
+  }
+}
+
+void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
+  ToProto(spec.test_case, *message.mutable_test_case());
+  message.set_scenario(spec.scenario);
+  ToProto(spec.scenario_parameters, *message.mutable_scenario_parameters());
+  message.set_controller(spec.controller);
+  ToProto(spec.controller_parameters, *message.mutable_controller_parameters());
+  message.set_seed(spec.seed);
+  message.set_record_trajectory(spec.record_trajectory);
+  if (spec.physics == sim::PhysicsKind::kRelaxation) message.set_physics(v1::PHYSICS_RELAXATION);
+  ToProto(spec.disturbances, message);
+}
+
+const std::string& Utf8(const std::string& text) {
+  GAUNTLET_CHECK(IsUtf8(text), fmt::format("a run result holds text that is not UTF-8: {}", ToUtf8(text)));
+  return text;
+}
+
+void TrajectoryToProto(const sim::RunResult& result, v1::Trajectory& message) {
+  const std::size_t robots = result.trajectory.front().size();
+  message.set_robots(static_cast<int>(robots));
+  message.mutable_states()->Reserve(static_cast<int>(4 * robots * result.trajectory.size()));
+  for (const std::vector<sim::RobotState>& tick : result.trajectory) {
+    GAUNTLET_CHECK(tick.size() == robots, "every tick of a trajectory holds every robot");
+    for (const sim::RobotState& state : tick) {
+      for (const double number : {state.x, state.y, state.heading, state.speed}) message.add_states(number);
+    }
+  }
+}
+
+// --- Reading specs ---
+
+// A decoded spec of today's scenarios takes half of it; what does not fit is allocated.
+constexpr std::size_t kUsualSpecMemory = 16 * 1024;
+
+// The first complaint about a spec wins; later ones are not computed.
+class SpecReader {
+ public:
+  bool ok() const { return error_.empty(); }
+  const std::string& error() const { return error_; }
+
+  void Require(bool condition, const std::string& complaint) {
+    if (ok() && !condition) error_ = complaint;
+  }
+  double Finite(double value, const char* name) {
+    if (ok() && !std::isfinite(value))
+      error_ = fmt::format("{} is {}, a finite number is needed", name, value);
+    return value;
+  }
+  template <typename Message>
+  void RequireKnownFields(const Message& message, const char* name) {
+    static const auto* const reflection = Message::default_instance().GetReflection();
+    if (ok() && !reflection->GetUnknownFields(message).empty()) {
+      error_ = fmt::format("{} has fields that this version does not know", name);
+    }
+  }
+  template <typename List>
+  void RequireAtMost(const List& list, int limit, const char* name) {
+    if (ok() && list.size() > limit) {
+      error_ = fmt::format("{} {}, {} are possible", list.size(), name, limit);
+    }
+  }
+  const std::string& Name(const std::string& name, const char* what) {
+    if (ok() && name.size() > kMaxNameBytes) {
+      error_ = fmt::format("{} of {} bytes, {} are possible", what, name.size(), kMaxNameBytes);
+    }
+    return name;
+  }
+
+ private:
+  std::string error_;
+};
+
+// What makes an obstacle move or shine. `number` counts obstacles from 1.
+void ReadExtras(const v1::Obstacle& wire, std::size_t number, sim::ObstacleGene& gene, SpecReader& reader) {
+  reader.RequireKnownFields(wire.motion(), "motion");
+  gene.speed = reader.Finite(wire.motion().speed(), "an obstacle's speed");
+  reader.RequireAtMost(wire.motion().path(), static_cast<int>(sim::kMaxObstaclePath), "points of a path");
+  if (!reader.ok()) return;
+  for (const v1::Point& point : wire.motion().path()) {
+    reader.RequireKnownFields(point, "point");
+    const double x = reader.Finite(point.x(), "x of a path");
+    gene.path.emplace_back(x, reader.Finite(point.y(), "y of a path"));
+  }
+  if (!wire.has_light()) return;
+  const std::optional<sim::Color> light = sim::ColorNamed(wire.light());
+  gene.light = light.value_or(sim::Color::kBlack);
+  if (light) return;
+  reader.Require(false, fmt::format("obstacle {}: '{}' is no colour of lights; known: {}", number,
+                                    wire.light(), fmt::join(sim::kColorNames, ", ")));
+}
+
+sim::TestCase ReadTestCase(const v1::TestCase& wire, SpecReader& reader) {
+  sim::TestCase test_case;
+  reader.RequireKnownFields(wire, "test_case");
+  test_case.name = reader.Name(wire.name(), "a test case's name");
+  if (wire.has_side_x()) test_case.side_x = reader.Finite(wire.side_x(), "side_x");
+  if (wire.has_side_y()) test_case.side_y = reader.Finite(wire.side_y(), "side_y");
+  if (wire.has_wall_thickness()) {
+    test_case.wall_thickness = reader.Finite(wire.wall_thickness(), "wall_thickness");
+  }
+  reader.RequireAtMost(wire.obstacles(), static_cast<int>(sim::kMaxObstacles), "obstacles");
+  if (!reader.ok()) return test_case;
+  test_case.obstacles.reserve(static_cast<std::size_t>(wire.obstacles_size()));
+  for (const v1::Obstacle& obstacle : wire.obstacles()) {
+    reader.RequireKnownFields(obstacle, "obstacle");
+    sim::ObstacleGene& gene = test_case.obstacles.emplace_back(sim::ObstacleGene{
+        .x = reader.Finite(obstacle.x(), "an obstacle's x"),
+        .y = reader.Finite(obstacle.y(), "an obstacle's y"),
+        .length = reader.Finite(obstacle.length(), "an obstacle's length"),
+        .width = reader.Finite(obstacle.width(), "an obstacle's width"),
+        .orientation_deg = reader.Finite(obstacle.orientation_deg(), "an obstacle's orientation_deg")});
+    ReadExtras(obstacle, test_case.obstacles.size(), gene, reader);
+  }
+  if (wire.has_spawn_area()) {
+    const v1::Rectangle& area = wire.spawn_area();
+    reader.RequireKnownFields(area, "spawn_area");
+    test_case.spawn_area = sim::Rectangle{.min = {reader.Finite(area.min_x(), "spawn_area.min_x"),
+                                                  reader.Finite(area.min_y(), "spawn_area.min_y")},
+                                          .max = {reader.Finite(area.max_x(), "spawn_area.max_x"),
+                                                  reader.Finite(area.max_y(), "spawn_area.max_y")}};
+  }
+  if (wire.has_robots()) test_case.robots = wire.robots();
+  return test_case;
+}
+
+template <typename List>
+sim::Parameters ReadParameters(const List& wire, const char* owner, SpecReader& reader) {
+  sim::Parameters parameters;
+  reader.RequireAtMost(wire, kMaxParameters, "parameters");
+  for (const v1::Parameter& parameter : wire) {
+    if (!reader.ok()) break;
+    reader.RequireKnownFields(parameter, "parameter");
+    const std::string& name = reader.Name(parameter.name(), "a parameter's name");
+    reader.Finite(parameter.value(), name.c_str());
+    const std::size_t before = parameters.size();
+    parameters.emplace_hint(parameters.end(), name, parameter.value());  // they come in order
+    if (reader.ok() && parameters.size() == before) {
+      reader.Require(false, fmt::format("{} parameter '{}' is given twice", owner, name));
+    }
+  }
+  return parameters;
+}
+
+sim::Disturbances ReadDisturbances(const v1::RunSpec& wire, SpecReader& reader) {
+  sim::Disturbances disturbances;
+  for (const v1::DeviceNoise& noise : wire.noise()) {
+    reader.RequireKnownFields(noise, "noise");
+    const std::optional<sim::Device> device = sim::DeviceOfKey(noise.device());
+    reader.Require(device.has_value(), fmt::format("noise of '{}', which is no device", noise.device()));
+    if (!reader.ok()) return disturbances;
+    const bool first =
+        disturbances.noise
+            .emplace(*device, sim::DeviceNoise{reader.Finite(noise.uniform(), "uniform noise"),
+                                               reader.Finite(noise.gaussian(), "Gaussian noise"),
+                                               reader.Finite(noise.drop(), "a drop probability")})
+            .second;
+    reader.Require(first, fmt::format("noise of {} is given twice", noise.device()));
+  }
+  reader.RequireAtMost(wire.faults(), kMaxFaults, "faults");
+  if (!reader.ok()) return disturbances;
+  for (const v1::RobotFault& fault : wire.faults()) {
+    reader.RequireKnownFields(fault, "fault");
+    const std::optional<sim::Device> device = sim::DeviceOfKey(fault.device());
+    reader.Require(device || fault.device().empty(),
+                   fmt::format("a fault of '{}', which is no device", fault.device()));
+    disturbances.faults.push_back({.robot = fault.robot(), .device = device, .tick = fault.tick()});
+  }
+  return disturbances;
+}
+
+// --- Reading results ---
+
+sim::Pose FromProto(const v1::Pose& message) {
+  return {{message.x(), message.y()}, message.heading()};
 }
 
 template <typename Repeated>
@@ -154,26 +301,6 @@ Status TrajectoryFromProto(const v1::Trajectory& message, sim::RunResult& result
   return Ok{};
 }
 
-void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
-  ToProto(spec.test_case, *message.mutable_test_case());
-  message.set_scenario(spec.scenario);
-  for (const auto& [name, value] : spec.scenario_parameters) {
-    v1::Parameter& parameter = *message.add_scenario_parameters();
-    parameter.set_name(name);
-    parameter.set_value(value);
-  }
-  message.set_controller(spec.controller);
-  for (const auto& [name, value] : spec.controller_parameters) {
-    v1::Parameter& parameter = *message.add_controller_parameters();
-    parameter.set_name(name);
-    parameter.set_value(value);
-  }
-  message.set_seed(spec.seed);
-  message.set_record_trajectory(spec.record_trajectory);
-  if (spec.physics == sim::PhysicsKind::kRelaxation) message.set_physics(v1::PHYSICS_RELAXATION);
-  ToProto(spec.disturbances, message);
-}
-
 }  // namespace
 
 std::string EncodeRunSpec(const sim::RunSpec& spec) {
@@ -194,75 +321,71 @@ std::string SeededSpecs::Encode(std::uint64_t seed) {
 
 Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   const google::protobuf::LogSilencer silencer;  // the error says enough
-  v1::RunSpec message;
-  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
-    return Corrupt(fmt::format("the {} bytes of the run spec do not parse", bytes.size()));
+  alignas(std::max_align_t) std::array<char, kUsualSpecMemory> memory;
+  google::protobuf::ArenaOptions in_memory;
+  in_memory.initial_block = memory.data();
+  in_memory.initial_block_size = memory.size();
+  google::protobuf::Arena arena(in_memory);
+  v1::RunSpec& wire = *google::protobuf::Arena::CreateMessage<v1::RunSpec>(&arena);
+  if (bytes.size() > INT32_MAX || !wire.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return Corrupt(fmt::format("{} bytes that are no RunSpec", bytes.size()));
   }
+  SpecReader reader;
+  reader.RequireKnownFields(wire, "spec");
   sim::RunSpec spec;
-  Result<sim::TestCase> test_case = FromProto(message.test_case());
-  if (!test_case) return Corrupt("the run spec's " + test_case.error().message);
-  spec.test_case = std::move(*test_case);
-  spec.scenario = message.scenario();
-  for (const v1::Parameter& parameter : message.scenario_parameters()) {
-    spec.scenario_parameters[parameter.name()] = parameter.value();
-  }
-  spec.controller = message.controller();
-  for (const v1::Parameter& parameter : message.controller_parameters()) {
-    spec.controller_parameters[parameter.name()] = parameter.value();
-  }
-  spec.seed = message.seed();
-  spec.record_trajectory = message.record_trajectory();
-  if (message.physics() == v1::PHYSICS_RELAXATION) spec.physics = sim::PhysicsKind::kRelaxation;
-  if (Status read = FromProto(message, spec.disturbances); !read) return read.error();
+  spec.test_case = ReadTestCase(wire.test_case(), reader);
+  spec.scenario = reader.Name(wire.scenario(), "a scenario's name");
+  spec.scenario_parameters = ReadParameters(wire.scenario_parameters(), "scenario", reader);
+  spec.controller = reader.Name(wire.controller(), "a controller's name");
+  spec.controller_parameters = ReadParameters(wire.controller_parameters(), "controller", reader);
+  spec.seed = wire.seed();
+  spec.record_trajectory = wire.record_trajectory();
+  reader.Require(v1::Physics_IsValid(wire.physics()),
+                 fmt::format("physics {} is none that this version knows", static_cast<int>(wire.physics())));
+  if (wire.physics() == v1::PHYSICS_RELAXATION) spec.physics = sim::PhysicsKind::kRelaxation;
+  spec.disturbances = ReadDisturbances(wire, reader);
+  if (!reader.ok()) return Corrupt(reader.error());
   return spec;
 }
 
-std::string EncodeRunResult(const sim::RunResult& result) {
-  v1::RunResult message;
-  message.set_verdict(static_cast<v1::Verdict>(result.verdict));
-  message.set_message(result.message);
-  message.set_fitness(result.fitness);
+std::string EncodeRunResult(const sim::RunResult& result, TrajectoryEncoding trajectory) {
+  v1::RunResult wire;
+  wire.set_verdict(static_cast<v1::Verdict>(result.verdict));
+  wire.set_message(Utf8(result.message));
+  wire.set_fitness(result.fitness);
   for (const auto& [name, value] : result.metrics) {
-    v1::Metric& metric = *message.add_metrics();
-    metric.set_name(name);
+    v1::Metric& metric = *wire.add_metrics();
+    metric.set_name(Utf8(name));
     metric.set_value(value);
   }
-  message.mutable_failure()->set_total(result.failure.total);
-  message.mutable_failure()->set_type(result.failure.type);
-  message.mutable_failure()->set_label(result.failure.label);
-  message.set_ticks(result.ticks);
-  for (const sim::RobotSummary& robot : result.robots) {
-    v1::RobotSummary& summary = *message.add_robots();
-    ToProto(robot.start, *summary.mutable_start());
-    ToProto(robot.end, *summary.mutable_end());
-    summary.set_path_length(robot.path_length);
-    summary.set_lost(robot.lost);
-    PointsToProto(robot.waypoints, *summary.mutable_waypoints());
+  wire.mutable_failure()->set_total(result.failure.total);
+  wire.mutable_failure()->set_type(result.failure.type);
+  wire.mutable_failure()->set_label(Utf8(result.failure.label));
+  wire.set_ticks(result.ticks);
+  for (const sim::RobotSummary& summary : result.robots) {
+    v1::RobotSummary& robot = *wire.add_robots();
+    ToProto(summary.start, *robot.mutable_start());
+    ToProto(summary.end, *robot.mutable_end());
+    robot.set_path_length(summary.path_length);
+    robot.set_lost(summary.lost);
+    PointsToProto(summary.waypoints, *robot.mutable_waypoints());
   }
   for (const sim::Annotation& annotation : result.annotations) {
-    v1::Annotation& mark = *message.add_annotations();
-    mark.set_kind(annotation.kind);
-    mark.set_label(annotation.label);
+    v1::Annotation& mark = *wire.add_annotations();
+    mark.set_kind(Utf8(annotation.kind));
+    mark.set_label(Utf8(annotation.label));
     PointsToProto(annotation.points, *mark.mutable_points());
     mark.set_radius(annotation.radius);
     mark.set_tick(annotation.tick);
     mark.mutable_robots()->Add(annotation.robots.begin(), annotation.robots.end());
   }
-  message.set_trajectory_hash(result.trajectory_hash);
-  message.set_hash(result.hash);
-  if (!result.trajectory.empty()) {
-    v1::Trajectory& trajectory = *message.mutable_trajectory();
-    trajectory.set_robots(static_cast<int>(result.trajectory.front().size()));
-    for (const std::vector<sim::RobotState>& tick : result.trajectory) {
-      for (const sim::RobotState& state : tick) {
-        for (const double number : {state.x, state.y, state.heading, state.speed}) {
-          trajectory.add_states(number);
-        }
-      }
-    }
+  wire.set_trajectory_hash(result.trajectory_hash);
+  wire.set_hash(result.hash);
+  if (trajectory == TrajectoryEncoding::kInclude && !result.trajectory.empty()) {
+    TrajectoryToProto(result, *wire.mutable_trajectory());
   }
-  message.set_cpu_seconds(result.cpu_seconds);
-  return message.SerializeAsString();
+  wire.set_cpu_seconds(result.cpu_seconds);
+  return wire.SerializeAsString();
 }
 
 Result<sim::RunResult> DecodeRunResult(std::string_view bytes) {
@@ -324,8 +447,9 @@ Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& 
   if (!json) return json.error();
   v1::TestCase message;
   if (Status filled = FillMessage(*json, file_name, message); !filled) return filled.error();
-  Result<sim::TestCase> test_case = FromProto(message);
-  if (!test_case) return InvalidInput(file_name + ": " + test_case.error().message);
+  SpecReader reader;
+  sim::TestCase test_case = ReadTestCase(message, reader);
+  if (!reader.ok()) return InvalidInput(file_name + ": " + reader.error());
   return test_case;
 }
 
@@ -342,4 +466,4 @@ std::string WriteCaseJson(const sim::TestCase& test_case) {
   return text;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

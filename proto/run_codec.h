@@ -1,6 +1,7 @@
-// The master's one place where protobuf meets plain structs.
+// The one place where the protobuf of runs (run.proto) meets plain structs.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -14,9 +15,17 @@ namespace gauntlet::v1 {
 class RunSpec;
 }
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
 
+// Sizes beyond which a spec is refused before anything is built from it, beside sim::kMaxObstacles and
+// sim::kMaxObstaclePath.
+inline constexpr int kMaxParameters = 1'000;
+inline constexpr int kMaxFaults = 10'000;
+inline constexpr std::size_t kMaxNameBytes = 4'096;
+
+// Equal specs give equal bytes: the message has neither maps nor unknown fields.
 std::string EncodeRunSpec(const sim::RunSpec& spec);
+
 // EncodeRunSpec of specs that differ in their seed only: all else is translated once.
 class SeededSpecs {
  public:
@@ -29,14 +38,23 @@ class SeededSpecs {
  private:
   std::unique_ptr<v1::RunSpec> message_;
 };
+
+// Error (kCorrupt): not a RunSpec, too large, a number that is not finite, a parameter given twice, or fields
+// this version does not know: a newer master may mean something by them that changes the run. Ranges of
+// values are the scenario's business (controllers/registry.h).
 Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes);
-// Without trajectory and cost's influence on the hash; the hash is checked: Error(kCorrupt) when it does not
-// match the content.
+
+enum class TrajectoryEncoding { kLeaveOut, kInclude };
+
+// Equal results give equal bytes. Texts that are not UTF-8 end the process: no reader would accept them.
+std::string EncodeRunResult(const sim::RunResult& result,
+                            TrajectoryEncoding trajectory = TrajectoryEncoding::kInclude);
+
+// Error (kCorrupt): not a RunResult, or its hash is not that of its content.
 Result<sim::RunResult> DecodeRunResult(std::string_view bytes);
-std::string EncodeRunResult(const sim::RunResult& result);
 
 // User-facing case files: proto3 JSON. Errors name file, line and column.
 Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& file_name);
 std::string WriteCaseJson(const sim::TestCase& test_case);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

@@ -4,9 +4,27 @@
 
 #include "base/check.h"
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
+namespace {
 
-std::string DescribeFailure(const RunFailure& failure) {
+sim::Verdict VerdictOf(FailureKind kind) {
+  switch (kind) {
+    case FailureKind::kHung:
+      return sim::Verdict::kHung;
+    case FailureKind::kOutOfMemory:
+      return sim::Verdict::kOutOfMemory;
+    case FailureKind::kCrashed:
+    case FailureKind::kUnreadable:
+      return sim::Verdict::kCrashed;
+    case FailureKind::kExternal:
+      break;
+  }
+  GAUNTLET_CHECK(false, "an external failure gives no verdict");
+}
+
+}  // namespace
+
+std::string Describe(const RunnerFailure& failure) {
   switch (failure.kind) {
     case FailureKind::kCrashed:
       return failure.signal != 0 ? fmt::format("crashed with signal {}", failure.signal)
@@ -24,19 +42,12 @@ std::string DescribeFailure(const RunFailure& failure) {
   GAUNTLET_CHECK(false, "unknown kind of failure");
 }
 
-sim::Verdict VerdictOf(FailureKind kind) {
-  switch (kind) {
-    case FailureKind::kHung:
-      return sim::Verdict::kHung;
-    case FailureKind::kOutOfMemory:
-      return sim::Verdict::kOutOfMemory;
-    case FailureKind::kCrashed:
-    case FailureKind::kUnreadable:
-      return sim::Verdict::kCrashed;
-    case FailureKind::kExternal:
-      break;
-  }
-  GAUNTLET_CHECK(false, "an external failure gives no verdict");
+sim::RunResult ResultOf(const RunnerFailure& failure) {
+  sim::RunResult result;
+  result.verdict = VerdictOf(failure.kind);
+  result.message = Describe(failure);
+  result.hash = sim::HashOf(result);
+  return result;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

@@ -1,18 +1,19 @@
-// A runner's failure in words and as a run's verdict.
+// A runner's failure in words, as a run's verdict and as its result.
 #pragma once
 
 #include <string>
 
-#include "master/dispatch/scheduler.h"
+#include "proto/messages.h"
 #include "sim/run_result.h"
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
 
-// "crashed with signal 11". Part of the hashed message of a run that is given up: it must not depend on the
-// machine or the worker. Do not change.
-std::string DescribeFailure(const RunFailure& failure);
+// One line for a person, "crashed with signal 11". Do not change: it is the hashed message of a run that is
+// given up, and says nothing that depends on the machine or the worker.
+std::string Describe(const RunnerFailure& failure);
 
-// The verdict of a run that is given up after such a failure; kind is not kExternal.
-sim::Verdict VerdictOf(FailureKind kind);
+// The result of a run that is given up after such a failure, with its verdict, Describe's words and the hash.
+// The kind is not kExternal.
+sim::RunResult ResultOf(const RunnerFailure& failure);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

@@ -6,7 +6,7 @@
 #include <zmq.hpp>
 
 #include "base/thread_sanitizer.h"
-#include "proto/message_codec.h"
+#include "proto/messages.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -27,7 +27,7 @@ struct Connection::Socket {
 Connection::Connection() : socket_(std::make_unique<Socket>()) {}
 Connection::~Connection() = default;
 
-Status Connection::Open(const std::string& endpoint, const std::optional<CurveKeys>& curve) {
+Status Connection::Open(const std::string& endpoint, const std::optional<proto::CurveKeys>& curve) {
   outbox_.clear();
   try {
     if (socket_->dealer) {
@@ -38,7 +38,7 @@ Status Connection::Open(const std::string& endpoint, const std::optional<CurveKe
     dealer.set(zmq::sockopt::linger, kLingerMs);
     // Only a connection that stands takes messages: nothing piles up in front of a master that is away.
     dealer.set(zmq::sockopt::immediate, true);
-    dealer.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(kMaxMessageBytes));
+    dealer.set(zmq::sockopt::maxmsgsize, static_cast<std::int64_t>(proto::kMaxMessageBytes));
     dealer.set(zmq::sockopt::reconnect_ivl, kReconnectMs);
     dealer.set(zmq::sockopt::reconnect_ivl_max, kReconnectMaxMs);
     if (curve) {

@@ -22,7 +22,7 @@ class Connection {
   ~Connection();
 
   // Drops the old connection with everything that waits, and begins a new one.
-  Status Open(const std::string& endpoint, const std::optional<CurveKeys>& curve);
+  Status Open(const std::string& endpoint, const std::optional<proto::CurveKeys>& curve);
   // With the next Flush.
   void Send(std::string frame);
   // True when something waits to be sent.

@@ -29,26 +29,6 @@ std::size_t SizeIn(const char* prefix) {
 
 }  // namespace
 
-void UniqueFd::Reset(int fd) {
-  if (fd_ >= 0) close(fd_);
-  fd_ = fd;
-}
-
-Result<std::string> ReadAll(int fd, const std::string& place, std::size_t limit) {
-  std::string bytes;
-  std::array<char, 64 * 1024> chunk;
-  while (true) {
-    const ssize_t got = read(fd, chunk.data(), chunk.size());
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return Error{ErrorKind::kIo, fmt::format("{}: {}", place, std::strerror(errno))};
-    if (got == 0) return bytes;
-    bytes.append(chunk.data(), static_cast<std::size_t>(got));
-    if (bytes.size() > limit) {
-      return InvalidInput(fmt::format("{}: more than {} bytes, which is too much", place, limit));
-    }
-  }
-}
-
 Result<SocketPair> MakeSocketPair(int type) {
   std::array<int, 2> fds{};
   if (socketpair(AF_UNIX, type | SOCK_CLOEXEC, 0, fds.data()) != 0) {

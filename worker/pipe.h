@@ -1,4 +1,4 @@
-// File descriptors, and length-prefixed messages over a stream socket between a supervisor and its runners.
+// Length-prefixed messages over a stream socket between a supervisor and its runners.
 #pragma once
 
 #include <cstddef>
@@ -6,35 +6,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include "base/result.h"
+#include "base/system/unique_fd.h"
 
 namespace gauntlet::worker {
-
-// Owns a file descriptor; -1 = none.
-class UniqueFd {
- public:
-  UniqueFd() = default;
-  explicit UniqueFd(int fd) : fd_(fd) {}
-  UniqueFd(UniqueFd&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  UniqueFd& operator=(UniqueFd&& other) noexcept {
-    Reset(std::exchange(other.fd_, -1));
-    return *this;
-  }
-  ~UniqueFd() { Reset(); }
-
-  int get() const { return fd_; }
-  bool valid() const { return fd_ >= 0; }
-  void Reset(int fd = -1);
-
- private:
-  int fd_ = -1;
-};
-
-// Reads to the end, without a position to return to. `place` is named in errors: kIo; kInvalidInput when
-// there is more than `limit` bytes.
-Result<std::string> ReadAll(int fd, const std::string& place, std::size_t limit);
 
 struct SocketPair {
   UniqueFd first;

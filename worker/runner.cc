@@ -15,10 +15,14 @@
 
 #include "base/canonical_encoder.h"
 #include "base/utf8.h"
+#include "proto/run_codec.h"
 #include "worker/pipe.h"
-#include "worker/run_codec.h"
 
 namespace gauntlet::worker {
+
+using proto::FailureKind;
+using proto::RunnerFailure;
+
 namespace {
 
 void WriteToStderr(std::string_view text) {
@@ -71,23 +75,23 @@ class Limits {
 sim::RunResult Refuse(const Error& error) {
   sim::RunResult refused;
   refused.verdict = sim::Verdict::kRefused;
-  refused.message = error.message;
+  refused.message = "spec: " + error.message;
   refused.hash = sim::HashOf(refused);
   return refused;
 }
 
 RunnerReport Execute(const RunnerJob& job, const RunFunction& run) {
   const double start = SecondsOf(CLOCK_THREAD_CPUTIME_ID);
-  const Result<sim::RunSpec> spec = DecodeRunSpec(job.spec);
+  const Result<sim::RunSpec> spec = proto::DecodeRunSpec(job.spec);
   sim::RunResult result = spec.ok() ? run(*spec) : Refuse(spec.error());
   RunnerReport report;
   report.cpu_seconds = SecondsOf(CLOCK_THREAD_CPUTIME_ID) - start;
   result.cpu_seconds = report.cpu_seconds;
   const bool record = spec.ok() && spec->record_trajectory;
-  report.result =
-      EncodeRunResult(result, record ? TrajectoryEncoding::kInclude : TrajectoryEncoding::kLeaveOut);
+  report.result = proto::EncodeRunResult(
+      result, record ? proto::TrajectoryEncoding::kInclude : proto::TrajectoryEncoding::kLeaveOut);
   if (job.max_result_bytes > 0 && report.result.size() > job.max_result_bytes) {
-    report.result = EncodeRunResult(result, TrajectoryEncoding::kLeaveOut);
+    report.result = proto::EncodeRunResult(result, proto::TrajectoryEncoding::kLeaveOut);
   }
   report.process_cpu_seconds = SecondsOf(CLOCK_PROCESS_CPUTIME_ID);
   return report;
@@ -152,7 +156,8 @@ std::optional<RunnerReport> DecodeReport(std::string_view bytes) {
 
 RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail) {
   RunnerFailure failure;
-  if (stderr_tail.size() > kStderrTailBytes) stderr_tail.remove_prefix(stderr_tail.size() - kStderrTailBytes);
+  if (stderr_tail.size() > proto::kMaxStderrTail)
+    stderr_tail.remove_prefix(stderr_tail.size() - proto::kMaxStderrTail);
   failure.stderr_tail = ToUtf8(stderr_tail);
   if (WIFSIGNALED(wait_status)) {
     failure.signal = WTERMSIG(wait_status);
@@ -171,22 +176,6 @@ RunnerFailure WaitedTooLong(double wall_seconds) {
           .signal = 0,
           .exit_code = 0,
           .stderr_tail = fmt::format("no end after {:.0f} s: it waits", wall_seconds)};
-}
-
-std::string Describe(const RunnerFailure& failure) {
-  switch (failure.kind) {
-    case FailureKind::kCrashed:
-      return failure.signal != 0 ? fmt::format("crashed with signal {}", failure.signal)
-                                 : fmt::format("crashed with exit code {}", failure.exit_code);
-    case FailureKind::kHung:
-      return "exceeded its CPU time";
-    case FailureKind::kOutOfMemory:
-      return "exceeded its memory";
-    case FailureKind::kExternal:
-      break;
-  }
-  return failure.signal != 0 ? fmt::format("was ended from outside by signal {}", failure.signal)
-                             : "was given back";
 }
 
 void RunnerMain(int pipe, const RunFunction& run) {

@@ -21,9 +21,6 @@ using RunFunction = std::function<sim::RunResult(const sim::RunSpec&)>;
 inline constexpr int kExitOutOfMemory = 86;
 inline constexpr int kExitException = 87;
 
-// How much of what a run printed is kept.
-inline constexpr std::size_t kStderrTailBytes = 4096;
-
 // Sanitizers reserve terabytes of address space: memory limits cannot be set under them.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kMemoryLimitWorks = false;
@@ -60,17 +57,13 @@ std::optional<RunnerReport> DecodeReport(std::string_view bytes);
 // Why a runner ended without a result, from its status (waitpid). Own faults are the signals a process brings
 // on itself, SIGXCPU (the CPU limit) and any exit; SIGKILL, SIGTERM and the other signals that only somebody
 // else sends are external.
-RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail);
+proto::RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail);
 
 // A run that sleeps or waits uses no CPU time, so its limit never ends it. So many times its CPU limit of
 // wall time does: so late that a run at work on a crowded machine has met its CPU limit long before.
 inline constexpr double kWallPerCpu = 20.0;
 // Of a run that had not ended after `wall_seconds`.
-RunnerFailure WaitedTooLong(double wall_seconds);
-
-// One line for a person, the same for the same failure: "crashed with signal 11". The message of a run whose
-// verdict is crashed, hung or out of memory (proto/README.md).
-std::string Describe(const RunnerFailure& failure);
+proto::RunnerFailure WaitedTooLong(double wall_seconds);
 
 // The child's life: works off jobs from `pipe` until it is closed. Limits apply to this very process.
 [[noreturn]] void RunnerMain(int pipe, const RunFunction& run);

@@ -137,10 +137,10 @@ void RunnerPool::Exited(const RunnerExited& exited, std::vector<PoolEvent>& even
   ReadReports(index, events);
   ReadOutput(*slot);
   if (slot->jobs > 0) {
-    RunnerFailure failure = ClassifyExit(exited.wait_status, slot->output_tail);
-    if (slot->broke_protocol) failure.kind = FailureKind::kCrashed;
+    proto::RunnerFailure failure = ClassifyExit(exited.wait_status, slot->output_tail);
+    if (slot->broke_protocol) failure.kind = proto::FailureKind::kCrashed;
     // It ended before it had the job.
-    if (slot->unsent_frames.size() == slot->jobs) failure.kind = FailureKind::kExternal;
+    if (slot->unsent_frames.size() == slot->jobs) failure.kind = proto::FailureKind::kExternal;
     events.emplace_back(
         SlotFailed{index, std::move(failure), std::max(0.0, exited.cpu_seconds - slot->process_cpu_seconds)});
   } else {
@@ -188,8 +188,8 @@ void RunnerPool::ReadOutput(Slot& slot) {
       return;
     }
     slot.output_tail.append(chunk.data(), static_cast<std::size_t>(got));
-    if (slot.output_tail.size() > kStderrTailBytes) {
-      slot.output_tail.erase(0, slot.output_tail.size() - kStderrTailBytes);
+    if (slot.output_tail.size() > proto::kMaxStderrTail) {
+      slot.output_tail.erase(0, slot.output_tail.size() - proto::kMaxStderrTail);
     }
   }
 }

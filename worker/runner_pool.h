@@ -29,7 +29,7 @@ struct SlotFinished {
 // The slot's runner ended during its first job. SlotReady follows when it is replaced.
 struct SlotFailed {
   int slot = 0;
-  RunnerFailure failure;
+  proto::RunnerFailure failure;
   double cpu_seconds = 0.0;  // of the job
 };
 // The slot's runner ended, but not during a job.

@@ -19,6 +19,7 @@
 
 #include "base/check.h"
 #include "proto/message_codec.h"
+#include "proto/run_failure.h"
 #include "worker/connection.h"
 #include "worker/runner_pool.h"
 

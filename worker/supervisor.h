@@ -23,7 +23,7 @@ struct SupervisorOptions {
 class Supervisor {
  public:
   // `signals`: a signalfd of the signals that stop the worker. `fork_server` outlives the supervisor.
-  Supervisor(SupervisorOptions options, Access access, ForkServer& fork_server, int signals);
+  Supervisor(SupervisorOptions options, proto::Access access, ForkServer& fork_server, int signals);
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
   ~Supervisor();

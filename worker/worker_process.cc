@@ -22,11 +22,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/system/atomic_file.h"
 #include "proto/access_file.h"
-#include "proto/message_codec.h"
+#include "proto/run_codec.h"
+#include "proto/run_failure.h"
 #include "worker/fork_server.h"
-#include "worker/process_identity.h"
-#include "worker/run_codec.h"
 #include "worker/runner_pool.h"
 #include "worker/supervisor.h"
 #include "worker/worker_log.h"
@@ -115,12 +115,11 @@ Result<std::optional<Access>> WaitForAccess(const WorkerOptions& options, int si
   }
 }
 
-std::string HostName() {
+ProcessIdentity Identity() {
+  ProcessIdentity identity = IdentifyThisProcess();
   // All nodes of a Slurm cluster on one machine share a host name; Slurm's name tells them apart.
-  if (const char* node = std::getenv("SLURMD_NODENAME"); node != nullptr) return node;
-  std::array<char, 256> name{};
-  if (gethostname(name.data(), name.size() - 1) != 0) return "unknown";
-  return name.data();
+  if (const char* node = std::getenv("SLURMD_NODENAME"); node != nullptr) identity.host = node;
+  return identity;
 }
 
 std::uint64_t RandomId() {
@@ -142,14 +141,11 @@ bool WriteToStdout(std::string_view bytes) {
   return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() && std::fflush(stdout) == 0;
 }
 
-sim::RunResult ResultOf(const RunnerFailure& failure) {
-  sim::RunResult result;
-  result.verdict = failure.kind == FailureKind::kHung          ? sim::Verdict::kHung
-                   : failure.kind == FailureKind::kOutOfMemory ? sim::Verdict::kOutOfMemory
-                                                               : sim::Verdict::kCrashed;
-  result.message = Describe(failure);
-  result.hash = sim::HashOf(result);
-  return result;
+// "completed: fitness 0.25, hash 0123456789abcdef", "was refused: ...".
+std::string DescribeEnd(const Result<sim::RunResult>& result) {
+  if (!result) return "gave no readable result";
+  if (result->verdict == sim::Verdict::kRefused) return "was refused: " + result->message;
+  return fmt::format("completed: fitness {}, hash {:016x}", result->fitness, result->hash);
 }
 
 // One job in one fresh runner.
@@ -229,12 +225,10 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
                             .software_version = options.software_version,
                             .golden_hash = options.golden_hash(),
                             .slots = static_cast<std::uint32_t>(options.slots),
-                            .host = HostName(),
-                            .pid = 0,
+                            .process = Identity(),
                             .held_leases = {},
                             .allocation = options.allocation,
                             .controllers = options.controllers};
-  IdentifyThisProcess(settings.identity);
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
   Supervisor supervisor(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());
@@ -255,14 +249,14 @@ int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
   std::string result;
   if (const auto* report = std::get_if<RunnerReport>(&outcome)) {
     result = report->result;
-    fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeResult(result));
+    fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeEnd(DecodeRunResult(result)));
   } else {
     const RunnerFailure& failure = std::get<RunnerFailure>(outcome);
     const bool whole_lines = failure.stderr_tail.empty() || failure.stderr_tail.ends_with('\n');
     fmt::print(stderr, "gauntlet-worker: the run {}\n{}{}", Describe(failure), failure.stderr_tail,
                whole_lines ? "" : "\n");
     if (failure.kind == FailureKind::kExternal) return kExitInternal;
-    result = EncodeRunResult(ResultOf(failure), TrajectoryEncoding::kLeaveOut);
+    result = EncodeRunResult(ResultOf(failure));
   }
   if (!WriteToStdout(result)) return Complain("the result cannot be written to stdout", kExitInternal);
   return kExitDone;

@@ -29,6 +29,8 @@
 
 namespace gauntlet::worker {
 
+using namespace proto;  // the words that this state machine speaks
+
 using TimePoint = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::steady_clock::duration;
 

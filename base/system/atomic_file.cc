@@ -11,7 +11,9 @@
 #include <cstdlib>
 #include <cstring>
 
-namespace gauntlet::master {
+#include "base/system/unique_fd.h"
+
+namespace gauntlet {
 namespace {
 
 // Its number is the errno, 0 = none.
@@ -64,11 +66,9 @@ Status Replace(const std::string& path, std::string_view bytes, mode_t mode, boo
 }  // namespace
 
 Status SyncDirectory(const std::string& directory) {
-  const int fd = open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  const int error = fd < 0 || fsync(fd) != 0 ? errno : 0;
-  if (fd >= 0) close(fd);
-  if (error != 0) return SystemError(fmt::format("cannot synchronise {}", directory), error);
-  return Ok{};
+  const UniqueFd fd(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.valid() && fsync(fd.get()) == 0) return Ok{};
+  return SystemError(fmt::format("cannot synchronise {}", directory), errno);
 }
 
 Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode_t mode) {
@@ -80,28 +80,22 @@ Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode)
 }
 
 Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit) {
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return SystemError(fmt::format("cannot open {}", path), errno);
-  return ReadAndClose(fd, path, limit);
+  const UniqueFd fd(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!fd.valid()) return SystemError(fmt::format("cannot open {}", path), errno);
+  return ReadAll(fd.get(), path, limit);
 }
 
-Result<std::string> ReadAndClose(int fd, const std::string& path, std::size_t limit) {
+Result<std::string> ReadAll(int fd, const std::string& path, std::size_t limit) {
   std::string bytes;
-  std::array<char, 4096> buffer{};
-  int error = 0;
+  std::array<char, 16 * 1024> buffer;
   while (bytes.size() <= limit) {
     const ssize_t size = read(fd, buffer.data(), buffer.size());
     if (size < 0 && errno == EINTR) continue;
-    if (size < 0) error = errno;
-    if (size <= 0) break;
+    if (size < 0) return SystemError(fmt::format("cannot read {}", path), errno);
+    if (size == 0) return bytes;
     bytes.append(buffer.data(), static_cast<std::size_t>(size));
   }
-  close(fd);
-  if (error != 0) return SystemError(fmt::format("cannot read {}", path), error);
-  if (bytes.size() > limit) {
-    return Error{ErrorKind::kCorrupt, fmt::format("{} is longer than the {} bytes it may have", path, limit)};
-  }
-  return bytes;
+  return Error{ErrorKind::kCorrupt, fmt::format("{} is longer than the {} bytes it may have", path, limit)};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

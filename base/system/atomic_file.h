@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Permissions of the files of a campaign.
 inline constexpr mode_t kReadableByAll = 0644;
@@ -29,10 +29,10 @@ Status SyncDirectory(const std::string& directory);
 // A whole file of at most `limit` bytes. Errors: kNotFound, kIo, kCorrupt when it is longer.
 Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit = 1 << 20);
 
-// The same of a file that is open; closes it. `path` is for messages.
-Result<std::string> ReadAndClose(int fd, const std::string& path, std::size_t limit);
+// The same of a file or pipe that is open, from where it stands. `path` is for messages.
+Result<std::string> ReadAll(int fd, const std::string& path, std::size_t limit);
 
 // The error of a failed system call, by errno.
 Error SystemError(const std::string& what, int error_number);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 using TimePoint = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::steady_clock::duration;
@@ -27,4 +27,4 @@ inline std::int64_t UnixMilliseconds() {
       .count();
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -13,9 +13,11 @@
 #include <csignal>
 #include <cstring>
 
+#include "base/system/unique_fd.h"
+
 extern char** environ;
 
-namespace gauntlet::slurm {
+namespace gauntlet {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -23,29 +25,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostOutput = std::size_t{16} << 20;
 constexpr std::size_t kMostOfOurs = std::size_t{1} << 30;  // a run's result with every pose of every tick
 
-class Descriptor {
- public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() { Close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  void Reset(int fd) {
-    Close();
-    fd_ = fd;
-  }
-  void Close() {
-    if (fd_ >= 0) close(fd_);
-    fd_ = -1;
-  }
-  int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 struct Pipe {
-  Descriptor read;
-  Descriptor write;
+  UniqueFd read;
+  UniqueFd write;
   bool Open() {
     std::array<int, 2> ends{};
     return pipe2(ends.data(), O_CLOEXEC) == 0 && Take(ends);
@@ -108,7 +90,7 @@ bool WriteSome(int fd, std::string_view& rest) {
 // deadline.
 bool Converse(Pipe& in, Pipe& out, Pipe& err, std::string_view input, CallOutput& result, std::size_t most,
               Clock::time_point deadline) {
-  if (input.empty()) in.write.Close();
+  if (input.empty()) in.write.Reset();
   while (out.read.get() >= 0 || err.read.get() >= 0) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
     if (left <= 0) return false;
@@ -117,9 +99,9 @@ bool Converse(Pipe& in, Pipe& out, Pipe& err, std::string_view input, CallOutput
     if (poll(waiting.data(), waiting.size(), static_cast<int>(std::min<long>(left, 1000))) < 0 &&
         errno != EINTR)
       return false;
-    if (waiting[0].revents != 0 && !WriteSome(in.write.get(), input)) in.write.Close();
-    if (waiting[1].revents != 0 && !ReadSome(out.read.get(), result.out, most)) out.read.Close();
-    if (waiting[2].revents != 0 && !ReadSome(err.read.get(), result.err, most)) err.read.Close();
+    if (waiting[0].revents != 0 && !WriteSome(in.write.get(), input)) in.write.Reset();
+    if (waiting[1].revents != 0 && !ReadSome(out.read.get(), result.out, most)) out.read.Reset();
+    if (waiting[2].revents != 0 && !ReadSome(err.read.get(), result.err, most)) err.read.Reset();
   }
   return true;
 }
@@ -184,9 +166,9 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
         ErrorKind::kNotFound,
         "there is no " + program + (part_of_us ? "" : " in PATH: is Slurm installed on this machine?")};
   if (failed != 0) return Failure(program, std::strerror(failed));
-  in.read.Close();
-  out.write.Close();
-  err.write.Close();
+  in.read.Reset();
+  out.write.Reset();
+  err.write.Reset();
 
   CallOutput result;
   const bool spoken = Converse(in, out, err, input, result, part_of_us ? kMostOfOurs : kMostOutput, end);
@@ -205,4 +187,4 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
   return result;
 }
 
-}  // namespace gauntlet::slurm
+}  // namespace gauntlet

@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 
-namespace gauntlet::slurm {
+namespace gauntlet {
 
 struct CallOutput {
   int exit_code = 0;  // 128 + signal when a signal ended it
@@ -34,4 +34,4 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
                                std::optional<std::chrono::milliseconds> deadline,
                                Callee callee = Callee::kBatchSystem);
 
-}  // namespace gauntlet::slurm
+}  // namespace gauntlet

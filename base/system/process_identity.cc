@@ -8,7 +8,7 @@
 #include <sstream>
 #include <system_error>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 std::string HostName() {
@@ -80,4 +80,4 @@ Liveness LivenessOf(const ProcessIdentity& process, const ProcessIdentity& obser
   return StartTimeOf(process.pid) == process.start_time ? Liveness::kAlive : Liveness::kDead;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

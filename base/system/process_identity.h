@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 struct ProcessIdentity {
   std::string host;
@@ -33,4 +33,4 @@ enum class Liveness { kAlive, kDead, kUnknown };  // kUnknown: of another host, 
 // Judges `process` from `observer`'s point of view, which is this process.
 Liveness LivenessOf(const ProcessIdentity& process, const ProcessIdentity& observer);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

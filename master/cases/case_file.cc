@@ -52,7 +52,7 @@ Result<LoadedCase> LoadCase(const std::filesystem::path& path) {
     loaded = std::move(*imported);
     loaded.test_case.name = path.filename().string();
   } else {
-    Result<sim::TestCase> parsed = ParseCaseJson(*text, path.string());
+    Result<sim::TestCase> parsed = proto::ParseCaseJson(*text, path.string());
     if (!parsed) return parsed.error();
     loaded.test_case = std::move(*parsed);
     if (loaded.test_case.name.empty()) loaded.test_case.name = path.filename().string();

@@ -78,7 +78,7 @@ void NoteRefusal(EvaluatedCase& evaluated) {
 Status AddRuns(CommandContext& context, const std::string& directory, CaseList& list) {
   std::optional<Error> damaged;
   const Status read = context.service.for_each_run(directory, [&](const StoredRun& stored) {
-    Result<sim::RunResult> result = DecodeRunResult(stored.result);
+    Result<sim::RunResult> result = proto::DecodeRunResult(stored.result);
     if (!result || stored.individual < 1 || stored.individual > list.cases.size()) {
       if (!damaged) {
         damaged =

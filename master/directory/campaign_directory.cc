@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/system/atomic_file.h"
+#include "base/system/unique_fd.h"
 
 namespace gauntlet::master {
 namespace {
@@ -174,7 +175,7 @@ Status CampaignDirectory::CheckEpoch(std::uint64_t mine) const {
   }
   if (fd < 0) return SystemError(fmt::format("cannot open {}", epoch_path()), error);
   const Result<std::uint64_t> newest =
-      ParseEpoch(ReadAndClose(fd, epoch_path(), kLongestEpoch), epoch_path());
+      ParseEpoch(ReadAll(UniqueFd(fd).get(), epoch_path(), kLongestEpoch), epoch_path());
   if (!newest) return newest.error();
   if (*newest == mine) return Ok{};
   return Error{

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "base/result.h"
+#include "proto/messages.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
 
 namespace gauntlet::master {
 
-using RunId = std::uint64_t;  // 1, 2, 3, ... in logical order within a campaign
+using proto::RunId;
 
 struct RunRequest {
   RunId id = 0;
@@ -52,7 +53,7 @@ struct WorkerStatistics {
 struct WorkerView {
   struct Lease {
     RunId run = 0;
-    std::uint64_t fence = 0;
+    proto::Fence fence = 0;
     std::uint32_t attempt = 1;  // 1 = the run's first lease
     double seconds = 0.0;       // since it was given
     bool waits = false;         // there, behind as many others as the worker has slots

@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "base/printable.h"
+#include "proto/message_codec.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
 
@@ -68,9 +69,8 @@ Fence FirstFence(std::uint64_t epoch) {
   return epoch << 32;
 }
 
-std::string EncodeStoredResult(sim::RunResult& result) {
-  result.trajectory.clear();
-  return EncodeRunResult(result);
+std::string EncodedFarewell() {
+  return proto::EncodeMasterMessage(proto::Drain{.reason = "the master is leaving", .finish_current = false});
 }
 
 milliseconds RoundUp(Duration duration) {
@@ -185,13 +185,13 @@ void RemoteBackend::Handle(const PeerMessage& message, TimePoint now) {
            fmt::format("a peer that has not said hello sent {} bytes", message.bytes.size()));
     return;
   }
-  Result<WorkerMessage> decoded = DecodeWorkerMessage(message.bytes);
+  Result<proto::WorkerMessage> decoded = proto::DecodeWorkerMessage(message.bytes);
   if (!decoded) {
     Reject("unreadable",
            fmt::format("a message of {} bytes {}", message.bytes.size(), decoded.error().message));
     return;
   }
-  if (const auto* hello = std::get_if<HelloMessage>(&*decoded)) {
+  if (const auto* hello = std::get_if<proto::Hello>(&*decoded)) {
     OnHello(message.peer, *hello, now);
     return;
   }
@@ -202,26 +202,26 @@ void RemoteBackend::Handle(const PeerMessage& message, TimePoint now) {
   }
   const InstanceId worker = instance->second;
   scheduler_.WorkerHeard(worker, now);
-  if (const auto* heartbeat = std::get_if<HeartbeatMessage>(&*decoded)) {
-    scheduler_.WorkerHeartbeat(worker, heartbeat->held, now);
-  } else if (auto* result = std::get_if<ResultMessage>(&*decoded)) {
+  if (const auto* heartbeat = std::get_if<proto::Heartbeat>(&*decoded)) {
+    scheduler_.WorkerHeartbeat(worker, heartbeat->held_leases, now);
+  } else if (auto* result = std::get_if<proto::LeaseResult>(&*decoded)) {
     OnResult(worker, std::move(*result));
-  } else if (const auto* drain = std::get_if<DrainMessage>(&*decoded)) {
+  } else if (const auto* drain = std::get_if<proto::Drain>(&*decoded)) {
     scheduler_.WorkerDraining(worker);
     Report("worker-left",
            fmt::format("worker {} wants no more runs: {}", LabelOf(worker), Shorten(drain->reason)));
-  } else if (const auto* goodbye = std::get_if<GoodbyeMessage>(&*decoded)) {
+  } else if (const auto* goodbye = std::get_if<proto::Goodbye>(&*decoded)) {
     Report("worker-left", fmt::format("worker {} left: {}", LabelOf(worker), Shorten(goodbye->reason)));
     scheduler_.WorkerLeft(worker);
     Disconnect(worker);
   }
 }
 
-std::string RemoteBackend::ReasonToRefuse(const HelloMessage& hello) const {
-  if (hello.protocol_version != kProtocolVersion) {
+std::string RemoteBackend::ReasonToRefuse(const proto::Hello& hello) const {
+  if (hello.protocol_version != proto::kProtocolVersion) {
     return fmt::format(
         "this worker speaks protocol version {}, this master speaks {}: use gauntlet-worker {}",
-        hello.protocol_version, kProtocolVersion, identity_.software_version);
+        hello.protocol_version, proto::kProtocolVersion, identity_.software_version);
   }
   if (hello.campaign_id != identity_.campaign_id) {
     return fmt::format("this worker belongs to campaign '{}', this master serves campaign '{}'",
@@ -253,10 +253,10 @@ std::string RemoteBackend::ReasonToRefuse(const HelloMessage& hello) const {
   return "";
 }
 
-void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimePoint now) {
-  const std::string label = fmt::format("{:016x}@{}", hello.instance_id, Shorten(hello.host));
+void RemoteBackend::OnHello(const PeerId& peer, const proto::Hello& hello, TimePoint now) {
+  const std::string label = fmt::format("{:016x}@{}", hello.instance_id, Shorten(hello.process.host));
   if (const std::string reason = ReasonToRefuse(hello); !reason.empty()) {
-    transport_.Send(peer, EncodeRefused(reason));
+    transport_.Send(peer, proto::EncodeMasterMessage(proto::Refused{reason}));
     ReportRefusal(label, reason, now);
     return;
   }
@@ -274,74 +274,74 @@ void RemoteBackend::OnHello(const PeerId& peer, const HelloMessage& hello, TimeP
   if (known && !repeated) instances_.erase(connection.peer);
   connection.peer = peer;
   connection.label = label;
-  connection.pid = hello.pid;
+  connection.pid = hello.process.pid;
   connection.allocation = Shorten(hello.allocation);
   connection.unreachable = 0;
   instances_[peer] = hello.instance_id;
-  processes_.Watch(hello.instance_id, {hello.host, hello.boot_id, hello.pid_namespace,
-                                       static_cast<pid_t>(hello.pid), hello.start_time});
-  transport_.Send(peer, EncodeWelcome(options_, identity_.epoch));
-  if (!repeated || !scheduler_.WorkerHeartbeat(hello.instance_id, hello.held, now)) {
-    scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held, now);
+  processes_.Watch(hello.instance_id, hello.process);
+  transport_.Send(peer, proto::EncodeMasterMessage(proto::Welcome{options_.heartbeat, identity_.epoch,
+                                                                  options_.cpu_limit_seconds,
+                                                                  options_.memory_limit_bytes}));
+  if (!repeated || !scheduler_.WorkerHeartbeat(hello.instance_id, hello.held_leases, now)) {
+    scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held_leases, now);
   }
-  if (shutting_down_) transport_.Send(peer, EncodeDrain("the master is leaving", false));
+  if (shutting_down_) transport_.Send(peer, EncodedFarewell());
   if (repeated) return;
-  Report("worker-joined", fmt::format("worker {} (pid {}, slots {}) {}", label, hello.pid, hello.slots,
-                                      known ? "is back" : "joined"));
+  Report("worker-joined", fmt::format("worker {} (pid {}, slots {}) {}", label, hello.process.pid,
+                                      hello.slots, known ? "is back" : "joined"));
 }
 
-void RemoteBackend::OnResult(InstanceId worker, ResultMessage message) {
+void RemoteBackend::OnResult(InstanceId worker, proto::LeaseResult message) {
   if (shutting_down_) {
     // Nobody will store it any more, and the worker waits for an answer before it leaves.
-    SendTo(worker, EncodeAcknowledge({message.fence}));
+    SendTo(worker, proto::EncodeMasterMessage(proto::Acknowledge{{message.fence}}));
     return;
   }
   std::optional<sim::RunResult> result;
   if (!message.failure) {
-    Result<sim::RunResult> decoded = DecodeRunResult(message.result);
+    Result<sim::RunResult> decoded = proto::DecodeRunResult(message.result);
     if (decoded) {
       result = std::move(*decoded);
     } else {
-      message.failure = RunFailure{FailureKind::kUnreadable, 0, 0};
-      message.stderr_tail = decoded.error().message;
+      message.failure = proto::RunnerFailure{proto::FailureKind::kUnreadable, 0, 0, decoded.error().message};
     }
   }
 
   if (!result) {
-    const Answer answer = scheduler_.Failed(worker, message.fence, message.run, *message.failure);
-    if (answer == Answer::kUnwanted) ForgetSpec(message.run);
+    const Answer answer = scheduler_.Failed(worker, message.fence, message.run_id, *message.failure);
+    if (answer == Answer::kUnwanted) ForgetSpec(message.run_id);
     if (answer == Answer::kRejected) {
       Reject("lease", fmt::format("worker {} reported on a lease that is not its own", LabelOf(worker)));
     } else if (answer == Answer::kAccepted) {
-      const bool own = message.failure->kind != FailureKind::kExternal;
-      if (own) stderr_tails_[message.run] = message.stderr_tail;
+      const proto::RunnerFailure& failure = *message.failure;
+      const bool own = failure.kind != proto::FailureKind::kExternal;
       Report(own ? "runner-failure" : "run-returned",
-             fmt::format("run {} {} on worker {} (lease {:x}){}{}", message.run,
-                         DescribeFailure(*message.failure), LabelOf(worker), message.fence,
-                         message.stderr_tail.empty() ? "" : ": ", Shorten(message.stderr_tail)));
+             fmt::format("run {} {} on worker {} (lease {:x}){}{}", message.run_id, proto::Describe(failure),
+                         LabelOf(worker), message.fence, failure.stderr_tail.empty() ? "" : ": ",
+                         Shorten(failure.stderr_tail)));
     }
     return;
   }
 
-  switch (scheduler_.Completed(worker, message.fence, message.run, result->hash)) {
+  switch (scheduler_.Completed(worker, message.fence, message.run_id, result->hash)) {
     case Answer::kAccepted: {
       scheduler_.RunTook(message.cpu_seconds);
-      const std::uint32_t attempt = std::max(1U, scheduler_.LeasesOf(message.run));
+      const std::uint32_t attempt = std::max(1U, scheduler_.LeasesOf(message.run_id));
       // What arrived is stored as it came: decoding has checked it against its hash.
       const bool as_it_came = result->trajectory.empty() && result->cpu_seconds > 0.0;
+      result->trajectory.clear();
       if (result->cpu_seconds == 0.0) result->cpu_seconds = message.cpu_seconds;
-      finished_.push_back({message.run, std::move(*result), {}, LabelOf(worker), attempt, {}});
+      finished_.push_back({message.run_id, std::move(*result), {}, LabelOf(worker), attempt, {}});
       FinishedRun& finished = finished_.back();
-      finished.encoded = as_it_came ? std::move(message.result) : EncodeStoredResult(finished.result);
-      ForgetSpec(message.run);
-      stderr_tails_.erase(message.run);
+      finished.encoded = as_it_came ? std::move(message.result) : proto::EncodeRunResult(finished.result);
+      ForgetSpec(message.run_id);
       break;
     }
     case Answer::kRejected:
       Reject("lease", fmt::format("worker {} answered a lease that is not its own", LabelOf(worker)));
       break;
     default:
-      ForgetSpec(message.run);
+      ForgetSpec(message.run_id);
       break;  // counted by the scheduler
   }
 }
@@ -371,7 +371,8 @@ bool RemoteBackend::Perform(const SchedulerOrders& orders) {
                        LabelOf(mismatch.second_worker), mismatch.second_hash));
   }
   for (const RunGivenUp& order : orders.given_up) GiveUp(order);
-  for (const FenceOrder& cancel : orders.cancels) SendTo(cancel.worker, EncodeCancel(cancel.fence));
+  for (const FenceOrder& cancel : orders.cancels)
+    SendTo(cancel.worker, proto::EncodeMasterMessage(proto::Cancel{cancel.fence}));
 
   for (const FenceOrder& order : orders.acknowledgements) {
     const auto connection = connections_.find(order.worker);
@@ -380,7 +381,8 @@ bool RemoteBackend::Perform(const SchedulerOrders& orders) {
 
   bool delivered = true;
   for (const LeaseOrder& lease : orders.leases) {
-    if (SendTo(lease.worker, EncodeLease(lease, specs_.at(lease.run))) == SendOutcome::kSent) continue;
+    const proto::Lease message{lease.fence, lease.run, specs_.at(lease.run), lease.attempt};
+    if (SendTo(lease.worker, proto::EncodeMasterMessage(message)) == SendOutcome::kSent) continue;
     scheduler_.Undelivered(lease.fence);
     delivered = false;
   }
@@ -397,14 +399,11 @@ bool RemoteBackend::Perform(const SchedulerOrders& orders) {
 void RemoteBackend::GiveUp(const RunGivenUp& order) {
   FinishedRun run;
   run.id = order.run;
-  run.result.verdict = VerdictOf(order.last.kind);
-  // Hashed, so nothing that depends on how often workers were lost on the way.
-  run.result.message = DescribeFailure(order.last);
-  run.result.hash = sim::HashOf(run.result);
-  run.encoded = EncodeStoredResult(run.result);
+  run.result = ResultOf(order.last);
+  run.encoded = proto::EncodeRunResult(run.result);
   run.worker = LabelOf(order.worker);
   run.attempt = order.leases;
-  if (auto tail = stderr_tails_.extract(order.run)) run.stderr_tail = std::move(tail.mapped());
+  run.stderr_tail = order.last.stderr_tail;
   Report("run-given-up", fmt::format("run {} {} in {} of {} attempts", order.run, run.result.message,
                                      order.of_last_kind, order.attempts));
   finished_.push_back(std::move(run));
@@ -414,7 +413,7 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
 void RemoteBackend::SendHeartbeats(TimePoint now) {
   if (now < next_heartbeat_) return;
   next_heartbeat_ = now + options_.heartbeat;
-  const std::string heartbeat = EncodeHeartbeat(++heartbeats_);
+  const std::string heartbeat = proto::EncodeMasterMessage(proto::Heartbeat{++heartbeats_, {}});
   for (auto& [worker, connection] : connections_) {
     SendAcknowledgements(connection);
     const bool reached = transport_.Send(connection.peer, heartbeat) != SendOutcome::kUnreachable;
@@ -432,7 +431,7 @@ SendOutcome RemoteBackend::SendTo(InstanceId worker, std::string_view bytes) {
 
 void RemoteBackend::SendAcknowledgements(Connection& connection) {
   if (connection.acknowledged.empty()) return;
-  transport_.Send(connection.peer, EncodeAcknowledge(connection.acknowledged));
+  transport_.Send(connection.peer, proto::EncodeMasterMessage(proto::Acknowledge{connection.acknowledged}));
   connection.acknowledged.clear();
 }
 
@@ -475,8 +474,8 @@ void RemoteBackend::Shutdown(milliseconds deadline) {
   if (pool_ != nullptr) pool_->StopReplacing();
   GiveLeases(start);  // none are given, but what was acknowledged last is sent
   shutting_down_ = true;
-  const std::string drain = EncodeDrain("the master is leaving", false);
-  for (const auto& [worker, connection] : connections_) SendTo(worker, drain);
+  const std::string farewell = EncodedFarewell();
+  for (const auto& [worker, connection] : connections_) SendTo(worker, farewell);
 
   // Goodbye, then SIGTERM, then SIGKILL; each stage ends early when there is nobody left.
   const auto pool_runs = [this] { return pool_ != nullptr && pool_->running() > 0; };

@@ -18,8 +18,8 @@
 #include "master/dispatch/process_watch.h"
 #include "master/dispatch/scheduler.h"
 #include "master/dispatch/transport.h"
-#include "master/dispatch/wire.h"
 #include "master/dispatch/worker_pool.h"
+#include "proto/messages.h"
 
 namespace gauntlet::master {
 
@@ -48,7 +48,7 @@ class RemoteBackend final : public EvaluationBackend {
   struct Connection {
     PeerId peer;
     std::string label;  // instance id and host
-    std::int64_t pid = 0;
+    pid_t pid = 0;
     std::string allocation;
     int unreachable = 0;  // heartbeats in a row that found no connection
     // Leases whose acknowledgement goes along with the next message, a heartbeat later at most: woken for
@@ -63,10 +63,10 @@ class RemoteBackend final : public EvaluationBackend {
   PoolView ViewForPool() const;
   bool ReceiveMessages(TimePoint now);
   void Handle(const PeerMessage& message, TimePoint now);
-  void OnHello(const PeerId& peer, const HelloMessage& hello, TimePoint now);
-  void OnResult(InstanceId worker, ResultMessage message);
+  void OnHello(const PeerId& peer, const proto::Hello& hello, TimePoint now);
+  void OnResult(InstanceId worker, proto::LeaseResult message);
   // Why this worker may not work here; "" when it may.
-  std::string ReasonToRefuse(const HelloMessage& hello) const;
+  std::string ReasonToRefuse(const proto::Hello& hello) const;
   void GiveLeases(TimePoint now);
   void ForgetSpec(RunId run);
   // False when a lease could not be delivered: others may take it.
@@ -92,8 +92,6 @@ class RemoteBackend final : public EvaluationBackend {
 
   Scheduler scheduler_;
   std::unordered_map<RunId, std::string> specs_;  // of runs that somebody may have to simulate
-  std::unordered_map<RunId, std::string>
-      stderr_tails_;  // of a run's newest failure of its own, until it ends
   std::map<InstanceId, Connection> connections_;
   std::unordered_map<PeerId, InstanceId> instances_;
   ProcessWatch processes_;                               // of the workers on this machine

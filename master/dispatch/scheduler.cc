@@ -348,7 +348,7 @@ Answer Scheduler::Completed(InstanceId worker, Fence fence, RunId id, std::uint6
   return Answer::kAccepted;
 }
 
-Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const RunFailure& failure) {
+Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const proto::RunnerFailure& failure) {
   const auto found = leases_.find(fence);
   if (found == leases_.end()) {
     orders_.acknowledgements.push_back({worker, fence});
@@ -361,7 +361,8 @@ Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const RunFail
   EndLease(fence);
   orders_.acknowledgements.push_back({worker, fence});
   if (run.finished) {
-    if (run.audit && failure.kind != FailureKind::kExternal && ++run.audit_failures >= options_.attempts) {
+    if (run.audit && failure.kind != proto::FailureKind::kExternal &&
+        ++run.audit_failures >= options_.attempts) {
       ++mismatches_;
       orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, 0});
       EndAudit(id, run, worker);
@@ -370,7 +371,7 @@ Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const RunFail
     ForgetIfDone(id);
     return Answer::kUnwanted;
   }
-  if (failure.kind != FailureKind::kExternal) {
+  if (failure.kind != proto::FailureKind::kExternal) {
     ++run.own_failures;
     const std::uint32_t of_kind = ++run.failures_of_kind[static_cast<std::size_t>(failure.kind)];
     if (run.own_failures >= options_.attempts) {

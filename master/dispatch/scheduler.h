@@ -25,25 +25,12 @@
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/dispatch/slot_usage.h"
+#include "proto/messages.h"
 
 namespace gauntlet::master {
 
-using InstanceId = std::uint64_t;  // random, one per worker process
-using Fence = std::uint64_t;       // names a lease; grows monotonically within a campaign
-
-enum class FailureKind {
-  kCrashed,
-  kHung,
-  kOutOfMemory,
-  kUnreadable,  // the answer did not decode, or its hash does not match its content
-  kExternal,    // not the run's fault: never an attempt
-};
-
-struct RunFailure {
-  FailureKind kind = FailureKind::kExternal;
-  int signal = 0;
-  int exit_code = 0;
-};
+using proto::Fence;
+using proto::InstanceId;
 
 struct LeaseOrder {
   InstanceId worker = 0;
@@ -62,7 +49,7 @@ struct RunGivenUp {
   RunId run = 0;
   InstanceId worker = 0;  // of the last failure
   std::uint32_t leases = 1;
-  RunFailure last;
+  proto::RunnerFailure last;
   std::uint32_t of_last_kind = 0;
   std::uint32_t attempts = 0;
 };
@@ -125,7 +112,7 @@ class Scheduler {
   bool WorkerDied(InstanceId id);      // its process is gone; what it sent before may still arrive
 
   Answer Completed(InstanceId worker, Fence fence, RunId id, std::uint64_t hash);
-  Answer Failed(InstanceId worker, Fence fence, RunId id, const RunFailure& failure);
+  Answer Failed(InstanceId worker, Fence fence, RunId id, const proto::RunnerFailure& failure);
   // How long a run takes, as one that has just ended did: predicts the length of those to come.
   void RunTook(double seconds);
   // The lease could not be sent. The worker gets no other before it is heard of again.
@@ -180,7 +167,7 @@ class Scheduler {
     std::uint32_t live = 0;
     std::uint32_t leases = 0;  // given so far
     std::uint32_t own_failures = 0;
-    std::array<std::uint32_t, 4> failures_of_kind{};
+    std::array<std::uint32_t, proto::kFailureKinds> failures_of_kind{};
     bool finished = false;
     bool given_up = false;
     bool acknowledged = false;

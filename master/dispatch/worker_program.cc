@@ -26,8 +26,7 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
   const std::string program = WorkerProgramPath();
   arguments.insert(arguments.begin(), program);
   for (int attempt = 1;; ++attempt) {
-    Result<slurm::CallOutput> output =
-        slurm::CallProcess(arguments, input, std::nullopt, slurm::Callee::kPartOfUs);
+    Result<CallOutput> output = CallProcess(arguments, input, std::nullopt, Callee::kPartOfUs);
     if (!output) return output.error();
     if (output->exit_code == 0) return std::move(output->out);
     if (output->signal == SIGKILL && attempt < kTries) continue;
@@ -42,9 +41,9 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec) {
   const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters));
   Result<std::string> output =
-      RunWorkerProgram({"--run-spec", "-", "--cpu-limit", cpu_limit}, EncodeRunSpec(spec));
+      RunWorkerProgram({"--run-spec", "-", "--cpu-limit", cpu_limit}, proto::EncodeRunSpec(spec));
   if (!output) return output.error();
-  return DecodeRunResult(*output);
+  return proto::DecodeRunResult(*output);
 }
 
 Result<std::uint64_t> GoldenHashOfThisMachine() {

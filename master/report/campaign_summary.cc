@@ -43,7 +43,7 @@ void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
 
 void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
   if (run.verdict == static_cast<int>(sim::Verdict::kCompleted)) return;
-  const Result<sim::RunResult> result = DecodeRunResult(run.result);
+  const Result<sim::RunResult> result = proto::DecodeRunResult(run.result);
   const std::string message = result ? result->message : result.error().message;
   const auto verdict = static_cast<sim::Verdict>(run.verdict);
   const std::string rule = RuleOf(message);

@@ -65,13 +65,13 @@ Result<ReplayReport> ReplayRun(ResultStore& store, RunId run) {
     return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", run)};
   ReplayReport report;
   report.stored = std::move(**loaded);
-  Result<sim::RunSpec> spec = DecodeRunSpec(report.stored.spec);
+  Result<sim::RunSpec> spec = proto::DecodeRunSpec(report.stored.spec);
   if (!spec) {
     report.damage = fmt::format("the stored spec of run {} is damaged: {}", run, spec.error().message);
     return report;
   }
   report.spec = std::move(*spec);
-  Result<sim::RunResult> stored_result = DecodeRunResult(report.stored.result);
+  Result<sim::RunResult> stored_result = proto::DecodeRunResult(report.stored.result);
   if (!stored_result) {
     report.damage =
         fmt::format("the stored result of run {} is damaged: {}", run, stored_result.error().message);

@@ -33,7 +33,7 @@ Status CheckRun(const Experiment& experiment, const StoredRun& run) {
                                run.id, hash, run.spec_hash));
   }
   if (Status belongs = CheckSeed(experiment, run); !belongs) return belongs;
-  const Result<sim::RunResult> result = DecodeRunResult(run.result);
+  const Result<sim::RunResult> result = proto::DecodeRunResult(run.result);
   if (!result) return Damaged(fmt::format("the result of run {}: {}", run.id, result.error().message));
   return CheckCopies(run, *result);
 }
@@ -42,10 +42,10 @@ Status CheckRun(const Experiment& experiment, const StoredRun& run) {
 Status CheckTestCase(const std::map<IndividualId, sim::TestCase>& test_cases, const StoredRun& run) {
   const auto known = test_cases.find(run.individual);
   if (known == test_cases.end()) return Ok{};  // individuals are stored at the end of their generation
-  Result<sim::RunSpec> spec = DecodeRunSpec(run.spec);
+  Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
   if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));
   spec->test_case = known->second;
-  if (EncodeRunSpec(*spec) == run.spec) return Ok{};
+  if (proto::EncodeRunSpec(*spec) == run.spec) return Ok{};
   return Damaged(fmt::format("the stored test case of individual {} is not the one that run {} simulated",
                              run.individual, run.id));
 }

@@ -19,10 +19,10 @@
 #include "master/report/metrics_text.h"
 #include "master/report/stored_campaign.h"
 #include "master/report/stored_search.h"
-#include "master/session/access_file.h"
 #include "master/session/master_log.h"
 #include "master/session/metrics_server.h"
 #include "master/session/reachable_endpoints.h"
+#include "proto/access_file.h"
 
 namespace gauntlet::master {
 namespace {
@@ -122,8 +122,8 @@ Status CampaignServer::MakeSearches() {
 // A socket for workers, with keys when others than this machine can reach it.
 Status CampaignServer::Listen() {
   AllowManyConnections();
-  AccessInfo access;
-  access.campaign = view_.campaign_id;
+  proto::Access access;
+  access.campaign_id = view_.campaign_id;
   access.epoch = view_.epoch;
   ZmqTransportOptions transport;
   transport.endpoint = options_.bind;
@@ -131,7 +131,8 @@ Status CampaignServer::Listen() {
   if (!local && !options_.insecure) {
     Result<CampaignKeys> keys = LoadOrMakeKeys(campaign_.directory.key_path());
     if (!keys) return keys.error();
-    access.curve = AccessKeys{keys->master.public_key, keys->worker.public_key, keys->worker.secret_key};
+    access.curve =
+        proto::CurveKeys{keys->master.public_key, keys->worker.public_key, keys->worker.secret_key};
     transport.curve = CurveServer{keys->master, {keys->worker.public_key}};
   }
   Result<std::unique_ptr<ZmqTransport>> bound = ZmqTransport::Bind(transport);
@@ -144,7 +145,7 @@ Status CampaignServer::Listen() {
   }
   view_.endpoints = access.endpoints;
   view_.encrypted = access.curve.has_value();
-  return WriteAccessFile(campaign_.directory.access_path(), access);
+  return proto::WriteAccess(campaign_.directory.access_path(), access);
 }
 
 Status CampaignServer::StartPool() {

@@ -6,12 +6,12 @@
 #include <system_error>
 
 #include "base/system/atomic_file.h"
-#include "master/session/access_file.h"
+#include "proto/access_file.h"
 
 namespace gauntlet::master {
 
 MasterFiles::~MasterFiles() {
-  if (Status removed = RemoveAccessFile(directory_.access_path(), epoch_); !removed)
+  if (Status removed = proto::RemoveAccess(directory_.access_path(), epoch_); !removed)
     spdlog::warn("{}", removed.error().message);
   if (!CheckNewest()) return;
   std::error_code ignored;

@@ -29,7 +29,7 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   std::filesystem::create_directories(folder, error);
   if (error) return SystemError(fmt::format("cannot make {}", folder.string()), error.value());
 
-  const Result<sim::RunSpec> spec = DecodeRunSpec(run.spec);
+  const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
   if (!spec) return spec.error();
   const std::string command =
       fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
@@ -51,7 +51,7 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
     return ReplaceFile((folder / name).string(), text, kReadableByAll);
   };
   if (Status written = write("run.spec", run.spec); !written) return written;
-  if (Status written = write("case.json", WriteCaseJson(spec->test_case)); !written) return written;
+  if (Status written = write("case.json", proto::WriteCaseJson(spec->test_case)); !written) return written;
   if (Status written = write("experiment.toml", WriteExperiment(experiment, {})); !written) return written;
   if (Status written = write("stderr.txt", finished.stderr_tail); !written) return written;
   return write("README.txt", readme);

@@ -71,7 +71,7 @@ Status SearchDriver::Ask() {
   for (EvaluationRequest& request : parts_.search.Ask()) {
     PendingEvaluation evaluation;
     const double length = PredictedLength(request);
-    SeededSpecs specs(SpecOf(parts_.experiment, request.test_case, 0));
+    proto::SeededSpecs specs(SpecOf(parts_.experiment, request.test_case, 0));
     for (std::uint32_t replicate = 0; replicate < request.replicates; ++replicate) {
       StoredRun run;
       run.id = ++last_asked_;

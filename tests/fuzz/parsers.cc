@@ -5,12 +5,10 @@
 
 #include "base/check.h"
 #include "master/cases/argos_import.h"
-#include "master/dispatch/wire.h"
 #include "master/experiment/experiment_file.h"
 #include "proto/access_file.h"
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
-#include "worker/run_codec.h"
 
 namespace gauntlet::fuzz {
 namespace {
@@ -27,41 +25,41 @@ void ExpectAGoodError(const Result<T>& result) {
 
 // A frame may come from either side; what it carries is decoded as the next step would.
 void ReadWire(std::string_view bytes) {
-  const Result<master::WorkerMessage> from_worker = master::DecodeWorkerMessage(bytes);
+  const Result<proto::WorkerMessage> from_worker = proto::DecodeWorkerMessage(bytes);
   if (!from_worker) {
     ExpectAGoodError(from_worker);
-  } else if (const auto* result = std::get_if<master::ResultMessage>(&*from_worker)) {
-    const Result<sim::RunResult> decoded = master::DecodeRunResult(result->result);
+  } else if (const auto* result = std::get_if<proto::LeaseResult>(&*from_worker)) {
+    const Result<sim::RunResult> decoded = proto::DecodeRunResult(result->result);
     if (!decoded) ExpectAGoodError(decoded);
   }
-  const Result<worker::MasterMessage> from_master = worker::DecodeMasterMessage(bytes);
+  const Result<proto::MasterMessage> from_master = proto::DecodeMasterMessage(bytes);
   if (!from_master) {
     ExpectAGoodError(from_master);
-  } else if (const auto* lease = std::get_if<worker::Lease>(&*from_master)) {
-    const Result<sim::RunSpec> decoded = worker::DecodeRunSpec(lease->spec);
+  } else if (const auto* lease = std::get_if<proto::Lease>(&*from_master)) {
+    const Result<sim::RunSpec> decoded = proto::DecodeRunSpec(lease->spec);
     if (!decoded) ExpectAGoodError(decoded);
   }
 }
 
 // Stored specs and results: what was read is written and read again, and is the same.
 void ReadRun(std::string_view bytes) {
-  if (const Result<sim::RunSpec> spec = master::DecodeRunSpec(bytes); spec) {
-    const std::string encoded = master::EncodeRunSpec(*spec);
-    const Result<sim::RunSpec> again = master::DecodeRunSpec(encoded);
-    GAUNTLET_CHECK(again.ok() && master::EncodeRunSpec(*again) == encoded, "a spec does not survive");
+  if (const Result<sim::RunSpec> spec = proto::DecodeRunSpec(bytes); spec) {
+    const std::string encoded = proto::EncodeRunSpec(*spec);
+    const Result<sim::RunSpec> again = proto::DecodeRunSpec(encoded);
+    GAUNTLET_CHECK(again.ok() && proto::EncodeRunSpec(*again) == encoded, "a spec does not survive");
   }
-  if (const Result<sim::RunResult> result = master::DecodeRunResult(bytes); result) {
-    const Result<sim::RunResult> again = master::DecodeRunResult(master::EncodeRunResult(*result));
+  if (const Result<sim::RunResult> result = proto::DecodeRunResult(bytes); result) {
+    const Result<sim::RunResult> again = proto::DecodeRunResult(proto::EncodeRunResult(*result));
     GAUNTLET_CHECK(again.ok() && again->hash == result->hash, "a result does not survive");
   }
 }
 
 void ReadCaseJson(std::string_view bytes) {
-  const Result<sim::TestCase> read = master::ParseCaseJson(std::string(bytes), "case.json");
+  const Result<sim::TestCase> read = proto::ParseCaseJson(std::string(bytes), "case.json");
   if (!read) return ExpectAGoodError(read);
-  const std::string written = master::WriteCaseJson(*read);
-  const Result<sim::TestCase> again = master::ParseCaseJson(written, "again.json");
-  GAUNTLET_CHECK(again.ok() && master::WriteCaseJson(*again) == written,
+  const std::string written = proto::WriteCaseJson(*read);
+  const Result<sim::TestCase> again = proto::ParseCaseJson(written, "again.json");
+  GAUNTLET_CHECK(again.ok() && proto::WriteCaseJson(*again) == written,
                  "a case does not survive:\n" + written);
 }
 
@@ -86,7 +84,7 @@ void ReadExperiment(std::string_view bytes) {
 }
 
 void ReadAccessFile(std::string_view bytes) {
-  const Result<worker::Access> read = worker::ParseAccess(std::string(bytes), "access.json");
+  const Result<proto::Access> read = proto::ParseAccess(std::string(bytes), "access.json");
   if (!read) return ExpectAGoodError(read);
   GAUNTLET_CHECK(!read->endpoints.empty(), "an access.json without an endpoint");
 }

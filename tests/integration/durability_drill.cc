@@ -57,25 +57,25 @@ std::vector<std::uint64_t> LoggedSeeds(const std::string& run_log) {
 
 // Answers leases until the master ends or `end` comes.
 void Serve(ScriptedWorker& worker, Process& master, steady_clock::time_point end,
-           std::map<worker::Fence, std::uint64_t>& waiting, std::set<std::uint64_t>& acknowledged,
+           std::map<proto::Fence, std::uint64_t>& waiting, std::set<std::uint64_t>& acknowledged,
            DurabilityReport& report) {
   auto next_beat = steady_clock::now();
   while (steady_clock::now() < end && master.Running()) {
     if (steady_clock::now() >= next_beat) {
-      std::vector<worker::Fence> held;
+      std::vector<proto::Fence> held;
       for (const auto& [fence, run] : waiting) held.push_back(fence);
       worker.Beat(held);
       next_beat += std::chrono::seconds(1);
     }
-    const std::optional<worker::MasterMessage> message = worker.Hear(milliseconds(20));
+    const std::optional<proto::MasterMessage> message = worker.Hear(milliseconds(20));
     if (!message) continue;
-    if (const auto* lease = std::get_if<worker::Lease>(&*message)) {
+    if (const auto* lease = std::get_if<proto::Lease>(&*message)) {
       if (acknowledged.contains(lease->run_id)) ++report.leased_again;
       waiting[lease->fence] = lease->run_id;
       worker.Say(ScriptedWorker::Answer(*lease));
       ++report.simulated;
-    } else if (const auto* acknowledge = std::get_if<worker::Acknowledge>(&*message)) {
-      for (const worker::Fence fence : acknowledge->fences) {
+    } else if (const auto* acknowledge = std::get_if<proto::Acknowledge>(&*message)) {
+      for (const proto::Fence fence : acknowledge->fences) {
         if (const auto found = waiting.find(fence); found != waiting.end())
           acknowledged.insert(found->second);
         waiting.erase(fence);
@@ -85,7 +85,7 @@ void Serve(ScriptedWorker& worker, Process& master, steady_clock::time_point end
 }
 
 bool Serves(const std::string& dir, std::uint64_t epoch) {
-  const Result<worker::Access> access = worker::ReadAccess(dir + "/access.json");
+  const Result<proto::Access> access = proto::ReadAccess(dir + "/access.json");
   return access.ok() && access->epoch >= epoch;
 }
 
@@ -117,7 +117,7 @@ DurabilityReport EvolveThroughPowerLosses(const SmallCampaign& campaign, const s
     const bool last = report.kills >= kills;
     const auto life = last ? milliseconds(kPatience * 10)
                            : milliseconds(random.Below(static_cast<std::uint32_t>(longest_life.count())));
-    std::map<worker::Fence, std::uint64_t> waiting;
+    std::map<proto::Fence, std::uint64_t> waiting;
     Serve(worker, master, steady_clock::now() + life, waiting, acknowledged, report);
     if (!master.Running()) {
       const ProcessResult result = master.Wait();
@@ -128,8 +128,8 @@ DurabilityReport EvolveThroughPowerLosses(const SmallCampaign& campaign, const s
     master.Wait();
     // What was acknowledged in its last moment counts too.
     while (const auto message = worker.Hear(milliseconds(30))) {
-      if (const auto* acknowledge = std::get_if<worker::Acknowledge>(&*message)) {
-        for (const worker::Fence fence : acknowledge->fences) {
+      if (const auto* acknowledge = std::get_if<proto::Acknowledge>(&*message)) {
+        for (const proto::Fence fence : acknowledge->fences) {
           if (waiting.contains(fence)) acknowledged.insert(waiting[fence]);
         }
       }

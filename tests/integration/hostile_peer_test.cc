@@ -77,7 +77,7 @@ TEST_F(HostilePeer, AWorkerThatDiffersIsToldInWhatAndGetsNothing) {
     EXPECT_TRUE(peer.Connect());
     gauntlet::v1::Envelope envelope;
     gauntlet::v1::Hello& hello = *envelope.mutable_hello();
-    hello.set_protocol_version(worker::kProtocolVersion);
+    hello.set_protocol_version(proto::kProtocolVersion);
     hello.set_campaign_id(peer.access().campaign_id);
     hello.set_instance_id(peer.hello().instance_id);
     hello.set_software_version(peer.hello().software_version);
@@ -85,8 +85,8 @@ TEST_F(HostilePeer, AWorkerThatDiffersIsToldInWhatAndGetsNothing) {
     hello.set_slots(1);
     change(hello);
     peer.SayBytes(envelope.SerializeAsString());
-    const auto refused = peer.HearA<worker::Refused>();
-    EXPECT_FALSE(peer.HearA<worker::Lease>(milliseconds(50)));
+    const auto refused = peer.HearA<proto::Refused>();
+    EXPECT_FALSE(peer.HearA<proto::Lease>(milliseconds(50)));
     return refused ? refused->reason : "";
   };
   EXPECT_THAT(refusal([](auto& hello) { hello.set_protocol_version(99); }),
@@ -109,18 +109,18 @@ TEST_F(HostilePeer, WordsThatNobodyCanReadAreShownToPeopleAndEndNothing) {
   for (int i = 0; i < 150; ++i) words += "\u00e9";
   words += "x";
   ScriptedWorker admitted(dir_, 0x666);
-  admitted.hello().host = words;
+  admitted.hello().process.host = words;
   admitted.hello().allocation = words;
   ASSERT_TRUE(admitted.Join());
   EXPECT_TRUE(testing_support::StatusBecomes(
       dir_, [](const nlohmann::json& status) { return status.value("workers", 0) == 2; }));
   EXPECT_THAT(testing_support::Gauntlet({"status", dir_}).out, testing::Not(HasSubstr("\x1b")));
-  admitted.Say(worker::Goodbye{words});
+  admitted.Say(proto::Goodbye{words});
   ScriptedWorker refused(dir_, 0x667);
   ASSERT_TRUE(refused.Connect());
   refused.hello().campaign_id = words;
   refused.Say(refused.hello());
-  EXPECT_TRUE(refused.HearA<worker::Refused>());
+  EXPECT_TRUE(refused.HearA<proto::Refused>());
   ExpectTheUndisturbedResult();
   EXPECT_THAT(MasterLog(dir_), testing::Not(HasSubstr("\x1b")));
 }

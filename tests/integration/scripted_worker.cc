@@ -5,23 +5,23 @@
 #include <unistd.h>
 
 #include "proto/message_codec.h"
+#include "proto/run_codec.h"
 #include "sim/run_result.h"
 #include "tests/integration/campaign_driver.h"
 #include "worker/golden_hash.h"
-#include "worker/run_codec.h"
 #include "worker/run_executor.h"
 
 namespace gauntlet::testing_support {
 namespace {
 
-sim::RunResult Simulate(const worker::Lease& lease) {
-  const Result<sim::RunSpec> spec = worker::DecodeRunSpec(lease.spec);
+sim::RunResult Simulate(const proto::Lease& lease) {
+  const Result<sim::RunSpec> spec = proto::DecodeRunSpec(lease.spec);
   EXPECT_TRUE(spec.ok()) << (spec.ok() ? "" : spec.error().message);
   return spec.ok() ? worker::Run(*spec) : sim::RunResult();
 }
 
-worker::LeaseResult ToMessage(const worker::Lease& lease, const sim::RunResult& result) {
-  return {lease.fence, lease.run_id, worker::EncodeRunResult(result, worker::TrajectoryEncoding::kLeaveOut),
+proto::LeaseResult ToMessage(const proto::Lease& lease, const sim::RunResult& result) {
+  return {lease.fence, lease.run_id, proto::EncodeRunResult(result, proto::TrajectoryEncoding::kLeaveOut),
           std::nullopt, 0.01};
 }
 
@@ -32,14 +32,14 @@ ScriptedWorker::ScriptedWorker(const std::string& dir, std::uint64_t instance_id
   hello_.instance_id = instance_id;
   hello_.software_version = GAUNTLET_VERSION;
   hello_.golden_hash = golden_hash;
-  hello_.host = "scripted";
-  hello_.pid = getpid();
+  hello_.process.host = "scripted";
+  hello_.process.pid = getpid();
 }
 
 bool ScriptedWorker::Connect(std::uint64_t epoch) {
   return Eventually(
              [&] {
-               Result<worker::Access> access = worker::ReadAccess(dir_ + "/access.json");
+               Result<proto::Access> access = proto::ReadAccess(dir_ + "/access.json");
                if (!access || access->epoch < epoch) return false;
                access_ = *std::move(access);
                return true;
@@ -52,12 +52,12 @@ bool ScriptedWorker::Join(std::uint64_t epoch) {
   if (!Connect(epoch)) return false;
   hello_.campaign_id = access_.campaign_id;
   Say(hello_);
-  const auto welcome = HearA<worker::Welcome>();
+  const auto welcome = HearA<proto::Welcome>();
   return welcome && welcome->epoch >= epoch;
 }
 
-void ScriptedWorker::Say(const worker::WorkerMessage& message) {
-  SayBytes(worker::EncodeWorkerMessage(message));
+void ScriptedWorker::Say(const proto::WorkerMessage& message) {
+  SayBytes(proto::EncodeWorkerMessage(message));
 }
 
 void ScriptedWorker::SayBytes(std::string bytes) {
@@ -65,19 +65,19 @@ void ScriptedWorker::SayBytes(std::string bytes) {
   connection_.Flush();
 }
 
-void ScriptedWorker::Beat(const std::vector<worker::Fence>& held) {
-  Say(worker::Heartbeat{1, held});
+void ScriptedWorker::Beat(const std::vector<proto::Fence>& held) {
+  Say(proto::Heartbeat{1, held});
 }
 
-std::optional<worker::MasterMessage> ScriptedWorker::Hear(std::chrono::milliseconds patience) {
-  std::optional<worker::MasterMessage> heard;
+std::optional<proto::MasterMessage> ScriptedWorker::Hear(std::chrono::milliseconds patience) {
+  std::optional<proto::MasterMessage> heard;
   Eventually(
       [&] {
         connection_.Flush();
         while (std::optional<std::string> frame = connection_.Receive()) {
-          Result<worker::MasterMessage> message = worker::DecodeMasterMessage(*frame);
+          Result<proto::MasterMessage> message = proto::DecodeMasterMessage(*frame);
           EXPECT_TRUE(message.ok()) << (message.ok() ? "" : message.error().message);
-          if (!message || std::holds_alternative<worker::Heartbeat>(*message)) continue;
+          if (!message || std::holds_alternative<proto::Heartbeat>(*message)) continue;
           heard = *std::move(message);
           return true;
         }
@@ -87,11 +87,11 @@ std::optional<worker::MasterMessage> ScriptedWorker::Hear(std::chrono::milliseco
   return heard;
 }
 
-worker::LeaseResult ScriptedWorker::Answer(const worker::Lease& lease) {
+proto::LeaseResult ScriptedWorker::Answer(const proto::Lease& lease) {
   return ToMessage(lease, Simulate(lease));
 }
 
-worker::LeaseResult ScriptedWorker::WrongAnswer(const worker::Lease& lease) {
+proto::LeaseResult ScriptedWorker::WrongAnswer(const proto::Lease& lease) {
   sim::RunResult result = Simulate(lease);
   result.fitness += 1e-9;
   result.hash = sim::HashOf(result);

@@ -21,25 +21,25 @@ class ScriptedWorker {
   ScriptedWorker(const std::string& dir, std::uint64_t instance_id);
 
   // What it says of itself; may be changed before Join.
-  worker::Hello& hello() { return hello_; }
-  const worker::Access& access() const { return access_; }
+  proto::Hello& hello() { return hello_; }
+  const proto::Access& access() const { return access_; }
 
   // Waits for an access.json of an epoch of at least `epoch`, and connects; a former connection is dropped.
   bool Connect(std::uint64_t epoch = 1);
   // Connect, Hello, and the Welcome that answers it.
   bool Join(std::uint64_t epoch = 1);
 
-  void Say(const worker::WorkerMessage& message);
+  void Say(const proto::WorkerMessage& message);
   void SayBytes(std::string bytes);
-  void Beat(const std::vector<worker::Fence>& held);
+  void Beat(const std::vector<proto::Fence>& held);
   // The next message; none within the time. Heartbeats are skipped.
-  std::optional<worker::MasterMessage> Hear(std::chrono::milliseconds patience = kPatience);
+  std::optional<proto::MasterMessage> Hear(std::chrono::milliseconds patience = kPatience);
   // The next message of a kind; others are lost.
   template <typename Message>
   std::optional<Message> HearA(std::chrono::milliseconds patience = kPatience) {
     const auto end = std::chrono::steady_clock::now() + patience;
     while (std::chrono::steady_clock::now() < end) {
-      std::optional<worker::MasterMessage> message = Hear(std::chrono::milliseconds(100));
+      std::optional<proto::MasterMessage> message = Hear(std::chrono::milliseconds(100));
       if (!message) continue;
       if (auto* wanted = std::get_if<Message>(&*message)) return std::move(*wanted);
     }
@@ -47,14 +47,14 @@ class ScriptedWorker {
   }
 
   // Simulates a lease, and the answer to it.
-  static worker::LeaseResult Answer(const worker::Lease& lease);
+  static proto::LeaseResult Answer(const proto::Lease& lease);
   // The same with another fitness: what a broken machine would say.
-  static worker::LeaseResult WrongAnswer(const worker::Lease& lease);
+  static proto::LeaseResult WrongAnswer(const proto::Lease& lease);
 
  private:
   std::string dir_;
-  worker::Hello hello_;
-  worker::Access access_;
+  proto::Hello hello_;
+  proto::Access access_;
   worker::Connection connection_;
 };
 

@@ -9,7 +9,7 @@
 
 #include "proto/access_file.h"
 #include "proto/message_codec.h"
-#include "worker/run_codec.h"
+#include "proto/run_codec.h"
 
 namespace gauntlet::testing_support {
 
@@ -18,24 +18,24 @@ using std::chrono::steady_clock;
 
 struct WorkerCrowd::Shared {
   zmq::context_t context{1};
-  worker::Access access;
-  worker::Hello hello;
+  proto::Access access;
+  proto::Hello hello;
 };
 
 struct WorkerCrowd::Worker {
   zmq::socket_t socket;
   bool welcomed = false;
-  std::vector<worker::Lease> leases;     // not answered
-  std::vector<worker::Fence> handed_in;  // not acknowledged
+  std::vector<proto::Lease> leases;     // not answered
+  std::vector<proto::Fence> handed_in;  // not acknowledged
 
-  void Say(const worker::WorkerMessage& message) {
-    socket.send(zmq::buffer(worker::EncodeWorkerMessage(message)), zmq::send_flags::none);
+  void Say(const proto::WorkerMessage& message) {
+    socket.send(zmq::buffer(proto::EncodeWorkerMessage(message)), zmq::send_flags::none);
   }
 };
 
 WorkerCrowd::WorkerCrowd(const std::string& dir, int workers, std::uint64_t golden_hash)
     : shared_(std::make_unique<Shared>()) {
-  Result<worker::Access> access = worker::ReadAccess(dir + "/access.json");
+  Result<proto::Access> access = proto::ReadAccess(dir + "/access.json");
   EXPECT_TRUE(access.ok()) << (access.ok() ? "" : access.error().message);
   if (!access) return;
   shared_->access = *std::move(access);
@@ -43,8 +43,8 @@ WorkerCrowd::WorkerCrowd(const std::string& dir, int workers, std::uint64_t gold
   shared_->hello.campaign_id = shared_->access.campaign_id;
   shared_->hello.software_version = GAUNTLET_VERSION;
   shared_->hello.golden_hash = golden_hash;
-  shared_->hello.host = "crowd";
-  shared_->hello.pid = getpid();
+  shared_->hello.process.host = "crowd";
+  shared_->hello.process.pid = getpid();
   // A connection and a mailbox for each.
   rlimit limit{};
   const auto needed = static_cast<rlim_t>(4 * workers + 256);
@@ -69,7 +69,7 @@ bool WorkerCrowd::Join(milliseconds patience) {
       socket.set(zmq::sockopt::curve_secretkey, curve->worker_secret);
     }
     socket.connect(shared_->access.endpoints.front());
-    worker::Hello hello = shared_->hello;
+    proto::Hello hello = shared_->hello;
     hello.instance_id = i + 1;
     workers_[i]->Say(hello);
   }
@@ -98,11 +98,11 @@ double WorkerCrowd::AwaitLeases(std::size_t leases, milliseconds patience) {
 }
 
 std::size_t WorkerCrowd::AnswerAll(const sim::RunResult& result, double cpu_seconds) {
-  const std::string bytes = worker::EncodeRunResult(result, worker::TrajectoryEncoding::kLeaveOut);
+  const std::string bytes = proto::EncodeRunResult(result, proto::TrajectoryEncoding::kLeaveOut);
   std::size_t answers = 0;
   for (const auto& one : workers_) {
-    for (const worker::Lease& lease : one->leases) {
-      one->Say(worker::LeaseResult{lease.fence, lease.run_id, bytes, std::nullopt, cpu_seconds});
+    for (const proto::Lease& lease : one->leases) {
+      one->Say(proto::LeaseResult{lease.fence, lease.run_id, bytes, std::nullopt, cpu_seconds});
       one->handed_in.push_back(lease.fence);
       ++answers;
     }
@@ -115,8 +115,8 @@ void WorkerCrowd::Beat() {
   if (steady_clock::now() < next_beat_) return;
   next_beat_ = steady_clock::now() + std::chrono::seconds(1);
   for (const auto& one : workers_) {
-    worker::Heartbeat beat{1, one->handed_in};
-    for (const worker::Lease& lease : one->leases) beat.held_leases.push_back(lease.fence);
+    proto::Heartbeat beat{1, one->handed_in};
+    for (const proto::Lease& lease : one->leases) beat.held_leases.push_back(lease.fence);
     one->Say(beat);
   }
 }
@@ -132,14 +132,14 @@ void WorkerCrowd::Listen() {
     if ((items[i].revents & ZMQ_POLLIN) == 0) continue;
     zmq::message_t frame;
     while (one.socket.recv(frame, zmq::recv_flags::dontwait)) {
-      Result<worker::MasterMessage> message = worker::DecodeMasterMessage(frame.to_string());
+      Result<proto::MasterMessage> message = proto::DecodeMasterMessage(frame.to_string());
       EXPECT_TRUE(message.ok()) << (message.ok() ? "" : message.error().message);
       if (!message) continue;
-      if (std::holds_alternative<worker::Welcome>(*message)) one.welcomed = true;
-      if (auto* lease = std::get_if<worker::Lease>(&*message)) one.leases.push_back(std::move(*lease));
-      if (const auto* refused = std::get_if<worker::Refused>(&*message)) ADD_FAILURE() << refused->reason;
-      if (const auto* acknowledge = std::get_if<worker::Acknowledge>(&*message)) {
-        for (const worker::Fence fence : acknowledge->fences) std::erase(one.handed_in, fence);
+      if (std::holds_alternative<proto::Welcome>(*message)) one.welcomed = true;
+      if (auto* lease = std::get_if<proto::Lease>(&*message)) one.leases.push_back(std::move(*lease));
+      if (const auto* refused = std::get_if<proto::Refused>(&*message)) ADD_FAILURE() << refused->reason;
+      if (const auto* acknowledge = std::get_if<proto::Acknowledge>(&*message)) {
+        for (const proto::Fence fence : acknowledge->fences) std::erase(one.handed_in, fence);
       }
     }
   }

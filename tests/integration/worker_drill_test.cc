@@ -6,10 +6,10 @@
 
 #include <set>
 
+#include "base/system/process_identity.h"
 #include "tests/integration/crowd_drill.h"
 #include "tests/integration/scripted_worker.h"
 #include "tests/integration/service_driver.h"
-#include "worker/process_identity.h"
 
 namespace gauntlet {
 namespace {
@@ -142,9 +142,9 @@ TEST_F(WorkerDrill, AKilledForeignWorkersRunsGoElsewhereWithinASecondToo) {
 TEST_F(WorkerDrill, AReconnectAndAGoodbyeAreNoLoss) {
   Begin(3);
   ScriptedWorker worker(dir_, kFirstWorker);
-  worker::IdentifyThisProcess(worker.hello());
+  worker.hello().process = IdentifyThisProcess();
   ASSERT_TRUE(worker.Join());
-  const auto kept = worker.HearA<worker::Lease>();
+  const auto kept = worker.HearA<proto::Lease>();
   ASSERT_TRUE(kept);
   worker.hello().held_leases = {kept->fence};
   ASSERT_TRUE(worker.Join()) << "on a new connection; the old one is gone";
@@ -156,8 +156,8 @@ TEST_F(WorkerDrill, AReconnectAndAGoodbyeAreNoLoss) {
   leaving->Signal(SIGTERM);
   EXPECT_EQ(leaving->Wait().exit_code, 0);
   worker.Say(ScriptedWorker::Answer(*kept));
-  EXPECT_TRUE(worker.HearA<worker::Acknowledge>());
-  worker.Say(worker::Goodbye{"enough"});
+  EXPECT_TRUE(worker.HearA<proto::Acknowledge>());
+  worker.Say(proto::Goodbye{"enough"});
   const std::unique_ptr<Process> last = StartWorker(dir_);
   ExpectTheUndisturbedResult();
   EXPECT_THAT(MasterLog(dir_), testing::Not(HasSubstr("worker-lost")));
@@ -175,13 +175,13 @@ TEST_F(WorkerDrill, AnAnswerThatAFrozenWorkerBringsBeforeTheOtherCountsFirst) {
   ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
   ScriptedWorker other(dir_, kSecondWorker);
   ASSERT_TRUE(other.Join());
-  const auto given = other.HearA<worker::Lease>();
+  const auto given = other.HearA<proto::Lease>();
   ASSERT_TRUE(given);
   frozen->Signal(SIGCONT);
-  const auto cancelled = other.HearA<worker::Cancel>();
+  const auto cancelled = other.HearA<proto::Cancel>();
   ASSERT_TRUE(cancelled) << "the other need not go on";
   EXPECT_EQ(cancelled->fence, given->fence);
-  other.Say(worker::Goodbye{"enough"});
+  other.Say(proto::Goodbye{"enough"});
   const std::unique_ptr<Process> last = StartWorker(dir_);
   ExpectTheUndisturbedResult();
 }
@@ -201,7 +201,7 @@ TEST_F(WorkerDrill, LateAndRepeatedAnswersAreComparedAndCountOnce) {
   Begin(3);
   ScriptedWorker first(dir_, kFirstWorker);
   ASSERT_TRUE(first.Join());
-  const auto kept = first.HearA<worker::Lease>();
+  const auto kept = first.HearA<proto::Lease>();
   ASSERT_TRUE(kept);
   ASSERT_TRUE(LogBecomes(dir_, "worker-lost")) << "silent from now on";
 
@@ -211,10 +211,10 @@ TEST_F(WorkerDrill, LateAndRepeatedAnswersAreComparedAndCountOnce) {
   std::string former;
   bool handed_in = false;
   while (master_->Running()) {
-    const auto lease = second.HearA<worker::Lease>(milliseconds(200));
+    const auto lease = second.HearA<proto::Lease>(milliseconds(200));
     if (!lease) continue;
     ++leased[lease->run_id];
-    const worker::LeaseResult answer = ScriptedWorker::Answer(*lease);
+    const proto::LeaseResult answer = ScriptedWorker::Answer(*lease);
     second.Say(answer);
     second.Say(answer);
     if (lease->run_id % 3 == 0) second.Say(answer);
@@ -222,7 +222,7 @@ TEST_F(WorkerDrill, LateAndRepeatedAnswersAreComparedAndCountOnce) {
       handed_in = true;
       EXPECT_EQ(leased[kept->run_id], 1) << "leased again when its worker was lost";
       first.Say(ScriptedWorker::Answer(*kept));
-      EXPECT_TRUE(first.HearA<worker::Acknowledge>()) << "a late answer is acknowledged like any other";
+      EXPECT_TRUE(first.HearA<proto::Acknowledge>()) << "a late answer is acknowledged like any other";
     }
   }
   EXPECT_TRUE(handed_in);
@@ -235,7 +235,7 @@ TEST_F(WorkerDrill, TwoAnswersThatDifferMarkTheCampaignAndNameBothWorkers) {
   Begin(3);
   ScriptedWorker broken(dir_, kFirstWorker);
   ASSERT_TRUE(broken.Join());
-  const auto kept = broken.HearA<worker::Lease>();
+  const auto kept = broken.HearA<proto::Lease>();
   ASSERT_TRUE(kept);
   ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
   const std::unique_ptr<Process> sound = StartSlowWorker(dir_, 100);
@@ -253,17 +253,16 @@ TEST_F(WorkerDrill, TwoAnswersThatDifferMarkTheCampaignAndNameBothWorkers) {
 // of then, from a stranger and from a worker that said hello.
 TEST_F(WorkerDrill, MessagesOfAnEarlierMasterChangeNothing) {
   Begin(3);
-  std::vector<worker::LeaseResult> recorded;
+  std::vector<proto::LeaseResult> recorded;
   {
     ScriptedWorker early(dir_, kFirstWorker);
     ASSERT_TRUE(early.Join());
     for (std::size_t acknowledged = 0; acknowledged < 5;) {
       const auto message = early.Hear();
       ASSERT_TRUE(message);
-      if (const auto* acknowledge = std::get_if<worker::Acknowledge>(&*message))
+      if (const auto* acknowledge = std::get_if<proto::Acknowledge>(&*message))
         acknowledged += acknowledge->fences.size();
-      if (const auto* lease = std::get_if<worker::Lease>(&*message);
-          lease != nullptr && recorded.size() < 5) {
+      if (const auto* lease = std::get_if<proto::Lease>(&*message); lease != nullptr && recorded.size() < 5) {
         recorded.push_back(ScriptedWorker::Answer(*lease));
         early.Say(recorded.back());
       }
@@ -275,17 +274,17 @@ TEST_F(WorkerDrill, MessagesOfAnEarlierMasterChangeNothing) {
 
   ScriptedWorker stranger(dir_, kSecondWorker);
   ASSERT_TRUE(stranger.Connect(2)) << master_->Err();
-  for (const worker::LeaseResult& result : recorded) stranger.Say(result);
+  for (const proto::LeaseResult& result : recorded) stranger.Say(result);
   stranger.Beat({recorded.front().fence});
   EXPECT_FALSE(stranger.Hear(milliseconds(300))) << "who has not said hello is not answered";
 
   ScriptedWorker again(dir_, kFirstWorker);
   ASSERT_TRUE(again.Join(2));
   std::set<std::uint64_t> acknowledged;
-  for (const worker::LeaseResult& result : recorded) acknowledged.insert(result.run_id);
-  for (const worker::LeaseResult& result : recorded) again.Say(result);
+  for (const proto::LeaseResult& result : recorded) acknowledged.insert(result.run_id);
+  for (const proto::LeaseResult& result : recorded) again.Say(result);
   while (master_->Running()) {
-    const auto lease = again.HearA<worker::Lease>(milliseconds(200));
+    const auto lease = again.HearA<proto::Lease>(milliseconds(200));
     if (!lease) continue;
     EXPECT_FALSE(acknowledged.contains(lease->run_id)) << "run " << lease->run_id << " was acknowledged";
     again.Say(ScriptedWorker::Answer(*lease));

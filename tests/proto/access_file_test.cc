@@ -7,10 +7,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "tests/support/process.h"
 
-namespace gauntlet::worker {
+namespace gauntlet::proto {
 namespace {
 
 using testing::HasSubstr;
@@ -126,5 +127,49 @@ TEST(AccessFileTest, ANumberBeyondAllRangesIsRefusedLikeAnyOther) {
   EXPECT_THAT(access.error().message, testing::StartsWith("a.json: "));
 }
 
+const Access kAccess{"00112233445566778899aabbccddeeff", 3, {"tcp://127.0.0.1:41234", "ipc:///tmp/x"}};
+
+TEST(AccessFileTest, HoldsWhatAWorkerNeedsForItsOwnerAlone) {
+  const testing_support::TemporaryDirectory scratch;
+  const std::string path = scratch / "access.json";
+  ASSERT_TRUE(WriteAccess(path, kAccess).ok());
+  std::ifstream file(path);
+  const nlohmann::json json = nlohmann::json::parse(file, nullptr, false);
+  EXPECT_EQ(json, nlohmann::json({{"format", 1},
+                                  {"campaign", "00112233445566778899aabbccddeeff"},
+                                  {"epoch", 3},
+                                  {"endpoints", {"tcp://127.0.0.1:41234", "ipc:///tmp/x"}}}));
+  struct stat info {};
+  ASSERT_EQ(stat(path.c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 07777, 0600u);
+
+  Access with_keys = kAccess;
+  with_keys.curve = CurveKeys{std::string(40, 'a'), std::string(40, 'b'), std::string(40, 'c')};
+  ASSERT_TRUE(WriteAccess(path, with_keys).ok());
+  EXPECT_EQ(*ReadAccess(path), with_keys);
+}
+
+TEST(AccessFileTest, IsRemovedByItsMasterButNotByAnOlderOne) {
+  const testing_support::TemporaryDirectory scratch;
+  const std::string path = scratch / "access.json";
+  ASSERT_TRUE(WriteAccess(path, kAccess).ok());
+  EXPECT_TRUE(RemoveAccess(path, 2).ok());
+  EXPECT_TRUE(std::filesystem::exists(path));
+  EXPECT_TRUE(RemoveAccess(path, 3).ok());
+  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_TRUE(RemoveAccess(path, 3).ok()) << "a second time is no error";
+}
+
+TEST(AccessFileTest, OfAMasterThatWasKilledIsRemovedByTheNext) {
+  const testing_support::TemporaryDirectory scratch;
+  const std::string path = scratch / "access.json";
+  ASSERT_TRUE(WriteAccess(path, kAccess).ok());
+  EXPECT_TRUE(RemoveAccess(path, 4).ok());
+  EXPECT_FALSE(std::filesystem::exists(path));
+  std::ofstream(path) << "garbage";
+  EXPECT_TRUE(RemoveAccess(path, 4).ok());
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 }  // namespace
-}  // namespace gauntlet::worker
+}  // namespace gauntlet::proto

@@ -6,7 +6,7 @@
 
 #include "proto/protocol.pb.h"
 
-namespace gauntlet::worker {
+namespace gauntlet::proto {
 namespace {
 
 using testing::ElementsAre;
@@ -24,8 +24,7 @@ TEST(MessageCodecTest, HelloCarriesTheProtocolVersionAndWhoTheWorkerIs) {
                                         .software_version = "1.2.3",
                                         .golden_hash = 77,
                                         .slots = 4,
-                                        .host = "node1",
-                                        .pid = 4321,
+                                        .process = {"node1", "", "", 4321, 0},
                                         .held_leases = {9, 1ULL << 60},
                                         .allocation = "12_3:0:node1",
                                         .controllers = {"boids", "foragers"}})
@@ -133,10 +132,56 @@ TEST(MessageCodecTest, RefusesAnOversizedMessage) {
               HasSubstr("16777216 are allowed"));
 }
 
+TEST(MessageCodecTest, WhatAWorkerSaysReachesTheMasterAsItWas) {
+  const Hello hello{.campaign_id = "c0ffee",
+                    .instance_id = 1ULL << 63,
+                    .software_version = "1.2.3",
+                    .golden_hash = 77,
+                    .slots = 4,
+                    .process = {"node1", "a-boot", "pid:[4026531836]", 4321, 123456},
+                    .held_leases = {9, 1ULL << 60},
+                    .allocation = "12_3:0:node1",
+                    .controllers = {"boids"}};
+  EXPECT_EQ(std::get<Hello>(*DecodeWorkerMessage(EncodeWorkerMessage(hello))), hello);
+  LeaseResult result{.fence = 7, .run_id = 8, .result = "bytes", .failure = {}, .cpu_seconds = 0.5};
+  EXPECT_EQ(std::get<LeaseResult>(*DecodeWorkerMessage(EncodeWorkerMessage(result))), result);
+  for (const FailureKind kind :
+       {FailureKind::kCrashed, FailureKind::kHung, FailureKind::kOutOfMemory, FailureKind::kExternal}) {
+    result.failure = RunnerFailure{kind, 11, 3, "last words"};
+    EXPECT_EQ(std::get<LeaseResult>(*DecodeWorkerMessage(EncodeWorkerMessage(result))), result);
+  }
+  const auto heartbeat = DecodeWorkerMessage(EncodeWorkerMessage(Heartbeat{5, {1, 2}}));
+  EXPECT_THAT(std::get<Heartbeat>(*heartbeat).held_leases, ElementsAre(1, 2));
+}
+
+TEST(MessageCodecTest, TheMasterReadsLenientlyWhatAWorkerSays) {
+  v1::Envelope envelope;
+  envelope.mutable_hello()->set_protocol_version(9);
+  envelope.mutable_hello()->set_pid(std::int64_t{1} << 40);
+  const Result<WorkerMessage> hello = DecodeWorkerMessage(envelope.SerializeAsString());
+  ASSERT_TRUE(hello.ok());
+  EXPECT_EQ(std::get<Hello>(*hello).protocol_version, 9u);
+  EXPECT_EQ(std::get<Hello>(*hello).process.pid, 0) << "no process of ours";
+
+  v1::RunnerFailure& failure = *envelope.mutable_lease_result()->mutable_failure();
+  failure.set_kind(static_cast<v1::RunnerFailure::Kind>(77));
+  failure.set_stderr_tail("x" + std::string(kMaxStderrTail, 'y'));
+  const Result<WorkerMessage> result = DecodeWorkerMessage(envelope.SerializeAsString());
+  ASSERT_TRUE(result.ok());
+  EXPECT_EQ(std::get<LeaseResult>(*result).failure->kind, FailureKind::kExternal);
+  EXPECT_EQ(std::get<LeaseResult>(*result).failure->stderr_tail, std::string(kMaxStderrTail, 'y'));
+
+  EXPECT_THAT(DecodeWorkerMessage(EncodeMasterMessage(Cancel{3})).error().message,
+              HasSubstr("only a master sends"));
+  EXPECT_THAT(DecodeWorkerMessage("").error().message, HasSubstr("this version knows"));
+}
+
 RC_GTEST_PROP(MessageCodecProperty, GarbageIsAnErrorNeverACrash, (const std::string& bytes)) {
-  const auto decoded = DecodeMasterMessage(bytes);
-  if (!decoded.ok()) RC_ASSERT(!decoded.error().message.empty());
+  const auto of_a_master = DecodeMasterMessage(bytes);
+  if (!of_a_master.ok()) RC_ASSERT(!of_a_master.error().message.empty());
+  const auto of_a_worker = DecodeWorkerMessage(bytes);
+  if (!of_a_worker.ok()) RC_ASSERT(!of_a_worker.error().message.empty());
 }
 
 }  // namespace
-}  // namespace gauntlet::worker
+}  // namespace gauntlet::proto

@@ -10,7 +10,7 @@
 #include "tests/master/dispatch/sample_runs.h"
 #include "tests/sim/arena/random_genomes.h"
 
-namespace gauntlet::master {
+namespace gauntlet::proto {
 namespace {
 
 using testing::HasSubstr;
@@ -258,4 +258,4 @@ RC_GTEST_PROP(CaseJsonProperty, AnyBytesAreReadOrRefused, (const std::string& no
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet::proto

@@ -5,13 +5,13 @@
 
 namespace gauntlet::testing_support {
 
-class FakeClock final : public master::Clock {
+class FakeClock final : public Clock {
  public:
-  master::TimePoint Now() const override { return now_; }
-  void Advance(master::Duration duration) { now_ += duration; }
+  TimePoint Now() const override { return now_; }
+  void Advance(Duration duration) { now_ += duration; }
 
  private:
-  master::TimePoint now_ = master::TimePoint{} + std::chrono::hours(1);
+  TimePoint now_ = TimePoint{} + std::chrono::hours(1);
 };
 
 }  // namespace gauntlet::testing_support

@@ -8,9 +8,14 @@
 
 #include <csignal>
 
+#include "proto/run_failure.h"
 #include "worker/pipe.h"
 
 namespace gauntlet::worker {
+
+using proto::FailureKind;
+using proto::RunnerFailure;
+
 namespace {
 
 using testing::SizeIs;
@@ -50,7 +55,7 @@ TEST(ClassifyExitTest, ExitsAreOwnFaultsAndOneCodeMeansMemory) {
 
 TEST(ClassifyExitTest, KeepsTheEndOfTheOutputAsUtf8) {
   const RunnerFailure failure = ClassifyExit(Signalled(SIGABRT), std::string(10'000, 'a') + "the end\xff");
-  EXPECT_THAT(failure.stderr_tail, SizeIs(kStderrTailBytes));
+  EXPECT_THAT(failure.stderr_tail, SizeIs(proto::kMaxStderrTail));
   EXPECT_TRUE(failure.stderr_tail.ends_with("the end?"));
 }
 

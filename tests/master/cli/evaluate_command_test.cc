@@ -28,7 +28,7 @@ TEST_F(CommandLine, EvaluateRefusesByRuleAndSimulatesTheRest) {
     stored_[i].id = i + 1;
     stored_[i].individual = 1;
     stored_[i].seed = 40 + i;
-    stored_[i].result = EncodeRunResult(result);
+    stored_[i].result = proto::EncodeRunResult(result);
   }
   EXPECT_EQ(Run({"evaluate", "flocking", "--case", blocked, good, broken, "--replicates", "2", "--json",
                  "--dir", Path("c")}),

@@ -33,14 +33,14 @@ using std::chrono::milliseconds;
   if (read(endpoint_fd, endpoint, sizeof endpoint - 1) <= 0) _exit(1);
   sim::RunResult result = SampleResult(0.5);
   result.trajectory.clear();
-  const std::string bytes = EncodeRunResult(result);
+  const std::string bytes = proto::EncodeRunResult(result);
 
   zmq::context_t context(1);
   zmq::socket_t socket(context, zmq::socket_type::dealer);
   socket.connect(endpoint);
   v1::Envelope envelope;
   v1::Hello& hello = *envelope.mutable_hello();
-  hello.set_protocol_version(kProtocolVersion);
+  hello.set_protocol_version(proto::kProtocolVersion);
   hello.set_campaign_id("benchmark");
   hello.set_instance_id(instance);
   hello.set_slots(1);
@@ -96,7 +96,7 @@ int Run(std::size_t runs, int workers, std::uint32_t credit, milliseconds durati
   }
   while (backend.Statistics().connected < workers) (void)backend.Poll(milliseconds(10));
 
-  const std::string spec = EncodeRunSpec(SampleSpec());
+  const std::string spec = proto::EncodeRunSpec(SampleSpec());
   std::vector<RunRequest> requests;
   for (RunId run = 1; run <= runs; ++run) requests.push_back({run, spec});
   const TimePoint start = clock.Now();

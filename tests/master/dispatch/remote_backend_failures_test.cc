@@ -79,7 +79,7 @@ TEST_F(RemoteBackendTest, AnUnreadableOrForgedResultIsAFailureOfTheRun) {
   EXPECT_THAT(EventsOf("runner-failure"), HasSubstr("run 1 gave an unreadable result"));
   sim::RunResult forged = SampleResult(0.5);
   forged.fitness = 0.0;
-  SendResult("p", LeasesSentTo("p").at(0), EncodeRunResult(forged));
+  SendResult("p", LeasesSentTo("p").at(0), proto::EncodeRunResult(forged));
   EXPECT_THAT(Poll(), IsEmpty());
   EXPECT_THAT(EventsOf("runner-failure"), HasSubstr("its content's hash is"));
   SendResult("p", LeasesSentTo("p").at(0), "");

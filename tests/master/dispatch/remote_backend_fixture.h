@@ -136,7 +136,7 @@ class RemoteBackendTest : public testing::Test {
   testing_support::FakeClock clock_;
   testing_support::FakeTransport transport_{clock_};
   std::optional<RemoteBackend> backend_;
-  const std::string result_ = EncodeRunResult(SampleResult(0.5));
+  const std::string result_ = proto::EncodeRunResult(SampleResult(0.5));
 };
 
 }  // namespace gauntlet::master

@@ -91,7 +91,7 @@ TEST_F(RemoteBackendTest, AResultComesOutAndIsAcknowledgedWhenStored) {
   ASSERT_THAT(finished, SizeIs(1));
   EXPECT_EQ(finished[0].id, 1U);
   EXPECT_EQ(finished[0].result.hash, SampleResult(0.5).hash);
-  const Result<sim::RunResult> stored = DecodeRunResult(finished[0].encoded);
+  const Result<sim::RunResult> stored = proto::DecodeRunResult(finished[0].encoded);
   ASSERT_TRUE(stored.ok()) << stored.error().message;
   EXPECT_EQ(stored->hash, finished[0].result.hash);
   EXPECT_TRUE(stored->trajectory.empty()) << "trajectories are not stored";
@@ -220,7 +220,7 @@ TEST_F(RemoteBackendTest, DifferentDuplicatesAreShownWithBothWorkers) {
   Poll(milliseconds(150));
   SendResult("b", LeasesSentTo("b").at(0), result_);
   Poll();
-  SendResult("a", first, EncodeRunResult(SampleResult(0.25)));
+  SendResult("a", first, proto::EncodeRunResult(SampleResult(0.25)));
   Poll();
   EXPECT_EQ(backend_->Statistics().nondeterministic, 1U);
   const std::string text = EventsOf("nondeterministic");

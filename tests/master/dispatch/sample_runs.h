@@ -4,7 +4,7 @@
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 inline sim::RunSpec SampleSpec() {
   sim::RunSpec spec;
@@ -49,4 +49,4 @@ inline sim::RunResult SampleResult(double fitness) {
   return result;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

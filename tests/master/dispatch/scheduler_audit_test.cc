@@ -113,7 +113,7 @@ TEST_F(SchedulerAuditTest, CountsAsADifferenceWhenItFailsAsOftenAsAVerdictTakes)
     const SchedulerOrders audit = Decide();
     ASSERT_EQ(audit.leases.size(), 1U) << attempt;
     EXPECT_TRUE(audit.mismatches.empty());
-    scheduler_.Failed(2, audit.leases[0].fence, 1, {FailureKind::kCrashed, 11, 0});
+    scheduler_.Failed(2, audit.leases[0].fence, 1, {proto::FailureKind::kCrashed, 11, 0});
   }
   const SchedulerOrders orders = Decide();
   ASSERT_EQ(orders.mismatches.size(), 1U);

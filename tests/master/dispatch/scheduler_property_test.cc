@@ -107,11 +107,11 @@ class World {
     SendResult(worker->first, result.first, result.second);
   }
 
-  void Fail(FailureKind kind) {
+  void Fail(proto::FailureKind kind) {
     auto* worker = Pick([](const ModelWorker& w) { return Runs(w) && !w.leases.empty(); });
     if (worker == nullptr) return;
     const auto [fence, run] = Take(worker->second.leases);
-    if (kind != FailureKind::kExternal) ++failures_[run];
+    if (kind != proto::FailureKind::kExternal) ++failures_[run];
     scheduler_.Failed(worker->first, fence, run, {kind, 11, 0});
   }
 
@@ -337,9 +337,9 @@ RC_GTEST_PROP(SchedulerProperty, NoRunIsLostNoneEndsTwiceAndAllEnd, ()) {
     else if (what < 26)
       world.Resend();
     else if (what < 28)
-      world.Fail(FailureKind::kExternal);
+      world.Fail(proto::FailureKind::kExternal);
     else if (what < 31)
-      world.Fail(FailureKind::kCrashed);
+      world.Fail(proto::FailureKind::kCrashed);
     else if (what < 32)
       world.LoseLease();
     else if (what < 33)

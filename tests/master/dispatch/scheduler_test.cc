@@ -208,7 +208,7 @@ TEST_F(SchedulerTest, DifferentDuplicatesNameBothWorkers) {
 TEST_F(SchedulerTest, ThreeOwnFailuresGiveUpTheRun) {
   SubmitRuns(1, 1);
   Join(10);
-  const RunFailure crash{FailureKind::kCrashed, 11, 0};
+  const proto::RunnerFailure crash{proto::FailureKind::kCrashed, 11, 0};
   for (int attempt = 1; attempt <= 2; ++attempt) {
     const SchedulerOrders orders = Decide();
     ASSERT_THAT(orders.leases, SizeIs(1));
@@ -216,10 +216,10 @@ TEST_F(SchedulerTest, ThreeOwnFailuresGiveUpTheRun) {
     EXPECT_EQ(scheduler_.Failed(10, orders.leases[0].fence, 1, crash), Answer::kAccepted);
   }
   const Fence last = Decide().leases.at(0).fence;
-  scheduler_.Failed(10, last, 1, {FailureKind::kHung, 0, 0});
+  scheduler_.Failed(10, last, 1, {proto::FailureKind::kHung, 0, 0});
   const SchedulerOrders orders = Decide();
   ASSERT_THAT(orders.given_up, SizeIs(1));
-  EXPECT_EQ(orders.given_up[0].last.kind, FailureKind::kHung);
+  EXPECT_EQ(orders.given_up[0].last.kind, proto::FailureKind::kHung);
   EXPECT_EQ(orders.given_up[0].of_last_kind, 1U);
   EXPECT_EQ(orders.given_up[0].attempts, 3U);
   EXPECT_EQ(orders.given_up[0].leases, 3U);
@@ -234,7 +234,7 @@ TEST_F(SchedulerTest, ExternalFailuresAndLostWorkersAreNoAttempts) {
   for (InstanceId worker = 10; worker < 20; ++worker) {
     Join(worker);
     const Fence fence = Decide().leases.at(0).fence;
-    EXPECT_EQ(scheduler_.Failed(worker, fence, 1, {FailureKind::kExternal, 15, 0}), Answer::kAccepted);
+    EXPECT_EQ(scheduler_.Failed(worker, fence, 1, {proto::FailureKind::kExternal, 15, 0}), Answer::kAccepted);
     EXPECT_THAT(Decide().leases, SizeIs(1));
     scheduler_.WorkerDied(worker);
   }
@@ -253,7 +253,7 @@ TEST_F(SchedulerTest, AnotherWorkersLeaseOrAnotherRunIsRejected) {
   Decide();
   EXPECT_EQ(scheduler_.Completed(11, fence, 1, 111), Answer::kRejected);
   EXPECT_EQ(scheduler_.Completed(10, fence, 2, 111), Answer::kRejected);
-  EXPECT_EQ(scheduler_.Failed(11, fence, 1, {FailureKind::kCrashed, 11, 0}), Answer::kRejected);
+  EXPECT_EQ(scheduler_.Failed(11, fence, 1, {proto::FailureKind::kCrashed, 11, 0}), Answer::kRejected);
   EXPECT_EQ(scheduler_.unfinished(), 2U);
 }
 

@@ -1,4 +1,4 @@
-#include "worker/run_codec.h"
+#include "proto/run_codec.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,9 @@
 #include <limits>
 
 #include "proto/run.pb.h"
+#include "sim/arena/validity.h"
 
-namespace gauntlet::worker {
+namespace gauntlet::proto {
 namespace {
 
 using testing::ElementsAre;
@@ -114,7 +115,7 @@ RC_GTEST_PROP(RunCodecProperty, SpecsDecodeToWhatWasSent, ()) {
 
 RC_GTEST_PROP(RunCodecProperty, GarbageIsAnErrorNeverACrash, (const std::string& bytes)) {
   const Result<sim::RunSpec> decoded = DecodeRunSpec(bytes);
-  if (!decoded.ok()) RC_ASSERT(decoded.error().message.starts_with("spec: "));
+  if (!decoded.ok()) RC_ASSERT(!decoded.error().message.empty());
 }
 
 TEST(RunCodecTest, AbsentSidesAreTheThesisArena) {
@@ -132,10 +133,11 @@ std::string ErrorOf(const v1::RunSpec& wire) {
 
 TEST(RunCodecTest, RefusesMoreObstaclesThanAnArenaMayHave) {
   v1::RunSpec wire;
-  for (int i = 0; i < kMaxObstacles; ++i) wire.mutable_test_case()->add_obstacles()->set_length(1.0);
+  for (std::size_t i = 0; i < sim::kMaxObstacles; ++i)
+    wire.mutable_test_case()->add_obstacles()->set_length(1.0);
   EXPECT_EQ(ErrorOf(wire), "");
   wire.mutable_test_case()->add_obstacles();
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("10001 obstacles, 10000 are possible"));
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("1001 obstacles, 1000 are possible"));
 }
 
 TEST(RunCodecTest, RefusesMoreParametersThanThereCanBe) {
@@ -179,7 +181,7 @@ TEST(RunCodecTest, ObstaclesThatMoveAndShineDecodeToWhatWasSent) {
   EXPECT_EQ(gene.path, (std::vector<sim::Vec2>{{0.0, 2.0}}));
 
   obstacle.set_light("mauve");
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("an obstacle's light is 'mauve', no colour"));
+  EXPECT_THAT(ErrorOf(wire), HasSubstr("obstacle 1: 'mauve' is no colour of lights; known: black, red,"));
   obstacle.clear_light();
   obstacle.mutable_motion()->mutable_path(0)->set_x(std::numeric_limits<double>::quiet_NaN());
   EXPECT_THAT(ErrorOf(wire), HasSubstr("x of a path is nan"));
@@ -315,4 +317,4 @@ TEST(RunCodecDeathTest, TextThatNoReaderWouldAcceptEndsTheProcess) {
 }
 
 }  // namespace
-}  // namespace gauntlet::worker
+}  // namespace gauntlet::proto
