@@ -14,6 +14,7 @@
 #include "master/cli/table.h"
 #include "master/directory/campaign_directory.h"
 #include "master/experiment/experiment_file.h"
+#include "master/search/search_table.h"
 
 namespace gauntlet::master {
 namespace {
@@ -99,7 +100,7 @@ Result<Experiment> LoadExperimentWith(const CommonOptions& options, const std::v
     }
     sets.push_back(one.set);
   }
-  Result<Experiment> experiment = LoadExperiment(options.experiment, sets);
+  Result<Experiment> experiment = LoadExperiment(options.experiment, sets, BuiltInCatalogue());
   if (!experiment) {
     // The person typed --generations 0, not --set search.generations=0.
     Error error = experiment.error();

@@ -7,11 +7,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/nearest_name.h"
 #include "controllers/registry.h"
 #include "master/cli/commands.h"
 #include "master/cli/table.h"
 #include "master/experiment/experiment_file.h"
 #include "master/experiment/schema.h"
+#include "master/search/search_table.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -21,36 +23,17 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTextWidth = 110;
 
-struct Search {
-  std::string_view name;
-  std::string_view description;
-  std::vector<std::string_view> keys;  // keys of the experiment, or a table of them ending with '.'
-};
-
-const std::vector<Search>& Searches() {
-  static const std::vector<Search> searches = {
-      {"genetic",
-       "a population of test cases is bred for low fitness: gauntlet evolve",
-       {"search.population", "search.generations", "search.mode", "search.lag", "search.parent_selection",
-        "search.crossover", "search.crossover_probability", "search.mutation_probability",
-        "search.reevaluation", "search.fitness_aggregation", "search.replicates", "search.variation_tries",
-        "genome."}},
-      {"random",
-       "independent random test cases, the baseline: gauntlet random",
-       {"search.cases", "search.replicates", "genome."}},
-      {"cases", "given test cases from files: gauntlet evaluate", {"search.replicates"}},
-  };
-  return searches;
-}
-
-std::vector<const Key*> KeysOf(const Search& search) {
-  std::vector<const Key*> keys;
-  for (const std::string_view wanted : search.keys) {
-    for (const Key& key : CommonKeys()) {
-      if (wanted.ends_with('.') ? key.path.starts_with(wanted) : key.path == wanted) keys.push_back(&key);
-    }
+// What the search reads, its own parameters first.
+std::vector<Key> KeysOf(const SearchInfo& search) {
+  std::vector<Key> own;
+  std::vector<Key> shared;
+  for (const Key& key : CommonKeys(BuiltInCatalogue())) {
+    if (!Reads(search, key.path)) continue;
+    (FindByName(search.parameters, std::string_view(key.path).substr(key.path.find('.') + 1)) ? own : shared)
+        .push_back(key);
   }
-  return keys;
+  own.insert(own.end(), shared.begin(), shared.end());
+  return own;
 }
 
 std::string Number(double value) {
@@ -106,7 +89,7 @@ std::string MetricTable(std::span<const controllers::MetricInfo> metrics) {
 
 std::string ExperimentsText() {
   Table table({{"", Align::kLeft}, {"", Align::kLeft}});
-  for (const ShippedExperiment& shipped : ListExperiments()) {
+  for (const ShippedExperiment& shipped : ListExperiments(BuiltInCatalogue())) {
     table.AddRow({shipped.name, shipped.error.empty() ? shipped.description : "ERROR: " + shipped.error});
   }
   return "Experiments (gauntlet evolve NAME)\n" + table.ToText();
@@ -136,25 +119,20 @@ std::string ControllersText() {
 
 std::string SearchesText() {
   std::string text = "Searches (--set search.algorithm=NAME, --set PARAMETER=VALUE)\n";
-  for (const Search& search : Searches()) {
+  for (const SearchInfo& search : BuiltInCatalogue().searches) {
     text += fmt::format("\n  {}: {}\n\n", search.name, search.description);
     Table table(ParameterColumns());
-    for (const Key* key : KeysOf(search)) {
-      table.AddRow({key->path, DefaultOf(*key), key->unit, RangeOf(*key), DescriptionOf(*key)});
+    for (const Key& key : KeysOf(search)) {
+      table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
     }
     text += table.ToText(4);
   }
   return text;
 }
 
-// Keys that change what the robots of any experiment read and do.
-bool IsDisturbance(const Key& key) {
-  return key.path == "faults" || key.path.starts_with("noise.");
-}
-
 std::string DisturbancesText() {
   Table table(ParameterColumns());
-  for (const Key& key : CommonKeys()) {
+  for (const Key& key : CommonKeys(BuiltInCatalogue())) {
     if (!IsDisturbance(key)) continue;
     table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
   }
@@ -212,7 +190,7 @@ Json KeyJson(const Key& key) {
 
 Json ExperimentsJson() {
   Json list = Json::array();
-  for (const ShippedExperiment& shipped : ListExperiments()) {
+  for (const ShippedExperiment& shipped : ListExperiments(BuiltInCatalogue())) {
     list.push_back({{"name", shipped.name},
                     {"description", shipped.description},
                     {"scenario", shipped.scenario},
@@ -248,9 +226,9 @@ Json ControllersJson() {
 
 Json SearchesJson() {
   Json list = Json::array();
-  for (const Search& search : Searches()) {
+  for (const SearchInfo& search : BuiltInCatalogue().searches) {
     Json parameters = Json::array();
-    for (const Key* key : KeysOf(search)) parameters.push_back(KeyJson(*key));
+    for (const Key& key : KeysOf(search)) parameters.push_back(KeyJson(key));
     list.push_back(
         {{"name", search.name}, {"description", search.description}, {"parameters", std::move(parameters)}});
   }
@@ -259,7 +237,7 @@ Json SearchesJson() {
 
 Json DisturbancesJson() {
   Json list = Json::array();
-  for (const Key& key : CommonKeys()) {
+  for (const Key& key : CommonKeys(BuiltInCatalogue())) {
     if (IsDisturbance(key)) list.push_back(KeyJson(key));
   }
   return list;

@@ -11,6 +11,7 @@
 #include "master/cli/summary_text.h"
 #include "master/cli/table.h"
 #include "master/dispatch/curve_keys.h"
+#include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_server.h"
 
@@ -151,7 +152,9 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
   }
   // `evaluate` judges its cases itself.
   const CampaignSummary& summary = report->summary;
-  if (summary.search != "cases" && summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
+  const SearchRow* search = FindSearch(summary.search);
+  const bool given_cases = search != nullptr && search->given_cases;
+  if (!given_cases && summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     const std::string why =
         summary.runs_without_result.empty() ? "" : ", most often: " + summary.runs_without_result[0].message;
     PrintMessage(context,
@@ -168,28 +171,9 @@ void PrintSummary(CommandContext& context, const CampaignSummary& summary, const
 }
 
 std::string Announcement(const Experiment& experiment, int workers, const std::string& directory) {
-  const SearchSpec& search = experiment.search;
-  std::string what;
-  switch (search.kind) {
-    case SearchKind::kGenetic:
-      what = search.mode == SearchMode::kSteadyState
-                 ? fmt::format("steady-state genetic search, {} test cases, lag {}",
-                               FormatCount(static_cast<std::uint64_t>(search.population) *
-                                           static_cast<std::uint64_t>(search.generations)),
-                               LagOf(search))
-                 : fmt::format("genetic search, {} test cases x {} generations", search.population,
-                               search.generations);
-      break;
-    case SearchKind::kRandom:
-      what =
-          fmt::format("random search, {} test cases", FormatCount(static_cast<std::uint64_t>(search.cases)));
-      break;
-    case SearchKind::kCases:
-      what = fmt::format("given test cases, {} runs each", search.replicates);
-      break;
-  }
-  return fmt::format("{}: {}, seed {}, {} worker{}, in {}", experiment.name, what, experiment.seed, workers,
-                     workers == 1 ? "" : "s", directory);
+  const SearchRow& search = RowOf(experiment);
+  return fmt::format("{}: {}, {}, seed {}, {} worker{}, in {}", experiment.name, search.title,
+                     search.plan(experiment), experiment.seed, workers, workers == 1 ? "" : "s", directory);
 }
 
 }  // namespace gauntlet::master

@@ -8,30 +8,36 @@
 #include "master/cli/commands.h"
 #include "master/cli/common_options.h"
 #include "master/cli/run_campaign.h"
+#include "master/search/search_table.h"
 
 namespace gauntlet::master {
 namespace {
 
-// Options that only a genetic search reads.
-Status CheckRandomOptions(const CommonOptions& options) {
-  for (const auto& [option, value] :
-       {std::pair("--generations", options.generations), std::pair("--population", options.population)}) {
-    if (value.empty()) continue;
-    return InvalidInput(
-        fmt::format("{} {}: a random search has neither generations nor a population; its number of test "
-                    "cases is 'random "
-                    "--cases N', or --set search.cases=N",
-                    option, value));
-  }
-  for (const std::string& set : options.sets) {
-    const std::string_view key = std::string_view(set).substr(0, set.find('='));
-    if (!key.starts_with("search.") || key == "search.algorithm" || key == "search.cases" ||
-        key == "search.replicates") {
+// What was given on the command line for another search than this.
+Status CheckSettings(const CommonOptions& options, const SearchInfo& search) {
+  struct Setting {
+    std::string text;
+    std::string key;
+  };
+  std::vector<Setting> settings;
+  if (!options.generations.empty())
+    settings.push_back({"--generations " + options.generations, "search.generations"});
+  if (!options.population.empty())
+    settings.push_back({"--population " + options.population, "search.population"});
+  for (const std::string& set : options.sets)
+    settings.push_back({"--set " + set, set.substr(0, set.find('='))});
+  for (const Setting& setting : settings) {
+    if (!setting.key.starts_with("search.") || setting.key == "search.algorithm" ||
+        Reads(search, setting.key))
       continue;
+    std::string known;
+    for (const Key& key : CommonKeys(BuiltInCatalogue())) {
+      if (!key.path.starts_with("search.") || !Reads(search, key.path)) continue;
+      known += (known.empty() ? "" : ", ") + key.path;
+      if (key.path == "search.cases") known += " (random --cases N)";
     }
-    return InvalidInput(fmt::format(
-        "--set {}: a random search breeds nothing; of the search it reads search.cases and search.replicates",
-        set));
+    return InvalidInput(fmt::format("{}: the search '{}' does not read {}; it reads {}", setting.text,
+                                    search.name, setting.key, known));
   }
   return Ok{};
 }
@@ -40,12 +46,11 @@ ExitCode RunSearch(CommandContext& context, const CommonOptions& options,
                    const std::vector<ExtraSet>& extra) {
   const Result<Experiment> experiment = LoadExperimentWith(options, extra);
   if (!experiment) return Fail(context, experiment.error());
-  if (experiment->search.kind == SearchKind::kCases) {
+  const SearchRow& search = RowOf(*experiment);
+  if (search.given_cases) {
     return Fail(context, InvalidInput("search.algorithm = cases needs a list of cases: use 'evaluate'"));
   }
-  if (experiment->search.kind == SearchKind::kRandom) {
-    if (Status meant = CheckRandomOptions(options); !meant) return Fail(context, meant.error());
-  }
+  if (Status meant = CheckSettings(options, search.info); !meant) return Fail(context, meant.error());
   const Result<int> workers = ParseWorkers(options.workers);
   if (!workers) return Fail(context, workers.error());
   const Result<std::string> directory = NewDirectory(options, *experiment);

@@ -11,6 +11,7 @@
 #include "master/cli/sweep.h"
 #include "master/cli/table.h"
 #include "master/experiment/experiment_file.h"
+#include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "proto/json_text.h"
 
@@ -76,7 +77,7 @@ ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
   if (!searches) return Fail(context, searches.error());
   const Experiment& experiment = searches->front().experiment;
   for (const SearchPlan& search : *searches) {
-    if (search.experiment.search.kind == SearchKind::kCases)
+    if (RowOf(search.experiment).given_cases)
       return Fail(context, InvalidInput("search.algorithm = cases needs a list of cases: use 'evaluate'"));
   }
   const Result<SlurmSettings> settings = ReadSettings(options, experiment);

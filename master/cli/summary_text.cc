@@ -9,6 +9,7 @@
 #include "base/printable.h"
 #include "master/cli/table.h"
 #include "master/report/verdict_text.h"
+#include "master/search/search_table.h"
 #include "master/session/reproduction_bundle.h"
 
 namespace gauntlet::master {
@@ -23,13 +24,12 @@ std::string Percent(std::uint64_t part, std::uint64_t whole) {
 }
 
 std::string NameOfSearch(const CampaignSummary& summary) {
-  if (summary.search == "genetic") return "genetic search";
-  if (summary.search == "random") return "random search";
-  if (summary.search == "cases") return "given cases";
-  return summary.search;
+  const SearchRow* search = FindSearch(summary.search);
+  return search == nullptr ? summary.search : std::string(search->title);
 }
 
 std::string Overview(const CampaignSummary& summary) {
+  const SearchRow* search = FindSearch(summary.search);
   Table table({{"", Align::kLeft}, {"", Align::kLeft}});
   if (summary.progress.generations > 1) {
     table.AddRow(
@@ -43,10 +43,10 @@ std::string Overview(const CampaignSummary& summary) {
   table.AddRow({"runs", runs});
   table.AddRow({"test cases", fmt::format("{} different", FormatCount(summary.distinct_individuals))});
   table.AddRow(
-      {"fitness", fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
-                              FormatFitness(summary.best_fitness), FormatFitness(summary.mean_fitness),
-                              FormatFitness(summary.worst_fitness),
-                              summary.search == "genetic" ? "population" : "cases")});
+      {"fitness",
+       fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
+                   FormatFitness(summary.best_fitness), FormatFitness(summary.mean_fitness),
+                   FormatFitness(summary.worst_fitness), search == nullptr ? "cases" : search->members)});
   table.AddRow({"total failures", fmt::format("{} of {} runs ({})", FormatCount(summary.total_failures),
                                               FormatCount(summary.runs_done),
                                               Percent(summary.total_failures, summary.runs_done))});

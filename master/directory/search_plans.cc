@@ -7,6 +7,7 @@
 
 #include "base/system/atomic_file.h"
 #include "master/experiment/experiment_file.h"
+#include "master/search/search_table.h"
 
 namespace gauntlet::master {
 namespace {
@@ -23,7 +24,8 @@ Error BadList(const std::string& path, const std::string& what) {
 std::string WriteSearchPlans(const std::vector<SearchPlan>& plans) {
   nlohmann::ordered_json searches = nlohmann::ordered_json::array();
   for (const SearchPlan& plan : plans)
-    searches.push_back({{"settings", plan.settings}, {"experiment", WriteExperiment(plan.experiment, {})}});
+    searches.push_back({{"settings", plan.settings},
+                        {"experiment", WriteExperiment(plan.experiment, {}, BuiltInCatalogue())}});
   return nlohmann::ordered_json{{"format", kListFormat}, {"searches", std::move(searches)}}.dump(1) + "\n";
 }
 
@@ -31,7 +33,7 @@ Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directo
   std::vector<SearchPlan> plans;
   const auto add = [&](const std::string& settings, const std::string& text,
                        const std::string& place) -> Status {
-    Result<Experiment> experiment = ParseExperiment(text, place, {});
+    Result<Experiment> experiment = ParseExperiment(text, place, {}, BuiltInCatalogue());
     if (!experiment) return experiment.error();
     plans.push_back({settings, *std::move(experiment)});
     return Ok{};
@@ -67,8 +69,8 @@ Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store) {
     const Experiment& experiment = plans[i].experiment;
     std::string name = experiment.name;
     if (!plans[i].settings.empty()) name += ": " + plans[i].settings;
-    store.AddSearch({static_cast<SearchId>(i + 1), name, std::string(NameOf(experiment.search.kind)),
-                     experiment.seed, false});
+    store.AddSearch(
+        {static_cast<SearchId>(i + 1), name, experiment.search.algorithm, experiment.seed, false});
   }
   return Ok{};
 }

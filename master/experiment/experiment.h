@@ -11,7 +11,7 @@
 
 namespace gauntlet::master {
 
-// Ranges that generated genes are drawn from (spec 1.1).
+// Ranges that generated genes are drawn from.
 struct GenomeSpec {
   int genes = 8;               // obstacles per test case (thesis Table 4.1)
   double position_min = -3.0;  // m, centre x and y
@@ -30,41 +30,29 @@ struct GenomeSpec {
   int tries_per_gene = 500;  // redraws of one gene before the whole case starts anew
 };
 
-enum class SearchKind { kGenetic, kRandom, kCases };
-std::string_view NameOf(SearchKind kind);  // as in the key search.algorithm
 enum class ParentSelection { kAllParentBestHalf, kTwoBestParentsTwoWorseAway, kTwoRandomParentsTwoWorseAway };
 enum class CrossoverKind { kSinglePoint, kDoublePoint, kUniform };
-// Who is simulated in a generation: everybody with new seeds, or the newborn only. kScheme = as
-// the parent selection's source does it: everybody in the two-parent schemes, children only in
+// Who is simulated in a generation: everybody with new seeds, or the newborn only. kScheme = as thesis
+// 3.2.3.3 does it for the parent selection: everybody in the two-parent schemes, children only in
 // AllParent-BestHalf.
 enum class Reevaluation { kScheme, kPopulation, kChildren };
-// Generation after generation, or child after child without a barrier (SteadyStateSearch).
-enum class SearchMode { kGenerational, kSteadyState };
 enum class FitnessAggregation { kMean, kLast };
 
+// How test cases are searched for. Which of these a search reads, its row says (SearchInfo).
 struct SearchSpec {
-  SearchKind kind = SearchKind::kGenetic;
-  SearchMode mode = SearchMode::kGenerational;  // of the genetic search
-  // Of the steady-state mode: evaluation k depends on results 1 .. k - lag, so at most `lag` workers have
-  // work. 0 = the largest possible, population - 1, which is no more than a generation waits on average.
-  int lag = 0;
+  std::string algorithm = "genetic";  // the name of a SearchInfo
   int population = 20;
   int generations = 50;
   ParentSelection parent_selection = ParentSelection::kTwoBestParentsTwoWorseAway;
   CrossoverKind crossover = CrossoverKind::kSinglePoint;
-  double crossover_probability = 0.1;  // per couple
-  double mutation_probability = 0.05;  // per gene; a mutated gene is redrawn
+  double crossover_probability = 0.1;  // per couple
+  double mutation_probability = 0.05;  // per gene; a mutated gene is drawn anew as a whole
   Reevaluation reevaluation = Reevaluation::kScheme;
   FitnessAggregation aggregation = FitnessAggregation::kMean;
-  int replicates = 1;         // runs per evaluation
-  int cases = 1000;           // of random search
-  int variation_tries = 100;  // of an offspring that breaks a validity rule; then it becomes a copy
+  int replicates = 1;          // runs per evaluation
+  int variation_tries = 100;   // of an offspring that breaks a validity rule; then it becomes a copy
+  sim::Parameters parameters;  // what one search alone reads (SearchInfo::parameters); missing = its default
 };
-
-// search.lag with its default filled in.
-inline int LagOf(const SearchSpec& spec) {
-  return spec.lag > 0 ? spec.lag : spec.population - 1;
-}
 
 struct ArenaSpec {
   double side = 6.0;            // m

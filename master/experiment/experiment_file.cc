@@ -112,7 +112,7 @@ class Reader {
       : assignments_(std::move(assignments)), file_name_(std::move(file_name)), catalogue_(catalogue) {}
 
   Result<Experiment> Read() {
-    keys_ = CommonKeys();
+    for (Key& key : CommonKeys(catalogue_)) AddWithDefault(std::move(key));
     if (Status status = AssignWhere([](std::string_view path) { return IsBase(path); }); !status.ok()) {
       return status.error();
     }
@@ -121,7 +121,7 @@ class Reader {
       return status.error();
     }
     if (experiment_.name.empty()) experiment_.name = NameFromFile(file_name_);
-    if (const std::optional<BrokenRule> broken = CheckRules(experiment_)) {
+    if (const std::optional<BrokenRule> broken = CheckRules(experiment_, catalogue_)) {
       return InvalidInput(fmt::format("{}: {}", PlaceOf(broken->path), broken->message));
     }
     return experiment_;
@@ -188,6 +188,7 @@ class Reader {
 
   // "did you mean ...?", or the keys that could have been meant.
   std::string HintFor(const std::string& path) const {
+    if (path == "search.mode") return "write search.algorithm = \"steady-state\" or \"genetic\"";
     const std::size_t dot = path.find('.');
     const std::string table = dot == std::string::npos ? "" : path.substr(0, dot + 1);
     const std::string name = path.substr(table.size());
@@ -220,13 +221,14 @@ class Reader {
       return InvalidInput(fmt::format("{}: scenario is missing; known: {}", PlaceOf("scenario"),
                                       NamesOf(catalogue_.scenarios)));
     }
-    const controllers::ScenarioInfo* scenario = catalogue_.FindScenario(experiment_.scenario);
+    const controllers::ScenarioInfo* scenario = FindByName(catalogue_.scenarios, experiment_.scenario);
     if (scenario == nullptr) {
       return InvalidInput(fmt::format("{}: {}", PlaceOf("scenario"),
                                       UnknownName("scenario", experiment_.scenario, catalogue_.scenarios)));
     }
     if (experiment_.controller.empty()) experiment_.controller = scenario->default_controller;
-    const controllers::ControllerInfo* controller = catalogue_.FindController(experiment_.controller);
+    const controllers::ControllerInfo* controller =
+        FindByName(catalogue_.controllers, experiment_.controller);
     if (controller == nullptr) {
       return InvalidInput(
           fmt::format("{}: {}", PlaceOf("controller"),
@@ -260,41 +262,7 @@ class Reader {
   std::map<std::string, std::string> places_;  // path -> where it was assigned last
 };
 
-// Writes keys with their table headers.
-class Writer {
- public:
-  explicit Writer(const Experiment& experiment) : experiment_(experiment) {}
-
-  void Comment(std::string_view line) { text_ += line.empty() ? "#\n" : fmt::format("# {}\n", line); }
-
-  void Add(const Key& key) {
-    const std::string unit = key.unit.empty() ? "" : key.unit + "; ";
-    AddLine(key.path, ToToml(key.get(experiment_)), unit + key.description);
-  }
-
-  std::string Take() { return std::move(text_); }
-
- private:
-  void AddLine(const std::string& path, const std::string& value, const std::string& comment) {
-    const std::size_t dot = path.find('.');
-    const std::string table = dot == std::string::npos ? "" : path.substr(0, dot);
-    if (table != table_) text_ += fmt::format("\n[{}]\n", table);
-    table_ = table;
-    const std::string line = fmt::format("{} = {}", path.substr(table.empty() ? 0 : dot + 1), value);
-    text_ += comment.empty() ? line + "\n" : fmt::format("{:<36}  # {}\n", line, comment);
-  }
-
-  const Experiment& experiment_;
-  std::string table_;
-  std::string text_;
-};
-
 }  // namespace
-
-Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
-                                   const std::vector<std::string>& sets) {
-  return ParseExperiment(text, file_name, sets, BuiltInCatalogue());
-}
 
 Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
                                    const std::vector<std::string>& sets, const Catalogue& catalogue) {
@@ -312,28 +280,31 @@ Result<Experiment> ParseExperiment(std::string_view text, const std::string& fil
   return experiment;
 }
 
-std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header) {
-  return WriteExperiment(experiment, header, BuiltInCatalogue());
-}
-
 std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header,
                             const Catalogue& catalogue) {
-  Writer writer(experiment);
-  for (const std::string& line : header) writer.Comment(line);
-  const auto is_top = [](const Key& key) { return key.path.find('.') == std::string::npos; };
-  for (const Key& key : CommonKeys()) {
-    if (is_top(key)) writer.Add(key);
+  std::vector<Key> keys = CommonKeys(catalogue);
+  const auto insert_before_tables = [&keys](std::vector<Key> more) {
+    const auto in_table = [](const Key& key) { return key.path.starts_with("arena."); };
+    keys.insert(std::ranges::find_if(keys, in_table), more.begin(), more.end());
+  };
+  if (const auto* scenario = FindByName(catalogue.scenarios, experiment.scenario))
+    insert_before_tables(ScenarioParameterKeys(*scenario));
+  if (const auto* controller = FindByName(catalogue.controllers, experiment.controller))
+    insert_before_tables(ControllerParameterKeys(*controller));
+
+  std::string text;
+  for (const std::string& line : header) text += line.empty() ? "#\n" : fmt::format("# {}\n", line);
+  std::string last_table;
+  for (const Key& key : keys) {
+    const std::size_t dot = key.path.find('.');
+    const std::string table = dot == std::string::npos ? "" : key.path.substr(0, dot);
+    if (table != last_table) text += fmt::format("\n[{}]\n", table);
+    last_table = table;
+    const std::string line =
+        fmt::format("{} = {}", key.path.substr(table.empty() ? 0 : dot + 1), ToToml(key.get(experiment)));
+    text += fmt::format("{:<36}  # {}{}{}\n", line, key.unit, key.unit.empty() ? "" : "; ", key.description);
   }
-  if (const auto* scenario = catalogue.FindScenario(experiment.scenario)) {
-    for (const Key& key : ScenarioParameterKeys(*scenario)) writer.Add(key);
-  }
-  if (const auto* controller = catalogue.FindController(experiment.controller)) {
-    for (const Key& key : ControllerParameterKeys(*controller)) writer.Add(key);
-  }
-  for (const Key& key : CommonKeys()) {
-    if (!is_top(key)) writer.Add(key);
-  }
-  return writer.Take();
+  return text;
 }
 
 }  // namespace gauntlet::master

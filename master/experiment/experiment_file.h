@@ -13,19 +13,18 @@
 
 namespace gauntlet::master {
 
-// Reads an experiment; its [slurm] table is left to slurm/slurm_settings.h. `sets` are "key=value" and
-// win over the file, the last of one key over the earlier. Whatever is not given has its default, so all
-// parameters of scenario and controller are resolved; the name defaults to the file's. Errors begin with the
-// place, "file:line:column" or "--set key=value", and name key, value and what is allowed; an unknown key
-// comes with the nearest known one.
-Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
-                                   const std::vector<std::string>& sets);
+// Reads an experiment that names what is in the catalogue; its [slurm] table is left to
+// slurm/slurm_settings.h. `sets` are "key=value" and win over the file, the last of one key over the earlier.
+// Whatever is not given has its default, so all parameters of scenario and controller are resolved; the name
+// defaults to the file's. Errors begin with the place, "file:line:column" or "--set key=value", and name key,
+// value and what is allowed; an unknown key comes with the nearest known one.
 Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
                                    const std::vector<std::string>& sets, const Catalogue& catalogue);
 
 // Reads a shipped experiment by its name, or a file by its path (with a '/' or ending in ".toml"). Errors as
 // above, or kNotFound with the nearest shipped name, or kIo.
-Result<Experiment> LoadExperiment(const std::string& name_or_path, const std::vector<std::string>& sets);
+Result<Experiment> LoadExperiment(const std::string& name_or_path, const std::vector<std::string>& sets,
+                                  const Catalogue& catalogue);
 
 struct ExperimentText {
   std::string text;
@@ -36,7 +35,6 @@ Result<ExperimentText> ReadExperimentText(const std::string& name_or_path);
 
 // The resolved experiment, every default written out, with what each key means. ParseExperiment gives back an
 // equal one. `header` are comment lines for the top, without '#'.
-std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header);
 std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header,
                             const Catalogue& catalogue);
 
@@ -55,6 +53,6 @@ struct ShippedExperiment {
 std::vector<std::filesystem::path> ExperimentDirectories();
 
 // All shipped experiments by name.
-std::vector<ShippedExperiment> ListExperiments();
+std::vector<ShippedExperiment> ListExperiments(const Catalogue& catalogue);
 
 }  // namespace gauntlet::master

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <iterator>
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "master/experiment/genome_ranges.h"
 #include "master/experiment/toml_text.h"
-#include "master/search/genome_generator.h"
 #include "sim/arena/color.h"
 #include "sim/robot/disturbances.h"
 
@@ -153,20 +154,105 @@ std::vector<Key> NoiseKeys() {
   return keys;
 }
 
-std::vector<Key> MakeCommonKeys() {
-  constexpr auto kArena = &Experiment::arena;
-  constexpr auto kGenome = &Experiment::genome;
+Key AlgorithmKey(const Catalogue& catalogue) {
+  Key key = MakeKey("search.algorithm", KeyType::kChoice, "how test cases are found: gauntlet list searches");
+  for (const SearchInfo& search : catalogue.searches) key.choices.emplace_back(search.name);
+  key.get = [](const Experiment& e) -> KeyValue { return e.search.algorithm; };
+  key.set = [](Experiment& e, const KeyValue& v) { e.search.algorithm = std::get<std::string>(v); };
+  return key;
+}
+
+Key ForPeople(Key key) {
+  key.for_people = true;
+  return key;
+}
+
+KeyType TypeOf(const controllers::ParameterInfo& info) {
+  if (info.unit == "bool") return KeyType::kFlag;
+  return info.integer ? KeyType::kInteger : KeyType::kNumber;
+}
+
+KeyValue ParameterValue(KeyType type, double value) {
+  if (type == KeyType::kFlag) return value != 0.0;
+  if (type == KeyType::kInteger) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+double ParameterNumber(const KeyValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  return std::get<double>(value);
+}
+
+// Keys "TABLE.NAME" of the parameters at Path.
+template <auto... Path>
+std::vector<Key> ParameterKeys(std::string_view table, std::span<const controllers::ParameterInfo> infos) {
+  std::vector<Key> keys;
+  for (const controllers::ParameterInfo& info : infos) {
+    const std::string name(info.name);
+    const KeyType type = TypeOf(info);
+    Key key = MakeKey(fmt::format("{}.{}", table, name), type, std::string(info.description));
+    key.unit = type == KeyType::kFlag ? "" : std::string(info.unit);
+    key.min = info.min;
+    key.max = info.max;
+    key.default_value = ParameterValue(type, info.default_value);
+    key.get = [info, type](const Experiment& e) {
+      return ParameterValue(type, ValueOf(info, Field<Path...>(e)));
+    };
+    key.set = [name](Experiment& e, const KeyValue& v) { Field<Path...>(e)[name] = ParameterNumber(v); };
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+bool IsName(std::string_view name) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+  return !name.empty() && name.size() <= 64 && name.front() != '.' && name.front() != '-' &&
+         name.find_first_not_of(kLetters) == std::string_view::npos;
+}
+
+// Of what all searches together read.
+std::vector<Key> SearchKeys(const Catalogue& catalogue) {
   constexpr auto kSearch = &Experiment::search;
   std::vector<Key> keys = {
-      TextKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -"),
-      TextKey<&Experiment::description>("description", "one line for people"),
-      SeedKey(),
-      TextKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
-      TextKey<&Experiment::controller>("controller", "the algorithm under test; default: the scenario's own"),
-      ChoiceKey<&Experiment::physics>("physics", {"box2d", "relaxation"},
-                                      "relaxation = hand-written, without friction: fast, for comparison"),
-      FaultsKey(),
+      AlgorithmKey(catalogue),
+      IntegerKey<kSearch, &SearchSpec::population>("search.population", 4, 10000,
+                                                   "individuals, an even number (thesis Table 4.1)"),
+      IntegerKey<kSearch, &SearchSpec::generations>("search.generations", 1, 1e6,
+                                                    "the initial population is generation 1"),
+      ChoiceKey<kSearch, &SearchSpec::parent_selection>(
+          "search.parent_selection",
+          {"AllParent-BestHalf", "2BestParents-2WorseAway", "2RandomParents-2WorseAway"}, "thesis 3.2.3.3"),
+      ChoiceKey<kSearch, &SearchSpec::crossover>(
+          "search.crossover", {"single-point", "double-point", "uniform"}, "thesis 3.2.3.4"),
+      NumberKey<kSearch, &SearchSpec::crossover_probability>("search.crossover_probability", "", 0.0, 1.0,
+                                                             "per couple; otherwise children are copies"),
+      NumberKey<kSearch, &SearchSpec::mutation_probability>("search.mutation_probability", "", 0.0, 1.0,
+                                                            "per gene; a mutated gene is drawn anew"),
+      ChoiceKey<kSearch, &SearchSpec::reevaluation>(
+          "search.reevaluation", {"scheme", "population", "children"},
+          "who is simulated in a generation; scheme = the children in AllParent-BestHalf, else everybody"),
+      ChoiceKey<kSearch, &SearchSpec::aggregation>("search.fitness_aggregation", {"mean", "last"},
+                                                   "how an individual's evaluations make its fitness"),
+      IntegerKey<kSearch, &SearchSpec::replicates>("search.replicates", 1, 10000,
+                                                   "runs per evaluation, each with its own seed"),
+      IntegerKey<kSearch, &SearchSpec::variation_tries>(
+          "search.variation_tries", 1, 1e6,
+          "of an offspring that breaks a validity rule; then the step leaves it unchanged"),
+  };
+  for (const SearchInfo& search : catalogue.searches) {
+    for (Key& key : ParameterKeys<kSearch, &SearchSpec::parameters>("search", search.parameters)) {
+      keys.push_back(std::move(key));
+    }
+  }
+  return keys;
+}
 
+// Of arena and genomes.
+std::vector<Key> GenomeKeys() {
+  constexpr auto kArena = &Experiment::arena;
+  constexpr auto kGenome = &Experiment::genome;
+  return {
       NumberKey<kArena, &ArenaSpec::side>("arena.side", "m", 1.0, 50.0,
                                           "between the centre lines of opposite walls (thesis 4.5.3)"),
       NumberKey<kArena, &ArenaSpec::wall_thickness>("arena.wall_thickness", "m", 0.01, 1.0,
@@ -197,102 +283,27 @@ std::vector<Key> MakeCommonKeys() {
       LightColorKey(),
       IntegerKey<kGenome, &GenomeSpec::tries_per_gene>(
           "genome.tries_per_gene", 1, 1e6, "redraws of one obstacle before the whole case starts anew"),
-
-      ChoiceKey<kSearch, &SearchSpec::kind>("search.algorithm", {"genetic", "random", "cases"},
-                                            "cases = a given list, as `evaluate` takes it"),
-      ChoiceKey<kSearch, &SearchSpec::mode>(
-          "search.mode", {"generational", "steady-state"},
-          "of the genetic search; steady-state breeds child after child, without waiting for a generation"),
-      IntegerKey<kSearch, &SearchSpec::lag>(
-          "search.lag", 0, 9999,
-          "steady-state only: a child knows all results but the last so many; workers it can keep busy; 0 = "
-          "population - 1"),
-      IntegerKey<kSearch, &SearchSpec::population>("search.population", 4, 10000,
-                                                   "individuals, an even number (thesis Table 4.1)"),
-      IntegerKey<kSearch, &SearchSpec::generations>("search.generations", 1, 1e6,
-                                                    "the initial population is generation 1"),
-      ChoiceKey<kSearch, &SearchSpec::parent_selection>(
-          "search.parent_selection",
-          {"AllParent-BestHalf", "2BestParents-2WorseAway", "2RandomParents-2WorseAway"}, "thesis 3.2.3.3"),
-      ChoiceKey<kSearch, &SearchSpec::crossover>(
-          "search.crossover", {"single-point", "double-point", "uniform"}, "thesis 3.2.3.4"),
-      NumberKey<kSearch, &SearchSpec::crossover_probability>("search.crossover_probability", "", 0.0, 1.0,
-                                                             "per couple; otherwise children are copies"),
-      NumberKey<kSearch, &SearchSpec::mutation_probability>("search.mutation_probability", "", 0.0, 1.0,
-                                                            "per gene; a mutated gene is drawn anew"),
-      ChoiceKey<kSearch, &SearchSpec::reevaluation>(
-          "search.reevaluation", {"scheme", "population", "children"},
-          "who is simulated in a generation; scheme = the children in AllParent-BestHalf, else everybody"),
-      ChoiceKey<kSearch, &SearchSpec::aggregation>("search.fitness_aggregation", {"mean", "last"},
-                                                   "how an individual's evaluations make its fitness"),
-      IntegerKey<kSearch, &SearchSpec::replicates>("search.replicates", 1, 10000,
-                                                   "runs per evaluation, each with its own seed"),
-      IntegerKey<kSearch, &SearchSpec::cases>("search.cases", 1, 1e8, "test cases of random search"),
-      IntegerKey<kSearch, &SearchSpec::variation_tries>(
-          "search.variation_tries", 1, 1e6,
-          "of an offspring that breaks a validity rule; then the step leaves it unchanged"),
   };
-  for (Key& key : NoiseKeys()) keys.push_back(std::move(key));
-  for (Key& key : keys) key.default_value = key.get(Experiment{});
-  return keys;
-}
-
-KeyType TypeOf(const controllers::ParameterInfo& info) {
-  if (info.unit == "bool") return KeyType::kFlag;
-  return info.integer ? KeyType::kInteger : KeyType::kNumber;
-}
-
-KeyValue ParameterValue(KeyType type, double value) {
-  if (type == KeyType::kFlag) return value != 0.0;
-  if (type == KeyType::kInteger) return static_cast<std::int64_t>(value);
-  return value;
-}
-
-double ParameterNumber(const KeyValue& value) {
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
-  return std::get<double>(value);
-}
-
-template <sim::Parameters Experiment::*Member>
-std::vector<Key> ParameterKeys(std::string_view table, std::span<const controllers::ParameterInfo> infos) {
-  std::vector<Key> keys;
-  for (const controllers::ParameterInfo& info : infos) {
-    const std::string name(info.name);
-    const KeyType type = TypeOf(info);
-    Key key = MakeKey(fmt::format("{}.{}", table, name), type, std::string(info.description));
-    key.unit = type == KeyType::kFlag ? "" : std::string(info.unit);
-    key.min = info.min;
-    key.max = info.max;
-    key.default_value = ParameterValue(type, info.default_value);
-    key.get = [name, type, otherwise = info.default_value](const Experiment& e) {
-      const auto found = (e.*Member).find(name);
-      return ParameterValue(type, found == (e.*Member).end() ? otherwise : found->second);
-    };
-    key.set = [name](Experiment& e, const KeyValue& v) { (e.*Member)[name] = ParameterNumber(v); };
-    keys.push_back(std::move(key));
-  }
-  return keys;
-}
-
-bool IsName(std::string_view name) {
-  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
-  return !name.empty() && name.size() <= 64 && name.front() != '.' && name.front() != '-' &&
-         name.find_first_not_of(kLetters) == std::string_view::npos;
 }
 
 }  // namespace
 
-std::string_view NameOf(SearchKind kind) {
-  switch (kind) {
-    case SearchKind::kGenetic:
-      return "genetic";
-    case SearchKind::kRandom:
-      return "random";
-    case SearchKind::kCases:
-      return "cases";
+std::vector<Key> CommonKeys(const Catalogue& catalogue) {
+  std::vector<Key> keys = {
+      ForPeople(TextKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -")),
+      ForPeople(TextKey<&Experiment::description>("description", "one line for people")),
+      SeedKey(),
+      TextKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
+      TextKey<&Experiment::controller>("controller", "the algorithm under test; default: the scenario's own"),
+      ChoiceKey<&Experiment::physics>("physics", {"box2d", "relaxation"},
+                                      "relaxation = hand-written, without friction: fast, for comparison"),
+      FaultsKey(),
+  };
+  for (std::vector<Key>& more : std::array{GenomeKeys(), SearchKeys(catalogue), NoiseKeys()}) {
+    std::move(more.begin(), more.end(), std::back_inserter(keys));
   }
-  return "unknown";
+  for (Key& key : keys) key.default_value = key.get(Experiment{});
+  return keys;
 }
 
 std::string_view NameOf(KeyType type) {
@@ -313,21 +324,23 @@ std::string_view NameOf(KeyType type) {
   return "seed";
 }
 
-const controllers::ScenarioInfo* Catalogue::FindScenario(std::string_view name) const {
-  return FindByName(scenarios, name);
+double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& given) {
+  const auto found = given.find(std::string(info.name));
+  return found == given.end() ? info.default_value : found->second;
 }
 
-const controllers::ControllerInfo* Catalogue::FindController(std::string_view name) const {
-  return FindByName(controllers, name);
+bool IsDisturbance(const Key& key) {
+  return key.path == "faults" || key.path.starts_with("noise.");
 }
 
-Catalogue BuiltInCatalogue() {
-  return {controllers::Scenarios(), controllers::Controllers()};
-}
-
-const std::vector<Key>& CommonKeys() {
-  static const std::vector<Key> keys = MakeCommonKeys();
-  return keys;
+bool Reads(const SearchInfo& search, std::string_view path) {
+  const auto own = [&](const controllers::ParameterInfo& info) {
+    return path.starts_with("search.") && path.substr(7) == info.name;
+  };
+  return std::ranges::any_of(search.parameters, own) ||
+         std::ranges::any_of(search.keys, [&](std::string_view key) {
+           return key.ends_with('.') ? path.starts_with(key) : path == key;
+         });
 }
 
 std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario) {
@@ -370,7 +383,7 @@ std::optional<std::string> CheckValue(const Key& key, const KeyValue& value) {
   return std::nullopt;
 }
 
-std::optional<BrokenRule> CheckRules(const Experiment& experiment) {
+std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue) {
   if (!IsName(experiment.name)) {
     return BrokenRule{"name",
                       fmt::format("name = {} is no good folder name: use up to 64 letters, digits, '.', "
@@ -386,26 +399,8 @@ std::optional<BrokenRule> CheckRules(const Experiment& experiment) {
                       fmt::format("arena.wall_thickness = {} must not exceed half of arena.side = {}",
                                   experiment.arena.wall_thickness, experiment.arena.side)};
   }
-  if (experiment.search.kind != SearchKind::kGenetic) return std::nullopt;
-  if (experiment.genome.genes == 0) {
-    return BrokenRule{"genome.genes", "genome.genes = 0 leaves nothing to evolve: use 1 or more"};
-  }
-  if (experiment.search.population % 2 != 0) {
-    return BrokenRule{"search.population", fmt::format("search.population = {} must be even: couples breed",
-                                                       experiment.search.population)};
-  }
-  if (experiment.search.mode == SearchMode::kGenerational) return std::nullopt;
-  if (experiment.search.lag >= experiment.search.population) {
-    return BrokenRule{"search.lag", fmt::format("search.lag = {} must be below search.population = {}: the "
-                                                "first child needs two parents",
-                                                experiment.search.lag, experiment.search.population)};
-  }
-  if (experiment.search.reevaluation == Reevaluation::kPopulation) {
-    return BrokenRule{"search.reevaluation",
-                      "search.reevaluation = \"population\" needs generations: with search.mode = "
-                      "\"steady-state\" everybody is evaluated once (use search.replicates)"};
-  }
-  return std::nullopt;
+  const SearchInfo* search = FindByName(catalogue.searches, experiment.search.algorithm);
+  return search->check == nullptr ? std::nullopt : search->check(experiment);
 }
 
 }  // namespace gauntlet::master

@@ -1,5 +1,5 @@
-// The schema of experiments: one table of keys that reading TOML, --set, validation, writing and
-// `list --json` share.
+// The schema of experiments: one table of keys that reading TOML, --set, validation, writing, `list --json`
+// and the identity of saved searches share.
 #pragma once
 
 #include <cstdint>
@@ -39,25 +39,45 @@ struct Key {
   std::vector<std::string> choices;
   std::string description;  // one line
   KeyValue default_value;
+  bool for_people = false;  // has no influence on any run
   std::function<std::optional<std::string>(const KeyValue&)>
       check;  // what is wrong with a text; may be empty
   std::function<KeyValue(const Experiment&)> get;
   std::function<void(Experiment&, const KeyValue&)> set;  // `value` must have passed CheckValue
 };
 
-// The scenarios and controllers an experiment may name.
+// A broken rule that concerns more than one key, and the key to point at.
+struct BrokenRule {
+  std::string path;
+  std::string message;
+};
+
+// What an experiment may say of a search.
+struct SearchInfo {
+  std::string_view name;                    // as in search.algorithm
+  std::string_view description;             // one line
+  std::vector<std::string_view> keys = {};  // what it reads: common keys, "genome." for a whole table
+  std::span<const controllers::ParameterInfo> parameters = {};  // keys "search.NAME" that are its own
+  std::string_view length = {};  // the key that only says how long it goes on; "" = there is none
+  std::optional<BrokenRule> (*check)(const Experiment&) = nullptr;  // rules between its keys
+};
+// Whether the search reads the key "search.NAME" or "genome.NAME".
+bool Reads(const SearchInfo& search, std::string_view path);
+
+// What an experiment may name.
 struct Catalogue {
   std::span<const controllers::ScenarioInfo> scenarios;
   std::span<const controllers::ControllerInfo> controllers;
-
-  const controllers::ScenarioInfo* FindScenario(std::string_view name) const;
-  const controllers::ControllerInfo* FindController(std::string_view name) const;
+  std::span<const SearchInfo> searches;
 };
-// What controllers/registry.h offers.
-Catalogue BuiltInCatalogue();
 
-// Keys of every experiment, in the order they are written. Defaults are those of Experiment{}.
-const std::vector<Key>& CommonKeys();
+// Keys of every experiment, those of all searches among them, in the order they are written. Defaults are
+// those of Experiment{}.
+std::vector<Key> CommonKeys(const Catalogue& catalogue);
+// Whether the key is about what is wrong with robots: "faults", "noise.DEVICE.NAME".
+bool IsDisturbance(const Key& key);
+// A parameter's value, or its default when it was not given.
+double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& given);
 // One key per parameter: "scenario_parameters.NAME" and "controller_parameters.NAME".
 std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario);
 std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& controller);
@@ -69,11 +89,7 @@ std::string ToToml(const KeyValue& value);
 // 0 to 1"), or nothing.
 std::optional<std::string> CheckValue(const Key& key, const KeyValue& value);
 
-// A broken rule that concerns more than one key, and the key to point at.
-struct BrokenRule {
-  std::string path;
-  std::string message;
-};
-std::optional<BrokenRule> CheckRules(const Experiment& experiment);
+// The first rule between keys that the experiment breaks. `experiment.search.algorithm` is in the catalogue.
+std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue);
 
 }  // namespace gauntlet::master

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 #include <map>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "base/system/atomic_file.h"
 #include "master/experiment/experiment_file.h"
 
 namespace gauntlet::master {
@@ -22,30 +21,17 @@ constexpr std::size_t kMaxFileBytes = 1 << 20;
 
 Result<std::string> ReadFile(const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path, error)) {
-    return Error{ErrorKind::kNotFound, fmt::format("there is no experiment file '{}'", path.string())};
-  }
   if (fs::is_directory(path, error)) {
     return InvalidInput(fmt::format("'{}' is a folder, not an experiment file", path.string()));
   }
-  std::ifstream file(path, std::ios::binary);
-  std::string text(kMaxFileBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (!file.eof() && text.size() <= kMaxFileBytes) {
-    return Error{ErrorKind::kIo, fmt::format("cannot read '{}'", path.string())};
+  Result<std::string> text = ReadSmallFile(path.string(), kMaxFileBytes);
+  if (text.ok()) return text;
+  if (text.error().kind == ErrorKind::kNotFound) {
+    return Error{ErrorKind::kNotFound, fmt::format("there is no experiment file '{}'", path.string())};
   }
-  if (text.size() > kMaxFileBytes) {
-    return InvalidInput(
-        fmt::format("'{}' is larger than {} bytes: no experiment file", path.string(), kMaxFileBytes));
-  }
-  return text;
-}
-
-Result<Experiment> LoadFile(const fs::path& path, const std::vector<std::string>& sets) {
-  Result<std::string> text = ReadFile(path);
-  if (!text.ok()) return text.error();
-  return ParseExperiment(*text, path.string(), sets);
+  if (text.error().kind != ErrorKind::kCorrupt) return text;
+  return InvalidInput(
+      fmt::format("'{}' is larger than {} bytes: no experiment file", path.string(), kMaxFileBytes));
 }
 
 std::map<std::string, fs::path> ShippedFiles() {
@@ -74,12 +60,12 @@ std::vector<fs::path> ExperimentDirectories() {
   return directories;
 }
 
-std::vector<ShippedExperiment> ListExperiments() {
+std::vector<ShippedExperiment> ListExperiments(const Catalogue& catalogue) {
   std::vector<ShippedExperiment> list;
   for (const auto& [name, path] : ShippedFiles()) {
     ShippedExperiment shipped{
         .name = name, .path = path, .description = "", .scenario = "", .controller = "", .error = ""};
-    const Result<Experiment> experiment = LoadFile(path, {});
+    const Result<Experiment> experiment = LoadExperiment(path.string(), {}, catalogue);
     if (experiment.ok()) {
       shipped.description = experiment->description;
       shipped.scenario = experiment->scenario;
@@ -92,10 +78,11 @@ std::vector<ShippedExperiment> ListExperiments() {
   return list;
 }
 
-Result<Experiment> LoadExperiment(const std::string& name_or_path, const std::vector<std::string>& sets) {
+Result<Experiment> LoadExperiment(const std::string& name_or_path, const std::vector<std::string>& sets,
+                                  const Catalogue& catalogue) {
   const Result<ExperimentText> source = ReadExperimentText(name_or_path);
   if (!source) return source.error();
-  return ParseExperiment(source->text, source->file_name, sets);
+  return ParseExperiment(source->text, source->file_name, sets, catalogue);
 }
 
 Result<ExperimentText> ReadExperimentText(const std::string& name_or_path) {

@@ -6,7 +6,9 @@
 #include <map>
 
 #include "master/report/state_digest.h"
+#include "master/report/stored_search.h"
 #include "master/report/verdict_text.h"
+#include "master/search/population_search.h"
 #include "proto/run_codec.h"
 #include "sim/arena/genome_codec.h"
 #include "sim/run_result.h"
@@ -100,20 +102,15 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
                                   ResultStore& store) {
   CampaignSummary summary;
   summary.experiment = experiment.name;
-  summary.search = NameOf(experiment.search.kind);
+  summary.search = experiment.search.algorithm;
   summary.seed = experiment.seed;
 
-  Result<std::optional<SavedState>> saved = store.LoadNewestState(search_id);
+  const Result<SavedProgress> saved = RestoreSearch(search_id, store, search);
   if (!saved) return saved.error();
-  ResultsDigest digest;
-  std::string search_state;
-  if (saved->has_value()) {
-    search_state = (*saved)->state;
-    CanonicalDecoder decoder(search_state);
-    if (Status restored = search.Restore(decoder); !restored) return restored.error();
-    Result<ResultsDigest> restored = ResultsDigest::Restore((*saved)->results_digest);
-    if (!restored) return restored.error();
-    digest = *restored;
+  {
+    const Result<std::vector<Individual>> individuals = store.LoadIndividuals(search_id);
+    if (!individuals) return individuals.error();
+    summary.distinct_individuals = CountDistinctGenomes(*individuals);
   }
 
   std::map<IndividualId, std::vector<RunId>> runs_of;
@@ -132,12 +129,10 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
 
   summary.progress = search.Progress();
   summary.statistics = search.Statistics();
-  summary.distinct_individuals = runs_of.size();
-  for (const auto& [name, value] : summary.statistics) {
-    if (name == "distinct_individuals") summary.distinct_individuals = static_cast<std::uint64_t>(value);
-  }
+  summary.statistics.insert(summary.statistics.begin(),
+                            {"distinct_individuals", static_cast<double>(summary.distinct_individuals)});
 
-  const std::vector<Individual> population = search.Population();
+  const std::vector<Individual>& population = search.Population();
   double sum = 0.0;
   double counted = 0.0;
   summary.best_fitness = summary.mean_fitness = summary.worst_fitness = kNone;
@@ -154,7 +149,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   if (counted > 0.0) summary.mean_fitness = sum / counted;
 
   summary.state_hash =
-      StateHash(EncodeExperiment(experiment), digest, EncodePopulation(population), search_state);
+      StateHash(EncodeExperiment(experiment), saved->results, EncodePopulation(population), saved->state);
   const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
   if (!nondeterministic) return nondeterministic.error();
   summary.nondeterministic = *nondeterministic;

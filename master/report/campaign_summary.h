@@ -45,7 +45,7 @@ struct RunsWithoutResult {
 struct CampaignSummary {
   std::string settings;  // of a search in a sweep, what tells it from the others
   std::string experiment;
-  std::string search;  // "genetic", "random", "cases"; "sweep" of several
+  std::string search;  // its name; "sweep" of several
   std::uint64_t seed = 0;
   SearchProgress progress;
   std::uint64_t runs_done = 0;                         // stored

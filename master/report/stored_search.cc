@@ -3,15 +3,16 @@
 #include <utility>
 #include <vector>
 
-#include "master/search/case_list_search.h"
 #include "master/search/make_search.h"
+#include "master/search/search_table.h"
 #include "master/store/run_numbers.h"
+#include "proto/run_codec.h"
 
 namespace gauntlet::master {
 
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, SearchId id,
                                                           ResultStore& store) {
-  if (experiment.search.kind != SearchKind::kCases) return MakeSearch(experiment, kOnlySearch);
+  if (!RowOf(experiment).given_cases) return MakeSearch(experiment, kOnlySearch);
   Result<std::vector<Individual>> individuals = store.LoadIndividuals(id);
   if (!individuals) return individuals.error();
   if (individuals->empty()) {
@@ -20,8 +21,61 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& expe
   }
   std::vector<sim::TestCase> cases;
   for (Individual& individual : *individuals) cases.push_back(std::move(individual.test_case));
-  return std::unique_ptr<SearchAlgorithm>(
-      std::make_unique<CaseListSearch>(std::move(cases), experiment.search.replicates));
+  return MakeSearch(experiment, kOnlySearch, std::move(cases));
+}
+
+Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics) {
+  RunOutcome outcome{.verdict = static_cast<sim::Verdict>(run.verdict),
+                     .fitness = run.fitness,
+                     .total_failure = run.total_failure,
+                     .failure_type = run.failure_type,
+                     .metrics = {}};
+  if (!with_metrics) return outcome;
+  Result<sim::RunResult> result = proto::DecodeRunResult(run.result);
+  if (!result) return result.error();
+  outcome.metrics = std::move(result->metrics);
+  return outcome;
+}
+
+Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgorithm& search) {
+  SavedProgress saved;
+  saved.last_run = RunIdOf(id, 1) - 1;
+  Result<std::optional<SavedState>> newest = store.LoadNewestState(id);
+  if (!newest) return newest.error();
+  if (!newest->has_value()) return saved;
+  saved.last_run = (*newest)->last_run;
+  saved.state = std::move((*newest)->state);
+  Result<ResultsDigest> results = ResultsDigest::Restore((*newest)->results_digest);
+  if (!results) return results.error();
+  saved.results = *results;
+
+  const History history = [&](const std::function<void(const EvaluationOutcome&)>& visit) -> Status {
+    EvaluationOutcome next;  // its runs stand one behind the other
+    std::optional<Error> damage;
+    const auto tell = [&] {
+      if (next.runs.empty()) return;
+      visit(OutcomeOfRuns(next.individual, next.evaluation, std::exchange(next.runs, {})));
+    };
+    Status read = store.ForEachRun(id, 0, [&](const StoredRun& run) {
+      if (damage || run.id > saved.last_run) return;
+      if (run.individual != next.individual || run.evaluation != next.evaluation) tell();
+      next.individual = run.individual;
+      next.evaluation = run.evaluation;
+      Result<RunOutcome> outcome = OutcomeOf(run, search.WantsMetrics());
+      if (!outcome) {
+        damage = outcome.error();
+      } else {
+        next.runs.push_back(*std::move(outcome));
+      }
+    });
+    if (!read) return read;
+    if (damage) return *damage;
+    tell();
+    return Ok{};
+  };
+  CanonicalDecoder decoder(saved.state);
+  if (Status restored = search.Restore(decoder, history); !restored) return restored.error();
+  return saved;
 }
 
 }  // namespace gauntlet::master

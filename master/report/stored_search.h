@@ -1,10 +1,12 @@
-// The search of a stored campaign.
+// The search of a stored campaign: made, and brought to where its newest state stands.
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "base/result.h"
 #include "master/experiment/experiment.h"
+#include "master/report/state_digest.h"
 #include "master/search/search_algorithm.h"
 #include "master/store/result_store.h"
 
@@ -14,5 +16,18 @@ namespace gauntlet::master {
 // store does not hold them.
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, SearchId id,
                                                           ResultStore& store);
+
+// What the search is to know of a stored run. kCorrupt when its metrics are wanted and do not read back.
+Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics);
+
+// How far a search had come when its newest state was saved.
+struct SavedProgress {
+  std::string state;      // SearchAlgorithm::Save; empty when none was saved
+  RunId last_run = 0;     // the last that it has seen; before the first: one less than that one's id
+  ResultsDigest results;  // of all that it has seen
+};
+// Brings a search that was just made to its newest state. Error: the state or the runs that it has seen
+// cannot be read, or do not fit the search (SearchAlgorithm::Restore).
+Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgorithm& search);
 
 }  // namespace gauntlet::master

@@ -1,44 +1,31 @@
 // Given test cases, each evaluated once: what `gauntlet evaluate` does.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <utility>
-#include <vector>
+#include <memory>
 
-#include "master/search/individuals.h"
-#include "master/search/search_algorithm.h"
+#include "master/search/population_search.h"
+#include "master/search/search_table.h"
 
 namespace gauntlet::master {
 
-// Case i of the list is individual i + 1. Validity is the caller's business; nothing here is random.
-class CaseListSearch : public SearchAlgorithm {
+// Case i of SearchSetup::cases is individual i + 1; all of them are the population from the beginning. Their
+// validity is the caller's business; nothing here is random.
+class CaseListSearch : public PopulationSearch {
  public:
-  // replicates >= 1 runs per case.
-  CaseListSearch(std::vector<sim::TestCase> cases, int replicates);
+  static Result<std::unique_ptr<CaseListSearch>> Create(const SearchSetup& setup);
 
   std::vector<EvaluationRequest> Ask() override;
-  void Tell(const EvaluationOutcome& outcome) override;
   SearchProgress Progress() const override;
-  std::vector<Individual> Population() const override { return cases_; }
-  std::vector<Individual> TakeNewborns() override { return std::exchange(newborns_, {}); }
-  // distinct_individuals: different genomes in the list.
-  std::vector<std::pair<std::string, double>> Statistics() const override;
-  bool AtBoundary() const override { return pending_.empty(); }
-  void Save(CanonicalEncoder& encoder) const override;
-  // Error: the state is damaged or was made with another list of cases or number of replicates.
-  Status Restore(CanonicalDecoder& decoder) override;
 
  private:
-  // Hash of all cases and the number of replicates: whose state it is.
-  std::uint64_t ListHash() const;
+  explicit CaseListSearch(const SearchSetup& setup);
 
-  int replicates_;
+  void Told(const EvaluationOutcome& outcome) override;
+  Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
+
   bool asked_ = false;
-  std::uint64_t evaluations_done_ = 0;
-  std::vector<Individual> cases_;
-  std::vector<Individual> newborns_;
-  PendingRequests pending_;
 };
+
+SearchRow CaseListRow();
 
 }  // namespace gauntlet::master

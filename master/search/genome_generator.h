@@ -48,12 +48,4 @@ class GenomeGenerator {
   sim::ArenaRequirements requirements_;
 };
 
-// Whether genes can be drawn: every minimum at most its maximum, `step` 0 or a whole fraction of a metre, and
-// a point of the grid in every range. The error names key, value and rule.
-Status CheckGenomeSpec(const GenomeSpec& spec);
-
-// The first gene that lies outside the ranges of `spec` (rule kGeneRange: names gene, field, value and
-// range), or nothing. Neither the grid nor the number of genes is judged.
-std::optional<sim::Violation> CheckGeneRanges(const sim::Genome& genome, const GenomeSpec& spec);
-
 }  // namespace gauntlet::master

@@ -4,13 +4,15 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/canonical_encoder.h"
 #include "base/result.h"
 #include "sim/arena/test_case.h"
+#include "sim/run_result.h"
 
 namespace gauntlet::master {
 
@@ -26,16 +28,26 @@ struct EvaluationRequest {
   std::vector<IndividualId> parents;  // their runs tell how long this one's will take
 };
 
+// What came of one run.
+struct RunOutcome {
+  sim::Verdict verdict = sim::Verdict::kCompleted;
+  double fitness = 0.0;  // meaningless unless completed
+  bool total_failure = false;
+  int failure_type = -1;  // of the scenario; -1 = none or not classified
+  // By name, in the scenario's order. Only for a search that WantsMetrics.
+  std::vector<std::pair<std::string, double>> metrics;
+};
+
 // What came of an EvaluationRequest.
 struct EvaluationOutcome {
   IndividualId individual = 0;
   std::uint32_t evaluation = 0;
-  double fitness = 0.0;  // mean over the completed replicates
-  bool completed =
-      false;  // false when no replicate has the verdict "completed"; the fitness is then meaningless
-  std::uint32_t total_failures = 0;  // replicates that ended in total failure
-  std::uint32_t runs_failed = 0;     // replicates with a verdict other than "completed"
+  bool completed = false;        // at least one run has the verdict "completed"
+  double fitness = 0.0;          // mean over the completed runs; meaningless when there is none
+  std::vector<RunOutcome> runs;  // one for each replicate, in order
 };
+EvaluationOutcome OutcomeOfRuns(IndividualId individual, std::uint32_t evaluation,
+                                std::vector<RunOutcome> runs);
 
 // A member of the population as it stands.
 struct Individual {
@@ -43,9 +55,10 @@ struct Individual {
   std::vector<IndividualId> parents;  // empty in the initial population
   std::uint32_t birth_generation = 0;
   sim::TestCase test_case;
-  std::vector<double> evaluations;  // fitness of every completed evaluation, in order
-  std::uint32_t failed_evaluations = 0;
-  double fitness = 0.0;  // aggregated from `evaluations`; lower = tougher; +infinity when none completed
+  std::uint32_t evaluations = 0;         // with a fitness
+  std::uint32_t failed_evaluations = 0;  // without one
+  double fitness_sum = 0.0;              // of all evaluations, added in their order
+  double fitness = 0.0;  // aggregated over the evaluations; lower = tougher; +infinity before the first
 };
 
 struct SearchProgress {
@@ -56,6 +69,10 @@ struct SearchProgress {
   bool finished = false;
 };
 
+// Hands over all outcomes that the search had been told when a state was saved, in the order in which it was
+// told. They come from the stored runs; an error of reading them is passed on.
+using History = std::function<Status(const std::function<void(const EvaluationOutcome&)>& visit)>;
+
 class SearchAlgorithm {
  public:
   virtual ~SearchAlgorithm() = default;
@@ -64,20 +81,26 @@ class SearchAlgorithm {
   virtual std::vector<EvaluationRequest> Ask() = 0;
   // Outcomes in the very order of the requests, whatever order they arrived in.
   virtual void Tell(const EvaluationOutcome& outcome) = 0;
+  // Whether outcomes are to carry the metrics of their runs; constant. They have to be decoded for it.
+  virtual bool WantsMetrics() const { return false; }
   virtual SearchProgress Progress() const = 0;
-  // The current population, in a fixed order (all cases so far for searches without survivors).
-  virtual std::vector<Individual> Population() const = 0;
+  // The current population, in a fixed order (all cases told so far for searches without survivors).
+  virtual const std::vector<Individual>& Population() const = 0;
   // Individuals born since the last call, so that they can be stored once.
   virtual std::vector<Individual> TakeNewborns() = 0;
-  // A figure or two of the search itself, e.g. {"distinct_individuals", 118}, {"clone_rate", 0.61}.
+  // A figure or two of the search itself, e.g. {"clone_rate", 0.61}.
   virtual std::vector<std::pair<std::string, double>> Statistics() const = 0;
 
   // Whether state may be saved now: at moments that depend on the number of told outcomes only.
   virtual bool AtBoundary() const = 0;
-  // The whole state in the canonical encoding; only at a boundary. After Restore, Ask gives everything that
-  // was not told when it was saved.
+  // The state in the canonical encoding; only at a boundary. Its size is bounded by the population: what else
+  // has come to pass is read from the stored runs, by Restore.
   virtual void Save(CanonicalEncoder& encoder) const = 0;
-  virtual Status Restore(CanonicalDecoder& decoder) = 0;
+  // Afterwards Ask gives everything that was not told when the state was saved. Call on a search that was
+  // just made; after an error it must not be used. Errors: kVersion for another format; kCorrupt for what is
+  // no state; kInvalidInput for the state of another experiment, naming the first setting in which they
+  // differ.
+  virtual Status Restore(CanonicalDecoder& decoder, const History& history) = 0;
 };
 
 }  // namespace gauntlet::master

@@ -11,8 +11,8 @@
 #include "master/dispatch/worker_program.h"
 #include "master/experiment/experiment_file.h"
 #include "master/report/stored_campaign.h"
-#include "master/search/case_list_search.h"
 #include "master/search/make_search.h"
+#include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/campaign_server.h"
 #include "master/store/run_numbers.h"
@@ -42,10 +42,9 @@ struct NewCampaign {
 };
 
 // Whether every search can begin, asked before anything is written.
-Status CheckSearches(const std::vector<SearchPlan>& plans) {
+Status CheckSearches(const std::vector<SearchPlan>& plans, const std::vector<sim::TestCase>& cases) {
   for (const SearchPlan& plan : plans) {
-    if (plan.experiment.search.kind == SearchKind::kCases) continue;
-    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(plan.experiment, kOnlySearch);
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(plan.experiment, kOnlySearch, cases);
     if (search) continue;
     if (plan.settings.empty()) return search.error();
     return Error{search.error().kind, fmt::format("{}: {}", plan.settings, search.error().message)};
@@ -55,7 +54,7 @@ Status CheckSearches(const std::vector<SearchPlan>& plans) {
 
 Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
                            const std::vector<sim::TestCase>& cases, const std::string& slurm) {
-  if (Status possible = CheckSearches(plans); !possible) return possible.error();
+  if (Status possible = CheckSearches(plans, cases); !possible) return possible.error();
   Result<std::uint64_t> golden_hash = GoldenHashOfThisMachine();
   if (!golden_hash) return golden_hash.error();
   CampaignMeta meta;
@@ -66,14 +65,16 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
       fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {}.",
                   kSoftwareVersion, meta.golden_hash)};
   if (plans.size() > 1) header.emplace_back("It is the first of several: searches.json has all.");
-  const CampaignTexts texts{WriteExperiment(experiment, header),
+  const CampaignTexts texts{WriteExperiment(experiment, header, BuiltInCatalogue()),
                             plans.size() > 1 ? WriteSearchPlans(plans) : "", slurm};
   Result<CampaignOwnership> campaign = CreateCampaign(dir, texts, meta);
   if (!campaign) return campaign.error();
   SqliteStore& store = *campaign->store;
   if (Status added = AddSearches(plans, store); !added) return added.error();
-  if (experiment.search.kind == SearchKind::kCases) {
-    store.AddIndividuals(kOnlySearch, CaseListSearch(cases, experiment.search.replicates).Population());
+  if (!cases.empty()) {
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(experiment, kOnlySearch, cases);
+    if (!search) return search.error();
+    store.AddIndividuals(kOnlySearch, (*search)->Population());
   }
   if (Status flushed = store.Flush(); !flushed) return flushed.error();
   return NewCampaign{*std::move(campaign), *golden_hash};

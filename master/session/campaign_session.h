@@ -13,8 +13,8 @@
 namespace gauntlet::master {
 
 // Creates the campaign in `dir` (which must not exist or be empty) and runs it. `cases`: what `evaluate`
-// simulates, in order (search kind kCases); empty otherwise. Errors: kInvalidInput, kInUse; kNoSpace and kIo
-// when the campaign stopped and can be resumed.
+// simulates, in order (a search through given cases); empty otherwise. Errors: kInvalidInput, kInUse;
+// kNoSpace and kIo when the campaign stopped and can be resumed.
 Result<SessionReport> StartCampaign(const std::string& dir, const Experiment& experiment,
                                     const std::vector<sim::TestCase>& cases, const SessionOptions& options);
 

@@ -9,6 +9,7 @@
 #include "master/dispatch/dispatch_options.h"
 #include "master/experiment/experiment_file.h"
 #include "master/report/verdict_text.h"
+#include "master/search/search_table.h"
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {
@@ -52,7 +53,8 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   };
   if (Status written = write("run.spec", run.spec); !written) return written;
   if (Status written = write("case.json", proto::WriteCaseJson(spec->test_case)); !written) return written;
-  if (Status written = write("experiment.toml", WriteExperiment(experiment, {})); !written) return written;
+  const std::string resolved = WriteExperiment(experiment, {}, BuiltInCatalogue());
+  if (Status written = write("experiment.toml", resolved); !written) return written;
   if (Status written = write("stderr.txt", finished.stderr_tail); !written) return written;
   return write("README.txt", readme);
 }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "master/report/stored_search.h"
 #include "master/search/run_seed.h"
 #include "proto/run_codec.h"
 
@@ -31,6 +32,7 @@ StoredRun AsOnlySearch(const StoredRun& run) {
 
 SearchDriver::SearchDriver(const Parts& parts)
     : parts_(parts),
+      has_generations_(parts.search.Progress().generations > 1),
       last_asked_(RunIdOf(parts.search_id, 1) - 1),
       last_told_(last_asked_),
       saved_until_(last_asked_),
@@ -38,17 +40,10 @@ SearchDriver::SearchDriver(const Parts& parts)
       mean_fitness_(std::numeric_limits<double>::quiet_NaN()) {}
 
 Status SearchDriver::Restore() {
-  Result<std::optional<SavedState>> saved = parts_.store.LoadNewestState(parts_.search_id);
+  Result<SavedProgress> saved = RestoreSearch(parts_.search_id, parts_.store, parts_.search);
   if (!saved) return saved.error();
-  if (saved->has_value()) {
-    const SavedState& state = **saved;
-    CanonicalDecoder decoder(state.state);
-    if (Status restored = parts_.search.Restore(decoder); !restored) return restored;
-    Result<ResultsDigest> digest = ResultsDigest::Restore(state.results_digest);
-    if (!digest) return digest.error();
-    digest_ = *digest;
-    last_asked_ = last_told_ = saved_until_ = state.last_run;
-  }
+  digest_ = saved->results;
+  last_asked_ = last_told_ = saved_until_ = saved->last_run;
   Status read = parts_.store.ForEachRun(parts_.search_id, 0, [this](const StoredRun& run) {
     Count(run);
     if (run.id > saved_until_) stored_ahead_.emplace(run.id, run);
@@ -87,7 +82,7 @@ Status SearchDriver::Ask() {
       const auto stored = stored_ahead_.find(run.id);
       if (stored == stored_ahead_.end()) {
         submissions.push_back({run.id, run.spec, length});
-        evaluation.runs.push_back({std::move(run), false});
+        evaluation.runs.push_back({std::move(run), {}, false});
       } else {
         if (stored->second.spec != run.spec) {
           return Error{
@@ -97,7 +92,11 @@ Status SearchDriver::Ask() {
                   "another version, or its files were changed",
                   run.id)};
         }
-        evaluation.runs.push_back({std::move(stored->second), true});
+        Result<RunOutcome> outcome = OutcomeOf(stored->second, parts_.search.WantsMetrics());
+        if (!outcome) return outcome.error();
+        stored->second.spec.clear();
+        stored->second.result.clear();
+        evaluation.runs.push_back({std::move(stored->second), *std::move(outcome), true});
         stored_ahead_.erase(stored);
       }
     }
@@ -130,8 +129,7 @@ void SearchDriver::Store(FinishedRun finished) {
   GAUNTLET_CHECK(pending != nullptr && !pending->durable, fmt::format("run {} finished twice", finished.id));
   StoredRun& run = pending->run;
   --at_backend_;
-  if (parts_.experiment.search.kind == SearchKind::kGenetic)
-    ticks_[run.individual] = static_cast<double>(finished.result.ticks);
+  if (has_generations_) ticks_[run.individual] = static_cast<double>(finished.result.ticks);
   if (parts_.on_run) parts_.on_run(run, finished);
   run.result = std::move(finished.encoded);
   run.hash = finished.result.hash;
@@ -141,6 +139,12 @@ void SearchDriver::Store(FinishedRun finished) {
   run.fitness = finished.result.fitness;
   run.total_failure = finished.result.failure.total;
   run.failure_type = finished.result.failure.type;
+  pending->outcome = {.verdict = finished.result.verdict,
+                      .fitness = run.fitness,
+                      .total_failure = run.total_failure,
+                      .failure_type = run.failure_type,
+                      .metrics = {}};
+  if (parts_.search.WantsMetrics()) pending->outcome.metrics = std::move(finished.result.metrics);
   parts_.store.AddRun(run);
   run.spec.clear();
   run.result.clear();
@@ -155,29 +159,20 @@ void SearchDriver::Committed(RunId id) {
 
 void SearchDriver::TellCompleted() {
   while (!pending_.empty()) {
-    const PendingEvaluation& evaluation = pending_.front();
+    PendingEvaluation& evaluation = pending_.front();
     // From the end, where what is missing usually stands: evaluations of thousands of runs are looked at
     // often.
     if (std::any_of(evaluation.runs.rbegin(), evaluation.runs.rend(),
                     [](const PendingRun& pending) { return !pending.durable; })) {
       return;
     }
-    EvaluationOutcome outcome;
-    outcome.individual = evaluation.request.individual;
-    outcome.evaluation = evaluation.request.evaluation;
-    double sum = 0.0;
-    std::uint32_t completed = 0;
-    for (const PendingRun& pending : evaluation.runs) {
-      if (pending.run.verdict == static_cast<int>(sim::Verdict::kCompleted)) {
-        sum += pending.run.fitness;
-        ++completed;
-      }
-      if (pending.run.total_failure) ++outcome.total_failures;
+    std::vector<RunOutcome> outcomes;
+    for (PendingRun& pending : evaluation.runs) {
+      digest_.Add(AsOnlySearch(pending.run));
+      outcomes.push_back(std::move(pending.outcome));
     }
-    outcome.runs_failed = static_cast<std::uint32_t>(evaluation.runs.size()) - completed;
-    outcome.completed = completed > 0;
-    if (outcome.completed) outcome.fitness = sum / completed;
-    for (const PendingRun& pending : evaluation.runs) digest_.Add(AsOnlySearch(pending.run));
+    const EvaluationOutcome outcome =
+        OutcomeOfRuns(evaluation.request.individual, evaluation.request.evaluation, std::move(outcomes));
     last_told_ = evaluation.runs.back().run.id;
     pending_.pop_front();
     parts_.search.Tell(outcome);

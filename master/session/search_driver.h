@@ -66,6 +66,7 @@ class SearchDriver {
   // The fields of a result that the search and the digest need.
   struct PendingRun {
     StoredRun run;  // `spec` and `result` are handed to the store and empty afterwards
+    RunOutcome outcome;
     bool durable = false;
   };
   struct PendingEvaluation {
@@ -81,6 +82,7 @@ class SearchDriver {
   PendingRun* Find(RunId id);
 
   Parts parts_;
+  bool has_generations_;  // else everybody is evaluated once, without children
   std::deque<PendingEvaluation> pending_;
   std::map<RunId, StoredRun>
       stored_ahead_;  // results that a former session stored and the saved state has not seen

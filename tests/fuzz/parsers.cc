@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "master/cases/argos_import.h"
 #include "master/experiment/experiment_file.h"
+#include "master/search/search_table.h"
 #include "proto/access_file.h"
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
@@ -75,11 +76,13 @@ void ReadArgos(std::string_view bytes) {
 }
 
 void ReadExperiment(std::string_view bytes) {
-  const Result<master::Experiment> read = master::ParseExperiment(bytes, "experiment.toml", {});
+  const Result<master::Experiment> read =
+      master::ParseExperiment(bytes, "experiment.toml", {}, master::BuiltInCatalogue());
   if (!read) return ExpectAGoodError(read);
-  const std::string written = master::WriteExperiment(*read, {});
-  const Result<master::Experiment> again = master::ParseExperiment(written, "again.toml", {});
-  GAUNTLET_CHECK(again.ok() && master::WriteExperiment(*again, {}) == written,
+  const std::string written = master::WriteExperiment(*read, {}, master::BuiltInCatalogue());
+  const Result<master::Experiment> again =
+      master::ParseExperiment(written, "again.toml", {}, master::BuiltInCatalogue());
+  GAUNTLET_CHECK(again.ok() && master::WriteExperiment(*again, {}, master::BuiltInCatalogue()) == written,
                  "an experiment does not survive:\n" + written);
 }
 

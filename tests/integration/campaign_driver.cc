@@ -84,19 +84,45 @@ SmallCampaign SmallPartitioning() {
 SmallCampaign SmallSteadyState() {
   SmallCampaign campaign;
   campaign.name = "steady_state";
-  campaign.settings = {"search.mode=steady-state", "search.lag=5"};
+  campaign.settings = {"search.algorithm=steady-state", "search.lag=5"};
+  return campaign;
+}
+
+SmallCampaign SmallRandom() {
+  SmallCampaign campaign;
+  campaign.name = "random";
+  campaign.population = campaign.generations = 0;
+  campaign.settings = {"search.algorithm=random", kSanitized ? "search.cases=300" : "search.cases=2500",
+                       "scenario_parameters.time_limit=5"};
+  return campaign;
+}
+
+SmallCampaign SmallEvaluation() {
+  SmallCampaign campaign;
+  campaign.name = "evaluation";
+  campaign.population = campaign.generations = 0;
+  campaign.settings = {kSanitized ? "search.replicates=10" : "search.replicates=60"};
+  campaign.case_file = GAUNTLET_SOURCE_DIR "/tests/fuzz/corpus/case_json/empty.json";
   return campaign;
 }
 
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers) {
-  std::vector<std::string> arguments = {"evolve",        campaign.experiment,
-                                        "--dir",         dir,
-                                        "--workers",     std::to_string(workers),
-                                        "--seed",        campaign.seed,
-                                        "--population",  std::to_string(campaign.population),
-                                        "--generations", std::to_string(campaign.generations),
+  std::vector<std::string> arguments = {campaign.case_file.empty() ? "evolve" : "evaluate",
+                                        campaign.experiment,
+                                        "--dir",
+                                        dir,
+                                        "--workers",
+                                        std::to_string(workers),
+                                        "--seed",
+                                        campaign.seed,
                                         "--quiet"};
-  for (const std::string& setting : campaign.settings) arguments.insert(arguments.end(), {"--set", setting});
+  const auto give = [&](const char* option, const std::string& value) {
+    arguments.insert(arguments.end(), {option, value});
+  };
+  if (campaign.population > 0) give("--population", std::to_string(campaign.population));
+  if (campaign.generations > 0) give("--generations", std::to_string(campaign.generations));
+  if (!campaign.case_file.empty()) give("--case", campaign.case_file);
+  for (const std::string& setting : campaign.settings) give("--set", setting);
   return arguments;
 }
 

@@ -34,14 +34,20 @@ struct SmallCampaign {
   std::string seed = "7";
   std::string experiment = "flocking";
   std::vector<std::string> settings;  // key=value, as given to --set
+  std::string case_file = {};         // evaluated instead, when there is one
 };
 // Foraging of the same size: the runs are cut short, because 20 robots over 800 s take 0.1 s each; under a
 // sanitizer, where they take seconds, once more.
 SmallCampaign SmallForaging();
 // Task partitioning, likewise.
 SmallCampaign SmallPartitioning();
-// Flocking in the steady-state mode.
+// Flocking searched steadily, without generations.
 SmallCampaign SmallSteadyState();
+// Random cases of flocking, so many short runs that states are saved on the way.
+SmallCampaign SmallRandom();
+// A given case with many replicates.
+SmallCampaign SmallEvaluation();
+// The command that starts the campaign.
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers);
 
 // `show DIR --json`, parsed; a null value (and a test failure) when it does not answer with one JSON

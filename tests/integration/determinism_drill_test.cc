@@ -21,7 +21,7 @@ using testing_support::StartGauntlet;
 using testing_support::StateHash;
 using testing_support::TemporaryDirectory;
 
-// Every drill is for every shipped behaviour.
+// Every drill is for every shipped behaviour and every search.
 class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {
  protected:
   // The undisturbed run with one worker that every drill is compared with.
@@ -41,7 +41,8 @@ class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {
 INSTANTIATE_TEST_SUITE_P(Experiments, DeterminismDrill,
                          testing::Values(SmallCampaign{}, testing_support::SmallForaging(),
                                          testing_support::SmallPartitioning(),
-                                         testing_support::SmallSteadyState()),
+                                         testing_support::SmallSteadyState(), testing_support::SmallRandom(),
+                                         testing_support::SmallEvaluation()),
                          [](const testing::TestParamInfo<SmallCampaign>& parameter) {
                            return parameter.param.name;
                          });

@@ -128,8 +128,12 @@ TEST_F(CommandLine, OptionsOfAnotherSearchAreRefused) {
                    AllOf(HasSubstr("--generations 3"), HasSubstr("search.cases")));
   ExpectUsageError({"evolve", "flocking", "--generations", "1", "--set", "search.generations=1e3"},
                    HasSubstr("--set search.generations=1e3: "));
-  ExpectUsageError({"random", "flocking", "--set", "search.mode=steady-state"},
-                   AllOf(HasSubstr("--set search.mode=steady-state"), HasSubstr("search.cases")));
+  ExpectUsageError({"random", "flocking", "--set", "search.crossover=uniform"},
+                   AllOf(HasSubstr("--set search.crossover=uniform"), HasSubstr("search.cases")));
+  ExpectUsageError({"evolve", "flocking", "--set", "search.lag=5"},
+                   AllOf(HasSubstr("--set search.lag=5"), HasSubstr("'genetic' does not read search.lag")));
+  ExpectUsageError({"evolve", "flocking", "--set", "search.mode=steady-state"},
+                   AllOf(HasSubstr("search.mode"), HasSubstr("search.algorithm = \"steady-state\"")));
 }
 
 TEST_F(CommandLine, OptionsThatContradictEachOtherAreRefused) {
@@ -166,8 +170,8 @@ TEST_F(CommandLine, SearchWithoutAnyResultExitsOne) {
 
 TEST_F(CommandLine, RandomSearchesAtRandom) {
   EXPECT_EQ(Run({"random", "flocking", "--cases", "33", "--dir", Path("c")}), kExitDone);
-  EXPECT_EQ(started_.search.kind, SearchKind::kRandom);
-  EXPECT_EQ(started_.search.cases, 33);
+  EXPECT_EQ(started_.search.algorithm, "random");
+  EXPECT_EQ(started_.search.parameters.at("cases"), 33.0);
 }
 
 TEST_F(CommandLine, DirectoryThatHoldsSomethingIsRefusedNamingResume) {

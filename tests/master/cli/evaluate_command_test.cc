@@ -33,7 +33,7 @@ TEST_F(CommandLine, EvaluateRefusesByRuleAndSimulatesTheRest) {
   EXPECT_EQ(Run({"evaluate", "flocking", "--case", blocked, good, broken, "--replicates", "2", "--json",
                  "--dir", Path("c")}),
             kExitDone);
-  EXPECT_EQ(started_.search.kind, SearchKind::kCases);
+  EXPECT_EQ(started_.search.algorithm, "cases");
   EXPECT_EQ(started_.search.replicates, 2);
   ASSERT_EQ(cases_.size(), 1U);
   EXPECT_EQ(cases_[0].name, "good.json");

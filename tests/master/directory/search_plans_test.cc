@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "master/experiment/experiment_file.h"
+#include "master/search/search_table.h"
 
 namespace gauntlet::master {
 namespace {
@@ -31,7 +32,7 @@ class SearchPlansTest : public testing::Test {
 };
 
 TEST_F(SearchPlansTest, ReadBackEqual) {
-  const Experiment base = LoadExperiment("flocking", {}).value();
+  const Experiment base = LoadExperiment("flocking", {}, BuiltInCatalogue()).value();
   Experiment other = base;
   other.seed = 18446744073709551615U;
   other.search.population = 6;
@@ -40,12 +41,15 @@ TEST_F(SearchPlansTest, ReadBackEqual) {
   ASSERT_TRUE(plans.ok()) << plans.error().message;
   ASSERT_EQ(plans->size(), 2U);
   EXPECT_EQ((*plans)[1].settings, "all \"others\"");
-  EXPECT_EQ(WriteExperiment((*plans)[0].experiment, {}), WriteExperiment(base, {}));
-  EXPECT_EQ(WriteExperiment((*plans)[1].experiment, {}), WriteExperiment(other, {}));
+  EXPECT_EQ(WriteExperiment((*plans)[0].experiment, {}, BuiltInCatalogue()),
+            WriteExperiment(base, {}, BuiltInCatalogue()));
+  EXPECT_EQ(WriteExperiment((*plans)[1].experiment, {}, BuiltInCatalogue()),
+            WriteExperiment(other, {}, BuiltInCatalogue()));
 }
 
 TEST_F(SearchPlansTest, WithoutAListThereIsTheOneExperiment) {
-  Write("experiment.toml", WriteExperiment(LoadExperiment("flocking", {"seed=5"}).value(), {}));
+  Write("experiment.toml", WriteExperiment(LoadExperiment("flocking", {"seed=5"}, BuiltInCatalogue()).value(),
+                                           {}, BuiltInCatalogue()));
   const Result<std::vector<SearchPlan>> plans = Read();
   ASSERT_TRUE(plans.ok()) << plans.error().message;
   ASSERT_EQ(plans->size(), 1U);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/nearest_name.h"
 #include "tests/master/experiment/toy_catalogue.h"
 
 namespace gauntlet::master {
@@ -20,9 +21,10 @@ using ::testing::StartsWith;
 // All keys of the experiment's scenario and controller.
 std::vector<Key> KeysOf(const Experiment& experiment) {
   const Catalogue catalogue = ToyCatalogue();
-  std::vector<Key> keys = CommonKeys();
-  for (Key& key : ScenarioParameterKeys(*catalogue.FindScenario(experiment.scenario))) keys.push_back(key);
-  for (Key& key : ControllerParameterKeys(*catalogue.FindController(experiment.controller))) {
+  std::vector<Key> keys = CommonKeys(catalogue);
+  for (Key& key : ScenarioParameterKeys(*FindByName(catalogue.scenarios, experiment.scenario)))
+    keys.push_back(key);
+  for (Key& key : ControllerParameterKeys(*FindByName(catalogue.controllers, experiment.controller))) {
     keys.push_back(key);
   }
   return keys;
@@ -79,12 +81,12 @@ step = 0
   EXPECT_EQ(experiment->scenario_parameters.at("camera_range"), 2.0);
   EXPECT_EQ(experiment->scenario_parameters.at("headwind"), 1.0);
   EXPECT_THAT(experiment->controller_parameters, ElementsAre(Pair("gain", 3.5)));
-  EXPECT_EQ(experiment->search.kind, SearchKind::kRandom);
+  EXPECT_EQ(experiment->search.algorithm, "random");
   EXPECT_EQ(experiment->search.parent_selection, ParentSelection::kAllParentBestHalf);
   EXPECT_EQ(experiment->search.crossover, CrossoverKind::kUniform);
   EXPECT_EQ(experiment->search.reevaluation, Reevaluation::kChildren);
   EXPECT_EQ(experiment->search.aggregation, FitnessAggregation::kLast);
-  EXPECT_EQ(experiment->search.cases, 12000);
+  EXPECT_EQ(experiment->search.parameters.at("cases"), 12000.0);
   EXPECT_EQ(experiment->genome.step, 0.0);
 }
 
@@ -178,8 +180,9 @@ RC_GTEST_PROP(ExperimentFileTest, WhatIsWrittenReadsBackAsTheSame, ()) {
   }
   // Rules that span keys.
   experiment.search.population &= ~1;
-  experiment.search.lag = std::min(experiment.search.lag, experiment.search.population - 1);
-  if (experiment.search.mode == SearchMode::kSteadyState &&
+  double& lag = experiment.search.parameters["lag"];
+  lag = std::min(lag, experiment.search.population - 1.0);
+  if (experiment.search.algorithm == "steady-state" &&
       experiment.search.reevaluation == Reevaluation::kPopulation) {
     experiment.search.reevaluation = Reevaluation::kChildren;
   }

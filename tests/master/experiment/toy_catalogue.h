@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "master/experiment/experiment_file.h"
+#include "master/search/search_table.h"
 
 namespace gauntlet::master {
 
@@ -25,15 +26,29 @@ inline constexpr std::array kFastControllerParameters = std::to_array<controller
 
 inline Catalogue ToyCatalogue() {
   static const std::array scenarios = std::to_array<controllers::ScenarioInfo>({
-      {"marching", "walk", "walker", kToyScenarioParameters, {}, nullptr, nullptr},
-      {"waiting", "wait", "waiter", {}, {}, nullptr, nullptr},
+      {.name = "marching",
+       .description = "walk",
+       .default_controller = "walker",
+       .parameters = kToyScenarioParameters,
+       .time_limit = "",
+       .metrics = {},
+       .requirements = nullptr,
+       .create = nullptr},
+      {.name = "waiting",
+       .description = "wait",
+       .default_controller = "waiter",
+       .parameters = {},
+       .time_limit = "",
+       .metrics = {},
+       .requirements = nullptr,
+       .create = nullptr},
   });
   static const std::array controllers_of_toys = std::to_array<controllers::ControllerInfo>({
-      {"walker", "marching", "walks", kToyControllerParameters},
-      {"runner", "marching", "runs", kFastControllerParameters},
-      {"waiter", "waiting", "waits", {}},
+      {"walker", "marching", "walks", kToyControllerParameters, nullptr},
+      {"runner", "marching", "runs", kFastControllerParameters, nullptr},
+      {"waiter", "waiting", "waits", {}, nullptr},
   });
-  return {scenarios, controllers_of_toys};
+  return {scenarios, controllers_of_toys, BuiltInCatalogue().searches};
 }
 
 inline Result<Experiment> ParseToy(std::string_view text, const std::vector<std::string>& sets = {}) {

@@ -16,8 +16,17 @@ std::vector<sim::TestCase> ThreeCases() {
   return cases;
 }
 
+std::unique_ptr<CaseListSearch> MakeList(std::vector<sim::TestCase> cases, int replicates) {
+  SearchSetup setup = ToySetup();
+  setup.experiment.search.algorithm = "cases";
+  setup.experiment.search.replicates = replicates;
+  setup.cases = std::move(cases);
+  return std::move(CaseListSearch::Create(setup)).value();
+}
+
 TEST(CaseListSearchTest, AsksEveryCaseOnceWithItsReplicates) {
-  CaseListSearch search(ThreeCases(), 5);
+  const auto list = MakeList(ThreeCases(), 5);
+  CaseListSearch& search = *list;
   EXPECT_FALSE(search.Progress().finished);
   const std::vector<EvaluationRequest> requests = RunOneAsk(search, Noise);
   ASSERT_EQ(requests.size(), 3U);
@@ -33,12 +42,12 @@ TEST(CaseListSearchTest, AsksEveryCaseOnceWithItsReplicates) {
 }
 
 TEST(CaseListSearchTest, CountsDistinctGenomes) {
-  const CaseListSearch search(ThreeCases(), 1);
-  EXPECT_EQ(StatisticOf(search, "distinct_individuals"), 2.0);
+  EXPECT_EQ(CountDistinctGenomes(MakeList(ThreeCases(), 1)->Population()), 2U);
 }
 
 TEST(CaseListSearchTest, AnEmptyListIsFinished) {
-  CaseListSearch search({}, 1);
+  const auto list = MakeList({}, 1);
+  CaseListSearch& search = *list;
   EXPECT_TRUE(search.Ask().empty());
   EXPECT_TRUE(search.Progress().finished);
   EXPECT_TRUE(search.AtBoundary());

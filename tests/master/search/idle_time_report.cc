@@ -1,10 +1,10 @@
 // What waiting costs: the share of their time for which workers have nothing to do, generation by generation
-// and in the steady-state mode, in virtual time with heavy-tailed durations. A table in Markdown.
+// and in the steady-state search, in virtual time with heavy-tailed durations. A table in Markdown.
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
-#include "master/search/make_search.h"
+#include "master/search/search_table.h"
 #include "tests/master/search/simulated_cluster.h"
 #include "tests/master/search/toy_search.h"
 
@@ -17,10 +17,10 @@ SearchSetup ReportSetup() {
   return setup;
 }
 
-void Row(const char* name, const Experiment& experiment, const sim::ArenaRequirements& requirements) {
+void Row(const char* name, const SearchSetup& setup) {
   std::printf("| %s |", name);
   for (const int workers : {2, 4, 8, 16, 64}) {
-    const auto search = MakeSearch(experiment, requirements, 1);
+    const auto search = RowOf(setup.experiment).make(setup);
     if (!search.ok()) return;
     std::printf(" %.0f %% |", 100.0 * RunOnCluster(**search, workers, HeavyTailed, SumOfX).idle_share);
   }
@@ -33,13 +33,13 @@ void Table(int population, int generations, const std::vector<int>& lags) {
   SearchSetup setup = ReportSetup();
   setup.experiment.search.population = population;
   setup.experiment.search.generations = generations;
-  Row("generational", setup.experiment, setup.requirements);
-  setup.experiment.search.mode = SearchMode::kSteadyState;
+  Row("generational", setup);
+  setup.experiment.search.algorithm = "steady-state";
   for (const int lag : lags) {
-    setup.experiment.search.lag = lag;
+    setup.experiment.search.parameters["lag"] = lag;
     char name[32];
     std::snprintf(name, sizeof(name), "steady-state, lag %d", lag);
-    Row(name, setup.experiment, setup.requirements);
+    Row(name, setup);
   }
 }
 

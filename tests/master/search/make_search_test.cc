@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "controllers/registry.h"
+#include "master/search/search_table.h"
 #include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
@@ -12,25 +13,24 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(MakeSearchTest, MakesTheSearchOfTheExperiment) {
-  const SearchSetup setup = ToySetup();
-  Experiment experiment = setup.experiment;
-  const auto genetic = MakeSearch(experiment, setup.requirements, 1);
+  SearchSetup setup = ToySetup();
+  SearchSpec& spec = setup.experiment.search;
+  const auto genetic = RowOf(setup.experiment).make(setup);
   ASSERT_TRUE(genetic.ok());
   EXPECT_EQ((*genetic)->Progress().evaluations_planned, 1000U);
   EXPECT_GE(StatisticOf(**genetic, "clone_rate"), 0.0);
 
-  experiment.search.kind = SearchKind::kRandom;
-  experiment.search.cases = 12;
-  const auto random = MakeSearch(experiment, setup.requirements, 1);
+  spec.algorithm = "random";
+  spec.parameters["cases"] = 12;
+  const auto random = RowOf(setup.experiment).make(setup);
   ASSERT_TRUE(random.ok());
   EXPECT_EQ((*random)->Progress().evaluations_planned, 12U);
 }
 
 TEST(MakeSearchTest, AListOfCasesCannotBeMadeFromAnExperimentAlone) {
-  const SearchSetup setup = ToySetup();
-  Experiment experiment = setup.experiment;
-  experiment.search.kind = SearchKind::kCases;
-  const auto search = MakeSearch(experiment, setup.requirements, 1);
+  Experiment experiment = ToySetup().experiment;
+  experiment.search.algorithm = "cases";
+  const auto search = MakeSearch(experiment, 1);
   ASSERT_FALSE(search.ok());
   EXPECT_THAT(search.error().message, HasSubstr("gauntlet evaluate"));
 }

@@ -12,8 +12,8 @@ using ::testing::HasSubstr;
 
 SearchSetup SetupOf(int cases) {
   SearchSetup setup = ToySetup();
-  setup.experiment.search.kind = SearchKind::kRandom;
-  setup.experiment.search.cases = cases;
+  setup.experiment.search.algorithm = "random";
+  setup.experiment.search.parameters["cases"] = cases;
   return setup;
 }
 
@@ -32,7 +32,7 @@ TEST(RandomSearchTest, EvaluatesEveryCaseOnce) {
     EXPECT_EQ(requests[i].generation, 1U);
   }
   EXPECT_TRUE(search->Progress().finished);
-  EXPECT_EQ(StatisticOf(*search, "distinct_individuals"), 250.0);
+  EXPECT_EQ(CountDistinctGenomes(search->TakeNewborns()), 250U);
   const std::vector<Individual> population = search->Population();
   ASSERT_EQ(population.size(), 250U);
   EXPECT_EQ(population[249].fitness, Noise(requests[249]));
@@ -56,9 +56,47 @@ TEST(RandomSearchTest, RequestsDoNotDependOnWhenOutcomesArrive) {
     requests.insert(requests.end(), more.begin(), more.end());
   }
   EXPECT_TRUE(SameRequests(requests, expected));
-  EXPECT_FALSE(search->AtBoundary());
-  for (const EvaluationRequest& request : requests) search->Tell(OutcomeOf(request, 0.5));
-  EXPECT_TRUE(search->AtBoundary());
+  for (const EvaluationRequest& request : requests) {
+    search->Tell(OutcomeOf(request, 0.5));
+    EXPECT_EQ(search->AtBoundary(), request.individual == 450) << request.individual;
+  }
+}
+
+// However many cases are outstanding: a boundary depends on the number of outcomes alone.
+TEST(RandomSearchTest, BoundariesComeAfterEveryIntervalAndWhatWasAskedIsAskedAgain) {
+  const auto search = MakeRandom(SetupOf(2500));
+  std::vector<EvaluationRequest> asked;
+  std::vector<EvaluationOutcome> told;
+  std::vector<std::size_t> boundaries;
+  while (!search->Progress().finished) {
+    const std::vector<EvaluationRequest> more = search->Ask();
+    asked.insert(asked.end(), more.begin(), more.end());
+    told.push_back(OutcomeOf(asked[told.size()], Noise(asked[told.size()])));
+    search->Tell(told.back());
+    if (!search->AtBoundary()) continue;
+    boundaries.push_back(told.size());
+    const auto restored = MakeRandom(SetupOf(2500));
+    ASSERT_TRUE(RestoreState(*restored, StateOf(*search), told).ok());
+    EXPECT_EQ(restored->Population().size(), told.size());
+    EXPECT_EQ(restored->Population().back().fitness, told.back().fitness);
+    if (search->Progress().finished) break;
+    EXPECT_EQ(restored->Ask().front().individual, told.size() + 1);
+  }
+  EXPECT_THAT(boundaries, testing::ElementsAre(1000U, 2000U, 2500U));
+}
+
+TEST(RandomSearchTest, AStateWhoseRunsAreMissingIsRefused) {
+  const auto search = MakeRandom(SetupOf(30));
+  std::vector<EvaluationOutcome> told;
+  for (const EvaluationRequest& request : search->Ask()) {
+    told.push_back(OutcomeOf(request, 0.5));
+    search->Tell(told.back());
+  }
+  told.pop_back();
+  const Status restored = RestoreState(*MakeRandom(SetupOf(30)), StateOf(*search), told);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_EQ(restored.error().kind, ErrorKind::kCorrupt);
+  EXPECT_THAT(restored.error().message, HasSubstr("has seen 30 evaluations, but the runs of 29 are stored"));
 }
 
 TEST(RandomSearchTest, AsksNoMoreThanTheLookaheadAheadOfTheOutcomes) {

@@ -38,8 +38,8 @@ SearchSetup GeneticSetup(ParentSelection selection) {
 
 SearchSetup RandomSetup(int cases) {
   SearchSetup setup = ToySetup();
-  setup.experiment.search.kind = SearchKind::kRandom;
-  setup.experiment.search.cases = cases;
+  setup.experiment.search.algorithm = "random";
+  setup.experiment.search.parameters["cases"] = cases;
   return setup;
 }
 
@@ -51,10 +51,18 @@ Factory Genetic(ParentSelection selection) {
 Factory SteadyState(ParentSelection selection) {
   return [selection] {
     SearchSetup setup = GeneticSetup(selection);
-    setup.experiment.search.mode = SearchMode::kSteadyState;
-    setup.experiment.search.lag = 3;
+    setup.experiment.search.algorithm = "steady-state";
+    setup.experiment.search.parameters["lag"] = 3;
     return std::move(SteadyStateSearch::Create(setup)).value();
   };
+}
+
+std::unique_ptr<SearchAlgorithm> ListOf(std::vector<sim::TestCase> cases) {
+  SearchSetup setup = ToySetup();
+  setup.experiment.search.algorithm = "cases";
+  setup.experiment.search.replicates = 2;
+  setup.cases = std::move(cases);
+  return std::move(CaseListSearch::Create(setup)).value();
 }
 
 // Some evaluations fail, so that resuming them is tested too.
@@ -64,13 +72,16 @@ EvaluationOutcome OutcomeWithFailures(const EvaluationRequest& request) {
   return outcome;
 }
 
-// On to the next boundary; returns what was asked.
-std::vector<EvaluationRequest> Step(SearchAlgorithm& search) {
+// On to the next boundary; returns what was asked and adds what was told.
+std::vector<EvaluationRequest> Step(SearchAlgorithm& search, std::vector<EvaluationOutcome>& told) {
   std::vector<EvaluationRequest> all;
   do {
     const std::vector<EvaluationRequest> requests = search.Ask();
     if (requests.empty()) break;
-    for (const EvaluationRequest& request : requests) search.Tell(OutcomeWithFailures(request));
+    for (const EvaluationRequest& request : requests) {
+      told.push_back(OutcomeWithFailures(request));
+      search.Tell(told.back());
+    }
     all.insert(all.end(), requests.begin(), requests.end());
   } while (!search.AtBoundary());
   return all;
@@ -82,11 +93,12 @@ TEST_P(SearchResumeTest, RestoringAtEveryBoundaryEqualsTheUninterruptedSearch) {
   const std::unique_ptr<SearchAlgorithm> whole = GetParam().make();
   std::unique_ptr<SearchAlgorithm> broken = GetParam().make();
   int boundaries = 0;
+  std::vector<EvaluationOutcome> told;
   while (true) {
     const std::string state = StateOf(*broken);
     EXPECT_EQ(state, StateOf(*whole));
     broken = GetParam().make();
-    const Status restored = RestoreState(*broken, state);
+    const Status restored = RestoreState(*broken, state, told);
     ASSERT_TRUE(restored.ok()) << restored.error().message;
     EXPECT_EQ(StateOf(*broken), state);
     EXPECT_EQ(broken->Statistics(), whole->Statistics());
@@ -94,8 +106,9 @@ TEST_P(SearchResumeTest, RestoringAtEveryBoundaryEqualsTheUninterruptedSearch) {
     EXPECT_EQ(broken->Progress().finished, whole->Progress().finished);
     ++boundaries;
 
-    const std::vector<EvaluationRequest> expected = Step(*whole);
-    EXPECT_TRUE(SameRequests(Step(*broken), expected)) << "after boundary " << boundaries;
+    std::vector<EvaluationOutcome> told_again = told;
+    const std::vector<EvaluationRequest> expected = Step(*whole, told);
+    EXPECT_TRUE(SameRequests(Step(*broken, told_again), expected)) << "after boundary " << boundaries;
     const std::vector<Individual> newborns = whole->TakeNewborns();
     const std::vector<Individual> broken_newborns = broken->TakeNewborns();
     ASSERT_EQ(broken_newborns.size(), newborns.size());
@@ -121,10 +134,11 @@ TEST_P(SearchResumeTest, RestoringAtEveryBoundaryEqualsTheUninterruptedSearch) {
 
 TEST_P(SearchResumeTest, EveryCutOfAStateIsRefused) {
   const std::unique_ptr<SearchAlgorithm> search = GetParam().make();
-  Step(*search);
+  std::vector<EvaluationOutcome> told;
+  Step(*search, told);
   const std::string state = StateOf(*search);
   for (std::size_t size = 0; size < state.size(); size += 1 + state.size() / 200) {
-    const Status restored = RestoreState(*GetParam().make(), state.substr(0, size));
+    const Status restored = RestoreState(*GetParam().make(), state.substr(0, size), told);
     ASSERT_FALSE(restored.ok()) << size << " of " << state.size() << " bytes";
   }
 }
@@ -144,13 +158,14 @@ INSTANTIATE_TEST_SUITE_P(
                              for (std::size_t i = 0; i < cases.size(); ++i) {
                                cases[i].side_x = 6.0 + static_cast<double>(i);
                              }
-                             return std::make_unique<CaseListSearch>(cases, 2);
+                             return ListOf(cases);
                            }}),
     [](const auto& instance) { return instance.param.name; });
 
 std::string StateAfterOneGeneration(const SearchSetup& setup) {
   const auto search = std::move(GeneticAlgorithm::Create(setup)).value();
-  Step(*search);
+  std::vector<EvaluationOutcome> told;
+  Step(*search, told);
   return StateOf(*search);
 }
 
@@ -205,26 +220,25 @@ TEST(SearchRestoreTest, AFinishedSearchMayGoOnForMoreGenerationsButNotEndEarlier
   const Status restored = RestoreState(*std::move(GeneticAlgorithm::Create(setup)).value(), state);
   ASSERT_FALSE(restored.ok());
   EXPECT_THAT(restored.error().message,
-              AllOf(HasSubstr("generation 4"), HasSubstr("search.generations = 3")));
+              HasSubstr("has 32 evaluations, but the experiment ends after 24: search.generations = 3"));
 }
 
 TEST(SearchRestoreTest, StateOfANewerFormatIsRefusedAsSuch) {
   const SearchSetup setup = GeneticSetup(ParentSelection::kAllParentBestHalf);
   std::string state = StateAfterOneGeneration(setup);
-  state[8] = 2;  // the format follows the eight bytes that mark a state
+  state[8] = 3;  // the format follows the eight bytes that mark a state
   const Status restored = RestoreState(*std::move(GeneticAlgorithm::Create(setup)).value(), state);
   ASSERT_FALSE(restored.ok());
   EXPECT_EQ(restored.error().kind, ErrorKind::kVersion);
-  EXPECT_THAT(restored.error().message, HasSubstr("format 2, this version reads 1"));
+  EXPECT_THAT(restored.error().message, HasSubstr("format 3, this version reads 2"));
 }
 
 TEST(SearchRestoreTest, CaseListRefusesTheStateOfAnotherList) {
-  CaseListSearch search({sim::TestCase{}}, 2);
-  const std::string state = StateOf(search);
-  CaseListSearch other({sim::TestCase{}, sim::TestCase{}}, 2);
-  const Status restored = RestoreState(other, state);
+  const std::string state = StateOf(*ListOf({sim::TestCase{}}));
+  const Status restored = RestoreState(*ListOf({sim::TestCase{}, sim::TestCase{}}), state);
   ASSERT_FALSE(restored.ok());
-  EXPECT_THAT(restored.error().message, HasSubstr("another list of cases"));
+  EXPECT_THAT(restored.error().message,
+              AllOf(HasSubstr("'list of cases = 1 with"), HasSubstr("'list of cases = 2 with")));
 }
 
 }  // namespace

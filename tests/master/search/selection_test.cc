@@ -6,8 +6,6 @@
 #include <limits>
 #include <map>
 
-#include "master/search/individuals.h"
-
 namespace gauntlet::master {
 namespace {
 
@@ -18,8 +16,9 @@ using ::testing::UnorderedElementsAre;
 std::vector<Individual> WithFitness(const std::vector<double>& values) {
   std::vector<Individual> individuals;
   for (const double fitness : values) {
-    individuals.push_back(MakeIndividual(individuals.size() + 1, {}));
-    individuals.back().fitness = fitness;
+    Individual& one = individuals.emplace_back();
+    one.id = individuals.size();
+    one.fitness = fitness;
   }
   return individuals;
 }

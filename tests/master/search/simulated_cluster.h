@@ -67,10 +67,9 @@ inline Usage RunOnCluster(SearchAlgorithm& search, int workers, const DurationOf
       const EvaluationRequest& told = outstanding.begin()->second.request;
       search.Tell({.individual = told.individual,
                    .evaluation = told.evaluation,
-                   .fitness = fitness(told),
                    .completed = true,
-                   .total_failures = 0,
-                   .runs_failed = 0});
+                   .fitness = fitness(told),
+                   .runs = {}});
       outstanding.erase(outstanding.begin());
     }
   }

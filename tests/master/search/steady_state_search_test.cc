@@ -8,7 +8,7 @@
 
 #include "master/experiment/experiment_file.h"
 #include "master/search/genetic_algorithm.h"
-#include "master/search/make_search.h"
+#include "master/search/search_table.h"
 #include "tests/master/search/simulated_cluster.h"
 #include "tests/master/search/toy_search.h"
 
@@ -22,8 +22,8 @@ constexpr int kGenerations = 6;
 
 SearchSetup SteadySetup(int lag, ParentSelection selection = ParentSelection::kAllParentBestHalf) {
   SearchSetup setup = ToySetup();
-  setup.experiment.search.mode = SearchMode::kSteadyState;
-  setup.experiment.search.lag = lag;
+  setup.experiment.search.algorithm = "steady-state";
+  setup.experiment.search.parameters["lag"] = lag;
   setup.experiment.search.parent_selection = selection;
   setup.experiment.search.population = kPopulation;
   setup.experiment.search.generations = kGenerations;
@@ -134,7 +134,7 @@ TEST(SteadyStateSearchTest, BeginsWithTheCasesOfTheGenerationalSearch) {
   const auto search = MakeSteady(SteadySetup(4));
   const std::vector<EvaluationRequest> asked = Drive(*search, 1, SumOfX);
   SearchSetup setup = SteadySetup(4);
-  setup.experiment.search.mode = SearchMode::kGenerational;
+  setup.experiment.search.algorithm = "genetic";
   const auto generational = std::move(GeneticAlgorithm::Create(setup)).value();
   const std::vector<EvaluationRequest> initial = generational->Ask();
   ASSERT_EQ(initial.size(), static_cast<std::size_t>(kPopulation));
@@ -155,32 +155,35 @@ TEST(SteadyStateSearchTest, EvolvesTougherCases) {
 // What it is for: one slow evaluation does not stop everybody.
 TEST(SteadyStateSearchTest, WorkersAreIdleLessTheLargerTheLag) {
   constexpr int kWorkers = 4;
-  const auto idle = [&](SearchMode mode, int lag) {
+  const auto idle = [&](const char* algorithm, int lag) {
     SearchSetup setup = SteadySetup(lag);
-    setup.experiment.search.mode = mode;
+    setup.experiment.search.algorithm = algorithm;
     setup.experiment.search.generations = 30;
-    const auto search = MakeSearch(setup.experiment, setup.requirements, 1);
+    const auto search = RowOf(setup.experiment).make(setup);
     return RunOnCluster(**search, kWorkers, HeavyTailed, SumOfX).idle_share;
   };
-  EXPECT_NEAR(idle(SearchMode::kSteadyState, 1), 0.75, 1e-9) << "one at a time";
-  EXPECT_LT(idle(SearchMode::kSteadyState, 4), idle(SearchMode::kSteadyState, 2));
-  EXPECT_LT(idle(SearchMode::kSteadyState, 7), idle(SearchMode::kSteadyState, 4));
-  EXPECT_LT(idle(SearchMode::kSteadyState, 7), idle(SearchMode::kGenerational, 7));
+  EXPECT_NEAR(idle("steady-state", 1), 0.75, 1e-9) << "one at a time";
+  EXPECT_LT(idle("steady-state", 4), idle("steady-state", 2));
+  EXPECT_LT(idle("steady-state", 7), idle("steady-state", 4));
+  EXPECT_LT(idle("steady-state", 7), idle("genetic", 7));
 }
 
 std::string RefusalOfSettings(const std::vector<std::string>& settings) {
-  const auto experiment = LoadExperiment("flocking", settings);
+  const auto experiment = LoadExperiment("flocking", settings, BuiltInCatalogue());
   return experiment.ok() ? "" : experiment.error().message;
 }
 
 TEST(SteadyStateSearchTest, ImpossibleSettingsAreNamed) {
-  const std::string mode = "search.mode=steady-state";
-  EXPECT_EQ(RefusalOfSettings({mode}), "");
-  EXPECT_THAT(RefusalOfSettings({mode, "search.lag=20"}),
+  const std::string steady = "search.algorithm=steady-state";
+  EXPECT_EQ(RefusalOfSettings({steady}), "");
+  EXPECT_THAT(RefusalOfSettings({steady, "search.lag=20"}),
               HasSubstr("search.lag = 20 must be below search.population = 20"));
-  EXPECT_THAT(RefusalOfSettings({mode, "search.lag=-1"}), HasSubstr("search.lag = -1 is out of range"));
-  EXPECT_THAT(RefusalOfSettings({mode, "search.reevaluation=population"}), HasSubstr("needs generations"));
-  EXPECT_THAT(RefusalOfSettings({"search.mode=steady"}), HasSubstr("generational, steady-state"));
+  EXPECT_THAT(RefusalOfSettings({steady, "search.lag=-1"}), HasSubstr("search.lag = -1 is out of range"));
+  EXPECT_THAT(RefusalOfSettings({steady, "search.reevaluation=population"}), HasSubstr("needs generations"));
+  EXPECT_THAT(RefusalOfSettings({"search.algorithm=steady"}),
+              HasSubstr("genetic, steady-state, random, cases"));
+  EXPECT_THAT(RefusalOfSettings({"search.mode=steady-state"}),
+              HasSubstr("unknown key 'search.mode'; write search.algorithm = \"steady-state\""));
 }
 
 }  // namespace

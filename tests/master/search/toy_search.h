@@ -11,7 +11,7 @@
 
 namespace gauntlet::master {
 
-// The thesis' arena and genome; start and goal in opposite corners as in flocking.
+// The experiment of a toy; the thesis' arena and genome; start and goal in opposite corners as in flocking.
 inline SearchSetup ToySetup() {
   SearchSetup setup;
   setup.experiment.name = "toy";
@@ -40,10 +40,9 @@ inline double Noise(const EvaluationRequest& request) {
 inline EvaluationOutcome OutcomeOf(const EvaluationRequest& request, double fitness) {
   return {.individual = request.individual,
           .evaluation = request.evaluation,
-          .fitness = fitness,
           .completed = true,
-          .total_failures = 0,
-          .runs_failed = 0};
+          .fitness = fitness,
+          .runs = {}};
 }
 
 // Asks once and tells everything; returns what was asked.
@@ -79,9 +78,15 @@ inline std::string StateOf(const SearchAlgorithm& search) {
   return encoder.Take();
 }
 
-inline Status RestoreState(SearchAlgorithm& search, const std::string& state) {
+// `told`: what the search had been told when the state was saved.
+inline Status RestoreState(SearchAlgorithm& search, const std::string& state,
+                           const std::vector<EvaluationOutcome>& told = {}) {
   CanonicalDecoder decoder(state);
-  return search.Restore(decoder);
+  return search.Restore(decoder,
+                        [&told](const std::function<void(const EvaluationOutcome&)>& visit) -> Status {
+                          for (const EvaluationOutcome& outcome : told) visit(outcome);
+                          return Ok{};
+                        });
 }
 
 inline double StatisticOf(const SearchAlgorithm& search, const std::string& name) {
