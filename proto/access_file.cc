@@ -35,30 +35,15 @@ bool IsKey(const std::string& text) {
          });
 }
 
-// "line 2, column 7" of the last of the first `bytes` bytes.
-std::string PositionIn(const std::string& text, std::size_t bytes) {
-  const std::string_view read = std::string_view(text).substr(0, std::max<std::size_t>(bytes, 1) - 1);
-  const auto line = std::count(read.begin(), read.end(), '\n') + 1;
-  const std::size_t break_before = read.rfind('\n');
-  const std::size_t column = break_before == read.npos ? read.size() + 1 : read.size() - break_before;
-  return fmt::format("line {}, column {}", line, column);
-}
-
 }  // namespace
 
 Result<Access> ParseAccess(const std::string& text, const std::string& place) {
   const auto wrong = [&](const std::string& what) {
     return InvalidInput(fmt::format("{}: {}", place, what));
   };
-  nlohmann::json json;
-  // The library's own messages repeat what they read, and that may be a part of a key.
-  try {
-    json = nlohmann::json::parse(text);
-  } catch (const nlohmann::json::parse_error& error) {
-    return wrong(fmt::format("no complete JSON, at {}", PositionIn(text, error.byte)));
-  } catch (const nlohmann::json::exception&) {
-    return wrong("a number beyond all ranges");
-  }
+  const Result<nlohmann::json> parsed = ParseJson(text, place);
+  if (!parsed) return parsed.error();
+  const nlohmann::json& json = *parsed;
   if (!json.is_object()) return wrong("an object is needed");
 
   const auto format = json.find("format");

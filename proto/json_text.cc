@@ -1,11 +1,106 @@
 #include "proto/json_text.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "base/printable.h"
 
 namespace gauntlet {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMaxDepth = 64;
+
+// Follows the parser through the document, so that errors can name the path of the value at hand.
+class Path {
+ public:
+  // Takes part in parsing. Throws an Error at a key that repeats another and where nesting is too deep.
+  bool operator()(json::parse_event_t event, const json& parsed) {
+    switch (event) {
+      case json::parse_event_t::object_start:
+      case json::parse_event_t::array_start:
+        if (levels_.size() == kMaxDepth)
+          throw Error(InvalidInput(fmt::format("nested deeper than {} levels", kMaxDepth)));
+        levels_.push_back({event == json::parse_event_t::array_start, 0, "", {}});
+        break;
+      case json::parse_event_t::key:
+        levels_.back().key = parsed.get<std::string>();
+        if (levels_.back().keys.insert(levels_.back().key).second) break;
+        throw Error(InvalidInput(Text() + " is given twice"));
+      case json::parse_event_t::object_end:
+      case json::parse_event_t::array_end:
+        levels_.pop_back();
+        [[fallthrough]];
+      case json::parse_event_t::value:
+        if (!levels_.empty()) ++levels_.back().index;
+        break;
+    }
+    return true;
+  }
+
+  // "obstacles[3].x"
+  std::string Text() const {
+    std::string text;
+    for (const Level& level : levels_) {
+      text += level.in_array ? fmt::format("[{}]", level.index) : (text.empty() ? "" : ".") + level.key;
+    }
+    return text;
+  }
+
+ private:
+  struct Level {
+    bool in_array = false;
+    std::size_t index = 0;
+    std::string key;
+    std::set<std::string> keys;
+  };
+  std::vector<Level> levels_;
+};
+
+// "2:7", line and column of the last of the first `bytes` bytes.
+std::string PlaceIn(std::string_view text, std::size_t bytes) {
+  const std::string_view before = text.substr(0, std::max<std::size_t>(bytes, 1) - 1);
+  const std::string_view line = before.substr(before.rfind('\n') + 1);
+  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
+  return fmt::format("{}:{}", std::count(before.begin(), before.end(), '\n') + 1,
+                     std::count_if(line.begin(), line.end(), begins_character) + 1);
+}
+
+// The library's words without what it has read: "unexpected number literal; expected ':'".
+std::string WordsOf(const json::parse_error& error) {
+  std::string words = error.what();
+  if (const std::size_t reason = words.find(" - "); reason != std::string::npos) words.erase(0, reason + 3);
+  return words.substr(0, words.find("; last read: "));
+}
+
+}  // namespace
 
 std::string JsonText(const nlohmann::ordered_json& value) {
   return value.dump(2, ' ', /*ensure_ascii=*/false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+Result<json> ParseJson(std::string_view text, const std::string& file_name) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  const auto wrong = [&](const std::string& what) { return InvalidInput(Printable(file_name + what)); };
+  Path path;
+  try {
+    return json::parse(text, [&](int /*depth*/, json::parse_event_t event, const json& parsed) {
+      return path(event, parsed);
+    });
+  } catch (const Error& error) {
+    return wrong(": " + error.message);
+  } catch (const json::parse_error& error) {
+    return wrong(fmt::format(":{}: {}", PlaceIn(text, error.byte), WordsOf(error)));
+  } catch (const json::exception&) {
+    return wrong(fmt::format(": {}{}a number beyond the range of a double", path.Text(),
+                             path.Text().empty() ? "" : ": "));
+  }
 }
 
 }  // namespace gauntlet

@@ -24,7 +24,6 @@ struct ToWire {
     wire.set_campaign_id(hello.campaign_id);
     wire.set_instance_id(hello.instance_id);
     wire.set_software_version(hello.software_version);
-    wire.set_golden_hash(hello.golden_hash);
     wire.set_slots(hello.slots);
     wire.set_host(hello.process.host);
     wire.set_pid(hello.process.pid);
@@ -33,7 +32,11 @@ struct ToWire {
     wire.set_start_time(hello.process.start_time);
     wire.mutable_held_leases()->Add(hello.held_leases.begin(), hello.held_leases.end());
     wire.set_allocation(hello.allocation);
-    for (const std::string& name : hello.controllers) wire.add_controllers(name);
+    for (const auto& [controller, hash] : hello.golden_hashes) {
+      v1::GoldenHash& golden = *wire.add_golden_hashes();
+      golden.set_controller(controller);
+      golden.set_hash(hash);
+    }
   }
   void operator()(const Welcome& welcome) const {
     v1::Welcome& wire = *envelope.mutable_welcome();
@@ -108,7 +111,6 @@ Hello FromWire(v1::Hello& wire) {
   hello.campaign_id = std::move(*wire.mutable_campaign_id());
   hello.instance_id = wire.instance_id();
   hello.software_version = std::move(*wire.mutable_software_version());
-  hello.golden_hash = wire.golden_hash();
   hello.slots = wire.slots();
   const bool possible = wire.pid() > 0 && wire.pid() <= std::numeric_limits<pid_t>::max();
   hello.process = {.host = std::move(*wire.mutable_host()),
@@ -118,7 +120,8 @@ Hello FromWire(v1::Hello& wire) {
                    .start_time = wire.start_time()};
   hello.held_leases.assign(wire.held_leases().begin(), wire.held_leases().end());
   hello.allocation = std::move(*wire.mutable_allocation());
-  hello.controllers.assign(wire.controllers().begin(), wire.controllers().end());
+  for (const v1::GoldenHash& golden : wire.golden_hashes())
+    hello.golden_hashes[golden.controller()] = golden.hash();
   return hello;
 }
 

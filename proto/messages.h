@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/system/process_identity.h"
+#include "proto/golden_hashes.h"
 
 namespace gauntlet::proto {
 
@@ -32,13 +33,12 @@ struct Hello {
   std::string campaign_id;
   InstanceId instance_id = 0;
   std::string software_version;
-  std::uint64_t golden_hash = 0;
   std::uint32_t slots = 1;  // runs simulated at the same time
   // Who the worker is, for a master on the same machine. `host` is for people; what is not known is "" or 0.
   ProcessIdentity process;
-  std::vector<Fence> held_leases;  // that the worker works on, or holds results for
-  std::string allocation;          // the batch job that holds the worker, as its script says; "" for none
-  std::vector<std::string> controllers = {};  // names of those it can simulate
+  std::vector<Fence> held_leases;   // that the worker works on, or holds results for
+  std::string allocation;           // the batch job that holds the worker, as its script says; "" for none
+  GoldenHashes golden_hashes = {};  // of the controllers that it was built with
   bool operator==(const Hello&) const = default;
 };
 

@@ -4,7 +4,6 @@
 #include <google/protobuf/arena.h>
 #include <google/protobuf/stubs/logging.h>
 #include <google/protobuf/unknown_field_set.h>
-#include <google/protobuf/util/json_util.h>
 
 #include <array>
 #include <cmath>
@@ -14,7 +13,6 @@
 #include <utility>
 
 #include "base/utf8.h"
-#include "proto/json_message.h"
 #include "proto/run.pb.h"
 #include "sim/arena/validity.h"
 
@@ -440,30 +438,6 @@ Result<sim::RunResult> DecodeRunResult(std::string_view bytes) {
         fmt::format("the run result's hash is {:016x}, its content's hash is {:016x}", result.hash, hash));
   }
   return result;
-}
-
-Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& file_name) {
-  Result<JsonValue> json = ParseJson(text, file_name);
-  if (!json) return json.error();
-  v1::TestCase message;
-  if (Status filled = FillMessage(*json, file_name, message); !filled) return filled.error();
-  SpecReader reader;
-  sim::TestCase test_case = ReadTestCase(message, reader);
-  if (!reader.ok()) return InvalidInput(file_name + ": " + reader.error());
-  return test_case;
-}
-
-std::string WriteCaseJson(const sim::TestCase& test_case) {
-  v1::TestCase message;
-  ToProto(test_case, message);
-  google::protobuf::util::JsonPrintOptions options;
-  options.add_whitespace = true;
-  options.always_print_primitive_fields = true;  // an obstacle at x = 0 says so
-  options.preserve_proto_field_names = true;     // as the schema writes them
-  std::string text;
-  const auto status = google::protobuf::util::MessageToJsonString(message, &text, options);
-  GAUNTLET_CHECK(status.ok(), "a test case does not print as JSON: " + status.ToString());
-  return text;
 }
 
 }  // namespace gauntlet::proto

@@ -53,8 +53,4 @@ std::string EncodeRunResult(const sim::RunResult& result,
 // Error (kCorrupt): not a RunResult, or its hash is not that of its content.
 Result<sim::RunResult> DecodeRunResult(std::string_view bytes);
 
-// User-facing case files: proto3 JSON. Errors name file, line and column.
-Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& file_name);
-std::string WriteCaseJson(const sim::TestCase& test_case);
-
 }  // namespace gauntlet::proto

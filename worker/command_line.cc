@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
+#include <vector>
 
 #include "worker/worker_process.h"
 
@@ -54,6 +55,77 @@ void OccupyStandardStreams() {
   }
 }
 
+struct CommandLine {
+  WorkerOptions worker;
+  SpecOptions spec;
+  std::string directory;
+  bool golden = false;
+};
+
+// Options of a worker that serves a master.
+std::vector<CLI::Option*> AddServing(CLI::App& app, CommandLine& line) {
+  WorkerOptions& worker = line.worker;
+  auto* dir =
+      app.add_option("--dir", line.directory, "The campaign's directory; access.json in it may come later")
+          ->type_name("DIR");
+  auto* access = app.add_option("--access", worker.access_path, "An access.json elsewhere")
+                     ->type_name("FILE")
+                     ->excludes(dir);
+  auto* slots = app.add_option("--slots", worker.slots, "Runs simulated at the same time, 1 to 1024")
+                    ->type_name("N")
+                    ->capture_default_str()
+                    ->check(CLI::Range(1, 1024));
+  auto* orphan = app.add_option("--orphan-timeout", worker.orphan_timeout_seconds,
+                                "Seconds without a master before giving up")
+                     ->capture_default_str()
+                     ->check(Seconds());
+  auto* log =
+      app.add_option("--log", worker.log_file, "Log to this file, errors to stderr too")->type_name("FILE");
+  auto* allocation = app.add_option("--allocation", worker.allocation,
+                                    "Batch job that holds this worker, told to the master: JOB:RESTARTS:NODE")
+                         ->type_name("TEXT");
+  auto* quiet = app.add_flag("--quiet", worker.quiet, "Log warnings and errors only");
+  return {dir, access, slots, orphan, log, allocation, quiet};
+}
+
+void AddOptions(CLI::App& app, CommandLine& line) {
+  const std::vector<CLI::Option*> serving = AddServing(app, line);
+  auto* die =
+      app.add_option(
+             "--die-with-parent", line.worker.parent,
+             "End at once when the process PID, which started this one, ends (its thread, to be exact)")
+          ->type_name("PID")
+          ->check(CLI::Range(1, 1 << 22));  // Linux' largest
+  auto* golden = app.add_flag("--golden", line.golden,
+                              "Print the golden hash of each controller, a line each: equal where its runs "
+                              "are computed equally")
+                     ->excludes(die);
+  auto* spec =
+      app.add_option(
+             "--run-spec", line.spec.spec_file,
+             "Simulate one serialized RunSpec (\"-\": from stdin) and write the RunResult to stdout, binary")
+          ->type_name("FILE")
+          ->excludes(golden);
+  app.add_option("--cpu-limit", line.spec.cpu_limit_seconds, "With --run-spec: CPU seconds, 0 = no limit")
+      ->capture_default_str()
+      ->check(Seconds())
+      ->needs(spec);
+  app.add_option("--memory-limit", line.spec.memory_limit_bytes,
+                 "With --run-spec: bytes of address space, 0 = no limit")
+      ->type_name("BYTES")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->needs(spec);
+  for (CLI::Option* option : serving) option->excludes(golden)->excludes(spec);
+}
+
+int PrintGoldenHashes(const proto::GoldenHashes& hashes) {
+  fmt::print("{}", proto::WriteGoldenHashes(hashes));
+  if (std::fflush(stdout) == 0) return 0;
+  fmt::print(stderr, "gauntlet-worker: the golden hashes cannot be written to stdout\n");
+  return 4;
+}
+
 }  // namespace
 
 int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions) {
@@ -61,96 +133,32 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
   CLI::App app(kDescription, "gauntlet-worker");
   app.footer(kFooter);
   app.set_version_flag("--version", "gauntlet-worker " GAUNTLET_VERSION);
-
-  WorkerOptions worker;
-  worker.software_version = GAUNTLET_VERSION;
-  worker.golden_hash = functions.golden_hash;
-  worker.controllers = functions.controllers;
-  SpecOptions spec;
-  std::string directory;
-  bool golden = false;
-  std::string run_spec;
-
-  auto* dir_option =
-      app.add_option("--dir", directory, "The campaign's directory; access.json in it may come later")
-          ->type_name("DIR");
-  auto* access_option =
-      app.add_option("--access", worker.access_path, "An access.json elsewhere")->type_name("FILE");
-  auto* slots_option = app.add_option("--slots", worker.slots, "Runs simulated at the same time, 1 to 1024")
-                           ->type_name("N")
-                           ->capture_default_str()
-                           ->check(CLI::Range(1, 1024));
-  auto* orphan_option = app.add_option("--orphan-timeout", worker.orphan_timeout_seconds,
-                                       "Seconds without a master before giving up")
-                            ->capture_default_str()
-                            ->check(Seconds());
-  auto* die_option =
-      app.add_option(
-             "--die-with-parent", worker.parent,
-             "End at once when the process PID, which started this one, ends (its thread, to be exact)")
-          ->type_name("PID")
-          ->check(CLI::Range(1, 1 << 22));  // Linux' largest
-  auto* log_option =
-      app.add_option("--log", worker.log_file, "Log to this file, errors to stderr too")->type_name("FILE");
-  auto* allocation_option =
-      app.add_option("--allocation", worker.allocation,
-                     "Batch job that holds this worker, told to the master: JOB:RESTARTS:NODE")
-          ->type_name("TEXT");
-  auto* quiet_option = app.add_flag("--quiet", worker.quiet, "Log warnings and errors only");
-
-  auto* golden_option =
-      app.add_flag("--golden", golden,
-                   "Print the golden hash (16 hexadecimal digits): equal where runs are computed equally");
-  auto* spec_option =
-      app.add_option(
-             "--run-spec", run_spec,
-             "Simulate one serialized RunSpec (\"-\": from stdin) and write the RunResult to stdout, binary")
-          ->type_name("FILE");
-  auto* cpu_option =
-      app.add_option("--cpu-limit", spec.cpu_limit_seconds, "With --run-spec: CPU seconds, 0 = no limit")
-          ->capture_default_str()
-          ->check(Seconds());
-  auto* memory_option = app.add_option("--memory-limit", spec.memory_limit_bytes,
-                                       "With --run-spec: bytes of address space, 0 = no limit")
-                            ->type_name("BYTES")
-                            ->capture_default_str()
-                            ->check(CLI::NonNegativeNumber);
-  dir_option->excludes(access_option);
-  cpu_option->needs(spec_option);
-  memory_option->needs(spec_option);
-  for (CLI::Option* serving : {dir_option, access_option, slots_option, orphan_option, log_option,
-                               quiet_option, allocation_option}) {
-    serving->excludes(golden_option)->excludes(spec_option);
-  }
-  golden_option->excludes(spec_option)->excludes(die_option);
-
+  CommandLine line;
+  AddOptions(app, line);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (golden) {
-    fmt::print("{:016x}\n", functions.golden_hash());
-    if (std::fflush(stdout) == 0) return 0;
-    fmt::print(stderr, "gauntlet-worker: the golden hash cannot be written to stdout\n");
-    return 4;
+  if (line.golden) return PrintGoldenHashes(functions.golden_hashes());
+  if (app.count("--run-spec") > 0) {
+    line.spec.parent = line.worker.parent;
+    return RunOneSpec(line.spec, functions.run);
   }
-  if (*spec_option) {
-    spec.spec_file = run_spec;
-    spec.parent = worker.parent;
-    return RunOneSpec(spec, functions.run);
-  }
-  if (!*dir_option && !*access_option) {
+  const bool by_directory = app.count("--dir") > 0;
+  if (!by_directory && app.count("--access") == 0) {
     fmt::print(stderr, "gauntlet-worker: --dir DIR or --access FILE is needed: where to find the master\n");
     return 2;
   }
-  if ((*dir_option ? directory : worker.access_path).empty()) {
+  if ((by_directory ? line.directory : line.worker.access_path).empty()) {
     fmt::print(stderr, "gauntlet-worker: {} is empty: a path is needed\n",
-               *dir_option ? "--dir" : "--access");
+               by_directory ? "--dir" : "--access");
     return 2;
   }
-  if (*dir_option) worker.access_path = directory + "/access.json";
-  return RunWorker(worker, functions.run);
+  if (by_directory) line.worker.access_path = line.directory + "/access.json";
+  line.worker.software_version = GAUNTLET_VERSION;
+  line.worker.golden_hashes = functions.golden_hashes;
+  return RunWorker(line.worker, functions.run);
 }
 
 }  // namespace gauntlet::worker

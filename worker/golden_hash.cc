@@ -26,21 +26,18 @@ std::vector<sim::TestCase> Cases() {
   return cases;
 }
 
-void AddRuns(Fnv1a64& hash) {
+void AddRuns(const controllers::ControllerInfo& controller, Fnv1a64& hash) {
   const std::vector<sim::TestCase> cases = Cases();
-  for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
-    const controllers::ScenarioInfo* scenario = controllers::FindScenario(controller.scenario);
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-      sim::RunSpec spec;
-      spec.test_case = cases[i];
-      spec.scenario = controller.scenario;
-      spec.controller = controller.name;
-      spec.seed = 1000 + i;
-      spec.scenario_parameters.emplace(scenario->time_limit, kRunSeconds);
-      const sim::RunResult result = Run(spec);
-      hash.AddUint64(static_cast<std::uint64_t>(result.verdict));
-      hash.AddUint64(result.hash);
-    }
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    sim::RunSpec spec;
+    spec.test_case = cases[i];
+    spec.scenario = controller.scenario;
+    spec.controller = controller.name;
+    spec.seed = 1000 + i;
+    spec.scenario_parameters.emplace(controllers::FindScenario(controller.scenario)->time_limit, kRunSeconds);
+    const sim::RunResult result = Run(spec);
+    hash.AddUint64(static_cast<std::uint64_t>(result.verdict));
+    hash.AddUint64(result.hash);
   }
 }
 
@@ -65,18 +62,16 @@ void AddArithmetic(Fnv1a64& hash) {
 
 }  // namespace
 
-std::uint64_t GoldenHash() {
-  Fnv1a64 hash;
-  AddArithmetic(hash);
-  AddRuns(hash);
-  return hash.value();
-}
-
-std::vector<std::string> ControllerNames() {
-  std::vector<std::string> names;
-  for (const controllers::ControllerInfo& controller : controllers::Controllers())
-    names.emplace_back(controller.name);
-  return names;
+proto::GoldenHashes GoldenHashes() {
+  Fnv1a64 arithmetic;
+  AddArithmetic(arithmetic);
+  proto::GoldenHashes hashes;
+  for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
+    Fnv1a64 hash = arithmetic;
+    AddRuns(controller, hash);
+    hashes.emplace(controller.name, hash.value());
+  }
+  return hashes;
 }
 
 }  // namespace gauntlet::worker

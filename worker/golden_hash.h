@@ -1,19 +1,14 @@
-// One number that says whether two builds compute the same runs.
+// The golden hashes of this build: equal where its runs are computed equally.
 #pragma once
 
-#include <cstdint>
-#include <string>
-#include <vector>
+#include "proto/golden_hashes.h"
 
 namespace gauntlet::worker {
 
-// Hash over whole RunResults of every built-in controller in a few short fixed cases, and over a probe of our
-// own trigonometry and random numbers. Equal on every machine and for every compiler; a worker says it in its
-// hello, and a campaign refuses workers with another one. Takes some ten milliseconds.
-std::uint64_t GoldenHash();
-
-// Names of the controllers that it covers, which a worker says in its hello too: a master that was built with
-// others can then say which.
-std::vector<std::string> ControllerNames();
+// Of every built-in controller: a hash over whole RunResults of it in a few short fixed cases, and over a
+// probe of our own trigonometry and random numbers. Equal on every machine and for every compiler. A worker
+// says them in its hello; a campaign refuses workers that differ in a controller it uses. Takes some ten
+// milliseconds.
+proto::GoldenHashes GoldenHashes();
 
 }  // namespace gauntlet::worker

@@ -5,6 +5,5 @@
 
 int main(int argc, char** argv) {
   namespace worker = gauntlet::worker;
-  return worker::RunWorkerCommandLine(argc, argv,
-                                      {worker::Run, worker::GoldenHash, worker::ControllerNames()});
+  return worker::RunWorkerCommandLine(argc, argv, {worker::Run, worker::GoldenHashes});
 }

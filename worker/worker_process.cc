@@ -223,12 +223,11 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
   settings.identity = Hello{.campaign_id = (*access)->campaign_id,
                             .instance_id = RandomId(),
                             .software_version = options.software_version,
-                            .golden_hash = options.golden_hash(),
                             .slots = static_cast<std::uint32_t>(options.slots),
                             .process = Identity(),
                             .held_leases = {},
                             .allocation = options.allocation,
-                            .controllers = options.controllers};
+                            .golden_hashes = options.golden_hashes()};
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
   Supervisor supervisor(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <functional>
 #include <string>
-#include <vector>
 
+#include "proto/golden_hashes.h"
 #include "worker/runner.h"
 
 namespace gauntlet::worker {
@@ -22,8 +22,7 @@ struct WorkerOptions {
   bool quiet = false;      // warnings and errors only
   std::string allocation;  // told to the master, which may keep a pool of batch jobs
   std::string software_version;
-  std::function<std::uint64_t()> golden_hash;
-  std::vector<std::string> controllers = {};  // names of those that `run` can simulate
+  std::function<proto::GoldenHashes()> golden_hashes;  // of the controllers that `run` can simulate
 };
 
 // Serves until the master lets it go; the exit code (worker_state.h). To be called from main(), before any

@@ -22,14 +22,12 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "proto/messages.h"
+#include "worker/worker_events.h"
 
 namespace gauntlet::worker {
-
-using namespace proto;  // the words that this state machine speaks
 
 using TimePoint = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::steady_clock::duration;
@@ -55,58 +53,6 @@ struct WorkerSettings {
   // When nothing runs any more, how long a draining worker waits for the last acknowledgements.
   Duration acknowledge_wait = std::chrono::seconds(5);
 };
-
-// What happens to the worker. Messages of the master are events too.
-struct SlotBecameReady {  // its runner waits for a job
-  int slot = 0;
-};
-struct RunFinished {
-  int slot = 0;
-  std::string result;  // serialized gauntlet.v1.RunResult
-  double cpu_seconds = 0.0;
-};
-struct RunnerDied {  // with or without a job
-  int slot = 0;
-  RunnerFailure failure;
-  double cpu_seconds = 0.0;
-};
-struct NoRunnerStarted {  // and tried again; comes again every second or so while that fails
-  std::string reason;
-};
-struct AllRunnersLost {};      // the fork server is gone: this process cannot simulate any more
-struct MasterMoved {};         // access.json names another endpoint or epoch
-struct ConnectionRestored {};  // it broke and stands again: the master does not know yet whose it is
-struct StopRequested {         // SIGTERM, SIGINT, SIGHUP; the second one does not wait for runs
-  std::string reason;
-};
-struct ClockTick {};
-using WorkerEvent = std::variant<MasterMessage, SlotBecameReady, RunFinished, RunnerDied, NoRunnerStarted,
-                                 AllRunnersLost, MasterMoved, ConnectionRestored, StopRequested, ClockTick>;
-
-// What the driver shall do, in this order.
-struct Send {
-  WorkerMessage message;
-};
-struct StartRun {  // the slot may have a run already: then after it
-  int slot = 0;
-  std::string spec;
-  double cpu_limit_seconds = 0.0;
-  std::uint64_t memory_limit_bytes = 0;
-};
-struct KillRunner {
-  int slot = 0;
-};
-struct CheckAccess {};  // re-read access.json; when it changed: MasterMoved
-struct Reconnect {};    // drop the connection and all that waits to be sent; connect anew
-struct Note {           // for the log, once per kind
-  std::string kind;
-  std::string text;
-};
-struct Exit {
-  int code = 0;
-  std::string reason;
-};
-using WorkerAction = std::variant<Send, StartRun, KillRunner, CheckAccess, Reconnect, Note, Exit>;
 
 // Thread-safety: one calling thread.
 class WorkerState {

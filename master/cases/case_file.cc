@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/system/atomic_file.h"
-#include "proto/run_codec.h"
+#include "proto/case_json.h"
 
 namespace gauntlet::master {
 namespace {

@@ -4,7 +4,8 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
-#include <vector>
+
+#include "proto/golden_hashes.h"
 
 namespace gauntlet::master {
 
@@ -40,9 +41,7 @@ struct CampaignIdentity {
   std::string campaign_id;
   std::uint64_t epoch = 1;  // number of this master start; must fit 32 bits: it begins the fencing numbers
   std::string software_version;
-  std::uint64_t golden_hash = 0;
-  // Names of the controllers that this program was built with; a worker with others is refused.
-  std::vector<std::string> controllers = {};
+  proto::GoldenHashes golden_hashes;  // of the controllers that the campaign uses
 };
 
 }  // namespace gauntlet::master

@@ -43,17 +43,6 @@ std::string Shorten(std::string_view text) {
   return "..." + Printable(text);
 }
 
-// Those of `names` that are not in `others`, "a, b".
-std::string NamesNotIn(const std::vector<std::string>& names, const std::vector<std::string>& others) {
-  std::string found;
-  for (const std::string& name : names) {
-    if (std::find(others.begin(), others.end(), name) != others.end()) continue;
-    if (!found.empty()) found += ", ";
-    found += name;
-  }
-  return found;
-}
-
 // " (run 3, 4, 5, ...)"; "" for none.
 std::string ListRuns(const std::vector<RunId>& runs) {
   constexpr std::size_t kShownRuns = 10;
@@ -231,20 +220,15 @@ std::string RemoteBackend::ReasonToRefuse(const proto::Hello& hello) const {
     return fmt::format("this worker has software version {}, this master has {}",
                        Shorten(hello.software_version), identity_.software_version);
   }
-  if (!hello.controllers.empty()) {
-    const std::string missing = NamesNotIn(identity_.controllers, hello.controllers);
-    const std::string more = NamesNotIn(hello.controllers, identity_.controllers);
-    if (!missing.empty() || !more.empty()) {
-      return fmt::format("this worker was built with another set of controllers: it {} '{}'",
-                         missing.empty() ? "has, and this master has not," : "lacks",
-                         Shorten(missing.empty() ? more : missing));
+  if (const auto difference = proto::FirstDifference(identity_.golden_hashes, hello.golden_hashes)) {
+    if (!difference->offered) {
+      return fmt::format("this worker was built without the controller '{}', which the campaign uses",
+                         difference->controller);
     }
-  }
-  if (hello.golden_hash != identity_.golden_hash) {
     return fmt::format(
-        "this worker's golden hash is {:016x}, the campaign's is {:016x}: the same runs end differently on "
-        "its machine, so its results cannot be mixed with the others",
-        hello.golden_hash, identity_.golden_hash);
+        "this worker's golden hash of controller '{}' is {:016x}, the campaign's is {:016x}: the same runs "
+        "end differently on its machine, so its results cannot be mixed with the others",
+        difference->controller, *difference->offered, difference->needed);
   }
   if (hello.instance_id == 0) return "this worker has instance id 0; it must be a random number";
   if (hello.slots < 1 || hello.slots > kMaxSlots) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <csignal>
 #include <optional>
 #include <string>
@@ -46,17 +45,12 @@ Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec) {
   return proto::DecodeRunResult(*output);
 }
 
-Result<std::uint64_t> GoldenHashOfThisMachine() {
-  Result<std::string> output = RunWorkerProgram({"--golden"}, {});
+Result<proto::GoldenHashes> GoldenHashesOfThisMachine() {
+  const Result<std::string> output = RunWorkerProgram({"--golden"}, {});
   if (!output) return output.error();
-  std::uint64_t hash = 0;
-  const std::string& text = *output;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
-  if (error != std::errc() || end - text.data() != 16) {
-    return Error{ErrorKind::kInternal,
-                 fmt::format("gauntlet-worker --golden printed '{}', not a hash", text)};
-  }
-  return hash;
+  Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(*output);
+  if (hashes) return hashes;
+  return Error{ErrorKind::kInternal, "gauntlet-worker --golden: " + hashes.error().message};
 }
 
 }  // namespace gauntlet::master

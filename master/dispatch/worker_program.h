@@ -1,10 +1,9 @@
-// gauntlet-worker as a helper program: one simulation outside of any campaign, and the golden hash of this
-// machine.
+// gauntlet-worker as a helper program: one simulation outside of any campaign, and the golden hashes of
+// this machine.
 #pragma once
 
-#include <cstdint>
-
 #include "base/result.h"
+#include "proto/golden_hashes.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
 
@@ -14,7 +13,7 @@ namespace gauntlet::master {
 // anything).
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec);
 
-// The hash of a fixed set of runs on this machine, as `gauntlet-worker --golden` prints it.
-Result<std::uint64_t> GoldenHashOfThisMachine();
+// Of the controllers that gauntlet-worker was built with.
+Result<proto::GoldenHashes> GoldenHashesOfThisMachine();
 
 }  // namespace gauntlet::master

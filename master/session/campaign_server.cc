@@ -12,7 +12,6 @@
 
 #include "base/system/atomic_file.h"
 #include "base/system/process_identity.h"
-#include "controllers/registry.h"
 #include "master/directory/campaign_keys.h"
 #include "master/dispatch/local_pool.h"
 #include "master/dispatch/run_limits.h"
@@ -29,13 +28,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kShutdownTime{2000};
 constexpr std::chrono::milliseconds kStatusEvery{1000};
-
-std::vector<std::string> NamesOfControllers() {
-  std::vector<std::string> names;
-  for (const controllers::ControllerInfo& controller : controllers::Controllers())
-    names.emplace_back(controller.name);
-  return names;
-}
 
 // The most that any of the searches needs.
 DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_share) {
@@ -80,8 +72,8 @@ CampaignServer::CampaignServer(CampaignOwnership& campaign, const std::vector<Se
       options_(options),
       cpu_before_(CostOfThisProcess().cpu_seconds),
       dispatch_(LimitsFor(plans, options.audit_share)),
-      bundles_{campaign.directory.path(), campaign.origin.campaign_id, build.version,
-               fmt::format("{:016x}", build.golden_hash), dispatch_},
+      bundles_{campaign.directory.path(), campaign.origin.campaign_id, build.version, build.golden_hashes,
+               dispatch_},
       files_(campaign.directory, campaign.epoch) {
   view_.campaign_id = campaign.origin.campaign_id;
   view_.experiment = plans.front().experiment.name;
@@ -171,8 +163,7 @@ Status CampaignServer::StartPool() {
 }
 
 Status CampaignServer::RestoreSearches() {
-  const CampaignIdentity identity{view_.campaign_id, view_.epoch, build_.version, build_.golden_hash,
-                                  NamesOfControllers()};
+  const CampaignIdentity identity{view_.campaign_id, view_.epoch, build_.version, build_.golden_hashes};
   backend_ = std::make_unique<RemoteBackend>(identity, dispatch_, *transport_, clock_, pool_.get());
   backend_->WatchFd(campaign_.store->CommitNotifier());
   SearchLoop::Parts parts{{}, *backend_, *campaign_.store, clock_};

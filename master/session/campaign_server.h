@@ -31,7 +31,7 @@ class CampaignServer {
   // What this program is, as workers, events and bundles are told.
   struct Build {
     std::string version;
-    std::uint64_t golden_hash = 0;
+    proto::GoldenHashes golden_hashes;  // of the controllers that the campaign uses
   };
 
   // Campaign, plans and options outlive the server.

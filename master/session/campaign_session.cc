@@ -22,23 +22,48 @@ namespace {
 
 constexpr std::string_view kSoftwareVersion = GAUNTLET_VERSION;
 
-std::string HashText(std::uint64_t hash) {
-  return fmt::format("{:016x}", hash);
-}
-
-// Golden hashes decide whether this machine computes the bits that the campaign was begun with.
-Status CheckGoldenHash(const CampaignMeta& meta, std::uint64_t golden_hash) {
-  if (meta.golden_hash == HashText(golden_hash)) return Ok{};
+// The golden hashes that the campaign was begun with. They decide whether this machine computes the bits that
+// it has stored so far.
+Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
+  Result<proto::GoldenHashes> begun_with = proto::ReadGoldenHashes(meta.golden_hashes);
+  if (!begun_with) return begun_with;
+  const Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine();
+  if (!ours) return ours;
+  const auto difference = proto::FirstDifference(*begun_with, *ours);
+  if (!difference) return begun_with;
+  if (!difference->offered) {
+    return Error{
+        ErrorKind::kVersion,
+        fmt::format("the campaign uses controller '{}', which this build of gauntlet-worker does not have",
+                    difference->controller)};
+  }
   return Error{
       ErrorKind::kVersion,
-      fmt::format("the campaign was begun by version {} with golden hash {}, this is version {} with {}: its "
-                  "simulations would not be comparable",
-                  meta.software_version, meta.golden_hash, kSoftwareVersion, HashText(golden_hash))};
+      fmt::format("the campaign was begun by version {} with golden hash {:016x} of controller '{}', this is "
+                  "version {} with {:016x}: its simulations would not be comparable",
+                  meta.software_version, difference->needed, difference->controller, kSoftwareVersion,
+                  *difference->offered)};
+}
+
+// Of the controllers that the searches use.
+Result<proto::GoldenHashes> GoldenHashesFor(const std::vector<SearchPlan>& plans) {
+  const Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine();
+  if (!ours) return ours;
+  proto::GoldenHashes used;
+  for (const SearchPlan& plan : plans) {
+    const auto hash = ours->find(plan.experiment.controller);
+    if (hash == ours->end()) {
+      return Error{ErrorKind::kVersion, fmt::format("gauntlet-worker was built without the controller '{}'",
+                                                    plan.experiment.controller)};
+    }
+    used.insert(*hash);
+  }
+  return used;
 }
 
 struct NewCampaign {
   CampaignOwnership ownership;
-  std::uint64_t golden_hash = 0;
+  proto::GoldenHashes golden_hashes;
 };
 
 // Whether every search can begin, asked before anything is written.
@@ -55,15 +80,15 @@ Status CheckSearches(const std::vector<SearchPlan>& plans, const std::vector<sim
 Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
                            const std::vector<sim::TestCase>& cases, const std::string& slurm) {
   if (Status possible = CheckSearches(plans, cases); !possible) return possible.error();
-  Result<std::uint64_t> golden_hash = GoldenHashOfThisMachine();
-  if (!golden_hash) return golden_hash.error();
+  Result<proto::GoldenHashes> golden_hashes = GoldenHashesFor(plans);
+  if (!golden_hashes) return golden_hashes.error();
   CampaignMeta meta;
   meta.software_version = kSoftwareVersion;
-  meta.golden_hash = HashText(*golden_hash);
+  meta.golden_hashes = proto::WriteGoldenHashes(*golden_hashes);
   const Experiment& experiment = plans.front().experiment;
   std::vector<std::string> header = {
-      fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {}.",
-                  kSoftwareVersion, meta.golden_hash)};
+      fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {:016x}.",
+                  kSoftwareVersion, golden_hashes->at(experiment.controller))};
   if (plans.size() > 1) header.emplace_back("It is the first of several: searches.json has all.");
   const CampaignTexts texts{WriteExperiment(experiment, header, BuiltInCatalogue()),
                             plans.size() > 1 ? WriteSearchPlans(plans) : "", slurm};
@@ -77,12 +102,12 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
     store.AddIndividuals(kOnlySearch, (*search)->Population());
   }
   if (Status flushed = store.Flush(); !flushed) return flushed.error();
-  return NewCampaign{*std::move(campaign), *golden_hash};
+  return NewCampaign{*std::move(campaign), *std::move(golden_hashes)};
 }
 
 Result<SessionReport> Serve(CampaignOwnership& campaign, const std::vector<SearchPlan>& plans,
-                            std::uint64_t golden_hash, const SessionOptions& options) {
-  return CampaignServer(campaign, plans, {std::string(kSoftwareVersion), golden_hash}, options).Serve();
+                            const proto::GoldenHashes& golden_hashes, const SessionOptions& options) {
+  return CampaignServer(campaign, plans, {std::string(kSoftwareVersion), golden_hashes}, options).Serve();
 }
 
 }  // namespace
@@ -94,7 +119,7 @@ Result<SessionReport> StartCampaign(const std::string& dir, const Experiment& ex
   if (Status possible = TryToListen(options.bind); !possible) return possible.error();
   Result<NewCampaign> created = Create(dir, plans, cases, "");
   if (!created) return created.error();
-  return Serve(created->ownership, plans, created->golden_hash, options);
+  return Serve(created->ownership, plans, created->golden_hashes, options);
 }
 
 Status PrepareCampaign(const std::string& dir, const std::vector<SearchPlan>& searches,
@@ -110,10 +135,8 @@ Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOption
   if (!campaign) return campaign.error();
   const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
   if (!plans) return plans.error();
-  Result<std::uint64_t> golden_hash = GoldenHashOfThisMachine();
-  if (!golden_hash) return golden_hash.error();
-  if (Status comparable = CheckGoldenHash(campaign->store->meta(), *golden_hash); !comparable)
-    return comparable.error();
+  const Result<proto::GoldenHashes> golden_hashes = CheckGoldenHashes(campaign->store->meta());
+  if (!golden_hashes) return golden_hashes.error();
 
   if (Status whole = CheckAllStored(*plans, *campaign->store); !whole) return whole.error();
   const Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
@@ -126,7 +149,7 @@ Result<SessionReport> ResumeCampaign(const std::string& dir, const SessionOption
     report.summary = *std::move(summary);
     return report;
   }
-  return Serve(*campaign, *plans, *golden_hash, options);
+  return Serve(*campaign, *plans, *golden_hashes, options);
 }
 
 }  // namespace gauntlet::master

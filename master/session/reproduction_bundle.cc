@@ -10,6 +10,7 @@
 #include "master/experiment/experiment_file.h"
 #include "master/report/verdict_text.h"
 #include "master/search/search_table.h"
+#include "proto/case_json.h"
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {
@@ -35,19 +36,21 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   const std::string command =
       fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
                   context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
+  const auto golden = context.golden_hashes.find(spec->controller);
+  const std::uint64_t golden_hash = golden == context.golden_hashes.end() ? 0 : golden->second;
   const std::string readme = fmt::format(
       "Run {} of the campaign {} {} ({}), in every attempt; the last was on worker {}.\n\n"
       "See it again, in this folder:\n    {} > result\n"
       "It says on stderr how the run ends. `result` is a serialized gauntlet.v1.RunResult.\n\n"
       "scenario      {}\ncontroller    {}\nseed          {}\nindividual    {}, evaluation {}, replicate {}\n"
-      "version       gauntlet {}\ngolden hash   {}\n\n"
+      "version       gauntlet {}\ngolden hash   {:016x}\n\n"
       "run.spec         all the run depends on, as a serialized gauntlet.v1.RunSpec\n"
       "case.json        the test case, for gauntlet evaluate --case\n"
       "experiment.toml  the experiment, every default written out\n"
       "stderr.txt       what the last attempt printed\n",
       run.id, context.campaign_id, finished.result.message, NameOf(finished.result.verdict), finished.worker,
       command, spec->scenario, spec->controller, run.seed, run.individual, run.evaluation, run.replicate,
-      context.software_version, context.golden_hash);
+      context.software_version, golden_hash);
   const auto write = [&](const char* name, const std::string& text) {
     return ReplaceFile((folder / name).string(), text, kReadableByAll);
   };

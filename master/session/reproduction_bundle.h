@@ -22,8 +22,8 @@ struct BundleContext {
   std::string directory;  // of the campaign
   std::string campaign_id;
   std::string software_version;
-  std::string golden_hash;  // 16 hexadecimal digits
-  DispatchOptions limits;   // that its runs had
+  proto::GoldenHashes golden_hashes;  // of its controllers
+  DispatchOptions limits;             // that its runs had
 };
 
 // Writes bundles/run-N: README.txt (what failed, where, by which signal, the one command that reproduces it),

@@ -184,7 +184,7 @@ Status FillDatabase(const std::string& path, const CampaignMeta& meta) {
   for (const auto& [key, value] :
        {std::pair<std::string_view, std::string_view>{"campaign_id", meta.campaign_id},
         {"software_version", meta.software_version},
-        {"golden_hash", meta.golden_hash},
+        {"golden_hashes", meta.golden_hashes},
         {"created_unix_ms", created}}) {
     insert->BindText(0, key);
     insert->BindText(1, value);
@@ -275,7 +275,7 @@ Result<CampaignMeta> ReadMeta(SqliteConnection& connection) {
   for (const auto& [key, field] :
        {std::pair<std::string_view, std::string*>{"campaign_id", &meta.campaign_id},
         {"software_version", &meta.software_version},
-        {"golden_hash", &meta.golden_hash},
+        {"golden_hashes", &meta.golden_hashes},
         {"created_unix_ms", &created}}) {
     Result<std::string> value = read(key);
     if (!value) return value.error();

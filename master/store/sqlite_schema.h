@@ -14,7 +14,8 @@ namespace gauntlet::master {
 struct CampaignMeta {
   std::string campaign_id;       // 32 hex digits
   std::string software_version;  // of the gauntlet that made it
-  std::string golden_hash;       // what its simulations' bits are checked against
+  std::string
+      golden_hashes;  // of its controllers (proto/golden_hashes.h): what later builds are held against
   std::int64_t created_unix_ms = 0;
 
   bool operator==(const CampaignMeta&) const = default;

@@ -8,6 +8,7 @@
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 #include "proto/access_file.h"
+#include "proto/case_json.h"
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
 

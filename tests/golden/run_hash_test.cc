@@ -2,10 +2,12 @@
 // builds are compared with each other.
 #include <array>
 #include <cstdio>
+#include <set>
 #include <string>
 
 #include "controllers/registry.h"
 #include "gtest/gtest.h"
+#include "proto/golden_hashes.h"
 #include "worker/golden_hash.h"
 #include "worker/run_executor.h"
 
@@ -18,7 +20,11 @@ std::string Hex(std::uint64_t value) {
   return text.data();
 }
 
-// What the program prints, without the line's end.
+std::string GoldenText() {
+  return proto::WriteGoldenHashes(worker::GoldenHashes());
+}
+
+// What the program prints.
 std::string OutputOf(const std::string& path) {
   FILE* pipe = ::popen(("'" + path + "'").c_str(), "r");
   if (pipe == nullptr) return "cannot start " + path;
@@ -26,20 +32,30 @@ std::string OutputOf(const std::string& path) {
   std::string output;
   while (std::fgets(buffer.data(), static_cast<int>(buffer.size()), pipe) != nullptr) output += buffer.data();
   if (::pclose(pipe) != 0) return path + " failed: " + output;
-  return output.substr(0, output.find('\n'));
+  return output;
+}
+
+TEST(GoldenHash, EveryControllerHasItsOwn) {
+  const proto::GoldenHashes hashes = worker::GoldenHashes();
+  std::set<std::uint64_t> different;
+  for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
+    ASSERT_TRUE(hashes.contains(std::string(controller.name))) << controller.name;
+    different.insert(hashes.at(std::string(controller.name)));
+  }
+  EXPECT_EQ(different.size(), hashes.size());
 }
 
 TEST(GoldenHash, IsTheSameInEveryCall) {
-  EXPECT_EQ(Hex(worker::GoldenHash()), Hex(worker::GoldenHash()));
+  EXPECT_EQ(GoldenText(), GoldenText());
 }
 
 TEST(GoldenHash, IsTheSameWithAndWithoutOptimisation) {
-  EXPECT_EQ(OutputOf(GAUNTLET_GOLDEN_OTHER_OPTIMISATION), Hex(worker::GoldenHash()));
+  EXPECT_EQ(OutputOf(GAUNTLET_GOLDEN_OTHER_OPTIMISATION), GoldenText());
 }
 
 TEST(GoldenHash, IsTheSameFromAnotherCompiler) {
 #ifdef GAUNTLET_GOLDEN_OTHER_COMPILER
-  EXPECT_EQ(OutputOf(GAUNTLET_GOLDEN_OTHER_COMPILER), Hex(worker::GoldenHash()));
+  EXPECT_EQ(OutputOf(GAUNTLET_GOLDEN_OTHER_COMPILER), GoldenText());
 #else
   GTEST_SKIP() << "no second compiler here, or a build with sanitizers";
 #endif

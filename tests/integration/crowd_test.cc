@@ -30,7 +30,7 @@ TEST(CrowdTest, FiveHundredEncryptedWorkersAreAllLeasedWhenAGenerationIsQueued) 
   const TemporaryDirectory scratch;
   const auto master = StartNoopMaster(scratch / "c", "tcp://0.0.0.0:*", 2 * kCrowd, 1, 2);
   ASSERT_TRUE(Serves(scratch / "c"));
-  WorkerCrowd crowd(scratch / "c", kCrowd, perf::kNoopGoldenHash);
+  WorkerCrowd crowd(scratch / "c", kCrowd, perf::kNoopGoldenHashes);
   ASSERT_TRUE(crowd.Join(kPatience)) << master->Err();
   const sim::RunResult result = perf::NoopResult(1);
   ASSERT_GE(crowd.AwaitLeases(2 * kCrowd, kPatience), 0.0) << "each has two";

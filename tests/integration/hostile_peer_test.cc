@@ -81,7 +81,11 @@ TEST_F(HostilePeer, AWorkerThatDiffersIsToldInWhatAndGetsNothing) {
     hello.set_campaign_id(peer.access().campaign_id);
     hello.set_instance_id(peer.hello().instance_id);
     hello.set_software_version(peer.hello().software_version);
-    hello.set_golden_hash(peer.hello().golden_hash);
+    for (const auto& [controller, hash] : peer.hello().golden_hashes) {
+      gauntlet::v1::GoldenHash& golden = *hello.add_golden_hashes();
+      golden.set_controller(controller);
+      golden.set_hash(hash);
+    }
     hello.set_slots(1);
     change(hello);
     peer.SayBytes(envelope.SerializeAsString());
@@ -93,9 +97,12 @@ TEST_F(HostilePeer, AWorkerThatDiffersIsToldInWhatAndGetsNothing) {
               HasSubstr("speaks protocol version 99, this master speaks 1"));
   EXPECT_THAT(refusal([](auto& hello) { hello.set_campaign_id("stolen"); }), HasSubstr("campaign 'stolen'"));
   EXPECT_THAT(refusal([](auto& hello) { hello.set_software_version("9.9"); }), HasSubstr("version 9.9"));
-  EXPECT_THAT(refusal([](auto& hello) { hello.set_golden_hash(1); }),
-              HasSubstr("golden hash is 0000000000000001, the campaign's is"));
-  EXPECT_THAT(refusal([](auto& hello) { hello.add_controllers("mine"); }), HasSubstr("set of controllers"));
+  EXPECT_THAT(refusal([](auto& hello) {
+                for (auto& golden : *hello.mutable_golden_hashes()) golden.set_hash(1);
+              }),
+              HasSubstr("golden hash of controller 'flocking' is 0000000000000001, the campaign's is"));
+  EXPECT_THAT(refusal([](auto& hello) { hello.clear_golden_hashes(); }),
+              HasSubstr("built without the controller 'flocking'"));
   ExpectTheUndisturbedResult();
   EXPECT_THAT(MasterLog(dir_), HasSubstr("worker-refused"));
 }

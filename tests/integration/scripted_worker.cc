@@ -28,10 +28,10 @@ proto::LeaseResult ToMessage(const proto::Lease& lease, const sim::RunResult& re
 }  // namespace
 
 ScriptedWorker::ScriptedWorker(const std::string& dir, std::uint64_t instance_id) : dir_(dir) {
-  static const std::uint64_t golden_hash = worker::GoldenHash();
+  static const proto::GoldenHashes golden_hashes = worker::GoldenHashes();
   hello_.instance_id = instance_id;
   hello_.software_version = GAUNTLET_VERSION;
-  hello_.golden_hash = golden_hash;
+  hello_.golden_hashes = golden_hashes;
   hello_.process.host = "scripted";
   hello_.process.pid = getpid();
 }

@@ -33,7 +33,7 @@ struct WorkerCrowd::Worker {
   }
 };
 
-WorkerCrowd::WorkerCrowd(const std::string& dir, int workers, std::uint64_t golden_hash)
+WorkerCrowd::WorkerCrowd(const std::string& dir, int workers, const proto::GoldenHashes& golden_hashes)
     : shared_(std::make_unique<Shared>()) {
   Result<proto::Access> access = proto::ReadAccess(dir + "/access.json");
   EXPECT_TRUE(access.ok()) << (access.ok() ? "" : access.error().message);
@@ -42,7 +42,7 @@ WorkerCrowd::WorkerCrowd(const std::string& dir, int workers, std::uint64_t gold
   shared_->context.set(zmq::ctxopt::max_sockets, workers + 16);
   shared_->hello.campaign_id = shared_->access.campaign_id;
   shared_->hello.software_version = GAUNTLET_VERSION;
-  shared_->hello.golden_hash = golden_hash;
+  shared_->hello.golden_hashes = golden_hashes;
   shared_->hello.process.host = "crowd";
   shared_->hello.process.pid = getpid();
   // A connection and a mailbox for each.

@@ -8,14 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "proto/golden_hashes.h"
 #include "sim/run_result.h"
 
 namespace gauntlet::testing_support {
 
 class WorkerCrowd {
  public:
-  // For the campaign in `dir`, whose access.json must be there; `golden_hash` is that of its workers.
-  WorkerCrowd(const std::string& dir, int workers, std::uint64_t golden_hash);
+  // For the campaign in `dir`, whose access.json must be there; `golden_hashes` are those of its workers.
+  WorkerCrowd(const std::string& dir, int workers, const proto::GoldenHashes& golden_hashes);
   WorkerCrowd(const WorkerCrowd&) = delete;
   WorkerCrowd& operator=(const WorkerCrowd&) = delete;
   ~WorkerCrowd();

@@ -4,12 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "proto/golden_hashes.h"
 #include "sim/run_result.h"
 
 namespace gauntlet::perf {
 
-// Keeps its results apart from real ones: "noop".
-inline constexpr std::uint64_t kNoopGoldenHash = 0x6e6f6f70;
+// Keeps its results apart from real ones ("noop"), of the controller that is measured.
+inline const proto::GoldenHashes kNoopGoldenHashes = {{"flocking", 0x6e6f6f70}};
 
 inline sim::RunResult NoopResult(std::uint64_t seed) {
   sim::RunResult result;

@@ -1,5 +1,5 @@
 // gauntlet-worker-noop: a worker whose runs do nothing, to measure everything around them. Its name and
-// golden hash keep its results apart from real ones.
+// golden hashes keep its results apart from real ones.
 //   GAUNTLET_NOOP_MS=20 lets every run use that much CPU time.
 #include <cstdlib>
 #include <ctime>
@@ -33,5 +33,5 @@ sim::RunResult DoNothing(const sim::RunSpec& spec) {
 
 int main(int argc, char** argv) {
   return gauntlet::worker::RunWorkerCommandLine(
-      argc, argv, {gauntlet::worker::DoNothing, [] { return gauntlet::perf::kNoopGoldenHash; }});
+      argc, argv, {gauntlet::worker::DoNothing, [] { return gauntlet::perf::kNoopGoldenHashes; }});
 }

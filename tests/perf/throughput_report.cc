@@ -140,7 +140,7 @@ double CrowdSeconds() {
   Service service(
       {.endpoint = kCurve, .population = 2 * kCrowd, .replicates = 1, .generations = 2, .workers = 0});
   if (!service.served()) return -1.0;
-  testing_support::WorkerCrowd crowd(service.dir(), kCrowd, kNoopGoldenHash);
+  testing_support::WorkerCrowd crowd(service.dir(), kCrowd, kNoopGoldenHashes);
   const sim::RunResult result = NoopResult(1);
   if (!crowd.Join(kPatience) || crowd.AwaitLeases(2 * kCrowd, kPatience) < 0.0) return -1.0;
   // A second each: no more than two leases for one worker. The last answer's way is counted too.

@@ -65,8 +65,8 @@ TEST_P(BadAccessTest, IsRefusedWithItsPlaceAndWhatWouldBeRight) {
 
 INSTANTIATE_TEST_SUITE_P(
     AccessFile, BadAccessTest,
-    testing::Values(BadAccess{"Empty", "", "line 1, column 1"},
-                    BadAccess{"Torn", "{\"format\": 1,\n \"camp", "line 2"},
+    testing::Values(BadAccess{"Empty", "", "dir/access.json:1:1"},
+                    BadAccess{"Torn", "{\"format\": 1,\n \"camp", "dir/access.json:2:"},
                     BadAccess{"List", "[]", "an object"}, BadAccess{"NoFormat", "{}", "\"format\""},
                     BadAccess{"NewerFormat", R"({"format": 2})", "format 2, this version reads format 1"},
                     BadAccess{"NoCampaign", R"({"format": 1, "campaign": ""})", "\"campaign\""},

@@ -22,24 +22,23 @@ TEST(MessageCodecTest, HelloCarriesTheProtocolVersionAndWhoTheWorkerIs) {
   const v1::Hello hello = Encoded(Hello{.campaign_id = "c0ffee",
                                         .instance_id = 1ULL << 63,
                                         .software_version = "1.2.3",
-                                        .golden_hash = 77,
                                         .slots = 4,
                                         .process = {"node1", "", "", 4321, 0},
                                         .held_leases = {9, 1ULL << 60},
                                         .allocation = "12_3:0:node1",
-                                        .controllers = {"boids", "foragers"}})
+                                        .golden_hashes = {{"boids", 77}}})
                               .hello();
   EXPECT_EQ(hello.protocol_version(), 1u);
   EXPECT_EQ(hello.campaign_id(), "c0ffee");
   EXPECT_EQ(hello.instance_id(), 1ULL << 63);
   EXPECT_EQ(hello.software_version(), "1.2.3");
-  EXPECT_EQ(hello.golden_hash(), 77u);
+  EXPECT_EQ(hello.golden_hashes(0).controller(), "boids");
+  EXPECT_EQ(hello.golden_hashes(0).hash(), 77u);
   EXPECT_EQ(hello.slots(), 4u);
   EXPECT_EQ(hello.host(), "node1");
   EXPECT_EQ(hello.pid(), 4321);
   EXPECT_THAT(hello.held_leases(), ElementsAre(9, 1ULL << 60));
   EXPECT_EQ(hello.allocation(), "12_3:0:node1");
-  EXPECT_THAT(hello.controllers(), ElementsAre("boids", "foragers"));
 }
 
 TEST(MessageCodecTest, ResultWithoutFailureHasNoFailureOnTheWire) {
@@ -136,12 +135,11 @@ TEST(MessageCodecTest, WhatAWorkerSaysReachesTheMasterAsItWas) {
   const Hello hello{.campaign_id = "c0ffee",
                     .instance_id = 1ULL << 63,
                     .software_version = "1.2.3",
-                    .golden_hash = 77,
                     .slots = 4,
                     .process = {"node1", "a-boot", "pid:[4026531836]", 4321, 123456},
                     .held_leases = {9, 1ULL << 60},
                     .allocation = "12_3:0:node1",
-                    .controllers = {"boids"}};
+                    .golden_hashes = {{"boids", 77}, {"foragers", 78}}};
   EXPECT_EQ(std::get<Hello>(*DecodeWorkerMessage(EncodeWorkerMessage(hello))), hello);
   LeaseResult result{.fence = 7, .run_id = 8, .result = "bytes", .failure = {}, .cpu_seconds = 0.5};
   EXPECT_EQ(std::get<LeaseResult>(*DecodeWorkerMessage(EncodeWorkerMessage(result))), result);

@@ -18,12 +18,12 @@ using testing_support::RunProcess;
 
 constexpr const char* kWorker = GAUNTLET_BINARY_DIR "/gauntlet-worker";
 
-TEST(CommandLineTest, VersionAndGoldenHashAreOneLine) {
+TEST(CommandLineTest, VersionIsOneLineAndGoldenHashesAreOneForEachController) {
   EXPECT_THAT(RunProcess({kWorker, "--version"}).out,
               MatchesRegex("gauntlet-worker [0-9]+\\.[0-9]+\\.[0-9]+\n"));
   const ProcessResult golden = RunProcess({kWorker, "--golden"});
   EXPECT_EQ(golden.exit_code, 0);
-  EXPECT_THAT(golden.out, MatchesRegex("[0-9a-f]{16}\n"));
+  EXPECT_THAT(golden.out, MatchesRegex("([a-z-]+ [0-9a-f]{16}\n)+"));
   EXPECT_EQ(RunProcess({kWorker, "--golden"}).out, golden.out);
 }
 

@@ -94,7 +94,10 @@ int Main(const std::vector<std::string>& arguments) {
                     .quiet = false,
                     .allocation = "",
                     .software_version = "test",
-                    .golden_hash = [] { return std::uint64_t{42}; }},
+                    .golden_hashes =
+                        [] {
+                          return proto::GoldenHashes{{"faulty", 42}};
+                        }},
                    FaultyRunFunction);
 }
 

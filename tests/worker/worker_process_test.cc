@@ -91,7 +91,7 @@ TEST_F(WorkerProcessTest, HelloSaysWhoItIs) {
   EXPECT_EQ(hello->envelope.hello().protocol_version(), 1u);
   EXPECT_EQ(hello->envelope.hello().campaign_id(), "c0ffee");
   EXPECT_NE(hello->envelope.hello().instance_id(), 0u);
-  EXPECT_EQ(hello->envelope.hello().golden_hash(), 42u);
+  EXPECT_EQ(hello->envelope.hello().golden_hashes(0).hash(), 42u);
   EXPECT_EQ(hello->envelope.hello().slots(), 3u);
   EXPECT_EQ(hello->envelope.hello().pid(), worker->pid());
 }

@@ -58,7 +58,7 @@ TEST_F(CampaignOwnershipTest, ACampaignIsMadeTakenAndViewed) {
     EXPECT_EQ(ReadFile(made->directory.experiment_path()), "seed = 1\n");
     id = made->store->meta().campaign_id;
     EXPECT_EQ(id.size(), 32u);
-    EXPECT_EQ(made->store->meta().golden_hash, "cafe");
+    EXPECT_EQ(made->store->meta().golden_hashes, "cafe");
     EXPECT_GT(made->store->meta().created_unix_ms, 1700000000000);
     made->store->AddSearch(MakeSearch(1));
     made->store->AddRun(MakeRun(1));

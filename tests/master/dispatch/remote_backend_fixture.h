@@ -61,17 +61,24 @@ class RemoteBackendTest : public testing::Test {
     options.credit = 1;
     options.cpu_limit_seconds = 75.0;
     options.memory_limit_bytes = 123456789;
-    backend_.emplace(CampaignIdentity{"campaign-1", 5, "1.2.3", 0xfeed, {"first", "second"}}, options,
-                     transport_, clock_, pool);
+    backend_.emplace(CampaignIdentity{"campaign-1", 5, "1.2.3", {{"first", 0xfeed}, {"second", 0xf00d}}},
+                     options, transport_, clock_, pool);
   }
 
+  static void SetGoldenHash(v1::Hello& hello, const std::string& controller, std::uint64_t hash) {
+    v1::GoldenHash& golden = *hello.add_golden_hashes();
+    golden.set_controller(controller);
+    golden.set_hash(hash);
+  }
   static v1::Hello HelloOf(InstanceId instance) {
     v1::Hello hello;
     hello.set_protocol_version(1);
     hello.set_campaign_id("campaign-1");
     hello.set_instance_id(instance);
     hello.set_software_version("1.2.3");
-    hello.set_golden_hash(0xfeed);
+    for (const auto& [controller, hash] : {std::pair("first", 0xfeed), std::pair("second", 0xf00d)}) {
+      SetGoldenHash(hello, controller, static_cast<std::uint64_t>(hash));
+    }
     hello.set_slots(1);
     hello.set_host("node7");
     hello.set_pid(1000 + static_cast<std::int64_t>(instance));

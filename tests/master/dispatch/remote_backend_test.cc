@@ -68,18 +68,25 @@ INSTANTIATE_TEST_SUITE_P(
                     "belongs to campaign 'other', this master serves campaign 'campaign-1'"},
         RefusalCase{"Version", [](v1::Hello& hello) { hello.set_software_version("1.2.4"); },
                     "software version 1.2.4, this master has 1.2.3"},
-        RefusalCase{"ControllerMissing", [](v1::Hello& hello) { hello.add_controllers("second"); },
-                    "another set of controllers: it lacks 'first'"},
-        RefusalCase{"ControllerTooMany",
-                    [](v1::Hello& hello) {
-                      for (const char* name : {"first", "mine", "second"}) hello.add_controllers(name);
-                    },
-                    "another set of controllers: it has, and this master has not, 'mine'"},
-        RefusalCase{"Golden", [](v1::Hello& hello) { hello.set_golden_hash(0xbad); },
-                    "golden hash is 0000000000000bad, the campaign's is 000000000000feed"},
+        RefusalCase{"ControllerMissing",
+                    [](v1::Hello& hello) { hello.mutable_golden_hashes()->RemoveLast(); },
+                    "built without the controller 'second', which the campaign uses"},
+        RefusalCase{"ControllersMissing", [](v1::Hello& hello) { hello.clear_golden_hashes(); },
+                    "built without the controller 'first'"},
+        RefusalCase{
+            "Golden", [](v1::Hello& hello) { hello.mutable_golden_hashes(1)->set_hash(0xbad); },
+            "golden hash of controller 'second' is 0000000000000bad, the campaign's is 000000000000f00d"},
         RefusalCase{"Instance", [](v1::Hello& hello) { hello.set_instance_id(0); }, "instance id 0"},
         RefusalCase{"Slots", [](v1::Hello& hello) { hello.set_slots(0); }, "has 0 slots; 1 to 4096"}),
     [](const auto& parameter) { return parameter.param.name; });
+
+TEST_F(RemoteBackendTest, AWorkerMayDifferInControllersThatTheCampaignDoesNotUse) {
+  v1::Hello hello = HelloOf(kAnna);
+  SetGoldenHash(hello, "mine", 0xbad);
+  SayHello("p", hello);
+  Poll();
+  EXPECT_EQ(backend_->Statistics().connected, 1);
+}
 
 TEST_F(RemoteBackendTest, AResultComesOutAndIsAcknowledgedWhenStored) {
   backend_->Submit({{1, "spec"}});

@@ -24,7 +24,7 @@ class WorkerProgramTest : public testing::Test {
     std::ofstream(program_) << "#!/bin/sh\n"
                             << "echo x >> '" << starts_ << "'\n"
                             << "[ $(wc -l < '" << starts_ << "') -gt " << kills << " ] || kill -KILL $$\n"
-                            << "printf 00000000000000ff\n";
+                            << "echo flocking 00000000000000ff\n";
     std::filesystem::permissions(program_, std::filesystem::perms::owner_all);
   }
 
@@ -35,14 +35,14 @@ class WorkerProgramTest : public testing::Test {
 
 TEST_F(WorkerProgramTest, AKillFromOutsideIsNoAnswer) {
   KilledTimes(2);
-  const Result<std::uint64_t> golden = GoldenHashOfThisMachine();
+  const Result<proto::GoldenHashes> golden = GoldenHashesOfThisMachine();
   ASSERT_TRUE(golden.ok()) << golden.error().message;
-  EXPECT_EQ(*golden, 0xffU);
+  EXPECT_EQ(*golden, (proto::GoldenHashes{{"flocking", 0xff}}));
 }
 
 TEST_F(WorkerProgramTest, GivesUpOnOneThatIsAlwaysKilled) {
   KilledTimes(1000);
-  const Result<std::uint64_t> golden = GoldenHashOfThisMachine();
+  const Result<proto::GoldenHashes> golden = GoldenHashesOfThisMachine();
   ASSERT_FALSE(golden.ok());
   EXPECT_THAT(golden.error().message, HasSubstr("worker ended by signal 9"));
 }

@@ -35,6 +35,5 @@ gauntlet::sim::RunResult SlowRun(const gauntlet::sim::RunSpec& spec) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return gauntlet::worker::RunWorkerCommandLine(
-      argc, argv, {SlowRun, gauntlet::worker::GoldenHash, gauntlet::worker::ControllerNames()});
+  return gauntlet::worker::RunWorkerCommandLine(argc, argv, {SlowRun, gauntlet::worker::GoldenHashes});
 }

@@ -1,0 +1,229 @@
+#include "proto/case_json.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "base/nearest_name.h"
+#include "base/printable.h"
+#include "proto/json_text.h"
+#include "proto/run_codec.h"
+
+namespace gauntlet::proto {
+namespace {
+
+using nlohmann::json;
+
+// "orientationDeg" of "orientation_deg".
+std::string CamelCase(std::string_view name) {
+  std::string camel;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const bool capital = name[i] == '_' && i + 1 < name.size();
+    camel += capital ? static_cast<char>(name[++i] - 'a' + 'A') : name[i];
+  }
+  return camel;
+}
+
+// Reads a document into plain structs. The first complaint wins; what is read after it does not matter.
+class CaseReader {
+ public:
+  const std::optional<std::string>& complaint() const { return complaint_; }
+
+  void ReadCase(const json& document, sim::TestCase& test_case) {
+    ReadObject(document, "",
+               {{"name", Into(test_case.name)},
+                {"side_x", Into(test_case.side_x)},
+                {"side_y", Into(test_case.side_y)},
+                {"wall_thickness", Into(test_case.wall_thickness)},
+                {"obstacles",
+                 [&](const json& value, const std::string& path) {
+                   ReadList(value, path, [&](const json& one, const std::string& its_path) {
+                     ReadObstacle(one, its_path, test_case.obstacles.emplace_back());
+                   });
+                 }},
+                {"spawn_area",
+                 [&](const json& value, const std::string& path) {
+                   ReadRectangle(value, path, test_case.spawn_area.emplace());
+                 }},
+                {"robots", [&](const json& value, const std::string& path) {
+                   ReadCount(value, path, test_case.robots.emplace());
+                 }}});
+  }
+
+ private:
+  using Read = std::function<void(const json& value, const std::string& path)>;
+  struct Key {
+    std::string_view name;
+    Read read;
+  };
+
+  void Complain(const std::string& what) {
+    if (!complaint_) complaint_ = what;
+  }
+  void Want(const std::string& wanted, const json& value, const std::string& path) {
+    std::string found = value.is_array() ? "a list" : value.is_object() ? "an object" : value.dump();
+    if (value.is_string()) found = fmt::format("the text \"{}\"", value.get_ref<const std::string&>());
+    Complain(fmt::format("{} must be {}, not {}", path.empty() ? "the document" : path, wanted, found));
+  }
+
+  void ReadObject(const json& value, const std::string& path, std::initializer_list<Key> keys) {
+    if (!value.is_object()) return Want("an object { ... }", value, path);
+    std::set<std::string_view> given;
+    for (const auto& [name, member] : value.items()) {
+      const auto key = std::find_if(keys.begin(), keys.end(), [&name = name](const Key& one) {
+        return one.name == name || CamelCase(one.name) == name;
+      });
+      if (key == keys.end()) {
+        return Complain((path.empty() ? "" : path + ": ") + UnknownName("key", name, keys));
+      }
+      const std::string its_path = path.empty() ? name : path + "." + name;
+      if (!given.insert(key->name).second) return Complain(its_path + " is given under two spellings");
+      if (!member.is_null()) key->read(member, its_path);
+    }
+  }
+
+  void ReadList(const json& value, const std::string& path, const Read& read) {
+    if (!value.is_array()) return Want("a list [ ... ]", value, path);
+    for (std::size_t i = 0; i < value.size() && !complaint_; ++i)
+      read(value[i], fmt::format("{}[{}]", path, i));
+  }
+
+  static double NumberIn(const json& value) {
+    double number = std::numeric_limits<double>::quiet_NaN();
+    if (value.is_number()) return value.get<double>();
+    if (!value.is_string()) return number;
+    const std::string& text = value.get_ref<const std::string&>();
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool whole = error == std::errc() && stop == text.data() + text.size();
+    return whole ? number : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  Read Into(double& target) {
+    return [this, &target](const json& value, const std::string& path) {
+      target = NumberIn(value);
+      if (!std::isfinite(target)) Want("a finite number", value, path);
+    };
+  }
+
+  Read Into(std::string& target) {
+    return [this, &target](const json& value, const std::string& path) {
+      if (!value.is_string()) return Want("a text in double quotes", value, path);
+      target = value.get<std::string>();
+      if (target.size() > kMaxNameBytes) {
+        Complain(fmt::format("{} has {} bytes, {} are possible", path, target.size(), kMaxNameBytes));
+      }
+    };
+  }
+
+  void ReadCount(const json& value, const std::string& path, int& target) {
+    const double number = NumberIn(value);
+    if (std::floor(number) != number || std::fabs(number) > std::numeric_limits<int>::max()) {
+      return Want(fmt::format("a whole number of at most {}", std::numeric_limits<int>::max()), value, path);
+    }
+    target = static_cast<int>(number);
+  }
+
+  void ReadPoint(const json& value, const std::string& path, sim::Vec2& point) {
+    ReadObject(value, path, {{"x", Into(point.x())}, {"y", Into(point.y())}});
+  }
+
+  void ReadRectangle(const json& value, const std::string& path, sim::Rectangle& area) {
+    ReadObject(value, path,
+               {{"min_x", Into(area.min.x())},
+                {"min_y", Into(area.min.y())},
+                {"max_x", Into(area.max.x())},
+                {"max_y", Into(area.max.y())}});
+  }
+
+  void ReadMotion(const json& value, const std::string& path, sim::ObstacleGene& gene) {
+    ReadObject(value, path,
+               {{"speed", Into(gene.speed)},
+                {"path", [&](const json& points, const std::string& path_of_points) {
+                   ReadList(points, path_of_points, [&](const json& point, const std::string& its_path) {
+                     ReadPoint(point, its_path, gene.path.emplace_back(sim::Vec2::Zero()));
+                   });
+                 }}});
+  }
+
+  void ReadLight(const json& value, const std::string& path, sim::ObstacleGene& gene) {
+    if (!value.is_string()) return Want("a text in double quotes", value, path);
+    const std::string& name = value.get_ref<const std::string&>();
+    const std::optional<sim::Color> light = sim::ColorNamed(name);
+    gene.light = light.value_or(sim::Color::kBlack);
+    if (light) return;
+    Complain(fmt::format("{}: '{}' is no colour of lights; known: {}", path, name,
+                         fmt::join(sim::kColorNames, ", ")));
+  }
+
+  void ReadObstacle(const json& value, const std::string& path, sim::ObstacleGene& gene) {
+    ReadObject(value, path,
+               {{"x", Into(gene.x)},
+                {"y", Into(gene.y)},
+                {"length", Into(gene.length)},
+                {"width", Into(gene.width)},
+                {"orientation_deg", Into(gene.orientation_deg)},
+                {"motion", [&](const json& motion,
+                               const std::string& its_path) { ReadMotion(motion, its_path, gene); }},
+                {"light",
+                 [&](const json& light, const std::string& its_path) { ReadLight(light, its_path, gene); }}});
+  }
+
+  std::optional<std::string> complaint_;
+};
+
+nlohmann::ordered_json JsonOf(const sim::Vec2& point) {
+  return {{"x", point.x()}, {"y", point.y()}};
+}
+
+nlohmann::ordered_json JsonOf(const sim::ObstacleGene& gene) {
+  nlohmann::ordered_json written = {{"x", gene.x},
+                                    {"y", gene.y},
+                                    {"length", gene.length},
+                                    {"width", gene.width},
+                                    {"orientation_deg", gene.orientation_deg}};
+  if (gene.speed != 0.0 || !gene.path.empty()) {
+    nlohmann::ordered_json path = nlohmann::ordered_json::array();
+    for (const sim::Vec2& point : gene.path) path.push_back(JsonOf(point));
+    written["motion"] = {{"speed", gene.speed}, {"path", path}};
+  }
+  if (gene.Lit()) written["light"] = sim::NameOf(gene.light);
+  return written;
+}
+
+}  // namespace
+
+Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& file_name) {
+  const Result<json> document = ParseJson(text, file_name);
+  if (!document) return document.error();
+  sim::TestCase test_case;
+  CaseReader reader;
+  reader.ReadCase(*document, test_case);
+  if (reader.complaint()) return InvalidInput(Printable(file_name + ": " + *reader.complaint()));
+  return test_case;
+}
+
+std::string WriteCaseJson(const sim::TestCase& test_case) {
+  nlohmann::ordered_json written = {{"name", test_case.name},
+                                    {"side_x", test_case.side_x},
+                                    {"side_y", test_case.side_y},
+                                    {"wall_thickness", test_case.wall_thickness},
+                                    {"obstacles", nlohmann::ordered_json::array()}};
+  for (const sim::ObstacleGene& gene : test_case.obstacles) written["obstacles"].push_back(JsonOf(gene));
+  if (const auto& area = test_case.spawn_area) {
+    written["spawn_area"] = {{"min_x", area->min.x()},
+                             {"min_y", area->min.y()},
+                             {"max_x", area->max.x()},
+                             {"max_y", area->max.y()}};
+  }
+  if (test_case.robots) written["robots"] = *test_case.robots;
+  return JsonText(written);
+}
+
+}  // namespace gauntlet::proto
