@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <utility>
@@ -92,15 +91,6 @@ milliseconds DelayAfter(int failed_starts) {
 }
 
 }  // namespace
-
-std::string WorkerProgramPath() {
-  if (const char* path = std::getenv("GAUNTLET_WORKER"); path != nullptr && *path != '\0') return path;
-  char self[4096];
-  const ssize_t length = readlink("/proc/self/exe", self, sizeof self);
-  if (length <= 0) return "gauntlet-worker";
-  const std::string path(self, static_cast<std::size_t>(length));
-  return path.substr(0, path.rfind('/') + 1) + "gauntlet-worker";
-}
 
 Result<std::unique_ptr<LocalPool>> LocalPool::Start(const LocalPoolOptions& options, TimePoint now) {
   if (options.workers < 1) {

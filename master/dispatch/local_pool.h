@@ -8,12 +8,10 @@
 
 #include "base/result.h"
 #include "base/system/clock.h"
+#include "base/system/program_path.h"
 #include "master/dispatch/worker_pool.h"
 
 namespace gauntlet::master {
-
-// The environment's GAUNTLET_WORKER, or gauntlet-worker beside the running executable.
-std::string WorkerProgramPath();
 
 struct LocalPoolOptions {
   int workers = 1;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/printable.h"
+#include "base/shell_quoted.h"
 #include "base/utf8.h"
 
 namespace gauntlet {
@@ -43,6 +44,14 @@ RC_GTEST_PROP(PrintableProperty, TheResultIsUtf8WithoutControlCharactersAndStays
   RC_ASSERT(IsUtf8(shown));
   for (const char c : shown) RC_ASSERT(static_cast<unsigned char>(c) >= 0x20U && c != '\x7f');
   RC_ASSERT(Printable(shown) == shown);
+}
+
+TEST(ShellQuoted, QuotesOnlyWhatAShellWouldChange) {
+  EXPECT_EQ(ShellQuoted("campaigns/flocking-1"), "campaigns/flocking-1");
+  EXPECT_EQ(ShellQuoted("my runs"), "'my runs'");
+  EXPECT_EQ(ShellQuoted("it's"), "'it'\\''s'");
+  EXPECT_EQ(ShellQuoted(""), "''");
+  EXPECT_EQ(ShellQuoted("$HOME"), "'$HOME'");
 }
 
 }  // namespace

@@ -261,14 +261,5 @@ TEST_F(LocalPoolTest, SaysWhatIsMissing) {
   EXPECT_THAT(pool.error().message, HasSubstr("at least one worker, not 0"));
 }
 
-TEST(WorkerProgramPathTest, StandsBesideTheExecutableUnlessTheEnvironmentSaysOtherwise) {
-  unsetenv("GAUNTLET_WORKER");
-  const std::string self = std::filesystem::read_symlink("/proc/self/exe");
-  EXPECT_EQ(WorkerProgramPath(), self.substr(0, self.rfind('/')) + "/gauntlet-worker");
-  setenv("GAUNTLET_WORKER", "/opt/other", 1);
-  EXPECT_EQ(WorkerProgramPath(), "/opt/other");
-  unsetenv("GAUNTLET_WORKER");
-}
-
 }  // namespace
 }  // namespace gauntlet::master
