@@ -94,7 +94,11 @@ Result<std::uint64_t> ReadEpoch(const std::string& path) {
 Status CampaignDirectory::CheckCreatable(const std::string& dir) {
   const CampaignDirectory directory(WithoutSlash(dir));
   std::error_code error;
-  if (!fs::exists(directory.path_, error)) return Ok{};
+  if (!fs::exists(directory.path_, error)) {
+    if (!fs::is_symlink(fs::symlink_status(directory.path_, error))) return Ok{};
+    return InvalidInput(
+        fmt::format("{} is a link that leads nowhere; a campaign needs a directory", directory.path_));
+  }
   if (!fs::is_directory(directory.path_, error)) {
     return InvalidInput(fmt::format("{} is a file; a campaign needs a directory", directory.path_));
   }
@@ -126,7 +130,10 @@ Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
   CampaignDirectory directory(WithoutSlash(dir));
   std::error_code error;
   if (!fs::is_directory(directory.path_, error)) {
-    return Error{ErrorKind::kNotFound, fmt::format("there is no directory {}", directory.path_)};
+    return Error{ErrorKind::kNotFound,
+                 fs::exists(directory.path_, error)
+                     ? fmt::format("{} is a file; a campaign is a directory", directory.path_)
+                     : fmt::format("there is no directory {}", directory.path_)};
   }
   if (!fs::exists(directory.database_path(), error)) {
     if (IsUnfinished(directory.path_)) {

@@ -187,7 +187,7 @@ TEST(RefusalTest, AFileIsNoCampaignForAnyCommand) {
   for (const std::string command : {"resume", "show", "status", "stop"}) {
     const ProcessResult refused = Gauntlet({command, "/etc/passwd"});
     EXPECT_EQ(refused.exit_code, 2) << command;
-    EXPECT_THAT(refused.err, HasSubstr("there is no directory /etc/passwd")) << command;
+    EXPECT_THAT(refused.err, HasSubstr("/etc/passwd is a file; a campaign is a directory")) << command;
   }
 }
 

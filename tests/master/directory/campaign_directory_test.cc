@@ -32,6 +32,17 @@ TEST(CampaignDirectoryTest, ACampaignIsNotMadeTwiceAndResumeIsNamed) {
   EXPECT_THAT(made.error().message, HasSubstr("gauntlet resume " + scratch.path()));
 }
 
+TEST(CampaignDirectoryTest, AFileOrALinkToNothingIsToldByWhatItIs) {
+  const ScratchDirectory scratch;
+  WriteFile(scratch / "file", "x");
+  fs::create_symlink("nothing", scratch / "link");
+  EXPECT_THAT(CampaignDirectory::Open(scratch / "file").error().message, HasSubstr("file is a file"));
+  EXPECT_THAT(CampaignDirectory::CheckCreatable(scratch / "file").error().message,
+              HasSubstr("file is a file"));
+  EXPECT_THAT(CampaignDirectory::CheckCreatable(scratch / "link").error().message,
+              HasSubstr("link is a link that leads nowhere"));
+}
+
 TEST(CampaignDirectoryTest, AnUnfinishedBeginningSaysHowToStartAnew) {
   const ScratchDirectory scratch;
   WriteFile(scratch / "lock", "");
