@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/shell_quoted.h"
 #include "slurm/job_status.h"
 
 namespace gauntlet::slurm {
@@ -108,21 +109,6 @@ Result<std::string> Script(std::string_view job_template, Values values, const J
 }
 
 }  // namespace
-
-std::string ShellQuoted(std::string_view text) {
-  constexpr std::string_view kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./:=+,%@";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string_view::npos) return std::string(text);
-  std::string quoted = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "'";
-}
 
 Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob& job,
                                  const JobRequest& request) {

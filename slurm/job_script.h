@@ -48,7 +48,4 @@ Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob&
 Result<std::string> MasterScript(std::string_view job_template, const MasterJob& job,
                                  const JobRequest& request);
 
-// In single quotes where the shell would change it.
-std::string ShellQuoted(std::string_view text);
-
 }  // namespace gauntlet::slurm

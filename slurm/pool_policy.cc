@@ -151,22 +151,21 @@ void PoolPolicy::CancelLost(TimePoint now, Decisions& decisions) {
   for (auto& [job, entry] : entries_) {
     Allocation& allocation = entry.allocation;
     if (allocation.cancelled) continue;
-    if (stopping_) {
-      allocation.cancelled = true;
-      decisions.cancel.push_back(job);
-    } else if (allocation.phase == JobPhase::kQueued && NeverStarts(allocation.reason)) {
-      StartFailed(entry, "job " + job + " would never start: " + allocation.reason, now);
-      allocation.cancelled = true;
-      decisions.cancel.push_back(job);
-    } else if (allocation.silent_since && now - *allocation.silent_since >= limits_.start_timeout) {
-      StartFailed(entry,
-                  JobName(allocation) + " has run for " +
-                      std::to_string(duration_cast<seconds>(now - *allocation.silent_since).count()) +
-                      " s without a word from its worker",
-                  now);
-      allocation.cancelled = true;
-      decisions.cancel.push_back(job);
+    if (!stopping_) {
+      if (allocation.phase == JobPhase::kQueued && NeverStarts(allocation.reason)) {
+        StartFailed(entry, "job " + job + " would never start: " + allocation.reason, now);
+      } else if (allocation.silent_since && now - *allocation.silent_since >= limits_.start_timeout) {
+        const auto silent = duration_cast<seconds>(now - *allocation.silent_since);
+        StartFailed(entry,
+                    JobName(allocation) + " has run for " + std::to_string(silent.count()) +
+                        " s without a word from its worker",
+                    now);
+      } else {
+        continue;
+      }
     }
+    allocation.cancelled = true;
+    decisions.cancel.push_back(job);
   }
 }
 

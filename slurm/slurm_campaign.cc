@@ -3,17 +3,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <random>
 #include <utility>
 
 #include "base/hash.h"
+#include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
-#include "master/dispatch/local_pool.h"
+#include "base/system/program_path.h"
 #include "slurm/slurm_pool.h"
 
-namespace gauntlet::master {
+namespace gauntlet::slurm {
 namespace {
 
 constexpr std::size_t kMostTemplateBytes = 1 << 20;
@@ -35,15 +35,6 @@ Result<std::string> Template(const std::string& path, std::string_view shipped, 
   Result<std::string> text = ReadSmallFile(path, kMostTemplateBytes);
   if (!text) return InvalidInput(fmt::format("slurm.{}: {}", key, text.error().message));
   return text;
-}
-
-// How a job starts this program; a bundle's wrapper says it.
-std::string ThisProgram() {
-  if (const char* wrapper = std::getenv("GAUNTLET_PROGRAM"); wrapper != nullptr && *wrapper != '\0')
-    return wrapper;
-  std::error_code error;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? "gauntlet" : program.string();
 }
 
 }  // namespace
@@ -69,18 +60,23 @@ Result<SlurmCampaign> SlurmCampaign::Make(const SlurmSettings& settings, const s
   return campaign;
 }
 
-Result<SlurmCampaign> SlurmCampaign::Load(const std::string& directory) {
+Result<std::optional<SlurmCampaign>> SlurmCampaign::Find(const std::string& directory) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(directory, ignored)) return std::optional<SlurmCampaign>();
   const std::string path = directory + "/slurm.toml";
   const Result<std::string> text = ReadSmallFile(path);
+  if (!text && text.error().kind == ErrorKind::kNotFound) return std::optional<SlurmCampaign>();
   if (!text) return text.error();
   const Result<SlurmSettings> settings = ReadSlurmSettings({{*text, path, true}}, {});
   if (!settings) return settings.error();
-  return Make(*settings, directory);
+  Result<SlurmCampaign> campaign = Make(*settings, directory);
+  if (!campaign) return campaign.error();
+  return std::optional(*std::move(campaign));
 }
 
-slurm::WorkerJob SlurmCampaign::WorkersJob() const {
+WorkerJob SlurmCampaign::WorkersJob() const {
   return {.name = job_prefix_ + "w",
-          .worker = settings_.worker_command.empty() ? slurm::ShellQuoted(WorkerProgramPath())
+          .worker = settings_.worker_command.empty() ? ShellQuoted(WorkerProgramPath())
                                                      : settings_.worker_command,
           .access_file = directory_ + "/access.json",
           .log_directory = directory_ + "/log",
@@ -89,18 +85,18 @@ slurm::WorkerJob SlurmCampaign::WorkersJob() const {
 
 Status SlurmCampaign::MakeScripts() {
   Result<std::string> worker_template =
-      Template(settings_.worker_template, slurm::kWorkerTemplate, "worker_template");
+      Template(settings_.worker_template, kWorkerTemplate, "worker_template");
   if (!worker_template) return worker_template.error();
   worker_template_ = *std::move(worker_template);
-  Result<std::string> worker = slurm::WorkerScript(worker_template_, WorkersJob(), settings_.worker_job);
+  Result<std::string> worker = WorkerScript(worker_template_, WorkersJob(), settings_.worker_job);
   if (!worker) return worker.error();
   worker_script_ = *std::move(worker);
 
   const Result<std::string> master_template =
-      Template(settings_.master_template, slurm::kMasterTemplate, "master_template");
+      Template(settings_.master_template, kMasterTemplate, "master_template");
   if (!master_template) return master_template.error();
   // Of what the workers ask for, the master needs the account and the software.
-  slurm::JobRequest request;
+  JobRequest request;
   request.account = settings_.worker_job.account;
   request.qos = settings_.worker_job.qos;
   request.setup = settings_.worker_job.setup;
@@ -108,17 +104,17 @@ Status SlurmCampaign::MakeScripts() {
       settings_.master_partition.empty() ? settings_.worker_job.partition : settings_.master_partition;
   request.time_limit = settings_.master_time_limit;
   Result<std::string> master =
-      slurm::MasterScript(*master_template,
-                          {.name = master_job_name(),
-                           .command = {ThisProgram(), "resume", directory_, "--as-job", "--no-progress"},
-                           .log_file = directory_ + "/log/master-job-%j.log"},
-                          request);
+      MasterScript(*master_template,
+                   {.name = master_job_name(),
+                    .command = {MasterProgramPath(), "resume", directory_, "--as-job", "--no-progress"},
+                    .log_file = directory_ + "/log/master-job-%j.log"},
+                   request);
   if (!master) return master.error();
   master_script_ = *std::move(master);
   return Ok{};
 }
 
-std::unique_ptr<WorkerPool> SlurmCampaign::MakePool(std::unique_ptr<slurm::SlurmClient> client) const {
+std::unique_ptr<master::WorkerPool> SlurmCampaign::MakePool(std::unique_ptr<SlurmClient> client) const {
   SlurmPoolOptions options;
   options.limits = settings_.pool;
   options.request = settings_.worker_job;
@@ -127,11 +123,21 @@ std::unique_ptr<WorkerPool> SlurmCampaign::MakePool(std::unique_ptr<slurm::Slurm
   return std::make_unique<SlurmPool>(std::move(options), std::move(client));
 }
 
-Result<std::vector<slurm::JobStatus>> LivingJobs(slurm::SlurmClient& client, const SlurmCampaign& campaign) {
-  Result<std::vector<slurm::JobStatus>> jobs = client.Queue(campaign.job_prefix());
-  if (!jobs) return jobs;
-  std::erase_if(*jobs, [](const slurm::JobStatus& job) { return job.phase == slurm::JobPhase::kEnded; });
+Result<std::vector<JobStatus>> SlurmCampaign::LivingJobs(SlurmClient& client) const {
+  Result<std::vector<JobStatus>> jobs = client.Queue(job_prefix_);
+  if (jobs) std::erase_if(*jobs, [](const JobStatus& job) { return job.phase == JobPhase::kEnded; });
   return jobs;
 }
 
-}  // namespace gauntlet::master
+Result<std::vector<std::string>> SlurmCampaign::CancelJobs(SlurmClient& client) const {
+  const Result<std::vector<JobStatus>> jobs = LivingJobs(client);
+  if (!jobs) return jobs.error();
+  std::vector<std::string> ids;
+  for (const JobStatus& job : *jobs) {
+    if (job.phase != JobPhase::kEnding) ids.push_back(job.id);
+  }
+  if (Status cancelled = client.Cancel(ids); !cancelled) return cancelled.error();
+  return ids;
+}
+
+}  // namespace gauntlet::slurm

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,14 @@
 #include "slurm/slurm_client.h"
 #include "slurm/slurm_settings.h"
 
-namespace gauntlet::master {
+namespace gauntlet::slurm {
 
 class SlurmCampaign {
  public:
   // `directory` need not exist yet. Error: a template of the site cannot be read, or does not give a script.
   static Result<SlurmCampaign> Make(const SlurmSettings& settings, const std::string& directory);
-  // Of a submitted campaign, from its slurm.toml. kNotFound when it was not submitted.
-  static Result<SlurmCampaign> Load(const std::string& directory);
+  // The campaign in `directory` as it was submitted, from its slurm.toml; nothing when it was not.
+  static Result<std::optional<SlurmCampaign>> Find(const std::string& directory);
 
   const SlurmSettings& settings() const { return settings_; }
   // All jobs of the campaign have names that begin so. Made of the settings' tag and the directory's absolute
@@ -29,13 +30,17 @@ class SlurmCampaign {
   const std::string& worker_script() const { return worker_script_; }
   const std::string& master_script() const { return master_script_; }
 
+  // This user's jobs of the campaign that Slurm has not ended yet.
+  Result<std::vector<JobStatus>> LivingJobs(SlurmClient& client) const;
+  // Cancels what Slurm still has of the campaign; the answer is the ids of what was cancelled.
+  Result<std::vector<std::string>> CancelJobs(SlurmClient& client) const;
   // The pool of the campaign's workers.
-  std::unique_ptr<WorkerPool> MakePool(std::unique_ptr<slurm::SlurmClient> client) const;
+  std::unique_ptr<master::WorkerPool> MakePool(std::unique_ptr<SlurmClient> client) const;
 
  private:
   SlurmCampaign(SlurmSettings settings, std::string directory);
   Status MakeScripts();
-  slurm::WorkerJob WorkersJob() const;
+  WorkerJob WorkersJob() const;
 
   SlurmSettings settings_;
   std::string directory_;  // absolute
@@ -48,7 +53,4 @@ class SlurmCampaign {
 // "flocking-1a2b3c4d": the name, as far as it can stand in a job's, and random digits.
 std::string DrawTag(const std::string& experiment_name);
 
-// This user's jobs of the campaign that Slurm has not ended yet.
-Result<std::vector<slurm::JobStatus>> LivingJobs(slurm::SlurmClient& client, const SlurmCampaign& campaign);
-
-}  // namespace gauntlet::master
+}  // namespace gauntlet::slurm

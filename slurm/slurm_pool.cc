@@ -10,9 +10,9 @@
 
 #include "base/check.h"
 
-namespace gauntlet::master {
+namespace gauntlet::slurm {
 
-SlurmPool::SlurmPool(SlurmPoolOptions options, std::unique_ptr<slurm::SlurmClient> client)
+SlurmPool::SlurmPool(SlurmPoolOptions options, std::unique_ptr<SlurmClient> client)
     : options_(std::move(options)),
       client_(std::move(client)),
       policy_(options_.limits),
@@ -37,11 +37,11 @@ SlurmPool::~SlurmPool() {
 // By name, so that a submission whose answer was lost goes too.
 void SlurmPool::PostCancelAll() {
   Post([this]() -> std::function<void(TimePoint)> {
-    const Result<std::vector<slurm::JobStatus>> jobs = client_->Queue(options_.job.name);
+    const Result<std::vector<JobStatus>> jobs = client_->Queue(options_.job.name);
     if (!jobs) return [](TimePoint) {};
     std::vector<std::string> living;
-    for (const slurm::JobStatus& job : *jobs) {
-      if (job.phase != slurm::JobPhase::kEnded) living.push_back(job.id);
+    for (const JobStatus& job : *jobs) {
+      if (job.phase != JobPhase::kEnded) living.push_back(job.id);
     }
     (void)client_->Cancel(living).ok();
     return [](TimePoint) {};
@@ -97,7 +97,7 @@ Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
       PostQuery();
     }
   } else if (!stopped_growing_) {
-    const slurm::Decisions decisions = policy_.Decide(demand_, now);
+    const Decisions decisions = policy_.Decide(demand_, now);
     if (decisions.query) last_query_ = now;
     CarryOut(decisions);
   }
@@ -110,17 +110,17 @@ Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
   return std::vector<pid_t>{};
 }
 
-void SlurmPool::CarryOut(const slurm::Decisions& decisions) {
+void SlurmPool::CarryOut(const Decisions& decisions) {
   PostCancel(decisions.cancel);
   if (decisions.submit > submitting_) PostSubmit(decisions.submit - submitting_, decisions.exclude_nodes);
   if (decisions.query) PostQuery();
 }
 
 void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excluded_nodes) {
-  slurm::WorkerJob job = options_.job;
+  WorkerJob job = options_.job;
   job.name += fmt::format("{}", next_number_++);
   job.array = allocations;
-  const Result<std::string> script = slurm::WorkerScript(options_.job_template, job, options_.request);
+  const Result<std::string> script = WorkerScript(options_.job_template, job, options_.request);
   GAUNTLET_CHECK(script.ok(), "the worker script was checked when the campaign began");
   std::vector<std::string> arguments;
   if (!excluded_nodes.empty())
@@ -171,14 +171,14 @@ void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
   });
 }
 
-void SlurmPool::OnQueue(const std::vector<slurm::JobStatus>& jobs, TimePoint now) {
+void SlurmPool::OnQueue(const std::vector<JobStatus>& jobs, TimePoint now) {
   adopted_ = true;
   const std::set<std::string> cancelled(cancelled_.begin(), cancelled_.end());
   std::set<std::string> known = cancelled;
   std::vector<std::string> undead;
-  for (const slurm::Allocation& allocation : policy_.allocations()) known.insert(allocation.job);
-  for (const slurm::JobStatus& job : jobs) {
-    const bool lives = job.phase == slurm::JobPhase::kQueued || job.phase == slurm::JobPhase::kRunning;
+  for (const Allocation& allocation : policy_.allocations()) known.insert(allocation.job);
+  for (const JobStatus& job : jobs) {
+    const bool lives = job.phase == JobPhase::kQueued || job.phase == JobPhase::kRunning;
     // A cancellation that the controller never got.
     if (lives && cancelled.contains(job.id)) undead.push_back(job.id);
     // While a submission is under way its job may be in the queue before its answer is here.
@@ -190,12 +190,12 @@ void SlurmPool::OnQueue(const std::vector<slurm::JobStatus>& jobs, TimePoint now
   policy_.Observed(jobs, now);
 }
 
-void SlurmPool::Observe(const PoolView& view, TimePoint now) {
+void SlurmPool::Observe(const master::PoolView& view, TimePoint now) {
   demand_.unfinished_runs = view.unfinished_runs;
-  for (const slurm::Allocation& allocation : policy_.allocations()) {
+  for (const Allocation& allocation : policy_.allocations()) {
     int connected = 0;
     int busy = 0;
-    for (const PoolView::Worker& worker : view.workers) {
+    for (const master::PoolView::Worker& worker : view.workers) {
       // "job:restart:node", as slurm/worker.sbatch passes it.
       if (worker.allocation.substr(0, worker.allocation.find(':')) != allocation.job) continue;
       ++connected;
@@ -207,12 +207,12 @@ void SlurmPool::Observe(const PoolView& view, TimePoint now) {
 
 std::string SlurmPool::Trouble(TimePoint now) const {
   const std::string trouble = policy_.Trouble(now);
-  return trouble.empty() ? "" : trouble + slurm::NextStep(trouble);
+  return trouble.empty() ? "" : trouble + NextStep(trouble);
 }
 
-std::vector<AllocationView> SlurmPool::Allocations() const {
-  std::vector<AllocationView> views;
-  for (const slurm::Allocation& allocation : policy_.allocations()) {
+std::vector<master::AllocationView> SlurmPool::Allocations() const {
+  std::vector<master::AllocationView> views;
+  for (const Allocation& allocation : policy_.allocations()) {
     views.push_back({allocation.job, allocation.state, allocation.reason, allocation.nodes,
                      allocation.workers, allocation.cancelled});
   }
@@ -225,7 +225,7 @@ void SlurmPool::AppendWaitFds(std::vector<int>& fds) const {
 
 int SlurmPool::running() const {
   int living = submitting_;
-  for (const slurm::Allocation& allocation : policy_.allocations()) living += allocation.cancelled ? 0 : 1;
+  for (const Allocation& allocation : policy_.allocations()) living += allocation.cancelled ? 0 : 1;
   return living;
 }
 
@@ -235,7 +235,7 @@ void SlurmPool::SignalAll(int /*signal*/) {
   CarryOut(policy_.Decide({}, {}));
 }
 
-std::vector<DispatchEvent> SlurmPool::TakeEvents() {
+std::vector<master::DispatchEvent> SlurmPool::TakeEvents() {
   return std::exchange(events_, {});
 }
 
@@ -243,4 +243,4 @@ void SlurmPool::Report(std::string kind, std::string text) {
   events_.push_back({std::move(kind), std::move(text)});
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::slurm

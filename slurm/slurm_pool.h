@@ -1,4 +1,4 @@
-// A pool of worker allocations in Slurm: carries out what slurm::PoolPolicy decides.
+// A pool of worker allocations in Slurm: carries out what PoolPolicy decides.
 #pragma once
 
 #include <condition_variable>
@@ -17,24 +17,24 @@
 #include "slurm/pool_policy.h"
 #include "slurm/slurm_client.h"
 
-namespace gauntlet::master {
+namespace gauntlet::slurm {
 
 struct SlurmPoolOptions {
-  slurm::PoolLimits limits;
-  slurm::JobRequest request;
+  PoolLimits limits;
+  JobRequest request;
   std::string job_template;  // of workers
   // `job.name` is the prefix of the jobs' names, unique to the campaign: whatever bears it is this
   // campaign's, also after a crash and when the answer of a submission was lost.
-  slurm::WorkerJob job;
+  WorkerJob job;
 };
 
 // Slurm's commands take from milliseconds to many seconds, so a thread of the pool's own calls them; all
 // methods return at once and belong to one thread. Jobs with the campaign's name that this pool did not
 // submit (of an earlier master, or of a submission whose answer was lost) are adopted.
-class SlurmPool final : public WorkerPool {
+class SlurmPool final : public master::WorkerPool {
  public:
   // `job` and `job_template` have given a script once: that they do is checked when a campaign begins.
-  SlurmPool(SlurmPoolOptions options, std::unique_ptr<slurm::SlurmClient> client);
+  SlurmPool(SlurmPoolOptions options, std::unique_ptr<SlurmClient> client);
   // Cancels what is still there, unless it was released.
   ~SlurmPool() override;
   SlurmPool(const SlurmPool&) = delete;
@@ -48,10 +48,10 @@ class SlurmPool final : public WorkerPool {
   void StopReplacing() override { stopped_growing_ = true; }
   // Any signal: cancels all allocations; Slurm sends SIGTERM, then SIGKILL.
   void SignalAll(int signal) override;
-  std::vector<DispatchEvent> TakeEvents() override;
-  void Observe(const PoolView& view, TimePoint now) override;
+  std::vector<master::DispatchEvent> TakeEvents() override;
+  void Observe(const master::PoolView& view, TimePoint now) override;
   std::string Trouble(TimePoint now) const override;
-  std::vector<AllocationView> Allocations() const override;
+  std::vector<master::AllocationView> Allocations() const override;
   // Nothing is submitted or cancelled any more.
   bool Release() override { return released_ = true; }
 
@@ -61,18 +61,18 @@ class SlurmPool final : public WorkerPool {
   void Post(Task task);
   void CallSlurm();
   void TakeAnswers(TimePoint now);
-  void CarryOut(const slurm::Decisions& decisions);
+  void CarryOut(const Decisions& decisions);
   void PostSubmit(int allocations, const std::vector<std::string>& excluded_nodes);
   void PostQuery();
   void PostCancelAll();
   void PostCancel(const std::vector<std::string>& jobs);
-  void OnQueue(const std::vector<slurm::JobStatus>& jobs, TimePoint now);
+  void OnQueue(const std::vector<JobStatus>& jobs, TimePoint now);
   void Report(std::string kind, std::string text);
 
   SlurmPoolOptions options_;
-  std::unique_ptr<slurm::SlurmClient> client_;  // of the calling thread alone
-  slurm::PoolPolicy policy_;
-  slurm::Demand demand_;
+  std::unique_ptr<SlurmClient> client_;  // of the calling thread alone
+  PoolPolicy policy_;
+  Demand demand_;
   bool stopped_growing_ = false;
   bool adopted_ = false;  // the queue has been looked through: until then nothing is submitted
   bool adopting_ = false;
@@ -82,7 +82,7 @@ class SlurmPool final : public WorkerPool {
   std::uint64_t next_number_ = 1;
   std::vector<std::string> cancelled_;  // still shown by Slurm for a while
   std::string reported_trouble_;
-  std::vector<DispatchEvent> events_;
+  std::vector<master::DispatchEvent> events_;
 
   mutable std::mutex mutex_;
   std::condition_variable work_;
@@ -93,4 +93,4 @@ class SlurmPool final : public WorkerPool {
   std::thread thread_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::slurm

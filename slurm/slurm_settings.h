@@ -9,14 +9,14 @@
 #include "slurm/job_script.h"
 #include "slurm/pool_policy.h"
 
-namespace gauntlet::master {
+namespace gauntlet::slurm {
 
 // Where the campaign's master runs.
 enum class MasterPlace { kJob, kHere };
 
 struct SlurmSettings {
-  slurm::JobRequest worker_job;
-  slurm::PoolLimits pool;
+  JobRequest worker_job;
+  PoolLimits pool;
   std::string worker_command;   // as the shell is to read it; "" = gauntlet-worker beside this program
   std::string worker_template;  // path of an edited slurm/worker.sbatch; "" = the shipped one
   std::string master_template;
@@ -53,4 +53,4 @@ struct SlurmKeyInfo {
 // For help texts.
 std::vector<SlurmKeyInfo> SlurmKeys();
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet::slurm

@@ -55,8 +55,6 @@ struct CommandContext {
   };
 };
 
-using CommandAction = std::function<ExitCode(CommandContext&)>;
-
 // "gauntlet: MESSAGE", one line whatever the message holds.
 void PrintMessage(CommandContext& context, std::string_view message);
 // Prints the error and gives the exit code of its kind: kInternal 4, kNoSpace 3, all others 2.

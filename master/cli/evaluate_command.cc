@@ -6,11 +6,12 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "controllers/registry.h"
 #include "master/cases/case_file.h"
 #include "master/cli/commands.h"
-#include "master/cli/common_options.h"
+#include "master/cli/options.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/summary_json.h"
 #include "master/cli/summary_text.h"
@@ -21,6 +22,14 @@
 
 namespace gauntlet::master {
 namespace {
+
+struct EvaluateOptions {
+  ExperimentOptions experiment;
+  SizeOptions refused;
+  RunningOptions running;
+  std::vector<std::string> files;
+  std::string replicates;
+};
 
 // Files in the order given; those that can be simulated also stand in `cases`, with their place in `files`.
 struct CaseList {
@@ -58,7 +67,7 @@ CaseList LoadCases(CommandContext& context, const EvaluateOptions& options, cons
     list.cases.push_back(std::move(loaded->test_case));
     list.file_of_case.push_back(list.files.size() - 1);
   }
-  if (options.common.quiet) return list;
+  if (options.running.quiet) return list;
   for (const auto& [notice, files] : notices) {
     const std::string others = files.size() > 1 ? fmt::format(" and {} more", files.size() - 1) : "";
     PrintMessage(context, fmt::format("{}{}: {}", files.front(), others, notice));
@@ -104,8 +113,8 @@ bool AnyFitness(const CaseList& list) {
 
 void Print(CommandContext& context, const EvaluateOptions& options, const CaseList& list,
            const CampaignSummary* summary, const std::string& directory) {
-  context.out << (options.common.json ? EvaluationJson(list.files, summary, directory)
-                                      : EvaluationText(list.files, {context.program, directory}))
+  context.out << (options.running.json ? EvaluationJson(list.files, summary, directory)
+                                       : EvaluationText(list.files, {context.program, directory}))
               << std::flush;
   for (const EvaluatedCase& evaluated : list.files) {
     if (evaluated.error.empty()) continue;
@@ -121,24 +130,20 @@ void Print(CommandContext& context, const EvaluateOptions& options, const CaseLi
   }
 }
 
-}  // namespace
-
+// kExitUsage when none of the cases gave a fitness.
 ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
-  for (const auto& [option, value] : {std::pair("--generations", options.common.generations),
-                                      std::pair("--population", options.common.population)}) {
-    if (value.empty()) continue;
+  for (const ExtraSet& size : SetsOf(options.refused)) {
     return Fail(context, InvalidInput(fmt::format(
                              "{} {}: 'evaluate' searches nothing; the runs per case are --replicates K",
-                             option, value)));
+                             size.option, size.value)));
   }
-  std::vector<ExtraSet> extra = {{"evaluate", "search.algorithm=cases"}};
-  if (!options.replicates.empty())
-    extra.push_back({"--replicates", "search.replicates=" + options.replicates});
-  const Result<Experiment> experiment = LoadExperimentWith(options.common, extra);
+  std::vector<ExtraSet> extra = {{"evaluate", "search.algorithm", "cases"}};
+  if (!options.replicates.empty()) extra.push_back({"--replicates", "search.replicates", options.replicates});
+  const Result<Experiment> experiment = LoadExperimentWith(options.experiment, extra);
   if (!experiment) return Fail(context, experiment.error());
-  const Result<int> workers = ParseWorkers(options.common.workers);
+  const Result<int> workers = ParseWorkers(options.running.workers);
   if (!workers) return Fail(context, workers.error());
-  const Result<std::string> directory = NewDirectory(options.common, *experiment);
+  const Result<std::string> directory = NewDirectory(options.experiment.directory, *experiment);
   if (!directory) return Fail(context, directory.error());
 
   CaseList list = LoadCases(context, options, *experiment);
@@ -150,6 +155,7 @@ ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
   campaign.directory = *directory;
   campaign.announcement = Announcement(*experiment, *workers, *directory);
   campaign.workers = *workers;
+  campaign.serving = options.running;
   campaign.run = [&](const SessionOptions& session) {
     return context.service.start(*directory, *experiment, list.cases, session);
   };
@@ -158,9 +164,31 @@ ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
     Print(context, options, list, &report.summary, *directory);
     return Ok{};
   };
-  const ExitCode code = RunCampaign(context, options.common, campaign);
-  const bool all_refused = !AnyFitness(list);
-  return code == kExitDone && all_refused ? kExitUsage : code;
+  const ExitCode code = RunCampaign(context, campaign);
+  return code == kExitDone && !AnyFitness(list) ? kExitUsage : code;
+}
+
+}  // namespace
+
+void AddEvaluate(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("evaluate", "simulate given test cases (case JSON or .argos files)", RunEvaluate);
+  AddExperimentOptions(command, options.experiment);
+  AddRefusedSizeOptions(command, options.refused);
+  AddRunningOptions(command, options.running);
+  command.add_option("--case", options.files, "case files, .json or .argos; several may follow")
+      ->type_name("FILE...")
+      ->required();
+  command.add_option("--replicates", options.replicates, "runs per case, each with its own seed")
+      ->type_name("K");
+  command.footer(
+      R"(Simulates each case and prints its fitness (mean of the replicates; lower = tougher). A case that
+breaks a validity rule is refused by the rule's name; the others go on. Exit 2 when all were refused.
+Of .argos files the arena, the boxes, the number of foot-bots and their start area are read.
+
+Examples:
+  gauntlet evaluate flocking --case one-wall.json --replicates 20
+  gauntlet evaluate flocking-improved --case cases/*.argos --json > improved.json)");
 }
 
 }  // namespace gauntlet::master

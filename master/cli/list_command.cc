@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/nearest_name.h"
@@ -22,6 +23,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kTextWidth = 110;
+
+struct ListOptions {
+  std::string section;  // the name of one of kSections, "" = all
+  bool json = false;
+};
 
 // What the search reads, its own parameters first.
 std::vector<Key> KeysOf(const SearchInfo& search) {
@@ -243,25 +249,24 @@ Json DisturbancesJson() {
   return list;
 }
 
-}  // namespace
+struct Section {
+  const char* name;
+  std::string (*text)();
+  Json (*json)();
+};
+constexpr Section kSections[] = {{"experiments", ExperimentsText, ExperimentsJson},
+                                 {"scenarios", ScenariosText, ScenariosJson},
+                                 {"controllers", ControllersText, ControllersJson},
+                                 {"searches", SearchesText, SearchesJson},
+                                 {"disturbances", DisturbancesText, DisturbancesJson}};
 
 ExitCode RunList(CommandContext& context, const ListOptions& options) {
-  struct Section {
-    std::string_view name;
-    std::string (*text)();
-    Json (*json)();
-  };
-  constexpr Section kSections[] = {{"experiments", ExperimentsText, ExperimentsJson},
-                                   {"scenarios", ScenariosText, ScenariosJson},
-                                   {"controllers", ControllersText, ControllersJson},
-                                   {"searches", SearchesText, SearchesJson},
-                                   {"disturbances", DisturbancesText, DisturbancesJson}};
   std::string text;
   Json json = Json::object();
   for (const Section& section : kSections) {
     if (!options.section.empty() && section.name != options.section) continue;
     if (options.json) {
-      json[std::string(section.name)] = section.json();
+      json[section.name] = section.json();
     } else {
       text += (text.empty() ? "" : "\n") + section.text();
     }
@@ -269,6 +274,23 @@ ExitCode RunList(CommandContext& context, const ListOptions& options) {
   if (options.json) text = JsonText(json);
   context.out << text << std::flush;
   return kExitDone;
+}
+
+}  // namespace
+
+void AddList(CommandParser& parser) {
+  const auto [command, options] = parser.Add(
+      "list", "experiments, scenarios, controllers, searches, disturbances; all parameters", RunList);
+  std::vector<std::string> names;
+  for (const Section& section : kSections) names.emplace_back(section.name);
+  command
+      .add_option("SECTION", options.section,
+                  "experiments, scenarios, controllers, searches or disturbances (default: all)")
+      ->check(CLI::IsMember(names));
+  command.add_flag("--json", options.json, "as one JSON document");
+  command.footer(R"(Examples:
+  gauntlet list experiments
+  gauntlet list controllers --json | jq '.controllers[].name')");
 }
 
 }  // namespace gauntlet::master

@@ -48,15 +48,12 @@ std::string LiveProgressLine(const CampaignProgress& progress, std::size_t colum
     int rank;
     std::string text;
   };
+  constexpr int kBarRank = 6;
   std::vector<Part> parts;
   if (progress.search.generations > 1) {
     parts.push_back({1, fmt::format("gen {}/{}", progress.search.generation, progress.search.generations)});
   }
-  std::size_t bar_at = std::string::npos;
-  if (progress.runs_planned > 0) {
-    bar_at = parts.size();
-    parts.push_back({6, ""});
-  }
+  if (progress.runs_planned > 0) parts.push_back({kBarRank, ""});
   parts.push_back({0, Runs(progress) + " runs"});
   parts.push_back({4, Rate(progress.runs_per_second) + "/s"});
   parts.push_back({3, fmt::format("best {} mean {}", FormatFitness(progress.best_fitness),
@@ -70,25 +67,18 @@ std::string LiveProgressLine(const CampaignProgress& progress, std::size_t colum
   constexpr std::size_t kLeastBar = 8;
   constexpr std::size_t kMostBar = 24;
   constexpr std::string_view kBetween = "  ";
-  const auto width_of = [&](const std::vector<Part>& all) {
-    std::size_t width = 0;
-    for (const Part& part : all) {
-      const std::size_t own = part.rank == 6 ? kLeastBar + 2 : DisplayWidth(part.text);
-      width += own + (width > 0 ? kBetween.size() : 0);
+  const auto width = [&] {
+    std::size_t sum = 0;
+    for (const Part& part : parts) {
+      const std::size_t own = part.rank == kBarRank ? kLeastBar + 2 : DisplayWidth(part.text);
+      sum += own + (sum > 0 ? kBetween.size() : 0);
     }
-    return width;
+    return sum;
   };
-  while (parts.size() > 1 && width_of(parts) > columns) {
-    const auto worst = std::max_element(parts.begin(), parts.end(),
-                                        [](const Part& a, const Part& b) { return a.rank < b.rank; });
-    parts.erase(worst);
-  }
-  const auto bar = std::find_if(parts.begin(), parts.end(), [](const Part& part) { return part.rank == 6; });
-  if (bar_at != std::string::npos && bar != parts.end()) {
-    const std::size_t width = std::min(kMostBar, kLeastBar + (columns - width_of(parts)));
-    bar->text =
-        Bar(static_cast<double>(progress.runs_done) / static_cast<double>(progress.runs_planned), width);
-    bar->rank = 0;
+  while (parts.size() > 1 && width() > columns) parts.erase(std::ranges::max_element(parts, {}, &Part::rank));
+  if (const auto bar = std::ranges::find(parts, kBarRank, &Part::rank); bar != parts.end()) {
+    const double done = static_cast<double>(progress.runs_done) / static_cast<double>(progress.runs_planned);
+    bar->text = Bar(done, std::min(kMostBar, kLeastBar + (columns - width())));
   }
   std::string line;
   for (const Part& part : parts) line += (line.empty() ? "" : std::string(kBetween)) + part.text;

@@ -6,21 +6,31 @@
 #include <system_error>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "analysis/figures/run_figure.h"
 #include "analysis/figures/timeline_figure.h"
 #include "analysis/figures/trajectory_csv.h"
 #include "base/printable.h"
 #include "master/cli/commands.h"
-#include "master/cli/common_options.h"
 #include "master/cli/evaluation.h"
 #include "master/cli/metric_text.h"
+#include "master/cli/options.h"
 #include "master/cli/summary_json.h"
 #include "master/cli/table.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
 namespace {
+
+struct ReplayOptions {
+  std::string directory;
+  std::string run;
+  std::string svg;
+  std::string timeline;
+  std::string csv;
+  bool json = false;
+};
 
 Status WriteFile(const std::string& path, const std::string& content) {
   errno = 0;
@@ -110,8 +120,7 @@ std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure
   return text;
 }
 
-}  // namespace
-
+// kExitNegative when the run is not reproduced or does not read back.
 ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
   const Result<std::uint64_t> run = ParseRunId(options.run);
   if (!run) return Fail(context, run.error());
@@ -150,6 +159,30 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
   PrintMessage(context, fmt::format("run {} of {} was not reproduced: {}", *run, options.directory,
                                     replay->report.differences.front()));
   return kExitNegative;
+}
+
+}  // namespace
+
+void AddReplay(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("replay", "simulate one stored run again, check its hash, draw it", RunReplay);
+  AddDirectory(command, options.directory);
+  command.add_option("RUN_ID", options.run, "number of the run, as 'show' names it")->required();
+  command
+      .add_option("--svg", options.svg, "write a picture: arena, every robot's way, where the swarm split")
+      ->type_name("F");
+  command
+      .add_option("--timeline", options.timeline,
+                  "write a picture: what every robot did when (foraging, task-partitioning)")
+      ->type_name("F");
+  command.add_option("--csv", options.csv, "write every pose of every tick")->type_name("F");
+  command.add_flag("--json", options.json, "the result as one JSON document");
+  command.footer(
+      R"(Same run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying what
+differs.
+
+Example:
+  gauntlet replay campaigns/flocking-20260131T120000Z 812 --svg run-812.svg --csv run-812.csv)");
 }
 
 }  // namespace gauntlet::master

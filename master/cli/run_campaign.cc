@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/shell_quoted.h"
 #include "master/cli/progress.h"
 #include "master/cli/stop_signal.h"
 #include "master/cli/summary_json.h"
@@ -64,94 +65,64 @@ std::string Timing(const SessionReport& report) {
   return line;
 }
 
-}  // namespace
-
-ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, const CampaignRun& campaign) {
-  const Result<double> audit_share = ParseShare("--audit", options.audit);
-  if (!audit_share) return Fail(context, audit_share.error());
-  if (!campaign.bind.empty()) {
-    if (const Status possible = CheckBindEndpoint(campaign.bind); !possible)
-      return Fail(context, possible.error());
+// Where workers connect, and that nothing protects the campaign when that is so.
+void PrintServing(CommandContext& context, const CampaignRun& campaign, const ServingNotice& notice) {
+  const std::string& endpoint = notice.endpoints.front();
+  if (!notice.encrypted && !IsLocalEndpoint(campaign.bind.endpoint)) {
+    // Said even with --quiet.
+    context.err << (context.err_is_terminal ? "\x1b[1;31m" : "") << std::flush;
+    PrintMessage(context,
+                 fmt::format("INSECURE: whoever reaches {} can read this campaign and feed it results; "
+                             "nothing is encrypted or checked",
+                             endpoint));
+    context.err << (context.err_is_terminal ? "\x1b[0m" : "") << std::flush;
   }
-  if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
+  if (campaign.serving.quiet) return;
+  // The worker beside this program, as a person who started this one can start it.
+  const std::string start = campaign.make_pool
+                                ? ""
+                                : fmt::format("; start them with: {}-worker --dir {}", context.program,
+                                              ShellQuoted(campaign.directory));
+  PrintMessage(context, fmt::format("workers connect to {}{}{}", endpoint,
+                                    notice.encrypted ? ", encrypted" : "", start));
+}
 
-  const SteadyClock clock;
-  const ProgressMode mode = ChooseProgressMode(!options.quiet && !options.no_progress,
-                                               context.err_is_terminal, std::getenv("TERM"));
-  ProgressPrinter progress(
-      mode, clock, [&](const std::string& text) { context.err << text << std::flush; }, TerminalColumns);
-  bool began = false;
+Result<std::unique_ptr<MetricsServer>> StartMetrics(CommandContext& context, const ServingOptions& options) {
+  if (options.metrics_port.empty()) return std::unique_ptr<MetricsServer>();
+  const Result<int> port = ParseMetricsPort(options.metrics_port);
+  if (!port) return port.error();
+  Result<std::unique_ptr<MetricsServer>> metrics = MetricsServer::Start(*port);
+  if (metrics && !options.quiet) PrintMessage(context, fmt::format("metrics at {}", (*metrics)->url()));
+  return metrics;
+}
 
-  std::unique_ptr<MetricsServer> metrics;
-  if (!options.metrics_port.empty()) {
-    const Result<int> port = ParseMetricsPort(options.metrics_port);
-    if (!port) return Fail(context, port.error());
-    Result<std::unique_ptr<MetricsServer>> started = MetricsServer::Start(*port);
-    if (!started) return Fail(context, started.error());
-    metrics = *std::move(started);
-    if (!options.quiet) PrintMessage(context, fmt::format("metrics at {}", metrics->url()));
+// `began`: some progress was made.
+ExitCode FailCampaign(CommandContext& context, const CampaignRun& campaign, const Error& error, bool began) {
+  const bool resumable = error.kind == ErrorKind::kNoSpace ||
+                         (began && (error.kind == ErrorKind::kIo || error.kind == ErrorKind::kInUse));
+  const ExitCode code = Fail(context, error);
+  if (!resumable) return code;
+  PrintMessage(context, HowToGoOn(context, campaign.directory, began));
+  return kExitStopped;
+}
+
+ExitCode Conclude(CommandContext& context, const CampaignRun& campaign, const SessionReport& report) {
+  const CampaignSummary& summary = report.summary;
+  if (!campaign.serving.quiet && report.runs_this_session > 0) PrintMessage(context, Timing(report));
+  if (campaign.report) {
+    if (const Status printed = campaign.report(report); !printed) return Fail(context, printed.error());
+  } else if (report.runs_this_session == 0 && summary.finished) {
+    PrintFinished(context, summary, campaign.directory, campaign.serving);
+  } else {
+    PrintSummary(context, summary, campaign.directory, campaign.serving.json);
   }
-
-  SessionOptions session;
-  session.metrics = metrics.get();
-  session.workers = campaign.workers;
-  session.insecure = campaign.insecure;
-  session.audit_share = *audit_share;
-  session.batch_job = campaign.batch_job;
-  session.make_pool = campaign.make_pool;
-  if (!campaign.bind.empty()) session.bind = campaign.bind;
-  session.on_serving = [&](const ServingNotice& notice) {
-    if (campaign.bind.empty()) return;
-    if (!notice.encrypted && !IsLocalEndpoint(campaign.bind)) {
-      // Said even with --quiet.
-      const char* red = context.err_is_terminal ? "\x1b[1;31m" : "";
-      const char* plain = context.err_is_terminal ? "\x1b[0m" : "";
-      context.err << red << std::flush;
-      PrintMessage(context,
-                   fmt::format("INSECURE: whoever reaches {} can read this campaign and feed it results; "
-                               "nothing is encrypted or checked",
-                               notice.endpoints.front()));
-      context.err << plain << std::flush;
-    }
-    if (options.quiet) return;
-    if (campaign.make_pool) {
-      PrintMessage(context, fmt::format("workers connect to {}{}", notice.endpoints.front(),
-                                        notice.encrypted ? ", encrypted" : ""));
-      return;
-    }
-    PrintMessage(context, fmt::format("workers connect to {}{}; start them with: gauntlet-worker --dir {}",
-                                      notice.endpoints.front(), notice.encrypted ? ", encrypted" : "",
-                                      ShellQuoted(campaign.directory)));
-  };
-  session.stop_requested = StopSignal::Requested;
-  session.on_progress = [&](const CampaignProgress& now) {
-    began = true;
-    progress.Update(now);
-  };
-  Result<SessionReport> report = [&] {
-    const StopSignal handlers;
-    return campaign.run(session);
-  }();
-  progress.Finish();
-  if (!report) {
-    const ErrorKind kind = report.error().kind;
-    const bool resumable =
-        kind == ErrorKind::kNoSpace || (began && (kind == ErrorKind::kIo || kind == ErrorKind::kInUse));
-    const ExitCode code = Fail(context, report.error());
-    if (!resumable) return code;
-    PrintMessage(context, HowToGoOn(context, campaign.directory, began));
-    return kExitStopped;
-  }
-  if (!options.quiet && report->runs_this_session > 0) PrintMessage(context, Timing(*report));
-  if (const Status printed = campaign.report(*report); !printed) return Fail(context, printed.error());
-  if (report->end == CampaignEnd::kStopped) {
-    PrintMessage(context, fmt::format("stopped after {} runs, all of them stored. Go on with: {}",
-                                      FormatCount(report->summary.runs_done),
-                                      ResumeHint(context, campaign.directory)));
+  if (report.end == CampaignEnd::kStopped) {
+    PrintMessage(context,
+                 fmt::format("stopped after {} runs, all of them stored. Go on with: {}",
+                             FormatCount(summary.runs_done), ResumeHint(context, campaign.directory)));
     return kExitStopped;
   }
   // `evaluate` judges its cases itself.
-  const CampaignSummary& summary = report->summary;
   const SearchRow* search = FindSearch(summary.search);
   const bool given_cases = search != nullptr && search->given_cases;
   if (!given_cases && summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
@@ -164,10 +135,63 @@ ExitCode RunCampaign(CommandContext& context, const CommonOptions& options, cons
   return kExitDone;
 }
 
+}  // namespace
+
+ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
+  const ServingOptions& options = campaign.serving;
+  const std::string& endpoint = campaign.bind.endpoint;
+  const Result<double> audit_share = ParseShare("--audit", options.audit);
+  if (!audit_share) return Fail(context, audit_share.error());
+  if (!endpoint.empty()) {
+    if (const Status possible = CheckBindEndpoint(endpoint); !possible)
+      return Fail(context, possible.error());
+  }
+  if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
+  const Result<std::unique_ptr<MetricsServer>> metrics = StartMetrics(context, options);
+  if (!metrics) return Fail(context, metrics.error());
+
+  const SteadyClock clock;
+  const ProgressMode mode = ChooseProgressMode(!options.quiet && !options.no_progress,
+                                               context.err_is_terminal, std::getenv("TERM"));
+  ProgressPrinter progress(
+      mode, clock, [&](const std::string& text) { context.err << text << std::flush; }, TerminalColumns);
+  bool began = false;
+
+  SessionOptions session;
+  session.metrics = metrics->get();
+  session.workers = campaign.workers;
+  session.insecure = campaign.bind.insecure;
+  session.audit_share = *audit_share;
+  session.batch_job = campaign.batch_job;
+  session.make_pool = campaign.make_pool;
+  if (!endpoint.empty()) {
+    session.bind = endpoint;
+    session.on_serving = [&](const ServingNotice& notice) { PrintServing(context, campaign, notice); };
+  }
+  session.stop_requested = StopSignal::Requested;
+  session.on_progress = [&](const CampaignProgress& now) {
+    began = true;
+    progress.Update(now);
+  };
+  const Result<SessionReport> report = [&] {
+    const StopSignal handlers;
+    return campaign.run(session);
+  }();
+  progress.Finish();
+  return report ? Conclude(context, campaign, *report)
+                : FailCampaign(context, campaign, report.error(), began);
+}
+
 void PrintSummary(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
                   bool json) {
   context.out << (json ? SummaryJson(summary, directory) : SummaryText(summary, {context.program, directory}))
               << std::flush;
+}
+
+void PrintFinished(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
+                   const MessageOptions& options) {
+  if (!options.quiet) PrintMessage(context, fmt::format("{} is finished, nothing was left to do", directory));
+  PrintSummary(context, summary, directory, options.json);
 }
 
 std::string Announcement(const Experiment& experiment, int workers, const std::string& directory) {

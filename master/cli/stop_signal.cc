@@ -1,5 +1,6 @@
 #include "master/cli/stop_signal.h"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -46,6 +47,11 @@ StopSignal::~StopSignal() {
 
 bool StopSignal::Requested() {
   return signals_received.load() > 0;
+}
+
+bool StopSignal::ComesWithin(int milliseconds) {
+  if (!Requested()) poll(nullptr, 0, milliseconds);
+  return Requested();
 }
 
 }  // namespace gauntlet::master

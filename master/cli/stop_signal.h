@@ -16,6 +16,8 @@ class StopSignal {
 
   // True after the first signal.
   static bool Requested();
+  // Waits so long, in milliseconds, or until the first signal; as Requested.
+  static bool ComesWithin(int milliseconds);
 
  private:
   struct sigaction old_interrupt_ {};

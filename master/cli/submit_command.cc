@@ -3,10 +3,13 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "master/cli/commands.h"
+#include "master/cli/options.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/sweep.h"
 #include "master/cli/table.h"
@@ -18,25 +21,36 @@
 namespace gauntlet::master {
 namespace {
 
+struct SubmitOptions {
+  ExperimentOptions experiment;
+  SizeOptions size;
+  MessageOptions messages;
+  std::string master;               // "job" or "here"; "" = as the settings say
+  std::vector<std::string> slurm;   // "key=value"
+  std::vector<std::string> sweeps;  // "key=a,b,c"
+  std::string seeds;                // "1..20" or "1,5,9"
+  bool dry_run = false;
+};
+
 // The user's file, the experiment's [slurm] table, then the command line.
-Result<SlurmSettings> ReadSettings(const SubmitOptions& options, const Experiment& experiment) {
-  std::vector<SlurmSource> sources;
-  if (const std::string file = UserSlurmFile(); !file.empty()) {
+Result<slurm::SlurmSettings> ReadSettings(const SubmitOptions& options, const Experiment& experiment) {
+  std::vector<slurm::SlurmSource> sources;
+  if (const std::string file = slurm::UserSlurmFile(); !file.empty()) {
     const Result<std::string> text = ReadSmallFile(file);
     if (text) sources.push_back({*text, file, true});
     if (!text && text.error().kind != ErrorKind::kNotFound) return text.error();
   }
-  const Result<ExperimentText> source = ReadExperimentText(options.common.experiment);
+  const Result<ExperimentText> source = ReadExperimentText(options.experiment.experiment);
   if (!source) return source.error();
   sources.push_back({source->text, source->file_name, false});
   std::vector<std::string> sets = options.slurm;
   if (!options.master.empty()) sets.push_back("master=" + options.master);
-  Result<SlurmSettings> settings = ReadSlurmSettings(sources, sets);
+  Result<slurm::SlurmSettings> settings = slurm::ReadSlurmSettings(sources, sets);
   if (!settings) return settings;
   const ListenOn where =
-      settings->master == MasterPlace::kHere ? ListenOn::kThisMachine : ListenOn::kAnotherMachine;
+      settings->master == slurm::MasterPlace::kHere ? ListenOn::kThisMachine : ListenOn::kAnotherMachine;
   if (const Status possible = CheckBindEndpoint(settings->bind, where); !possible) return possible.error();
-  if (settings->tag.empty()) settings->tag = DrawTag(experiment.name);
+  if (settings->tag.empty()) settings->tag = slurm::DrawTag(experiment.name);
   for (std::string* path : {&settings->worker_template, &settings->master_template}) {
     std::error_code error;
     if (!path->empty()) *path = std::filesystem::absolute(*path, error).string();
@@ -69,25 +83,39 @@ Status Test(CommandContext& context, slurm::SlurmClient& client, const std::vect
   return outcome;
 }
 
-}  // namespace
+// Hands the master's job to Slurm and says how to follow it.
+ExitCode SubmitAndReturn(CommandContext& context, const SubmitOptions& options, const std::string& directory,
+                         const slurm::SlurmCampaign& campaign) {
+  const Result<std::string> job = SubmitMasterJob(context, directory, campaign);
+  if (!job) return Fail(context, job.error());
+  if (options.messages.json) {
+    context.out << JsonText({{"directory", directory}, {"job", *job}});
+  } else {
+    context.out << fmt::format(
+        "{0}: job {1} is the master; its workers will be {2}w*\n\n  {3} status {4}\n  {3} stop {4}\n",
+        directory, *job, campaign.job_prefix(), context.program, ShellQuoted(directory));
+  }
+  context.out << std::flush;
+  return kExitDone;
+}
 
 ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
-  const CommonOptions& common = options.common;
-  const Result<std::vector<SearchPlan>> searches = PlanSearches(common, options.sweeps, options.seeds);
+  const Result<std::vector<SearchPlan>> searches =
+      PlanSearches(options.experiment, options.size, options.sweeps, options.seeds);
   if (!searches) return Fail(context, searches.error());
   const Experiment& experiment = searches->front().experiment;
   for (const SearchPlan& search : *searches) {
     if (RowOf(search.experiment).given_cases)
       return Fail(context, InvalidInput("search.algorithm = cases needs a list of cases: use 'evaluate'"));
   }
-  const Result<SlurmSettings> settings = ReadSettings(options, experiment);
+  const Result<slurm::SlurmSettings> settings = ReadSettings(options, experiment);
   if (!settings) return Fail(context, settings.error());
-  const Result<std::string> directory = NewDirectory(common, experiment);
+  const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
   if (!directory) return Fail(context, directory.error());
-  const Result<SlurmCampaign> campaign = SlurmCampaign::Make(*settings, *directory);
+  const Result<slurm::SlurmCampaign> campaign = slurm::SlurmCampaign::Make(*settings, *directory);
   if (!campaign) return Fail(context, campaign.error());
 
-  const bool as_job = settings->master == MasterPlace::kJob;
+  const bool as_job = settings->master == slurm::MasterPlace::kJob;
   std::vector<PlannedJob> jobs = {{"a job of workers", campaign->worker_script()}};
   if (as_job) jobs.insert(jobs.begin(), {"the master's job", campaign->master_script()});
   const Status possible = Test(context, *context.slurm(), jobs, options.dry_run);
@@ -97,26 +125,64 @@ ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
   if (!as_job) {
     if (const Status free = TryToListen(settings->bind); !free) return Fail(context, free.error());
   }
-  const Status prepared = context.service.prepare(*directory, *searches, WriteSlurmSettings(*settings));
+  const Status prepared =
+      context.service.prepare(*directory, *searches, slurm::WriteSlurmSettings(*settings));
   if (!prepared) return Fail(context, prepared.error());
-  if (!as_job) {
-    if (!common.quiet)
-      PrintMessage(context, fmt::format("{}: workers come from Slurm as {}w*; see: {} status {}", *directory,
-                                        campaign->job_prefix(), context.program, ShellQuoted(*directory)));
-    return ServeSubmitted(context, common, *directory, *campaign, "");
+  if (as_job) return SubmitAndReturn(context, options, *directory, *campaign);
+  if (!options.messages.quiet)
+    PrintMessage(context, fmt::format("{}: workers come from Slurm as {}w*; see: {} status {}", *directory,
+                                      campaign->job_prefix(), context.program, ShellQuoted(*directory)));
+  return ServeSubmitted(context, {options.messages, "", ""}, *directory, *campaign, "");
+}
+
+}  // namespace
+
+void AddSubmit(CommandParser& parser) {
+  const auto [command, options] = parser.Add("submit", "a search as jobs of a Slurm cluster", RunSubmit);
+  AddExperimentOptions(command, options.experiment);
+  AddSizeOptions(command, options.size);
+  AddMessageOptions(command, options.messages);
+  command
+      .add_option("--master", options.master,
+                  "job (default): the master is a job too; here: it runs in this process")
+      ->type_name("job|here")
+      ->check(CLI::IsMember({"job", "here"}));
+  command
+      .add_option("--slurm", options.slurm,
+                  "one setting of the jobs or the pool, e.g. --slurm partition=short; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command
+      .add_option(
+          "--sweep", options.sweeps,
+          "one search for each value, e.g. --sweep search.population=10,20,40; repeatable: all combinations")
+      ->type_name("KEY=A,B,...")
+      ->allow_extra_args(false);
+  command.add_option("--seeds", options.seeds, "one search for each seed (and each combination of --sweep)")
+      ->type_name("1..20|1,5,9");
+  command.add_flag("--dry-run", options.dry_run,
+                   "submit nothing: print the scripts and what sbatch --test-only says of them");
+  std::string settings;
+  for (const slurm::SlurmKeyInfo& key : slurm::SlurmKeys()) {
+    settings += fmt::format("  {:24}{}{}\n", key.name, key.description,
+                            key.default_value.empty() ? "" : fmt::format(" (default {})", key.default_value));
   }
-  const Result<std::string> job = SubmitMasterJob(context, *directory, *campaign);
-  if (!job) return Fail(context, job.error());
-  if (common.json) {
-    context.out << JsonText({{"directory", *directory}, {"job", *job}});
-  } else {
-    const std::string place = ShellQuoted(*directory);
-    context.out << fmt::format(
-        "{0}: job {1} is the master; its workers will be {2}w*\n\n  {3} status {4}\n  {3} stop {4}\n",
-        *directory, *job, campaign->job_prefix(), context.program, place);
-  }
-  context.out << std::flush;
-  return kExitDone;
+  command.footer(
+      R"(Submits the master as a job and returns; the master submits workers as there is work for them, replaces those
+that are lost, and cancels them when the search has ended. The campaign's directory must be on a file system
+that the compute nodes share. Same experiment and seed: same result as with 'evolve'.
+
+With --sweep and --seeds the campaign holds many searches, which share one pool; each ends like 'evolve' with its
+--set and --seed. 'show' tells them apart.
+
+Settings for --slurm, also in the experiment's [slurm] table and in ~/.config/gauntlet/slurm.toml:
+)" + settings +
+      R"(
+Examples:
+  gauntlet submit flocking --dir $WORK/flocking-1 --slurm partition=short --slurm max_allocations=20
+  gauntlet submit flocking --dry-run
+  gauntlet submit flocking --sweep search.mutation_probability=0.02,0.05,0.1 --seeds 1..20
+  gauntlet submit flocking --master here --generations 100)");
 }
 
 }  // namespace gauntlet::master

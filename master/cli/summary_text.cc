@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/printable.h"
+#include "base/shell_quoted.h"
 #include "master/cli/table.h"
 #include "master/report/verdict_text.h"
 #include "master/search/search_table.h"

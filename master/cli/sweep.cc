@@ -36,28 +36,27 @@ Result<Sweep> ParseSweep(const std::string& text) {
   return Sweep{key, *values};
 }
 
-Error WrongSeeds(const std::string& text) {
-  return InvalidInput(fmt::format(
-      "--seeds {}: give a range (1..20) or a list (1,5,9) of at most {} whole numbers", text, kMostSearches));
+std::optional<std::uint64_t> SeedOf(const std::string& text) {
+  const Result<std::uint64_t> seed = ParseSeed(text);
+  if (!seed || text == "random") return std::nullopt;
+  return *seed;
 }
 
-Result<std::vector<std::uint64_t>> ParseSeeds(const std::string& text) {
+// "1..20" or "1,5,9".
+std::optional<std::vector<std::uint64_t>> SeedsOf(const std::string& text) {
   std::vector<std::uint64_t> seeds;
   if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
-    const std::string first_text = text.substr(0, dots);
-    const std::string last_text = text.substr(dots + 2);
-    if (first_text == "random" || last_text == "random") return WrongSeeds(text);
-    const Result<std::uint64_t> first = ParseSeed(first_text);
-    const Result<std::uint64_t> last = ParseSeed(last_text);
-    if (!first || !last || *first > *last || *last - *first >= kMostSearches) return WrongSeeds(text);
+    const auto first = SeedOf(text.substr(0, dots));
+    const auto last = SeedOf(text.substr(dots + 2));
+    if (!first || !last || *first > *last || *last - *first >= kMostSearches) return std::nullopt;
     for (std::uint64_t i = 0; i <= *last - *first; ++i) seeds.push_back(*first + i);
     return seeds;
   }
   const auto items = SplitList(text);
-  if (!items || items->size() > kMostSearches) return WrongSeeds(text);
+  if (!items || items->size() > kMostSearches) return std::nullopt;
   for (const std::string& item : *items) {
-    const Result<std::uint64_t> seed = ParseSeed(item);
-    if (!seed || item == "random") return WrongSeeds(text);
+    const auto seed = SeedOf(item);
+    if (!seed) return std::nullopt;
     seeds.push_back(*seed);
   }
   return seeds;
@@ -71,7 +70,7 @@ std::vector<std::vector<ExtraSet>> Combinations(const std::vector<Sweep>& sweeps
     for (const std::vector<ExtraSet>& combination : combinations) {
       for (const std::string& value : sweep.values) {
         longer.push_back(combination);
-        longer.back().push_back({"--sweep " + sweep.key, sweep.key + "=" + value});
+        longer.back().push_back({"--sweep " + sweep.key, sweep.key, value});
       }
     }
     combinations = std::move(longer);
@@ -81,7 +80,7 @@ std::vector<std::vector<ExtraSet>> Combinations(const std::vector<Sweep>& sweeps
 
 }  // namespace
 
-Result<std::vector<SearchPlan>> PlanSearches(const CommonOptions& options,
+Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options, const SizeOptions& size,
                                              const std::vector<std::string>& sweeps,
                                              const std::string& seeds) {
   if (!seeds.empty() && !options.seed.empty())
@@ -97,9 +96,12 @@ Result<std::vector<SearchPlan>> PlanSearches(const CommonOptions& options,
   }
   std::vector<std::uint64_t> numbers;
   if (!seeds.empty()) {
-    const Result<std::vector<std::uint64_t>> list = ParseSeeds(seeds);
-    if (!list) return list.error();
-    numbers = *list;
+    const auto given = SeedsOf(seeds);
+    if (!given)
+      return InvalidInput(
+          fmt::format("--seeds {}: give a range (1..20) or a list (1,5,9) of at most {} whole numbers", seeds,
+                      kMostSearches));
+    numbers = *given;
     searches *= numbers.size();
   }
   if (searches > kMostSearches)
@@ -107,10 +109,14 @@ Result<std::vector<SearchPlan>> PlanSearches(const CommonOptions& options,
 
   std::vector<SearchPlan> plans;
   for (const std::vector<ExtraSet>& combination : Combinations(parsed)) {
-    const Result<Experiment> experiment = LoadExperimentWith(options, combination);
-    if (!experiment) return experiment.error();
+    std::vector<ExtraSet> extra = SetsOf(size);
     std::string settings;
-    for (const ExtraSet& set : combination) settings += (settings.empty() ? "" : ", ") + set.set;
+    for (const ExtraSet& set : combination) {
+      settings += fmt::format("{}{}={}", settings.empty() ? "" : ", ", set.key, set.value);
+      extra.push_back(set);
+    }
+    const Result<Experiment> experiment = LoadExperimentWith(options, extra);
+    if (!experiment) return experiment.error();
     if (numbers.empty()) plans.push_back({settings, *experiment});
     for (const std::uint64_t seed : numbers) {
       SearchPlan plan{fmt::format("{}{}seed {}", settings, settings.empty() ? "" : ", ", seed), *experiment};

@@ -91,23 +91,4 @@ std::string FormatDuration(double seconds) {
   return fmt::format("{} d {} h", hours / 24, hours % 24);
 }
 
-std::string FormatNumber(double value) {
-  return fmt::format("{}", value);
-}
-
-std::string ShellQuoted(std::string_view word) {
-  constexpr std::string_view kPlain =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@%+=:,./-";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string_view::npos) return std::string(word);
-  std::string quoted = "'";
-  for (const char c : word) {
-    if (c == '\'') {
-      quoted += "'\\''";
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "'";
-}
-
 }  // namespace gauntlet::master

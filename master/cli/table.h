@@ -42,9 +42,5 @@ std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent
 std::string FormatFitness(double fitness);
 // "0.8 s", "42 s", "3 min 05 s", "2 h 10 min", "5 d 3 h"; "-" when not finite or negative.
 std::string FormatDuration(double seconds);
-// Shortest text that reads back as the same number.
-std::string FormatNumber(double value);
-// The word as one argument of a POSIX shell, quoted only where needed.
-std::string ShellQuoted(std::string_view word);
 
 }  // namespace gauntlet::master

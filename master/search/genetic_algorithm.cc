@@ -130,8 +130,8 @@ SearchRow GeneticRow() {
           .members = "population",
           .plan =
               [](const Experiment& e) {
-                return fmt::format("{} test cases x {} generations", e.search.population,
-                                   e.search.generations);
+                return fmt::format("{} test cases x {} generation{}", e.search.population,
+                                   e.search.generations, e.search.generations == 1 ? "" : "s");
               },
           .make = Make<GeneticAlgorithm>};
 }

@@ -5,97 +5,16 @@
 #include <poll.h>
 
 #include <algorithm>
-#include <mutex>
 
-namespace gauntlet::master {
+#include "tests/support/fake_slurm.h"
+
+namespace gauntlet::slurm {
 namespace {
 
 using std::chrono::seconds;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-// A cluster in memory. Shared with the pool's thread.
-class FakeCluster {
- public:
-  std::vector<slurm::JobStatus> jobs;
-  std::vector<std::string> cancelled;
-  std::vector<std::vector<std::string>> options;
-  std::string refusal;           // of the next submissions; "" = accepted
-  bool loses_answers = false;    // accepts, but the answer does not arrive
-  std::string controller_error;  // of queries
-  int next_id = 1;
-  int queries = 0;
-  bool deaf = false;  // cancellations do not arrive
-  std::mutex mutex;
-
-  void Set(const std::string& id, const std::string& state, const std::string& reason = "") {
-    const std::lock_guard lock(mutex);
-    for (slurm::JobStatus& job : jobs) {
-      if (job.id != id) continue;
-      job.state = state;
-      job.phase = slurm::PhaseOf(state);
-      job.reason = reason;
-    }
-  }
-  std::vector<std::string> names() {
-    const std::lock_guard lock(mutex);
-    std::vector<std::string> result;
-    for (const slurm::JobStatus& job : jobs) result.push_back(job.name);
-    return result;
-  }
-};
-
-class FakeClient final : public slurm::SlurmClient {
- public:
-  explicit FakeClient(FakeCluster& cluster) : cluster_(cluster) {}
-  Result<std::string> Submit(const std::string& script, const std::vector<std::string>& options) override {
-    const std::lock_guard lock(cluster_.mutex);
-    if (!cluster_.refusal.empty()) return Error{ErrorKind::kInvalidInput, cluster_.refusal};
-    constexpr std::string_view kName = "--job-name=";
-    const std::size_t begin = script.find(kName) + kName.size();
-    const std::string id = std::to_string(cluster_.next_id++);
-    cluster_.options.push_back(options);
-    constexpr std::string_view kArray = "--array=1-";
-    const std::size_t array = script.find(kArray);
-    const int tasks = array == std::string::npos ? 1 : std::stoi(script.substr(array + kArray.size()));
-    for (int task = 1; task <= tasks; ++task) {
-      cluster_.jobs.push_back({.id = tasks == 1 ? id : id + "_" + std::to_string(task),
-                               .name = script.substr(begin, script.find('\n', begin) - begin),
-                               .state = "PENDING",
-                               .phase = slurm::JobPhase::kQueued,
-                               .reason = "",
-                               .nodes = ""});
-    }
-    if (cluster_.loses_answers) return Error{ErrorKind::kIo, "no answer within 15000 ms"};
-    return id;
-  }
-  Result<std::string> TestOnly(const std::string&, const std::vector<std::string>&) override {
-    return std::string();
-  }
-  Result<std::vector<slurm::JobStatus>> Queue(const std::string& prefix) override {
-    const std::lock_guard lock(cluster_.mutex);
-    ++cluster_.queries;
-    if (!cluster_.controller_error.empty()) return Error{ErrorKind::kIo, cluster_.controller_error};
-    std::vector<slurm::JobStatus> found;
-    for (const slurm::JobStatus& job : cluster_.jobs) {
-      if (job.name.starts_with(prefix)) found.push_back(job);
-    }
-    return found;
-  }
-  Status Cancel(const std::vector<std::string>& jobs) override {
-    const std::lock_guard lock(cluster_.mutex);
-    if (cluster_.deaf) return Error{ErrorKind::kIo, "scancel: connect failure"};
-    for (const std::string& id : jobs) {
-      cluster_.cancelled.push_back(id);
-      std::erase_if(cluster_.jobs, [&](const slurm::JobStatus& job) { return job.id == id; });
-    }
-    return Ok{};
-  }
-
- private:
-  FakeCluster& cluster_;
-};
 
 class SlurmPoolTest : public testing::Test {
  protected:
@@ -107,8 +26,8 @@ class SlurmPoolTest : public testing::Test {
     options.limits.max_queued = 3;
     options.job = {
         .name = "gauntlet-ab12-w", .worker = "w", .access_file = "/a", .log_directory = "/l", .slots = 1};
-    options.job_template = std::string(slurm::kWorkerTemplate);
-    pool_ = std::make_unique<SlurmPool>(options, std::make_unique<FakeClient>(cluster_));
+    options.job_template = std::string(kWorkerTemplate);
+    pool_ = std::make_unique<SlurmPool>(options, cluster_.MakeClient());
   }
   // Supervises, with the clock going on, until the pool's thread has nothing to say for a while.
   void Settle() {
@@ -117,7 +36,7 @@ class SlurmPoolTest : public testing::Test {
       now_ += seconds(1);
       pool_->Observe(view_, now_);
       ASSERT_TRUE(pool_->Supervise(now_).ok());
-      for (DispatchEvent& event : pool_->TakeEvents()) events_ += event.text + "\n";
+      for (master::DispatchEvent& event : pool_->TakeEvents()) events_ += event.text + "\n";
       std::vector<int> fds;
       pool_->AppendWaitFds(fds);
       pollfd waiting{fds.at(0), POLLIN, 0};
@@ -131,8 +50,8 @@ class SlurmPoolTest : public testing::Test {
     Settle();
   }
 
-  FakeCluster cluster_;
-  PoolView view_;
+  testing_support::FakeSlurm cluster_;
+  master::PoolView view_;
   TimePoint now_ = TimePoint{} + std::chrono::hours(1);
   std::string events_;
   std::unique_ptr<SlurmPool> pool_;
@@ -150,18 +69,8 @@ TEST_F(SlurmPoolTest, SubmitsWhatTheRunsNeedUnderNamesOfTheCampaign) {
 }
 
 TEST_F(SlurmPoolTest, AdoptsTheJobsOfAnEarlierMasterBeforeItSubmitsAny) {
-  cluster_.jobs = {{.id = "70",
-                    .name = "gauntlet-ab12-w9",
-                    .state = "RUNNING",
-                    .phase = slurm::JobPhase::kRunning,
-                    .reason = "",
-                    .nodes = "node1"},
-                   {.id = "71",
-                    .name = "somebody-else",
-                    .state = "RUNNING",
-                    .phase = slurm::JobPhase::kRunning,
-                    .reason = "",
-                    .nodes = "node1"}};
+  cluster_.Add("70", "gauntlet-ab12-w9", "RUNNING");
+  cluster_.Add("71", "somebody-else", "RUNNING");
   view_.unfinished_runs = 1;
   Settle();
   EXPECT_EQ(cluster_.names().size(), 2U) << "one run, one allocation: the adopted one";
@@ -301,4 +210,4 @@ TEST_F(SlurmPoolTest, ASilentControllerLosesNoAllocation) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet::slurm

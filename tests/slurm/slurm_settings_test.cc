@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace gauntlet::master {
+namespace gauntlet::slurm {
 namespace {
 
 using testing::ElementsAre;
@@ -30,10 +30,12 @@ TEST(ReadSlurmSettings, NamesPlaceKeyAndWhatIsAllowed) {
   EXPECT_EQ(error_of("partitoin=main"),
             "--slurm partitoin=main: unknown Slurm setting 'partitoin'; did you mean 'partition'?");
   EXPECT_EQ(error_of("max_queued=0"), "--slurm max_queued=0: max_queued is a whole number, 1 to 1000");
+  EXPECT_EQ(error_of("master=there"), "--slurm master=there: master is \"job\" or \"here\"");
   EXPECT_THAT(error_of("time_limit=2h"), HasSubstr("time limit '2h': give minutes"));
   const Result<SlurmSettings> settings = ReadSlurmSettings({{"\nqos = true\n", "s.toml", true}}, {});
   ASSERT_FALSE(settings.ok());
   EXPECT_THAT(settings.error().message, HasSubstr("s.toml:2:"));
+  EXPECT_THAT(settings.error().message, HasSubstr("qos is text: quality of service"));
 }
 
 TEST(WriteSlurmSettings, ReadsBackEqual) {
@@ -51,4 +53,4 @@ TEST(WriteSlurmSettings, ReadsBackEqual) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet::slurm

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "master/cli/common_options.h"
+#include "master/cli/options.h"
 #include "master/cli/stop_signal.h"
 #include "tests/master/cli/command_line_fixture.h"
 
@@ -95,6 +95,8 @@ TEST_F(CommandLine, SettingsReachTheExperiment) {
   EXPECT_EQ(started_directory_, Path("c"));
   EXPECT_THAT(err_.str(),
               HasSubstr("flocking: genetic search, 12 test cases x 7 generations, seed 1, 3 workers, in "));
+  EXPECT_EQ(Run({"evolve", "flocking", "--generations", "1", "--dir", Path("d")}), kExitDone);
+  EXPECT_THAT(err_.str(), HasSubstr("x 1 generation, seed"));
 }
 
 TEST_F(CommandLine, BadSettingsNameTheOptionThatWasTyped) {
@@ -134,6 +136,18 @@ TEST_F(CommandLine, OptionsOfAnotherSearchAreRefused) {
                    AllOf(HasSubstr("--set search.lag=5"), HasSubstr("'genetic' does not read search.lag")));
   ExpectUsageError({"evolve", "flocking", "--set", "search.mode=steady-state"},
                    AllOf(HasSubstr("search.mode"), HasSubstr("search.algorithm = \"steady-state\"")));
+}
+
+TEST_F(CommandLine, HelpOffersNoOptionThatTheCommandRefuses) {
+  ExpectUsageError({"evaluate", "flocking", "--case", "a.json", "--population", "4"},
+                   AllOf(HasSubstr("--population 4"), HasSubstr("--replicates")));
+  for (const char* command : {"random", "evaluate"}) {
+    ExpectUsageError({command, "flocking", "--case", "a.json", "--populatio", "4"},
+                     AllOf(HasSubstr("unknown option --"), Not(HasSubstr("'--population'"))));
+    EXPECT_EQ(Run({command, "--help"}), kExitDone);
+    EXPECT_THAT(out_.str(), AllOf(Not(HasSubstr("--generations")), Not(HasSubstr("--population")),
+                                  HasSubstr("--workers")));
+  }
 }
 
 TEST_F(CommandLine, OptionsThatContradictEachOtherAreRefused) {

@@ -8,18 +8,13 @@
 #include <rapidcheck/gtest.h>
 
 #include "master/cli/table.h"
+#include "tests/support/fake_clock.h"
 
 namespace gauntlet::master {
 namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-class FakeClock final : public Clock {
- public:
-  TimePoint Now() const override { return now; }
-  TimePoint now{};
-};
 
 CampaignProgress Halfway() {
   CampaignProgress progress;
@@ -94,9 +89,9 @@ class Printer : public ::testing::Test {
             [] { return std::size_t{100}; }};
   }
   int Lines() const { return static_cast<int>(std::count(written_.begin(), written_.end(), '\n')); }
-  void Advance(std::chrono::milliseconds time) { clock_.now += time; }
+  void Advance(std::chrono::milliseconds time) { clock_.Advance(time); }
 
-  FakeClock clock_;
+  testing_support::FakeClock clock_;
   std::string written_;
 };
 

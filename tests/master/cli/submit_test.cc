@@ -7,6 +7,7 @@
 
 #include "master/cli/command_line.h"
 #include "master/cli/sweep.h"
+#include "tests/support/fake_slurm.h"
 #include "tests/support/local_socket.h"
 
 namespace gauntlet::master {
@@ -19,44 +20,6 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-// What a cluster was asked, and what it answers.
-struct Requests {
-  std::vector<std::string> tested;
-  std::vector<std::string> submitted;
-  std::vector<std::string> cancelled;
-  std::vector<slurm::JobStatus> queue;
-  std::string refusal;
-};
-
-class FakeSlurm final : public slurm::SlurmClient {
- public:
-  explicit FakeSlurm(Requests& requests) : requests_(requests) {}
-  Result<std::string> Submit(const std::string& script, const std::vector<std::string>&) override {
-    requests_.submitted.push_back(script);
-    return std::string("12");
-  }
-  Result<std::string> TestOnly(const std::string& script, const std::vector<std::string>&) override {
-    requests_.tested.push_back(script);
-    if (!requests_.refusal.empty()) return InvalidInput(requests_.refusal);
-    return std::string("Job 3 to start at once");
-  }
-  Result<std::vector<slurm::JobStatus>> Queue(const std::string& prefix) override {
-    std::vector<slurm::JobStatus> found;
-    for (slurm::JobStatus job : requests_.queue) {
-      job.name = prefix + job.name;
-      found.push_back(job);
-    }
-    return found;
-  }
-  Status Cancel(const std::vector<std::string>& jobs) override {
-    requests_.cancelled.insert(requests_.cancelled.end(), jobs.begin(), jobs.end());
-    return Ok{};
-  }
-
- private:
-  Requests& requests_;
-};
-
 class Submit : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -66,6 +29,7 @@ class Submit : public ::testing::Test {
     std::filesystem::remove_all(root_);
     std::filesystem::create_directories(root_);
     setenv("XDG_CONFIG_HOME", root_.c_str(), 1);
+    cluster_.next_id = 12;
   }
   void TearDown() override { std::filesystem::remove_all(root_); }
 
@@ -73,7 +37,7 @@ class Submit : public ::testing::Test {
     out_.str("");
     err_.str("");
     CommandContext context{.out = out_, .err = err_, .program = "gauntlet", .service = {}};
-    context.slurm = [this] { return std::make_unique<FakeSlurm>(requests_); };
+    context.slurm = [this] { return cluster_.MakeClient(); };
     context.service.prepare = [this](const std::string& directory, const std::vector<SearchPlan>& searches,
                                      const std::string& slurm) -> Status {
       prepared_ = searches;
@@ -88,9 +52,15 @@ class Submit : public ::testing::Test {
     return RunCommandLine(arguments, context);
   }
   std::string dir() const { return root_ / "c"; }
+  // Of the campaign's jobs, once its master's job was submitted.
+  std::string JobPrefix() const {
+    const std::string& name = cluster_.jobs.at(0).name;
+    EXPECT_THAT(name, ::testing::EndsWith("master"));
+    return name.substr(0, name.rfind("master"));
+  }
 
   std::filesystem::path root_;
-  Requests requests_;
+  testing_support::FakeSlurm cluster_;
   std::vector<SearchPlan> prepared_;
   std::string slurm_;
   std::string status_;
@@ -101,10 +71,10 @@ class Submit : public ::testing::Test {
 TEST_F(Submit, MakesTheCampaignAndItsMastersJob) {
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--slurm", "partition=short"}), kExitDone)
       << err_.str();
-  EXPECT_THAT(requests_.tested, SizeIs(2));
-  ASSERT_THAT(requests_.submitted, SizeIs(1));
-  EXPECT_THAT(requests_.submitted[0], AllOf(HasSubstr("resume " + dir() + " --as-job"),
-                                            HasSubstr("--requeue"), HasSubstr("#SBATCH --partition=short")));
+  EXPECT_THAT(cluster_.tested, SizeIs(2));
+  ASSERT_THAT(cluster_.submitted, SizeIs(1));
+  EXPECT_THAT(cluster_.submitted[0], AllOf(HasSubstr("resume " + dir() + " --as-job"), HasSubstr("--requeue"),
+                                           HasSubstr("#SBATCH --partition=short")));
   EXPECT_THAT(slurm_, HasSubstr("partition = \"short\""));
   EXPECT_THAT(prepared_, SizeIs(1));
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("job 12 is the master"), HasSubstr("gauntlet status")));
@@ -126,12 +96,12 @@ TEST_F(Submit, ADryRunPrintsScriptsAndAnswersAndChangesNothing) {
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--dry-run"}), kExitDone);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("# the master's job"), HasSubstr("exec "),
                                 HasSubstr("sbatch --test-only: Job 3 to start at once")));
-  requests_.refusal = "allocation failure: Invalid account or account/partition combination specified";
+  cluster_.refusal = "allocation failure: Invalid account or account/partition combination specified";
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--dry-run"}), kExitUsage);
   EXPECT_THAT(out_.str(), HasSubstr("Invalid account"));
   EXPECT_THAT(err_.str(), HasSubstr("--slurm account=NAME"));
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitUsage);
-  EXPECT_THAT(requests_.submitted, IsEmpty());
+  EXPECT_THAT(cluster_.submitted, IsEmpty());
   EXPECT_FALSE(std::filesystem::exists(dir()));
 }
 
@@ -145,44 +115,32 @@ TEST_F(Submit, AnAddressThatNoMasterCouldListenOnIsRefusedBeforeAnythingIsMade) 
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--master", "here", "--slurm", in_use}), kExitUsage);
   EXPECT_THAT(err_.str(), HasSubstr("Address already in use"));
   EXPECT_FALSE(std::filesystem::exists(dir()));
-  EXPECT_THAT(requests_.submitted, IsEmpty());
+  EXPECT_THAT(cluster_.submitted, IsEmpty());
 }
 
 TEST_F(Submit, ResumeGivesTheMasterToSlurmAgainUnlessOneIsThere) {
   ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
+  cluster_.Set("12", "NODE_FAIL");
   EXPECT_EQ(Run({"resume", dir()}), kExitDone) << err_.str();
-  EXPECT_THAT(requests_.submitted, SizeIs(2));
-  requests_.queue = {{.id = "13",
-                      .name = "master",
-                      .state = "PENDING",
-                      .phase = slurm::JobPhase::kQueued,
-                      .reason = "",
-                      .nodes = ""}};
+  EXPECT_THAT(cluster_.submitted, SizeIs(2));
   EXPECT_EQ(Run({"resume", dir()}), kExitUsage);
   EXPECT_THAT(err_.str(), HasSubstr("job 13 (PENDING) is the campaign's master already"));
-  EXPECT_THAT(requests_.submitted, SizeIs(2));
+  EXPECT_THAT(cluster_.submitted, SizeIs(2));
 }
 
 TEST_F(Submit, StopCancelsWhatIsLeft) {
   ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
-  requests_.queue = {{.id = "13",
-                      .name = "w1",
-                      .state = "RUNNING",
-                      .phase = slurm::JobPhase::kRunning,
-                      .reason = "",
-                      .nodes = "n1"},
-                     {.id = "14",
-                      .name = "w2",
-                      .state = "COMPLETED",
-                      .phase = slurm::JobPhase::kEnded,
-                      .reason = "",
-                      .nodes = "n1"}};
+  cluster_.Set("12", "COMPLETED");
+  cluster_.Add("13", JobPrefix() + "w1", "RUNNING");
+  cluster_.Add("14", JobPrefix() + "w2", "COMPLETED");
+  cluster_.Add("15", "somebody-else", "RUNNING");
   EXPECT_EQ(Run({"stop", dir()}), kExitDone);
-  EXPECT_THAT(requests_.cancelled, ElementsAre("13"));
+  EXPECT_THAT(cluster_.cancelled, ElementsAre("13"));
 }
 
 TEST_F(Submit, StatusListsTheJobsWithSlurmsWordsWhetherAMasterLivesOrNot) {
   ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
+  const std::string master = JobPrefix() + "master";
   status_ =
       R"json({"state": "running", "why_nothing_runs": null, "pool_trouble": "job 8 waits in the queue (Priority)",
                 "allocations": [
@@ -194,12 +152,8 @@ TEST_F(Submit, StatusListsTheJobsWithSlurmsWordsWhetherAMasterLivesOrNot) {
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("fewer workers than could be used: job 8 waits"), HasSubstr("7_1"),
                                 HasSubstr("n3"), HasSubstr("PENDING  Priority")));
   status_ = R"({"state": "stopped", "why_nothing_runs": "no master serves the campaign", "worker_list": []})";
-  requests_.queue = {{.id = "13",
-                      .name = "master",
-                      .state = "PENDING",
-                      .phase = slurm::JobPhase::kQueued,
-                      .reason = "Resources",
-                      .nodes = ""}};
+  cluster_.jobs.clear();
+  cluster_.Add("13", master, "PENDING", "Resources");
   EXPECT_EQ(Run({"status", dir()}), kExitDone);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("job 13, which is to be the master, is PENDING (Resources)"),
                                 HasSubstr("13 master")));
@@ -234,7 +188,7 @@ TEST_F(Submit, WrongSweepsAreRefusedByName) {
   EXPECT_THAT(error_of({"--seeds", "1..900", "--sweep", "search.population=4,6"}),
               HasSubstr("more than 1000"));
   EXPECT_THAT(error_of({"--seeds", "1..2", "--seed", "7"}), HasSubstr("give one of them"));
-  EXPECT_THAT(requests_.tested, IsEmpty());
+  EXPECT_THAT(cluster_.tested, IsEmpty());
 }
 
 }  // namespace

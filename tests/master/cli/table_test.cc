@@ -69,13 +69,5 @@ TEST(FormatDuration, ChoosesUnitsThatAPersonThinksIn) {
   EXPECT_EQ(FormatDuration(std::numeric_limits<double>::infinity()), "-");
 }
 
-TEST(ShellQuoted, QuotesOnlyWhatAShellWouldChange) {
-  EXPECT_EQ(ShellQuoted("campaigns/flocking-1"), "campaigns/flocking-1");
-  EXPECT_EQ(ShellQuoted("my runs"), "'my runs'");
-  EXPECT_EQ(ShellQuoted("it's"), "'it'\\''s'");
-  EXPECT_EQ(ShellQuoted(""), "''");
-  EXPECT_EQ(ShellQuoted("$HOME"), "'$HOME'");
-}
-
 }  // namespace
 }  // namespace gauntlet::master

@@ -1,17 +1,10 @@
-// gauntlet master, status, watch, stop: a campaign whose workers come from elsewhere.
-#include <poll.h>
-
-#include <chrono>
-#include <filesystem>
+#include "master/cli/status_text.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "base/printable.h"
-#include "master/cli/commands.h"
-#include "master/cli/common_options.h"
-#include "master/cli/run_campaign.h"
-#include "master/cli/stop_signal.h"
+#include "base/shell_quoted.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/table.h"
 #include "proto/json_text.h"
@@ -21,15 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kWatchMilliseconds = 1000;
-constexpr int kStopPollMilliseconds = 100;
 constexpr std::size_t kShownWorkers = 20;
-
-// Waits; false when Ctrl-C came.
-bool Pause(int milliseconds) {
-  poll(nullptr, 0, milliseconds);
-  return !StopSignal::Requested();
-}
 
 std::string Seconds(double seconds) {
   return fmt::format("{:.1f} s", seconds);
@@ -117,11 +102,11 @@ std::string StatusText(const Json& status, const std::string& directory) {
 }
 
 // What Slurm has of a campaign that no master serves.
-std::string WithJobs(CommandContext& context, const SlurmCampaign& campaign, Json status) {
-  const Result<std::vector<slurm::JobStatus>> jobs = LivingJobs(*context.slurm(), campaign);
+void AddJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, Json& status) {
+  const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*context.slurm());
   if (!jobs) {
     status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message);
-    return JsonText(status);
+    return;
   }
   status["allocations"] = Json::array();
   for (const slurm::JobStatus& job : *jobs) {
@@ -137,112 +122,25 @@ std::string WithJobs(CommandContext& context, const SlurmCampaign& campaign, Jso
     status["why_nothing_runs"] = fmt::format("job {}, which is to be the master, is {}{}", job.id, job.state,
                                              job.reason.empty() ? "" : " (" + job.reason + ")");
   }
-  return JsonText(status);
 }
 
-Result<std::string> Read(CommandContext& context, const StatusOptions& options) {
-  Result<std::string> text = context.service.status(options.directory);
+}  // namespace
+
+Result<std::string> CurrentStatus(CommandContext& context, const std::string& directory, bool json) {
+  Result<std::string> text = context.service.status(directory);
   if (!text) return text;
   Json status = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (!status.is_object()) return Error{ErrorKind::kCorrupt, "the status does not parse"};
   const std::string state = status.value("state", "");
   if (state == "stopped" || state == "finished") {
-    const Result<std::optional<SlurmCampaign>> submitted = FindSubmitted(options.directory);
+    const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
     if (!submitted) return submitted.error();
-    if (submitted->has_value()) text = WithJobs(context, **submitted, std::move(status));
+    if (submitted->has_value()) {
+      AddJobs(context, **submitted, status);
+      text = JsonText(status);
+    }
   }
-  if (options.json) return text;
-  return StatusText(Json::parse(*text), options.directory);
-}
-
-// What Slurm still has of a campaign without a master. False when Slurm did not answer.
-bool CancelLeftovers(CommandContext& context, const StatusOptions& options) {
-  const Result<std::optional<SlurmCampaign>> submitted = FindSubmitted(options.directory);
-  if (submitted && !submitted->has_value()) return true;
-  const Result<std::vector<std::string>> cancelled =
-      submitted ? CancelJobs(context, **submitted) : Result<std::vector<std::string>>(submitted.error());
-  if (!cancelled) {
-    PrintMessage(context,
-                 fmt::format("{}; jobs of the campaign may be left: try again",
-                             cancelled.error().message + slurm::NextStep(cancelled.error().message)));
-    return false;
-  }
-  if (!cancelled->empty())
-    PrintMessage(context, fmt::format("cancelled job{} {}", cancelled->size() == 1 ? "" : "s",
-                                      fmt::join(*cancelled, ", ")));
-  return true;
-}
-
-}  // namespace
-
-ExitCode RunMaster(CommandContext& context, const MasterOptions& options) {
-  const CommonOptions& common = options.common;
-  std::error_code ignored;
-  const bool exists =
-      !common.directory.empty() && std::filesystem::exists(common.directory + "/campaign.db", ignored);
-  if (options.resume && common.directory.empty())
-    return Fail(context, InvalidInput("--resume needs --dir: which campaign is to go on?"));
-  const Result<Experiment> experiment = LoadExperimentWith(common, {});
-  if (!experiment) return Fail(context, experiment.error());
-  Result<std::string> directory = common.directory;
-  if (!options.resume || !exists) directory = NewDirectory(common, *experiment);
-  if (!directory) return Fail(context, directory.error());
-
-  CampaignRun campaign;
-  campaign.directory = *directory;
-  campaign.workers = 0;
-  campaign.bind = common.bind;
-  campaign.insecure = common.insecure;
-  campaign.run = [&](const SessionOptions& session) {
-    return options.resume && exists ? context.service.resume(*directory, session)
-                                    : context.service.start(*directory, *experiment, {}, session);
-  };
-  campaign.report = [&](const SessionReport& report) -> Status {
-    PrintSummary(context, report.summary, *directory, common.json);
-    return Ok{};
-  };
-  return RunCampaign(context, common, campaign);
-}
-
-ExitCode RunStatus(CommandContext& context, const StatusOptions& options) {
-  const Result<std::string> text = Read(context, options);
-  if (!text) return Fail(context, text.error());
-  context.out << *text << std::flush;
-  return kExitDone;
-}
-
-ExitCode RunWatch(CommandContext& context, const StatusOptions& options) {
-  const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
-  while (true) {
-    const Result<bool> lives = context.service.lives(options.directory);
-    if (!lives) return Fail(context, lives.error());
-    const Result<std::string> text = Read(context, options);
-    if (!text) return Fail(context, text.error());
-    // The screen is cleared on a terminal; elsewhere the states follow each other.
-    context.out << (context.out_is_terminal ? "\x1b[H\x1b[2J" : "") << *text << std::flush;
-    if (!*lives || !Pause(kWatchMilliseconds)) return kExitDone;
-  }
-}
-
-ExitCode RunStop(CommandContext& context, const StatusOptions& options) {
-  Result<bool> lives = context.service.lives(options.directory);
-  if (!lives) return Fail(context, lives.error());
-  if (!*lives) {
-    PrintMessage(context, fmt::format("no master serves {}: there is nothing to stop", options.directory));
-    return CancelLeftovers(context, options) ? kExitDone : kExitUsage;
-  }
-  if (const Status asked = context.service.stop(options.directory); !asked)
-    return Fail(context, asked.error());
-  PrintMessage(context, "the master lets the runs that have begun end, then stops (Ctrl-C: wait no longer)");
-  const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
-  while (*lives) {
-    if (!Pause(kStopPollMilliseconds)) return kExitDone;
-    lives = context.service.lives(options.directory);
-    if (!lives) return Fail(context, lives.error());
-  }
-  const bool clean = CancelLeftovers(context, options);
-  PrintMessage(context, "stopped");
-  return clean ? kExitDone : kExitUsage;
+  return json ? text : StatusText(status, directory);
 }
 
 }  // namespace gauntlet::master

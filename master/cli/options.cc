@@ -1,0 +1,208 @@
+#include "master/cli/options.h"
+
+#include <sched.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <random>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "master/directory/campaign_directory.h"
+#include "master/experiment/experiment_file.h"
+#include "master/search/search_table.h"
+
+namespace gauntlet::master {
+namespace {
+
+std::optional<std::uint64_t> ParseUnsigned(std::string_view text) {
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+int AvailableCores() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  if (sched_getaffinity(0, sizeof(cores), &cores) != 0) return 1;
+  return std::clamp(CPU_COUNT(&cores), 1, kMostWorkers);
+}
+
+}  // namespace
+
+void AddMessageOptions(CLI::App& command, MessageOptions& options) {
+  command.add_flag("--json", options.json, "the result as one JSON document on standard output");
+  command.add_flag("--quiet", options.quiet, "no progress and no messages but errors");
+  command.add_flag("--no-progress", options.no_progress, "messages, but no progress");
+}
+
+void AddServingOptions(CLI::App& command, ServingOptions& options) {
+  command
+      .add_option("--audit", options.audit,
+                  "share of runs, 0 to 1, that a second worker simulates too; a difference is told (default: "
+                  "0; not kept: tell `resume` too)")
+      ->type_name("P");
+  command
+      .add_option("--metrics-port", options.metrics_port,
+                  "serve Prometheus metrics on this port of 127.0.0.1 (0: any free one)")
+      ->type_name("PORT");
+  AddMessageOptions(command, options);
+}
+
+void AddRunningOptions(CLI::App& command, RunningOptions& options) {
+  command.add_option("--workers", options.workers, "worker processes on this machine (default: its cores)")
+      ->type_name("N");
+  AddServingOptions(command, options);
+}
+
+void AddBindOptions(CLI::App& command, BindOptions& options) {
+  command
+      .add_option("--bind", options.endpoint,
+                  "where workers connect: tcp://ADDRESS:PORT (IPv4, 0.0.0.0: all; port *: any free one) or "
+                  "ipc://PATH")
+      ->type_name("ENDPOINT");
+  command.add_flag("--insecure", options.insecure,
+                   "plaintext, open to everybody, also on an address that other machines can reach");
+}
+
+void AddExperimentOptions(CLI::App& command, ExperimentOptions& options) {
+  command
+      .add_option("EXPERIMENT", options.experiment,
+                  "a shipped experiment (see: gauntlet list experiments), or a TOML file")
+      ->required();
+  command
+      .add_option("--dir", options.directory,
+                  "directory of the campaign, new or empty (default: campaigns/EXPERIMENT-<UTC time>)")
+      ->type_name("DIR");
+  command.add_option("--seed", options.seed, "seed of the campaign (default: the experiment's, 1)")
+      ->type_name("S|random");
+  command
+      .add_option(
+          "--set", options.sets,
+          "change one value of the experiment, e.g. --set search.mutation_probability=0.1; repeatable")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void AddSizeOptions(CLI::App& command, SizeOptions& options) {
+  command.add_option("--generations", options.generations, "short for --set search.generations=G")
+      ->type_name("G");
+  command.add_option("--population", options.population, "short for --set search.population=P")
+      ->type_name("P");
+}
+
+void AddRefusedSizeOptions(CLI::App& command, SizeOptions& options) {
+  AddSizeOptions(command, options);
+  for (const char* option : {"--generations", "--population"}) command.get_option(option)->group("");
+}
+
+void AddDirectory(CLI::App& command, std::string& directory) {
+  command.add_option("DIR", directory, "directory of the campaign")->required();
+}
+
+Result<int> ParseWorkers(const std::string& text) {
+  if (text.empty()) return AvailableCores();
+  const std::optional<std::uint64_t> workers = ParseUnsigned(text);
+  if (!workers || *workers < 1 || *workers > static_cast<std::uint64_t>(kMostWorkers)) {
+    return InvalidInput(
+        fmt::format("--workers {}: must be a whole number from 1 to {}; this machine has {} cores", text,
+                    kMostWorkers, AvailableCores()));
+  }
+  return static_cast<int>(*workers);
+}
+
+Result<double> ParseShare(const std::string& option, const std::string& text) {
+  if (text.empty()) return 0.0;
+  double share = -1.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), share);
+  if (error == std::errc() && end == text.data() + text.size() && share >= 0.0 && share <= 1.0) return share;
+  return InvalidInput(fmt::format("{} {}: must be a share from 0 to 1, e.g. 0.05", option, text));
+}
+
+Result<std::uint64_t> ParseSeed(const std::string& text) {
+  if (text == "random") {
+    std::random_device device;
+    return (static_cast<std::uint64_t>(device()) << 32) | device();
+  }
+  if (const std::optional<std::uint64_t> seed = ParseUnsigned(text)) return *seed;
+  return InvalidInput(
+      fmt::format("--seed {}: must be a whole number from 0 to 18446744073709551615, or 'random'", text));
+}
+
+Result<int> ParseMetricsPort(const std::string& text) {
+  const std::optional<std::uint64_t> port = ParseUnsigned(text);
+  if (port && *port <= 65535) return static_cast<int>(*port);
+  return InvalidInput(
+      fmt::format("--metrics-port {}: must be a port from 1 to 65535, or 0 for any free one", text));
+}
+
+Result<std::uint64_t> ParseRunId(const std::string& text) {
+  const std::optional<std::uint64_t> id = ParseUnsigned(text);
+  if (id && *id >= 1) return *id;
+  return InvalidInput(fmt::format("{} is no run: RUN_ID is a whole number, see 'gauntlet show DIR'", text));
+}
+
+std::vector<ExtraSet> SetsOf(const SizeOptions& options) {
+  std::vector<ExtraSet> sets;
+  if (!options.generations.empty())
+    sets.push_back({"--generations", "search.generations", options.generations});
+  if (!options.population.empty()) sets.push_back({"--population", "search.population", options.population});
+  return sets;
+}
+
+Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const std::vector<ExtraSet>& extra) {
+  std::optional<std::uint64_t> seed;
+  if (!options.seed.empty()) {
+    const Result<std::uint64_t> parsed = ParseSeed(options.seed);
+    if (!parsed) return parsed.error();
+    seed = *parsed;
+  }
+  std::vector<std::string> sets = options.sets;
+  for (const auto& [option, key, value] : extra) {
+    const std::string one = fmt::format("{}={}", key, value);
+    for (const std::string& set : options.sets) {
+      if (!set.starts_with(key + "=") || set == one) continue;
+      return InvalidInput(fmt::format("--set {}: {} already says {}; give one of them", set, option, one));
+    }
+    sets.push_back(one);
+  }
+  Result<Experiment> experiment = LoadExperiment(options.experiment, sets, BuiltInCatalogue());
+  if (experiment) {
+    if (seed) experiment->seed = *seed;
+    return experiment;
+  }
+  // The person typed --generations 0, not --set search.generations=0.
+  Error error = experiment.error();
+  for (const auto& [option, key, value] : extra) {
+    const std::string place = fmt::format("--set {}={}:", key, value);
+    if (!error.message.starts_with(place)) continue;
+    error.message.replace(0, place.size(), fmt::format("{} {}:", option, value));
+    break;
+  }
+  return error;
+}
+
+std::string DefaultDirectory(const std::string& experiment_name, std::time_t now) {
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  const std::string base =
+      fmt::format("campaigns/{}-{:04}{:02}{:02}T{:02}{:02}{:02}Z", experiment_name, utc.tm_year + 1900,
+                  utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+  std::string directory = base;
+  std::error_code error;
+  for (int i = 2; std::filesystem::exists(directory, error); ++i) directory = fmt::format("{}-{}", base, i);
+  return directory;
+}
+
+Result<std::string> NewDirectory(const std::string& wanted, const Experiment& experiment) {
+  if (wanted.empty()) return DefaultDirectory(experiment.name, std::time(nullptr));
+  if (Status creatable = CampaignDirectory::CheckCreatable(wanted); !creatable) return creatable.error();
+  return wanted;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,94 @@
+// Options that several commands share, in groups: a command has the groups that it reads, and no others.
+#pragma once
+
+#include <cstdint>
+#include <ctime>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "master/experiment/experiment.h"
+
+namespace CLI {
+class App;
+}
+
+namespace gauntlet::master {
+
+// The values are texts as they were typed, "" where not given: they are judged by the functions below, whose
+// messages say what would be right.
+
+struct MessageOptions {
+  bool json = false;
+  bool quiet = false;
+  bool no_progress = false;
+};
+// Of a process that is a campaign's master.
+struct ServingOptions : MessageOptions {
+  std::string audit;
+  std::string metrics_port;
+};
+// Of a process that has workers on this machine too.
+struct RunningOptions : ServingOptions {
+  std::string workers;
+};
+// Where workers connect that come from elsewhere.
+struct BindOptions {
+  std::string endpoint;
+  bool insecure = false;
+};
+// What is to be run, and where it is kept.
+struct ExperimentOptions {
+  std::string experiment;
+  std::string directory;
+  std::string seed;
+  std::vector<std::string> sets;
+};
+// How long a genetic search is.
+struct SizeOptions {
+  std::string generations;
+  std::string population;
+};
+
+void AddMessageOptions(CLI::App& command, MessageOptions& options);
+void AddServingOptions(CLI::App& command, ServingOptions& options);
+void AddRunningOptions(CLI::App& command, RunningOptions& options);
+void AddBindOptions(CLI::App& command, BindOptions& options);
+void AddExperimentOptions(CLI::App& command, ExperimentOptions& options);
+void AddSizeOptions(CLI::App& command, SizeOptions& options);
+// Not in the command's help: they are read so that the command can say why it refuses them.
+void AddRefusedSizeOptions(CLI::App& command, SizeOptions& options);
+// The directory of a campaign that exists.
+void AddDirectory(CLI::App& command, std::string& directory);
+
+inline constexpr int kMostWorkers = 1024;
+
+// 1 to kMostWorkers; "" gives the cores that this process may use.
+Result<int> ParseWorkers(const std::string& text);
+// A share, 0 to 1; "" gives 0.
+Result<double> ParseShare(const std::string& option, const std::string& text);
+// A decimal number below 2^64, or "random", which draws one from the operating system.
+Result<std::uint64_t> ParseSeed(const std::string& text);
+// 0 (any free one) to 65535.
+Result<int> ParseMetricsPort(const std::string& text);
+// Decimal, at least 1.
+Result<std::uint64_t> ParseRunId(const std::string& text);
+
+// A setting of the experiment that an option stands for.
+struct ExtraSet {
+  std::string option;  // "--cases", for messages
+  std::string key;     // "search.cases"
+  std::string value;
+};
+// Those of --generations and --population that were given.
+std::vector<ExtraSet> SetsOf(const SizeOptions& options);
+// The experiment with --set, then `extra`, then --seed applied. Error: also when `extra` contradicts a --set.
+Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const std::vector<ExtraSet>& extra);
+
+// "campaigns/flocking-20260131T235959Z", with "-2", "-3", ... when that exists.
+std::string DefaultDirectory(const std::string& experiment_name, std::time_t now);
+// The directory of a new campaign: `wanted` (--dir), "" for the default. Error: it holds something already.
+Result<std::string> NewDirectory(const std::string& wanted, const Experiment& experiment);
+
+}  // namespace gauntlet::master

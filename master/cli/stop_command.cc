@@ -1,0 +1,73 @@
+// gauntlet stop: ends a campaign's master, its workers and its jobs.
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "master/cli/commands.h"
+#include "master/cli/options.h"
+#include "master/cli/stop_signal.h"
+#include "master/cli/submitted_campaign.h"
+
+namespace gauntlet::master {
+namespace {
+
+struct StopOptions {
+  std::string directory;
+};
+
+// What Slurm still has of a campaign without a master. False when Slurm did not answer.
+bool CancelLeftovers(CommandContext& context, const std::string& directory) {
+  const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
+  if (submitted && !submitted->has_value()) return true;
+  const Result<std::vector<std::string>> cancelled =
+      submitted ? (*submitted)->CancelJobs(*context.slurm())
+                : Result<std::vector<std::string>>(submitted.error());
+  if (!cancelled) {
+    PrintMessage(context, fmt::format("{}{}; jobs of the campaign may be left: try again",
+                                      cancelled.error().message, slurm::NextStep(cancelled.error().message)));
+    return false;
+  }
+  if (!cancelled->empty())
+    PrintMessage(context, fmt::format("cancelled job{} {}", cancelled->size() == 1 ? "" : "s",
+                                      fmt::join(*cancelled, ", ")));
+  return true;
+}
+
+// Returns when the master is gone.
+ExitCode RunStop(CommandContext& context, const StopOptions& options) {
+  constexpr int kPollMilliseconds = 100;
+  Result<bool> lives = context.service.lives(options.directory);
+  if (!lives) return Fail(context, lives.error());
+  if (!*lives) {
+    PrintMessage(context, fmt::format("no master serves {}: there is nothing to stop", options.directory));
+    return CancelLeftovers(context, options.directory) ? kExitDone : kExitUsage;
+  }
+  if (const Status asked = context.service.stop(options.directory); !asked)
+    return Fail(context, asked.error());
+  PrintMessage(context, "the master lets the runs that have begun end, then stops (Ctrl-C: wait no longer)");
+  const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
+  while (*lives) {
+    if (StopSignal::ComesWithin(kPollMilliseconds)) return kExitDone;
+    lives = context.service.lives(options.directory);
+    if (!lives) return Fail(context, lives.error());
+  }
+  const bool clean = CancelLeftovers(context, options.directory);
+  PrintMessage(context, "stopped");
+  return clean ? kExitDone : kExitUsage;
+}
+
+}  // namespace
+
+void AddStop(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("stop", "let a campaign end what has begun, and stop it", RunStop);
+  AddDirectory(command, options.directory);
+  command.footer(
+      R"(No more runs are given away; those that have begun end and are stored, workers leave, the master ends
+(exit 3). Returns when it is gone. Works from any machine that sees the directory. Of a submitted campaign
+all jobs are cancelled, and no others.
+
+Example:
+  gauntlet stop DIR)");
+}
+
+}  // namespace gauntlet::master
