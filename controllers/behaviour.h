@@ -14,6 +14,7 @@
 #include "controllers/parameters.h"
 #include "sim/arena/validity.h"
 #include "sim/run_spec.h"
+#include "sim/run_style.h"
 #include "sim/scenario.h"
 
 namespace gauntlet::controllers {
@@ -86,18 +87,11 @@ struct FailureType {
   std::string name;
 };
 
-// How texts and pictures call what is in a scenario's swarm.
-struct SwarmWords {
-  std::string_view member = "robot";  // one of those under test, singular
-  std::string_view lost = "lost";     // what RobotSummary::lost says of it
-  bool lost_is_failure = true;        // total failure means that too many were lost, not something of its own
-};
-
 struct ScenarioInfo {
   std::string_view name;
   std::string_view description;
   std::string_view default_controller;
-  SwarmWords words = {};
+  sim::RunStyle style = {};
   std::span<const ParameterInfo> parameters;
   std::string_view time_limit;  // the parameter, in s, after which a run ends at the latest
   std::span<const MetricInfo> metrics;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <vector>
 
 #include "analysis/figures/svg_canvas.h"
 #include "sim/arena/test_case.h"
@@ -37,19 +38,32 @@ class FigureFrame {
     return {kLeft + (p.x() + half_x_) * scale_, kTop + (half_y_ - p.y()) * scale_};
   }
 
+  std::vector<Pixel> At(const std::vector<sim::Vec2>& points) const {
+    std::vector<Pixel> pixels;
+    for (const sim::Vec2& point : points) pixels.push_back(At(point));
+    return pixels;
+  }
+
  private:
   double half_x_;
   double half_y_;
   double scale_;
 };
 
-// Blue for those who stayed, vermilion for the lost, green for the prey: told apart by colour-blind readers
+// A step of 1, 2 or 5 times a power of ten that divides `extent` into at most `most` parts.
+inline double NiceStep(double extent, double most) {
+  double step = 0.1;
+  for (int i = 0; step * most < extent && i < 60; ++i) step *= i % 3 == 1 ? 2.5 : 2.0;
+  return step;
+}
+
+// Blue for those who stayed, vermilion for the lost, green for the guide: told apart by colour-blind readers
 // (Okabe and Ito 2008).
 inline constexpr std::string_view kInk = "#22272e";
 inline constexpr std::string_view kSoftInk = "#5b6470";
 inline constexpr std::string_view kKeptColor = "#2b6cb0";
 inline constexpr std::string_view kLostColor = "#d1410c";
-inline constexpr std::string_view kPreyColor = "#00856a";
+inline constexpr std::string_view kGuideColor = "#00856a";
 inline constexpr std::string_view kPlanColor = "#4a5560";
 inline constexpr std::string_view kGoalColor = "#e0a800";
 inline constexpr std::string_view kSplitColor = "#7b1fa2";

@@ -8,6 +8,7 @@
 
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
+#include "sim/run_style.h"
 
 namespace gauntlet::analysis {
 
@@ -17,22 +18,19 @@ struct RunFigure {
   sim::RunSpec spec;       // what was simulated
   sim::RunResult result;   // with a trajectory; without one its waypoints are drawn
   std::vector<std::pair<std::string, std::string>> metrics;  // of the result, as the panel shows them
-  std::string member = "robot";                              // what one of the swarm is called, singular
-  bool lost_is_failure = true;  // total failure means that too many were lost, not something of its own
-  std::string lost = "lost";    // what RobotSummary::lost means, in a word
+  sim::RunStyle style;  // what the scenario calls its robots and how its annotations are drawn
 };
 
-// The robot whose planned path the result shows: the one that the annotation "path" names, or else the one
-// that starts where the path begins; -1 when there is none.
-int PreyOf(const sim::RunResult& result);
+// The robot whose planned path the result shows: the one that its annotation names, or else the one that
+// starts where the path begins; -1 when there is none.
+int GuideOf(const RunFigure& figure);
 
 // The run's outcome in words, e.g. "total failure: 6 of 10 birds lost".
 std::string DescribeOutcome(const RunFigure& figure);
 
 // A complete SVG document without scripts and outside references. Pure: same figure, same bytes.
-// Annotations drawn: "area" (where the swarm starts), "path" and "chain" (dashed lines), "disc" (a place, by
-// its label), "split" (the latest is marked and labelled), "trapped" (the robot's way from that tick on
-// stands out), "states" (where robots stood as a beacon), "transfer" (where an item changed hands).
+// Annotations are drawn as the style says; besides, of robots that an annotation "trapped" names, the way
+// from its tick on stands out.
 std::string DrawRun(const RunFigure& figure);
 
 }  // namespace gauntlet::analysis

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/figures/annotation_marks.h"
 #include "analysis/figures/robot_states.h"
 
 namespace gauntlet::analysis {
@@ -71,63 +72,79 @@ void DrawWaySwatch(SvgCanvas& canvas, Pixel middle, std::string_view color, doub
   }
 }
 
-void DrawPlacesLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure) {
-  const RobotStates states = StatesOf(figure.result);
-  if (std::find(states.names.begin(), states.names.end(), "beacon") != states.names.end()) {
-    panel.Row("beacon at the end, earlier", [&](Pixel p) {
-      DrawBeacon(canvas, {p.x - 6, p.y}, 12.0, true);
-      DrawRobot(canvas, {p.x - 6, p.y}, 5.0, 0.0, kKeptColor, "");
-      DrawBeacon(canvas, {p.x + 14, p.y}, 6.0, false);
-    });
-  }
-  const auto transfers = static_cast<std::size_t>(
-      std::count_if(figure.result.annotations.begin(), figure.result.annotations.end(),
-                    [](const sim::Annotation& annotation) {
-                      return annotation.kind == "transfer" && !annotation.points.empty();
-                    }));
-  if (transfers > 0) {
-    panel.Row(fmt::format("{} {} of an item", transfers, Plural("transfer", transfers)),
-              [&](Pixel p) { DrawTransfer(canvas, p); });
-  }
-  if (const sim::Annotation* chain = LatestAnnotation(figure, "chain")) {
-    panel.Row(fmt::format("{}, at {:.0f} s", Shortened(chain->label, 24), chain->tick * sim::kTickSeconds),
-              [&](Pixel p) {
-                canvas.Line({p.x - 17, p.y}, {p.x + 17, p.y}, "class=\"chain\"");
-              });
-  }
-  for (const sim::Annotation& disc : figure.result.annotations) {
-    if (disc.kind != "disc" || disc.points.empty()) continue;
-    panel.Row(disc.label.empty() ? "goal" : Shortened(disc.label, 26),
-              [&](Pixel p) { canvas.Circle(p, 8.0, fmt::format("class=\"{}\"", PlaceClass(disc))); });
+// The swatch of a mark.
+void DrawSwatch(SvgCanvas& canvas, Pixel p, sim::Mark mark) {
+  switch (mark) {
+    case sim::Mark::kArea:
+      return canvas.Rectangle({p.x - 14, p.y - 8}, 28, 16, "class=\"spawn\"");
+    case sim::Mark::kPlan:
+    case sim::Mark::kChain:
+      return canvas.Line({p.x - 17, p.y}, {p.x + 17, p.y}, fmt::format("class=\"{}\"", ClassOf(mark)));
+    case sim::Mark::kGoal:
+    case sim::Mark::kNest:
+    case sim::Mark::kFood:
+      return canvas.Circle(p, 8.0, fmt::format("class=\"{}\"", ClassOf(mark)));
+    case sim::Mark::kSplit:
+      canvas.Circle({p.x - 6, p.y}, 8.0, "class=\"split\"");
+      return DrawSplitRobot(canvas, {p.x + 10, p.y}, 5.0);
+    case sim::Mark::kTransfer:
+      return DrawTransfer(canvas, p);
+    case sim::Mark::kBeacon:
+      DrawBeacon(canvas, p, 12.0, true);
+      return DrawRobot(canvas, p, 5.0, 0.0, kKeptColor, "");
+    case sim::Mark::kFormerBeacon:
+      return DrawBeacon(canvas, p, 6.0, false);
   }
 }
 
-void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const std::vector<Track>& tracks) {
+// What annotations are drawn as, in the order of the style.
+void DrawMarksLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure) {
+  for (const sim::AnnotationStyle& style : figure.style.annotations) {
+    const auto draw = [&](Pixel p) { DrawSwatch(canvas, p, style.mark); };
+    if (style.mark == sim::Mark::kFormerBeacon) {
+      const RobotStates states = StatesOf(figure.result);
+      if (std::ranges::find(states.names, style.label) != states.names.end()) panel.Row(style.legend, draw);
+      continue;
+    }
+    const auto annotations = MarkedBy(figure, style);
+    if (annotations.empty()) continue;
+    if (style.mark == sim::Mark::kTransfer) {
+      panel.Row(fmt::format("{} {} of an item", annotations.size(), Plural(style.legend, annotations.size())),
+                draw);
+    } else if (!style.legend.empty()) {
+      panel.Row(style.legend, draw);
+    } else {
+      for (const sim::Annotation* one : annotations) {
+        const std::string when =
+            one->tick < 0 ? "" : fmt::format(", at {:.0f} s", one->tick * sim::kTickSeconds);
+        panel.Row(Shortened(one->label, 26) + when, draw);
+      }
+    }
+  }
+}
+
+void DrawWaysLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure,
+                    const std::vector<Track>& tracks) {
+  const sim::RunStyle& style = figure.style;
   const auto count = [&](TrackKind kind) {
-    return static_cast<std::size_t>(
-        std::count_if(tracks.begin(), tracks.end(), [kind](const Track& t) { return t.kind == kind; }));
+    return static_cast<std::size_t>(std::ranges::count(tracks, kind, &Track::kind));
   };
   const std::size_t kept = count(TrackKind::kKept);
   const std::size_t lost = count(TrackKind::kLost);
-  panel.Heading("LEGEND");
   if (kept > 0) {
-    panel.Row(fmt::format("{} {}, not {}", kept, Plural(figure.member, kept), figure.lost),
+    panel.Row(fmt::format("{} {}, not {}", kept, Plural(style.member, kept), style.lost),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kKeptColor, 2.0); });
   }
   if (lost > 0) {
-    const bool trapped = std::any_of(tracks.begin(), tracks.end(),
-                                     [](const Track& track) { return track.trapped_from.has_value(); });
-    panel.Row(fmt::format("{} {}, {}{}", lost, Plural(figure.member, lost), figure.lost,
+    const bool trapped =
+        std::ranges::any_of(tracks, [](const Track& track) { return track.trapped_from.has_value(); });
+    panel.Row(fmt::format("{} {}, {}{}", lost, Plural(style.member, lost), style.lost,
                           trapped ? ", then strong" : ""),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kLostColor, 2.6); });
   }
-  if (count(TrackKind::kPrey) > 0) {
-    panel.Row("prey, travelled", [&](Pixel p) { DrawWaySwatch(canvas, p, kPreyColor, 3.6); });
-  }
-  if (LatestAnnotation(figure, "path") != nullptr) {
-    panel.Row("planned path", [&](Pixel p) {
-      canvas.Line({p.x - 17, p.y}, {p.x + 17, p.y}, "class=\"plan\"");
-    });
+  if (count(TrackKind::kGuide) > 0) {
+    panel.Row(fmt::format("{}, travelled", style.guide),
+              [&](Pixel p) { DrawWaySwatch(canvas, p, kGuideColor, 3.6); });
   }
   if (!tracks.empty()) {
     panel.Row("faint = early, strong = late", [&](Pixel p) { DrawWaySwatch(canvas, p, kInk, 1.5); });
@@ -139,40 +156,28 @@ void DrawLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure, const 
               [&](Pixel p) { DrawRobot(canvas, p, 8.0, 0.0, kKeptColor, "3"); });
   }
   if (lost > 0) {
-    panel.Row(fmt::format("end of a {} {}", figure.lost, figure.member), [&](Pixel p) {
+    panel.Row(fmt::format("end of a {} {}", style.lost, style.member), [&](Pixel p) {
       DrawLostRing(canvas, p, 8.0, kLostColor);
       DrawRobot(canvas, p, 8.0, 0.0, kLostColor, "7");
     });
   }
-  if (LatestAnnotation(figure, "split") != nullptr) {
-    panel.Row("last split, and who left then", [&](Pixel p) {
-      canvas.Circle({p.x - 6, p.y}, 8.0, "class=\"split\"");
-      canvas.Polygon({{p.x + 10, p.y - 5}, {p.x + 15, p.y}, {p.x + 10, p.y + 5}, {p.x + 5, p.y}},
-                     "class=\"split-robot\"");
-    });
+}
+
+void DrawObstaclesLegend(SvgCanvas& canvas, Panel& panel, const sim::Genome& genome) {
+  if (!genome.empty()) {
+    panel.Row(
+        genome.size() == 1 ? std::string("obstacle 1") : fmt::format("obstacles 1 to {}", genome.size()),
+        [&](Pixel p) {
+          canvas.Rectangle({p.x - 14, p.y - 7}, 28, 14, "class=\"obstacle\"");
+          canvas.Text({p.x, p.y + 4.5}, "1", "class=\"obstacle-number\"");
+        });
   }
-  DrawPlacesLegend(canvas, panel, figure);
-  if (LatestAnnotation(figure, "area") != nullptr) {
-    panel.Row("area the swarm starts in", [&](Pixel p) {
-      canvas.Rectangle({p.x - 14, p.y - 8}, 28, 16, "class=\"spawn\"");
-    });
-  }
-  const std::size_t obstacles = figure.spec.test_case.obstacles.size();
-  if (obstacles > 0) {
-    panel.Row(obstacles == 1 ? std::string("obstacle 1") : fmt::format("obstacles 1 to {}", obstacles),
-              [&](Pixel p) {
-                canvas.Rectangle({p.x - 14, p.y - 7}, 28, 14, "class=\"obstacle\"");
-                canvas.Text({p.x, p.y + 4.5}, "1", "class=\"obstacle-number\"");
-              });
-  }
-  const sim::Genome& genome = figure.spec.test_case.obstacles;
-  if (std::any_of(genome.begin(), genome.end(), [](const sim::ObstacleGene& gene) { return gene.Moves(); })) {
+  if (std::ranges::any_of(genome, &sim::ObstacleGene::Moves)) {
     panel.Row("way of a moving obstacle", [&](Pixel p) {
       canvas.Line({p.x - 14, p.y}, {p.x + 14, p.y}, "class=\"obstacle-path\"");
     });
   }
-  const auto lit = std::find_if(genome.begin(), genome.end(), [](const auto& gene) { return gene.Lit(); });
-  if (lit != genome.end()) {
+  if (const auto lit = std::ranges::find_if(genome, &sim::ObstacleGene::Lit); lit != genome.end()) {
     panel.Row("lamps of an obstacle", [&](Pixel p) {
       canvas.Circle(p, 5.0, fmt::format("class=\"lamp\" fill=\"{}\"", sim::NameOf(lit->light)));
     });
@@ -206,74 +211,61 @@ void DrawFigures(Panel& panel, const RunFigure& figure) {
 
 }  // namespace
 
-const sim::Annotation* LatestAnnotation(const RunFigure& figure, std::string_view kind) {
-  const sim::Annotation* latest = nullptr;
-  for (const sim::Annotation& annotation : figure.result.annotations) {
-    if (annotation.kind != kind || annotation.points.empty()) continue;
-    if (latest == nullptr || annotation.tick >= latest->tick) latest = &annotation;
+std::string_view ClassOf(sim::Mark mark) {
+  switch (mark) {
+    case sim::Mark::kPlan:
+      return "plan";
+    case sim::Mark::kChain:
+      return "chain";
+    case sim::Mark::kNest:
+      return "nest";
+    case sim::Mark::kFood:
+      return "food";
+    default:
+      return "goal";
   }
-  return latest;
 }
 
 std::string DescribeOutcome(const RunFigure& figure) {
   const sim::RunResult& result = figure.result;
+  const sim::RunStyle& style = figure.style;
   if (result.verdict != sim::Verdict::kCompleted) {
     const std::string_view what = result.verdict == sim::Verdict::kRefused ? "refused" : "the run failed";
     return fmt::format("{}: {}", what, result.message);
   }
-  const int prey = PreyOf(result);
+  const int guide = GuideOf(figure);
   std::size_t members = 0;
   std::size_t lost = 0;
   for (std::size_t i = 0; i < result.robots.size(); ++i) {
-    if (static_cast<int>(i) == prey) continue;
+    if (static_cast<int>(i) == guide) continue;
     ++members;
     if (result.robots[i].lost) ++lost;
   }
   const std::string_view prefix = result.failure.total ? "total failure: " : "";
   const std::string who =
-      lost == 0 ? fmt::format("no {} {}", figure.member, figure.lost)
-                : fmt::format("{} of {} {} {}", lost, members, Plural(figure.member, members), figure.lost);
+      lost == 0 ? fmt::format("no {} {}", style.member, style.lost)
+                : fmt::format("{} of {} {} {}", lost, members, Plural(style.member, members), style.lost);
   const bool labelled = result.failure.total && !result.failure.label.empty();
   if (labelled && lost == 0) return fmt::format("{}{}", prefix, result.failure.label);
-  if (labelled && !figure.lost_is_failure) return fmt::format("{}{}; {}", prefix, result.failure.label, who);
+  if (labelled && !style.lost_is_failure) return fmt::format("{}{}; {}", prefix, result.failure.label, who);
   return fmt::format("{}{}", prefix, who);
 }
 
-std::string_view PlaceClass(const sim::Annotation& disc) {
-  if (disc.label == "nest") return "nest";
-  return disc.label == "food" ? "food" : "goal";
-}
-
-void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands) {
-  canvas.Polygon({{center.x, center.y - half},
-                  {center.x + half, center.y},
-                  {center.x, center.y + half},
-                  {center.x - half, center.y}},
-                 stands ? "class=\"beacon\"" : "class=\"beacon-before\"");
-}
-
-void DrawTransfer(SvgCanvas& canvas, Pixel center) {
-  canvas.Circle({center.x - 3, center.y}, 4.5, "class=\"transfer\"");
-  canvas.Circle({center.x + 3, center.y}, 4.5, "class=\"transfer\"");
-}
-
-void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {
+void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, double left, double right) {
   const sim::RunResult& result = figure.result;
   canvas.Text(
-      {FigureFrame::kLeft, 40},
+      {left, 40},
       Shortened(figure.run.empty() ? figure.experiment : fmt::format("{}, {}", figure.experiment, figure.run),
                 70),
       "class=\"title\"");
   const std::string outcome = DescribeOutcome(figure);
   const bool harmless = outcome.starts_with("no ");
   const bool bad = result.failure.total || result.verdict != sim::Verdict::kCompleted;
-  const std::string_view color = bad ? kLostColor : harmless ? kPreyColor : std::string_view("#9a6700");
-  canvas.Rectangle({FigureFrame::kLeft, 56}, 5, 20, fmt::format("fill=\"{}\"", color));
+  const std::string_view color = bad ? kLostColor : harmless ? kGuideColor : std::string_view("#9a6700");
+  canvas.Rectangle({left, 56}, 5, 20, fmt::format("fill=\"{}\"", color));
   const std::string line = Shortened(outcome, kMostTitle);
-  canvas.Text({FigureFrame::kLeft + 14, 71}, line,
-              fmt::format("class=\"outcome\" style=\"fill: {}\"", color));
+  canvas.Text({left + 14, 71}, line, fmt::format("class=\"outcome\" style=\"fill: {}\"", color));
   if (result.verdict != sim::Verdict::kCompleted) return;
-  const double right = frame.page_width() - 22;
   canvas.Text({right, 40},
               fmt::format("fitness {:.3f} after {:.0f} s", result.fitness, result.ticks * sim::kTickSeconds),
               "class=\"subtitle\"");
@@ -287,7 +279,10 @@ void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& fr
 void DrawPanel(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,
                const std::vector<Track>& tracks) {
   Panel panel(canvas, frame);
-  DrawLegend(canvas, panel, figure, tracks);
+  panel.Heading("LEGEND");
+  DrawWaysLegend(canvas, panel, figure, tracks);
+  DrawMarksLegend(canvas, panel, figure);
+  DrawObstaclesLegend(canvas, panel, figure.spec.test_case.obstacles);
   DrawFigures(panel, figure);
 }
 

@@ -11,17 +11,11 @@
 
 namespace gauntlet::analysis {
 
-// The annotation of that kind with the latest tick; nullptr when there is none.
-const sim::Annotation* LatestAnnotation(const RunFigure& figure, std::string_view kind);
+// How lines and places are styled: "plan", "chain", "nest", "food", and "goal" of every other mark.
+std::string_view ClassOf(sim::Mark mark);
 
-// The style of a place by its label: "nest", "food", and "goal" for all others.
-std::string_view PlaceClass(const sim::Annotation& disc);
-// A square on its corner, full where a beacon stands, hollow where one stood; `half` its diagonal, in pixels.
-void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands);
-// The mark of a hand-over between two robots, also used by the legend.
-void DrawTransfer(SvgCanvas& canvas, Pixel center);
-
-void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame);
+// Between `left` and `right`, in pixels.
+void DrawTitle(SvgCanvas& canvas, const RunFigure& figure, double left, double right);
 void DrawPanel(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame,
                const std::vector<Track>& tracks);
 

@@ -5,14 +5,15 @@
 
 #include <fmt/format.h>
 
+#include "analysis/figures/annotation_marks.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::analysis {
 namespace {
 
-constexpr double kLeastStep = 1.2;     // pixels between points that are drawn
-constexpr int kFadeSteps = 8;          // pieces of growing strength per way
-constexpr double kPreyArrows = 110.0;  // pixels of way between two arrowheads
+constexpr double kLeastStep = 1.2;      // pixels between points that are drawn
+constexpr int kFadeSteps = 8;           // pieces of growing strength per way
+constexpr double kGuideArrows = 110.0;  // pixels of way between two arrowheads
 constexpr double kLostArrows = 210.0;
 
 struct Rgb {
@@ -78,15 +79,9 @@ void ReadSummary(const sim::RobotSummary& summary, const FigureFrame& frame, Tra
 constexpr int kCrowd = 12;  // more ways than this hide one another
 
 double WidthOf(const Track& track) {
-  switch (track.kind) {
-    case TrackKind::kKept:
-      return track.crowded ? 0.8 : 1.5;
-    case TrackKind::kLost:
-      return track.trapped_from ? 1.2 : 2.3;
-    case TrackKind::kPrey:
-      return 3.2;
-  }
-  return 1.0;
+  if (track.kind == TrackKind::kKept) return track.crowded ? 0.8 : 1.5;
+  if (track.kind == TrackKind::kLost) return track.trapped_from ? 1.2 : 2.3;
+  return 3.2;
 }
 
 void DrawArrow(SvgCanvas& canvas, Pixel tip, double dx, double dy, double size, std::string_view color) {
@@ -98,10 +93,10 @@ void DrawArrow(SvgCanvas& canvas, Pixel tip, double dx, double dy, double size, 
 
 // Arrowheads along the way, the first half a distance from the start.
 void DrawArrows(SvgCanvas& canvas, const Track& track) {
-  const double every = track.kind == TrackKind::kPrey ? kPreyArrows : kLostArrows;
+  const double every = track.kind == TrackKind::kGuide ? kGuideArrows : kLostArrows;
   double way = every / 2;
   const double from = track.trapped_from.value_or(0.0);
-  const double size = track.kind == TrackKind::kPrey ? 11.0 : 8.0;
+  const double size = track.kind == TrackKind::kGuide ? 11.0 : 8.0;
   for (std::size_t i = 3; i < track.points.size(); ++i) {
     const Pixel a = track.points[i - 1];
     const Pixel b = track.points[i];
@@ -117,15 +112,22 @@ void DrawArrows(SvgCanvas& canvas, const Track& track) {
   }
 }
 
+void DrawDiamond(SvgCanvas& canvas, Pixel center, double half, std::string_view style) {
+  canvas.Polygon({{center.x, center.y - half},
+                  {center.x + half, center.y},
+                  {center.x, center.y + half},
+                  {center.x - half, center.y}},
+                 style);
+}
+
 }  // namespace
 
-int PreyOf(const sim::RunResult& result) {
-  for (const sim::Annotation& annotation : result.annotations) {
-    if (annotation.kind != "path" || annotation.points.empty()) continue;
-    if (!annotation.robots.empty()) return annotation.robots.front();
-    for (std::size_t i = 0; i < result.robots.size(); ++i) {
+int GuideOf(const RunFigure& figure) {
+  for (const sim::Annotation* plan : MarkedAs(figure, sim::Mark::kPlan)) {
+    if (!plan->robots.empty()) return plan->robots.front();
+    for (std::size_t i = 0; i < figure.result.robots.size(); ++i) {
       constexpr double kSamePlace = 1e-6;  // m
-      if ((result.robots[i].start.position - annotation.points.front()).norm() < kSamePlace) {
+      if ((figure.result.robots[i].start.position - plan->points.front()).norm() < kSamePlace) {
         return static_cast<int>(i);
       }
     }
@@ -137,13 +139,13 @@ std::vector<Track> TracksOf(const RunFigure& figure, const FigureFrame& frame) {
   const auto& result = figure.result;
   const std::size_t robots =
       std::max(result.robots.size(), result.trajectory.empty() ? 0 : result.trajectory.front().size());
-  const int prey = PreyOf(result);
+  const int guide = GuideOf(figure);
   std::vector<Track> tracks;
   for (std::size_t i = 0; i < robots; ++i) {
     Track track;
     track.robot = static_cast<int>(i);
     const bool lost = i < result.robots.size() && result.robots[i].lost;
-    track.kind = track.robot == prey ? TrackKind::kPrey : lost ? TrackKind::kLost : TrackKind::kKept;
+    track.kind = track.robot == guide ? TrackKind::kGuide : lost ? TrackKind::kLost : TrackKind::kKept;
     if (!result.trajectory.empty()) {
       ReadTrajectory(figure, frame, track);
     } else {
@@ -165,7 +167,7 @@ std::vector<Track> TracksOf(const RunFigure& figure, const FigureFrame& frame) {
     }
   }
   for (Track& track : tracks) {
-    if (track.kind == TrackKind::kPrey) track.color = kPreyColor;
+    if (track.kind == TrackKind::kGuide) track.color = kGuideColor;
   }
   for (const sim::Annotation& annotation : result.annotations) {
     if (annotation.kind != "trapped" || result.ticks <= 0) continue;
@@ -187,7 +189,7 @@ std::optional<sim::Vec2> PositionAt(const RunFigure& figure, int robot, sim::Tic
 }
 
 void DrawWay(SvgCanvas& canvas, const Track& track) {
-  const std::string_view name = track.kind == TrackKind::kPrey   ? "prey"
+  const std::string_view name = track.kind == TrackKind::kGuide  ? "guide"
                                 : track.kind == TrackKind::kLost ? "lost"
                                                                  : "kept";
   canvas.OpenGroup(fmt::format("class=\"way {}\" id=\"robot-{}\" stroke=\"{}\" stroke-width=\"{}\"", name,
@@ -241,7 +243,11 @@ void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, s
   if (!label.empty()) canvas.Text({center.x, center.y + 3.4}, label, "class=\"number\"");
 }
 
-void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Track>& tracks) {
+void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Track>& tracks,
+              std::string_view guide) {
+  const char letter = guide.empty() ? ' ' : guide.front();
+  const std::string initial(1,
+                            letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter);
   const double radius = std::max(6.5, sim::foot_bot::kRadius * frame.scale());
   for (const Track& track : tracks) {
     if (track.kind == TrackKind::kLost) {
@@ -250,8 +256,21 @@ void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Tra
   }
   for (const Track& track : tracks) {
     DrawRobot(canvas, frame.At(track.end.position), radius, track.end.heading, track.color,
-              track.kind == TrackKind::kPrey ? std::string("P") : fmt::format("{}", track.robot));
+              track.kind == TrackKind::kGuide ? initial : fmt::format("{}", track.robot));
   }
+}
+
+void DrawSplitRobot(SvgCanvas& canvas, Pixel center, double half) {
+  DrawDiamond(canvas, center, half, "class=\"split-robot\"");
+}
+
+void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands) {
+  DrawDiamond(canvas, center, half, stands ? "class=\"beacon\"" : "class=\"beacon-before\"");
+}
+
+void DrawTransfer(SvgCanvas& canvas, Pixel center) {
+  canvas.Circle({center.x - 3, center.y}, 4.5, "class=\"transfer\"");
+  canvas.Circle({center.x + 3, center.y}, 4.5, "class=\"transfer\"");
 }
 
 }  // namespace gauntlet::analysis

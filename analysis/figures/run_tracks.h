@@ -12,7 +12,7 @@
 
 namespace gauntlet::analysis {
 
-enum class TrackKind { kKept, kLost, kPrey };
+enum class TrackKind { kKept, kLost, kGuide };
 
 struct Track {
   int robot = 0;
@@ -33,11 +33,18 @@ std::optional<sim::Vec2> PositionAt(const RunFigure& figure, int robot, sim::Tic
 
 void DrawWay(SvgCanvas& canvas, const Track& track);
 void DrawStart(SvgCanvas& canvas, const FigureFrame& frame, const Track& track);
-// All robots at their ends, the lost ones ringed.
-void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Track>& tracks);
+// All robots at their ends, the lost ones ringed; the guide bears the initial of that word.
+void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Track>& tracks,
+              std::string_view guide);
 // The marks of one robot, also used by the legend. `radius` in pixels, heading in rad.
 void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, std::string_view color,
                std::string_view label);
 void DrawLostRing(SvgCanvas& canvas, Pixel center, double radius, std::string_view color);
+// One of those who left at a split: a square on its corner, `half` its diagonal, in pixels.
+void DrawSplitRobot(SvgCanvas& canvas, Pixel center, double half);
+// A square on its corner, full where a beacon stands, hollow where one stood.
+void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands);
+// The mark of a hand-over between two robots.
+void DrawTransfer(SvgCanvas& canvas, Pixel center);
 
 }  // namespace gauntlet::analysis

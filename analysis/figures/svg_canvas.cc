@@ -6,32 +6,26 @@
 
 #include <fmt/format.h>
 
+#include "base/utf8.h"
+
 namespace gauntlet::analysis {
 namespace {
 
-// Length of the well-formed UTF-8 sequence at the start of `text`, 0 when there is none (Unicode 15, table
-// 3-7).
-std::size_t SequenceLength(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
-  const auto continues = [&](std::size_t i) { return i < text.size() && (byte(i) & 0xC0) == 0x80; };
-  const std::uint8_t first = byte(0);
-  if (first < 0x80) return 1;
-  if (first >= 0xC2 && first <= 0xDF) return continues(1) ? 2 : 0;
-  if (first >= 0xE0 && first <= 0xEF) {
-    if (!continues(1) || !continues(2)) return 0;
-    const bool overlong = first == 0xE0 && byte(1) < 0xA0;
-    const bool surrogate = first == 0xED && byte(1) > 0x9F;
-    // U+FFFE and U+FFFF are no XML characters.
-    const bool non_character = first == 0xEF && byte(1) == 0xBF && byte(2) >= 0xBE;
-    return overlong || surrogate || non_character ? 0 : 3;
-  }
-  if (first >= 0xF0 && first <= 0xF4) {
-    if (!continues(1) || !continues(2) || !continues(3)) return 0;
-    const bool overlong = first == 0xF0 && byte(1) < 0x90;
-    const bool too_large = first == 0xF4 && byte(1) > 0x8F;
-    return overlong || too_large ? 0 : 4;
-  }
-  return 0;
+// What all pictures have in common.
+constexpr std::string_view kStyleSheet =
+    R"(text { font-family: 'DejaVu Sans', Verdana, Helvetica, Arial, sans-serif; font-size: 13px; fill: #22272e; }
+.title { font-size: 23px; font-weight: bold; }
+.outcome { font-size: 17px; font-weight: bold; }
+.subtitle { font-size: 13px; fill: #5b6470; text-anchor: end; }
+.heading { font-size: 11.5px; font-weight: bold; letter-spacing: 1.2px; fill: #5b6470; }
+.rule { stroke: #d5d9de; stroke-width: 1; }
+.axis { font-size: 12px; fill: #5b6470; }
+.tick { stroke: #5b6470; stroke-width: 1; }
+)";
+
+// U+FFFE and U+FFFF are no XML characters.
+bool IsNonCharacter(std::string_view sequence) {
+  return sequence == "\xef\xbf\xbe" || sequence == "\xef\xbf\xbf";
 }
 
 }  // namespace
@@ -40,13 +34,18 @@ std::string EscapeXml(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
-    const std::size_t length = SequenceLength(text);
-    const char c = text.front();
+    const std::size_t length = Utf8Length(text, 0);
     if (length == 0) {
       out += '?';
       text.remove_prefix(1);
       continue;
     }
+    if (IsNonCharacter(text.substr(0, length))) {
+      out += "???";
+      text.remove_prefix(length);
+      continue;
+    }
+    const char c = text.front();
     switch (c) {
       case '&':
         out += "&amp;";
@@ -87,8 +86,9 @@ SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::s
       std::back_inserter(out_),
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\">\n"
-      "<title>{}</title>\n<style>\n{}</style>\n",
-      w, h, w, h, EscapeXml(title), style_sheet);
+      "<title>{}</title>\n<style>\n{}{}</style>\n",
+      w, h, w, h, EscapeXml(title), kStyleSheet, style_sheet);
+  Rectangle({0, 0}, width, height, "fill=\"#ffffff\"");
 }
 
 void SvgCanvas::OpenGroup(std::string_view style) {

@@ -22,7 +22,8 @@ std::string SvgNumber(double value);
 // from our own code and are not escaped. Text is.
 class SvgCanvas {
  public:
-  // `style_sheet` is CSS. The title is what a viewer shows as the picture's name.
+  // A white page. `style_sheet` is CSS beside what all pictures have in common: the classes title, outcome,
+  // subtitle, heading, rule, axis and tick. The title is what a viewer shows as the picture's name.
   SvgCanvas(double width, double height, std::string_view title, std::string_view style_sheet);
 
   void OpenGroup(std::string_view style);

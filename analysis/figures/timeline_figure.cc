@@ -8,27 +8,19 @@
 
 #include "analysis/figures/figure_frame.h"
 #include "analysis/figures/robot_states.h"
+#include "analysis/figures/run_panel.h"
 #include "analysis/figures/svg_canvas.h"
 
 namespace gauntlet::analysis {
 namespace {
 
 constexpr std::string_view kTimelineStyle =
-    "text { font-family: 'DejaVu Sans', Verdana, Helvetica, Arial, sans-serif; font-size: 13px; fill: "
-    "#22272e; "
-    "}\n"
-    ".title { font-size: 23px; font-weight: bold; }\n"
-    ".outcome { font-size: 17px; font-weight: bold; }\n"
-    ".subtitle { font-size: 13px; fill: #5b6470; text-anchor: end; }\n"
-    ".heading { font-size: 11.5px; font-weight: bold; letter-spacing: 1.2px; fill: #5b6470; }\n"
-    ".rule { stroke: #d5d9de; stroke-width: 1; }\n"
-    ".axis { font-size: 12px; fill: #5b6470; }\n"
-    ".tick { stroke: #5b6470; stroke-width: 1; }\n"
-    ".guide { stroke: #ffffff; stroke-opacity: 0.55; stroke-width: 1; }\n"
-    ".row { font-size: 12px; text-anchor: end; }\n"
-    ".share { font-size: 12px; fill: #5b6470; text-anchor: end; }\n"
-    ".trapped { fill: none; stroke: #d1410c; stroke-width: 2.4; }\n"
-    ".trapped-text { font-size: 12px; font-weight: bold; fill: #d1410c; }\n";
+    R"(.guide { stroke: #ffffff; stroke-opacity: 0.55; stroke-width: 1; }
+.row { font-size: 12px; text-anchor: end; }
+.share { font-size: 12px; fill: #5b6470; text-anchor: end; }
+.trapped { fill: none; stroke: #d1410c; stroke-width: 2.4; }
+.trapped-text { font-size: 12px; font-weight: bold; fill: #d1410c; }
+)";
 
 class Timeline {
  public:
@@ -38,12 +30,12 @@ class Timeline {
         seconds_(std::max(1.0, figure.result.ticks * sim::kTickSeconds)),
         rows_bottom_(kTop + states_.robots * kRow),
         counts_bottom_(rows_bottom_ + kCountsTop + kCounts),
-        canvas_(kLeft + kWidth + kPanel, counts_bottom_ + 66,
-                fmt::format("{}, {}: what every {} did when", figure.experiment, figure.run, figure.member),
-                kTimelineStyle) {}
+        canvas_(
+            kLeft + kWidth + kPanel, counts_bottom_ + 66,
+            fmt::format("{}, {}: what every {} did when", figure.experiment, figure.run, figure.style.member),
+            kTimelineStyle) {}
 
   std::string Draw() {
-    canvas_.Rectangle({0, 0}, kLeft + kWidth + kPanel, counts_bottom_ + 66, "fill=\"#ffffff\"");
     DrawHead();
     DrawRows();
     DrawTrapped();
@@ -70,36 +62,23 @@ class Timeline {
   double RowTop(int robot) const { return kTop + robot * kRow + (kRow - kBar) / 2; }
 
   void DrawHead() {
-    canvas_.Text({kLeft, 40}, fmt::format("{}, {}", figure_.experiment, figure_.run), "class=\"title\"");
-    const bool bad = figure_.result.failure.total;
-    const std::string_view color = bad ? kLostColor : kPreyColor;
-    canvas_.Rectangle({kLeft, 56}, 5, 20, fmt::format("fill=\"{}\"", color));
-    canvas_.Text({kLeft + 14, 71}, DescribeOutcome(figure_),
-                 fmt::format("class=\"outcome\" style=\"fill: {}\"", color));
-    canvas_.Text({kLeft + kWidth + kPanel - 22, 40},
-                 fmt::format("fitness {:g} after {:.0f} s", figure_.result.fitness, seconds_),
-                 "class=\"subtitle\"");
-    if (!figure_.result.failure.label.empty()) {
-      canvas_.Text(
-          {kLeft + kWidth + kPanel - 22, 71},
-          fmt::format("failure type {}: {}", figure_.result.failure.type, figure_.result.failure.label),
-          "class=\"subtitle\"");
-    }
-    canvas_.Text({kLeft, kTop - 12}, fmt::format("WHAT EVERY {} DID", Upper(figure_.member)),
+    DrawTitle(canvas_, figure_, kLeft, kLeft + kWidth + kPanel - 22);
+    canvas_.Text({kLeft, kTop - 12}, fmt::format("WHAT EVERY {} DID", Upper(figure_.style.member)),
                  "class=\"heading\"");
     canvas_.Text({kLeft, rows_bottom_ + kCountsTop - 12},
-                 fmt::format("HOW MANY {}S DID WHAT", Upper(figure_.member)), "class=\"heading\"");
+                 fmt::format("HOW MANY {}S DID WHAT", Upper(figure_.style.member)), "class=\"heading\"");
   }
 
-  static std::string Upper(std::string text) {
+  static std::string Upper(std::string_view noun) {
+    std::string text(noun);
     for (char& c : text) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
     return text;
   }
 
   void DrawRows() {
     for (int robot = 0; robot < states_.robots; ++robot) {
-      canvas_.Text({kLeft - 10, RowTop(robot) + kBar - 3.5}, fmt::format("{} {}", figure_.member, robot),
-                   "class=\"row\"");
+      canvas_.Text({kLeft - 10, RowTop(robot) + kBar - 3.5},
+                   fmt::format("{} {}", figure_.style.member, robot), "class=\"row\"");
     }
     // Short spells last: they are drawn wider than they are and must not be covered.
     for (const bool brief : {false, true}) {
@@ -166,8 +145,7 @@ class Timeline {
   }
 
   void DrawTimeAxis() {
-    double step = 1.0;
-    for (int i = 0; seconds_ / step > 10.0 && i < 60; ++i) step *= i % 3 == 1 ? 2.5 : 2.0;
+    const double step = NiceStep(seconds_, 10.0);
     for (double second = 0.0; second <= seconds_; second += step) {
       const double x = X(second);
       canvas_.Line({x, kTop}, {x, rows_bottom_}, "class=\"guide\"");
@@ -190,7 +168,7 @@ class Timeline {
     const double right = kLeft + kWidth + kPanel - 22;
     double y = rows_bottom_ + kCountsTop + 4;
     canvas_.Text({left, y}, "STATE", "class=\"heading\"");
-    canvas_.Text({right, y}, fmt::format("MEAN {}S", Upper(figure_.member)),
+    canvas_.Text({right, y}, fmt::format("MEAN {}S", Upper(figure_.style.member)),
                  "class=\"heading\" text-anchor=\"end\"");
     canvas_.Line({left, y + 6}, {right, y + 6}, "class=\"rule\"");
     y += 24;

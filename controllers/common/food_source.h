@@ -1,5 +1,5 @@
 // A place that hands out items and never runs out: one item per interval, to one robot after the other in the
-// order of their arrival (spec 3.3; thesis 5.4.1 "one food resource, which never runs out"). Of foraging and
+// order of their arrival (thesis 5.4.1 "one food resource, which never runs out"). Of foraging and
 // of task partitioning.
 #pragma once
 

@@ -19,7 +19,7 @@ struct PotentialFieldSettings {
 // and eta such that its length is 1 at `balance`. Zero when nothing is near enough.
 sim::Vec2 Repulsion(const ProximitySum& near, const PotentialFieldSettings& settings);
 
-// The form of Buchanan's dps code (spec 4.4): away from what is near, a unit vector; straight ahead when
+// The form of Buchanan's dps code: away from what is near, a unit vector; straight ahead when
 // nothing is, or only something faint (a sum below 0.5) dead ahead (within 5 degrees).
 sim::Vec2 Diffusion(const ProximitySum& near);
 

@@ -1,4 +1,4 @@
-// Wandering: straight on, and now and then a new heading (Buchanan's dps code, spec section 1).
+// Wandering: straight on, and now and then a new heading (Buchanan's dps code).
 #pragma once
 
 #include "controllers/common/steering.h"

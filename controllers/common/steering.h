@@ -18,7 +18,7 @@ struct SteeringThresholds {
   double turn_rate = 0.0;  // rad/s on the spot; 0 = 2 * speed / wheel distance, one wheel each way at `speed`
 };
 
-// The common steering primitive (spec section 1): straight at `speed`, an arc that is slower and tighter the
+// The common steering primitive: straight at `speed`, an arc that is slower and tighter the
 // larger the bearing, or a turn on the spot at the turn rate. Never turns past the bearing
 // within one tick while it drives an arc.
 DriveCommand Steer(double bearing, double speed, const SteeringThresholds& thresholds);

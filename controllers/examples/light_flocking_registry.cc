@@ -18,6 +18,11 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"clusters", "", false, "groups of robots that are linked by line of sight at the end", true},
 });
 
+constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+    {"area", "", sim::Mark::kArea, "area the swarm starts in"},
+    {"disc", "light", sim::Mark::kGoal, ""},
+});
+
 sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& test_case) {
   return CornerToCorner(test_case, LightFlockingScenarioParameters().Read(parameters).corner_distance);
 }
@@ -88,6 +93,7 @@ const ScenarioInfo& LightFlockingScenarioInfo() {
       .name = "light-flocking",
       .description = "example: robots flock from corner to corner, to a light (ARGoS' sample behaviour)",
       .default_controller = "light-flocking",
+      .style = {.annotations = kAnnotations},
       .parameters = LightFlockingScenarioParameters().infos(),
       .time_limit = "time_limit",
       .metrics = kMetrics,

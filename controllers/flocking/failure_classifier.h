@@ -1,5 +1,5 @@
 // Why a flock fell apart: finds every split of a finished run and classifies the last one by the relative
-// angle and the relative speed of the two clusters (thesis 4.4; spec 2.6, items 1 to 8).
+// angle and the relative speed of the two clusters (thesis 4.4).
 #pragma once
 
 #include <optional>
@@ -38,8 +38,8 @@ struct SplitHistory {
 SplitHistory FindSplits(const sim::Observer& observer, const sim::Arena& arena, sim::RobotIndex prey,
                         const SplitRule& rule);
 
-// The split that counts: the latest, of these the one with most birds, of these the one with the lowest bird
-// (spec 2.6 item 4). nullptr when there is none.
+// The split that counts: the latest, of these the one with most birds, of these the one with the lowest bird,
+// nullptr when there is none.
 const SplitEvent* LastSplit(const std::vector<SplitEvent>& events);
 
 // The velocities of two clusters compared.
@@ -51,7 +51,7 @@ RelativeMotion CompareMotion(const sim::Observer& observer, const SplitEvent& sp
 
 inline constexpr int kFailureTypes = 20;
 // 0..9: the angle in steps of 10 degrees (the last: above 90), slower cluster at least half as fast as the
-// faster one; 10..19: the same angles, slower than half (spec 2.6 items 6 to 8).
+// faster one; 10..19: the same angles, slower than half.
 int FailureTypeOf(const RelativeMotion& motion);
 // In words: "10-20 degrees apart, one cluster slower than half the other".
 std::string FailureLabel(int type);

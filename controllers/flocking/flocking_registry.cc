@@ -27,6 +27,13 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"split_speed_ratio", "", true, "slower cluster over faster one around the last split"},
 });
 
+constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+    {"area", "", sim::Mark::kArea, "area the swarm starts in"},
+    {"path", "", sim::Mark::kPlan, "planned path"},
+    {"disc", "", sim::Mark::kGoal, ""},
+    {"split", "", sim::Mark::kSplit, "last split, and who left then"},
+});
+
 const std::vector<FailureType>& FailureTypes() {
   static const std::vector<FailureType> types = [] {
     std::vector<FailureType> all;
@@ -136,7 +143,7 @@ const ScenarioInfo& FlockingScenarioInfo() {
       .name = "flocking",
       .description = "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
       .default_controller = "flocking",
-      .words = {.member = "bird"},
+      .style = {.member = "bird", .guide = "prey", .annotations = kAnnotations},
       .parameters = FlockingParameters().infos(),
       .time_limit = "time_limit",
       .metrics = kMetrics,

@@ -1,5 +1,5 @@
 // The prey: the informed robot that the birds follow. It knows the map and its own place through Headquarters
-// (thesis 3.3.3.2, 4.3.1; spec 2.2), ignores the birds and sees nothing.
+// (thesis 3.3.3.2, 4.3.1), ignores the birds and sees nothing.
 #pragma once
 
 #include <cstddef>

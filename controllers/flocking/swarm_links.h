@@ -1,4 +1,4 @@
-// Who follows whom: the graph of robots that see each other, with a short memory (spec 2.5, 2.6 item 1). Both
+// Who follows whom: the graph of robots that see each other, with a short memory. Both
 // the metrics at the end of a run and the search for splits stand on it.
 #pragma once
 

@@ -27,6 +27,14 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"mean_robots_*", "", false, "robots in that state, mean over the run"},
 });
 
+constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+    {"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
+    {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
+    {"chain", "", sim::Mark::kChain, ""},
+    {"disc", "nest", sim::Mark::kNest, ""},
+    {"disc", "food", sim::Mark::kFood, ""},
+});
+
 sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& /*test_case*/) {
   return RequirementsOf(ForagingParameters().Read(parameters));
 }
@@ -190,7 +198,7 @@ const ScenarioInfo& ForagingScenarioInfo() {
       .name = "foraging",
       .description = "robots bring items from a source of food to the nest (thesis chapter 5)",
       .default_controller = "foraging",
-      .words = {.lost = "trapped", .lost_is_failure = false},
+      .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
       .parameters = ForagingParameters().infos(),
       .time_limit = "time_limit",
       .metrics = kMetrics,

@@ -1,5 +1,5 @@
 // How far a robot carries an item before it offers it to another: a constant (static strategy) or learnt
-// (dynamic strategy; Buchanan, Pomfret and Timmis 2016, "DPS"; spec 4.6).
+// (dynamic strategy; Buchanan, Pomfret and Timmis 2016, "DPS").
 #pragma once
 
 #include <cstdint>

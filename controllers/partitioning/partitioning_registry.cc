@@ -34,6 +34,13 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"mean_robots_*", "", false, "robots in that state, mean over the run"},
 });
 
+constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+    {"transfer", "", sim::Mark::kTransfer, "transfer"},
+    {"disc", "nest", sim::Mark::kNest, ""},
+    {"disc", "food", sim::Mark::kFood, ""},
+    {"disc", "light", sim::Mark::kGoal, ""},
+});
+
 sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& /*test_case*/) {
   return RequirementsOf(PartitioningParameters().Read(parameters));
 }
@@ -263,7 +270,7 @@ const ScenarioInfo& PartitioningScenarioInfo() {
       .name = "task-partitioning",
       .description = "robots bring items to the nest and hand them over on the way (thesis chapter 6)",
       .default_controller = "task-partitioning",
-      .words = {.lost = "trapped", .lost_is_failure = false},
+      .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
       .parameters = PartitioningParameters().infos(),
       .time_limit = "time_limit",
       .metrics = kMetrics,

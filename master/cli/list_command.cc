@@ -88,9 +88,19 @@ std::string MetricTable(std::span<const controllers::MetricInfo> metrics) {
   Table table({{"metric", Align::kLeft}, {"unit", Align::kLeft}, {"", Align::kLeft}});
   for (const controllers::MetricInfo& info : metrics) {
     table.AddRow({std::string(info.name), std::string(info.unit),
-                  fmt::format("{}{}", info.description, info.may_be_none ? "; -1 = none" : "")});
+                  fmt::format("{}{}{}", info.description, info.may_be_none ? "; -1 = none" : "",
+                              info.descriptor ? "; describes behaviour" : "")});
   }
   return table.ToText(4);
+}
+
+std::string FailureTable(std::span<const controllers::FailureType> failures) {
+  if (failures.empty()) return {};
+  Table table({{"failure type", Align::kRight}, {"", Align::kLeft}});
+  for (const controllers::FailureType& failure : failures) {
+    table.AddRow({fmt::format("{}", failure.type), failure.name});
+  }
+  return "\n" + table.ToText(4);
 }
 
 std::string ExperimentsText() {
@@ -107,7 +117,8 @@ std::string ScenariosText() {
     text +=
         "\n  " + Wrapped(fmt::format("{}: {}", scenario.name, scenario.description), kTextWidth, 4) + "\n";
     text += fmt::format("    controller unless another is named: {}\n\n", scenario.default_controller);
-    text += ParameterTable(scenario.parameters) + "\n" + MetricTable(scenario.metrics);
+    text += ParameterTable(scenario.parameters) + "\n" + MetricTable(scenario.metrics) +
+            FailureTable(scenario.failure_types);
   }
   return text;
 }
@@ -167,8 +178,15 @@ Json MetricsJson(std::span<const controllers::MetricInfo> metrics) {
     list.push_back({{"name", info.name},
                     {"unit", info.unit},
                     {"may_be_none", info.may_be_none},
+                    {"descriptor", info.descriptor},
                     {"description", info.description}});
   }
+  return list;
+}
+
+Json FailuresJson(std::span<const controllers::FailureType> failures) {
+  Json list = Json::array();
+  for (const auto& [type, name] : failures) list.push_back({{"type", type}, {"name", name}});
   return list;
 }
 
@@ -214,7 +232,9 @@ Json ScenariosJson() {
                     {"description", scenario.description},
                     {"default_controller", scenario.default_controller},
                     {"parameters", ParametersJson(scenario.parameters)},
-                    {"metrics", MetricsJson(scenario.metrics)}});
+                    {"time_limit", scenario.time_limit},
+                    {"metrics", MetricsJson(scenario.metrics)},
+                    {"failure_types", FailuresJson(scenario.failure_types)}});
   }
   return list;
 }

@@ -12,6 +12,7 @@
 #include "analysis/figures/timeline_figure.h"
 #include "analysis/figures/trajectory_csv.h"
 #include "base/printable.h"
+#include "controllers/registry.h"
 #include "master/cli/commands.h"
 #include "master/cli/evaluation.h"
 #include "master/cli/metric_text.h"
@@ -63,15 +64,6 @@ Status CheckOwnFiles(const ReplayOptions& options) {
   return Ok{};
 }
 
-std::string NounOf(const std::string& scenario) {
-  return scenario == "flocking" ? "bird" : "robot";
-}
-
-// What it means that a robot counts as lost.
-std::string LostWordOf(const std::string& scenario) {
-  return scenario == "foraging" || scenario == "task-partitioning" ? "trapped" : "lost";
-}
-
 analysis::RunFigure FigureOf(const CampaignReplay& replay) {
   analysis::RunFigure figure;
   figure.experiment = replay.experiment.name;
@@ -79,9 +71,7 @@ analysis::RunFigure FigureOf(const CampaignReplay& replay) {
   figure.spec = replay.report.spec;
   figure.result = replay.report.replayed;
   figure.metrics = MetricTexts(figure.spec.scenario, figure.result.metrics);
-  figure.member = NounOf(replay.report.spec.scenario);
-  figure.lost = LostWordOf(replay.report.spec.scenario);
-  figure.lost_is_failure = figure.lost == "lost";
+  if (const auto* scenario = controllers::FindScenario(figure.spec.scenario)) figure.style = scenario->style;
   return figure;
 }
 

@@ -106,6 +106,11 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
                           {"runs", IdsJson(member.runs)}});
   }
 
+  Json failure_types = Json::array();
+  for (const FailureCount& failure : summary.failure_types) {
+    failure_types.push_back({{"type", failure.type}, {"name", failure.name}, {"runs", failure.runs}});
+  }
+
   Json without_result = Json::array();
   for (const RunsWithoutResult& group : summary.runs_without_result) {
     without_result.push_back(
@@ -133,8 +138,8 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
           {"mean_fitness", FitnessJson(summary.mean_fitness)},
           {"worst_fitness", FitnessJson(summary.worst_fitness)},
           {"total_failures", summary.total_failures},
-          {"failure_types", summary.failure_types},
-          {"unclassified_failures", summary.unclassified_failures},
+          {"failure_types", std::move(failure_types)},
+          {"unclassified_failures", summary.untyped_failures},
           {"statistics", std::move(statistics)},
           {"history", std::move(generations)},
           {"population", std::move(population)},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include <fmt/format.h>
@@ -51,17 +52,34 @@ std::string Overview(const CampaignSummary& summary) {
   table.AddRow({"total failures", fmt::format("{} of {} runs ({})", FormatCount(summary.total_failures),
                                               FormatCount(summary.runs_done),
                                               Percent(summary.total_failures, summary.runs_done))});
-  if (summary.total_failures > 0) {
-    const auto types = std::count_if(summary.failure_types.begin(), summary.failure_types.end(),
-                                     [](std::uint64_t count) { return count > 0; });
-    std::string text = fmt::format("{} of {}", types, summary.failure_types.size());
-    if (summary.unclassified_failures > 0) {
-      text += fmt::format("; {} failures without a split", FormatCount(summary.unclassified_failures));
+  if (summary.total_failures > 0 && !summary.failure_types.empty()) {
+    const auto seen =
+        std::ranges::count_if(summary.failure_types, [](const auto& one) { return one.runs > 0; });
+    std::string text = fmt::format("{} of {}", seen, summary.failure_types.size());
+    if (const std::uint64_t untyped = summary.untyped_failures; untyped > 0) {
+      text += fmt::format("; {} {} {}", FormatCount(untyped), untyped == 1 ? "failure" : "failures",
+                          summary.untyped);
     }
     table.AddRow({"failure types", text});
   }
   table.AddRow({"state hash", summary.state_hash});
   return table.ToText();
+}
+
+// The failure types that occurred, the most frequent first.
+std::string FailuresByType(const CampaignSummary& summary) {
+  std::vector<FailureCount> failures = summary.failure_types;
+  std::erase_if(failures, [](const FailureCount& one) { return one.runs == 0; });
+  if (failures.empty()) return {};
+  std::ranges::stable_sort(failures, std::greater(), &FailureCount::runs);
+  Table table({{"runs", Align::kRight}, {"type", Align::kRight}, {"total failure", Align::kLeft}});
+  for (const FailureCount& one : failures) {
+    table.AddRow({FormatCount(one.runs), fmt::format("{}", one.type), one.name});
+  }
+  if (summary.untyped_failures > 0) {
+    table.AddRow({FormatCount(summary.untyped_failures), "-", summary.untyped});
+  }
+  return "\n" + table.ToText();
 }
 
 // "6 of 8 refused: no-room-to-spawn: ...", the most frequent first.
@@ -208,8 +226,8 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
                         FormatCount(summary.runs_done));
   }
-  text += Overview(summary) + RunsWithoutAResult(summary, context.directory) + Generations(summary) +
-          Members(summary);
+  text += Overview(summary) + FailuresByType(summary) + RunsWithoutAResult(summary, context.directory) +
+          Generations(summary) + Members(summary);
 
   std::vector<Hint> hints;
   if (!summary.finished) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "controllers/registry.h"
 #include "master/report/state_digest.h"
 #include "master/report/stored_search.h"
 #include "master/report/verdict_text.h"
@@ -35,12 +36,8 @@ void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
   if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) ++summary.runs_failed;
   if (!run.total_failure) return;
   ++summary.total_failures;
-  const auto type = static_cast<std::size_t>(run.failure_type);
-  if (run.failure_type >= 0 && type < summary.failure_types.size()) {
-    ++summary.failure_types[type];
-  } else {
-    ++summary.unclassified_failures;
-  }
+  const auto counted = std::ranges::find(summary.failure_types, run.failure_type, &FailureCount::type);
+  ++(counted != summary.failure_types.end() ? counted->runs : summary.untyped_failures);
 }
 
 void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
@@ -104,6 +101,10 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.experiment = experiment.name;
   summary.search = experiment.search.algorithm;
   summary.seed = experiment.seed;
+  if (const auto* scenario = controllers::FindScenario(experiment.scenario)) {
+    for (const auto& [type, name] : scenario->failure_types) summary.failure_types.push_back({type, name});
+    summary.untyped = scenario->untyped_failure;
+  }
 
   const Result<SavedProgress> saved = RestoreSearch(search_id, store, search);
   if (!saved) return saved.error();

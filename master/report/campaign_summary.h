@@ -1,7 +1,6 @@
 // What `show` says of a campaign: a plain struct, so that the terminal table, the JSON and reports agree.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -42,6 +41,13 @@ struct RunsWithoutResult {
   RunId first_run = 0;  // the first of them
 };
 
+// Total failures of one of the types that the scenario declares.
+struct FailureCount {
+  int type = 0;
+  std::string name;
+  std::uint64_t runs = 0;
+};
+
 struct CampaignSummary {
   std::string settings;  // of a search in a sweep, what tells it from the others
   std::string experiment;
@@ -56,8 +62,9 @@ struct CampaignSummary {
   double mean_fitness = 0.0;
   double worst_fitness = 0.0;
   std::uint64_t total_failures = 0;
-  std::array<std::uint64_t, 20> failure_types{};           // total failures per type
-  std::uint64_t unclassified_failures = 0;                 // total failures without a split event
+  std::vector<FailureCount> failure_types;                 // every one that the scenario declares
+  std::uint64_t untyped_failures = 0;                      // total failures of none of these types
+  std::string untyped;                                     // what they are, in words: "without a split"
   std::vector<std::pair<std::string, double>> statistics;  // of the search itself
   std::vector<GenerationSummary> generations;
   std::vector<PopulationMember> population;

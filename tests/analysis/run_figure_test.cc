@@ -20,12 +20,18 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
+constexpr sim::AnnotationStyle kStyles[] = {{"area", "", sim::Mark::kArea, "area the swarm starts in"},
+                                            {"path", "", sim::Mark::kPlan, "planned path"},
+                                            {"disc", "", sim::Mark::kGoal, ""},
+                                            {"split", "", sim::Mark::kSplit, "last split, and who left then"},
+                                            {"transfer", "", sim::Mark::kTransfer, "transfer"}};
+
 // Three birds and a prey (robot 3) that walk from the upper right to the lower left; bird 1 stays behind.
 RunFigure ThreeBirds() {
   RunFigure figure;
   figure.experiment = "flocking";
   figure.run = "run 12";
-  figure.member = "bird";
+  figure.style = {.member = "bird", .guide = "prey", .annotations = kStyles};
   figure.spec.scenario = "flocking";
   figure.spec.controller = "flocking-original";
   figure.spec.seed = 18446744073709551615U;
@@ -138,7 +144,7 @@ TEST(RunFigure, EveryRobotHasItsWayByItsFate) {
   const pugi::xml_document document = Parse(DrawRun(ThreeBirds()));
   EXPECT_EQ(Find(document, "//g[@class='way kept']").size(), 2U);
   EXPECT_EQ(Find(document, "//g[@class='way lost'][@id='robot-1']").size(), 1U);
-  EXPECT_EQ(Find(document, "//g[@class='way prey'][@id='robot-3']").size(), 1U);
+  EXPECT_EQ(Find(document, "//g[@class='way guide'][@id='robot-3']").size(), 1U);
   // The lost bird's end and the legend's explanation of it.
   EXPECT_EQ(Find(document, "//circle[@class='ring']").size(), 2U);
 }
@@ -219,8 +225,8 @@ TEST(RunFigure, TellsTheOutcomeInWords) {
   nobody_lost.result.failure.label = "no path, no food";
   EXPECT_EQ(DescribeOutcome(nobody_lost), "total failure: no path, no food");
   RunFigure trapped = figure;  // where being trapped is no failure by itself
-  trapped.lost_is_failure = false;
-  trapped.lost = "trapped";
+  trapped.style.lost_is_failure = false;
+  trapped.style.lost = "trapped";
   trapped.result.failure.label = "no path";
   EXPECT_EQ(DescribeOutcome(trapped), "total failure: no path; 1 of 3 birds trapped");
   const std::string texts = Texts(Parse(DrawRun(figure)));
@@ -236,13 +242,30 @@ TEST(RunFigure, TellsTheOutcomeInWords) {
   EXPECT_EQ(DescribeOutcome(figure), "no bird lost");
 }
 
-TEST(RunFigure, ThePreyIsTheRobotThatBeginsThePlannedPath) {
-  sim::RunResult result = ThreeBirds().result;
-  EXPECT_EQ(PreyOf(result), 3);
-  result.annotations[1].robots = {2};
-  EXPECT_EQ(PreyOf(result), 2);
-  result.annotations.clear();
-  EXPECT_EQ(PreyOf(result), -1);
+TEST(RunFigure, TheGuideIsTheRobotThatBeginsThePlannedPath) {
+  RunFigure figure = ThreeBirds();
+  EXPECT_EQ(GuideOf(figure), 3);
+  figure.result.annotations[1].robots = {2};
+  EXPECT_EQ(GuideOf(figure), 2);
+  figure.result.annotations.clear();
+  EXPECT_EQ(GuideOf(figure), -1);
+}
+
+TEST(RunFigure, SpeaksTheWordsOfTheScenario) {
+  const std::string texts = Texts(Parse(DrawRun(ThreeBirds())));
+  EXPECT_THAT(texts, HasSubstr("prey, travelled\n"));
+  EXPECT_THAT(texts, HasSubstr("\nP\n"));
+  EXPECT_THAT(texts, HasSubstr("planned path\n"));
+  EXPECT_THAT(texts, HasSubstr("last split, and who left then\n"));
+  EXPECT_THAT(texts, HasSubstr("area the swarm starts in\n"));
+}
+
+TEST(RunFigure, WhatTheScenarioDoesNotDeclareIsNotDrawn) {
+  RunFigure figure = ThreeBirds();
+  figure.style.annotations = {};
+  const pugi::xml_document document = Parse(DrawRun(figure));
+  EXPECT_THAT(Texts(document), Not(HasSubstr("split")));
+  EXPECT_TRUE(Find(document, "//circle[@class='goal']").empty());
 }
 
 TEST(RunFigure, ARefusedRunStillShowsItsArena) {

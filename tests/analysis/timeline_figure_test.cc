@@ -13,12 +13,18 @@ namespace {
 
 using ::testing::HasSubstr;
 
+constexpr sim::AnnotationStyle kStyles[] = {{"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
+                                            {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
+                                            {"chain", "", sim::Mark::kChain, ""},
+                                            {"disc", "nest", sim::Mark::kNest, ""},
+                                            {"disc", "food", sim::Mark::kFood, ""}};
+
 // Two robots, 100 s: one goes home twice for one second each, one stands as a beacon and is trapped later.
 RunFigure TwoForagers() {
   RunFigure figure;
   figure.experiment = "foraging";
   figure.run = "run 7";
-  figure.lost = "trapped";
+  figure.style = {.lost = "trapped", .annotations = kStyles};
   figure.result.ticks = 1000;
   figure.result.robots.resize(2);
   figure.result.robots[1].lost = true;
@@ -38,6 +44,7 @@ RunFigure TwoForagers() {
        -1,
        {0}},
       {"states", "wandering,homing,beacon", {{0.0, 2.0}, {30.0, 0.0}}, 0.0, -1, {1}},
+      {"beacon", "beacon", {{1.0, 0.0}}, 0.0, 1000, {0}},
   };
   return figure;
 }
@@ -120,6 +127,7 @@ TEST(ForagingPicture, ShowsNestFoodBeaconsPathAndTheLoopOfTheTrapped) {
   EXPECT_EQ(count("//g[@id='robot-1']/polyline[@class='loop']"), 1U);
   EXPECT_EQ(count("//g[@id='robot-0']/polyline[@class='loop']"), 0U);
   EXPECT_THAT(TextsOf(document), HasSubstr("1 of 2 robots trapped"));
+  EXPECT_THAT(TextsOf(document), HasSubstr("first path of beacons, at 30 s\n"));
 }
 
 }  // namespace

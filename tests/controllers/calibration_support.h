@@ -22,7 +22,7 @@ struct Specs {
   std::vector<sim::RunSpec> random;
 };
 
-// Copies of `spec` with seeds and cases. Genes by spec 1.1, redrawn one by one until valid.
+// Copies of `spec` with seeds and cases. Genes are redrawn one by one until valid.
 Specs MakeSpecs(const sim::RunSpec& spec, const Amounts& amounts);
 
 // In the order of the specs, each with its CPU time.

@@ -108,26 +108,26 @@ INSTANTIATE_TEST_SUITE_P(
     DependencyRules, LayerTest,
     testing::Values(
         LayerRule{"sim", {"sim/"}, kWorldOutside},
-        LayerRule{
-            "controllers",
-            {"controllers/", "base/", "sim/geometry/", "sim/random/", "sim/arena/", "sim/robot/",
-             "sim/scenario.h", "sim/observer.h", "sim/headquarters.h", "sim/run_spec.h", "sim/run_result.h"},
-            [] {
-              std::vector<std::string> libraries = kWorldOutside;
-              libraries.push_back("box2d");
-              return libraries;
-            }()},
+        LayerRule{"controllers",
+                  {"controllers/", "base/", "sim/geometry/", "sim/random/", "sim/arena/", "sim/robot/",
+                   "sim/scenario.h", "sim/observer.h", "sim/headquarters.h", "sim/run_spec.h",
+                   "sim/run_result.h", "sim/run_style.h"},
+                  [] {
+                    std::vector<std::string> libraries = kWorldOutside;
+                    libraries.push_back("box2d");
+                    return libraries;
+                  }()},
         LayerRule{"worker", {"worker/", "sim/", "controllers/registry.h", "proto/"}, {"box2d", "sqlite3"}},
         LayerRule{"analysis",
                   {"analysis/", "base/", "sim/geometry/", "sim/arena/", "sim/random/", "sim/run_spec.h",
-                   "sim/run_result.h", "sim/observer.h", "sim/robot/foot_bot.h"},
+                   "sim/run_result.h", "sim/run_style.h", "sim/observer.h", "sim/robot/foot_bot.h"},
                   {"zmq", "google/", "sqlite3", "box2d", "thread", "sys/"}},
-        LayerRule{
-            "master",
-            {"master/", "analysis/", "slurm/", "proto/", "base/", "sim/geometry/", "sim/arena/",
-             "sim/random/", "sim/run_spec.h", "sim/run_result.h", "sim/observer.h", "sim/robot/foot_bot.h",
-             "sim/robot/disturbances.h", "sim/robot/color.h", "controllers/registry.h"},
-            {"box2d"}},
+        LayerRule{"master",
+                  {"master/", "analysis/", "slurm/", "proto/", "base/", "sim/geometry/", "sim/arena/",
+                   "sim/random/", "sim/run_spec.h", "sim/run_result.h", "sim/run_style.h", "sim/observer.h",
+                   "sim/robot/foot_bot.h", "sim/robot/disturbances.h", "sim/robot/color.h",
+                   "controllers/registry.h"},
+                  {"box2d"}},
         LayerRule{"slurm", {"slurm/", "base/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
     [](const testing::TestParamInfo<LayerRule>& parameter) { return parameter.param.layer; });
 

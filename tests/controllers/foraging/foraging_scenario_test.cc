@@ -223,7 +223,7 @@ TEST(ForagingRefusals, ASwarmThatDoesNotFitIsNamed) {
   sim::RunSpec spec = Spec("foraging", 1);
   spec.scenario_parameters = {{"robots", 100.0}, {"spawn_radius", 0.4}};
   EXPECT_THAT(RefusalOf(spec), StartsWith("no-room-to-spawn: "));
-  spec.scenario_parameters["robots"] = 10.0;  // fit once the area has been enlarged a little (spec 1.1)
+  spec.scenario_parameters["robots"] = 10.0;  // fit once the area has been enlarged a little
   EXPECT_EQ(worker::Run(spec).verdict, sim::Verdict::kCompleted);
   spec.test_case.robots = 101;
   EXPECT_THAT(RefusalOf(spec), StartsWith("swarm-size: 101 robots"));

@@ -73,7 +73,7 @@ TEST(PartitioningScenario, OneRobotAloneWorksWithoutTransfers) {
 }
 
 TEST(PartitioningScenario, ItemsPerWindowKeepThePhysicalBound) {
-  // A robot carries one item per round trip of 2 * 4 m less the widths of nest and source.
+  // A robot carries one item per round trip of 2 * 4 m less the widths of nest and source.
   sim::RunSpec spec = PartitionSpec("task-partitioning", 2);
   const sim::RunResult result = worker::Run(spec);
   const double round_trip = 2.0 * (4.0 - 0.5 - 0.36) / 0.05;

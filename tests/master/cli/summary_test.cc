@@ -30,9 +30,11 @@ CampaignSummary Evolved() {
   summary.mean_fitness = 0.2125;
   summary.worst_fitness = 0.633;
   summary.total_failures = 231;
-  summary.failure_types[12] = 200;
-  summary.failure_types[3] = 30;
-  summary.unclassified_failures = 1;
+  for (int type = 0; type < 20; ++type) summary.failure_types.push_back({type, "apart", 0});
+  summary.failure_types[12] = {12, "slowly apart", 200};
+  summary.failure_types[3].runs = 30;
+  summary.untyped_failures = 1;
+  summary.untyped = "without a split";
   summary.statistics = {{"clone_rate", 0.61}};
   for (std::uint32_t g = 1; g <= 50; ++g)
     summary.generations.push_back({g, 20, 20, 0.3 - 0.006 * g, 0.5, 0.9, g});
@@ -57,7 +59,9 @@ TEST(SummaryJson, HasTheKeysOfTheContract) {
   EXPECT_EQ(json.at("total_failures"), 231);
   EXPECT_EQ(json.at("finished"), true);
   EXPECT_EQ(json.at("failure_types").size(), 20U);
-  EXPECT_EQ(json.at("failure_types")[12], 200);
+  EXPECT_EQ(json.at("failure_types")[12], Json({{"type", 12}, {"name", "slowly apart"}, {"runs", 200}}));
+  EXPECT_EQ(json.at("failure_types")[0].at("runs"), 0);
+  EXPECT_EQ(json.at("unclassified_failures"), 1);
   EXPECT_EQ(json.at("history").size(), 50U);
   const Json& member = json.at("population").at(0);
   EXPECT_EQ(member.at("id"), 17);
@@ -95,12 +99,24 @@ TEST(SummaryText, EndsWithCommandsOnTheToughestCase) {
   const std::string text = SummaryText(Evolved(), {"gauntlet", "campaigns/my runs"});
   EXPECT_THAT(text, HasSubstr("flocking: genetic search, seed 18446744073709551615, finished"));
   EXPECT_THAT(text, HasSubstr("231 of 1,000 runs (23.1 %)"));
-  EXPECT_THAT(text, HasSubstr("2 of 20; 1 failures without a split"));
+  EXPECT_THAT(text, HasSubstr("2 of 20; 1 failure without a split"));
   const std::size_t hints = text.find("Next commands to try");
   ASSERT_NE(hints, std::string::npos);
   EXPECT_THAT(text.substr(hints),
               AllOf(HasSubstr("gauntlet replay 'campaigns/my runs' 813 --svg case-18.svg"),
                     HasSubstr("gauntlet show 'campaigns/my runs' --json"), Not(HasSubstr("resume"))));
+}
+
+TEST(SummaryText, NamesTheFailureTypesThatOccurredMostFrequentFirst) {
+  EXPECT_THAT(SummaryText(Evolved(), {"gauntlet", "d"}), HasSubstr("   200    12  slowly apart\n"
+                                                                   "    30     3  apart\n"
+                                                                   "     1     -  without a split\n"));
+}
+
+TEST(SummaryText, SpeaksOfNoFailureTypesWhereTheScenarioHasNone) {
+  CampaignSummary summary = Evolved();
+  summary.failure_types.clear();
+  EXPECT_THAT(SummaryText(summary, {"gauntlet", "d"}), Not(HasSubstr("failure types")));
 }
 
 TEST(SummaryText, ToughestCaseStandsFirstAndCasesWithoutFitnessAreLeftOut) {

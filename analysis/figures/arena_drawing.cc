@@ -1,0 +1,154 @@
+#include "analysis/figures/arena_drawing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace gauntlet::analysis {
+namespace {
+
+void DrawBox(SvgCanvas& canvas, const FigureFrame& frame, const sim::Vec2& min, const sim::Vec2& max,
+             std::string_view style) {
+  const Pixel corner = frame.At({min.x(), max.y()});
+  canvas.Rectangle(corner, (max.x() - min.x()) * frame.scale(), (max.y() - min.y()) * frame.scale(), style);
+}
+
+// Between the lines of the grid, m.
+double GridStep(const FigureFrame& frame) {
+  return NiceStep(2 * std::max(frame.half_x(), frame.half_y()), 12);
+}
+
+// Where the number of a convex polygon stands; nothing when it has no corners.
+std::optional<Pixel> CenterOf(const FigureFrame& frame, const sim::Polygon& polygon) {
+  if (polygon.empty()) return std::nullopt;
+  sim::Vec2 sum = sim::Vec2::Zero();
+  for (const sim::Vec2& corner : polygon) sum += corner;
+  return frame.At(sum / static_cast<double>(polygon.size()));
+}
+
+void DrawWalls(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  const sim::Vec2 outer{frame.half_x(), frame.half_y()};
+  const sim::Vec2& min = arena.interior_min();
+  const sim::Vec2& max = arena.interior_max();
+  DrawBox(canvas, frame, {-outer.x(), max.y()}, outer, "class=\"wall\"");
+  DrawBox(canvas, frame, -outer, {outer.x(), min.y()}, "class=\"wall\"");
+  DrawBox(canvas, frame, {max.x(), min.y()}, {outer.x(), max.y()}, "class=\"wall\"");
+  DrawBox(canvas, frame, {-outer.x(), min.y()}, {min.x(), max.y()}, "class=\"wall\"");
+}
+
+void DrawStanding(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  for (std::size_t i = 0; i < arena.obstacles().size(); ++i) {
+    const std::vector<Pixel> corners = frame.At(arena.VisiblePart(i));
+    if (!corners.empty()) {
+      canvas.Polygon(corners, fmt::format("class=\"obstacle\" id=\"obstacle-{}\"", i + 1));
+    }
+  }
+}
+
+// Where the moving ones go: the way of the centre, and their outline where they turn.
+void DrawObstaclePaths(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  for (const sim::Arena::Moving& moving : arena.moving()) {
+    std::vector<Pixel> way;
+    for (const sim::Vec2& point : moving.path) {
+      way.push_back(frame.At(point));
+      sim::OrientedBox box = arena.obstacles()[moving.obstacle];
+      box.center = point;
+      const auto corners = frame.At(ClipToRectangle(box, arena.interior_min(), arena.interior_max()));
+      if (way.size() > 1 && !corners.empty()) canvas.Polygon(corners, "class=\"obstacle-end\"");
+    }
+    canvas.Polyline(way, fmt::format("class=\"obstacle-path\" id=\"path-{}\"", moving.obstacle + 1));
+  }
+}
+
+// The lamps of lit obstacles, on the sides that are inside the walls.
+void DrawLamps(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  for (const sim::Arena::Lit& lit : arena.lit()) {
+    const sim::OrientedBox& box = arena.obstacles()[lit.obstacle];
+    const sim::Vec2 ahead = box.half_extents.x() * box.axis;
+    const sim::Vec2 aside = box.half_extents.y() * sim::LeftOf(box.axis);
+    for (const sim::Vec2& way : {ahead, aside, sim::Vec2(-ahead), sim::Vec2(-aside)}) {
+      const sim::Vec2 place = box.center + way;
+      if (!arena.InInterior(place)) continue;
+      canvas.Circle(frame.At(place), 5.0, fmt::format("class=\"lamp\" fill=\"{}\"", sim::NameOf(lit.color)));
+    }
+  }
+}
+
+}  // namespace
+
+void DrawFloor(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  const double step = GridStep(frame);
+  const sim::Vec2& min = arena.interior_min();
+  const sim::Vec2& max = arena.interior_max();
+  DrawBox(canvas, frame, min, max, "class=\"floor\"");
+  for (double x = std::ceil(min.x() / step) * step; x <= max.x(); x += step) {
+    canvas.Line(frame.At({x, min.y()}), frame.At({x, max.y()}), "class=\"grid\"");
+  }
+  for (double y = std::ceil(min.y() / step) * step; y <= max.y(); y += step) {
+    canvas.Line(frame.At({min.x(), y}), frame.At({max.x(), y}), "class=\"grid\"");
+  }
+}
+
+void DrawObstacles(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  DrawObstaclePaths(canvas, frame, arena);
+  DrawStanding(canvas, frame, arena);
+  DrawLamps(canvas, frame, arena);
+  DrawWalls(canvas, frame, arena);
+}
+
+void DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  for (std::size_t i = 0; i < arena.obstacles().size(); ++i) {
+    if (const auto p = CenterOf(frame, arena.VisiblePart(i))) {
+      canvas.Text({p->x, p->y + 4.5}, fmt::format("{}", i + 1), "class=\"obstacle-number\"");
+    }
+  }
+}
+
+std::vector<Pixel> ObstacleCenters(const FigureFrame& frame, const sim::Arena& arena) {
+  std::vector<Pixel> centers;
+  for (std::size_t i = 0; i < arena.obstacles().size(); ++i) {
+    if (const auto center = CenterOf(frame, arena.VisiblePart(i))) centers.push_back(*center);
+  }
+  return centers;
+}
+
+void DrawAxes(SvgCanvas& canvas, const FigureFrame& frame) {
+  const double step = GridStep(frame);
+  const auto label = [step](double value) {
+    const int decimals = step < 1.0 ? 1 : 0;
+    const double shown = std::abs(value) < step / 100 ? 0.0 : value;
+    std::string text = fmt::format("{:.{}f}", std::abs(shown), decimals);
+    return shown < 0 ? "\u2212" + text : text;
+  };
+  for (double x = -std::floor(frame.half_x() / step) * step; x <= frame.half_x(); x += step) {
+    const Pixel p = frame.At({x, -frame.half_y()});
+    canvas.Line(p, {p.x, p.y + 6}, "class=\"tick\"");
+    canvas.Text({p.x, p.y + 20}, label(x), "class=\"axis\" text-anchor=\"middle\"");
+  }
+  for (double y = -std::floor(frame.half_y() / step) * step; y <= frame.half_y(); y += step) {
+    const Pixel p = frame.At({-frame.half_x(), y});
+    canvas.Line(p, {p.x - 6, p.y}, "class=\"tick\"");
+    canvas.Text({p.x - 10, p.y + 4.5}, label(y), "class=\"axis\" text-anchor=\"end\"");
+  }
+  const double middle_x = (FigureFrame::kLeft + frame.right()) / 2;
+  const double middle_y = (FigureFrame::kTop + frame.bottom()) / 2;
+  canvas.Text({middle_x, frame.bottom() + 42}, "x (m)", "class=\"axis\" text-anchor=\"middle\"");
+  canvas.Text({24, middle_y}, "y (m)",
+              fmt::format("class=\"axis\" text-anchor=\"middle\" transform=\"rotate(-90 24 {})\"",
+                          SvgNumber(middle_y)));
+
+  const double bar = NiceStep(frame.half_x(), 4);
+  const double y = frame.bottom() + 44;
+  const double right = frame.right();
+  const double left = right - bar * frame.scale();
+  canvas.OpenGroup("class=\"scale\" stroke=\"#22272e\" stroke-width=\"2\"");
+  canvas.Line({left, y}, {right, y}, "");
+  canvas.Line({left, y - 5}, {left, y + 5}, "");
+  canvas.Line({right, y - 5}, {right, y + 5}, "");
+  canvas.CloseGroup();
+  canvas.Text({(left + right) / 2, y + 18}, fmt::format("{:g} m", bar), "text-anchor=\"middle\"");
+}
+
+}  // namespace gauntlet::analysis

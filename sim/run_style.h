@@ -1,0 +1,41 @@
+// How texts speak of a scenario's swarm and how pictures draw its annotations. A scenario declares it, so
+// that what writes and draws need not know the scenarios.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace gauntlet::sim {
+
+// What a picture shows of an annotation.
+enum class Mark : std::uint8_t {
+  kArea,   // the outline of an area, by its corners
+  kPlan,   // a dashed line: the way that the guide is to take
+  kChain,  // a dashed line from robot to robot
+  kGoal,   // a place, by its centre and radius; so are the next two
+  kNest,
+  kFood,
+  kSplit,         // where robots left the swarm, who and when; of several the latest
+  kTransfer,      // where an item changed hands
+  kBeacon,        // a robot that ends as a beacon
+  kFormerBeacon,  // where one stood before, of annotations "states"
+};
+
+struct AnnotationStyle {
+  std::string_view kind;   // of the annotation
+  std::string_view label;  // only of annotations with this label, or the name of a state; "" = of all
+  Mark mark = Mark::kGoal;
+  std::string_view legend;  // its words in the legend; "" = the annotation's label
+};
+
+// Annotations of the kinds "trapped" and "states" mean the same everywhere (sim/run_result.h).
+struct RunStyle {
+  std::string_view member = "robot";  // one of those under test, singular
+  std::string_view lost = "lost";     // what RobotSummary::lost says of it
+  bool lost_is_failure = true;        // total failure means that too many were lost, not something of its own
+  std::string_view guide = "guide";   // the robot that a planned path is for, which is not under test
+  std::span<const AnnotationStyle> annotations = {};
+};
+
+}  // namespace gauntlet::sim
