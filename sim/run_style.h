@@ -29,7 +29,7 @@ struct AnnotationStyle {
   std::string_view legend;  // its words in the legend; "" = the annotation's label
 };
 
-// Annotations of the kinds "trapped" and "states" mean the same everywhere (sim/run_result.h).
+// Annotations "trapped" (a robot, from its tick on) and "states" (its time-line) mean the same everywhere.
 struct RunStyle {
   std::string_view member = "robot";  // one of those under test, singular
   std::string_view lost = "lost";     // what RobotSummary::lost says of it
