@@ -23,5 +23,17 @@ TEST(ProximityReadingAt, FollowsTheSensorOfArgos) {
   EXPECT_NEAR(ProximityReadingAt(0.1), 0.1004, 1e-4);
 }
 
+TEST(Proximity, BodiesAreLeftOutOfTheReadings) {
+  ProximityReadings readings{};
+  readings.fill(ProximityReadingAt(0.05));
+  const std::vector<SeenBody> bodies = {{0.22, 0.0}, {0.22, sim::kPi / 2.0}, {0.5, sim::kPi}};
+  const ProximityReadings left = WithoutBodies(readings, bodies);
+  EXPECT_EQ(left[0], 0.0);
+  EXPECT_EQ(left[23], 0.0);
+  EXPECT_EQ(left[6], 0.0);
+  EXPECT_NE(left[12], 0.0) << "too far to be what was hit";
+  EXPECT_NE(left[3], 0.0);
+}
+
 }  // namespace
 }  // namespace gauntlet::controllers
