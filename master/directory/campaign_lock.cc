@@ -104,7 +104,7 @@ bool IsAhead(const LockOwner& owner, std::int64_t now) {
 }
 
 // The owner lives here, and is the master of another directory, of which this one is a copy.
-bool BelongsToOriginal(const LockOwner& owner, const CampaignLock::Options& options) {
+bool BelongsToOriginal(const LockOwner& owner, const LockOptions& options) {
   return options.is_copy && LivenessOf(owner.process, IdentifyThisProcess()) == Liveness::kAlive &&
          options.is_copy();
 }
@@ -126,22 +126,12 @@ std::optional<LockOwner> ReadLockOwner(const std::string& path) {
   return content ? ParseContent(*content) : std::nullopt;
 }
 
-CampaignLock::CampaignLock(std::string path, std::string campaign, Options options, int fd)
+CampaignLock::CampaignLock(std::string path, std::string campaign, LockOptions options, int fd)
     : path_(std::move(path)), campaign_(std::move(campaign)), options_(std::move(options)), fd_(fd) {}
 
 Result<std::unique_ptr<CampaignLock>> CampaignLock::Acquire(const std::string& path,
-                                                            const std::string& campaign) {
-  return Acquire(path, campaign, Options());
-}
-
-Result<std::unique_ptr<CampaignLock>> CampaignLock::AcquireForReading(const std::string& path,
-                                                                      const std::string& campaign) {
-  return AcquireForReading(path, campaign, Options());
-}
-
-Result<std::unique_ptr<CampaignLock>> CampaignLock::Acquire(const std::string& path,
                                                             const std::string& campaign,
-                                                            const Options& options) {
+                                                            const LockOptions& options) {
   Result<std::unique_ptr<CampaignLock>> lock = Wait(path, campaign, options, /*exclusive=*/true);
   if (!lock) return lock;
   CampaignLock& taken = **lock;
@@ -155,13 +145,13 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::Acquire(const std::string& p
 
 Result<std::unique_ptr<CampaignLock>> CampaignLock::AcquireForReading(const std::string& path,
                                                                       const std::string& campaign,
-                                                                      const Options& options) {
+                                                                      const LockOptions& options) {
   return Wait(path, campaign, options, /*exclusive=*/false);
 }
 
 Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path, const std::string& campaign,
-                                                         const Options& options, bool exclusive) {
-  Options complete = options;
+                                                         const LockOptions& options, bool exclusive) {
+  LockOptions complete = options;
   if (!complete.unix_time) complete.unix_time = SystemUnixTime;
   const int fd = open(path.c_str(), exclusive ? O_RDWR | O_CREAT | O_CLOEXEC : O_RDONLY | O_CLOEXEC, 0644);
   if (fd < 0 && exclusive) return SystemError(fmt::format("cannot open {}", path), errno);

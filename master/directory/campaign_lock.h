@@ -21,6 +21,21 @@ struct LockOwner {
   std::int64_t heartbeat = 0;  // Unix time, s, of its last sign of life
 };
 
+struct LockOptions {
+  std::function<std::int64_t()> unix_time;          // s; default: the system's clock
+  std::chrono::milliseconds heartbeat_every{5000};  // 0 = only when Heartbeat is called
+  // How long to wait for an owner that has not said its name yet, or for readers.
+  std::chrono::milliseconds patience{2000};
+  // The last heartbeat of an owner on another machine may lie in our future, because its clock is ahead. A
+  // master then waits this long for the next heartbeat; when none comes, the owner counts as dead.
+  std::chrono::milliseconds beat_patience{15000};
+  // Whether the campaign's directory was copied, and its lock file with it. The lock file then names the master
+  // of the original, which is no reason to keep away from the copy. It is asked only when that master lives on
+  // this machine: had it locked this very file and not the original's, flock(2) would say so. Default: it was
+  // not copied.
+  std::function<bool()> is_copy;
+};
+
 // Whoever holds it is the campaign's master. It is taken from an owner that is dead (a process of this
 // machine's present boot that is gone) or, on another host or boot, has given no sign of life for
 // kStaleAfter; never from a living one. The file stays when the lock is released, empty: deleting it would
@@ -29,32 +44,16 @@ class CampaignLock {
  public:
   static constexpr std::chrono::seconds kStaleAfter{60};
 
-  struct Options {
-    std::function<std::int64_t()> unix_time;          // s; default: the system's clock
-    std::chrono::milliseconds heartbeat_every{5000};  // 0 = only when Heartbeat is called
-    // How long to wait for an owner that has not said its name yet, or for readers.
-    std::chrono::milliseconds patience{2000};
-    // How long a master looks for the next heartbeat of an owner elsewhere whose last one lies in its future.
-    std::chrono::milliseconds beat_patience{15000};
-    // Whether the lock file was copied together with its campaign, so that the owner it names is that of the
-    // original; default: it was not. Believed only of an owner of this machine, whose hold on this very
-    // file the system would have told.
-    std::function<bool()> is_copy;
-  };
-
   // `path`: the lock file, made when it is missing. `campaign`: what messages call it. kInUse names host and
   // pid of the owner.
   static Result<std::unique_ptr<CampaignLock>> Acquire(const std::string& path, const std::string& campaign,
-                                                       const Options& options);
-  static Result<std::unique_ptr<CampaignLock>> Acquire(const std::string& path, const std::string& campaign);
+                                                       const LockOptions& options = {});
 
   // Keeps masters away while a campaign without one is looked at; several readers may hold it at once. kInUse
   // names the owner when a master lives. Changes nothing; a missing or unreadable lock file locks nothing.
   static Result<std::unique_ptr<CampaignLock>> AcquireForReading(const std::string& path,
                                                                  const std::string& campaign,
-                                                                 const Options& options);
-  static Result<std::unique_ptr<CampaignLock>> AcquireForReading(const std::string& path,
-                                                                 const std::string& campaign);
+                                                                 const LockOptions& options = {});
 
   CampaignLock(const CampaignLock&) = delete;
   CampaignLock& operator=(const CampaignLock&) = delete;
@@ -68,15 +67,15 @@ class CampaignLock {
   Status Check() const;
 
  private:
-  CampaignLock(std::string path, std::string campaign, Options options, int fd);
+  CampaignLock(std::string path, std::string campaign, LockOptions options, int fd);
   static Result<std::unique_ptr<CampaignLock>> Wait(const std::string& path, const std::string& campaign,
-                                                    const Options& options, bool exclusive);
+                                                    const LockOptions& options, bool exclusive);
   Status WriteOwner(const std::string& content) const;
   void HeartbeatLoop();
 
   const std::string path_;
   const std::string campaign_;
-  const Options options_;
+  const LockOptions options_;
   const int fd_;
   std::optional<ProcessIdentity> identity_;  // none: held for reading
 

@@ -17,8 +17,8 @@ namespace {
 // again and again.
 constexpr std::chrono::seconds kReadersPatience{30};
 
-CampaignLock::Options LockOptions(const CampaignDirectory& directory) {
-  CampaignLock::Options options;
+LockOptions OptionsFor(const CampaignDirectory& directory) {
+  LockOptions options;
   options.is_copy = [directory] { return IsUntakenCopy(directory); };
   return options;
 }
@@ -77,7 +77,7 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
-  CampaignLock::Options options = LockOptions(*directory);
+  LockOptions options = OptionsFor(*directory);
   options.patience = kReadersPatience;
   Result<std::unique_ptr<CampaignLock>> lock =
       CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
@@ -106,7 +106,7 @@ Result<CampaignView> ViewCampaign(const std::string& dir) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
   Result<std::unique_ptr<CampaignLock>> lock =
-      CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), LockOptions(*directory));
+      CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), OptionsFor(*directory));
   if (!lock) return lock.error();
   Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(directory->database_path());
   if (!store) return store.error();

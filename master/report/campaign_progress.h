@@ -27,4 +27,13 @@ struct CampaignProgress {
   std::optional<double> remaining_seconds;  // at the present rate
 };
 
+// Several searches are as far as they are together, and have finished when all have.
+inline void Add(const SearchProgress& one, SearchProgress& sum) {
+  sum.generation += one.generation;
+  sum.generations += one.generations;
+  sum.evaluations_done += one.evaluations_done;
+  sum.evaluations_planned += one.evaluations_planned;
+  sum.finished = sum.finished && one.finished;
+}
+
 }  // namespace gauntlet::master

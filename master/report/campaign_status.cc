@@ -51,6 +51,10 @@ std::string_view StateOf(const WorkerView& worker) {
   return worker.leases.empty() ? "idle" : "running";
 }
 
+ordered_json OrNull(const std::string& text) {
+  return text.empty() ? ordered_json(nullptr) : ordered_json(text);
+}
+
 ordered_json Json(const WorkerView& worker) {
   ordered_json runs = ordered_json::array();
   for (const WorkerView::Lease& lease : worker.leases) {
@@ -116,63 +120,60 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
   for (const WorkerView& worker : backend.workers) workers.push_back(Json(worker));
   ordered_json allocations = ordered_json::array();
   for (const AllocationView& allocation : backend.allocations) allocations.push_back(Json(allocation));
-  const std::string why = WhyNothingRuns(master, progress, backend);
-  ordered_json json = {
-      {"state", master.stopping ? "stopping" : "running"},
-      {"campaign", master.campaign_id},
-      {"experiment", master.experiment},
-      {"master",
-       {{"host", master.host},
-        {"pid", master.pid},
-        {"epoch", master.epoch},
-        {"started_unix_ms", master.started_unix_ms},
-        {"endpoints", master.endpoints},
-        {"encrypted", master.encrypted},
-        {"batch_job", master.batch_job},
-        {"metrics", master.metrics_url.empty() ? ordered_json(nullptr) : ordered_json(master.metrics_url)}}},
-      {"unix_ms", master.now_unix_ms},
-      {"generation", progress.search.generation},
-      {"generations", progress.search.generations},
-      {"searches", progress.searches},
-      {"searches_finished", progress.searches_finished},
-      {"runs_done", progress.runs_done},
-      {"runs_planned", progress.runs_planned},
-      {"runs_running", RunsOf(backend, false)},
-      {"runs_ahead", RunsOf(backend, true)},
-      {"runs_queued", backend.queued},
-      {"runs_per_second", progress.runs_per_second},
-      {"remaining_seconds", progress.remaining_seconds ? ordered_json(*progress.remaining_seconds) : nullptr},
-      {"total_failures", progress.total_failures},
-      {"runs_failed", progress.runs_failed},
-      {"workers", progress.workers.connected},
-      {"workers_busy", progress.workers.busy},
-      {"workers_lost", progress.workers.lost},
-      {"leased_again", progress.workers.releases},
-      {"duplicates", progress.workers.duplicates},
-      {"nondeterministic", master.nondeterministic_before + progress.workers.nondeterministic},
-      {"copies", progress.workers.copies},
-      {"audits", progress.workers.audits},
-      {"audits_alone", progress.workers.audits_alone},
-      {"audits_waiting", progress.workers.audits_open},
-      {"worker_seconds", progress.workers.slot_seconds},
-      {"worker_seconds_idle", progress.workers.idle_seconds},
-      {"worker_seconds_at_barriers", progress.workers.barrier_seconds},
-      {"rejected_messages", progress.workers.rejected_messages},
-      {"workers_refused", backend.refused_workers},
-      {"connections_with_unknown_keys", backend.unknown_keys},
-      {"connections_dropped_in_the_greeting", backend.failed_handshakes},
-      {"why_nothing_runs", why.empty() ? ordered_json(nullptr) : ordered_json(why)},
-      {"pool_trouble",
-       backend.pool_trouble.empty() ? ordered_json(nullptr) : ordered_json(backend.pool_trouble)},
-      {"allocations", std::move(allocations)},
-      {"worker_list", std::move(workers)}};
-  return JsonText(json);
+  return JsonText({{"state", master.stopping ? "stopping" : "running"},
+                   {"campaign", master.campaign_id},
+                   {"experiment", master.experiment},
+                   {"master",
+                    {{"host", master.host},
+                     {"pid", master.pid},
+                     {"epoch", master.epoch},
+                     {"started_unix_ms", master.started_unix_ms},
+                     {"endpoints", master.endpoints},
+                     {"encrypted", master.encrypted},
+                     {"batch_job", master.batch_job},
+                     {"metrics", OrNull(master.metrics_url)}}},
+                   {"unix_ms", master.now_unix_ms},
+                   {"generation", progress.search.generation},
+                   {"generations", progress.search.generations},
+                   {"searches", progress.searches},
+                   {"searches_finished", progress.searches_finished},
+                   {"runs_done", progress.runs_done},
+                   {"runs_planned", progress.runs_planned},
+                   {"runs_running", RunsOf(backend, false)},
+                   {"runs_ahead", RunsOf(backend, true)},
+                   {"runs_queued", backend.queued},
+                   {"runs_per_second", progress.runs_per_second},
+                   {"remaining_seconds",
+                    progress.remaining_seconds ? ordered_json(*progress.remaining_seconds) : nullptr},
+                   {"total_failures", progress.total_failures},
+                   {"runs_failed", progress.runs_failed},
+                   {"workers", progress.workers.connected},
+                   {"workers_busy", progress.workers.busy},
+                   {"workers_lost", progress.workers.lost},
+                   {"leased_again", progress.workers.releases},
+                   {"duplicates", progress.workers.duplicates},
+                   {"nondeterministic", master.nondeterministic_before + progress.workers.nondeterministic},
+                   {"copies", progress.workers.copies},
+                   {"audits", progress.workers.audits},
+                   {"audits_alone", progress.workers.audits_alone},
+                   {"audits_waiting", progress.workers.audits_open},
+                   {"worker_seconds", progress.workers.slot_seconds},
+                   {"worker_seconds_idle", progress.workers.idle_seconds},
+                   {"worker_seconds_at_barriers", progress.workers.barrier_seconds},
+                   {"rejected_messages", progress.workers.rejected_messages},
+                   {"workers_refused", backend.refused_workers},
+                   {"connections_with_unknown_keys", backend.unknown_keys},
+                   {"connections_dropped_in_the_greeting", backend.failed_handshakes},
+                   {"why_nothing_runs", OrNull(WhyNothingRuns(master, progress, backend))},
+                   {"pool_trouble", OrNull(backend.pool_trouble)},
+                   {"allocations", std::move(allocations)},
+                   {"worker_list", std::move(workers)}});
 }
 
 Result<bool> MasterLives(const std::string& dir) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
-  CampaignLock::Options options;
+  LockOptions options;
   options.patience = std::chrono::milliseconds(0);
   options.is_copy = [&directory] { return IsUntakenCopy(*directory); };
   const Result<std::unique_ptr<CampaignLock>> lock =
@@ -205,22 +206,20 @@ Result<std::string> ReadStatus(const std::string& dir) {
   }
   const Result<CampaignSummary> summary = ReadCampaign(dir);
   if (!summary) return summary.error();
-  const ordered_json json = {
-      {"state", summary->finished ? "finished" : "stopped"},
-      {"experiment", summary->experiment},
-      {"master", nullptr},
-      {"generation", summary->progress.generation},
-      {"generations", summary->progress.generations},
-      {"runs_done", summary->runs_done},
-      {"total_failures", summary->total_failures},
-      {"runs_failed", summary->runs_failed},
-      {"workers", 0},
-      {"nondeterministic", summary->nondeterministic},
-      {"why_nothing_runs", summary->finished
-                               ? "the search has finished"
-                               : "no master serves the campaign: go on with `gauntlet resume DIR`"},
-      {"worker_list", ordered_json::array()}};
-  return JsonText(json);
+  return JsonText({{"state", summary->finished ? "finished" : "stopped"},
+                   {"experiment", summary->experiment},
+                   {"master", nullptr},
+                   {"generation", summary->progress.generation},
+                   {"generations", summary->progress.generations},
+                   {"runs_done", summary->runs_done},
+                   {"total_failures", summary->total_failures},
+                   {"runs_failed", summary->runs_failed},
+                   {"workers", 0},
+                   {"nondeterministic", summary->nondeterministic},
+                   {"why_nothing_runs",
+                    summary->finished ? "the search has finished"
+                                      : "no master serves the campaign: go on with `gauntlet resume DIR`"},
+                   {"worker_list", ordered_json::array()}});
 }
 
 Status RequestStop(const std::string& dir) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "master/directory/campaign_ownership.h"
+#include "master/report/campaign_progress.h"
 #include "master/report/stored_check.h"
 #include "master/report/stored_search.h"
 #include "master/store/run_numbers.h"
@@ -31,10 +32,7 @@ CampaignSummary TotalsOf(const std::vector<CampaignSummary>& searches) {
     totals.runs_failed += one.runs_failed;
     totals.total_failures += one.total_failures;
     totals.distinct_individuals += one.distinct_individuals;
-    totals.progress.generation += one.progress.generation;
-    totals.progress.generations += one.progress.generations;
-    totals.progress.evaluations_done += one.progress.evaluations_done;
-    totals.progress.evaluations_planned += one.progress.evaluations_planned;
+    Add(one.progress, totals.progress);
     totals.finished = totals.finished && one.finished;
     totals.nondeterministic = std::max(totals.nondeterministic, one.nondeterministic);  // each has all
     totals.best_fitness = std::fmin(totals.best_fitness, one.best_fitness);

@@ -96,34 +96,28 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
     for (Individual& individual : *individuals)
       test_cases.emplace(individual.id, std::move(individual.test_case));
   }
+  const auto missing = [&](RunId run) {
+    return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
+                               run, (*state)->generation, last_seen));
+  };
   std::optional<Error> damage;
   RunId expected = RunIdOf(search, 1);
-  RunId last = 0;
-  const auto note = [&damage](const Status& status) {
-    if (!status && !damage) damage = status.error();
-  };
-  Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
-    last = run.id;
+  const Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
     if (damage) return;
     if (run.id != expected && expected <= last_seen) {
-      damage =
-          Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
-                              expected, (*state)->generation, last_seen));
+      damage = missing(expected);
       return;
     }
     expected = run.id + 1;
-    note(CheckRun(experiment, run));
-    if (damage) return;
-    note(CheckTestCase(test_cases, run));
+    Status whole = CheckRun(experiment, run);
+    if (whole) whole = CheckTestCase(test_cases, run);
+    if (!whole) damage = whole.error();
     test_cases.erase(run.individual);
   });
   if (!read) return read;
   if (damage) return *damage;
-  if (expected <= last_seen) {
-    return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
-                               expected, (*state)->generation, last_seen));
-  }
-  if (finished && last > last_seen) {
+  if (expected <= last_seen) return missing(expected);
+  if (const RunId last = expected - 1; finished && last > last_seen) {
     return Damaged(fmt::format(
         "the search has finished with run {}, but the newest state has seen only the runs up to {}", last,
         last_seen));

@@ -1,7 +1,8 @@
-// Where a master is asked to listen, judged before anything is made for it.
+// Where a master listens: judged before anything is made for it, and told to its workers.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 
@@ -18,5 +19,10 @@ Status CheckBindEndpoint(const std::string& endpoint, ListenOn where = ListenOn:
 // Listens there for a moment. What the system refuses (an address in use, or not of this machine) is an error
 // then, and not only after a campaign was made.
 Status TryToListen(const std::string& endpoint);
+
+// `bound`: what the socket says of itself. An address that means all interfaces (tcp://0.0.0.0:PORT,
+// tcp://[::]:PORT) becomes one endpoint for each IPv4 address of this machine, loopback only when there is no
+// other, then one with its host name; anything else stays as it is.
+std::vector<std::string> ReachableEndpoints(const std::string& bound);
 
 }  // namespace gauntlet::master

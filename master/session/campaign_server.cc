@@ -18,9 +18,9 @@
 #include "master/report/metrics_text.h"
 #include "master/report/stored_campaign.h"
 #include "master/report/stored_search.h"
+#include "master/session/bind_endpoint.h"
 #include "master/session/master_log.h"
 #include "master/session/metrics_server.h"
-#include "master/session/reachable_endpoints.h"
 #include "proto/access_file.h"
 
 namespace gauntlet::master {

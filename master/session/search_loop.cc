@@ -76,11 +76,7 @@ CampaignProgress SearchLoop::Progress(TimePoint started) {
   int counted = 0;
   for (const SearchDriver* search : parts_.searches) {
     const SearchProgress one = search->Progress();
-    progress.search.generation += one.generation;
-    progress.search.generations += one.generations;
-    progress.search.evaluations_done += one.evaluations_done;
-    progress.search.evaluations_planned += one.evaluations_planned;
-    progress.search.finished = progress.search.finished && one.finished;
+    Add(one, progress.search);
     if (one.finished) ++progress.searches_finished;
     progress.runs_planned += search->runs_planned();
     progress.total_failures += search->total_failures();

@@ -24,8 +24,8 @@ using testing::HasSubstr;
 
 class CampaignLockTest : public testing::Test {
  protected:
-  CampaignLock::Options Options(int patience_ms = 0) {
-    CampaignLock::Options options;
+  LockOptions Options(int patience_ms = 0) {
+    LockOptions options;
     options.unix_time = [this] { return now_; };
     options.heartbeat_every = std::chrono::milliseconds(0);
     options.patience = std::chrono::milliseconds(patience_ms);
@@ -124,7 +124,7 @@ TEST_F(CampaignLockTest, TheNameOfALivingProcessIsEnough) {
 
 // A campaign that was copied while its master lived: nobody holds the copy, whatever its lock file says.
 TEST_F(CampaignLockTest, TheOwnerOfTheOriginalDoesNotKeepACopyFromBeingTaken) {
-  CampaignLock::Options options = Options();
+  LockOptions options = Options();
   options.is_copy = [] { return true; };
   LeaveOwner(json::object(), now_);
   EXPECT_TRUE(CampaignLock::AcquireForReading(path_, "camp", options).ok());
@@ -137,7 +137,7 @@ TEST_F(CampaignLockTest, TheOwnerOfTheOriginalDoesNotKeepACopyFromBeingTaken) {
 
 // Locks of another host may not be seen here: its master is believed, wherever the file came from.
 TEST_F(CampaignLockTest, AnOwnerElsewhereKeepsACopyUntilItIsStale) {
-  CampaignLock::Options options = Options();
+  LockOptions options = Options();
   options.is_copy = [] { return true; };
   LeaveOwner(kElsewhere, now_ - 59);
   EXPECT_FALSE(CampaignLock::Acquire(path_, "camp", options).ok());
@@ -160,7 +160,7 @@ TEST_F(CampaignLockTest, AnOwnerElsewhereCountsAsDeadAfterAMinute) {
 }
 
 TEST_F(CampaignLockTest, AnOwnerElsewhereWhoseClockWasAheadCountsAsDeadWhenItBeatsNoMore) {
-  CampaignLock::Options options = Options();
+  LockOptions options = Options();
   options.beat_patience = std::chrono::milliseconds(1);
   LeaveOwner(kElsewhere, now_ + 59);
   EXPECT_FALSE(CampaignLock::Acquire(path_, "camp", options).ok()) << "clocks differ a little everywhere";
@@ -170,7 +170,7 @@ TEST_F(CampaignLockTest, AnOwnerElsewhereWhoseClockWasAheadCountsAsDeadWhenItBea
 }
 
 TEST_F(CampaignLockTest, AnOwnerElsewhereWhoseClockIsAheadKeepsTheLockWhileItBeats) {
-  CampaignLock::Options options = Options();
+  LockOptions options = Options();
   options.beat_patience = testing_support::kPatience;
   LeaveOwner(kElsewhere, now_ + 3600);
   std::jthread beating([this](const std::stop_token& stop) {
@@ -185,7 +185,7 @@ TEST_F(CampaignLockTest, AnOwnerElsewhereWhoseClockIsAheadKeepsTheLockWhileItBea
 }
 
 TEST_F(CampaignLockTest, AFrozenOwnerHereIsNoneWhoseClockWasAhead) {
-  CampaignLock::Options options = Options();
+  LockOptions options = Options();
   options.beat_patience = std::chrono::milliseconds(1);
   LeaveOwner(json::object(), now_ + 3600);
   EXPECT_FALSE(CampaignLock::Acquire(path_, "camp", options).ok()) << "the process lives";
@@ -218,7 +218,7 @@ TEST_F(CampaignLockTest, HeartbeatsRenewTheSignOfLife) {
 
 TEST_F(CampaignLockTest, BeatsByItself) {
   std::atomic<std::int64_t> calls = 0;
-  CampaignLock::Options options;
+  LockOptions options;
   options.unix_time = [&calls] { return ++calls; };
   options.heartbeat_every = std::chrono::milliseconds(1);
   Result<std::unique_ptr<CampaignLock>> lock = CampaignLock::Acquire(path_, "camp", options);
