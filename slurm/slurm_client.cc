@@ -24,6 +24,24 @@ std::string WordsOf(const std::string& program, const std::string& text) {
   return words.empty() ? "it gave no reason" : words;
 }
 
+// Without SLURM_* and SBATCH_*, for an enclosing job's settings would leak into what is submitted; except
+// SLURM_CONF, which says which cluster is meant.
+bool Inherits(std::string_view variable) {
+  return variable.starts_with("SLURM_CONF=") ||
+         !(variable.starts_with("SLURM_") || variable.starts_with("SBATCH_"));
+}
+
+Result<CallOutput> CallSlurm(const std::vector<std::string>& arguments, std::string_view input,
+                             std::chrono::milliseconds deadline) {
+  CallOptions options;
+  options.deadline = deadline;
+  options.inherits = Inherits;
+  Result<CallOutput> output = CallProcess(arguments, input, options);
+  if (output || output.error().kind != ErrorKind::kNotFound) return output;
+  return Error{ErrorKind::kNotFound,
+               output.error().message + " in PATH: is Slurm installed on this machine?"};
+}
+
 Error Refusal(const std::string& program, const CallOutput& output) {
   return {ErrorKind::kInvalidInput, program + " refused (exit code " + std::to_string(output.exit_code) +
                                         "): " + WordsOf(program, output.err + output.out)};
@@ -84,7 +102,7 @@ std::string NextStep(std::string_view words) {
 
 Result<std::string> CommandLineSlurm::Submit(const std::string& script,
                                              const std::vector<std::string>& options) {
-  const Result<CallOutput> output = CallProcess(Sbatch({"--parsable"}, options), script, deadline_);
+  const Result<CallOutput> output = CallSlurm(Sbatch({"--parsable"}, options), script, deadline_);
   if (!output) return output.error();
   if (output->exit_code != 0) return Refusal("sbatch", *output);
   return ParseJobId(output->out);
@@ -93,14 +111,14 @@ Result<std::string> CommandLineSlurm::Submit(const std::string& script,
 Result<std::string> CommandLineSlurm::TestOnly(const std::string& script,
                                                const std::vector<std::string>& options) {
   const Result<CallOutput> output =
-      CallProcess(Sbatch({"--test-only"}, options), script, kTestOnlyCalls * deadline_);
+      CallSlurm(Sbatch({"--test-only"}, options), script, kTestOnlyCalls * deadline_);
   if (!output) return output.error();
   if (output->exit_code != 0) return Refusal("sbatch", *output);
   return WordsOf("sbatch", output->err + output->out);
 }
 
 Result<std::vector<JobStatus>> CommandLineSlurm::Queue(const std::string& name_prefix) {
-  const Result<CallOutput> output = CallProcess(
+  const Result<CallOutput> output = CallSlurm(
       {"squeue", "--me", "--noheader", "--array", "--states=all", "--format=" + std::string(kQueueFormat)},
       "", deadline_);
   if (!output) return output.error();
@@ -115,7 +133,7 @@ Status CommandLineSlurm::Cancel(const std::vector<std::string>& jobs) {
   if (jobs.empty()) return Ok{};
   std::vector<std::string> arguments = {"scancel"};
   arguments.insert(arguments.end(), jobs.begin(), jobs.end());
-  const Result<CallOutput> output = CallProcess(arguments, "", deadline_);
+  const Result<CallOutput> output = CallSlurm(arguments, "", deadline_);
   if (!output) return output.error();
   if (output->exit_code != 0)
     return Error{ErrorKind::kIo, "scancel: " + WordsOf("scancel", output->err + output->out)};

@@ -22,9 +22,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kMostOutput = std::size_t{16} << 20;
-constexpr std::size_t kMostOfOurs = std::size_t{1} << 30;  // a run's result with every pose of every tick
-
 struct Pipe {
   UniqueFd read;
   UniqueFd write;
@@ -46,12 +43,10 @@ struct Pipe {
   }
 };
 
-std::vector<char*> EnvironmentOf(Callee callee) {
+std::vector<char*> EnvironmentOf(const CallOptions& options) {
   std::vector<char*> result;
   for (char** entry = environ; *entry != nullptr; ++entry) {
-    const std::string_view text = *entry;
-    const bool of_a_job = text.starts_with("SLURM_") || text.starts_with("SBATCH_");
-    if (callee == Callee::kPartOfUs || !of_a_job || text.starts_with("SLURM_CONF=")) result.push_back(*entry);
+    if (!options.inherits || options.inherits(*entry)) result.push_back(*entry);
   }
   result.push_back(nullptr);
   return result;
@@ -123,10 +118,10 @@ bool Reap(pid_t child, Clock::time_point deadline, int& status) {
 }  // namespace
 
 Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::string_view input,
-                               std::optional<std::chrono::milliseconds> deadline, Callee callee) {
+                               const CallOptions& options) {
   const std::string& program = arguments.at(0);
-  const bool part_of_us = callee == Callee::kPartOfUs;
-  const Clock::time_point end = deadline ? Clock::now() + *deadline : Clock::time_point::max();
+  const Clock::time_point end =
+      options.deadline ? Clock::now() + *options.deadline : Clock::time_point::max();
   Pipe in;
   Pipe out;
   Pipe err;
@@ -136,7 +131,7 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, in.read.get(), STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, out.write.get(), STDOUT_FILENO);
-  if (!part_of_us) posix_spawn_file_actions_adddup2(&actions, err.write.get(), STDERR_FILENO);
+  if (!options.part_of_us) posix_spawn_file_actions_adddup2(&actions, err.write.get(), STDERR_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -147,7 +142,7 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
   sigaddset(&defaults, SIGINT);
   posix_spawnattr_setsigmask(&attributes, &none);
   posix_spawnattr_setsigdefault(&attributes, &defaults);
-  const int group = part_of_us ? 0 : POSIX_SPAWN_SETPGROUP;
+  const int group = options.part_of_us ? 0 : POSIX_SPAWN_SETPGROUP;
   posix_spawnattr_setflags(&attributes,
                            static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | group));
 
@@ -155,31 +150,29 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
   argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
-  std::vector<char*> environment = EnvironmentOf(callee);
+  std::vector<char*> environment = EnvironmentOf(options);
   pid_t child = -1;
   const int failed =
       posix_spawnp(&child, program.c_str(), &actions, &attributes, argv.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
-  if (failed == ENOENT)
-    return Error{
-        ErrorKind::kNotFound,
-        "there is no " + program + (part_of_us ? "" : " in PATH: is Slurm installed on this machine?")};
+  if (failed == ENOENT) return Error{ErrorKind::kNotFound, "there is no " + program};
   if (failed != 0) return Failure(program, std::strerror(failed));
   in.read.Reset();
   out.write.Reset();
   err.write.Reset();
 
   CallOutput result;
-  const bool spoken = Converse(in, out, err, input, result, part_of_us ? kMostOfOurs : kMostOutput, end);
+  const bool spoken = Converse(in, out, err, input, result, options.most_output, end);
   int status = 0;
   const bool ended = Reap(child, spoken ? end : Clock::now(), status);
-  if (!deadline && !spoken) return Failure(program, "its output could not be read");
+  if (!options.deadline && !spoken) return Failure(program, "its output could not be read");
   if (!spoken || !ended) {
     // A full queue makes sbatch wait and say so.
     const std::string said = result.err.empty() ? "" : "; so far it said: " + LastLine(result.err);
-    return Failure(program,
-                   "no answer within " + std::to_string(deadline ? deadline->count() : 0) + " ms" + said);
+    return Failure(program, "no answer within " +
+                                std::to_string(options.deadline ? options.deadline->count() : 0) + " ms" +
+                                said);
   }
   constexpr int kSignalBase = 128;
   result.signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;

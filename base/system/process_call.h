@@ -2,6 +2,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,24 +16,24 @@ namespace gauntlet {
 struct CallOutput {
   int exit_code = 0;  // 128 + signal when a signal ended it
   int signal = 0;     // 0 when it exited
-  std::string out;    // at most 16 MiB are kept, of a part of ourselves 1 GiB
-  std::string err;    // "" of a part of ourselves
+  std::string out;    // at most CallOptions::most_output bytes
+  std::string err;    // likewise; "" of a part of ourselves
 };
 
-enum class Callee {
-  // A command of the batch system: in a process group of its own, for Ctrl-C is ours to handle, and without
-  // SLURM_* and SBATCH_*, for an enclosing job's settings would leak into what is submitted; except
-  // SLURM_CONF, which says which cluster is meant.
-  kBatchSystem,
-  // A program of ours: Ctrl-C ends both, it has our environment, and its stderr is ours.
-  kPartOfUs,
+struct CallOptions {
+  // A part of ourselves is ended by a Ctrl-C as we are, and its stderr is ours. Somebody else's program is in
+  // a process group of its own, for Ctrl-C is ours to handle.
+  bool part_of_us = false;
+  // Then the program is killed; none: it takes its time.
+  std::optional<std::chrono::milliseconds> deadline = std::nullopt;
+  std::size_t most_output = std::size_t{16} << 20;  // bytes that are kept of each output
+  // Which of our environment's entries ("NAME=value") it gets; default: all.
+  std::function<bool(std::string_view)> inherits = nullptr;
 };
 
-// `arguments[0]` is looked for in PATH; `input` goes to its standard input. At the deadline, if there is one,
-// the program is killed. Errors: kNotFound when there is no such program, kIo when it did not end in time.
-// Thread-safe.
+// `arguments[0]` is looked for in PATH; `input` goes to its standard input. Errors: kNotFound when there is
+// no such program, kIo when it did not end in time. Thread-safe.
 Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::string_view input,
-                               std::optional<std::chrono::milliseconds> deadline,
-                               Callee callee = Callee::kBatchSystem);
+                               const CallOptions& options);
 
 }  // namespace gauntlet

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <csignal>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -22,10 +21,12 @@ constexpr int kTries = 3;
 
 // stdout of gauntlet-worker with these arguments; its stderr is ours.
 Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::string_view input) {
+  // With every pose of every tick, a result may be large.
+  const CallOptions options{.part_of_us = true, .most_output = std::size_t{1} << 30};
   const std::string program = WorkerProgramPath();
   arguments.insert(arguments.begin(), program);
   for (int attempt = 1;; ++attempt) {
-    Result<CallOutput> output = CallProcess(arguments, input, std::nullopt, Callee::kPartOfUs);
+    Result<CallOutput> output = CallProcess(arguments, input, options);
     if (!output) return output.error();
     if (output->exit_code == 0) return std::move(output->out);
     if (output->signal == SIGKILL && attempt < kTries) continue;
