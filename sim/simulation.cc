@@ -9,9 +9,9 @@
 #include "base/hash.h"
 #include "base/number_text.h"
 #include "sim/physics/physics_engine.h"
+#include "sim/robot/disturber.h"
 #include "sim/robot/obstacle_course.h"
 #include "sim/run_checks.h"
-#include "sim/sensors/disturber.h"
 #include "sim/sensors/sensor_suite.h"
 
 namespace gauntlet::sim {
@@ -76,8 +76,8 @@ class Loop {
   std::string invalid_command_;
 };
 
-std::vector<SensorSuite::RobotSensors> SensorsOf(const std::vector<RobotSetup>& swarm) {
-  std::vector<SensorSuite::RobotSensors> sensors;
+std::vector<RobotSensors> SensorsOf(const std::vector<RobotSetup>& swarm) {
+  std::vector<RobotSensors> sensors;
   for (const RobotSetup& robot : swarm) {
     sensors.push_back({.devices = robot.controller->Devices(),
                        .camera_range = robot.camera_range,
@@ -120,8 +120,7 @@ Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed
     actuators_[i].beacon = swarm_[i].beacon;
     poses_[i] = swarm_[i].pose;
   }
-  if (!options.disturbances.None())
-    disturber_.emplace(options.disturbances, seed, swarm_.size(), scenario, course_.lights().size());
+  if (!options.disturbances.None()) disturber_.emplace(options.disturbances, seed, swarm_.size());
 }
 
 void Loop::Start() {
@@ -156,7 +155,9 @@ bool Loop::Tick() {
                   .surroundings = scenario_,
                   .grippers = grippers_,
                   .moving_boxes = course_.boxes(),
-                  .obstacle_lights = course_.lights()});
+                  .obstacle_lights = course_.lights(),
+                  .disturber = disturber_ ? &*disturber_ : nullptr,
+                  .tick = observer_.last_tick()});
   Enter(Phase::kControl);
   Control();
   if (probe_ != nullptr) probe_->EndTick();
@@ -248,15 +249,11 @@ void Loop::Control() {
   const sim::Tick tick = observer_.last_tick();
   for (std::size_t i = 0; i < swarm_.size(); ++i) {
     const RobotIndex robot = static_cast<RobotIndex>(i);
-    const SensorReadings* readings = &sensors_.ReadingsOf(robot);
-    if (disturber_) {
-      if (disturber_->Stopped(robot, tick)) continue;
-      readings = &disturber_->DisturbReadings(robot, tick, devices_[i], poses_[i], *readings);
-    }
+    if (disturber_ && disturber_->Stopped(robot, tick)) continue;
     RandomStream random(seed_, StreamPurpose::kController, static_cast<std::uint32_t>(i),
                         static_cast<std::uint32_t>(tick));
     swarm_[i].controller->Step(
-        {.tick = tick, .readings = *readings, .actuators = actuators_[i], .random = random});
+        {.tick = tick, .readings = sensors_.ReadingsOf(robot), .actuators = actuators_[i], .random = random});
   }
 }
 

@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "base/check.h"
+#include "sim/geometry/nearby_boxes.h"
+#include "sim/geometry/neighbour_pairs.h"
 #include "sim/geometry/trigonometry.h"
+#include "sim/physics/box_motion.h"
 #include "sim/physics/differential_drive.h"
-#include "sim/physics/nearby_boxes.h"
-#include "sim/physics/neighbour_pairs.h"
-#include "sim/physics/physics_engine.h"
+#include "sim/physics/way_back.h"
 
 // Box2D reads the clock a dozen times per step for a profile that nobody asks for: 8 % of a flocking run.
 // These stand in for the library's own.
@@ -29,8 +30,7 @@ namespace {
 
 // Box2D's lengths are decimetres: its fixed contact slop of 0.005 units is then 0.5 mm.
 constexpr double kScale = 10.0;
-constexpr int kSteps = 2;  // per tick; one lets crowded robots overlap by more than 10 mm
-constexpr double kStep = kTickSeconds / kSteps;  // s
+constexpr double kStep = kTickSeconds / kStepsPerTick;  // s
 constexpr int kVelocityIterations = 8;
 constexpr int kPositionIterations = 3;
 
@@ -50,12 +50,8 @@ constexpr double kRestSpeed = 1e-6;  // m/s and rad/s; below, a movable box stan
 // Beyond what both can move in a tick, robots this near (m) are given to the solver: position correction of
 // a crowd moves robots a little further than they drive.
 constexpr double kMargin = 0.005;
-// ARGoS notices a contact at the end of the first of its substeps in which bodies overlap and then stops the
-// approach only, so a contact stays as deep as it was found: up to a substep's travel. Deeper ones than
-// Box2D's slop are cut, the solver would push them out.
-constexpr int kSubsteps = foot_bot::kSubstepsPerTick / kSteps;
-constexpr double kDeepestBite = 0.0005;  // m
-constexpr double kBoxReach = 0.4;        // m; > radius + margin + what a robot can move in a tick
+constexpr double kSlack = 0.1;     // m; two robots that drive at each other use it up in 0.5 s
+constexpr double kBoxReach = 0.4;  // m; > radius + margin + what a robot can move in a tick
 
 b2Vec2 ToBox2d(const Vec2& v) {
   return {static_cast<float>(v.x() * kScale), static_cast<float>(v.y() * kScale)};
@@ -79,17 +75,18 @@ struct Robot {
   bool held = false;     // by a contact in this step
 };
 
-struct MovingBox {
-  OrientedBox box;
-  double heading = 0.0;
+struct MovingBox : BoxMotion {
+  using BoxMotion::BoxMotion;
+
   b2Body* body = nullptr;
   b2PolygonShape* shape = nullptr;
-  bool kinematic = false;
-  bool shown = true;         // Box2D has it where it is
-  double reach = 0.0;        // m, furthest that a point of it can get in this tick by itself
-  Vec2 move = Vec2::Zero();  // m, of a kinematic box in this tick
-  double turn = 0.0;         // rad, likewise
+  bool shown = true;   // Box2D has it where it is
+  double reach = 0.0;  // m, furthest that a point of it can get in this tick by itself
 };
+
+StepWay WayOf(const Robot& robot) {
+  return {robot.from, robot.to};
+}
 
 // The turned corners are given directly: a turned body would go through sinf and cosf, and
 // b2PolygonShape::Set refuses thin boxes.
@@ -102,13 +99,6 @@ void SetCorners(const OrientedBox& box, b2PolygonShape& shape) {
   }
 }
 
-void Place(MovingBox& moving, const Vec2& center, double heading) {
-  moving.heading = WrapAngle(heading);
-  moving.box.center = center;
-  moving.box.axis = UnitVector(moving.heading);
-  moving.shown = false;
-}
-
 // Lets Box2D know. Its body stays unturned; its shape turns. Box2D remembers each such move until its next
 // step, so boxes are shown only when there is one.
 void Show(MovingBox& moving) {
@@ -116,20 +106,6 @@ void Show(MovingBox& moving) {
   SetCorners(moving.box, *moving.shape);
   moving.body->SetTransform(ToBox2d(moving.box.center), 0.0f);
   moving.shown = true;
-}
-
-// The first positive overlap at the ends of the substeps of a step, at most kDeepestBite. `overlap_at` tells
-// the overlap (m) after a share of the step; it is positive at the end.
-template <typename OverlapAt>
-double DepthWhenNoticed(const OverlapAt& overlap_at) {
-  int substep = 1;
-  while (substep < kSubsteps && overlap_at(static_cast<double>(substep) / kSubsteps) <= 0.0) ++substep;
-  return std::min(overlap_at(static_cast<double>(substep) / kSubsteps), kDeepestBite);
-}
-
-Vec2 ClosestPoint(const OrientedBox& box, const Vec2& p) {
-  const Vec2 local = ToLocal(box, p).cwiseMax(-box.half_extents).cwiseMin(box.half_extents);
-  return box.center + local.x() * box.axis + local.y() * LeftOf(box.axis);
 }
 
 bool Touching(const b2Body& body) {
@@ -152,13 +128,14 @@ class Box2dEngine final : public PhysicsEngine {
   BoxIndex AddMovableBox(const OrientedBox& box, double mass) override;
   BoxIndex AddKinematicBox(const OrientedBox& box) override;
   RobotIndex AddRobot(const Pose& pose) override;
-  void MoveBox(BoxIndex box, const Pose& end) override;
+  void MoveBox(BoxIndex box, const Pose& end) override { moving_[static_cast<std::size_t>(box)].SendTo(end); }
   void Step(std::span<const WheelSpeeds> commands) override;
   Pose PoseOf(RobotIndex robot) const override { return robots_[static_cast<std::size_t>(robot)].pose; }
   const OrientedBox& BoxAt(BoxIndex box) const override { return moving_[static_cast<std::size_t>(box)].box; }
 
  private:
   b2Fixture* AddFixture(b2Body& body, const OrientedBox& box, double friction);
+  MovingBox& AddMoving(MovingBox moving, b2BodyType type, double friction);
   void Prepare();
   void FindNear(double longest_move);
   bool MoveIntoSolver();
@@ -167,17 +144,14 @@ class Box2dEngine final : public PhysicsEngine {
   void MoveBoxes(std::size_t step);
   bool BoxesAct() const;
   void StepBackFromBoxes(std::size_t index);
-  static Vec2 WayBack(const OrientedBox& box, const Robot& robot);
-  static void StepBack(Robot& a, Robot& b);
   static void PutBack(Robot& robot, const Vec2& move);
 
   b2World world_;
   b2Body* ground_;
   NearbyBoxes nearby_;
-  NeighbourPairs neighbours_;
+  NeighbourPairs neighbours_{kSlack};
   std::vector<Robot> robots_;
-  std::vector<Vec2> positions_;                  // of the robots when the tick begins
-  std::span<const NeighbourPairs::Pair> pairs_;  // those that could meet in this tick, and some more
+  std::vector<Vec2> positions_;  // of the robots when the tick begins
   std::vector<MovingBox> moving_;
   bool prepared_ = false;
 };
@@ -202,14 +176,18 @@ void Box2dEngine::AddBox(const OrientedBox& box) {
   nearby_.AddBox(box);
 }
 
+MovingBox& Box2dEngine::AddMoving(MovingBox moving, b2BodyType type, double friction) {
+  b2BodyDef body;
+  body.type = type;
+  body.position = ToBox2d(moving.box.center);
+  moving.body = world_.CreateBody(&body);
+  moving.shape = static_cast<b2PolygonShape*>(AddFixture(*moving.body, moving.box, friction)->GetShape());
+  return moving_.emplace_back(moving);
+}
+
 BoxIndex Box2dEngine::AddMovableBox(const OrientedBox& box, double mass) {
   GAUNTLET_CHECK(mass > 0.0, "a movable box has a mass");
-  MovingBox moving = {.box = box, .heading = AngleOf(box.axis)};
-  b2BodyDef body;
-  body.type = b2_dynamicBody;
-  body.position = ToBox2d(box.center);
-  moving.body = world_.CreateBody(&body);
-  moving.shape = static_cast<b2PolygonShape*>(AddFixture(*moving.body, box, kMovableFriction)->GetShape());
+  const MovingBox& moving = AddMoving({box, false}, b2_dynamicBody, kMovableFriction);
   b2MassData data;
   data.mass = static_cast<float>(mass);
   data.center.SetZero();
@@ -223,29 +201,12 @@ BoxIndex Box2dEngine::AddMovableBox(const OrientedBox& box, double mass) {
   ground.maxForce = static_cast<float>(movable_box::kGroundForce * kForceShare * kScale);
   ground.maxTorque = static_cast<float>(movable_box::kGroundTorque * kForceShare * kScale * kScale);
   world_.CreateJoint(&ground);
-  moving_.push_back(moving);
   return static_cast<BoxIndex>(moving_.size()) - 1;
 }
 
 BoxIndex Box2dEngine::AddKinematicBox(const OrientedBox& box) {
-  MovingBox moving = {.box = box, .heading = AngleOf(box.axis), .kinematic = true};
-  b2BodyDef body;
-  body.type = b2_kinematicBody;
-  body.position = ToBox2d(box.center);
-  moving.body = world_.CreateBody(&body);
-  moving.shape = static_cast<b2PolygonShape*>(AddFixture(*moving.body, box, kStaticFriction)->GetShape());
-  moving_.push_back(moving);
+  AddMoving({box, true}, b2_kinematicBody, kStaticFriction);
   return static_cast<BoxIndex>(moving_.size()) - 1;
-}
-
-void Box2dEngine::MoveBox(BoxIndex box, const Pose& end) {
-  MovingBox& moving = moving_[static_cast<std::size_t>(box)];
-  moving.move = end.position - moving.box.center;
-  moving.turn = WrapAngle(end.heading - moving.heading);
-  GAUNTLET_CHECK(moving.kinematic, "only kinematic boxes are moved");
-  GAUNTLET_CHECK(moving.move.squaredNorm() <= kMaxBoxMove * kMaxBoxMove * (1.0 + 1e-9) &&
-                     std::abs(moving.turn) <= kMaxBoxTurn * (1.0 + 1e-9),
-                 "a kinematic box goes too far in a tick");
 }
 
 RobotIndex Box2dEngine::AddRobot(const Pose& pose) {
@@ -295,7 +256,7 @@ void Box2dEngine::Step(std::span<const WheelSpeeds> commands) {
   if (MoveIntoSolver() || BoxesAct()) {
     Solve();
   } else {
-    for (std::size_t step = 0; step < kSteps; ++step) MoveBoxes(step);
+    for (std::size_t step = 0; step < kStepsPerTick; ++step) MoveBoxes(step);
   }
   for (MovingBox& moving : moving_) {
     moving.move = Vec2::Zero();
@@ -319,8 +280,7 @@ void Box2dEngine::Step(std::span<const WheelSpeeds> commands) {
 void Box2dEngine::Prepare() {
   constexpr float kSpacing = 0.2f;  // dm: everybody overlaps eight to each side
   prepared_ = true;
-  nearby_.SetRobots(static_cast<int>(robots_.size()));
-  neighbours_.SetRobots(robots_.size());
+  nearby_.SetVisitors(robots_.size());
   positions_.resize(robots_.size());
   float x = 0.0f;
   for (const Robot& robot : robots_) {
@@ -337,8 +297,8 @@ void Box2dEngine::FindNear(double longest_move) {
   const double box_reach = foot_bot::kRadius + longest_move + kMargin;
   const double robot_reach = 2.0 * (foot_bot::kRadius + longest_move) + kMargin;
   for (Robot& robot : robots_) robot.near = false;
-  pairs_ = neighbours_.Find(positions_, robot_reach);
-  for (const auto& [i, j] : pairs_) {
+  neighbours_.Update(positions_, robot_reach);
+  for (const auto& [i, j] : neighbours_.pairs()) {
     if ((positions_[i] - positions_[j]).squaredNorm() < robot_reach * robot_reach) {
       robots_[i].near = true;
       robots_[j].near = true;
@@ -353,7 +313,7 @@ void Box2dEngine::FindNear(double longest_move) {
     Robot& robot = robots_[i];
     if (robot.near) continue;
     const Vec2& position = robot.pose.position;
-    for (const std::size_t index : nearby_.Near(static_cast<RobotIndex>(i), position)) {
+    for (const std::size_t index : nearby_.Near(i, position)) {
       if (Distance(nearby_.box(index), position) < box_reach) {
         robot.near = true;
         break;
@@ -386,7 +346,7 @@ bool Box2dEngine::BoxesAct() const {
   bool movable = false;
   for (const MovingBox& moving : moving_) {
     if (moving.kinematic) {
-      kinematic = kinematic || moving.move != Vec2::Zero() || moving.turn != 0.0;
+      kinematic = kinematic || moving.Goes();
     } else {
       movable = true;
       if (moving.body->GetLinearVelocity().LengthSquared() > 0.0f ||
@@ -401,17 +361,11 @@ bool Box2dEngine::BoxesAct() const {
 void Box2dEngine::MoveBoxes(std::size_t step) {
   for (MovingBox& moving : moving_) {
     if (moving.kinematic) {
-      if (moving.move == Vec2::Zero() && moving.turn == 0.0) continue;
-      // The rest of the way, so that the end is exact to rounding.
-      const double share = 1.0 / static_cast<double>(kSteps - step);
-      const Vec2 move = share * moving.move;
-      const double turn = share * moving.turn;
-      Place(moving, moving.box.center + move, moving.heading + turn);
-      moving.move -= move;
-      moving.turn -= turn;
+      if (!moving.Goes()) continue;
+      moving.Advance(kStepsPerTick - step);
     } else {
-      Place(moving, FromBox2d(moving.body->GetPosition()),
-            moving.heading + static_cast<double>(moving.body->GetAngle()));
+      moving.Place(FromBox2d(moving.body->GetPosition()),
+                   moving.heading + static_cast<double>(moving.body->GetAngle()));
       const b2Vec2 velocity = moving.body->GetLinearVelocity();
       if (FromBox2d(velocity).squaredNorm() < kRestSpeed * kRestSpeed &&
           std::abs(static_cast<double>(moving.body->GetAngularVelocity())) < kRestSpeed) {
@@ -419,15 +373,16 @@ void Box2dEngine::MoveBoxes(std::size_t step) {
         moving.body->SetAngularVelocity(0.0f);
       }
     }
+    moving.shown = false;
   }
 }
 
 void Box2dEngine::Solve() {
   for (MovingBox& moving : moving_) Show(moving);
-  for (std::size_t step = 0; step < kSteps; ++step) {
+  for (std::size_t step = 0; step < kStepsPerTick; ++step) {
     for (MovingBox& moving : moving_) {
       if (!moving.kinematic) continue;
-      const double share = 1.0 / (kStep * static_cast<double>(kSteps - step));
+      const double share = 1.0 / (kStep * static_cast<double>(kStepsPerTick - step));
       moving.body->SetLinearVelocity(ToBox2d(share * moving.move));
       moving.body->SetAngularVelocity(static_cast<float>(share * moving.turn));
     }
@@ -457,70 +412,40 @@ void Box2dEngine::Solve() {
 // inside it by the step's whole way. It is put back to where they met, with the velocity it has; the contact
 // acts from the next step on. Robots in other contacts stay, there may be somebody behind them.
 void Box2dEngine::StepBackToContact() {
-  auto pair = pairs_.begin();
+  const std::span<const NeighbourPairs::Pair> pairs = neighbours_.pairs();
+  auto pair = pairs.begin();
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     const bool in_solver = robots_[i].in_solver;
     if (in_solver && !robots_[i].held) StepBackFromBoxes(i);
-    for (; pair != pairs_.end() && pair->first == i; ++pair) {
-      if (in_solver && robots_[pair->second].in_solver) StepBack(robots_[i], robots_[pair->second]);
+    for (; pair != pairs.end() && pair->first == i; ++pair) {
+      Robot& other = robots_[pair->second];
+      if (!in_solver || !other.in_solver) continue;
+      const auto back = WaysApart(WayOf(robots_[i]), robots_[i].held, WayOf(other), other.held);
+      if (!back) continue;
+      PutBack(robots_[i], back->a);
+      PutBack(other, back->b);
     }
   }
 }
 
 void Box2dEngine::StepBackFromBoxes(std::size_t index) {
   Robot& robot = robots_[index];
-  for (const std::size_t i : nearby_.Near(static_cast<RobotIndex>(index), robot.from)) {
-    const Vec2 back = WayBack(nearby_.box(i), robot);
+  for (const std::size_t i : nearby_.Near(index, robot.from)) {
+    const Vec2 back = WayBack(nearby_.box(i), WayOf(robot));
     if (back != Vec2::Zero()) PutBack(robot, back);
   }
   for (MovingBox& moving : moving_) {
-    const Vec2 back = WayBack(moving.box, robot);
+    const Vec2 back = WayBack(moving.box, WayOf(robot));
     if (back == Vec2::Zero()) continue;
     if (moving.kinematic) {
       PutBack(robot, back);
     } else {  // it gives way
       robot.touched = true;
-      Place(moving, moving.box.center - back, moving.heading);
+      moving.Place(moving.box.center - back, moving.heading);
+      moving.shown = false;
       Show(moving);
     }
   }
-}
-
-// From where a robot is after a step to where it met the box in it; zero when it did not.
-Vec2 Box2dEngine::WayBack(const OrientedBox& box, const Robot& robot) {
-  const Vec2 outward = robot.to - ClosestPoint(box, robot.to);
-  const double distance_squared = outward.squaredNorm();
-  constexpr double kContact = foot_bot::kRadius;
-  if (distance_squared >= kContact * kContact || distance_squared == 0.0 ||
-      Distance(box, robot.from) <= kContact) {
-    return Vec2::Zero();
-  }
-  const double distance = std::sqrt(distance_squared);
-  const double bite = DepthWhenNoticed(
-      [&](double share) { return kContact - Distance(box, robot.from + share * (robot.to - robot.from)); });
-  return (kContact - bite - distance) / distance * outward;
-}
-
-void Box2dEngine::StepBack(Robot& a, Robot& b) {
-  const Vec2 apart = a.to - b.to;
-  const double distance_squared = apart.squaredNorm();
-  constexpr double kContact = 2.0 * foot_bot::kRadius;
-  const Vec2 apart_before = a.from - b.from;
-  if (distance_squared >= kContact * kContact || distance_squared == 0.0 ||
-      apart_before.squaredNorm() <= kContact * kContact) {
-    return;
-  }
-  const double distance = std::sqrt(distance_squared);
-  const Vec2 normal = apart / distance;
-  const double a_closing = a.held ? 0.0 : std::max(normal.dot(a.from - a.to), 0.0);
-  const double b_closing = b.held ? 0.0 : std::max(normal.dot(b.to - b.from), 0.0);
-  if (a_closing + b_closing == 0.0) return;
-  const double bite = DepthWhenNoticed([&](double share) {
-    return kContact - std::sqrt((apart_before + share * (apart - apart_before)).squaredNorm());
-  });
-  const Vec2 excess = (kContact - bite - distance) / (a_closing + b_closing) * normal;
-  PutBack(a, a_closing * excess);
-  PutBack(b, -b_closing * excess);
 }
 
 void Box2dEngine::PutBack(Robot& robot, const Vec2& move) {

@@ -22,6 +22,9 @@ inline constexpr double kGroundTorque = 1.49;  // N m
 inline constexpr double kFriction = 0.7;       // contact friction; of a pair: the product
 }  // namespace movable_box
 
+// Steps of a solver in a tick; with one, crowded robots overlap by more than 10 mm.
+inline constexpr int kStepsPerTick = 2;
+
 // Furthest that a kinematic box goes in a tick (its centre, m; its heading, rad).
 inline constexpr double kMaxBoxMove = 0.1;
 inline constexpr double kMaxBoxTurn = 0.3;

@@ -8,21 +8,22 @@
 #include <vector>
 
 #include "base/check.h"
+#include "sim/geometry/nearby_boxes.h"
+#include "sim/geometry/neighbour_pairs.h"
 #include "sim/geometry/trigonometry.h"
+#include "sim/physics/box_motion.h"
 #include "sim/physics/differential_drive.h"
-#include "sim/physics/nearby_boxes.h"
-#include "sim/physics/neighbour_pairs.h"
 #include "sim/physics/physics_engine.h"
 
 namespace gauntlet::sim {
 namespace {
 
-constexpr int kHalves = 2;
 constexpr int kPasses = 4;
-constexpr double kHalfTick = kTickSeconds / kHalves;  // s
+constexpr double kHalfTick = kTickSeconds / kStepsPerTick;  // s
 constexpr double kBoxReach = 0.4;  // m; > radius + what a robot can move in a tick, pushed or not
 // Beyond what both drive, pairs this near (m) are watched: a crowd pushes robots further than they drive.
 constexpr double kMargin = 0.05;
+constexpr double kSlack = 0.1;  // m; two robots that drive at each other use it up in 0.5 s
 
 // How a disc of a robot's radius at `p` gets out of the box by the shortest way; zero when it is not in it.
 Vec2 WayOut(const OrientedBox& box, const Vec2& p) {
@@ -51,14 +52,6 @@ struct Robot {
   bool touched = false;       // in this tick
 };
 
-struct MovingBox {
-  OrientedBox box;
-  double heading = 0.0;
-  bool kinematic = false;
-  Vec2 move = Vec2::Zero();  // m, in what is left of this tick
-  double turn = 0.0;         // rad, likewise
-};
-
 class RelaxationEngine final : public PhysicsEngine {
  public:
   RelaxationEngine() : nearby_(kBoxReach) {}
@@ -70,7 +63,7 @@ class RelaxationEngine final : public PhysicsEngine {
   }
   BoxIndex AddKinematicBox(const OrientedBox& box) override { return AddMoving(box, true); }
   RobotIndex AddRobot(const Pose& pose) override;
-  void MoveBox(BoxIndex box, const Pose& end) override;
+  void MoveBox(BoxIndex box, const Pose& end) override { moving_[static_cast<std::size_t>(box)].SendTo(end); }
   void Step(std::span<const WheelSpeeds> commands) override;
   Pose PoseOf(RobotIndex robot) const override {
     const auto index = static_cast<std::size_t>(robot);
@@ -80,22 +73,20 @@ class RelaxationEngine final : public PhysicsEngine {
 
  private:
   BoxIndex AddMoving(const OrientedBox& box, bool kinematic);
-  void MoveKinematicBoxes(std::size_t half);
   void PartRobots();
   void LeaveBoxes(std::size_t robot);
 
   NearbyBoxes nearby_;
-  NeighbourPairs neighbours_;
-  std::span<const NeighbourPairs::Pair> pairs_;
+  NeighbourPairs neighbours_{kSlack};
   std::vector<Vec2> positions_;
   std::vector<Vec2> from_;  // where a half begins
   std::vector<Robot> robots_;
-  std::vector<MovingBox> moving_;
+  std::vector<BoxMotion> moving_;
   bool prepared_ = false;
 };
 
 BoxIndex RelaxationEngine::AddMoving(const OrientedBox& box, bool kinematic) {
-  moving_.push_back({.box = box, .heading = AngleOf(box.axis), .kinematic = kinematic});
+  moving_.emplace_back(box, kinematic);
   return static_cast<BoxIndex>(moving_.size()) - 1;
 }
 
@@ -108,21 +99,10 @@ RobotIndex RelaxationEngine::AddRobot(const Pose& pose) {
   return static_cast<RobotIndex>(robots_.size()) - 1;
 }
 
-void RelaxationEngine::MoveBox(BoxIndex box, const Pose& end) {
-  MovingBox& moving = moving_[static_cast<std::size_t>(box)];
-  GAUNTLET_CHECK(moving.kinematic, "only kinematic boxes are moved");
-  moving.move = end.position - moving.box.center;
-  moving.turn = WrapAngle(end.heading - moving.heading);
-  GAUNTLET_CHECK(moving.move.squaredNorm() <= kMaxBoxMove * kMaxBoxMove * (1.0 + 1e-9) &&
-                     std::abs(moving.turn) <= kMaxBoxTurn * (1.0 + 1e-9),
-                 "a kinematic box goes too far in a tick");
-}
-
 void RelaxationEngine::Step(std::span<const WheelSpeeds> commands) {
   GAUNTLET_CHECK(commands.size() == robots_.size(), "one command per robot");
   if (!prepared_) {
-    nearby_.SetRobots(static_cast<int>(robots_.size()));
-    neighbours_.SetRobots(robots_.size());
+    nearby_.SetVisitors(robots_.size());
     prepared_ = true;
   }
   double longest_move = 0.0;  // squared
@@ -133,14 +113,16 @@ void RelaxationEngine::Step(std::span<const WheelSpeeds> commands) {
     robot.motion = Drive(robot.drive, commands[i], UnitVector(robot.heading));
     longest_move = std::max(longest_move, (robot.motion.halves[0] + robot.motion.halves[1]).squaredNorm());
   }
-  pairs_ = neighbours_.Find(positions_, 2.0 * (foot_bot::kRadius + std::sqrt(longest_move)) + kMargin);
+  neighbours_.Update(positions_, 2.0 * (foot_bot::kRadius + std::sqrt(longest_move)) + kMargin);
 
-  for (std::size_t half = 0; half < kHalves; ++half) {
+  for (std::size_t half = 0; half < kStepsPerTick; ++half) {
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       from_[i] = positions_[i];
       positions_[i] += robots_[i].motion.halves[half];
     }
-    MoveKinematicBoxes(half);
+    for (BoxMotion& moving : moving_) {
+      if (moving.Goes()) moving.Advance(kStepsPerTick - half);
+    }
     for (int pass = 0; pass < kPasses; ++pass) {
       PartRobots();
       for (std::size_t i = 0; i < robots_.size(); ++i) LeaveBoxes(i);
@@ -159,23 +141,9 @@ void RelaxationEngine::Step(std::span<const WheelSpeeds> commands) {
   }
 }
 
-void RelaxationEngine::MoveKinematicBoxes(std::size_t half) {
-  for (MovingBox& moving : moving_) {
-    if (moving.move == Vec2::Zero() && moving.turn == 0.0) continue;
-    const double share = 1.0 / static_cast<double>(kHalves - half);
-    const Vec2 move = share * moving.move;
-    const double turn = share * moving.turn;
-    moving.box.center += move;
-    moving.heading = WrapAngle(moving.heading + turn);
-    moving.box.axis = UnitVector(moving.heading);
-    moving.move -= move;
-    moving.turn -= turn;
-  }
-}
-
 void RelaxationEngine::PartRobots() {
   constexpr double kContact = 2.0 * foot_bot::kRadius;
-  for (const auto& [i, j] : pairs_) {
+  for (const auto& [i, j] : neighbours_.pairs()) {
     const Vec2 apart = positions_[i] - positions_[j];
     const double distance_squared = apart.squaredNorm();
     if (distance_squared >= kContact * kContact || distance_squared == 0.0) continue;
@@ -189,7 +157,7 @@ void RelaxationEngine::PartRobots() {
 }
 
 void RelaxationEngine::LeaveBoxes(std::size_t robot) {
-  for (MovingBox& moving : moving_) {
+  for (BoxMotion& moving : moving_) {
     const Vec2 way = WayOut(moving.box, positions_[robot]);
     if (way == Vec2::Zero()) continue;
     if (moving.kinematic) {
@@ -199,7 +167,7 @@ void RelaxationEngine::LeaveBoxes(std::size_t robot) {
       moving.box.center -= way;
     }
   }
-  for (const std::size_t index : nearby_.Near(static_cast<RobotIndex>(robot), positions_[robot])) {
+  for (const std::size_t index : nearby_.Near(robot, positions_[robot])) {
     const Vec2 way = WayOut(nearby_.box(index), positions_[robot]);
     if (way == Vec2::Zero()) continue;
     positions_[robot] += way;

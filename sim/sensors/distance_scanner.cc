@@ -1,5 +1,7 @@
 #include "sim/sensors/distance_scanner.h"
 
+#include <algorithm>
+
 #include "sim/geometry/ray_cast.h"
 #include "sim/geometry/trigonometry.h"
 
@@ -44,6 +46,39 @@ double LongReading(double hit) {
   return hit < kLongNearest ? ScannerReading::kTooNear : hit;
 }
 
+// The scanners of a swarm.
+class DistanceScanners final : public Sensor {
+ public:
+  DistanceScanners(const Arena& arena, std::size_t robots) : boxes_(arena.fixed_boxes()), scanners_(robots) {
+    boxes_.resize(boxes_.size() + arena.moving().size());
+  }
+
+  void Prepare(const Scene& scene) override {
+    std::copy(scene.moving_boxes.begin(), scene.moving_boxes.end(),
+              boxes_.end() - std::ssize(scene.moving_boxes));
+  }
+  void Read(const Scene& scene, RobotIndex robot, SensorReadings& readings) override {
+    const auto index = static_cast<std::size_t>(robot);
+    scanners_[index].Scan(scene.actuators[index].scanner, scene.robots, robot, boxes_);
+    readings.scanner_short = scanners_[index].short_range();
+    readings.scanner_long = scanners_[index].long_range();
+  }
+  void Blank(RobotIndex robot, SensorReadings& /*readings*/) override {
+    scanners_[static_cast<std::size_t>(robot)].ForEachDistance(
+        [](double /*distance*/) { return ScannerReading::kNothing; });
+  }
+  void Disturb(const Scene& /*scene*/, RobotIndex robot, DeviceErrors& errors,
+               SensorReadings& /*readings*/) override {
+    scanners_[static_cast<std::size_t>(robot)].ForEachDistance([&](double distance) {
+      return distance >= 0.0 ? std::max(distance + errors.Draw(), 0.0) : distance;
+    });
+  }
+
+ private:
+  std::vector<OrientedBox> boxes_;         // fixed, then moving ones
+  std::vector<DistanceScanner> scanners_;  // per robot
+};
+
 }  // namespace
 
 void DistanceScanner::Scan(const ScannerCommand& command, std::span<const BodyFrame> robots, RobotIndex self,
@@ -80,6 +115,10 @@ void DistanceScanner::Scan(const ScannerCommand& command, std::span<const BodyFr
     }
   }
   rotation_ = WrapAngle(rotation_ + swept);
+}
+
+std::unique_ptr<Sensor> MakeDistanceScanners(const Arena& arena, std::span<const RobotSensors> robots) {
+  return std::make_unique<DistanceScanners>(arena, robots.size());
 }
 
 }  // namespace gauntlet::sim

@@ -6,9 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/arena/arena.h"
-#include "sim/robot/controller.h"
-#include "sim/sensors/body_frame.h"
+#include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
 
@@ -24,6 +22,13 @@ class DistanceScanner {
   // the order of the sweep, then those of the opposite sensor.
   std::span<const ScannerReading> short_range() const { return std::span(short_).first(count_); }
   std::span<const ScannerReading> long_range() const { return std::span(long_).first(count_); }
+  // Puts change(distance) in the place of each distance: short range first, each in its order.
+  template <typename Change>
+  void ForEachDistance(const Change& change) {
+    for (auto* const rays : {&short_, &long_}) {
+      for (ScannerReading& ray : std::span(*rays).first(count_)) ray.distance = change(ray.distance);
+    }
+  }
 
  private:
   static constexpr std::size_t kRaysPerTick = 6;
@@ -36,5 +41,7 @@ class DistanceScanner {
   std::array<ScannerReading, 2 * kRaysPerTick> short_;
   std::array<ScannerReading, 2 * kRaysPerTick> long_;
 };
+
+std::unique_ptr<Sensor> MakeDistanceScanners(const Arena& arena, std::span<const RobotSensors> robots);
 
 }  // namespace gauntlet::sim

@@ -4,9 +4,7 @@
 
 #include <array>
 
-#include "sim/robot/foot_bot.h"
-#include "sim/robot/surroundings.h"
-#include "sim/sensors/body_frame.h"
+#include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
 
@@ -30,5 +28,8 @@ std::array<double, kCount> SenseGround(const BodyFrame& self, const std::array<V
   for (std::size_t i = 0; i < kCount; ++i) grey[i] = surroundings.FloorGrey(self.ToWorld(places[i]));
   return grey;
 }
+
+std::unique_ptr<Sensor> MakeMotorGroundSensors(const Arena& arena, std::span<const RobotSensors> robots);
+std::unique_ptr<Sensor> MakeBaseGroundSensors(const Arena& arena, std::span<const RobotSensors> robots);
 
 }  // namespace gauntlet::sim

@@ -17,6 +17,18 @@ void Shine(double brightness, double bearing, LightReadings& readings) {
   }
 }
 
+class LightSensors final : public Sensor {
+ public:
+  void Read(const Scene& scene, RobotIndex robot, SensorReadings& readings) override {
+    readings.light = SenseLight(scene.robots, robot, scene.surroundings.lights(), scene.occluders);
+  }
+  void Blank(RobotIndex /*robot*/, SensorReadings& readings) override { readings.light.fill(0.0); }
+  void Disturb(const Scene& /*scene*/, RobotIndex /*robot*/, DeviceErrors& errors,
+               SensorReadings& readings) override {
+    errors.AddTo(readings.light);
+  }
+};
+
 }  // namespace
 
 LightReadings SenseLight(std::span<const BodyFrame> robots, RobotIndex self, std::span<const Light> lights,
@@ -37,6 +49,10 @@ LightReadings SenseLight(std::span<const BodyFrame> robots, RobotIndex self, std
   }
   for (double& reading : readings) reading = std::min(reading, 1.0);
   return readings;
+}
+
+std::unique_ptr<Sensor> MakeLightSensors(const Arena& /*arena*/, std::span<const RobotSensors> /*robots*/) {
+  return std::make_unique<LightSensors>();
 }
 
 }  // namespace gauntlet::sim

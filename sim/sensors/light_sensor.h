@@ -3,11 +3,8 @@
 #pragma once
 
 #include <array>
-#include <span>
 
-#include "sim/robot/surroundings.h"
-#include "sim/sensors/body_frame.h"
-#include "sim/sensors/occluders.h"
+#include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
 
@@ -18,5 +15,7 @@ using LightReadings = std::array<double, foot_bot::kLightSensors>;
 // by whatever meets the line from the robot's place on the floor to it.
 LightReadings SenseLight(std::span<const BodyFrame> robots, RobotIndex self, std::span<const Light> lights,
                          const Occluders& occluders);
+
+std::unique_ptr<Sensor> MakeLightSensors(const Arena& arena, std::span<const RobotSensors> robots);
 
 }  // namespace gauntlet::sim

@@ -41,7 +41,6 @@ Occluders::Box Occluders::Bounded(const OrientedBox& box, double height) {
 
 void Occluders::AddBox(const OrientedBox& box, double height) {
   boxes_.push_back(Bounded(box, height));
-  framed_.reserve(boxes_.size());
   all_high_ = all_high_ && height >= kHighestDevice;
 }
 
@@ -50,20 +49,19 @@ void Occluders::SetMoving(std::span<const OrientedBox> boxes) {
   for (const OrientedBox& box : boxes) moving_.push_back(Bounded(box, kBoxHeight));
 }
 
-void Occluders::Frame(std::span<const BodyFrame> robots) {
-  framed_.clear();
-  if (robots.empty()) return;
-  Vec2 min = robots[0].position;
+void Occluders::FindHighBoxes(std::span<const Vec2> places, std::vector<std::size_t>& found) const {
+  found.clear();
+  if (places.empty()) return;
+  Vec2 min = places[0];
   Vec2 max = min;
-  for (const BodyFrame& robot : robots) {
-    min = min.cwiseMin(robot.position);
-    max = max.cwiseMax(robot.position);
+  for (const Vec2& place : places) {
+    min = min.cwiseMin(place);
+    max = max.cwiseMax(place);
   }
   for (std::size_t i = 0; i < boxes_.size(); ++i) {
     const Box& box = boxes_[i];
     if (box.height < kHighestDevice) continue;
-    if ((box.min.array() <= max.array()).all() && (box.max.array() >= min.array()).all())
-      framed_.push_back(i);
+    if ((box.min.array() <= max.array()).all() && (box.max.array() >= min.array()).all()) found.push_back(i);
   }
 }
 

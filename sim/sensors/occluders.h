@@ -18,7 +18,7 @@ struct Point3 {
   double height;  // m
 };
 
-// Walls and obstacles of an arena are this high (spec 1).
+// Walls and obstacles of an arena are this high, m: robots neither see nor hear over them.
 inline constexpr double kBoxHeight = 1.0;
 
 class Occluders {
@@ -30,16 +30,14 @@ class Occluders {
   // The boxes that move, where they are now, all of the usual height. The answers below count them in. Does
   // not allocate for as many as the arena has.
   void SetMoving(std::span<const OrientedBox> boxes);
-  // Every box is higher than any device or lamp, so BoxBetweenRobots says it all.
+  // Every box is higher than any device or lamp, so heights need not be asked for.
   bool all_high() const { return all_high_; }
 
-  // Until the next call, only lines inside the rectangle around these robots are asked for in
-  // BoxBetweenRobots. Allocates nothing.
-  void Frame(std::span<const BodyFrame> robots);
-  // Whether a box higher than any device stands on the line between two of the robots of Frame. The answer is
-  // the same in both directions. Boundary counts.
-  bool BoxBetweenRobots(const Vec2& a, const Vec2& b) const { return BoxBetween(framed_, a, b); }
-  // The same, asking only these boxes (their numbers in the order they were added).
+  // The numbers, in the order they were added, of the boxes that may stand between two of these places and
+  // are higher than any device.
+  void FindHighBoxes(std::span<const Vec2> places, std::vector<std::size_t>& found) const;
+  // Whether one of these boxes that is higher than any device, or one that moves, stands on the line. The
+  // answer is the same in both directions. Boundary counts.
   bool BoxBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const;
   // Of the fixed boxes.
   std::size_t size() const { return boxes_.size(); }
@@ -61,7 +59,6 @@ class Occluders {
 
   std::vector<Box> boxes_;
   std::vector<Box> moving_;
-  std::vector<std::size_t> framed_;  // indices of boxes_ that are higher than any device
   bool all_high_ = true;
 };
 

@@ -25,37 +25,64 @@ double Side(const Vec2& offset) {
   return std::max(std::abs(offset.x()), std::abs(offset.y()));
 }
 
-bool HiddenByLowBox(const OmniCameras::Scene& scene, const BodyFrame& viewer,
-                    const RobotPairs::Neighbour& other) {
+bool HiddenByLowBox(const Scene& scene, const BodyFrame& viewer, const RobotPairs::Neighbour& other) {
   return !scene.occluders.all_high() &&
          scene.occluders.BoxBetween({viewer.position, foot_bot::kCameraHeight},
                                     {viewer.position + other.offset, foot_bot::kBeaconHeight});
 }
 
-}  // namespace
+// Allocates nothing unless a robot sees more than 64 robots.
+class OmniCameras final : public Sensor {
+ public:
+  explicit OmniCameras(std::span<const RobotSensors> robots) : first_(robots.size() + 1) {
+    for (const RobotSensors& robot : robots) ranges_.push_back(robot.CameraReach());
+    blobs_.reserve(robots.size() * std::min(kManyBlobs, robots.size() * (1 + foot_bot::kRingLeds)));
+  }
 
-OmniCameras::OmniCameras(std::span<const double> ranges)
-    : ranges_(ranges.begin(), ranges.end()), first_(ranges.size() + 1) {
-  blobs_.reserve(ranges.size() * std::min(kManyBlobs, ranges.size() * (1 + foot_bot::kRingLeds)));
-}
+  void Prepare(const Scene& scene) override;
+  void Read(const Scene& /*scene*/, RobotIndex robot, SensorReadings& readings) override {
+    readings.blobs = BlobsOf(robot);
+  }
+  void Blank(RobotIndex /*robot*/, SensorReadings& readings) override { readings.blobs = {}; }
+  void Disturb(const Scene& /*scene*/, RobotIndex robot, DeviceErrors& errors,
+               SensorReadings& readings) override {
+    readings.blobs = errors.Scatter(BlobsOf(robot), [](const Blob& blob) { return blob.range; });
+  }
 
-void OmniCameras::Look(const Scene& scene) {
+ private:
+  std::span<Blob> BlobsOf(RobotIndex robot) {
+    const auto index = static_cast<std::size_t>(robot);
+    return std::span(blobs_).subspan(first_[index], first_[index + 1] - first_[index]);
+  }
+  void AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other);
+  void AddLights(const Scene& scene, std::span<const Light> lights, RobotIndex viewer);
+  void Add(const BodyFrame& viewer, const Vec2& offset, double range, Color color) {
+    blobs_.push_back({.position = viewer.FromWorld(offset), .range = range, .color = color});
+  }
+
+  std::vector<double> ranges_;  // half side (m) of the world-aligned square that a camera sees, 0 = no camera
+  std::vector<Blob> blobs_;
+  std::vector<std::size_t> first_;  // where the blobs of a robot begin
+};
+
+void OmniCameras::Prepare(const Scene& scene) {
   blobs_.clear();
+  const std::span<const Light> lights = scene.surroundings.lights();
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     const RobotIndex viewer = static_cast<RobotIndex>(i);
+    const BodyFrame& self = scene.robots[i];
+    const double range = ranges_[i];
     first_[i] = blobs_.size();
-    if (ranges_[i] <= 0.0) continue;
+    if (range <= 0.0) continue;
     for (const RobotPairs::Neighbour& other : scene.pairs.NeighboursOf(viewer)) {
-      const Signals& signals = scene.signals[static_cast<std::size_t>(other.robot)];
-      if (signals.beacon != Color::kBlack && other.clear && Side(other.offset) < ranges_[i] &&
-          !HiddenByLowBox(scene, scene.robots[i], other)) {
-        blobs_.push_back({.position = scene.robots[i].FromWorld(other.offset),
-                          .range = other.distance,
-                          .color = signals.beacon});
+      const Color beacon = scene.signals[static_cast<std::size_t>(other.robot)].beacon;
+      if (beacon != Color::kBlack && other.clear && Side(other.offset) < range &&
+          !HiddenByLowBox(scene, self, other)) {
+        Add(self, other.offset, other.distance, beacon);
       }
       if (scene.any_ring_lit) AddRing(scene, viewer, other.robot);
     }
-    if (!scene.lights.empty()) AddLights(scene, scene.lights, viewer);
+    if (!lights.empty()) AddLights(scene, lights, viewer);
     if (!scene.obstacle_lights.empty()) AddLights(scene, scene.obstacle_lights, viewer);
   }
   first_.back() = blobs_.size();
@@ -97,8 +124,10 @@ void OmniCameras::AddLights(const Scene& scene, std::span<const Light> lights, R
   }
 }
 
-void OmniCameras::Add(const BodyFrame& viewer, const Vec2& offset, double range, Color color) {
-  blobs_.push_back({.position = viewer.FromWorld(offset), .range = range, .color = color});
+}  // namespace
+
+std::unique_ptr<Sensor> MakeOmniCameras(const Arena& /*arena*/, std::span<const RobotSensors> robots) {
+  return std::make_unique<OmniCameras>(robots);
 }
 
 }  // namespace gauntlet::sim

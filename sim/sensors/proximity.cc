@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "base/bits.h"
-#include "sim/robot/controller.h"
+#include "sim/geometry/nearby_boxes.h"
+#include "sim/geometry/neighbour_pairs.h"
 
 namespace gauntlet::sim {
 namespace {
@@ -67,6 +68,57 @@ double EnterBox(const Vec2& half_extents, const Vec2& origin, const Vec2& direct
   }
   return leave >= std::max(enter, foot_bot::kRadius) ? enter : kNothing;
 }
+
+// The rings of a swarm.
+class ProximityRings final : public Sensor {
+ public:
+  ProximityRings(const Arena& arena, std::span<const RobotSensors> robots)
+      : robots_(robots.begin(), robots.end()), boxes_(kReach) {
+    for (const OrientedBox& box : arena.fixed_boxes()) boxes_.AddBox(box);
+    boxes_.SetVisitors(robots.size());
+    rings_.reserve(robots.size());
+  }
+
+  void Prepare(const Scene& scene) override {
+    rings_.clear();
+    for (const BodyFrame& robot : scene.robots) rings_.emplace_back(robot);
+    neighbours_.Update(scene.positions, ProximityRing::kBodyReach);
+    for (const auto& [a, b] : neighbours_.pairs()) {
+      if (robots_[a].devices.Has(Device::kProximity)) rings_[a].See(scene.robots[b]);
+      if (robots_[b].devices.Has(Device::kProximity)) rings_[b].See(scene.robots[a]);
+    }
+  }
+  void Read(const Scene& scene, RobotIndex robot, SensorReadings& readings) override {
+    const auto index = static_cast<std::size_t>(robot);
+    ProximityRing& ring = rings_[index];
+    for (const std::size_t box : boxes_.Near(index, scene.positions[index])) ring.See(boxes_.box(box));
+    for (const OrientedBox& box : scene.moving_boxes) ring.See(box);
+    ForEachBit(readings.proximity_hits & ~ring.hits(),
+               [&](std::size_t sensor) { readings.proximity[sensor] = 0.0; });
+    ForEachBit(ring.hits(), [&](std::size_t sensor) { readings.proximity[sensor] = ring.Reading(sensor); });
+    readings.proximity_hits = ring.hits();
+  }
+  void Blank(RobotIndex /*robot*/, SensorReadings& readings) override {
+    readings.proximity.fill(0.0);
+    readings.proximity_hits = 0;
+  }
+  void Disturb(const Scene& /*scene*/, RobotIndex /*robot*/, DeviceErrors& errors,
+               SensorReadings& readings) override {
+    errors.AddTo(readings.proximity);
+    readings.proximity_hits = 0;
+    for (std::size_t i = 0; i < kSensors; ++i) {
+      if (readings.proximity[i] != 0.0) readings.proximity_hits |= 1u << i;
+    }
+  }
+
+ private:
+  static constexpr double kSlack = 0.1;  // m; two robots that drive at each other use it up in 0.5 s
+
+  std::vector<RobotSensors> robots_;
+  NearbyBoxes boxes_;
+  NeighbourPairs neighbours_{kSlack};
+  std::vector<ProximityRing> rings_;  // per robot
+};
 
 }  // namespace
 
@@ -163,6 +215,10 @@ ProximityReadings ProximityRing::Readings() const {
   ProximityReadings readings{};
   ForEachBit(hits_, [&](std::size_t sensor) { readings[sensor] = Reading(sensor); });
   return readings;
+}
+
+std::unique_ptr<Sensor> MakeProximityRings(const Arena& arena, std::span<const RobotSensors> robots) {
+  return std::make_unique<ProximityRings>(arena, robots);
 }
 
 }  // namespace gauntlet::sim

@@ -5,9 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "sim/geometry/oriented_box.h"
-#include "sim/robot/foot_bot.h"
-#include "sim/sensors/body_frame.h"
+#include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
 
@@ -35,10 +33,11 @@ class ProximityRing {
   double Reading(std::size_t sensor) const { return ProximityReading(nearest_[sensor]); }
   ProximityReadings Readings() const;
 
- private:
+  // How near another robot must be to be seen, m, centre to centre.
   static constexpr double kBodyReach =
-      2.0 * foot_bot::kRadius + foot_bot::kProximityRange + foot_bot::kGripperRadius;  // m, centre to centre
+      2.0 * foot_bot::kRadius + foot_bot::kProximityRange + foot_bot::kGripperRadius;
 
+ private:
   void SeeBody(const BodyFrame& robot, const Vec2& offset);
   void SeeDisc(const Vec2& center, double radius, double apart);
   void SeeNearDisc(const Vec2& center, double radius);
@@ -48,5 +47,7 @@ class ProximityRing {
   std::uint32_t hits_ = 0;
   std::array<double, foot_bot::kProximitySensors> nearest_;  // m from the surface, where hits_ says so
 };
+
+std::unique_ptr<Sensor> MakeProximityRings(const Arena& arena, std::span<const RobotSensors> robots);
 
 }  // namespace gauntlet::sim

@@ -12,18 +12,42 @@ Point3 AntennaAt(const Vec2& position) {
   return {position, foot_bot::kRangeAndBearingHeight};
 }
 
-}  // namespace
+// Allocates nothing unless a robot hears more than 64 robots.
+class Radios final : public Sensor {
+ public:
+  explicit Radios(std::span<const RobotSensors> robots)
+      : radios_(robots.begin(), robots.end()), first_(robots.size() + 1) {
+    messages_.reserve(robots.size() * std::min(robots.size() + 1, kManyMessages));
+  }
 
-Radios::Radios(std::span<const Radio> radios)
-    : radios_(radios.begin(), radios.end()), first_(radios.size() + 1) {
-  messages_.reserve(radios.size() * std::min(radios.size() + 1, kManyMessages));
-}
+  void Prepare(const Scene& scene) override;
+  void Read(const Scene& /*scene*/, RobotIndex robot, SensorReadings& readings) override {
+    readings.range_and_bearing = MessagesOf(robot);
+  }
+  void Blank(RobotIndex /*robot*/, SensorReadings& readings) override { readings.range_and_bearing = {}; }
+  void Disturb(const Scene& /*scene*/, RobotIndex robot, DeviceErrors& errors,
+               SensorReadings& readings) override {
+    readings.range_and_bearing = errors.Scatter(MessagesOf(robot), [](const Message&) { return 1.0; });
+  }
 
-void Radios::Listen(const Scene& scene) {
+ private:
+  std::span<Message> MessagesOf(RobotIndex robot) {
+    const auto index = static_cast<std::size_t>(robot);
+    return std::span(messages_).subspan(first_[index], first_[index + 1] - first_[index]);
+  }
+  void HearRobots(const Scene& scene, std::size_t listener);
+  void HearBeacons(const Scene& scene, std::size_t listener);
+
+  std::vector<RobotSensors> radios_;
+  std::vector<Message> messages_;
+  std::vector<std::size_t> first_;  // where the messages of a robot begin
+};
+
+void Radios::Prepare(const Scene& scene) {
   messages_.clear();
   for (std::size_t i = 0; i < radios_.size(); ++i) {
     first_[i] = messages_.size();
-    if (radios_[i].range <= 0.0) continue;
+    if (radios_[i].RadioReach() <= 0.0) continue;
     HearRobots(scene, i);
     HearBeacons(scene, i);
   }
@@ -35,12 +59,13 @@ void Radios::HearRobots(const Scene& scene, std::size_t listener) {
   const RobotIndex robot = static_cast<RobotIndex>(listener);
   for (const RobotPairs::Neighbour& other : scene.pairs.NeighboursOf(robot)) {
     const std::size_t sender = static_cast<std::size_t>(other.robot);
-    if (!other.clear || !(other.distance < radios_[sender].range) || scene.signals[sender].silent) continue;
+    if (!other.clear || !(other.distance < radios_[sender].RadioReach()) || scene.signals[sender].silent)
+      continue;
     if (!scene.occluders.all_high() &&
         scene.occluders.BoxBetween(AntennaAt(self.position), AntennaAt(scene.robots[sender].position))) {
       continue;
     }
-    if (radios_[listener].bodies_block &&
+    if (radios_[listener].bodies_block_radio &&
         BodyBetween(scene.robots, AntennaAt(self.position), AntennaAt(scene.robots[sender].position), robot,
                     other.robot)) {
       continue;
@@ -54,12 +79,12 @@ void Radios::HearRobots(const Scene& scene, std::size_t listener) {
 void Radios::HearBeacons(const Scene& scene, std::size_t listener) {
   const BodyFrame& self = scene.robots[listener];
   const Point3 antenna = AntennaAt(self.position);
-  for (const RadioBeacon& beacon : scene.beacons) {
+  for (const RadioBeacon& beacon : scene.surroundings.radio_beacons()) {
     const Vec2 offset = beacon.position - self.position;
     if (!(offset.squaredNorm() < beacon.range * beacon.range)) continue;
     const Point3 source = AntennaAt(beacon.position);
     if (scene.occluders.BoxBetween(antenna, source)) continue;
-    if (radios_[listener].bodies_block &&
+    if (radios_[listener].bodies_block_radio &&
         BodyBetween(scene.robots, antenna, source, static_cast<RobotIndex>(listener), -1)) {
       continue;
     }
@@ -67,6 +92,12 @@ void Radios::HearBeacons(const Scene& scene, std::size_t listener) {
                          .range = std::sqrt(offset.squaredNorm()),
                          .payload = beacon.payload});
   }
+}
+
+}  // namespace
+
+std::unique_ptr<Sensor> MakeRadios(const Arena& /*arena*/, std::span<const RobotSensors> robots) {
+  return std::make_unique<Radios>(robots);
 }
 
 }  // namespace gauntlet::sim

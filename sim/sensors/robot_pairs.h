@@ -5,22 +5,30 @@
 #include <span>
 #include <vector>
 
-#include "sim/physics/nearby_boxes.h"
+#include "sim/geometry/nearby_boxes.h"
+#include "sim/geometry/neighbour_pairs.h"
+#include "sim/robot/devices.h"
 #include "sim/robot/foot_bot.h"
-#include "sim/sensors/body_frame.h"
-#include "sim/sensors/neighbour_grid.h"
 #include "sim/sensors/occluders.h"
 
 namespace gauntlet::sim {
 
+// A robot as its sensors need it.
+struct RobotSensors {
+  DeviceSet devices;
+  double camera_range = 0.0;                             // m, half side of a world-aligned square
+  double radio_range = foot_bot::kRangeAndBearingRange;  // m, how far it is heard
+  bool bodies_block_radio = true;                        // it does not hear through other robots
+
+  // 0 for a robot that has none.
+  double CameraReach() const { return devices.Has(Device::kOmnidirectionalCamera) ? camera_range : 0.0; }
+  double RadioReach() const { return devices.Has(Device::kRangeAndBearing) ? radio_range : 0.0; }
+};
+
 class RobotPairs {
  public:
-  // How far robot i takes part. A pair counts when either robot's camera or radio reaches the other.
-  struct Reach {
-    double camera = 0.0;  // m, half side of a world-aligned square; 0 = no camera
-    double radio = 0.0;   // m; 0 = no range-and-bearing
-  };
-  explicit RobotPairs(std::span<const Reach> reaches);
+  // A pair counts when either robot's camera or radio reaches the other.
+  RobotPairs(std::span<const RobotSensors> robots, std::span<const OrientedBox> fixed_boxes);
 
   // Another robot as one robot has it.
   struct Neighbour {
@@ -30,9 +38,9 @@ class RobotPairs {
     double distance = 0.0;       // m, horizontal; only when clear
   };
 
-  // `occluders` has the same boxes at every call. `ring_seen`: lights up to kRingRadius off the other's
+  // `occluders` has the fixed boxes in their order. `ring_seen`: lights up to kRingRadius off the other's
   // centre can be seen. Allocates nothing while every robot has at most 64 neighbours.
-  void Update(std::span<const BodyFrame> robots, const Occluders& occluders, bool ring_seen);
+  void Update(std::span<const Vec2> positions, const Occluders& occluders, bool ring_seen);
   // Of the last Update, in robot order.
   std::span<const Neighbour> NeighboursOf(RobotIndex robot) const {
     const std::size_t index = static_cast<std::size_t>(robot);
@@ -40,26 +48,20 @@ class RobotPairs {
   }
 
  private:
-  struct Pair {
-    std::size_t a;
-    std::size_t b;
-    Neighbour view;  // of b by a
+  struct Reach {
+    double camera;  // m
+    double radio;   // m
   };
 
-  // Whether a pair counts; then `view` is b as a has it. `box_between` is asked for two places.
-  template <typename BoxBetween>
-  bool Find(std::span<const BodyFrame> robots, const BoxBetween& box_between, double extra, std::size_t a,
-            std::size_t b, Neighbour& view) const;
-  static Neighbour Back(const Neighbour& view, std::size_t a);
-  void UpdateFew(std::span<const BodyFrame> robots, const Occluders& occluders, double extra);
-  void UpdateMany(std::span<const BodyFrame> robots, const Occluders& occluders, double extra);
+  void MakeRoom();
 
   std::vector<Reach> reaches_;
   double largest_reach_ = 0.0;  // m, radius around a centre
-  NeighbourGrid grid_;
-  NearbyBoxes boxes_;        // of many robots: what may stand between one and those it reaches
-  std::vector<Pair> pairs_;  // only of many robots; a < b, ordered by a, then b
-  std::vector<std::size_t> first_;
+  NeighbourPairs near_;
+  NearbyBoxes boxes_;                // of many robots: what may stand between one and those it reaches
+  std::vector<std::size_t> framed_;  // of few: what may stand between any two of them
+  std::vector<std::size_t>
+      first_;  // where the neighbours of a robot begin, with room for all that are listed
   std::vector<std::size_t> count_;
   std::vector<Neighbour> neighbours_;
 };

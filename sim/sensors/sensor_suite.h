@@ -2,45 +2,28 @@
 // nothing else is computed.
 #pragma once
 
-#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "sim/arena/arena.h"
-#include "sim/physics/nearby_boxes.h"
-#include "sim/robot/controller.h"
-#include "sim/robot/grippers.h"
-#include "sim/robot/signals.h"
-#include "sim/robot/surroundings.h"
-#include "sim/sensors/body_frame.h"
-#include "sim/sensors/distance_scanner.h"
-#include "sim/sensors/neighbour_grid.h"
-#include "sim/sensors/occluders.h"
-#include "sim/sensors/omni_camera.h"
-#include "sim/sensors/range_and_bearing.h"
-#include "sim/sensors/robot_pairs.h"
+#include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
 
 class SensorSuite {
  public:
-  struct RobotSensors {
-    DeviceSet devices;
-    double camera_range = 0.0;                             // m, see OmniCameras
-    double radio_range = foot_bot::kRangeAndBearingRange;  // m, see Radios
-    bool bodies_block_radio = true;
-  };
   SensorSuite(const Arena& arena, std::span<const RobotSensors> robots);
 
-  // What there is to be sensed in a tick.
   struct World {
     std::span<const Pose> poses;
     std::span<const Signals> signals;
-    std::span<const Actuators> actuators;  // as in action: drives the scanners
+    std::span<const Actuators> actuators;  // as in action
     const Surroundings& surroundings;
     const Grippers& grippers;
     std::span<const OrientedBox> moving_boxes = {};  // as many as the arena has moving obstacles
     std::span<const Light> obstacle_lights = {};
+    const Disturber* disturber = nullptr;  // of the run, when something is disturbed
+    Tick tick = 0;                         // which errors and faults depend on
   };
   // Reads every sensor. Allocates nothing, except in crowds where a robot sees or hears more than 64 others.
   void Sense(const World& world);
@@ -50,24 +33,19 @@ class SensorSuite {
   }
 
  private:
-  void SenseOthers(const World& world);
-  void FindNear();
-  void SenseProximity(const World& world, RobotIndex robot);
-  void SenseRest(const World& world, RobotIndex robot);
+  struct Equipment {
+    Device device;
+    std::unique_ptr<Sensor> sensor;
+    std::vector<RobotIndex> robots;  // that have it
+  };
 
-  std::vector<RobotSensors> sensors_;
-  DeviceSet anybodys_devices_;
   std::vector<BodyFrame> frames_;
+  std::vector<Vec2> positions_;
   std::vector<SensorReadings> readings_;
-  NearbyBoxes nearby_;
-  std::vector<std::uint64_t> near_;  // of few robots: bit j of near_[i] says that j is near i
-  NeighbourGrid proximity_grid_;
   Occluders occluders_;
   RobotPairs pairs_;
-  OmniCameras cameras_;
-  Radios radios_;
-  std::vector<OrientedBox> boxes_;         // fixed, then moving ones
-  std::vector<DistanceScanner> scanners_;  // per robot; empty when nobody has one
+  DeviceSet anybodys_devices_;
+  std::vector<Equipment> equipment_;
 };
 
 }  // namespace gauntlet::sim

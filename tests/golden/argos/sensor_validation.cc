@@ -14,6 +14,7 @@
 #include "sim/sensors/omni_camera.h"
 #include "sim/sensors/proximity.h"
 #include "sim/sensors/range_and_bearing.h"
+#include "tests/sim/sensors/sensing.h"
 #include "tests/support/make_box.h"
 #include "tests/support/paths.h"
 
@@ -141,28 +142,22 @@ struct CameraScene {
   double aperture_deg = 80.0;
 };
 
-std::vector<sim::Blob> Look(CameraScene& scene) {
+std::vector<sim::Blob> Look(const CameraScene& scene) {
   const double aperture = scene.aperture_deg * kDegree;
   const double range = sim::foot_bot::kCameraHeight * sim::Sin(aperture) / sim::Cos(aperture);
-  std::vector<sim::RobotPairs::Reach> reaches(scene.robots.size());
-  std::vector<double> ranges(scene.robots.size(), 0.0);
-  std::vector<sim::Signals> signals(scene.robots.size());
-  reaches[0].camera = range;
-  ranges[0] = range;
-  signals[1] = scene.target;
-  scene.occluders.Frame(scene.robots);
-  sim::RobotPairs pairs(reaches);
-  pairs.Update(scene.robots, scene.occluders, scene.target.RingLit());
-  sim::OmniCameras cameras(ranges);
-  cameras.Look({.robots = scene.robots,
-                .occluders = scene.occluders,
-                .pairs = pairs,
-                .signals = signals,
-                .any_ring_lit = scene.target.RingLit(),
-                .lights = scene.lights,
-                .obstacle_lights = {}});
-  const auto blobs = cameras.BlobsOf(0);
-  return {blobs.begin(), blobs.end()};
+  sim::SensingPlace place;
+  place.robots = scene.robots;
+  place.occluders = scene.occluders;
+  place.lamps = scene.lights;
+  place.signals.resize(scene.robots.size());
+  place.signals[1] = scene.target;
+  place.sensors.resize(scene.robots.size());
+  place.sensors[0] = {.devices = sim::Device::kOmnidirectionalCamera, .camera_range = range};
+  std::vector<std::vector<sim::Blob>> seen;
+  place.Read(sim::MakeOmniCameras, [&](const sim::SensorReadings& readings) {
+    seen.emplace_back(readings.blobs.begin(), readings.blobs.end());
+  });
+  return seen[0];
 }
 
 double CountOf(const std::vector<sim::Blob>& blobs, Color color) {
@@ -241,21 +236,19 @@ std::vector<ValidationRow> CameraOcclusion(const Sweep& sweep) {
 }
 
 // What robot 0 hears of robot 1.
-std::vector<sim::Message> Hear(std::vector<BodyFrame> robots, sim::Occluders occluders) {
-  std::vector<sim::RobotPairs::Reach> reaches(robots.size());
-  std::vector<sim::Radios::Radio> radios(robots.size());
-  const std::vector<sim::Signals> signals(robots.size());
+std::vector<sim::Message> Hear(const std::vector<BodyFrame>& robots, const sim::Occluders& occluders) {
+  sim::SensingPlace place;
+  place.robots = robots;
+  place.occluders = occluders;
+  place.sensors.resize(robots.size());
   for (std::size_t i = 0; i < 2; ++i) {
-    reaches[i].radio = 3.0;
-    radios[i].range = 3.0;
+    place.sensors[i] = {.devices = sim::Device::kRangeAndBearing, .radio_range = 3.0};
   }
-  occluders.Frame(robots);
-  sim::RobotPairs pairs(reaches);
-  pairs.Update(robots, occluders, false);
-  sim::Radios all(radios);
-  all.Listen({.robots = robots, .occluders = occluders, .pairs = pairs, .signals = signals, .beacons = {}});
-  const auto messages = all.MessagesOf(0);
-  return {messages.begin(), messages.end()};
+  std::vector<std::vector<sim::Message>> heard;
+  place.Read(sim::MakeRadios, [&](const sim::SensorReadings& readings) {
+    heard.emplace_back(readings.range_and_bearing.begin(), readings.range_and_bearing.end());
+  });
+  return heard[0];
 }
 
 std::vector<ValidationRow> RangeAndBearing(const Sweep& sweep) {

@@ -16,7 +16,7 @@ LightReadings Read(const std::vector<Light>& lights, const Occluders& occluders 
   return SenseLight(robots, 0, lights, occluders);
 }
 
-// facts.md section 5: intensity 3, height 0.5, bearing 0.
+// Measured in ARGoS (tests/golden/argos/sensors): intensity 3, height 0.5, bearing 0.
 TEST(LightSensor, FallsWithDistanceAsInArgos) {
   const std::vector<std::pair<double, double>> measured = {
       {0.5, 0.5721}, {1.0, 0.4350}, {2.0, 0.2319}, {5.0, 0.0322}};

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "tests/sim/argos_csv.h"
+#include "tests/sim/sensors/sensing.h"
 
 namespace gauntlet::sim {
 namespace {
@@ -36,27 +37,17 @@ struct Seen {
 
 Seen Look(const Arena& arena, const std::vector<BodyFrame>& robots, const std::vector<Color>& beacons,
           const std::vector<double>& ranges) {
-  std::vector<RobotPairs::Reach> reaches;
-  for (const double range : ranges) reaches.push_back({.camera = range});
-  std::vector<Signals> signals;
-  for (const Color beacon : beacons) signals.push_back({.beacon = beacon});
-  Occluders occluders(arena);
-  occluders.Frame(robots);
-  RobotPairs pairs(reaches);
-  pairs.Update(robots, occluders, false);
-  OmniCameras cameras(ranges);
-  cameras.Look({.robots = robots,
-                .occluders = occluders,
-                .pairs = pairs,
-                .signals = signals,
-                .any_ring_lit = false,
-                .lights = {},
-                .obstacle_lights = {}});
-  Seen seen;
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    const auto blobs = cameras.BlobsOf(static_cast<RobotIndex>(i));
-    seen.blobs.emplace_back(blobs.begin(), blobs.end());
+  SensingPlace place;
+  place.robots = robots;
+  place.occluders = Occluders(arena);
+  for (const Color beacon : beacons) place.signals.push_back({.beacon = beacon});
+  for (const double range : ranges) {
+    place.sensors.push_back({.devices = Device::kOmnidirectionalCamera, .camera_range = range});
   }
+  Seen seen;
+  place.Read(MakeOmniCameras, [&](const SensorReadings& readings) {
+    seen.blobs.emplace_back(readings.blobs.begin(), readings.blobs.end());
+  });
   return seen;
 }
 

@@ -24,10 +24,9 @@ void Sense(SensorSuite& suite, const std::vector<Pose>& poses) {
 
 TEST(SensorSuite, FillsOnlyRequestedDevices) {
   const Arena arena{TestCase{}};
-  const std::vector<SensorSuite::RobotSensors> robots = {
-      {.devices = Device::kProximity, .camera_range = 1.6},
-      {.devices = Device::kOmnidirectionalCamera, .camera_range = 1.6},
-      {.devices = Device::kWheels, .camera_range = 1.6}};
+  const std::vector<RobotSensors> robots = {{.devices = Device::kProximity, .camera_range = 1.6},
+                                            {.devices = Device::kOmnidirectionalCamera, .camera_range = 1.6},
+                                            {.devices = Device::kWheels, .camera_range = 1.6}};
   SensorSuite suite(arena, robots);
   const std::vector<Pose> poses = {{{0.0, 0.0}, 0.0}, {{0.2, 0.0}, 0.0}, {{0.4, 0.0}, 0.0}};
   Sense(suite, poses);
@@ -43,7 +42,7 @@ TEST(SensorSuite, FillsOnlyRequestedDevices) {
 
 TEST(SensorSuite, ForgetsReadingsOfTheLastTick) {
   const Arena arena{TestCase{}};
-  const std::vector<SensorSuite::RobotSensors> robots = {
+  const std::vector<RobotSensors> robots = {
       {.devices = Device::kProximity | Device::kOmnidirectionalCamera, .camera_range = 0.8},
       {.devices = Device::kWheels}};
   SensorSuite suite(arena, robots);
@@ -59,7 +58,7 @@ TEST(SensorSuite, ForgetsReadingsOfTheLastTick) {
 // The list of nearby boxes is renewed only now and then; the readings must not show it.
 TEST(SensorSuite, SeesEveryWallOnTheWayThroughTheArena) {
   const Arena arena{TestCase{}};
-  const std::vector<SensorSuite::RobotSensors> robots = {{.devices = Device::kProximity}};
+  const std::vector<RobotSensors> robots = {{.devices = Device::kProximity}};
   SensorSuite walking(arena, robots);
   for (double x = -2.86; x <= 2.86; x += 0.01) {
     const std::vector<Pose> pose = {{{x, 0.5 * x}, 0.3}};

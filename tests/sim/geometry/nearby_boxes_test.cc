@@ -1,4 +1,4 @@
-#include "sim/physics/nearby_boxes.h"
+#include "sim/geometry/nearby_boxes.h"
 #include "tests/support/make_box.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ RC_GTEST_PROP(NearbyBoxes, MissNoBoxInReachOnAnyWay, ()) {
     nearby.AddBox(MakeBox({coordinate(), coordinate()}, *rc::gen::inRange(1, 2000) * 1e-3,
                           *rc::gen::inRange(1, 400) * 1e-3, *rc::gen::inRange(0, 628) * 1e-2));
   }
-  nearby.SetRobots(1);
+  nearby.SetVisitors(1);
   Vec2 p(coordinate(), coordinate());
   for (int step = 0; step < 50; ++step) {
     p += Vec2(*rc::gen::inRange(-100, 101) * 1e-3, *rc::gen::inRange(-100, 101) * 1e-3);
@@ -35,7 +35,7 @@ TEST(NearbyBoxes, LeaveOutFarBoxes) {
   NearbyBoxes nearby(0.3);
   nearby.AddBox(MakeBox({0.0, 0.0}, 0.2, 0.2, 0.0));
   nearby.AddBox(MakeBox({2.0, 0.0}, 0.2, 0.2, 0.0));
-  nearby.SetRobots(1);
+  nearby.SetVisitors(1);
   ASSERT_EQ(nearby.Near(0, {1.9, 0.3}).size(), 1u);
   EXPECT_EQ(nearby.Near(0, {1.9, 0.3})[0], 1u);
 }

@@ -1,5 +1,6 @@
-// Which boxes a robot could meet: a short list per robot, renewed only after the robot has moved some way,
-// from a grid of cells that know the boxes around them, so that it costs the same in an arena of any size.
+// Which boxes somebody could meet: a short list for each visitor, renewed only after the visitor has moved
+// some way, from a grid of cells that know the boxes around them, so that it costs the same in an arena of
+// any size.
 #pragma once
 
 #include <array>
@@ -8,22 +9,20 @@
 #include <vector>
 
 #include "sim/geometry/oriented_box.h"
-#include "sim/robot/foot_bot.h"
 
 namespace gauntlet::sim {
 
 class NearbyBoxes {
  public:
-  // Lists hold every box within `reach` metres of the robot's centre and some beyond.
+  // Lists hold every box within `reach` metres of the visitor's centre and some beyond.
   explicit NearbyBoxes(double reach) : reach_(reach) {}
 
-  void AddBox(const OrientedBox& box);
-  // Allocates; Near() does not.
-  void SetRobots(int robots);
-  // A superset, in the order of AddBox, of the boxes within `reach` of `position`.
-  std::span<const std::size_t> Near(RobotIndex robot, const Vec2& position);
+  void AddBox(const OrientedBox& box) { boxes_.push_back(box); }
+  // Once all boxes are there. Allocates; Near() does not.
+  void SetVisitors(std::size_t visitors);
+  // A superset, in the order of AddBox, of the boxes within `reach` of the visitor's `position`.
+  std::span<const std::size_t> Near(std::size_t visitor, const Vec2& position);
   const OrientedBox& box(std::size_t index) const { return boxes_[index]; }
-  std::size_t size() const { return boxes_.size(); }
 
  private:
   struct List {
@@ -43,7 +42,7 @@ class NearbyBoxes {
   std::vector<std::vector<std::size_t>>
       in_reach_;  // [cell]: boxes that some place in it may have in its list
   std::vector<List> lists_;
-  std::vector<std::size_t> entries_;  // [robot][boxes_.size()]
+  std::vector<std::size_t> entries_;  // [visitor][boxes_.size()]
 };
 
 }  // namespace gauntlet::sim

@@ -1,4 +1,4 @@
-#include "sim/physics/neighbour_pairs.h"
+#include "sim/geometry/neighbour_pairs.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -9,16 +9,18 @@ namespace gauntlet::sim {
 namespace {
 
 RC_GTEST_PROP(NeighbourPairs, MissNobodyInReachOnAnyWay, ()) {
-  NeighbourPairs neighbours;
+  NeighbourPairs neighbours(0.1);
   const std::size_t robots = *rc::gen::inRange<std::size_t>(0, 15);
   const auto coordinate = [] { return *rc::gen::inRange(-1000, 1001) * 1e-3; };
   std::vector<Vec2> positions;
   for (std::size_t i = 0; i < robots; ++i) positions.emplace_back(coordinate(), coordinate());
-  neighbours.SetRobots(robots);
   for (int step = 0; step < 20; ++step) {
     for (Vec2& p : positions) p += 0.02 * Vec2(coordinate(), coordinate());
     const double reach = *rc::gen::inRange(0, 400) * 1e-3;
-    const std::span<const NeighbourPairs::Pair> pairs = neighbours.Find(positions, reach);
+    const std::vector<NeighbourPairs::Pair> before(neighbours.pairs().begin(), neighbours.pairs().end());
+    const bool renewed = neighbours.Update(positions, reach);
+    const std::span<const NeighbourPairs::Pair> pairs = neighbours.pairs();
+    RC_ASSERT(renewed || std::ranges::equal(pairs, before));
     RC_ASSERT(std::ranges::is_sorted(pairs));
     for (std::size_t j = 0; j < robots; ++j) {
       for (std::size_t i = 0; i < j; ++i) {
@@ -30,10 +32,11 @@ RC_GTEST_PROP(NeighbourPairs, MissNobodyInReachOnAnyWay, ()) {
 }
 
 TEST(NeighbourPairs, LeaveOutFarRobots) {
-  NeighbourPairs neighbours;
-  neighbours.SetRobots(3);
+  NeighbourPairs neighbours(0.1);
   const std::vector<Vec2> positions = {{0.0, 0.0}, {5.0, 0.0}, {0.2, 0.1}};
-  const std::span<const NeighbourPairs::Pair> pairs = neighbours.Find(positions, 0.3);
+  EXPECT_TRUE(neighbours.Update(positions, 0.3));
+  EXPECT_FALSE(neighbours.Update(positions, 0.3));
+  const std::span<const NeighbourPairs::Pair> pairs = neighbours.pairs();
   ASSERT_EQ(pairs.size(), 1u);
   EXPECT_EQ(pairs[0], (NeighbourPairs::Pair{0, 2}));
 }

@@ -1,4 +1,4 @@
-#include "sim/physics/nearby_boxes.h"
+#include "sim/geometry/nearby_boxes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 namespace gauntlet::sim {
 namespace {
 
-// How far a robot may move before its list is renewed, m: about two seconds of driving.
+// How far a visitor may move before its list is renewed, m: about two seconds of driving.
 constexpr double kSlack = 0.2;
 constexpr double kLeastCell = 1.0;  // m
 constexpr int kMostCells = 64;      // per axis
@@ -15,15 +15,10 @@ constexpr std::size_t kFewBoxes = 16;
 
 }  // namespace
 
-void NearbyBoxes::AddBox(const OrientedBox& box) {
-  boxes_.push_back(box);
-  SetRobots(static_cast<int>(lists_.size()));
-}
-
-void NearbyBoxes::SetRobots(int robots) {
-  lists_.assign(static_cast<std::size_t>(robots), List{});
-  entries_.assign(static_cast<std::size_t>(robots) * boxes_.size(), 0);
-  if (robots > 0) FillCells();
+void NearbyBoxes::SetVisitors(std::size_t visitors) {
+  lists_.assign(visitors, List{});
+  entries_.assign(visitors * boxes_.size(), 0);
+  FillCells();
 }
 
 int NearbyBoxes::Cell(double coordinate, int axis) const {
@@ -62,10 +57,9 @@ void NearbyBoxes::FillCells() {
   }
 }
 
-std::span<const std::size_t> NearbyBoxes::Near(RobotIndex robot, const Vec2& position) {
-  List& list = lists_[static_cast<std::size_t>(robot)];
-  const std::span<std::size_t> entries =
-      std::span(entries_).subspan(static_cast<std::size_t>(robot) * boxes_.size(), boxes_.size());
+std::span<const std::size_t> NearbyBoxes::Near(std::size_t visitor, const Vec2& position) {
+  List& list = lists_[visitor];
+  const std::span<std::size_t> entries = std::span(entries_).subspan(visitor * boxes_.size(), boxes_.size());
   if (!list.valid || (position - list.anchor).squaredNorm() > kSlack * kSlack) {
     list = {.anchor = position, .valid = true, .size = 0};
     const std::size_t cell =
