@@ -12,7 +12,7 @@
 namespace gauntlet::sim {
 namespace {
 
-constexpr double kEnlargementStep = 1.1;  // spec 1.1: by 10 %
+constexpr double kEnlargementStep = 1.1;  // by 10 %
 constexpr double kMostEnlargement = 1000.0;
 
 Error NoRoom(const std::string& why) {

@@ -1,4 +1,4 @@
-// Where robots begin: uniformly in an area, without overlap, only where the start can be reached (spec 1.1).
+// Where robots begin: uniformly in an area, without overlap, only where the start can be reached.
 #pragma once
 
 #include <vector>

@@ -25,27 +25,25 @@ std::string GeneText(const ObstacleGene& gene, std::size_t index) {
 
 // The rules that concern nothing but the numbers of the arena itself.
 std::optional<Violation> JudgeArenaNumbers(const TestCase& test_case) {
-  const double sides[] = {test_case.side_x, test_case.side_y};
-  const std::string arena = "the arena (" + NumberText(test_case.side_x) + " x " +
-                            NumberText(test_case.side_y) + " m, walls " +
-                            NumberText(test_case.wall_thickness) + " m thick) ";
-  if (!AllFinite({sides[0], sides[1], test_case.wall_thickness})) {
-    return Violation{ValidityRule::kFiniteNumbers, -1, arena + "has a number that is not finite"};
+  const auto broken = [&](ValidityRule rule, const std::string& what) {
+    return Violation{rule, -1,
+                     "the arena (" + NumberText(test_case.side_x) + " x " + NumberText(test_case.side_y) +
+                         " m, walls " + NumberText(test_case.wall_thickness) + " m thick) " + what};
+  };
+  if (!AllFinite({test_case.side_x, test_case.side_y, test_case.wall_thickness})) {
+    return broken(ValidityRule::kFiniteNumbers, "has a number that is not finite");
   }
-  if (!(sides[0] > 0.0 && sides[1] > 0.0 && test_case.wall_thickness > 0.0)) {
-    return Violation{ValidityRule::kPositiveSize, -1, arena + "must have positive sides and walls"};
+  const auto [shorter, longer] = std::minmax(test_case.side_x, test_case.side_y);
+  if (!(shorter > 0.0 && test_case.wall_thickness > 0.0)) {
+    return broken(ValidityRule::kPositiveSize, "must have positive sides and walls");
   }
-  const double shorter = std::min(sides[0], sides[1]);
-  const double longer = std::max(sides[0], sides[1]);
   if (shorter < kMinArenaSide || longer > kMaxArenaSide) {
-    return Violation{ValidityRule::kLimits, -1,
-                     arena + "must have sides of " + NumberText(kMinArenaSide) + " to " +
-                         NumberText(kMaxArenaSide) + " m"};
+    return broken(ValidityRule::kLimits, "must have sides of " + NumberText(kMinArenaSide) + " to " +
+                                             NumberText(kMaxArenaSide) + " m");
   }
   if (test_case.wall_thickness < kMinThickness || test_case.wall_thickness > shorter / 2.0) {
-    return Violation{
-        ValidityRule::kLimits, -1,
-        arena + "must have walls of " + NumberText(kMinThickness) + " m to half of its shorter side"};
+    return broken(ValidityRule::kLimits,
+                  "must have walls of " + NumberText(kMinThickness) + " m to half of its shorter side");
   }
   return std::nullopt;
 }
@@ -53,8 +51,7 @@ std::optional<Violation> JudgeArenaNumbers(const TestCase& test_case) {
 // Spawn area, number of robots, number of obstacles.
 std::optional<Violation> JudgeSwarmNumbers(const TestCase& test_case) {
   if (test_case.spawn_area) {
-    const Vec2& min = test_case.spawn_area->min;
-    const Vec2& max = test_case.spawn_area->max;
+    const auto& [min, max] = *test_case.spawn_area;
     const std::string area = "the spawn area from " + PointText(min) + " to " + PointText(max) + " m ";
     if (!(min.allFinite() && max.allFinite())) {
       return Violation{ValidityRule::kFiniteNumbers, -1, area + "has a number that is not finite"};
@@ -96,60 +93,58 @@ Arena EmptyArena(const TestCase& test_case) {
   return Arena(empty);
 }
 
+Violation BrokenByGene(ValidityRule rule, const ObstacleGene& gene, std::size_t index,
+                       const std::string& what) {
+  return {rule, static_cast<int>(index), GeneText(gene, index) + " " + what};
+}
+
 // The rules that concern nothing but the gene's numbers; its index counts from 0.
 std::optional<Violation> JudgeGeneNumbers(const ObstacleGene& gene, std::size_t index) {
-  const int number = static_cast<int>(index);
+  const auto broken = [&](ValidityRule rule, const std::string& what) {
+    return BrokenByGene(rule, gene, index, what);
+  };
   if (!AllFinite({gene.x, gene.y, gene.length, gene.width, gene.orientation_deg})) {
-    return Violation{ValidityRule::kFiniteNumbers, number,
-                     GeneText(gene, index) + " has a number that is not finite"};
+    return broken(ValidityRule::kFiniteNumbers, "has a number that is not finite");
   }
-  if (!(gene.length > 0.0 && gene.width > 0.0)) {
-    return Violation{ValidityRule::kPositiveSize, number,
-                     GeneText(gene, index) + " must have a positive length and width"};
-  }
-  if (std::min(gene.length, gene.width) < kMinThickness ||
-      std::max(gene.length, gene.width) > kMaxObstacleSize) {
-    return Violation{ValidityRule::kLimits, number,
-                     GeneText(gene, index) + " must have a length and width of " + NumberText(kMinThickness) +
-                         " to " + NumberText(kMaxObstacleSize) + " m"};
+  const auto [shorter, longer] = std::minmax(gene.length, gene.width);
+  if (!(shorter > 0.0)) return broken(ValidityRule::kPositiveSize, "must have a positive length and width");
+  if (shorter < kMinThickness || longer > kMaxObstacleSize) {
+    return broken(ValidityRule::kLimits, "must have a length and width of " + NumberText(kMinThickness) +
+                                             " to " + NumberText(kMaxObstacleSize) + " m");
   }
   if (std::max(std::fabs(gene.x), std::fabs(gene.y)) > kMaxCoordinate) {
-    return Violation{ValidityRule::kLimits, number,
-                     GeneText(gene, index) + " must have its centre within " + NumberText(kMaxCoordinate) +
-                         " m of the origin"};
+    return broken(ValidityRule::kLimits,
+                  "must have its centre within " + NumberText(kMaxCoordinate) + " m of the origin");
   }
   return std::nullopt;
 }
 
 // The rules that concern nothing but its path.
 std::optional<Violation> JudgeMotion(const ObstacleGene& gene, std::size_t index) {
-  const int number = static_cast<int>(index);
+  const auto broken = [&](ValidityRule rule, const std::string& what) {
+    return BrokenByGene(rule, gene, index, what);
+  };
   const bool finite =
       std::all_of(gene.path.begin(), gene.path.end(), [](const Vec2& p) { return p.allFinite(); });
   if (!finite || !std::isfinite(gene.speed)) {
-    return Violation{ValidityRule::kFiniteNumbers, number,
-                     GeneText(gene, index) + " moves along numbers that are not finite"};
+    return broken(ValidityRule::kFiniteNumbers, "moves along numbers that are not finite");
   }
   if (gene.speed < 0.0 || gene.speed > kMaxObstacleSpeed) {
-    return Violation{ValidityRule::kLimits, number,
-                     GeneText(gene, index) + " moves at " + NumberText(gene.speed) + " m/s; want 0 to " +
-                         NumberText(kMaxObstacleSpeed) + " m/s"};
+    return broken(ValidityRule::kLimits, "moves at " + NumberText(gene.speed) + " m/s; want 0 to " +
+                                             NumberText(kMaxObstacleSpeed) + " m/s");
   }
+  const std::string path = "has a path of " + std::to_string(gene.path.size()) + " points";
   if (gene.path.empty() != (gene.speed == 0.0)) {
-    return Violation{ValidityRule::kLimits, number,
-                     GeneText(gene, index) + " has a path of " + std::to_string(gene.path.size()) +
-                         " points and a speed of " + NumberText(gene.speed) + " m/s; want both or neither"};
+    return broken(ValidityRule::kLimits,
+                  path + " and a speed of " + NumberText(gene.speed) + " m/s; want both or neither");
   }
   if (gene.path.size() > kMaxObstaclePath) {
-    return Violation{ValidityRule::kLimits, number,
-                     GeneText(gene, index) + " has a path of " + std::to_string(gene.path.size()) +
-                         " points; want at most " + std::to_string(kMaxObstaclePath)};
+    return broken(ValidityRule::kLimits, path + "; want at most " + std::to_string(kMaxObstaclePath));
   }
   for (const Vec2& point : gene.path) {
     if (point.cwiseAbs().maxCoeff() <= kMaxCoordinate) continue;
-    return Violation{ValidityRule::kLimits, number,
-                     GeneText(gene, index) + " moves to " + PointText(point) + " m; want paths within " +
-                         NumberText(kMaxCoordinate) + " m of the origin"};
+    return broken(ValidityRule::kLimits, "moves to " + PointText(point) + " m; want paths within " +
+                                             NumberText(kMaxCoordinate) + " m of the origin");
   }
   return std::nullopt;
 }
@@ -198,29 +193,10 @@ std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequire
 }  // namespace
 
 std::string_view NameOf(ValidityRule rule) {
-  switch (rule) {
-    case ValidityRule::kFiniteNumbers:
-      return "finite-numbers";
-    case ValidityRule::kPositiveSize:
-      return "positive-size";
-    case ValidityRule::kGeneRange:
-      return "gene-range";
-    case ValidityRule::kContainedObstacle:
-      return "contained-obstacle";
-    case ValidityRule::kStartBlocked:
-      return "start-blocked";
-    case ValidityRule::kGoalBlocked:
-      return "goal-blocked";
-    case ValidityRule::kClearance:
-      return "clearance";
-    case ValidityRule::kNoPath:
-      return "no-path";
-    case ValidityRule::kNoRoomToSpawn:
-      return "no-room-to-spawn";
-    case ValidityRule::kLimits:
-      return "limits";
-  }
-  return "unknown";
+  constexpr std::string_view kNames[] = {
+      "finite-numbers", "positive-size", "gene-range", "contained-obstacle", "start-blocked",
+      "goal-blocked",   "clearance",     "no-path",    "no-room-to-spawn",   "limits"};
+  return kNames[static_cast<std::size_t>(rule)];
 }
 
 std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaRequirements& requirements) {
@@ -243,33 +219,27 @@ IncrementalValidity::IncrementalValidity(const TestCase& empty_arena, const Aren
 std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene) {
   if (arena_violation_) return arena_violation_;
   const std::size_t index = boxes_.size();
-  const int number = static_cast<int>(index);
   if (std::optional<Violation> violation = JudgeGeneNumbers(gene, index)) return violation;
-
   if (std::optional<Violation> violation = JudgeMotion(gene, index)) return violation;
-
   const OrientedBox box = BoxOf(gene);
   const auto around = std::find_if(boxes_.begin(), boxes_.end(),
                                    [&](const OrientedBox& earlier) { return ContainsBox(earlier, box); });
   if (around != boxes_.end()) {
-    return Violation{ValidityRule::kContainedObstacle, number,
-                     GeneText(gene, index) + " lies wholly inside obstacle " +
-                         std::to_string(around - boxes_.begin() + 1)};
+    return BrokenByGene(ValidityRule::kContainedObstacle, gene, index,
+                        "lies wholly inside obstacle " + std::to_string(around - boxes_.begin() + 1));
   }
   for (const auto& [place, name] : {std::pair{requirements_.start, "start"}, {requirements_.goal, "goal"}}) {
     if (requirements_.clearance <= 0.0) break;
     const double distance = LeastDistance(gene, place);
-    if (distance < requirements_.clearance) {
-      return Violation{ValidityRule::kClearance, number,
-                       GeneText(gene, index) + " is " + NumberText(distance) + " m from the " + name + " " +
-                           PointText(place) + "; want at least " + NumberText(requirements_.clearance) +
-                           " m"};
-    }
+    if (distance >= requirements_.clearance) continue;
+    return BrokenByGene(ValidityRule::kClearance, gene, index,
+                        "is " + NumberText(distance) + " m from the " + name + " " + PointText(place) +
+                            "; want at least " + NumberText(requirements_.clearance) + " m");
   }
   candidate_ = grid_;
   candidate_.AddObstacle(box);
   if (std::optional<Violation> violation =
-          JudgePath(candidate_, requirements_, number, GeneText(gene, index))) {
+          JudgePath(candidate_, requirements_, static_cast<int>(index), GeneText(gene, index))) {
     return violation;
   }
   std::swap(grid_, candidate_);

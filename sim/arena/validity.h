@@ -1,4 +1,4 @@
-// The rules a test case must obey (thesis 3.2.1, spec 1.1), named one by one, and judged gene by gene in
+// The rules a test case must obey (thesis 3.2.1), named one by one, and judged gene by gene in
 // order.
 #pragma once
 

@@ -9,6 +9,9 @@ namespace {
 
 constexpr double kBeforeTheSide = 0.01;  // m, so that the obstacle does not hide its own lamp
 constexpr std::size_t kLampsPerObstacle = 4;
+// Deepest overlap with a robot ahead of it, m, with which a moving obstacle goes on; from there it turns
+// back. A robot that is only pushed overlaps less, one that is squeezed against something soon more.
+constexpr double kMostSqueeze = 0.003;
 
 }  // namespace
 

@@ -9,10 +9,6 @@
 
 namespace gauntlet::sim {
 
-// Deepest overlap with a robot ahead of it, m, with which a moving obstacle goes on; from there it turns
-// back. A robot that is only pushed overlaps less, one that is squeezed against something soon more.
-inline constexpr double kMostSqueeze = 0.003;
-
 class ObstacleCourse {
  public:
   explicit ObstacleCourse(const Arena& arena);

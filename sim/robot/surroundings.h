@@ -15,7 +15,7 @@ struct Light {
   double height = 0.5;           // m above the floor, at least 0
   double intensity = 0.0;        // as in ARGoS: seen up to 2.5 m times this; 0 = no light sensor reads it
   Color color = Color::kBlack;   // black = no camera sees it
-  bool occludable = true;        // false: nothing hides it (A-19 of the specification)
+  bool occludable = true;        // false: nothing hides it
 };
 
 // Something that is no robot and sends the same message in every tick, for instance the nest.

@@ -1,4 +1,4 @@
-// Random test cases for the tests of the arena, as the default generator makes them (spec 1.1).
+// Random test cases for the tests of the arena, as the default generator makes them.
 #pragma once
 
 #include "sim/arena/occupancy_grid.h"
