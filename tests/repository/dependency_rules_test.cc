@@ -131,6 +131,21 @@ INSTANTIATE_TEST_SUITE_P(
         LayerRule{"slurm", {"slurm/", "base/"}, {"zmq", "google/", "sqlite3", "box2d"}}),
     [](const testing::TestParamInfo<LayerRule>& parameter) { return parameter.param.layer; });
 
+// The rooms of sim stand one upon the other: geometry, random, arena, robot; then physics and sensors, which
+// do not know each other. The files beside them tie them together.
+INSTANTIATE_TEST_SUITE_P(
+    RoomsOfSim, LayerTest,
+    testing::Values(LayerRule{"sim/geometry", {"sim/geometry/"}, {}},
+                    LayerRule{"sim/random", {"sim/geometry/", "sim/random/"}, {}},
+                    LayerRule{"sim/arena", {"sim/geometry/", "sim/random/", "sim/arena/"}, {}},
+                    LayerRule{"sim/robot", {"sim/geometry/", "sim/random/", "sim/arena/", "sim/robot/"}, {}},
+                    LayerRule{"sim/physics", {"sim/geometry/", "sim/robot/foot_bot.h", "sim/physics/"}, {}},
+                    LayerRule{
+                        "sim/sensors", {"sim/geometry/", "sim/arena/", "sim/robot/", "sim/sensors/"}, {}}),
+    [](const testing::TestParamInfo<LayerRule>& parameter) {
+      return parameter.param.layer.substr(parameter.param.layer.find('/') + 1);
+    });
+
 // Libraries that stay behind one door.
 struct Door {
   std::string name;
