@@ -1,4 +1,4 @@
-// The arena as cells of 0.05 m that a robot's centre may or may not be in, as obstacles are inflated by 0.10 m,
+// The arena as cells of 0.05 m that a robot's centre may or may not be in (obstacles are inflated by 0.10 m),
 // with the connected components of the free cells.
 #pragma once
 

@@ -39,7 +39,8 @@ class RobotPairs {
   };
 
   // `occluders` has the fixed boxes in their order. `ring_seen`: lights up to kRingRadius off the other's
-  // centre can be seen. Allocates nothing while every robot has at most 64 neighbours.
+  // centre can be seen. Allocates nothing while every robot has at most 64 others
+  // in reach or nearly so.
   void Update(std::span<const Vec2> positions, const Occluders& occluders, bool ring_seen);
   // Of the last Update, in robot order.
   std::span<const Neighbour> NeighboursOf(RobotIndex robot) const {

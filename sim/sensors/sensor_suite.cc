@@ -46,9 +46,9 @@ SensorSuite::SensorSuite(const Arena& arena, std::span<const RobotSensors> robot
   for (const RobotSensors& robot : robots) anybodys_devices_ = anybodys_devices_ | robot.devices;
   for (const SensorKind& kind : kSensorKinds) {
     if (!anybodys_devices_.Has(kind.device)) continue;
-    Equipment& equipment = equipment_.emplace_back(kind.device, kind.make(arena, robots));
+    equipment_.push_back({kind.device, kind.make(arena, robots), {}});
     for (std::size_t i = 0; i < robots.size(); ++i) {
-      if (robots[i].devices.Has(kind.device)) equipment.robots.push_back(static_cast<RobotIndex>(i));
+      if (robots[i].devices.Has(kind.device)) equipment_.back().robots.push_back(static_cast<RobotIndex>(i));
     }
   }
 }
