@@ -28,6 +28,11 @@ using RunId = std::uint64_t;       // 1, 2, 3, ... in logical order within a cam
 using InstanceId = std::uint64_t;  // random, not 0, one per worker process
 using Fence = std::uint64_t;  // fencing number: names a lease, grows within a campaign, is never used twice
 
+// A serialized gauntlet.v1.RunSpec and RunResult (proto/run_codec.h encodes and decodes them). Between who
+// makes one and who reads it, it is passed on and stored as it is.
+using EncodedSpec = std::string;
+using EncodedResult = std::string;
+
 struct Hello {
   std::uint32_t protocol_version = kProtocolVersion;
   std::string campaign_id;
@@ -56,7 +61,7 @@ struct Refused {
 struct Lease {
   Fence fence = 0;
   RunId run_id = 0;
-  std::string spec;           // serialized gauntlet.v1.RunSpec
+  EncodedSpec spec;
   std::uint32_t attempt = 1;  // 1 = the run's first lease
 };
 
@@ -81,7 +86,7 @@ struct RunnerFailure {
 struct LeaseResult {
   Fence fence = 0;
   RunId run_id = 0;
-  std::string result;  // serialized gauntlet.v1.RunResult; empty when `failure` is set
+  EncodedResult result;  // empty when `failure` is set
   std::optional<RunnerFailure> failure;
   double cpu_seconds = 0.0;
   bool operator==(const LeaseResult&) const = default;

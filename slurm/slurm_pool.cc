@@ -104,7 +104,7 @@ Result<std::vector<pid_t>> SlurmPool::Supervise(TimePoint now) {
   if (std::string trouble = Trouble(now); trouble != reported_trouble_) {
     // The seconds to the next try change all the time: the words before them are the news.
     const auto words = [](const std::string& text) { return text.substr(0, text.find("; the next try")); };
-    if (!trouble.empty() && words(trouble) != words(reported_trouble_)) Report("slurm", trouble);
+    if (!trouble.empty() && words(trouble) != words(reported_trouble_)) Report(trouble);
     reported_trouble_ = std::move(trouble);
   }
   return std::vector<pid_t>{};
@@ -133,7 +133,7 @@ void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excl
         if (allocations == 1) policy_.Submitted(*id, now);
         for (int task = 1; allocations > 1 && task <= allocations; ++task)
           policy_.Submitted(fmt::format("{}_{}", *id, task), now);
-        Report("slurm", fmt::format("job {} submitted: {} allocation{} of {} slot{}", *id, allocations,
+        Report(fmt::format("job {} submitted: {} allocation{} of {} slot{}", *id, allocations,
                                     allocations == 1 ? "" : "s", options_.job.slots,
                                     options_.job.slots == 1 ? "" : "s"));
       } else {
@@ -163,7 +163,7 @@ void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
   for (const std::string& job : jobs) {
     if (std::find(cancelled_.begin(), cancelled_.end(), job) == cancelled_.end()) cancelled_.push_back(job);
   }
-  Report("slurm", fmt::format("cancelled job{} {}", jobs.size() == 1 ? "" : "s", fmt::join(jobs, ", ")));
+  Report(fmt::format("cancelled job{} {}", jobs.size() == 1 ? "" : "s", fmt::join(jobs, ", ")));
   Post([this, jobs]() -> std::function<void(TimePoint)> {
     return [this, done = client_->Cancel(jobs)](TimePoint now) {
       if (!done) policy_.QueryFailed(done.error().message, now);
@@ -184,7 +184,7 @@ void SlurmPool::OnQueue(const std::vector<JobStatus>& jobs, TimePoint now) {
     // While a submission is under way its job may be in the queue before its answer is here.
     if (!lives || submitting_ > 0 || known.contains(job.id)) continue;
     policy_.Adopt(job, now);
-    Report("slurm", fmt::format("adopted job {} ({})", job.id, job.state));
+    Report(fmt::format("adopted job {} ({})", job.id, job.state));
   }
   if (!undead.empty()) PostCancel(undead);
   policy_.Observed(jobs, now);
@@ -239,8 +239,8 @@ std::vector<master::DispatchEvent> SlurmPool::TakeEvents() {
   return std::exchange(events_, {});
 }
 
-void SlurmPool::Report(std::string kind, std::string text) {
-  events_.push_back({std::move(kind), std::move(text)});
+void SlurmPool::Report(std::string text) {
+  events_.push_back({master::event::kSlurm, std::move(text)});
 }
 
 }  // namespace gauntlet::slurm

@@ -67,7 +67,7 @@ class SlurmPool final : public master::WorkerPool {
   void PostCancelAll();
   void PostCancel(const std::vector<std::string>& jobs);
   void OnQueue(const std::vector<JobStatus>& jobs, TimePoint now);
-  void Report(std::string kind, std::string text);
+  void Report(std::string text);
 
   SlurmPoolOptions options_;
   std::unique_ptr<SlurmClient> client_;  // of the calling thread alone

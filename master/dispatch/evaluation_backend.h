@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "master/store/event_kinds.h"
 #include "proto/messages.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
@@ -17,7 +18,7 @@ using proto::RunId;
 
 struct RunRequest {
   RunId id = 0;
-  std::string spec;  // serialized gauntlet.v1.RunSpec (proto/run_codec.h)
+  proto::EncodedSpec spec;
   // How long it will probably take, compared with the others that are submitted with it, in any unit; the
   // longest go first, equals in the order of their ids.
   double length = 0.0;
@@ -25,11 +26,11 @@ struct RunRequest {
 
 struct FinishedRun {
   RunId id = 0;
-  sim::RunResult result;
-  std::string encoded;        // `result` as it is stored: a serialized gauntlet.v1.RunResult, no trajectory
-  std::string worker;         // instance id and host, for the log
-  std::uint32_t attempt = 1;  // how many leases it took
-  std::string stderr_tail;    // of a run that failed in all attempts, what the last one printed
+  sim::RunResult result;         // without a trajectory
+  proto::EncodedResult encoded;  // `result`, as it is stored
+  std::string worker;            // instance id and host, for the log
+  std::uint32_t attempt = 1;     // how many leases it took
+  std::string stderr_tail;       // of a run that failed in all attempts, what the last one printed
 };
 
 struct WorkerStatistics {
@@ -94,9 +95,7 @@ struct BackendView {
 
 // Something a person or the store's event table should know of.
 struct DispatchEvent {
-  std::string kind;  // "worker-joined", "worker-lost", "worker-back", "worker-left", "worker-refused",
-                     // "worker-died", "runner-failure", "run-returned", "run-given-up", "nondeterministic",
-                     // "rejected-message"
+  std::string kind;  // one of master/store/event_kinds.h
   std::string text;  // one sentence
 };
 

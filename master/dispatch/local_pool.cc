@@ -181,7 +181,7 @@ void LocalPool::Bury(Slot& slot, int status, TimePoint now) {
   }
   slot.start_again = now + DelayAfter(slot.failed_starts);
   events_.push_back(
-      {"worker-died",
+      {event::kWorkerDied,
        fmt::format("worker process {} ended with {}; another one takes its place", pid, EndingOf(status))});
 }
 
@@ -192,7 +192,7 @@ void LocalPool::Postpone(Slot& slot, const Status& failure, TimePoint now) {
   }
   slot.start_again = now + DelayAfter(slot.failed_starts + 1);
   if (slot.failed_starts == 1) {
-    events_.push_back({"worker-not-started", fmt::format("{}; trying again", failure.error().message)});
+    events_.push_back({event::kWorkerNotStarted, fmt::format("{}; trying again", failure.error().message)});
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "base/check.h"
 #include "base/hash.h"
@@ -70,18 +71,14 @@ std::uint32_t Scheduler::Credit() const {
   return static_cast<std::uint32_t>(std::min(most, ahead / std::max(predicted_seconds_, 1e-6)));
 }
 
-void Scheduler::Submit(RunId id, double length) {
-  const auto [run, added] = runs_.try_emplace(id);
-  GAUNTLET_CHECK(added, "run " + std::to_string(id) + " submitted twice");
+void Scheduler::Submit(RunRequest request) {
+  const auto [run, added] = runs_.try_emplace(request.id);
+  GAUNTLET_CHECK(added, "run " + std::to_string(request.id) + " submitted twice");
+  run->second.spec = std::move(request.spec);
   run->second.batch = batch_;
-  run->second.length = length;
-  queue_.insert({batch_, length, id});
+  run->second.length = request.length;
+  queue_.insert({batch_, request.length, request.id});
   ++unfinished_;
-}
-
-bool Scheduler::Wanted(RunId id) const {
-  const auto found = runs_.find(id);
-  return found != runs_.end() && (!found->second.finished || found->second.audit);
 }
 
 void Scheduler::Acknowledge(RunId id) {
@@ -297,7 +294,10 @@ void Scheduler::Finish(RunId id, Run& run, InstanceId worker, Fence fence) {
     Loosen(other, lease, LeaseState::kCancelled);
   }
   run.audit = !run.given_up && Audited(id, options_.audit_share);
-  if (!run.audit) return;
+  if (!run.audit) {
+    run.spec = {};
+    return;
+  }
   ++audits_open_;
   audits_.insert(id);
 }
@@ -409,6 +409,7 @@ std::uint32_t Scheduler::LeasesOf(RunId run) const {
 void Scheduler::EndAudit(RunId id, Run& run, InstanceId by) {
   if (by == run.finished_by) ++audited_alone_;
   run.audit = false;
+  run.spec = {};
   audits_.erase(id);
   --audits_open_;
   ++audited_;

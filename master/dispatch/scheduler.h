@@ -24,68 +24,10 @@
 #include "base/system/clock.h"
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
+#include "master/dispatch/scheduler_orders.h"
 #include "master/dispatch/slot_usage.h"
-#include "proto/messages.h"
 
 namespace gauntlet::master {
-
-using proto::Fence;
-using proto::InstanceId;
-
-struct LeaseOrder {
-  InstanceId worker = 0;
-  Fence fence = 0;
-  RunId run = 0;
-  std::uint32_t attempt = 1;  // 1 = the run's first lease
-};
-
-struct FenceOrder {
-  InstanceId worker = 0;
-  Fence fence = 0;
-};
-
-// The run ended with a verdict: `attempts` own failures, the last of which is `last`.
-struct RunGivenUp {
-  RunId run = 0;
-  InstanceId worker = 0;  // of the last failure
-  std::uint32_t leases = 1;
-  proto::RunnerFailure last;
-  std::uint32_t of_last_kind = 0;
-  std::uint32_t attempts = 0;
-};
-
-struct WorkerLost {
-  InstanceId worker = 0;
-  std::vector<RunId> released;  // runs that wait for another worker now
-};
-
-// Two answers to the same spec differ: the campaign is nondeterministic.
-struct ResultMismatch {
-  RunId run = 0;
-  InstanceId first_worker = 0;
-  InstanceId second_worker = 0;
-  std::uint64_t first_hash = 0;  // 0: the run had ended with a verdict of failure
-  std::uint64_t second_hash = 0;
-};
-
-struct SchedulerOrders {
-  std::vector<LeaseOrder> leases;            // send these leases
-  std::vector<FenceOrder> cancels;           // tell the worker that the lease is not needed any more
-  std::vector<FenceOrder> acknowledgements;  // tell the worker to forget the lease
-  std::vector<RunGivenUp> given_up;
-  std::vector<WorkerLost> lost;
-  std::vector<ResultMismatch> mismatches;
-  std::vector<InstanceId> back;       // these were lost, and are heard again
-  std::vector<InstanceId> forgotten;  // these lost workers are unknown from now on
-};
-
-enum class Answer {
-  kAccepted,   // the run's result, or a counted failure
-  kDuplicate,  // the run had finished already
-  kRepeated,   // the very answer that was accepted, sent again
-  kUnwanted,   // nobody waits for it any more
-  kRejected,   // names a lease that this worker does not have, or another run than the lease's
-};
 
 class Scheduler {
  public:
@@ -95,7 +37,8 @@ class Scheduler {
   // What is submitted from now on comes after what was submitted so far, whenever it is released.
   void BeginBatch() { ++batch_; }
   // Ids are new. Within a batch the longest go first (RunRequest::length), equals in the order of their ids.
-  void Submit(RunId id, double length = 0.0);
+  // The spec is kept until no lease of the run can be given any more.
+  void Submit(RunRequest request);
   // The result of this finished run is stored durably.
   void Acknowledge(RunId id);
   // No lease is given from now on.
@@ -131,8 +74,6 @@ class Scheduler {
   std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown runs
   std::size_t queued() const { return queue_.size(); }
   std::size_t unfinished() const { return unfinished_; }
-  // Whether another lease of the run may still be given: it has not finished, or its audit is open.
-  bool Wanted(RunId id) const;
   std::size_t remembered_runs() const { return runs_.size(); }  // all that takes memory
   WorkerStatistics Statistics() const;
   // Without labels and pids, in the order of the ids; times as of the last event. Runs that several workers
@@ -161,6 +102,7 @@ class Scheduler {
     }
   };
   struct Run {
+    proto::EncodedSpec spec;  // empty when the run has finished and its audit is not open
     std::uint64_t batch = 0;
     double length = 0.0;
     std::vector<Fence> fences;  // live, orphaned and cancelled leases

@@ -15,7 +15,7 @@ void Scheduler::Grant(InstanceId worker_id, RunId id) {
   ++run.leases;
   worker.live.push_back(fence);
   List(worker_id, worker);
-  orders_.leases.push_back({worker_id, fence, id, run.leases});
+  orders_.leases.push_back({worker_id, {fence, id, run.spec, run.leases}});
 }
 
 void Scheduler::Assign() {

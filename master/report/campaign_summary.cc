@@ -10,6 +10,7 @@
 #include "master/report/stored_search.h"
 #include "master/report/verdict_text.h"
 #include "master/search/population_search.h"
+#include "master/store/event_kinds.h"
 #include "proto/run_codec.h"
 #include "sim/arena/genome_codec.h"
 #include "sim/run_result.h"
@@ -92,7 +93,7 @@ Result<std::uint64_t> CountNondeterministic(ResultStore& store) {
   if (!events) return events.error();
   return static_cast<std::uint64_t>(
       std::count_if(events->begin(), events->end(),
-                    [](const StoredEvent& event) { return event.kind == "nondeterministic"; }));
+                    [](const StoredEvent& event) { return event.kind == event::kNondeterministic; }));
 }
 
 Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,

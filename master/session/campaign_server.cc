@@ -193,9 +193,9 @@ Status CampaignServer::Announce() {
         fmt::format("this directory is a copy of campaign {}; it is campaign {} from now on",
                     campaign_.origin.copied_from, view_.campaign_id);
     spdlog::info("copied: {}", text);
-    NoteEvent("copied", text);
+    NoteEvent(event::kCopied, text);
   }
-  NoteEvent(view_.epoch == 1 ? "start" : "resume",
+  NoteEvent(view_.epoch == 1 ? event::kStart : event::kResume,
             fmt::format("master {} with {}", view_.epoch, DescribePool(options_)));
   const Result<std::uint64_t> nondeterministic = CountNondeterministic(*campaign_.store);
   if (!nondeterministic) return nondeterministic.error();
@@ -257,13 +257,13 @@ Result<SessionReport> CampaignServer::Report(CampaignEnd end) {
   report.end = end;
   report.workers = backend_->Statistics();
   if (report.workers.audits > 0) {
-    NoteEvent("audit",
+    NoteEvent(event::kAudit,
               fmt::format("{} runs were simulated on a second worker, {} again on the only one there "
                           "was, {} ended differently",
                           report.workers.audits - report.workers.audits_alone, report.workers.audits_alone,
                           report.workers.nondeterministic));
   }
-  NoteEvent(end == CampaignEnd::kFinished ? "finished" : "stop",
+  NoteEvent(end == CampaignEnd::kFinished ? event::kFinished : event::kStop,
             fmt::format("{} runs stored", loop_->runs_done()));
   if (Status flushed = campaign_.store->Flush(); !flushed) return flushed.error();
   report.runs_this_session = loop_->runs_done() - runs_before_;

@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/dispatch/evaluation_backend.h"
 #include "master/search/search_algorithm.h"
+#include "proto/messages.h"
 
 namespace gauntlet::master {
 
+using proto::RunId;
 using SearchId = std::uint32_t;  // 1, 2, ... within a campaign
 
 struct StoredSearch {
@@ -33,9 +34,9 @@ struct StoredRun {
   std::uint32_t replicate = 0;
   std::uint32_t generation = 0;
   std::uint64_t seed = 0;
-  std::string spec;             // serialized RunSpec, as it was sent
+  proto::EncodedSpec spec;      // as it was sent
   std::uint64_t spec_hash = 0;  // FNV-1a of `spec`: finds a changed byte that would not change the result
-  std::string result;           // serialized RunResult (without trajectory)
+  proto::EncodedResult result;  // without a trajectory
   std::uint64_t hash = 0;
   std::string worker;
   std::uint32_t attempt = 1;
@@ -57,7 +58,7 @@ struct SavedState {
 
 struct StoredEvent {
   std::int64_t unix_ms = 0;
-  std::string kind;  // "start", "resume", "stop", "worker-lost", "finished", ...
+  std::string kind;  // one of master/store/event_kinds.h
   std::string text;
 };
 

@@ -37,10 +37,7 @@ TEST_F(RemoteBackendTest, AReconnectedWorkerContinuesUnderItsNewPeer) {
 
 // A worker says hello every second until it is welcomed, on the same connection.
 TEST_F(RemoteBackendTest, AHelloThatCrossedTheWelcomeIsNoReconnect) {
-  backend_->Submit({{1, "spec"}});
-  SayHello("a", HelloOf(kAnna));
-  Poll();
-  const v1::Lease lease = LeasesSentTo("a").at(0);
+  const v1::Lease lease = LeaseRun1To("a");
   EXPECT_THAT(EventsOf("worker-joined"), HasSubstr("joined"));
   SayHello("a", HelloOf(kAnna));
   Poll();

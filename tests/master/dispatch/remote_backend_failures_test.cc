@@ -14,17 +14,10 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 TEST_F(RemoteBackendTest, ThreeCrashesBecomeAVerdictWithAReproducibleMessage) {
-  backend_->Submit({{1, "spec"}});
-  SayHello("p", HelloOf(kAnna));
-  std::vector<FinishedRun> finished;
-  for (int attempt = 1; attempt <= 3; ++attempt) {
-    EXPECT_THAT(finished, IsEmpty());
-    Poll();
-    SendFailure("p", LeasesSentTo("p").at(0), v1::RunnerFailure::KIND_CRASHED, 11,
+  const std::vector<FinishedRun> finished = FailRun1([this](const v1::Lease& lease, int attempt) {
+    SendFailure("p", lease, v1::RunnerFailure::KIND_CRASHED, 11,
                 fmt::format("assertion failed at 0x{}", attempt));
-    finished = Poll();
-  }
-  ASSERT_THAT(finished, SizeIs(1));
+  });
   EXPECT_EQ(finished[0].result.verdict, sim::Verdict::kCrashed);
   EXPECT_EQ(finished[0].result.message, "crashed with signal 11");
   EXPECT_EQ(finished[0].result.hash, sim::HashOf(finished[0].result));
@@ -158,16 +151,9 @@ TEST_F(RemoteBackendTest, OnlyAFailureThatCountsLeavesItsOutput) {
 }
 
 TEST_F(RemoteBackendTest, OfALongOutputTheEndIsKept) {
-  backend_->Submit({{1, "spec"}});
-  SayHello("p", HelloOf(kAnna));
-  std::vector<FinishedRun> finished;
-  for (int attempt = 1; attempt <= 3; ++attempt) {
-    Poll();
-    SendFailure("p", LeasesSentTo("p").at(0), v1::RunnerFailure::KIND_CRASHED, 6,
-                std::string(100'000, 'x') + "the end");
-    finished = Poll();
-  }
-  ASSERT_THAT(finished, SizeIs(1));
+  const std::vector<FinishedRun> finished = FailRun1([this](const v1::Lease& lease, int) {
+    SendFailure("p", lease, v1::RunnerFailure::KIND_CRASHED, 6, std::string(100'000, 'x') + "the end");
+  });
   EXPECT_EQ(finished[0].stderr_tail, std::string(4096 - 7, 'x') + "the end");
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -126,6 +127,28 @@ class RemoteBackendTest : public testing::Test {
       if (envelope.has_lease()) leases.push_back(envelope.lease());
     }
     return leases;
+  }
+  // Run 1 is submitted, and leased to kAnna, who says hello through this connection.
+  v1::Lease LeaseRun1To(const PeerId& peer) {
+    backend_->Submit({{1, "spec"}});
+    SayHello(peer, HelloOf(kAnna));
+    Poll();
+    return LeasesSentTo(peer).at(0);
+  }
+  // Run 1 fails three times, each attempt as `fail` makes it; what came of it.
+  std::vector<FinishedRun> FailRun1(const std::function<void(const v1::Lease&, int attempt)>& fail) {
+    backend_->Submit({{1, "spec"}});
+    SayHello("p", HelloOf(kAnna));
+    std::vector<FinishedRun> finished;
+    for (int attempt = 1; attempt <= 3; ++attempt) {
+      EXPECT_TRUE(finished.empty()) << attempt;
+      Poll();
+      fail(LeasesSentTo("p").at(0), attempt);
+      finished = Poll();
+    }
+    EXPECT_EQ(finished.size(), 1U);
+    finished.resize(1);
+    return finished;
   }
   std::vector<FinishedRun> Poll(std::chrono::milliseconds timeout = std::chrono::milliseconds(0)) {
     Result<std::vector<FinishedRun>> finished = backend_->Poll(timeout);

@@ -74,10 +74,7 @@ TEST_F(RemoteBackendTest, ThePoolsErrorComesOutOfPoll) {
 }
 
 TEST_F(RemoteBackendTest, ShutdownDrainsAndEndsWithTheLastGoodbye) {
-  SayHello("a", HelloOf(kAnna));
-  backend_->Submit({{1, "spec"}});
-  Poll();
-  const v1::Lease lease = LeasesSentTo("a").at(0);
+  const v1::Lease lease = LeaseRun1To("a");
   transport_.on_wait = [this, &lease] {
     for (const v1::Envelope& envelope : Sent("a")) {
       if (envelope.has_drain()) {

@@ -89,10 +89,7 @@ TEST_F(RemoteBackendTest, AWorkerMayDifferInControllersThatTheCampaignDoesNotUse
 }
 
 TEST_F(RemoteBackendTest, AResultComesOutAndIsAcknowledgedWhenStored) {
-  backend_->Submit({{1, "spec"}});
-  SayHello("p", HelloOf(kAnna));
-  Poll();
-  const v1::Lease lease = LeasesSentTo("p").at(0);
+  const v1::Lease lease = LeaseRun1To("p");
   SendResult("p", lease, result_);
   const std::vector<FinishedRun> finished = Poll(seconds(1));
   ASSERT_THAT(finished, SizeIs(1));
@@ -162,10 +159,7 @@ TEST_F(RemoteBackendTest, PollReturnsWhenItIsWokenUp) {
 }
 
 TEST_F(RemoteBackendTest, ASilentWorkersRunGoesElsewhereAndItsLateResultIsADuplicate) {
-  backend_->Submit({{1, "spec"}});
-  SayHello("a", HelloOf(kAnna));
-  Poll();
-  const v1::Lease first = LeasesSentTo("a").at(0);
+  const v1::Lease first = LeaseRun1To("a");
   SayHello("b", HelloOf(kBert));
   transport_.on_wait = [this] { SendHeartbeat("b"); };
   const TimePoint start = clock_.Now();

@@ -22,7 +22,7 @@ class SchedulerAuditTest : public SchedulerTest {
     const SchedulerOrders orders = Decide();
     ASSERT_EQ(orders.leases.size(), 1U);
     ASSERT_EQ(orders.leases[0].worker, worker);
-    ASSERT_EQ(scheduler_.Completed(worker, orders.leases[0].fence, 1, 55), Answer::kAccepted);
+    ASSERT_EQ(scheduler_.Completed(worker, orders.leases[0].lease.fence, 1, 55), Answer::kAccepted);
     scheduler_.Acknowledge(1);
   }
 };
@@ -35,12 +35,11 @@ TEST_F(SchedulerAuditTest, AnotherWorkerSimulatesTheRunOnceMore) {
   ASSERT_EQ(audit.leases.size(), 1U);
   EXPECT_EQ(audit.leases[0].worker, 2U);
   EXPECT_EQ(scheduler_.Statistics().audits_open, 1U);
-  EXPECT_TRUE(scheduler_.Wanted(1));
-  EXPECT_EQ(scheduler_.Completed(2, audit.leases[0].fence, 1, 55), Answer::kDuplicate);
+  EXPECT_EQ(audit.leases[0].lease.spec, "spec") << "it is kept as long";
+  EXPECT_EQ(scheduler_.Completed(2, audit.leases[0].lease.fence, 1, 55), Answer::kDuplicate);
   EXPECT_TRUE(Decide().mismatches.empty());
   EXPECT_EQ(scheduler_.Statistics().audits, 1U);
   EXPECT_EQ(scheduler_.Statistics().audits_open, 0U);
-  EXPECT_FALSE(scheduler_.Wanted(1));
   EXPECT_EQ(scheduler_.remembered_runs(), 0U);
 }
 
@@ -50,7 +49,7 @@ TEST_F(SchedulerAuditTest, ADifferenceNamesBothWorkers) {
   Join(2);
   const SchedulerOrders audit = Decide();
   ASSERT_EQ(audit.leases.size(), 1U);
-  scheduler_.Completed(2, audit.leases[0].fence, 1, 56);
+  scheduler_.Completed(2, audit.leases[0].lease.fence, 1, 56);
   const SchedulerOrders orders = Decide();
   ASSERT_EQ(orders.mismatches.size(), 1U);
   EXPECT_EQ(orders.mismatches[0].first_worker, 1U);
@@ -64,7 +63,7 @@ TEST_F(SchedulerAuditTest, AnOnlyWorkerAuditsItself) {
   FinishRun1(1);
   const SchedulerOrders audit = Decide();
   ASSERT_EQ(audit.leases.size(), 1U);
-  EXPECT_EQ(scheduler_.Completed(1, audit.leases[0].fence, 1, 55), Answer::kDuplicate);
+  EXPECT_EQ(scheduler_.Completed(1, audit.leases[0].lease.fence, 1, 55), Answer::kDuplicate);
   EXPECT_EQ(scheduler_.Statistics().audits, 1U);
   EXPECT_EQ(scheduler_.Statistics().audits_alone, 1U);
 }
@@ -75,12 +74,12 @@ TEST_F(SchedulerAuditTest, GoesToAnotherWorkerThatJoinsWhileTheOnlyOneAuditsItse
   const SchedulerOrders own = Decide();
   ASSERT_EQ(own.leases.size(), 1U);
   Join(2);
-  EXPECT_EQ(scheduler_.Completed(1, own.leases[0].fence, 1, 55), Answer::kDuplicate);
+  EXPECT_EQ(scheduler_.Completed(1, own.leases[0].lease.fence, 1, 55), Answer::kDuplicate);
   EXPECT_EQ(scheduler_.Statistics().audits_open, 1U);
   const SchedulerOrders audit = Decide();
   ASSERT_EQ(audit.leases.size(), 1U);
   EXPECT_EQ(audit.leases[0].worker, 2U);
-  scheduler_.Completed(2, audit.leases[0].fence, 1, 55);
+  scheduler_.Completed(2, audit.leases[0].lease.fence, 1, 55);
   EXPECT_EQ(scheduler_.Statistics().audits_open, 0U);
   EXPECT_EQ(scheduler_.Statistics().audits_alone, 0U);
 }
@@ -113,7 +112,7 @@ TEST_F(SchedulerAuditTest, CountsAsADifferenceWhenItFailsAsOftenAsAVerdictTakes)
     const SchedulerOrders audit = Decide();
     ASSERT_EQ(audit.leases.size(), 1U) << attempt;
     EXPECT_TRUE(audit.mismatches.empty());
-    scheduler_.Failed(2, audit.leases[0].fence, 1, {proto::FailureKind::kCrashed, 11, 0});
+    scheduler_.Failed(2, audit.leases[0].lease.fence, 1, {proto::FailureKind::kCrashed, 11, 0});
   }
   const SchedulerOrders orders = Decide();
   ASSERT_EQ(orders.mismatches.size(), 1U);
@@ -130,7 +129,8 @@ TEST_F(SchedulerTest, AuditsTheShareThatWasAskedFor) {
     SubmitRuns(run, run);
     // The run, then perhaps its audit.
     for (int round = 0; round < 2; ++round) {
-      for (const LeaseOrder& lease : Decide().leases) scheduler_.Completed(1, lease.fence, lease.run, run);
+      for (const LeaseOrder& order : Decide().leases)
+        scheduler_.Completed(1, order.lease.fence, order.lease.run_id, run);
     }
   }
   EXPECT_NEAR(static_cast<double>(scheduler_.Statistics().audits), 100.0, 30.0);

@@ -25,7 +25,24 @@ class SchedulerTest : public testing::Test {
     scheduler_.WorkerJoined(worker, slots, held, clock_.Now());
   }
   void SubmitRuns(RunId first, RunId last) {
-    for (RunId run = first; run <= last; ++run) scheduler_.Submit(run);
+    for (RunId run = first; run <= last; ++run) scheduler_.Submit({run, "spec"});
+  }
+  // Run 1 is submitted, and leased to this worker.
+  Fence LeaseRun1To(InstanceId worker) {
+    SubmitRuns(1, 1);
+    Join(worker);
+    return Decide().leases.at(0).lease.fence;
+  }
+  // The same; worker 10 dies, and worker 11 gets the run.
+  struct TwoLeases {
+    Fence first;
+    Fence second;
+  };
+  TwoLeases LeaseRun1To10AndThenTo11() {
+    const Fence first = LeaseRun1To(10);
+    Join(11);
+    scheduler_.WorkerDied(10);
+    return {first, Decide().leases.at(0).lease.fence};
   }
   // Lets time pass while these workers, holding nothing in particular, send heartbeats.
   SchedulerOrders PassTime(std::chrono::milliseconds time, const std::vector<InstanceId>& alive) {
@@ -42,7 +59,7 @@ class SchedulerTest : public testing::Test {
   }
   static std::vector<RunId> RunsOf(const SchedulerOrders& orders) {
     std::vector<RunId> runs;
-    for (const LeaseOrder& lease : orders.leases) runs.push_back(lease.run);
+    for (const LeaseOrder& order : orders.leases) runs.push_back(order.lease.run_id);
     return runs;
   }
   static std::vector<Fence> FencesOf(const std::vector<FenceOrder>& orders) {

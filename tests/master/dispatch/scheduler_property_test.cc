@@ -45,7 +45,7 @@ class World {
 
   void Submit() {
     if (*rc::gen::arbitrary<bool>()) scheduler_.BeginBatch();
-    scheduler_.Submit(++last_run_, static_cast<double>(*rc::gen::inRange(0, 3)));
+    scheduler_.Submit({++last_run_, "spec", static_cast<double>(*rc::gen::inRange(0, 3))});
     expected_.insert(last_run_);
   }
 
@@ -173,19 +173,19 @@ class World {
     for (const WorkerLost& lost : orders.lost) condemned.erase(lost.worker);
     RC_ASSERT(condemned.empty());
     std::set<InstanceId> blocked;
-    for (const LeaseOrder& lease : orders.leases) {
-      RC_ASSERT(lease.fence > last_fence_);
-      last_fence_ = lease.fence;
-      RC_ASSERT(expected_.contains(lease.run));
-      RC_ASSERT(!finished_.contains(lease.run) || audits_);
-      ever_leased_[lease.fence] = {lease.worker, lease.run};
-      ModelWorker& worker = workers_.at(lease.worker);
+    for (const LeaseOrder& order : orders.leases) {
+      RC_ASSERT(order.lease.fence > last_fence_);
+      last_fence_ = order.lease.fence;
+      RC_ASSERT(expected_.contains(order.lease.run_id));
+      RC_ASSERT(!finished_.contains(order.lease.run_id) || audits_);
+      ever_leased_[order.lease.fence] = {order.worker, order.lease.run_id};
+      ModelWorker& worker = workers_.at(order.worker);
       if (!worker.alive && *rc::gen::arbitrary<bool>()) {
-        scheduler_.Undelivered(lease.fence);
+        scheduler_.Undelivered(order.lease.fence);
       } else if (!healing_ && *rc::gen::inRange(0, 20) == 0) {
         // Lost on the way; the worker's heartbeats will tell.
       } else {
-        worker.leases.emplace(lease.fence, lease.run);
+        worker.leases.emplace(order.lease.fence, order.lease.run_id);
       }
     }
     for (const FenceOrder& order : orders.acknowledgements) {

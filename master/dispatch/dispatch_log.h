@@ -1,0 +1,45 @@
+// What a backend tells people: events, messages that were dropped, workers that were turned away. Whatever
+// strangers send, it stays short.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/system/clock.h"
+#include "master/dispatch/evaluation_backend.h"
+
+namespace gauntlet::master {
+
+// The end of a text that came from a worker, fit for a line of a log or a terminal.
+std::string Shorten(std::string_view text);
+
+class DispatchLog {
+ public:
+  // An event (master/store/event_kinds.h); its text is made fit for one line.
+  void Report(std::string kind, std::string_view text);
+  // A message was dropped. Each is counted, of each `kind` the first one is told.
+  void Reject(const std::string& kind, const std::string& text);
+  // A worker was turned away. Each is counted, a few in a minute are told.
+  void Refuse(const std::string& label, const std::string& reason, TimePoint now);
+
+  // What happened since the last call, oldest first.
+  std::vector<DispatchEvent> TakeEvents();
+  std::uint64_t rejected() const { return rejected_; }
+  std::uint64_t refused() const { return refused_; }
+  const std::string& last_refusal() const { return last_refusal_; }  // its reason
+
+ private:
+  std::vector<DispatchEvent> events_;
+  std::uint64_t rejected_ = 0;
+  std::set<std::string> rejected_kinds_;  // that have been told
+  std::uint64_t refused_ = 0;
+  std::string last_refusal_;
+  int refusals_told_ = 0;
+  TimePoint refusals_told_since_{};
+  std::uint64_t refusals_untold_ = 0;
+};
+
+}  // namespace gauntlet::master

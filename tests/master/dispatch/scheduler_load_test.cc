@@ -1,0 +1,150 @@
+// How many runs a worker is given, in which order, and copies of runs that take long.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/master/dispatch/scheduler_fixture.h"
+
+namespace gauntlet::master {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::UnorderedElementsAre;
+
+TEST_F(SchedulerTest, FillsEverySlotBeforeItPrefetches) {
+  scheduler_ = Scheduler(LeaseOptions(2), kFirstFence);
+  SubmitRuns(1, 10);
+  Join(10, 2);
+  Join(11, 1);
+  const SchedulerOrders orders = Decide();
+  ASSERT_THAT(orders.leases, SizeIs(6));
+  std::vector<InstanceId> first;
+  for (std::size_t i = 0; i < 3; ++i) first.push_back(orders.leases[i].worker);
+  EXPECT_THAT(first, UnorderedElementsAre(10, 10, 11));
+}
+
+TEST_F(SchedulerTest, ShortRunsAreLeasedAheadUntilEnoughWorkWaits) {
+  SubmitRuns(1, 2000);
+  Join(10, 2);
+  std::vector<LeaseOrder> leases = Decide().leases;
+  EXPECT_THAT(leases, SizeIs(2)) << "nothing is known of their length";
+  const auto complete_all = [&](double took) {
+    for (const LeaseOrder& order : leases) {
+      scheduler_.RunTook(took);
+      EXPECT_EQ(scheduler_.Completed(10, order.lease.fence, order.lease.run_id, 111), Answer::kAccepted);
+    }
+    leases = Decide().leases;
+  };
+  complete_all(0.001);
+  EXPECT_THAT(leases, SizeIs(20)) << "10 ms of work at each of two slots";
+  complete_all(0.001);
+  EXPECT_THAT(leases, SizeIs(20));
+  scheduler_.RunTook(std::nan(""));
+  scheduler_.RunTook(std::numeric_limits<double>::infinity());
+  for (int i = 0; i < 200; ++i) scheduler_.RunTook(60.0);
+  complete_all(60.0);
+  EXPECT_THAT(leases, SizeIs(2)) << "one at a time again";
+  for (int i = 0; i < 2000; ++i) scheduler_.RunTook(0.0);
+  complete_all(0.0);
+  EXPECT_THAT(leases, SizeIs(512)) << "most_credit for each slot";
+}
+
+TEST_F(SchedulerTest, NoWorkerIsGivenMoreShortRunsThanItKeeps) {
+  SubmitRuns(1, 9000);
+  for (int i = 0; i < 200; ++i) scheduler_.RunTook(0.0);
+  Join(10, 64);
+  EXPECT_THAT(Decide().leases, SizeIs(4096)) << "not 64 * 256";
+}
+
+TEST_F(SchedulerTest, WorkerWithManyShortRunsIsGivenMoreWhenHalfOfThemAreDone) {
+  SubmitRuns(1, 2000);
+  for (int i = 0; i < 200; ++i) scheduler_.RunTook(0.0005);
+  Join(10);
+  const std::vector<LeaseOrder> leases = Decide().leases;
+  ASSERT_THAT(leases, SizeIs(20)) << "10 ms of work";
+  for (int i = 0; i < 9; ++i) {
+    scheduler_.Completed(10, leases[i].lease.fence, leases[i].lease.run_id, 111);
+    EXPECT_THAT(Decide().leases, IsEmpty());
+  }
+  scheduler_.Completed(10, leases[9].lease.fence, leases[9].lease.run_id, 111);
+  EXPECT_THAT(Decide().leases, SizeIs(10));
+}
+
+TEST_F(SchedulerTest, TheLongestRunsOfABatchGoFirstButNoBatchOvertakesAnother) {
+  Join(1, 8);
+  scheduler_.BeginBatch();
+  scheduler_.Submit({1, "spec", 10.0});
+  scheduler_.Submit({2, "spec", 30.0});
+  scheduler_.Submit({3, "spec", 10.0});
+  scheduler_.BeginBatch();
+  scheduler_.Submit({4, "spec", 90.0});
+  scheduler_.Submit({5, "spec"});
+  EXPECT_THAT(RunsOf(Decide()), ElementsAre(2, 1, 3, 4, 5));
+}
+
+TEST_F(SchedulerTest, AnIdleWorkerGetsACopyOfARunThatTakesLong) {
+  Join(1);
+  Join(2);
+  SubmitRuns(1, 1);
+  const SchedulerOrders first = Decide();
+  ASSERT_EQ(first.leases.size(), 1U);
+  scheduler_.RunTook(1.0);
+  EXPECT_TRUE(PassTime(milliseconds(2000), {1, 2}).leases.empty()) << "twice the usual time is not unusual";
+  const SchedulerOrders copied = PassTime(milliseconds(500), {1, 2});
+  ASSERT_EQ(copied.leases.size(), 1U);
+  EXPECT_EQ(copied.leases[0].lease.run_id, 1U);
+  EXPECT_NE(copied.leases[0].worker, first.leases[0].worker);
+  EXPECT_TRUE(PassTime(milliseconds(5000), {1, 2}).leases.empty()) << "one copy is enough";
+  EXPECT_EQ(scheduler_.Statistics().copies, 1U);
+
+  EXPECT_EQ(scheduler_.Completed(copied.leases[0].worker, copied.leases[0].lease.fence, 1, 77),
+            Answer::kAccepted);
+  const SchedulerOrders after = Decide();
+  ASSERT_EQ(after.cancels.size(), 1U) << "the first is told to stop";
+  EXPECT_EQ(after.cancels[0].fence, first.leases[0].lease.fence);
+}
+
+TEST_F(SchedulerTest, NobodyGetsACopyWhileRunsWait) {
+  Join(1);
+  SubmitRuns(1, 2);
+  Decide();
+  scheduler_.RunTook(0.1);
+  EXPECT_TRUE(PassTime(milliseconds(3000), {1}).leases.empty());
+  Join(2);
+  EXPECT_THAT(RunsOf(Decide()), ElementsAre(2));
+  EXPECT_EQ(scheduler_.Statistics().copies, 0U);
+}
+
+TEST_F(SchedulerTest, CountsHowLongWorkersWereIdleAndWhy) {
+  Join(1);
+  Join(2);
+  SubmitRuns(1, 1);
+  ASSERT_EQ(Decide().leases.size(), 1U);
+  PassTime(milliseconds(4000), {1, 2});
+  const WorkerStatistics statistics = scheduler_.Statistics();
+  EXPECT_NEAR(statistics.slot_seconds, 8.0, 1e-6);
+  EXPECT_NEAR(statistics.idle_seconds, 4.0, 1e-6);
+  EXPECT_NEAR(statistics.barrier_seconds, 4.0, 1e-6) << "no run waited";
+
+  scheduler_.WorkerDied(2);
+  scheduler_.WorkerDraining(1);
+  PassTime(milliseconds(4000), {1});
+  EXPECT_NEAR(scheduler_.Statistics().slot_seconds, 8.0, 1e-6) << "they do not count any more";
+  EXPECT_NEAR(scheduler_.Statistics().idle_seconds, 4.0, 1e-6);
+}
+
+TEST_F(SchedulerTest, FiveHundredWorkersAreAllLeasedAtOnce) {
+  SubmitRuns(1, 2000);
+  for (InstanceId worker = 1; worker <= 512; ++worker) Join(worker);
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(orders.leases, SizeIs(512));
+  EXPECT_EQ(scheduler_.Statistics().busy, 512);
+}
+
+}  // namespace
+}  // namespace gauntlet::master
