@@ -1,41 +1,17 @@
 // A database whose rows were changed or deleted is not shown as if it were whole.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <filesystem>
 #include <string>
 
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using testing::HasSubstr;
-using testing_support::EvolveArguments;
-using testing_support::Gauntlet;
-using testing_support::ProcessResult;
-using testing_support::SmallCampaign;
-using testing_support::TemporaryDirectory;
-
-// The rows' guards are dropped first.
-void Alter(const std::string& dir, const std::string& sql) {
-  sqlite3* db = nullptr;
-  ASSERT_EQ(sqlite3_open((dir + "/campaign.db").c_str(), &db), SQLITE_OK);
-  std::string drop_guards;
-  ASSERT_EQ(sqlite3_exec(
-                db, "SELECT 'DROP TRIGGER ' || name || ';' FROM sqlite_master WHERE type = 'trigger'",
-                [](void* text, int, char** values, char**) {
-                  *static_cast<std::string*>(text) += values[0];
-                  return 0;
-                },
-                &drop_guards, nullptr),
-            SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db, (drop_guards + sql).c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
-      << sqlite3_errmsg(db);
-  ASSERT_GT(sqlite3_changes(db), 0) << sql;
-  sqlite3_close(db);
-}
 
 class AlteredStoreTest : public testing::Test {
  protected:
@@ -51,7 +27,7 @@ class AlteredStoreTest : public testing::Test {
     const std::string dir = *scratch_ / "altered";
     std::filesystem::remove_all(dir);
     std::filesystem::copy(*scratch_ / "whole", dir, std::filesystem::copy_options::recursive);
-    Alter(dir, sql);
+    ASSERT_GT(AlterDatabase(dir, sql), 0) << sql;
     std::vector<std::vector<std::string>> commands = {{"show", dir}, {"resume", dir, "--workers", "1"}};
     if (in_run_3) commands.push_back({"replay", dir, "3"});
     for (const auto& command : commands) {
@@ -92,4 +68,4 @@ TEST_F(AlteredStoreTest, ReplayOfADatabaseThatDoesNotOpenExitsTwo) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

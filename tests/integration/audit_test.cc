@@ -4,17 +4,11 @@
 
 #include "tests/integration/campaign_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using testing::ContainsRegex;
 using testing::HasSubstr;
-using testing_support::EvolveArguments;
-using testing_support::Gauntlet;
-using testing_support::ProcessResult;
-using testing_support::SmallCampaign;
-using testing_support::StateHash;
-using testing_support::TemporaryDirectory;
 
 TEST(AuditTest, ComparesRunsAndLeavesTheStateAlone) {
   const TemporaryDirectory scratch;
@@ -40,4 +34,4 @@ TEST(AuditTest, AnImpossibleShareIsNamedBeforeAnythingIsWritten) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

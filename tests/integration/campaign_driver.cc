@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
-#include "sim/random/random_stream.h"
 #include "tests/support/paths.h"
 #include "tests/support/sanitizer.h"
 
@@ -24,12 +24,6 @@ std::string FaultShimPath() {
 }
 
 namespace {
-
-std::vector<std::string> WithProgram(const std::vector<std::string>& arguments) {
-  std::vector<std::string> argv = {GauntletPath()};
-  argv.insert(argv.end(), arguments.begin(), arguments.end());
-  return argv;
-}
 
 // pid, state, parent and command line of those that live.
 std::string Describe(const std::vector<pid_t>& pids) {
@@ -48,19 +42,21 @@ std::string Describe(const std::vector<pid_t>& pids) {
   return text;
 }
 
-std::chrono::milliseconds RandomTime(sim::RandomStream& random, std::chrono::milliseconds longest) {
-  return std::chrono::milliseconds(random.Below(static_cast<std::uint32_t>(longest.count())) + 1);
-}
-
 }  // namespace
 
+std::vector<std::string> GauntletCommand(const std::vector<std::string>& arguments) {
+  std::vector<std::string> argv = {GauntletPath()};
+  argv.insert(argv.end(), arguments.begin(), arguments.end());
+  return argv;
+}
+
 ProcessResult Gauntlet(const std::vector<std::string>& arguments, std::chrono::seconds deadline) {
-  return RunProcess(WithProgram(arguments), {}, deadline);
+  return RunProcess(GauntletCommand(arguments), {}, deadline);
 }
 
 std::unique_ptr<Process> StartGauntlet(const std::vector<std::string>& arguments,
                                        const std::vector<std::string>& environment) {
-  return std::make_unique<Process>(WithProgram(arguments), environment);
+  return std::make_unique<Process>(GauntletCommand(arguments), environment);
 }
 
 SmallCampaign SmallForaging() {
@@ -106,16 +102,9 @@ SmallCampaign SmallEvaluation() {
   return campaign;
 }
 
-std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers) {
-  std::vector<std::string> arguments = {campaign.case_file.empty() ? "evolve" : "evaluate",
-                                        campaign.experiment,
-                                        "--dir",
-                                        dir,
-                                        "--workers",
-                                        std::to_string(workers),
-                                        "--seed",
-                                        campaign.seed,
-                                        "--quiet"};
+std::vector<std::string> CampaignArguments(const std::string& command, const SmallCampaign& campaign,
+                                           const std::string& dir) {
+  std::vector<std::string> arguments = {command, campaign.experiment, "--dir", dir, "--seed", campaign.seed};
   const auto give = [&](const char* option, const std::string& value) {
     arguments.insert(arguments.end(), {option, value});
   };
@@ -123,6 +112,13 @@ std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const st
   if (campaign.generations > 0) give("--generations", std::to_string(campaign.generations));
   if (!campaign.case_file.empty()) give("--case", campaign.case_file);
   for (const std::string& setting : campaign.settings) give("--set", setting);
+  return arguments;
+}
+
+std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers) {
+  std::vector<std::string> arguments = 
+      CampaignArguments(campaign.case_file.empty() ? "evolve" : "evaluate", campaign, dir);
+  arguments.insert(arguments.end(), {"--workers", std::to_string(workers), "--quiet"});
   return arguments;
 }
 
@@ -141,6 +137,30 @@ std::string ReadFile(const std::string& path) {
 
 std::string StateHash(const std::string& dir) {
   return Show(dir).value("state_hash", "");
+}
+
+const std::string& UndisturbedHash(const SmallCampaign& campaign) {
+  static std::map<std::vector<std::string>, std::string> hashes;
+  std::string& hash = hashes[EvolveArguments(campaign, "", 2)];
+  if (hash.empty()) {
+    const TemporaryDirectory scratch;
+    const ProcessResult result = Gauntlet(EvolveArguments(campaign, scratch / "c", 2));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    hash = StateHash(scratch / "c");
+    EXPECT_EQ(hash.size(), 64u);
+  }
+  return hash;
+}
+
+std::chrono::milliseconds RandomTime(sim::RandomStream& random, std::chrono::milliseconds longest) {
+  return std::chrono::milliseconds(random.Below(static_cast<std::uint32_t>(longest.count())) + 1);
+}
+
+bool KillADescendant(const Process& ancestor, sim::RandomStream& random) {
+  const std::vector<pid_t> family = DescendantsOf(ancestor.pid());
+  if (family.empty()) return false;
+  kill(family[random.Below(static_cast<std::uint32_t>(family.size()))], SIGKILL);
+  return true;
 }
 
 int EvolveThroughMasterKills(const SmallCampaign& campaign, const std::string& dir, int workers, int kills,
@@ -179,10 +199,7 @@ int EvolveThroughWorkerKills(const SmallCampaign& campaign, const std::string& d
                          kPatience));
   int hits = 0;
   while (hits < kills && !Eventually([&] { return !master->Running(); }, RandomTime(random, between_kills))) {
-    const std::vector<pid_t> family = DescendantsOf(master->pid());
-    if (family.empty()) continue;
-    kill(family[random.Below(static_cast<std::uint32_t>(family.size()))], SIGKILL);
-    ++hits;
+    hits += KillADescendant(*master, random) ? 1 : 0;
   }
   const ProcessResult result = master->Wait(std::chrono::seconds(300));
   EXPECT_EQ(result.exit_code, 0) << result.err;

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sim/random/random_stream.h"
 #include "tests/support/process.h"
 
 namespace gauntlet::testing_support {
@@ -17,6 +18,8 @@ std::string WorkerPath();
 // The library that tests/support/fault_shim.cc makes, for LD_PRELOAD.
 std::string FaultShimPath();
 
+// The program and its arguments.
+std::vector<std::string> GauntletCommand(const std::vector<std::string>& arguments);
 // gauntlet ARGUMENTS..., waited for.
 ProcessResult Gauntlet(const std::vector<std::string>& arguments,
                        std::chrono::seconds deadline = std::chrono::seconds(300));
@@ -47,6 +50,9 @@ SmallCampaign SmallSteadyState();
 SmallCampaign SmallRandom();
 // A given case with many replicates.
 SmallCampaign SmallEvaluation();
+// "COMMAND EXPERIMENT --dir DIR ..." with everything that makes this campaign what it is.
+std::vector<std::string> CampaignArguments(const std::string& command, const SmallCampaign& campaign,
+                                           const std::string& dir);
 // The command that starts the campaign.
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers);
 
@@ -55,6 +61,13 @@ std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const st
 nlohmann::json Show(const std::string& dir);
 // state_hash of `show`.
 std::string StateHash(const std::string& dir);
+// The state_hash of an undisturbed `evolve` with two workers; computed once per campaign.
+const std::string& UndisturbedHash(const SmallCampaign& campaign);
+
+// A time from 1 ms to `longest`.
+std::chrono::milliseconds RandomTime(sim::RandomStream& random, std::chrono::milliseconds longest);
+// Sends SIGKILL to one of the processes below `ancestor`; false when there is none.
+bool KillADescendant(const Process& ancestor, sim::RandomStream& random);
 
 // Kills the master of the campaign at `moments` random moments (SIGKILL) and resumes it each time; finally
 // lets it end. Returns how many of the kills hit a running master.

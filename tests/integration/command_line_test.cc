@@ -2,25 +2,19 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/support/paths.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using testing_support::EvolveArguments;
-using testing_support::Gauntlet;
-using testing_support::ProcessResult;
-using testing_support::Show;
-using testing_support::SmallCampaign;
-using testing_support::TemporaryDirectory;
 
 void WriteFile(const std::string& path, const std::string& text) {
   std::ofstream(path) << text;
@@ -99,33 +93,12 @@ TEST(ReplayTest, AChangedByteInTheStoredSpecIsFound) {
   SmallCampaign campaign;
   campaign.generations = 1;
   ASSERT_EQ(Gauntlet(EvolveArguments(campaign, dir, 2)).exit_code, 0);
-  sqlite3* db = nullptr;
-  ASSERT_EQ(sqlite3_open((dir + "/campaign.db").c_str(), &db), SQLITE_OK);
-  // The seed is a fixed64: eight bytes that occur once in the spec.
-  char* error = nullptr;
-  sqlite3_stmt* select = nullptr;
-  ASSERT_EQ(sqlite3_prepare_v2(db, "SELECT spec FROM runs WHERE id = 3", -1, &select, nullptr), SQLITE_OK);
-  ASSERT_EQ(sqlite3_step(select), SQLITE_ROW);
-  std::string spec(static_cast<const char*>(sqlite3_column_blob(select, 0)),
-                   static_cast<std::size_t>(sqlite3_column_bytes(select, 0)));
-  sqlite3_finalize(select);
-  spec.back() = static_cast<char>(spec.back() ^ 1);
-  std::string drop_guards;
-  ASSERT_EQ(sqlite3_exec(
-                db, "SELECT 'DROP TRIGGER ' || name || ';' FROM sqlite_master WHERE type = 'trigger'",
-                [](void* text, int, char** values, char**) {
-                  *static_cast<std::string*>(text) += values[0];
-                  return 0;
-                },
-                &drop_guards, &error),
-            SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db, drop_guards.c_str(), nullptr, nullptr, &error), SQLITE_OK) << error;
-  sqlite3_stmt* update = nullptr;
-  ASSERT_EQ(sqlite3_prepare_v2(db, "UPDATE runs SET spec = ? WHERE id = 3", -1, &update, nullptr), SQLITE_OK);
-  sqlite3_bind_blob(update, 1, spec.data(), static_cast<int>(spec.size()), SQLITE_TRANSIENT);
-  ASSERT_EQ(sqlite3_step(update), SQLITE_DONE);
-  sqlite3_finalize(update);
-  sqlite3_close(db);
+  // The seed is a fixed64 at the end of the spec.
+  EXPECT_EQ(
+      AlterDatabase(dir,
+                    "UPDATE runs SET spec = CAST(substr(spec, 1, length(spec) - 1) || "
+                    "CASE hex(substr(spec, -1)) WHEN '00' THEN x'01' ELSE x'00' END AS BLOB) WHERE id = 3"),
+      1);
 
   const ProcessResult intact = Gauntlet({"replay", dir, "2"});
   EXPECT_EQ(intact.exit_code, 0) << intact.err;
@@ -308,4 +281,4 @@ TEST(EvaluateTest, RealArgosFilesAreSimulatedOrRefusedByRule) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

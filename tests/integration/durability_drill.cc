@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sqlite3.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <sstream>
 
 #include "sim/random/random_stream.h"
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/scripted_worker.h"
 #include "tests/integration/service_driver.h"
 
@@ -19,34 +19,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
-
-std::vector<std::string> ProgramWith(const std::vector<std::string>& arguments) {
-  std::vector<std::string> argv = {GauntletPath()};
-  argv.insert(argv.end(), arguments.begin(), arguments.end());
-  return argv;
-}
-
-// Seeds of the stored runs of a campaign without a master, its log included.
-std::set<std::uint64_t> StoredSeeds(const std::string& dir) {
-  // A copy: reading a database with a log changes both.
-  const TemporaryDirectory copy;
-  for (const char* name : {"/campaign.db", "/campaign.db-wal"}) {
-    std::error_code missing;
-    std::filesystem::copy_file(dir + name, copy.path() + name, missing);
-  }
-  std::set<std::uint64_t> seeds;
-  sqlite3* database = nullptr;
-  if (sqlite3_open((copy.path() + "/campaign.db").c_str(), &database) == SQLITE_OK) {
-    sqlite3_stmt* query = nullptr;
-    if (sqlite3_prepare_v2(database, "SELECT seed FROM runs", -1, &query, nullptr) == SQLITE_OK) {
-      while (sqlite3_step(query) == SQLITE_ROW)
-        seeds.insert(static_cast<std::uint64_t>(sqlite3_column_int64(query, 0)));
-    }
-    sqlite3_finalize(query);
-  }
-  sqlite3_close(database);
-  return seeds;
-}
 
 std::vector<std::uint64_t> LoggedSeeds(const std::string& run_log) {
   std::vector<std::uint64_t> seeds;
@@ -100,7 +72,7 @@ DurabilityReport EvolveThroughPowerLosses(const SmallCampaign& campaign, const s
   const std::vector<std::string> shim = {"LD_PRELOAD=" + FaultShimPath(),
                                          "GAUNTLET_FAULT_LOSE_UNSYNCED=" + dir};
   for (std::uint64_t epoch = 1;; ++epoch) {
-    Process master(ProgramWith(arguments), shim);
+    Process master(GauntletCommand(arguments), shim);
     // A new worker each time: what the former had not handed in is lost, as on a machine that lost power.
     ScriptedWorker worker(dir, 0x1000 + epoch);
     // A master killed between its last result and its end leaves the next one nothing to do.
@@ -147,9 +119,6 @@ MassacreReport EvolveThroughMassacre(const SmallCampaign& campaign, const std::s
                                      int master_kills, int worker_kills, std::uint64_t seed,
                                      milliseconds longest_life, milliseconds run) {
   sim::RandomStream random(seed, sim::StreamPurpose::kTest);
-  const auto random_time = [&random](milliseconds longest) {
-    return milliseconds(1 + random.Below(static_cast<std::uint32_t>(longest.count())));
-  };
   MassacreReport report;
   const TemporaryDirectory scratch;
   const std::string run_log = scratch / "runs";
@@ -159,17 +128,15 @@ MassacreReport EvolveThroughMassacre(const SmallCampaign& campaign, const std::s
   std::vector<std::string> arguments = EvolveArguments(campaign, dir, workers);
   std::set<std::uint64_t> stored;  // before the present master began
   for (bool finished = false; !finished;) {
-    Process master(ProgramWith(arguments), environment);
+    Process master(GauntletCommand(arguments), environment);
     const bool last = report.master_kills == master_kills;
-    const auto end = steady_clock::now() + (last ? milliseconds(kPatience * 10) : random_time(longest_life));
+    const auto end =
+        steady_clock::now() + (last ? milliseconds(kPatience * 10) : RandomTime(random, longest_life));
     while (steady_clock::now() < end && master.Running()) {
       // Two workers or runners for one master.
-      Eventually([&] { return !master.Running(); }, random_time(longest_life / 3));
+      Eventually([&] { return !master.Running(); }, RandomTime(random, longest_life / 3));
       if (report.worker_kills == worker_kills || !std::filesystem::exists(dir + "/access.json")) continue;
-      const std::vector<pid_t> family = DescendantsOf(master.pid());
-      if (family.empty()) continue;
-      kill(family[random.Below(static_cast<std::uint32_t>(family.size()))], SIGKILL);
-      ++report.worker_kills;
+      report.worker_kills += KillADescendant(master, random) ? 1 : 0;
     }
     finished = !master.Running();
     const std::vector<pid_t> family = DescendantsOf(master.pid());
@@ -189,10 +156,12 @@ MassacreReport EvolveThroughMassacre(const SmallCampaign& campaign, const std::s
     for (auto i = static_cast<std::size_t>(report.evaluations); i < begun.size(); ++i)
       report.evaluated_after_stored += stored.contains(begun[i]) ? 1 : 0;
     report.evaluations = static_cast<int>(begun.size());
-    stored = StoredSeeds(dir);
     // A master killed before it had created its campaign leaves nothing to resume.
-    if (std::filesystem::exists(dir + "/campaign.db"))
-      arguments = {"resume", dir, "--workers", std::to_string(workers), "--quiet"};
+    if (!std::filesystem::exists(dir + "/campaign.db")) continue;
+    stored.clear();
+    for (const std::string& number : Query(dir, "SELECT printf('%llu', seed) FROM runs"))
+      stored.insert(std::stoull(number));
+    arguments = {"resume", dir, "--workers", std::to_string(workers), "--quiet"};
   }
   report.runs = Show(dir).value("runs_done", 0);
   EXPECT_EQ(StateHash(dir), UndisturbedHash(campaign));

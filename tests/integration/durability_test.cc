@@ -6,21 +6,15 @@
 #include "tests/integration/durability_drill.h"
 #include "tests/integration/service_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
-
-using testing_support::DurabilityReport;
-using testing_support::MassacreReport;
-using testing_support::ProcessResult;
-using testing_support::SmallCampaign;
-using testing_support::TemporaryDirectory;
 
 TEST(Durability, WhatWasAcknowledgedSurvivesLossesOfPower) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;
   campaign.generations = 8;
-  const DurabilityReport report = testing_support::EvolveThroughPowerLosses(
-      campaign, scratch / "c", 8, 1, std::chrono::milliseconds(testing_support::kSanitized ? 4000 : 400));
+  const DurabilityReport report = EvolveThroughPowerLosses(
+      campaign, scratch / "c", 8, 1, std::chrono::milliseconds(kSanitized ? 4000 : 400));
   fmt::print("{} kills, {} runs acknowledged before one, {} of them leased again, {} simulated, {} runs\n",
              report.kills, report.acknowledged, report.leased_again, report.simulated, report.runs);
   EXPECT_GE(report.kills, 4);
@@ -33,19 +27,19 @@ TEST(Durability, WhatWasAcknowledgedSurvivesLossesOfPower) {
 TEST(Durability, TheShimLosesWhatWasNotSynchronised) {
   const TemporaryDirectory scratch;
   const std::string script = "printf written > " + scratch.path() + "/file";
-  const ProcessResult plain = testing_support::RunProcess({"/bin/sh", "-c", script});
-  EXPECT_EQ(testing_support::ReadFile(scratch / "file"), "written") << plain.err;
-  const ProcessResult lossy = testing_support::RunProcess(
-      {"/bin/sh", "-c", script},
-      {"LD_PRELOAD=" + testing_support::FaultShimPath(), "GAUNTLET_FAULT_LOSE_UNSYNCED=" + scratch.path()});
-  EXPECT_EQ(testing_support::ReadFile(scratch / "file"), "") << lossy.err;
+  const ProcessResult plain = RunProcess({"/bin/sh", "-c", script});
+  EXPECT_EQ(ReadFile(scratch / "file"), "written") << plain.err;
+  const ProcessResult lossy =
+      RunProcess({"/bin/sh", "-c", script},
+                 {"LD_PRELOAD=" + FaultShimPath(), "GAUNTLET_FAULT_LOSE_UNSYNCED=" + scratch.path()});
+  EXPECT_EQ(ReadFile(scratch / "file"), "") << lossy.err;
 }
 
 TEST(Durability, KillsOfMastersAndWorkersTogetherLoseNothing) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;
   campaign.generations = 10;
-  const MassacreReport report = testing_support::EvolveThroughMassacre(
+  const MassacreReport report = EvolveThroughMassacre(
       campaign, scratch / "c", 2, 5, 10, 2, std::chrono::milliseconds(700), std::chrono::milliseconds(100));
   fmt::print("{} masters and {} workers killed, {} runs, {} evaluations, {} of stored runs\n",
              report.master_kills, report.worker_kills, report.runs, report.evaluations,
@@ -61,14 +55,13 @@ TEST(Durability, KillsOfMastersAndWorkersTogetherLoseNothing) {
 TEST(Durability, AWallClockThatJumpsDecidesNothing) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;
-  std::vector<std::string> argv = testing_support::EvolveArguments(campaign, scratch / "c", 2);
-  argv.insert(argv.begin(), testing_support::GauntletPath());
-  const ProcessResult result = testing_support::RunProcess(
-      argv, {"LD_PRELOAD=" + testing_support::FaultShimPath(), "GAUNTLET_FAULT_CLOCK_JUMPS=86400"});
+  const ProcessResult result =
+      RunProcess(GauntletCommand(EvolveArguments(campaign, scratch / "c", 2)),
+                 {"LD_PRELOAD=" + FaultShimPath(), "GAUNTLET_FAULT_CLOCK_JUMPS=86400"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(testing_support::StateHash(scratch / "c"), testing_support::UndisturbedHash(campaign));
-  EXPECT_THAT(testing_support::MasterLog(scratch / "c"), testing::Not(testing::HasSubstr("worker-lost")));
+  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash(campaign));
+  EXPECT_THAT(MasterLog(scratch / "c"), testing::Not(testing::HasSubstr("worker-lost")));
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

@@ -12,23 +12,11 @@
 #include "tests/integration/zmtp_fuzz.h"
 #include "tests/support/sanitizer.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using std::chrono::milliseconds;
 using testing::HasSubstr;
-using testing_support::HostileSocket;
-using testing_support::MasterArguments;
-using testing_support::MasterLog;
-using testing_support::Process;
-using testing_support::ProcessResult;
-using testing_support::ResidentMebibytes;
-using testing_support::ScriptedWorker;
-using testing_support::SmallCampaign;
-using testing_support::StartGauntlet;
-using testing_support::StartSlowWorker;
-using testing_support::StatusOf;
-using testing_support::UndisturbedHash;
 
 constexpr double kMostGrowth = 64.0;  // MiB
 
@@ -42,12 +30,12 @@ class HostilePeer : public testing::Test {
   void Begin(const std::vector<std::string>& limits = {},
              const std::string& endpoint_to_bind = "tcp://127.0.0.1:*") {
     std::vector<std::string> argv = limits;
-    argv.push_back(testing_support::GauntletPath());
-    for (const std::string& argument : MasterArguments(campaign_, dir_, endpoint_to_bind))
-      argv.push_back(argument);
+    const std::vector<std::string> master =
+        GauntletCommand(MasterArguments(campaign_, dir_, endpoint_to_bind));
+    argv.insert(argv.end(), master.begin(), master.end());
     master_ = std::make_unique<Process>(argv);
     worker_ = StartSlowWorker(dir_, 60);
-    ASSERT_TRUE(testing_support::RunsDone(dir_, 2)) << master_->Err();
+    ASSERT_TRUE(RunsDone(dir_, 2)) << master_->Err();
     const std::string endpoint = StatusOf(dir_).at("master").at("endpoints")[0];
     port_ = std::stoi(endpoint.substr(endpoint.rfind(':') + 1));
     memory_ = ResidentMebibytes(master_->pid());
@@ -56,11 +44,11 @@ class HostilePeer : public testing::Test {
   void ExpectTheUndisturbedResult() {
     const ProcessResult result = master_->Wait();
     EXPECT_EQ(result.exit_code, 0) << result.err << MasterLog(dir_);
-    EXPECT_EQ(testing_support::StateHash(dir_), hash_);
+    EXPECT_EQ(StateHash(dir_), hash_);
     EXPECT_EQ(worker_->Wait().exit_code, 0) << worker_->Err();
   }
 
-  testing_support::TemporaryDirectory scratch_;
+  TemporaryDirectory scratch_;
   std::string dir_ = scratch_ / "c";
   SmallCampaign campaign_;
   std::string hash_;
@@ -119,9 +107,9 @@ TEST_F(HostilePeer, WordsThatNobodyCanReadAreShownToPeopleAndEndNothing) {
   admitted.hello().process.host = words;
   admitted.hello().allocation = words;
   ASSERT_TRUE(admitted.Join());
-  EXPECT_TRUE(testing_support::StatusBecomes(
-      dir_, [](const nlohmann::json& status) { return status.value("workers", 0) == 2; }));
-  EXPECT_THAT(testing_support::Gauntlet({"status", dir_}).out, testing::Not(HasSubstr("\x1b")));
+  EXPECT_TRUE(
+      StatusBecomes(dir_, [](const nlohmann::json& status) { return status.value("workers", 0) == 2; }));
+  EXPECT_THAT(Gauntlet({"status", dir_}).out, testing::Not(HasSubstr("\x1b")));
   admitted.Say(proto::Goodbye{words});
   ScriptedWorker refused(dir_, 0x667);
   ASSERT_TRUE(refused.Connect());
@@ -143,7 +131,7 @@ TEST_F(HostilePeer, TenThousandConnectionsAndHalfGreetings) {
   campaign_.generations = 20;
   hash_ = UndisturbedHash(campaign_);
   Begin();
-  const std::string handshake = testing_support::ZmtpHandshake();
+  const std::string handshake = ZmtpHandshake();
   const std::string beginnings[] = {"", handshake.substr(0, 7), handshake.substr(0, 64), handshake,
                                     handshake + std::string("\0\x05hello", 7)};
   std::vector<HostileSocket> sockets;
@@ -156,13 +144,13 @@ TEST_F(HostilePeer, TenThousandConnectionsAndHalfGreetings) {
   const double growth = Growth();
   // The master is still there for its worker, and for a second one.
   const int done = StatusOf(dir_).at("runs_done");
-  EXPECT_TRUE(testing_support::RunsDone(dir_, done + 2)) << MasterLog(dir_);
+  EXPECT_TRUE(RunsDone(dir_, done + 2)) << MasterLog(dir_);
   const std::unique_ptr<Process> second = StartSlowWorker(dir_, 60);
-  EXPECT_TRUE(testing_support::LogBecomes(dir_, fmt::format("(pid {}, slots 1) joined", second->pid())));
+  EXPECT_TRUE(LogBecomes(dir_, fmt::format("(pid {}, slots 1) joined", second->pid())));
   fmt::print("{} connections: {:.1f} MiB of {:.1f} more\n", connected, growth, memory_);
   EXPECT_GT(connected, connections / 2);
   // A sanitizer's shadow of 10,000 connections says nothing about the master's own memory.
-  if (!testing_support::kSanitized) {
+  if (!kSanitized) {
     EXPECT_LT(growth, kMostGrowth + 0.015 * static_cast<double>(connections));
   }
   ExpectTheUndisturbedResult();
@@ -178,7 +166,7 @@ TEST_F(HostilePeer, AThousandPeersThatTalkNonsenseForEver) {
   std::vector<HostileSocket> sockets;
   for (int i = 0; i < 1000; ++i) {
     sockets.emplace_back(port_);
-    sockets.back().Send(testing_support::ZmtpHandshake() + nonsense);
+    sockets.back().Send(ZmtpHandshake() + nonsense);
   }
   const std::unique_ptr<Process> second = StartSlowWorker(dir_, 60);
   int rounds = 0;
@@ -202,7 +190,7 @@ TEST_F(HostilePeer, RandomConversationsChangeNothing) {
     hash_ = UndisturbedHash(campaign_);
     Begin({}, encrypted ? "tcp://0.0.0.0:*" : "tcp://127.0.0.1:*");
     double growth = 0.0;
-    const testing_support::ZmtpFuzzReport report = testing_support::FuzzPort(port_, encrypted, 1, [&] {
+    const ZmtpFuzzReport report = FuzzPort(port_, encrypted, 1, [&] {
       const bool runs = master_->Running();
       if (runs) growth = std::max(growth, Growth());
       return runs;
@@ -224,10 +212,10 @@ TEST_F(HostilePeer, MoreConnectionsThanOpenFilesAreAllowed) {
   std::vector<HostileSocket> sockets;
   for (int i = 0; i < 400; ++i) {
     sockets.emplace_back(port_);
-    sockets.back().Send(testing_support::ZmtpHandshake());
+    sockets.back().Send(ZmtpHandshake());
   }
   ExpectTheUndisturbedResult();
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

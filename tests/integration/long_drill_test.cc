@@ -12,14 +12,8 @@
 #include "tests/integration/service_driver.h"
 #include "tests/integration/zmtp_fuzz.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
-
-using testing_support::EvolveArguments;
-using testing_support::Gauntlet;
-using testing_support::SmallCampaign;
-using testing_support::StateHash;
-using testing_support::TemporaryDirectory;
 
 SmallCampaign DefaultCampaign() {
   SmallCampaign campaign;
@@ -29,38 +23,29 @@ SmallCampaign DefaultCampaign() {
   return campaign;
 }
 
-const std::string& UndisturbedHash() {
-  static const std::string hash = [] {
-    const TemporaryDirectory scratch;
-    EXPECT_EQ(Gauntlet(EvolveArguments(DefaultCampaign(), scratch / "c", 2)).exit_code, 0);
-    return StateHash(scratch / "c");
-  }();
-  return hash;
-}
-
 TEST(LongDrill, MasterKilledAt20RandomMoments) {
   const TemporaryDirectory scratch;
-  const int hits = testing_support::EvolveThroughMasterKills(DefaultCampaign(), scratch / "c", 2, 20, 3,
-                                                             std::chrono::milliseconds(3000));
+  const int hits =
+      EvolveThroughMasterKills(DefaultCampaign(), scratch / "c", 2, 20, 3, std::chrono::milliseconds(3000));
   fmt::print("master kills that hit: {} of 20\n", hits);
   EXPECT_GE(hits, 5);
-  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
+  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash(DefaultCampaign()));
 }
 
 TEST(LongDrill, WorkersKilled40Times) {
   const TemporaryDirectory scratch;
-  const int hits = testing_support::EvolveThroughWorkerKills(DefaultCampaign(), scratch / "c", 3, 40, 4,
-                                                             std::chrono::milliseconds(600));
+  const int hits =
+      EvolveThroughWorkerKills(DefaultCampaign(), scratch / "c", 3, 40, 4, std::chrono::milliseconds(600));
   fmt::print("workers and runners killed: {}\n", hits);
   EXPECT_GE(hits, 10);
-  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash());
+  EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash(DefaultCampaign()));
 }
 
 TEST(LongDrill, EveryWorkerCountGivesTheSameStateHash) {
   for (const int workers : {1, 5}) {
     const TemporaryDirectory scratch;
     ASSERT_EQ(Gauntlet(EvolveArguments(DefaultCampaign(), scratch / "c", workers)).exit_code, 0);
-    EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash()) << workers << " workers";
+    EXPECT_EQ(StateHash(scratch / "c"), UndisturbedHash(DefaultCampaign())) << workers << " workers";
   }
 }
 
@@ -70,9 +55,9 @@ TEST(LongDrill, AHundredMastersAndTwoHundredWorkersKilled) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign = DefaultCampaign();
   campaign.generations = 200;
-  const testing_support::MassacreReport report =
-      testing_support::EvolveThroughMassacre(campaign, scratch / "c", 2, 100, 200, 5,
-                                             std::chrono::milliseconds(2000), std::chrono::milliseconds(100));
+  const MassacreReport report =
+      EvolveThroughMassacre(campaign, scratch / "c", 2, 100, 200, 5, std::chrono::milliseconds(2000),
+                            std::chrono::milliseconds(100));
   fmt::print("{} masters and {} workers killed, {} runs, {} evaluations, {} of stored runs\n",
              report.master_kills, report.worker_kills, report.runs, report.evaluations,
              report.evaluated_after_stored);
@@ -85,8 +70,8 @@ TEST(LongDrill, AHundredLossesOfPower) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign = DefaultCampaign();
   campaign.generations = 100;
-  const testing_support::DurabilityReport report = testing_support::EvolveThroughPowerLosses(
-      campaign, scratch / "c", 100, 6, std::chrono::milliseconds(600));
+  const DurabilityReport report =
+      EvolveThroughPowerLosses(campaign, scratch / "c", 100, 6, std::chrono::milliseconds(600));
   fmt::print("{} kills, {} runs acknowledged before one, {} of them leased again, {} simulated, {} runs\n",
              report.kills, report.acknowledged, report.leased_again, report.simulated, report.runs);
   EXPECT_GE(report.kills, 50);
@@ -97,22 +82,22 @@ TEST(LongDrill, AHundredLossesOfPower) {
 TEST(LongDrill, RandomConversationsOnTheMastersPort) {
   SmallCampaign campaign;
   campaign.generations = 300;
-  const std::string& undisturbed = testing_support::UndisturbedHash(campaign);
+  const std::string& undisturbed = UndisturbedHash(campaign);
   for (const bool encrypted : {false, true}) {
     SCOPED_TRACE(encrypted ? "CURVE" : "plaintext");
     const TemporaryDirectory scratch;
     const std::string dir = scratch / "c";
     const auto begun = std::chrono::steady_clock::now();
-    const auto master = testing_support::StartGauntlet(
-        testing_support::MasterArguments(campaign, dir, encrypted ? "tcp://0.0.0.0:*" : "tcp://127.0.0.1:*"));
-    const auto worker = testing_support::StartSlowWorker(dir, 60);
-    ASSERT_TRUE(testing_support::RunsDone(dir, 8));
-    const double before = testing_support::ResidentMebibytes(master->pid());
-    const std::string endpoint = testing_support::StatusOf(dir).at("master").at("endpoints")[0];
+    const auto master =
+        StartGauntlet(MasterArguments(campaign, dir, encrypted ? "tcp://0.0.0.0:*" : "tcp://127.0.0.1:*"));
+    const auto worker = StartSlowWorker(dir, 60);
+    ASSERT_TRUE(RunsDone(dir, 8));
+    const double before = ResidentMebibytes(master->pid());
+    const std::string endpoint = StatusOf(dir).at("master").at("endpoints")[0];
     double after = before;
-    const testing_support::ZmtpFuzzReport report = testing_support::FuzzPort(
-        std::stoi(endpoint.substr(endpoint.rfind(':') + 1)), encrypted, encrypted ? 12 : 11, [&] {
-          if (const double now = testing_support::ResidentMebibytes(master->pid()); now > 0.0) after = now;
+    const ZmtpFuzzReport report =
+        FuzzPort(std::stoi(endpoint.substr(endpoint.rfind(':') + 1)), encrypted, encrypted ? 12 : 11, [&] {
+          if (const double now = ResidentMebibytes(master->pid()); now > 0.0) after = now;
           return master->Running();
         });
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -122,7 +107,7 @@ TEST(LongDrill, RandomConversationsOnTheMastersPort) {
     EXPECT_EQ(worker->Wait().exit_code, 0) << worker->Err();
     EXPECT_EQ(StateHash(dir), undisturbed);
     EXPECT_LT(after, before + 64.0);
-    EXPECT_EQ(testing_support::MasterLog(dir).find("worker-lost"), std::string::npos);
+    EXPECT_EQ(MasterLog(dir).find("worker-lost"), std::string::npos);
   }
 }
 
@@ -131,7 +116,7 @@ TEST(LongDrill, SixtyFourWorkersUnderFullLoadAreNeverTakenForLost) {
   const TemporaryDirectory scratch;
   const char* wish = std::getenv("GAUNTLET_DRILL_SECONDS");
   const std::chrono::seconds duration(wish != nullptr ? std::atoi(wish) : 600);
-  const testing_support::CrowdReport report = testing_support::WatchACrowd(scratch / "c", 64, duration);
+  const CrowdReport report = WatchACrowd(scratch / "c", 64, duration);
   fmt::print("{} workers, {} s, load {:.1f}: {} runs, {} workers taken for lost, {} runs leased again\n",
              report.joined, duration.count(), report.load, report.runs, report.lost, report.leased_again);
   EXPECT_EQ(report.joined, 64);
@@ -140,4 +125,4 @@ TEST(LongDrill, SixtyFourWorkersUnderFullLoadAreNeverTakenForLost) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

@@ -6,31 +6,22 @@
 
 #include <fstream>
 
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/service_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using nlohmann::json;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
-using testing_support::Eventually;
-using testing_support::GauntletPath;
-using testing_support::LogBecomes;
-using testing_support::MasterArguments;
-using testing_support::MasterLog;
-using testing_support::Process;
-using testing_support::SmallCampaign;
-using testing_support::StatusBecomes;
-using testing_support::TemporaryDirectory;
-using testing_support::WorkerPath;
 
 // A shell in namespaces of its own (network, mounts, pids) obeys commands that come through a pipe; when it
 // dies, so does everything in there.
 class NetworkCut : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_EQ(testing_support::RunProcess({"/usr/bin/mkfifo", fifo_}).exit_code, 0);
+    ASSERT_EQ(RunProcess({"/usr/bin/mkfifo", fifo_}).exit_code, 0);
     const std::string script = fmt::format(
         "mount -t tmpfs none /run && ip link set lo up && ip netns add far && "
         "ip link add near type veth peer name far netns far && ip address add 10.77.0.1/24 dev near && "
@@ -43,22 +34,19 @@ class NetworkCut : public testing::Test {
     shell_ = std::make_unique<Process>(
         std::vector<std::string>{"/usr/bin/unshare", "--map-root-user", "--net", "--mount", "--pid", "--fork",
                                  "--kill-child", "--mount-proc", "/bin/sh", "-c", script});
-    ASSERT_TRUE(
-        Eventually([&] { return testing_support::ReadFile(answers_) == "ready\n" || !shell_->Running(); },
-                   testing_support::kPatience));
+    ASSERT_TRUE(Eventually([&] { return ReadFile(answers_) == "ready\n" || !shell_->Running(); }, kPatience));
     if (!shell_->Running())
       GTEST_SKIP() << "no network namespaces, or no iptables, to be had here: " << shell_->Err();
     campaign_.generations = 3;
-    hash_ = testing_support::UndisturbedHash(campaign_);
+    hash_ = UndisturbedHash(campaign_);
   }
 
   // One line for the shell; waits until it has been done.
   void Do(const std::string& command) {
-    const std::size_t before = testing_support::ReadFile(answers_).size();
+    const std::size_t before = ReadFile(answers_).size();
     std::ofstream(fifo_) << command << std::endl;
-    ASSERT_TRUE(Eventually([&] { return testing_support::ReadFile(answers_).size() > before; },
-                           testing_support::kPatience));
-    EXPECT_EQ(testing_support::ReadFile(answers_).substr(before), "0\n") << command << shell_->Err();
+    ASSERT_TRUE(Eventually([&] { return ReadFile(answers_).size() > before; }, kPatience));
+    EXPECT_EQ(ReadFile(answers_).substr(before), "0\n") << command << shell_->Err();
   }
   // Runs long enough that the campaign outlasts the cut.
   void Begin() {
@@ -72,16 +60,14 @@ class NetworkCut : public testing::Test {
           "GAUNTLET_TEST_RUN_MILLISECONDS=150 ip netns exec far {}-slow --dir {} --orphan-timeout 60 &",
           WorkerPath(), dir_));
     }
-    ASSERT_TRUE(testing_support::RunsDone(dir_, 4)) << testing_support::ReadFile(scratch_ / "err");
-    EXPECT_TRUE(testing_support::StatusOf(dir_).at("master").at("encrypted"));
+    ASSERT_TRUE(RunsDone(dir_, 4)) << ReadFile(scratch_ / "err");
+    EXPECT_TRUE(StatusOf(dir_).at("master").at("encrypted"));
   }
   void ExpectTheUndisturbedResult() {
-    ASSERT_TRUE(Eventually([&] { return !testing_support::ReadFile(scratch_ / "exit").empty(); },
-                           testing_support::kPatience));
-    EXPECT_EQ(testing_support::ReadFile(scratch_ / "exit"), "0\n")
-        << testing_support::ReadFile(scratch_ / "err");
-    EXPECT_EQ(testing_support::StateHash(dir_), hash_);
-    EXPECT_EQ(testing_support::StoredRuns(dir_).size(), testing_support::Show(dir_).value("runs_done", 0U));
+    ASSERT_TRUE(Eventually([&] { return !ReadFile(scratch_ / "exit").empty(); }, kPatience));
+    EXPECT_EQ(ReadFile(scratch_ / "exit"), "0\n") << ReadFile(scratch_ / "err");
+    EXPECT_EQ(StateHash(dir_), hash_);
+    EXPECT_EQ(StoredRuns(dir_).size(), Show(dir_).value("runs_done", 0U));
   }
   // Nobody is reached for longer than the silence that makes a worker lost; then it goes on.
   void ExpectSilenceBetween(const std::string& cut, const std::string& mend) {
@@ -89,7 +75,7 @@ class NetworkCut : public testing::Test {
     Do(cut);
     ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
     ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) { return status.value("workers", -1) == 0; }));
-    EXPECT_THAT(testing_support::StatusOf(dir_).at("why_nothing_runs"), HasSubstr("silent now"));
+    EXPECT_THAT(StatusOf(dir_).at("why_nothing_runs"), HasSubstr("silent now"));
     Do(mend);
     ExpectTheUndisturbedResult();
   }
@@ -122,4 +108,4 @@ TEST_F(NetworkCut, TheMasterHearsItsWorkersAndIsNotHeard) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

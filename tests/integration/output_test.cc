@@ -6,18 +6,10 @@
 
 #include "tests/integration/campaign_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using testing::HasSubstr;
-using testing_support::EvolveArguments;
-using testing_support::Gauntlet;
-using testing_support::GauntletPath;
-using testing_support::ProcessResult;
-using testing_support::RunProcess;
-using testing_support::Show;
-using testing_support::SmallCampaign;
-using testing_support::TemporaryDirectory;
 
 ProcessResult Shell(const std::string& script) {
   return RunProcess({"/bin/bash", "-c", script}, {"G=" + GauntletPath()});
@@ -77,4 +69,4 @@ TEST(OutputTest, ASearchWithoutAnyResultSaysWhyAndExits1) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

@@ -3,34 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sqlite3.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/hostile_sockets.h"
 #include "tests/integration/service_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
-using testing_support::EvolveArguments;
-using testing_support::Gauntlet;
-using testing_support::GauntletPath;
-using testing_support::Process;
-using testing_support::ProcessResult;
-using testing_support::ReadFile;
-using testing_support::RunProcess;
-using testing_support::Show;
-using testing_support::SmallCampaign;
-using testing_support::StartGauntlet;
-using testing_support::StateHash;
-using testing_support::TemporaryDirectory;
-using testing_support::ZmtpHandshake;
 
 SmallCampaign LongerCampaign() {
   SmallCampaign campaign;
@@ -43,7 +30,7 @@ TEST(RefusalTest, ACampaignInUseIsRefusedWithItsOwner) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(LongerCampaign(), dir, 2));
-  ASSERT_TRUE(testing_support::Serves(dir)) << master->Err();
+  ASSERT_TRUE(Serves(dir)) << master->Err();
   const ProcessResult second = Gauntlet({"resume", dir, "--quiet"});
   EXPECT_EQ(second.exit_code, 2);
   char host[256] = {};
@@ -78,10 +65,7 @@ class DamagedCampaignTest : public testing::Test {
 };
 
 TEST_F(DamagedCampaignTest, ANewerFormatIsRefused) {
-  sqlite3* db = nullptr;
-  ASSERT_EQ(sqlite3_open((dir_ + "/campaign.db").c_str(), &db), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version = 999", nullptr, nullptr, nullptr), SQLITE_OK);
-  sqlite3_close(db);
+  AlterDatabase(dir_, "PRAGMA user_version = 999");
   ExpectRefusal("999");
 }
 
@@ -100,7 +84,7 @@ TEST_F(DamagedCampaignTest, ADatabaseThatIsNoneIsReportedAndLeftAlone) {
 }
 
 void SendBytes(int port, const std::string& bytes) {
-  testing_support::HostileSocket(port).Send(bytes);
+  HostileSocket(port).Send(bytes);
 }
 
 TEST(HostilePortTest, GarbageAndOversizedMessagesAreDroppedAndTheCampaignGoesOn) {
@@ -109,7 +93,7 @@ TEST(HostilePortTest, GarbageAndOversizedMessagesAreDroppedAndTheCampaignGoesOn)
   SmallCampaign campaign;
   campaign.generations = 12;
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 2));
-  ASSERT_TRUE(testing_support::Serves(dir)) << master->Err();
+  ASSERT_TRUE(Serves(dir)) << master->Err();
   const json access = json::parse(ReadFile(dir + "/access.json"), nullptr, false);
   const std::string endpoint = access["endpoints"][0].get<std::string>();
   const int port = std::stoi(endpoint.substr(endpoint.rfind(':') + 1));
@@ -122,9 +106,7 @@ TEST(HostilePortTest, GarbageAndOversizedMessagesAreDroppedAndTheCampaignGoesOn)
 
   const ProcessResult result = master->Wait();
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  const TemporaryDirectory undisturbed;
-  ASSERT_EQ(Gauntlet(EvolveArguments(campaign, undisturbed / "c", 2)).exit_code, 0);
-  EXPECT_EQ(StateHash(dir), StateHash(undisturbed / "c"));
+  EXPECT_EQ(StateHash(dir), UndisturbedHash(campaign));
 }
 
 TEST(FullDiskTest, StopsWithExit3AndResumesWhenThereIsSpace) {
@@ -195,7 +177,7 @@ TEST(RefusalTest, AMasterWhoseDirectoryIsMovedAwaySaysSoAndStops) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(LongerCampaign(), dir, 2));
-  ASSERT_TRUE(testing_support::Serves(dir)) << master->Err();
+  ASSERT_TRUE(Serves(dir)) << master->Err();
   std::filesystem::rename(dir, scratch / "moved");
   std::filesystem::create_directories(dir + "/log");  // as a worker that starts then does
   const ProcessResult stopped = master->Wait();
@@ -206,4 +188,4 @@ TEST(RefusalTest, AMasterWhoseDirectoryIsMovedAwaySaysSoAndStops) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

@@ -8,22 +8,10 @@
 
 #include "tests/integration/campaign_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using testing::HasSubstr;
-using testing_support::ChildrenOf;
-using testing_support::Eventually;
-using testing_support::Gauntlet;
-using testing_support::Process;
-using testing_support::ProcessResult;
-using testing_support::ReadFile;
-using testing_support::RunProcess;
-
-using testing_support::Show;
-using testing_support::StartGauntlet;
-using testing_support::TemporaryDirectory;
-using testing_support::WorkerPath;
 
 // Master, worker, fork server, runner: 0 when there is none now.
 pid_t RunnerOf(pid_t master) {
@@ -52,7 +40,7 @@ TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
         if (runner != 0 && runner != hit && kill(runner, SIGSEGV) == 0) hit = runner;
         return !master->Running();
       },
-      testing_support::kPatience));
+      kPatience));
 
   const nlohmann::json shown = Show(dir)["runs_without_result"];
   ASSERT_EQ(shown.size(), 1U) << shown;
@@ -94,4 +82,4 @@ TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

@@ -1,12 +1,10 @@
 #include "tests/integration/service_driver.h"
 
-#include <gtest/gtest.h>
 #include <signal.h>
-#include <sqlite3.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 namespace gauntlet::testing_support {
 
@@ -18,14 +16,8 @@ bool Serves(const std::string& dir) {
 
 std::vector<std::string> MasterArguments(const SmallCampaign& campaign, const std::string& dir,
                                          const std::string& endpoint) {
-  std::vector<std::string> arguments = {"master",        campaign.experiment,
-                                        "--dir",         dir,
-                                        "--bind",        endpoint,
-                                        "--seed",        campaign.seed,
-                                        "--population",  std::to_string(campaign.population),
-                                        "--generations", std::to_string(campaign.generations),
-                                        "--no-progress"};
-  for (const std::string& setting : campaign.settings) arguments.insert(arguments.end(), {"--set", setting});
+  std::vector<std::string> arguments = CampaignArguments("master", campaign, dir);
+  arguments.insert(arguments.end(), {"--bind", endpoint, "--no-progress"});
   return arguments;
 }
 
@@ -68,37 +60,16 @@ std::string MasterLog(const std::string& dir) {
   return ReadFile(dir + "/log/master.log");
 }
 
+bool WorkersBusy(const std::string& dir, int workers) {
+  return StatusBecomes(dir, [workers](const json& status) {
+    const json& list = status.at("worker_list");
+    return std::count_if(list.begin(), list.end(),
+                         [](const json& worker) { return !worker.at("runs").empty(); }) >= workers;
+  });
+}
+
 bool LogBecomes(const std::string& dir, const std::string& text) {
   return Eventually([&] { return MasterLog(dir).find(text) != std::string::npos; }, kPatience);
-}
-
-std::vector<std::uint64_t> StoredRuns(const std::string& dir) {
-  std::vector<std::uint64_t> runs;
-  sqlite3* database = nullptr;
-  if (sqlite3_open_v2(("file:" + dir + "/campaign.db?immutable=1").c_str(), &database,
-                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr) == SQLITE_OK) {
-    sqlite3_stmt* query = nullptr;
-    sqlite3_prepare_v2(database, "SELECT id FROM runs ORDER BY id", -1, &query, nullptr);
-    while (sqlite3_step(query) == SQLITE_ROW) {
-      runs.push_back(static_cast<std::uint64_t>(sqlite3_column_int64(query, 0)));
-    }
-    sqlite3_finalize(query);
-  }
-  sqlite3_close(database);
-  return runs;
-}
-
-const std::string& UndisturbedHash(const SmallCampaign& campaign) {
-  static std::map<std::vector<std::string>, std::string> hashes;
-  std::string& hash = hashes[EvolveArguments(campaign, "", 2)];
-  if (hash.empty()) {
-    const TemporaryDirectory scratch;
-    const ProcessResult result = Gauntlet(EvolveArguments(campaign, scratch / "c", 2));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    hash = StateHash(scratch / "c");
-    EXPECT_EQ(hash.size(), 64u);
-  }
-  return hash;
 }
 
 void SignalFamily(const Process& process, int signal) {

@@ -28,16 +28,12 @@ std::unique_ptr<Process> StartSlowWorker(const std::string& dir, int millisecond
 nlohmann::json StatusOf(const std::string& dir);
 bool StatusBecomes(const std::string& dir, const std::function<bool(const nlohmann::json&)>& condition);
 bool RunsDone(const std::string& dir, int runs);
+// So many workers have runs at the same time.
+bool WorkersBusy(const std::string& dir, int workers);
 
 // What log/master.log says so far.
 std::string MasterLog(const std::string& dir);
 bool LogBecomes(const std::string& dir, const std::string& text);
-
-// Ids of the stored runs; the database's triggers see to it that none is stored twice.
-std::vector<std::uint64_t> StoredRuns(const std::string& dir);
-
-// The state_hash of an undisturbed `evolve` with two workers; computed once per campaign.
-const std::string& UndisturbedHash(const SmallCampaign& campaign);
 
 // The signal goes to the process and everything below it.
 void SignalFamily(const Process& process, int signal);

@@ -7,31 +7,17 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/service_driver.h"
 #include "tests/support/local_socket.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-using testing_support::EvolveArguments;
-using testing_support::Gauntlet;
-using testing_support::MasterArguments;
-using testing_support::Process;
-using testing_support::ProcessResult;
-using testing_support::ReadFile;
-using testing_support::SmallCampaign;
-using testing_support::StartGauntlet;
-using testing_support::StartWorker;
-using testing_support::StateHash;
-using testing_support::StatusBecomes;
-using testing_support::StatusOf;
-using testing_support::StoredRuns;
-using testing_support::TemporaryDirectory;
-using testing_support::WorkerPath;
 
 mode_t ModeOf(const std::string& path) {
   struct stat info {};
@@ -115,7 +101,7 @@ TEST(ServiceTest, OuterAddressesAreEncryptedForKnownKeysAndTellNobody) {
   const std::string open = scratch / "open.json";
   std::filesystem::copy_file(dir + "/access.json", open);
   std::filesystem::permissions(open, std::filesystem::perms(0644));
-  const ProcessResult careless = testing_support::RunProcess({WorkerPath(), "--access", open});
+  const ProcessResult careless = RunProcess({WorkerPath(), "--access", open});
   EXPECT_EQ(careless.exit_code, 2);
   EXPECT_THAT(careless.err, HasSubstr("others may read it"));
   const ProcessResult unheard = stranger.Wait();
@@ -130,7 +116,7 @@ TEST(ServiceTest, OuterAddressesAreEncryptedForKnownKeysAndTellNobody) {
   // written.
   std::string told;
   for (const pid_t process : {master->pid(), worker->pid()}) {
-    std::vector<pid_t> family = testing_support::DescendantsOf(process);
+    std::vector<pid_t> family = DescendantsOf(process);
     family.push_back(process);
     for (const pid_t pid : family) {
       for (const char* what : {"cmdline", "environ"}) {
@@ -175,8 +161,8 @@ TEST(ServiceTest, MetricsAreServedOnThisMachinesOwnAddress) {
   ASSERT_TRUE(StatusBecomes(dir, [](const json& status) { return status.value("runs_done", 0) > 0; }));
   const std::string url = StatusOf(dir).at("master").at("metrics");
   EXPECT_THAT(url, testing::MatchesRegex("http://127.0.0.1:[0-9]+/metrics"));
-  const std::string answer = testing_support::Converse(std::stoi(url.substr(url.rfind(':') + 1)),
-                                                       "GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const std::string answer =
+      Converse(std::stoi(url.substr(url.rfind(':') + 1)), "GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_THAT(answer, AllOf(HasSubstr("200 OK"), HasSubstr("experiment=\"flocking\""),
                             testing::ContainsRegex("gauntlet_runs_stored_total [1-9]"),
                             HasSubstr("gauntlet_workers{state=")));
@@ -195,7 +181,7 @@ TEST(ServiceTest, MetricsAreServedOnThisMachinesOwnAddress) {
 TEST(ServiceTest, ARefusedAddressLeavesNothingSoThatTheCorrectedCommandWorks) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
-  const testing_support::ListeningSocket taken;
+  const ListeningSocket taken;
   const std::string in_use = "tcp://127.0.0.1:" + std::to_string(taken.port());
   // 203.0.113.77 belongs to no machine (RFC 5737).
   for (const std::string& bad :
@@ -222,9 +208,9 @@ TEST(ServiceTest, PlaintextOnAnOuterAddressIsAskedForAndSaid) {
   const ProcessResult result = master->Wait();
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.err, HasSubstr("INSECURE"));
-  EXPECT_THAT(testing_support::MasterLog(scratch / "c"), HasSubstr("INSECURE: whoever reaches tcp://"));
+  EXPECT_THAT(MasterLog(scratch / "c"), HasSubstr("INSECURE: whoever reaches tcp://"));
   EXPECT_EQ(worker->Wait().exit_code, 0);
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

@@ -2,20 +2,16 @@
 // rearranges the code. When results are meant to change, the list is replaced by what this test prints.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sqlite3.h>
 
 #include <fstream>
 #include <sstream>
 
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/support/paths.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
-
-using testing_support::Gauntlet;
-using testing_support::ProcessResult;
-using testing_support::TemporaryDirectory;
 
 struct RecordedRuns {
   std::string command;            // arguments of gauntlet
@@ -38,22 +34,6 @@ std::vector<RecordedRuns> Recorded() {
     }
   }
   return all;
-}
-
-std::vector<std::string> StoredRuns(const std::string& dir) {
-  std::vector<std::string> runs;
-  sqlite3* db = nullptr;
-  EXPECT_EQ(sqlite3_open((dir + "/campaign.db").c_str(), &db), SQLITE_OK);
-  EXPECT_EQ(sqlite3_exec(
-                db, "SELECT id || ' ' || printf('%016x', hash) FROM runs ORDER BY id",
-                [](void* to, int, char** values, char**) {
-                  static_cast<std::vector<std::string>*>(to)->emplace_back(values[0]);
-                  return 0;
-                },
-                &runs, nullptr),
-            SQLITE_OK);
-  sqlite3_close(db);
-  return runs;
 }
 
 class ShippedRunsTest : public testing::TestWithParam<RecordedRuns> {};
@@ -90,4 +70,4 @@ TEST(ShippedRunsList, HasEveryShippedExperimentAndAtLeast200Runs) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

@@ -72,16 +72,19 @@ bool BroughtNothing(const SimulatedCase& one) {
   return one.fitness == 0.0;
 }
 
-void PrintSample(const std::string& name, const StudySample& sample) {
-  const StudyCluster all = Flatten(sample);
-  const auto n = static_cast<double>(all.size());
-  const double mean = MeanFitness(sample);
-  double squares = 0.0;
-  for (const SimulatedCase& one : all) squares += (one.fitness - mean) * (one.fitness - mean);
-  fmt::print("{:<34} n {:>4}  mean {:.3f}  sd {:.3f}  zeros {:.1f} %  condition 1 {:.1f} %  2 {:.1f} %\n",
-             name, all.size(), mean, std::sqrt(squares / (n - 1.0)), 100.0 * ShareOf(sample, BroughtNothing),
-             100.0 * ShareOf(sample, &SimulatedCase::condition_1),
-             100.0 * ShareOf(sample, &SimulatedCase::condition_2));
+void PrintSamples(const std::vector<std::pair<std::string, StudySample>>& samples) {
+  fmt::print("\n");
+  for (const auto& [name, sample] : samples) {
+    const StudyCluster all = Flatten(sample);
+    const auto n = static_cast<double>(all.size());
+    const double mean = MeanFitness(sample);
+    double squares = 0.0;
+    for (const SimulatedCase& one : all) squares += (one.fitness - mean) * (one.fitness - mean);
+    fmt::print("{:<34} n {:>4}  mean {:.3f}  sd {:.3f}  zeros {:.1f} %  condition 1 {:.1f} %  2 {:.1f} %\n",
+               name, all.size(), mean, std::sqrt(squares / (n - 1.0)),
+               100.0 * ShareOf(sample, BroughtNothing), 100.0 * ShareOf(sample, &SimulatedCase::condition_1),
+               100.0 * ShareOf(sample, &SimulatedCase::condition_2));
+  }
 }
 
 Comparison CompareSamples(const std::string& name, const StudySample& first, const StudySample& second) {
@@ -91,6 +94,14 @@ Comparison CompareSamples(const std::string& name, const StudySample& first, con
   fmt::print("{:<34} A {:.3f} (95 % lower bound {:.3f}), one-tailed p {:.3g}\n", name, comparison.test.a,
              comparison.lower_bound, comparison.test.p_greater);
   return comparison;
+}
+
+void ExpectTougherAndBetter(const StudySample& random, const std::vector<StudySample>& evolved) {
+  const Comparison tougher = CompareSamples("random > evolved", random, evolved[0]);
+  const Comparison better = CompareSamples("improved > original on evolved", evolved[1], evolved[0]);
+  EXPECT_LT(tougher.test.p_greater, 0.01);
+  EXPECT_GT(tougher.lower_bound, 0.56);
+  EXPECT_LT(better.test.p_greater, 0.01);
 }
 
 StudyCluster Study::Simulate(const std::string& controller, const std::vector<std::string>& cases,

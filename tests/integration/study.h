@@ -26,8 +26,9 @@ using StudySample = std::vector<StudyCluster>;
 double MeanFitness(const StudySample& sample);
 double ShareOf(const StudySample& sample, const std::function<bool(const SimulatedCase&)>& holds);
 bool BroughtNothing(const SimulatedCase& one);  // fitness 0
-// Prints one row of the table: n, mean, standard deviation, zeros, and the conditions where there are any.
-void PrintSample(const std::string& name, const StudySample& sample);
+// Prints a row of the table for each: n, mean, standard deviation, zeros, and the conditions where there are
+// any.
+void PrintSamples(const std::vector<std::pair<std::string, StudySample>>& samples);
 
 struct Comparison {
   analysis::RankTest test;   // one-tailed Mann-Whitney
@@ -35,6 +36,9 @@ struct Comparison {
 };
 // Computes and prints it.
 Comparison CompareSamples(const std::string& name, const StudySample& first, const StudySample& second);
+// Every chapter's finding: evolved cases are tougher for the controller than random ones, and the improved
+// controller stands them better. `evolved`: simulated with the controller and with the improved one.
+void ExpectTougherAndBetter(const StudySample& random, const std::vector<StudySample>& evolved);
 
 // One study: an experiment and the controllers that are tested in it. Every call runs programs and takes
 // minutes; what fails is a test failure.

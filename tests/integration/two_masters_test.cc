@@ -8,22 +8,10 @@
 
 #include "tests/integration/service_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using testing::HasSubstr;
-using testing_support::Gauntlet;
-using testing_support::GauntletPath;
-using testing_support::MasterArguments;
-using testing_support::Process;
-using testing_support::ProcessResult;
-using testing_support::ResumeArguments;
-using testing_support::SmallCampaign;
-using testing_support::StartGauntlet;
-using testing_support::StartSlowWorker;
-using testing_support::StateHash;
-using testing_support::TemporaryDirectory;
-using testing_support::UndisturbedHash;
 
 constexpr int kGenerations = 6;
 
@@ -39,7 +27,7 @@ TEST(TwoMasters, OnOneHostAFrozenMasterKeepsItsCampaign) {
   const std::string dir = scratch / "c";
   const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(Campaign(), dir));
   const std::unique_ptr<Process> worker = StartSlowWorker(dir, 50);
-  ASSERT_TRUE(testing_support::RunsDone(dir, 8));
+  ASSERT_TRUE(RunsDone(dir, 8));
   master->Signal(SIGSTOP);
   const ProcessResult second = Gauntlet(ResumeArguments(dir));
   EXPECT_EQ(second.exit_code, 2);
@@ -56,14 +44,14 @@ TEST(TwoMasters, ACopyOfARunningCampaignHasNoMaster) {
   const std::string copy = scratch / "copy";
   const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(Campaign(), dir));
   const std::unique_ptr<Process> worker = StartSlowWorker(dir, 50);
-  ASSERT_TRUE(testing_support::RunsDone(dir, 8));
+  ASSERT_TRUE(RunsDone(dir, 8));
   // Files do not change while they are copied: as a snapshot of the file system would be.
   master->Signal(SIGSTOP);
   std::filesystem::copy(dir, copy, std::filesystem::copy_options::recursive);
   master->Signal(SIGCONT);
 
-  EXPECT_EQ(testing_support::StatusOf(dir).value("state", ""), "running");
-  const nlohmann::json status = testing_support::StatusOf(copy);
+  EXPECT_EQ(StatusOf(dir).value("state", ""), "running");
+  const nlohmann::json status = StatusOf(copy);
   EXPECT_EQ(status.value("state", ""), "stopped") << status;
   EXPECT_TRUE(status.at("master").is_null());
   const ProcessResult stop = Gauntlet({"stop", copy}, std::chrono::seconds(30));
@@ -76,8 +64,7 @@ TEST(TwoMasters, ACopyOfARunningCampaignHasNoMaster) {
   EXPECT_EQ(master->Wait().exit_code, 0) << master->Err();
   EXPECT_EQ(StateHash(copy), UndisturbedHash(Campaign()));
   EXPECT_EQ(StateHash(dir), UndisturbedHash(Campaign()));
-  EXPECT_NE(testing_support::ReadFile(copy + "/origin.json"),
-            testing_support::ReadFile(dir + "/origin.json"));
+  EXPECT_NE(ReadFile(copy + "/origin.json"), ReadFile(dir + "/origin.json"));
 }
 
 // A job that Slurm has started again fences its twin: woken, the twin sees the newer number and stops.
@@ -86,10 +73,10 @@ TEST(TwoMasters, OnOneHostAFrozenTwinThatIsFencedStopsWhenItWakes) {
   const std::string dir = scratch / "c";
   const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(Campaign(), dir));
   std::unique_ptr<Process> worker = StartSlowWorker(dir, 50);
-  ASSERT_TRUE(testing_support::RunsDone(dir, 8));
+  ASSERT_TRUE(RunsDone(dir, 8));
   master->Signal(SIGSTOP);
   // What `resume --as-job` does first, without a cluster: the next number.
-  ASSERT_EQ(testing_support::ReadFile(dir + "/epoch"), "1\n");
+  ASSERT_EQ(ReadFile(dir + "/epoch"), "1\n");
   std::ofstream(scratch / "epoch") << "2\n";
   std::filesystem::rename(scratch / "epoch", dir + "/epoch");
   master->Signal(SIGCONT);
@@ -109,30 +96,27 @@ TEST(TwoMasters, OnOneHostAFrozenTwinThatIsFencedStopsWhenItWakes) {
 TEST(TwoMasters, OnAnotherHostAFrozenMasterIsReplacedAndStopsWhenItWakes) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
-  const std::string local_locks = "LD_PRELOAD=" + testing_support::FaultShimPath();
-  std::vector<std::string> elsewhere = {"/usr/bin/unshare", "--map-root-user", "--pid",       "--fork",
-                                        "--kill-child",     "--mount-proc",    GauntletPath()};
-  const ProcessResult possible =
-      testing_support::RunProcess({"/usr/bin/unshare", "--map-root-user", "--pid", "--fork", "--kill-child",
-                                   "--mount-proc", "/bin/true"});
+  const std::string local_locks = "LD_PRELOAD=" + FaultShimPath();
+  const auto elsewhere = [](const std::vector<std::string>& command) {
+    std::vector<std::string> argv = {"/usr/bin/unshare", "--map-root-user", "--pid",
+                                     "--fork",           "--kill-child",    "--mount-proc"};
+    argv.insert(argv.end(), command.begin(), command.end());
+    return argv;
+  };
+  const ProcessResult possible = RunProcess(elsewhere({"/bin/true"}));
   if (possible.exit_code != 0) GTEST_SKIP() << "no pid namespace to be had here: " << possible.err;
 
-  std::vector<std::string> first_arguments = elsewhere;
-  for (const std::string& argument : MasterArguments(Campaign(), dir)) first_arguments.push_back(argument);
-  Process first(first_arguments, {local_locks, "GAUNTLET_FAULT_LOCAL_LOCKS=1"});
+  Process first(elsewhere(GauntletCommand(MasterArguments(Campaign(), dir))),
+                {local_locks, "GAUNTLET_FAULT_LOCAL_LOCKS=1"});
   const std::unique_ptr<Process> worker = StartSlowWorker(dir, 50);
-  ASSERT_TRUE(testing_support::RunsDone(dir, 8)) << first.Err();
-  testing_support::SignalFamily(first, SIGSTOP);
+  ASSERT_TRUE(RunsDone(dir, 8)) << first.Err();
+  SignalFamily(first, SIGSTOP);
 
-  std::vector<std::string> second_arguments = {GauntletPath()};
-  for (const std::string& argument : ResumeArguments(dir)) second_arguments.push_back(argument);
-  Process second(second_arguments,
+  Process second(GauntletCommand(ResumeArguments(dir)),
                  {local_locks, "GAUNTLET_FAULT_LOCAL_LOCKS=1", "GAUNTLET_FAULT_CLOCK_OFFSET=120"});
-  ASSERT_TRUE(testing_support::Eventually(
-      [&] { return testing_support::ReadFile(dir + "/epoch") == "2\n" || !second.Running(); },
-      testing_support::kPatience));
+  ASSERT_TRUE(Eventually([&] { return ReadFile(dir + "/epoch") == "2\n" || !second.Running(); }, kPatience));
   // The first wakes in the middle of it, or when all is over: it must not touch anything.
-  testing_support::SignalFamily(first, SIGCONT);
+  SignalFamily(first, SIGCONT);
   const ProcessResult stopped = first.Wait();
   EXPECT_EQ(stopped.exit_code, 3) << stopped.err;
   const ProcessResult done = second.Wait();
@@ -141,4 +125,4 @@ TEST(TwoMasters, OnAnotherHostAFrozenMasterIsReplacedAndStopsWhenItWakes) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support

@@ -7,33 +7,17 @@
 #include <set>
 
 #include "base/system/process_identity.h"
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/crowd_drill.h"
 #include "tests/integration/scripted_worker.h"
 #include "tests/integration/service_driver.h"
 
-namespace gauntlet {
+namespace gauntlet::testing_support {
 namespace {
 
 using nlohmann::json;
 using std::chrono::milliseconds;
 using testing::HasSubstr;
-using testing_support::Eventually;
-using testing_support::LogBecomes;
-using testing_support::MasterArguments;
-using testing_support::MasterLog;
-using testing_support::Process;
-using testing_support::ProcessResult;
-using testing_support::ScriptedWorker;
-using testing_support::Show;
-using testing_support::SignalFamily;
-using testing_support::SmallCampaign;
-using testing_support::StartGauntlet;
-using testing_support::StartSlowWorker;
-using testing_support::StartWorker;
-using testing_support::StateHash;
-using testing_support::StatusBecomes;
-using testing_support::StatusOf;
-using testing_support::UndisturbedHash;
 
 constexpr std::uint64_t kFirstWorker = 0x1111;
 constexpr std::uint64_t kSecondWorker = 0x2222;
@@ -46,15 +30,24 @@ class WorkerDrill : public testing::Test {
     hash_ = UndisturbedHash(campaign_);
     master_ = StartGauntlet(MasterArguments(campaign_, dir_));
   }
+  // From now on, until the log says that a worker is lost.
+  void ExpectLossWithin(double most_seconds) {
+    const auto begun = std::chrono::steady_clock::now();
+    ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    RecordProperty("noticed_after_seconds", fmt::format("{:.3f}", seconds));
+    fmt::print("the loss was noticed after {:.3f} s\n", seconds);
+    EXPECT_LT(seconds, most_seconds);
+  }
   // The master ends by itself, with the result of an undisturbed campaign and every run stored once.
   void ExpectTheUndisturbedResult() {
     const ProcessResult result = master_->Wait();
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(StateHash(dir_), hash_);
-    EXPECT_EQ(testing_support::StoredRuns(dir_).size(), Show(dir_).value("runs_done", 0U));
+    EXPECT_EQ(StoredRuns(dir_).size(), Show(dir_).value("runs_done", 0U));
   }
 
-  testing_support::TemporaryDirectory scratch_;
+  TemporaryDirectory scratch_;
   std::string dir_ = scratch_ / "c";
   SmallCampaign campaign_;
   int runs_ = 0;
@@ -66,26 +59,18 @@ TEST_F(WorkerDrill, AFrozenWorkersRunsGoElsewhereWithin3HeartbeatsAndItIsTakenBa
   Begin(5);
   const std::unique_ptr<Process> frozen = StartSlowWorker(dir_, 300);
   const std::unique_ptr<Process> other = StartSlowWorker(dir_, 300);
-  ASSERT_TRUE(StatusBecomes(dir_, [&](const json& status) {
-    int busy = 0;
-    for (const json& worker : status.at("worker_list")) busy += worker.at("runs").empty() ? 0 : 1;
-    return busy == 2 && status.value("runs_done", 0) >= 2;
-  }));
+  ASSERT_TRUE(RunsDone(dir_, 2));
+  ASSERT_TRUE(WorkersBusy(dir_, 2));
   SignalFamily(*frozen, SIGSTOP);
-  const auto begun = std::chrono::steady_clock::now();
-  ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  RecordProperty("noticed_after_seconds", fmt::format("{:.2f}", seconds));
-  fmt::print("a frozen worker was noticed after {:.2f} s\n", seconds);
   // Three heartbeats of a second, and the time to read the log on a busy machine.
-  EXPECT_LT(seconds, 3.4);
+  ExpectLossWithin(3.4);
   // Unless they had been already, as copies of runs that take long.
   ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) {
     return status.value("leased_again", 0) + status.value("copies", 0) > 0;
   }));
   // Its runs are given to the other; then it wakes, and is told to drop what they have finished.
   const int done = StatusOf(dir_).value("runs_done", 0);
-  ASSERT_TRUE(testing_support::RunsDone(dir_, done + 2));
+  ASSERT_TRUE(RunsDone(dir_, done + 2));
   SignalFamily(*frozen, SIGCONT);
   EXPECT_TRUE(StatusBecomes(dir_, [](const json& status) { return status.value("workers", 0) == 2; }));
   ExpectTheUndisturbedResult();
@@ -94,11 +79,8 @@ TEST_F(WorkerDrill, AFrozenWorkersRunsGoElsewhereWithin3HeartbeatsAndItIsTakenBa
 TEST_F(WorkerDrill, AKilledWorkersRunsGoElsewhereWithinASecond) {
   campaign_.generations = 4;
   hash_ = UndisturbedHash(campaign_);
-  std::vector<std::string> argv = testing_support::EvolveArguments(campaign_, dir_, 2);
-  argv.insert(argv.begin(), testing_support::GauntletPath());
-  master_ = std::make_unique<Process>(
-      argv, std::vector<std::string>{"GAUNTLET_WORKER=" + testing_support::WorkerPath() + "-slow",
-                                     "GAUNTLET_TEST_RUN_MILLISECONDS=200"});
+  master_ = StartGauntlet(EvolveArguments(campaign_, dir_, 2), {"GAUNTLET_WORKER=" + WorkerPath() + "-slow",
+                                                                "GAUNTLET_TEST_RUN_MILLISECONDS=200"});
   pid_t busy = 0;
   ASSERT_TRUE(StatusBecomes(dir_, [&](const json& status) {
     for (const json& worker : status.at("worker_list")) {
@@ -106,12 +88,8 @@ TEST_F(WorkerDrill, AKilledWorkersRunsGoElsewhereWithinASecond) {
     }
     return busy != 0;
   }));
-  const auto begun = std::chrono::steady_clock::now();
   ASSERT_EQ(kill(busy, SIGKILL), 0);
-  ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  fmt::print("a killed worker was noticed after {:.3f} s\n", seconds);
-  EXPECT_LT(seconds, 1.0);
+  ExpectLossWithin(1.0);
   ExpectTheUndisturbedResult();
 }
 
@@ -120,17 +98,9 @@ TEST_F(WorkerDrill, AKilledForeignWorkersRunsGoElsewhereWithinASecondToo) {
   Begin(4);
   const std::unique_ptr<Process> first = StartSlowWorker(dir_, 200);
   const std::unique_ptr<Process> second = StartSlowWorker(dir_, 200);
-  ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) {
-    int busy = 0;
-    for (const json& worker : status.at("worker_list")) busy += worker.at("runs").empty() ? 0 : 1;
-    return busy == 2;
-  }));
-  const auto begun = std::chrono::steady_clock::now();
+  ASSERT_TRUE(WorkersBusy(dir_, 2));
   first->Signal(SIGKILL);
-  ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-  fmt::print("a killed worker that was started elsewhere was noticed after {:.3f} s\n", seconds);
-  EXPECT_LT(seconds, 1.0);
+  ExpectLossWithin(1.0);
   // Between two generations it may have had nothing.
   if (MasterLog(dir_).find("is lost; 0 of its runs") == std::string::npos) {
     EXPECT_TRUE(StatusBecomes(dir_, [](const json& status) { return status.value("leased_again", 0) > 0; }));
@@ -167,10 +137,7 @@ TEST_F(WorkerDrill, AReconnectAndAGoodbyeAreNoLoss) {
 TEST_F(WorkerDrill, AnAnswerThatAFrozenWorkerBringsBeforeTheOtherCountsFirst) {
   Begin(3);
   const std::unique_ptr<Process> frozen = StartSlowWorker(dir_, 1000);
-  ASSERT_TRUE(LogBecomes(dir_, "worker-joined"));
-  ASSERT_TRUE(StatusBecomes(dir_, [](const json& status) {
-    return !status.at("worker_list").empty() && !status.at("worker_list")[0].at("runs").empty();
-  }));
+  ASSERT_TRUE(WorkersBusy(dir_, 1));
   frozen->Signal(SIGSTOP);  // its supervisor alone: the runner ends the run meanwhile
   ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
   ScriptedWorker other(dir_, kSecondWorker);
@@ -239,7 +206,7 @@ TEST_F(WorkerDrill, TwoAnswersThatDifferMarkTheCampaignAndNameBothWorkers) {
   ASSERT_TRUE(kept);
   ASSERT_TRUE(LogBecomes(dir_, "worker-lost"));
   const std::unique_ptr<Process> sound = StartSlowWorker(dir_, 100);
-  ASSERT_TRUE(testing_support::RunsDone(dir_, 8));
+  ASSERT_TRUE(RunsDone(dir_, 8));
   broken.Say(ScriptedWorker::WrongAnswer(*kept));
   ASSERT_TRUE(LogBecomes(dir_, "nondeterministic"));
   EXPECT_THAT(MasterLog(dir_), HasSubstr(fmt::format("run {} ended differently", kept->run_id)));
@@ -270,7 +237,7 @@ TEST_F(WorkerDrill, MessagesOfAnEarlierMasterChangeNothing) {
   }
   master_->Signal(SIGKILL);
   master_->Wait();
-  master_ = StartGauntlet(testing_support::ResumeArguments(dir_));
+  master_ = StartGauntlet(ResumeArguments(dir_));
 
   ScriptedWorker stranger(dir_, kSecondWorker);
   ASSERT_TRUE(stranger.Connect(2)) << master_->Err();
@@ -295,7 +262,7 @@ TEST_F(WorkerDrill, MessagesOfAnEarlierMasterChangeNothing) {
 
 // The long form, with 64 workers for ten minutes, is a LongDrill.
 TEST_F(WorkerDrill, ACrowdOfWorkersUnderFullLoadIsNeverTakenForLost) {
-  const testing_support::CrowdReport report = testing_support::WatchACrowd(dir_, 24, std::chrono::seconds(5));
+  const CrowdReport report = WatchACrowd(dir_, 24, std::chrono::seconds(5));
   fmt::print("{} workers, load {:.1f}: {} runs\n", report.joined, report.load, report.runs);
   EXPECT_EQ(report.joined, 24);
   EXPECT_EQ(report.lost, 0);
@@ -305,7 +272,7 @@ TEST_F(WorkerDrill, ACrowdOfWorkersUnderFullLoadIsNeverTakenForLost) {
 TEST_F(WorkerDrill, AMasterThatFreezesAndWakesTakesNobodyForLost) {
   Begin(4);
   const std::unique_ptr<Process> workers[] = {StartSlowWorker(dir_, 200), StartSlowWorker(dir_, 200)};
-  ASSERT_TRUE(testing_support::RunsDone(dir_, 4));
+  ASSERT_TRUE(RunsDone(dir_, 4));
   master_->Signal(SIGSTOP);
   // Longer than the silence after which a worker counts as lost.
   Eventually([] { return false; }, milliseconds(4500));
@@ -316,4 +283,4 @@ TEST_F(WorkerDrill, AMasterThatFreezesAndWakesTakesNobodyForLost) {
 }
 
 }  // namespace
-}  // namespace gauntlet
+}  // namespace gauntlet::testing_support
