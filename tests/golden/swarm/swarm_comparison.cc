@@ -132,10 +132,11 @@ CaseComparison Compare(const SwarmCase& swarm_case) {
   const auto defaults = [](const auto& table) {
     return table.Read(*controllers::ResolveParameters(table.infos(), {}));
   };
-  LightFlockingScenario scenario(
-      swarm_case.test_case, defaults(controllers::LightFlockingScenarioParameters()),
-      controllers::MakeLightFlockers(defaults(controllers::LightFlockingParameters())),
-      swarm_case.argos.at(0));
+  const controllers::ControllerFactory flockers =
+      controllers::MakeLightFlockers(defaults(controllers::LightFlockingParameters()));
+  LightFlockingScenario scenario(swarm_case.test_case,
+                                 defaults(controllers::LightFlockingScenarioParameters()), flockers,
+                                 swarm_case.argos.at(0));
   const sim::RunResult run = sim::Simulate(scenario, 0, true);
   GAUNTLET_CHECK(run.verdict == sim::Verdict::kCompleted, swarm_case.name + ": " + run.message);
 
@@ -155,7 +156,7 @@ CaseComparison Compare(const SwarmCase& swarm_case) {
     }
     comparison.deviation[i] = Median(distances);
   }
-  const double link_range = robot_settings.cutoff * robot_settings.target_distance;
+  const double link_range = flockers.traits.link_range;
   comparison.argos = EndingOf(swarm_case.argos, scenario.arena(), link_range);
   comparison.ours = EndingOf(ours, scenario.arena(), link_range);
   return comparison;

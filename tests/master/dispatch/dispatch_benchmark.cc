@@ -89,7 +89,7 @@ int Run(std::size_t runs, int workers, std::uint32_t credit, milliseconds durati
   // These workers send no heartbeats.
   options.lost_after = 1000000;
   const SteadyClock clock;
-  RemoteBackend backend({"benchmark", 1, "", 0}, options, **transport, clock);
+  RemoteBackend backend({"benchmark", 1, "", {}}, options, **transport, clock);
   const std::string& endpoint = (*transport)->endpoint();
   for (const int fd : endpoint_fds) {
     if (write(fd, endpoint.data(), endpoint.size()) < 0) return 1;

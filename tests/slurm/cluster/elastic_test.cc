@@ -24,7 +24,7 @@ class ElasticPool : public SlurmTest {
     if (IsSkipped()) return;
     StartCluster({"--nodes", "2", "--cpus", "8"});
     std::ofstream(scratch_ / "access.json") << "{}";
-    master::SlurmPoolOptions options;
+    slurm::SlurmPoolOptions options;
     options.limits.max_allocations = kCap;
     options.limits.max_queued = 2;
     options.limits.idle_timeout = kIdleTimeout;
@@ -35,7 +35,7 @@ class ElasticPool : public SlurmTest {
                    .worker = "sh -c 'exec sleep 300' --",
                    .access_file = scratch_ / "access.json",
                    .log_directory = scratch_.path()};
-    pool_ = std::make_unique<master::SlurmPool>(options, std::make_unique<slurm::CommandLineSlurm>());
+    pool_ = std::make_unique<slurm::SlurmPool>(options, std::make_unique<slurm::CommandLineSlurm>());
   }
   // Every allocation that runs has a worker, which is busy while there is work.
   void Step(int unfinished_runs) {
@@ -59,7 +59,7 @@ class ElasticPool : public SlurmTest {
         seconds(60));
   }
 
-  std::unique_ptr<master::SlurmPool> pool_;
+  std::unique_ptr<slurm::SlurmPool> pool_;
   int running_ = 0;
   int most_ = 0;
 };
