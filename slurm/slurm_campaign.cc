@@ -76,8 +76,8 @@ Result<std::optional<SlurmCampaign>> SlurmCampaign::Find(const std::string& dire
 
 WorkerJob SlurmCampaign::WorkersJob() const {
   return {.name = job_prefix_ + "w",
-          .worker = settings_.worker_command.empty() ? ShellQuoted(WorkerProgramPath())
-                                                     : settings_.worker_command,
+          .worker =
+              settings_.worker_command.empty() ? ShellQuoted(WorkerProgramPath()) : settings_.worker_command,
           .access_file = directory_ + "/access.json",
           .log_directory = directory_ + "/log",
           .slots = settings_.pool.workers_per_allocation};

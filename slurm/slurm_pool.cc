@@ -134,8 +134,8 @@ void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excl
         for (int task = 1; allocations > 1 && task <= allocations; ++task)
           policy_.Submitted(fmt::format("{}_{}", *id, task), now);
         Report(fmt::format("job {} submitted: {} allocation{} of {} slot{}", *id, allocations,
-                                    allocations == 1 ? "" : "s", options_.job.slots,
-                                    options_.job.slots == 1 ? "" : "s"));
+                           allocations == 1 ? "" : "s", options_.job.slots,
+                           options_.job.slots == 1 ? "" : "s"));
       } else {
         policy_.SubmissionFailed(id.error().message, now);
         // It may have been accepted all the same: look before the next one.

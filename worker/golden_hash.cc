@@ -68,6 +68,7 @@ proto::GoldenHashes GoldenHashes() {
   proto::GoldenHashes hashes;
   for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
     Fnv1a64 hash = arithmetic;
+    hash.AddBytes(controller.name);  // two controllers may do the same in runs as short as these
     AddRuns(controller, hash);
     hashes.emplace(controller.name, hash.value());
   }

@@ -8,7 +8,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "base/nearest_name.h"
 #include "controllers/registry.h"
 #include "master/cli/commands.h"
 #include "master/cli/table.h"
@@ -29,17 +28,12 @@ struct ListOptions {
   bool json = false;
 };
 
-// What the search reads, its own parameters first.
+// What the search reads, keys of searches first.
 std::vector<Key> KeysOf(const SearchInfo& search) {
-  std::vector<Key> own;
-  std::vector<Key> shared;
-  for (const Key& key : CommonKeys(BuiltInCatalogue())) {
-    if (!Reads(search, key.path)) continue;
-    (FindByName(search.parameters, std::string_view(key.path).substr(key.path.find('.') + 1)) ? own : shared)
-        .push_back(key);
-  }
-  own.insert(own.end(), shared.begin(), shared.end());
-  return own;
+  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  std::erase_if(keys, [&](const Key& key) { return !Reads(search, key.path); });
+  std::ranges::stable_partition(keys, [](const Key& key) { return key.path.starts_with("search."); });
+  return keys;
 }
 
 std::string Number(double value) {

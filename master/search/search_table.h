@@ -1,6 +1,6 @@
 // One table of searches: whatever differs from search to search and is not its algorithm stands in its row. A
-// new search is a class of its own (mostly a PopulationSearch), a function that gives its row beside it, a line
-// in search_table.cc and one in CMakeLists.txt.
+// new search is a class of its own (mostly a PopulationSearch), a function that gives its row beside it, a
+// line in search_table.cc and one in CMakeLists.txt.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// What can happen to a campaign, as the table events and the log name it (StoredEvent::kind, DispatchEvent::kind).
+// What can happen to a campaign, as the table events and the log name it (StoredEvent::kind,
+// DispatchEvent::kind).
 #pragma once
 
 namespace gauntlet::master::event {

@@ -116,7 +116,7 @@ std::vector<std::string> CampaignArguments(const std::string& command, const Sma
 }
 
 std::vector<std::string> EvolveArguments(const SmallCampaign& campaign, const std::string& dir, int workers) {
-  std::vector<std::string> arguments = 
+  std::vector<std::string> arguments =
       CampaignArguments(campaign.case_file.empty() ? "evolve" : "evaluate", campaign, dir);
   arguments.insert(arguments.end(), {"--workers", std::to_string(workers), "--quiet"});
   return arguments;
