@@ -1,4 +1,4 @@
-// Mutation: single genes are replaced by new ones (thesis 3.2.3.6; spec A-6).
+// Mutation: single genes are replaced by new ones (thesis 3.2.3.6).
 #pragma once
 
 #include "master/search/genome_generator.h"

@@ -1,4 +1,4 @@
-// Who becomes a parent and who stays (thesis 3.2.3.3). Lower fitness is fitter (spec A-3); of equals the
+// Who becomes a parent and who stays (thesis 3.2.3.3). Lower fitness is fitter; of equals the
 // younger one, the one with the larger id, is preferred.
 #pragma once
 

@@ -20,7 +20,7 @@ struct CoupleKey {
 // use the slots behind it.
 inline constexpr std::uint32_t kParentChoiceSlot = 0;
 
-// Crosses with spec.crossover_probability (else the children are copies, A-4), then mutates each child. A
+// Crosses with spec.crossover_probability (else the children are copies), then mutates each child. A
 // step whose outcome breaks a validity rule is done again; after spec.variation_tries it leaves its input
 // unchanged, so children of valid parents are valid.
 Offspring Breed(const sim::Genome& first, const sim::Genome& second, const SearchSpec& spec,
