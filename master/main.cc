@@ -34,8 +34,7 @@ int main(int argc, char** argv) {
                                            .err = std::cerr,
                                            .err_is_terminal = isatty(STDERR_FILENO) == 1,
                                            .out_is_terminal = isatty(STDOUT_FILENO) == 1,
-                                           .program = ProgramName(argc > 0 ? argv[0] : "gauntlet"),
-                                           .service = {}};
+                                           .program = ProgramName(argc > 0 ? argv[0] : "gauntlet")};
   const int code = gauntlet::master::RunCommandLine(
       std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc), context);
   out.flush();

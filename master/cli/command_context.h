@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/report/campaign_status.h"
-#include "master/report/stored_campaign.h"
-#include "master/session/campaign_session.h"
+#include "master/session/campaign_service.h"
 #include "slurm/slurm_client.h"
 
 namespace gauntlet::master {
@@ -24,32 +22,13 @@ enum ExitCode : int {
   kExitInternal = 4,
 };
 
-// The campaigns behind the commands; replaced by tests.
-struct CampaignService {
-  std::function<Result<SessionReport>(const std::string& directory, const Experiment& experiment,
-                                      const std::vector<sim::TestCase>& cases, const SessionOptions& options)>
-      start = StartCampaign;
-  std::function<Status(const std::string& directory, const std::vector<SearchPlan>& searches,
-                       const std::string& slurm)>
-      prepare = PrepareCampaign;
-  std::function<Result<SessionReport>(const std::string& directory, const SessionOptions& options)> resume =
-      ResumeCampaign;
-  std::function<Result<CampaignSummary>(const std::string& directory)> read = ReadCampaign;
-  std::function<Status(const std::string& directory, const std::function<void(const StoredRun&)>& visit)>
-      for_each_run = ForEachStoredRun;
-  std::function<Result<std::string>(const std::string& directory)> status = ReadStatus;
-  std::function<Result<bool>(const std::string& directory)> lives = MasterLives;
-  std::function<Status(const std::string& directory)> stop = RequestStop;
-  std::function<Result<CampaignReplay>(const std::string& directory, RunId run)> replay = ReplayCampaignRun;
-};
-
 struct CommandContext {
   std::ostream& out;  // results
   std::ostream& err;  // progress and messages
   bool err_is_terminal = false;
   bool out_is_terminal = false;
   std::string program = "gauntlet";  // how hints begin
-  CampaignService service;
+  CampaignService& campaigns = CampaignsOnDisk();
   std::function<std::unique_ptr<slurm::SlurmClient>()> slurm = [] {
     return std::make_unique<slurm::CommandLineSlurm>();
   };

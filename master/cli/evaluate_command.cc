@@ -86,7 +86,7 @@ void NoteRefusal(EvaluatedCase& evaluated) {
 
 Status AddRuns(CommandContext& context, const std::string& directory, CaseList& list) {
   std::optional<Error> damaged;
-  const Status read = context.service.for_each_run(directory, [&](const StoredRun& stored) {
+  const Status read = context.campaigns.ForEachRun(directory, [&](const StoredRun& stored) {
     Result<sim::RunResult> result = proto::DecodeRunResult(stored.result);
     if (!result || stored.individual < 1 || stored.individual > list.cases.size()) {
       if (!damaged) {
@@ -157,7 +157,7 @@ ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
   campaign.workers = *workers;
   campaign.serving = options.running;
   campaign.run = [&](const SessionOptions& session) {
-    return context.service.start(*directory, *experiment, list.cases, session);
+    return context.campaigns.Start(*directory, *experiment, list.cases, session);
   };
   campaign.report = [&](const SessionReport& report) -> Status {
     if (Status added = AddRuns(context, *directory, list); !added) return added;

@@ -36,8 +36,8 @@ ExitCode RunMaster(CommandContext& context, const MasterOptions& options) {
   campaign.serving = options.serving;
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) {
-    return goes_on ? context.service.resume(*directory, session)
-                   : context.service.start(*directory, *experiment, {}, session);
+    return goes_on ? context.campaigns.Resume(*directory, session)
+                   : context.campaigns.Start(*directory, *experiment, {}, session);
   };
   return RunCampaign(context, campaign);
 }

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/system/clock.h"
-#include "master/report/campaign_progress.h"
+#include "master/report/campaign_status.h"
 
 namespace gauntlet::master {
 

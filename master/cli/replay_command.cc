@@ -115,7 +115,7 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
   const Result<std::uint64_t> run = ParseRunId(options.run);
   if (!run) return Fail(context, run.error());
   if (const Status own_files = CheckOwnFiles(options); !own_files) return Fail(context, own_files.error());
-  const Result<CampaignReplay> replay = context.service.replay(options.directory, *run);
+  const Result<CampaignReplay> replay = context.campaigns.Replay(options.directory, *run);
   if (!replay) return Fail(context, replay.error());
   if (!replay->report.damage.empty()) {  // what does not read back did not reproduce
     PrintMessage(context, replay->report.damage);

@@ -24,7 +24,7 @@ struct ResumeOptions {
 ExitCode SubmitAgain(CommandContext& context, const ResumeOptions& options,
                      const slurm::SlurmCampaign& campaign) {
   const std::string& directory = options.directory;
-  const Result<CampaignSummary> summary = context.service.read(directory);
+  const Result<CampaignSummary> summary = context.campaigns.Read(directory);
   if (!summary) return Fail(context, summary.error());
   if (summary->finished) {
     PrintFinished(context, *summary, directory, options.running);
@@ -75,7 +75,7 @@ ExitCode RunResume(CommandContext& context, const ResumeOptions& options) {
   campaign.serving = options.running;
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) {
-    return context.service.resume(options.directory, session);
+    return context.campaigns.Resume(options.directory, session);
   };
   return RunCampaign(context, campaign);
 }

@@ -62,7 +62,7 @@ ExitCode RunSearch(CommandContext& context, const SearchOptions& options,
   campaign.workers = *workers;
   campaign.serving = options.running;
   campaign.run = [&](const SessionOptions& session) {
-    return context.service.start(*directory, *experiment, {}, session);
+    return context.campaigns.Start(*directory, *experiment, {}, session);
   };
   return RunCampaign(context, campaign);
 }

@@ -14,7 +14,7 @@ struct ShowOptions {
 };
 
 ExitCode RunShow(CommandContext& context, const ShowOptions& options) {
-  const Result<CampaignSummary> summary = context.service.read(options.directory);
+  const Result<CampaignSummary> summary = context.campaigns.Read(options.directory);
   if (!summary) return Fail(context, summary.error());
   PrintSummary(context, *summary, options.directory, options.json);
   return kExitDone;

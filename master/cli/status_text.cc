@@ -127,7 +127,7 @@ void AddJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, Json
 }  // namespace
 
 Result<std::string> CurrentStatus(CommandContext& context, const std::string& directory, bool json) {
-  Result<std::string> text = context.service.status(directory);
+  Result<std::string> text = context.campaigns.ReadStatus(directory);
   if (!text) return text;
   Json status = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (!status.is_object()) return Error{ErrorKind::kCorrupt, "the status does not parse"};

@@ -35,19 +35,19 @@ bool CancelLeftovers(CommandContext& context, const std::string& directory) {
 // Returns when the master is gone.
 ExitCode RunStop(CommandContext& context, const StopOptions& options) {
   constexpr int kPollMilliseconds = 100;
-  Result<bool> lives = context.service.lives(options.directory);
+  Result<bool> lives = context.campaigns.MasterLives(options.directory);
   if (!lives) return Fail(context, lives.error());
   if (!*lives) {
     PrintMessage(context, fmt::format("no master serves {}: there is nothing to stop", options.directory));
     return CancelLeftovers(context, options.directory) ? kExitDone : kExitUsage;
   }
-  if (const Status asked = context.service.stop(options.directory); !asked)
+  if (const Status asked = context.campaigns.RequestStop(options.directory); !asked)
     return Fail(context, asked.error());
   PrintMessage(context, "the master lets the runs that have begun end, then stops (Ctrl-C: wait no longer)");
   const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
   while (*lives) {
     if (StopSignal::ComesWithin(kPollMilliseconds)) return kExitDone;
-    lives = context.service.lives(options.directory);
+    lives = context.campaigns.MasterLives(options.directory);
     if (!lives) return Fail(context, lives.error());
   }
   const bool clean = CancelLeftovers(context, options.directory);

@@ -126,7 +126,7 @@ ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
     if (const Status free = TryToListen(settings->bind); !free) return Fail(context, free.error());
   }
   const Status prepared =
-      context.service.prepare(*directory, *searches, slurm::WriteSlurmSettings(*settings));
+      context.campaigns.Prepare(*directory, *searches, slurm::WriteSlurmSettings(*settings));
   if (!prepared) return Fail(context, prepared.error());
   if (as_job) return SubmitAndReturn(context, options, *directory, *campaign);
   if (!options.messages.quiet)

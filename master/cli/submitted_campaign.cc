@@ -23,7 +23,7 @@ ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, 
   };
   bool served = false;
   run.run = [&](const SessionOptions& session) {
-    Result<SessionReport> report = context.service.resume(directory, session);
+    Result<SessionReport> report = context.campaigns.Resume(directory, session);
     served = report && (report->runs_this_session > 0 || !report->summary.finished);
     return report;
   };

@@ -17,7 +17,7 @@ ExitCode RunWatch(CommandContext& context, const WatchOptions& options) {
   constexpr int kMilliseconds = 1000;
   const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
   while (true) {
-    const Result<bool> lives = context.service.lives(options.directory);
+    const Result<bool> lives = context.campaigns.MasterLives(options.directory);
     if (!lives) return Fail(context, lives.error());
     const Result<std::string> text = CurrentStatus(context, options.directory, /*json=*/false);
     if (!text) return Fail(context, text.error());

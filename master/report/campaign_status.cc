@@ -3,15 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
-#include "base/system/atomic_file.h"
-#include "base/system/clock.h"
-#include "master/directory/campaign_lock.h"
-#include "master/directory/campaign_origin.h"
-#include "master/report/stored_campaign.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -168,64 +162,6 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
                    {"pool_trouble", OrNull(backend.pool_trouble)},
                    {"allocations", std::move(allocations)},
                    {"worker_list", std::move(workers)}});
-}
-
-Result<bool> MasterLives(const std::string& dir) {
-  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
-  if (!directory) return directory.error();
-  LockOptions options;
-  options.patience = std::chrono::milliseconds(0);
-  options.is_copy = [&directory] { return IsUntakenCopy(*directory); };
-  const Result<std::unique_ptr<CampaignLock>> lock =
-      CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), options);
-  if (lock) return false;
-  if (lock.error().kind == ErrorKind::kInUse) return true;
-  return lock.error();
-}
-
-Result<std::string> ReadStatus(const std::string& dir) {
-  Result<bool> lives = MasterLives(dir);
-  if (!lives) return lives.error();
-  const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
-  if (!directory) return directory.error();
-  if (*lives) {
-    const Result<std::string> text = ReadSmallFile(directory->status_path(), 16U << 20);
-    if (!text) {
-      if (text.error().kind != ErrorKind::kNotFound) return text.error();
-      return JsonText({{"state", "starting"},
-                       {"why_nothing_runs", "the master has just started, or is about to end"},
-                       {"worker_list", ordered_json::array()}});
-    }
-    ordered_json json = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
-    if (!json.is_object()) {
-      return Error{ErrorKind::kCorrupt, fmt::format("{} does not parse", directory->status_path())};
-    }
-    json["status_age_seconds"] =
-        static_cast<double>(UnixMilliseconds() - json.value("unix_ms", std::int64_t{0})) / 1000.0;
-    return JsonText(json);
-  }
-  const Result<CampaignSummary> summary = ReadCampaign(dir);
-  if (!summary) return summary.error();
-  return JsonText({{"state", summary->finished ? "finished" : "stopped"},
-                   {"experiment", summary->experiment},
-                   {"master", nullptr},
-                   {"generation", summary->progress.generation},
-                   {"generations", summary->progress.generations},
-                   {"runs_done", summary->runs_done},
-                   {"total_failures", summary->total_failures},
-                   {"runs_failed", summary->runs_failed},
-                   {"workers", 0},
-                   {"nondeterministic", summary->nondeterministic},
-                   {"why_nothing_runs",
-                    summary->finished ? "the search has finished"
-                                      : "no master serves the campaign: go on with `gauntlet resume DIR`"},
-                   {"worker_list", ordered_json::array()}});
-}
-
-Status RequestStop(const std::string& dir) {
-  const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
-  if (!directory) return directory.error();
-  return ReplaceFile(directory->stop_path(), "stop\n", 0644);
 }
 
 }  // namespace gauntlet::master

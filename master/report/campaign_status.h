@@ -2,15 +2,44 @@
 // it in status.json; this is the only way to know, because nobody else reads the database meanwhile.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "base/result.h"
 #include "master/dispatch/evaluation_backend.h"
-#include "master/report/campaign_progress.h"
+#include "master/search/search_algorithm.h"
 
 namespace gauntlet::master {
+
+// How far a campaign that is being served has come. Of several searches, generations and counts are sums.
+struct CampaignProgress {
+  SearchProgress search;
+  std::size_t searches = 1;
+  std::size_t searches_finished = 0;
+  std::uint64_t runs_done = 0;     // stored, earlier sessions included
+  std::uint64_t runs_planned = 0;  // 0 = unknown
+  double runs_per_second = 0.0;    // over the last seconds
+  double best_fitness = 0.0;       // of the population at the last complete generation; NaN before the first
+  double mean_fitness = 0.0;       // of several searches: the mean over them
+  std::uint64_t total_failures = 0;  // runs so far
+  std::uint64_t runs_failed = 0;     // verdict other than completed
+  WorkerStatistics workers;
+  double elapsed_seconds = 0.0;             // of this session
+  std::optional<double> remaining_seconds;  // at the present rate
+};
+
+// Several searches are as far as they are together, and have finished when all have.
+inline void Add(const SearchProgress& one, SearchProgress& sum) {
+  sum.generation += one.generation;
+  sum.generations += one.generations;
+  sum.evaluations_done += one.evaluations_done;
+  sum.evaluations_planned += one.evaluations_planned;
+  sum.finished = sum.finished && one.finished;
+}
+
+enum class CampaignEnd { kFinished, kStopped };
 
 struct MasterView {
   std::string campaign_id;
@@ -35,17 +64,5 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
 // One sentence why no run is simulated at this moment; "" while some are.
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
                            const BackendView& backend);
-
-// Whether a master serves the campaign. Error: `dir` is no campaign.
-Result<bool> MasterLives(const std::string& dir);
-
-// status.json of a living master (with "state": "running" or "stopping", and "status_age_seconds"); else what
-// is stored, with "state": "stopped" or "finished" and no workers. Error: no campaign, or one that does not
-// read back.
-Result<std::string> ReadStatus(const std::string& dir);
-
-// Asks the living master to let the runs that have begun end, to let its workers go, and to stop. It answers
-// by ending. kNotFound when there is no campaign.
-Status RequestStop(const std::string& dir);
 
 }  // namespace gauntlet::master

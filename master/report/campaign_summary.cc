@@ -6,6 +6,7 @@
 #include <map>
 
 #include "controllers/registry.h"
+#include "master/report/campaign_status.h"
 #include "master/report/state_digest.h"
 #include "master/report/stored_search.h"
 #include "master/report/verdict_text.h"
@@ -86,6 +87,30 @@ std::string EncodePopulation(const std::vector<Individual>& population) {
   return encoder.Take();
 }
 
+// Totals over searches; what has no meaning over several stays empty.
+CampaignSummary TotalsOf(const std::vector<CampaignSummary>& searches) {
+  CampaignSummary totals;
+  totals.experiment = searches.front().experiment;
+  totals.search = "sweep";
+  totals.seed = searches.front().seed;
+  totals.finished = true;
+  totals.progress.finished = true;
+  totals.best_fitness = totals.mean_fitness = totals.worst_fitness = kNone;
+  for (const CampaignSummary& one : searches) {
+    totals.runs_done += one.runs_done;
+    totals.runs_failed += one.runs_failed;
+    totals.total_failures += one.total_failures;
+    totals.distinct_individuals += one.distinct_individuals;
+    Add(one.progress, totals.progress);
+    totals.finished = totals.finished && one.finished;
+    totals.nondeterministic = std::max(totals.nondeterministic, one.nondeterministic);  // each has all
+    totals.best_fitness = std::fmin(totals.best_fitness, one.best_fitness);
+    totals.worst_fitness = std::fmax(totals.worst_fitness, one.worst_fitness);
+  }
+  totals.progress.finished = totals.finished;
+  return totals;
+}
+
 }  // namespace
 
 Result<std::uint64_t> CountNondeterministic(ResultStore& store) {
@@ -161,6 +186,23 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
     if (stored.id == search_id) summary.finished = stored.finished;
   }
   return summary;
+}
+
+Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  std::vector<CampaignSummary> searches;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const auto id = static_cast<SearchId>(i + 1);
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(plans[i].experiment, id, store);
+    if (!search) return search.error();
+    Result<CampaignSummary> summary = Summarise(plans[i].experiment, id, **search, store);
+    if (!summary) return summary;
+    summary->settings = plans[i].settings;
+    searches.push_back(*std::move(summary));
+  }
+  if (plans.size() == 1) return std::move(searches.front());
+  CampaignSummary totals = TotalsOf(searches);
+  totals.searches = std::move(searches);
+  return totals;
 }
 
 }  // namespace gauntlet::master

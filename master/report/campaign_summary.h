@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/experiment/experiment.h"
+#include "master/directory/search_plans.h"
 #include "master/search/search_algorithm.h"
 #include "master/store/result_store.h"
 #include "sim/run_result.h"
@@ -84,5 +84,7 @@ Result<std::uint64_t> CountNondeterministic(ResultStore& store);
 // complete generation; runs and failures count everything stored.
 Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
                                   ResultStore& store);
+// Of an only search its summary; of several the totals, with one summary each in `searches`.
+Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store);
 
 }  // namespace gauntlet::master

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "master/directory/campaign_directory.h"
+#include "base/result.h"
 #include "master/experiment/experiment.h"
 #include "master/store/result_store.h"
 #include "sim/run_result.h"
@@ -21,6 +21,11 @@ struct ReplayReport {
   // Why nothing could be compared: the stored spec or result does not even decode. What stands above from
   // `spec` on is then empty. "" = it was compared.
   std::string damage;
+};
+
+struct CampaignReplay {
+  Experiment experiment;
+  ReplayReport report;
 };
 
 // Error: the run is not there (kNotFound), or its row contradicts the result stored in it (kCorrupt).

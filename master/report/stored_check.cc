@@ -125,4 +125,12 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
   return Ok{};
 }
 
+Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const Status whole = CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store);
+    if (!whole) return whole;
+  }
+  return Ok{};
+}
+
 }  // namespace gauntlet::master

@@ -2,8 +2,10 @@
 // were deleted or changed.
 #pragma once
 
+#include <vector>
+
 #include "base/result.h"
-#include "master/experiment/experiment.h"
+#include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
 #include "sim/run_result.h"
 
@@ -21,5 +23,7 @@ Status CheckSeed(const Experiment& experiment, const StoredRun& run);
 // has seen is missing; of a finished search it has seen all) and against the individuals' test cases. Reads
 // and decodes every run once. Error: kCorrupt, naming the first damage; or reading failed.
 Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store);
+// The same of every search.
+Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store);
 
 }  // namespace gauntlet::master

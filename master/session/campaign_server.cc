@@ -16,11 +16,11 @@
 #include "master/dispatch/local_pool.h"
 #include "master/dispatch/run_limits.h"
 #include "master/report/metrics_text.h"
-#include "master/report/stored_campaign.h"
 #include "master/report/stored_search.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/master_log.h"
 #include "master/session/metrics_server.h"
+#include "master/session/reproduction_bundle.h"
 #include "proto/access_file.h"
 
 namespace gauntlet::master {
@@ -51,13 +51,6 @@ void AllowManyConnections() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-// The master's log, beside those of its workers.
-void OpenLog(const CampaignDirectory& directory) {
-  std::error_code error;
-  std::filesystem::create_directories(directory.log_path(), error);
-  OpenMasterLog(directory.log_path() + "/master.log");
-}
-
 std::string DescribePool(const SessionOptions& options) {
   return options.make_pool ? "an elastic pool" : fmt::format("{} workers", options.workers);
 }
@@ -65,17 +58,15 @@ std::string DescribePool(const SessionOptions& options) {
 }  // namespace
 
 CampaignServer::CampaignServer(CampaignOwnership& campaign, const std::vector<SearchPlan>& plans,
-                               const Build& build, const SessionOptions& options)
+                               const proto::GoldenHashes& golden_hashes, const SessionOptions& options)
     : campaign_(campaign),
       plans_(plans),
-      build_(build),
       options_(options),
+      identity_{campaign.origin.campaign_id, campaign.epoch, GAUNTLET_VERSION, golden_hashes},
       cpu_before_(CostOfThisProcess().cpu_seconds),
       dispatch_(LimitsFor(plans, options.audit_share)),
-      bundles_{campaign.directory.path(), campaign.origin.campaign_id, build.version, build.golden_hashes,
-               dispatch_},
-      files_(campaign.directory, campaign.epoch) {
-  view_.campaign_id = campaign.origin.campaign_id;
+      files_{campaign.directory, campaign.epoch} {
+  view_.campaign_id = identity_.campaign_id;
   view_.experiment = plans.front().experiment.name;
   view_.host = IdentifyThisProcess().host;
   view_.pid = getpid();
@@ -85,8 +76,17 @@ CampaignServer::CampaignServer(CampaignOwnership& campaign, const std::vector<Se
   if (options.metrics != nullptr) view_.metrics_url = options.metrics->url();
 }
 
+CampaignServer::Files::~Files() {
+  if (Status removed = proto::RemoveAccess(directory.access_path(), epoch); !removed)
+    spdlog::warn("{}", removed.error().message);
+  if (!directory.CheckEpoch(epoch)) return;
+  std::error_code ignored;
+  std::filesystem::remove(directory.status_path(), ignored);
+  std::filesystem::remove(directory.stop_path(), ignored);
+}
+
 Result<SessionReport> CampaignServer::Serve() {
-  OpenLog(campaign_.directory);
+  OpenMasterLog(campaign_.directory.log_path() + "/master.log");
   spdlog::info("master {} of campaign {} with {}", view_.epoch, view_.campaign_id, DescribePool(options_));
   for (const auto step : {&CampaignServer::MakeSearches, &CampaignServer::Listen, &CampaignServer::StartPool,
                           &CampaignServer::RestoreSearches, &CampaignServer::Announce}) {
@@ -163,8 +163,7 @@ Status CampaignServer::StartPool() {
 }
 
 Status CampaignServer::RestoreSearches() {
-  const CampaignIdentity identity{view_.campaign_id, view_.epoch, build_.version, build_.golden_hashes};
-  backend_ = std::make_unique<RemoteBackend>(identity, dispatch_, *transport_, clock_, pool_.get());
+  backend_ = std::make_unique<RemoteBackend>(identity_, dispatch_, *transport_, clock_, pool_.get());
   backend_->WatchFd(campaign_.store->CommitNotifier());
   SearchLoop::Parts parts{{}, *backend_, *campaign_.store, clock_};
   for (std::size_t i = 0; i < plans_.size(); ++i) {
@@ -222,17 +221,20 @@ Result<CampaignEnd> CampaignServer::Run() {
 }
 
 void CampaignServer::Publish(const CampaignProgress& progress) {
-  if (const Status newest = files_.CheckNewest(); !newest && newest.error().kind == ErrorKind::kInUse) {
+  const CampaignDirectory& directory = campaign_.directory;
+  if (const Status newest = directory.CheckEpoch(campaign_.epoch);
+      !newest && newest.error().kind == ErrorKind::kInUse) {
     outdated_ = newest.error();
     return;  // what lies there is the newer one's
   }
-  if (!view_.stopping && files_.StopRequested()) {
+  if (std::error_code ignored; !view_.stopping && std::filesystem::exists(directory.stop_path(), ignored)) {
     view_.stopping = true;
     spdlog::info("asked to stop");
   }
   view_.now_unix_ms = UnixMilliseconds();
   const BackendView seen = backend_->Describe();
-  if (const Status written = files_.PublishStatus(StatusJson(view_, progress, seen)); !written)
+  const std::string json = StatusJson(view_, progress, seen);
+  if (const Status written = ReplaceFile(directory.status_path(), json, kReadableByAll); !written)
     spdlog::debug("status: {}", written.error().message);
   if (options_.metrics != nullptr)
     options_.metrics->Publish(MetricsText(view_, progress, seen, CostOfThisProcess()));
@@ -269,7 +271,7 @@ Result<SessionReport> CampaignServer::Report(CampaignEnd end) {
   report.runs_this_session = loop_->runs_done() - runs_before_;
   report.wall_seconds = std::chrono::duration<double>(clock_.Now() - started_).count();
   report.master_cpu_seconds = CostOfThisProcess().cpu_seconds - cpu_before_;
-  Result<CampaignSummary> summary = SummariseAll(plans_, *campaign_.store);
+  Result<CampaignSummary> summary = Summarise(plans_, *campaign_.store);
   if (!summary) return summary.error();
   report.summary = *std::move(summary);
   return report;
@@ -278,8 +280,9 @@ Result<SessionReport> CampaignServer::Report(CampaignEnd end) {
 void CampaignServer::KeepBundle(const Experiment& experiment, const StoredRun& run,
                                 const FinishedRun& finished) const {
   if (!LeavesBundle(finished.result.verdict)) return;
-  const Status written = WriteBundle(bundles_, experiment, run, finished);
-  if (!written) spdlog::warn("no bundle for run {}: {}", run.id, written.error().message);
+  const BundleContext context{campaign_.directory.path(), identity_, dispatch_};
+  if (const Status written = WriteBundle(context, experiment, run, finished); !written)
+    spdlog::warn("no bundle for run {}: {}", run.id, written.error().message);
 }
 
 void CampaignServer::NoteEvent(const std::string& kind, const std::string& text) {

@@ -12,31 +12,22 @@
 #include "base/result.h"
 #include "base/system/clock.h"
 #include "master/directory/campaign_ownership.h"
-#include "master/directory/search_plans.h"
 #include "master/dispatch/remote_backend.h"
 #include "master/dispatch/zmq_transport.h"
-#include "master/report/campaign_status.h"
 #include "master/search/search_algorithm.h"
-#include "master/session/master_files.h"
-#include "master/session/reproduction_bundle.h"
+#include "master/session/campaign_service.h"
 #include "master/session/search_driver.h"
 #include "master/session/search_loop.h"
-#include "master/session/session_options.h"
 
 namespace gauntlet::master {
 
 // Thread-safety: one thread, the main one (LocalPool wants it).
 class CampaignServer {
  public:
-  // What this program is, as workers, events and bundles are told.
-  struct Build {
-    std::string version;
-    proto::GoldenHashes golden_hashes;  // of the controllers that the campaign uses
-  };
-
-  // Campaign, plans and options outlive the server.
-  CampaignServer(CampaignOwnership& campaign, const std::vector<SearchPlan>& plans, const Build& build,
-                 const SessionOptions& options);
+  // Campaign, plans and options outlive the server. `golden_hashes`: of the controllers that the campaign
+  // uses.
+  CampaignServer(CampaignOwnership& campaign, const std::vector<SearchPlan>& plans,
+                 const proto::GoldenHashes& golden_hashes, const SessionOptions& options);
 
   // Takes all the steps below, once. Error: what is stored does not fit the plans (kCorrupt), workers cannot
   // be served (kInvalidInput, kInUse), a newer master has begun (kInUse), or the store or all workers have
@@ -44,6 +35,14 @@ class CampaignServer {
   Result<SessionReport> Serve();
 
  private:
+  // The files by which a living master is found, followed and asked to stop: removed at its end, unless a
+  // newer master has written its own.
+  struct Files {
+    const CampaignDirectory& directory;
+    const std::uint64_t epoch;
+    ~Files();
+  };
+
   Status MakeSearches();
   Status Listen();
   Status StartPool();
@@ -60,20 +59,19 @@ class CampaignServer {
 
   CampaignOwnership& campaign_;
   const std::vector<SearchPlan>& plans_;
-  const Build build_;
   const SessionOptions& options_;
+  const CampaignIdentity identity_;
   const SteadyClock clock_;
   const TimePoint started_ = clock_.Now();
   const double cpu_before_;  // s
-  DispatchOptions dispatch_;
+  const DispatchOptions dispatch_;
   MasterView view_;
-  BundleContext bundles_;
   TimePoint next_status_ = started_;
   std::optional<Error> outdated_;  // a newer master has begun
   std::uint64_t runs_before_ = 0;
 
   // From here on in the order in which they are made; they end the other way round.
-  const MasterFiles files_;
+  const Files files_;
   std::vector<std::unique_ptr<SearchAlgorithm>> searches_;
   std::unique_ptr<ZmqTransport> transport_;
   std::unique_ptr<WorkerPool> pool_;  // none: workers come from elsewhere

@@ -6,9 +6,7 @@
 #include <poll.h>
 #include <pthread.h>
 #include <signal.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -38,30 +36,26 @@ std::string Response(std::string_view status, std::string_view body, std::string
 }  // namespace
 
 Result<std::unique_ptr<MetricsServer>> MetricsServer::Start(int port) {
-  const int listener = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  if (listener < 0) return SystemError("cannot make a socket for metrics", errno);
+  UniqueFd listener(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  if (!listener.valid()) return SystemError("cannot make a socket for metrics", errno);
   const int reuse = 1;
-  setsockopt(listener, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
+  setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof address;
-  const int wake_up = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (wake_up < 0 || bind(listener, reinterpret_cast<const sockaddr*>(&address), size) != 0 ||
-      listen(listener, SOMAXCONN) != 0 ||
-      getsockname(listener, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+  if (bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), size) != 0 ||
+      listen(listener.get(), SOMAXCONN) != 0 ||
+      getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
     Error error = SystemError(fmt::format("cannot serve metrics on 127.0.0.1:{}", port), errno);
     if (errno == EADDRINUSE) error.kind = ErrorKind::kInUse;
-    close(listener);
-    if (wake_up >= 0) close(wake_up);
     return error;
   }
-  return std::unique_ptr<MetricsServer>(new MetricsServer(listener, wake_up, ntohs(address.sin_port)));
+  return std::unique_ptr<MetricsServer>(new MetricsServer(std::move(listener), ntohs(address.sin_port)));
 }
 
-MetricsServer::MetricsServer(int listener, int wake_up, int port)
-    : listener_(listener), wake_up_(wake_up), port_(port) {
+MetricsServer::MetricsServer(UniqueFd listener, int port) : listener_(std::move(listener)), port_(port) {
   // Signals are for the thread that runs the campaign.
   sigset_t all;
   sigset_t before;
@@ -72,12 +66,8 @@ MetricsServer::MetricsServer(int listener, int wake_up, int port)
 }
 
 MetricsServer::~MetricsServer() {
-  const std::uint64_t one = 1;
-  // Fails only when the counter is at its maximum: then it is readable anyway.
-  [[maybe_unused]] const ssize_t written = write(wake_up_, &one, sizeof one);
+  shutdown(listener_.get(), SHUT_RDWR);  // which ends the thread's loop
   thread_.join();
-  close(listener_);
-  close(wake_up_);
 }
 
 std::string MetricsServer::url() const {
@@ -92,12 +82,9 @@ void MetricsServer::Publish(std::string text) {
 // Reads one request and writes one answer, as far as the peer lets it without waiting.
 class MetricsServer::Connection {
  public:
-  explicit Connection(int fd) : fd_(fd), end_(RequestClock::now() + kLongestTalk) {}
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  ~Connection() { close(fd_); }
+  explicit Connection(UniqueFd fd) : fd_(std::move(fd)) {}
 
-  pollfd Wish() const { return {fd_, static_cast<short>(idle() ? POLLIN : POLLOUT), 0}; }
+  pollfd Wish() const { return {fd_.get(), static_cast<short>(idle() ? POLLIN : POLLOUT), 0}; }
   // Nothing whole was asked yet.
   bool idle() const { return answer_.empty(); }
   RequestClock::time_point end() const { return end_; }
@@ -112,7 +99,7 @@ class MetricsServer::Connection {
  private:
   void Read(MetricsServer& server) {
     std::array<char, kLongestRequest> buffer{};
-    const ssize_t size = recv(fd_, buffer.data(), buffer.size() - request_.size(), MSG_DONTWAIT);
+    const ssize_t size = recv(fd_.get(), buffer.data(), buffer.size() - request_.size(), MSG_DONTWAIT);
     if (size <= 0) {
       over_ = size == 0 || (errno != EAGAIN && errno != EINTR);
       return;
@@ -127,7 +114,7 @@ class MetricsServer::Connection {
 
   void Write() {
     const std::string_view rest = std::string_view(answer_).substr(written_);
-    const ssize_t size = send(fd_, rest.data(), rest.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+    const ssize_t size = send(fd_.get(), rest.data(), rest.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
     if (size < 0) {
       over_ = errno != EAGAIN && errno != EINTR;
       return;
@@ -136,8 +123,8 @@ class MetricsServer::Connection {
     over_ = written_ == answer_.size();
   }
 
-  const int fd_;
-  const RequestClock::time_point end_;
+  const UniqueFd fd_;
+  const RequestClock::time_point end_ = RequestClock::now() + kLongestTalk;
   std::string request_;
   std::string answer_;
   std::size_t written_ = 0;
@@ -149,7 +136,7 @@ void MetricsServer::Loop() {
   std::vector<pollfd> items;
   bool may_accept = true;
   while (true) {
-    items.assign({{wake_up_, POLLIN, 0}, {listener_, static_cast<short>(may_accept ? POLLIN : 0), 0}});
+    items.assign({{listener_.get(), static_cast<short>(may_accept ? POLLIN : 0), 0}});
     for (const Connection& connection : connections) items.push_back(connection.Wish());
     int patience = may_accept ? -1 : static_cast<int>(kLongestTalk.count());
     if (!connections.empty()) {
@@ -158,8 +145,8 @@ void MetricsServer::Loop() {
       patience = static_cast<int>(std::max<std::int64_t>(left.count(), 0));
     }
     if (poll(items.data(), items.size(), patience) < 0 && errno != EINTR) return;
-    if (items[0].revents != 0) return;
-    std::size_t next = 2;
+    if ((items[0].revents & POLLHUP) != 0) return;
+    std::size_t next = 1;
     for (Connection& connection : connections) {
       if (items[next++].revents != 0) connection.Advance(*this);
     }
@@ -168,21 +155,21 @@ void MetricsServer::Loop() {
       return connection.over() || connection.end() <= now;
     });
     // Out of descriptors: those that wait are announced again at once, so they are not looked at for a while.
-    may_accept = !may_accept || items[1].revents == 0 || Accept(connections);
+    may_accept = !may_accept || items[0].revents == 0 || Accept(connections);
   }
 }
 
 bool MetricsServer::Accept(std::list<Connection>& connections) {
   // So many at most, lest a crowd that comes faster than it is served keeps the others waiting.
   for (std::size_t i = 0; i < kMostConnections; ++i) {
-    const int fd = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
-    if (fd < 0) return errno == EAGAIN || errno == EINTR || errno == ECONNABORTED;
+    UniqueFd fd(accept4(listener_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    if (!fd.valid()) return errno == EAGAIN || errno == EINTR || errno == ECONNABORTED;
     if (connections.size() == kMostConnections) {
       const auto idle = std::ranges::find_if(connections, &Connection::idle);
       connections.erase(idle == connections.end() ? connections.begin() : idle);
     }
     // Most have asked already: the answer goes before others can crowd it out.
-    connections.emplace_back(fd).Advance(*this);
+    connections.emplace_back(std::move(fd)).Advance(*this);
     if (connections.back().over()) connections.pop_back();
   }
   return true;

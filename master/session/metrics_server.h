@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/result.h"
+#include "base/system/unique_fd.h"
 
 namespace gauntlet::master {
 
@@ -36,15 +37,14 @@ class MetricsServer {
  private:
   class Connection;
 
-  MetricsServer(int listener, int wake_up, int port);
+  MetricsServer(UniqueFd listener, int port);
   void Loop();
   // Takes those that wait. False when the system has no descriptor for one.
   bool Accept(std::list<Connection>& connections);
   // To a whole request.
   std::string AnswerTo(std::string_view request);
 
-  const int listener_;
-  const int wake_up_;  // readable: end
+  const UniqueFd listener_;
   const int port_;
   std::mutex mutex_;  // guards the next
   std::string text_;

@@ -6,7 +6,6 @@
 #include <system_error>
 
 #include "base/system/atomic_file.h"
-#include "master/dispatch/dispatch_options.h"
 #include "master/experiment/experiment_file.h"
 #include "master/report/verdict_text.h"
 #include "master/search/search_table.h"
@@ -36,8 +35,8 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   const std::string command =
       fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
                   context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
-  const auto golden = context.golden_hashes.find(spec->controller);
-  const std::uint64_t golden_hash = golden == context.golden_hashes.end() ? 0 : golden->second;
+  const proto::GoldenHashes& known = context.campaign.golden_hashes;
+  const auto golden = known.find(spec->controller);
   const std::string readme = fmt::format(
       "Run {} of the campaign {} {} ({}), in every attempt; the last was on worker {}.\n\n"
       "See it again, in this folder:\n    {} > result\n"
@@ -48,18 +47,18 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
       "case.json        the test case, for gauntlet evaluate --case\n"
       "experiment.toml  the experiment, every default written out\n"
       "stderr.txt       what the last attempt printed\n",
-      run.id, context.campaign_id, finished.result.message, NameOf(finished.result.verdict), finished.worker,
-      command, spec->scenario, spec->controller, run.seed, run.individual, run.evaluation, run.replicate,
-      context.software_version, golden_hash);
-  const auto write = [&](const char* name, const std::string& text) {
-    return ReplaceFile((folder / name).string(), text, kReadableByAll);
-  };
-  if (Status written = write("run.spec", run.spec); !written) return written;
-  if (Status written = write("case.json", proto::WriteCaseJson(spec->test_case)); !written) return written;
-  const std::string resolved = WriteExperiment(experiment, {}, BuiltInCatalogue());
-  if (Status written = write("experiment.toml", resolved); !written) return written;
-  if (Status written = write("stderr.txt", finished.stderr_tail); !written) return written;
-  return write("README.txt", readme);
+      run.id, context.campaign.campaign_id, finished.result.message, NameOf(finished.result.verdict),
+      finished.worker, command, spec->scenario, spec->controller, run.seed, run.individual, run.evaluation,
+      run.replicate, context.campaign.software_version, golden == known.end() ? 0 : golden->second);
+  for (const auto& [name, text] : {std::pair<const char*, std::string>("run.spec", run.spec),
+                                   {"case.json", proto::WriteCaseJson(spec->test_case)},
+                                   {"experiment.toml", WriteExperiment(experiment, {}, BuiltInCatalogue())},
+                                   {"stderr.txt", finished.stderr_tail},
+                                   {"README.txt", readme}}) {
+    const Status written = ReplaceFile((folder / name).string(), text, kReadableByAll);
+    if (!written) return written;
+  }
+  return Ok{};
 }
 
 }  // namespace gauntlet::master

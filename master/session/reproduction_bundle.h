@@ -20,10 +20,8 @@ std::string BundleName(RunId run);
 
 struct BundleContext {
   std::string directory;  // of the campaign
-  std::string campaign_id;
-  std::string software_version;
-  proto::GoldenHashes golden_hashes;  // of its controllers
-  DispatchOptions limits;             // that its runs had
+  CampaignIdentity campaign;
+  DispatchOptions limits;  // that its runs had
 };
 
 // Writes bundles/run-N: README.txt (what failed, where, by which signal, the one command that reproduces it),

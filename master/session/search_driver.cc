@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "master/report/stored_search.h"
@@ -16,15 +15,9 @@ namespace {
 
 // As the campaign's only search would have it.
 StoredRun AsOnlySearch(const StoredRun& run) {
-  StoredRun only;
+  StoredRun only = run;
   only.search = kOnlySearch;
   only.id = run.id - RunIdOf(run.search, 1) + RunIdOf(kOnlySearch, 1);
-  only.individual = run.individual;
-  only.evaluation = run.evaluation;
-  only.replicate = run.replicate;
-  only.seed = run.seed;
-  only.hash = run.hash;
-  only.verdict = run.verdict;
   return only;
 }
 
@@ -35,20 +28,17 @@ SearchDriver::SearchDriver(const Parts& parts)
       has_generations_(parts.search.Progress().generations > 1),
       last_asked_(RunIdOf(parts.search_id, 1) - 1),
       last_told_(last_asked_),
-      saved_until_(last_asked_),
-      best_fitness_(std::numeric_limits<double>::quiet_NaN()),
-      mean_fitness_(std::numeric_limits<double>::quiet_NaN()) {}
+      saved_until_(last_asked_) {}
 
 Status SearchDriver::Restore() {
   Result<SavedProgress> saved = RestoreSearch(parts_.search_id, parts_.store, parts_.search);
   if (!saved) return saved.error();
   digest_ = saved->results;
   last_asked_ = last_told_ = saved_until_ = saved->last_run;
-  Status read = parts_.store.ForEachRun(parts_.search_id, 0, [this](const StoredRun& run) {
+  return parts_.store.ForEachRun(parts_.search_id, 0, [this](const StoredRun& run) {
     Count(run);
     if (run.id > saved_until_) stored_ahead_.emplace(run.id, run);
   });
-  return read;
 }
 
 double SearchDriver::PredictedLength(const EvaluationRequest& request) const {
@@ -139,11 +129,7 @@ void SearchDriver::Store(FinishedRun finished) {
   run.fitness = finished.result.fitness;
   run.total_failure = finished.result.failure.total;
   run.failure_type = finished.result.failure.type;
-  pending->outcome = {.verdict = finished.result.verdict,
-                      .fitness = run.fitness,
-                      .total_failure = run.total_failure,
-                      .failure_type = run.failure_type,
-                      .metrics = {}};
+  pending->outcome = *OutcomeOf(run, /*with_metrics=*/false);
   if (parts_.search.WantsMetrics()) pending->outcome.metrics = std::move(finished.result.metrics);
   parts_.store.AddRun(run);
   run.spec.clear();
@@ -162,10 +148,8 @@ void SearchDriver::TellCompleted() {
     PendingEvaluation& evaluation = pending_.front();
     // From the end, where what is missing usually stands: evaluations of thousands of runs are looked at
     // often.
-    if (std::any_of(evaluation.runs.rbegin(), evaluation.runs.rend(),
-                    [](const PendingRun& pending) { return !pending.durable; })) {
+    if (!std::all_of(evaluation.runs.rbegin(), evaluation.runs.rend(), std::mem_fn(&PendingRun::durable)))
       return;
-    }
     std::vector<RunOutcome> outcomes;
     for (PendingRun& pending : evaluation.runs) {
       digest_.Add(AsOnlySearch(pending.run));
@@ -181,8 +165,7 @@ void SearchDriver::TellCompleted() {
 }
 
 void SearchDriver::SaveState() {
-  const std::vector<Individual> newborns = parts_.search.TakeNewborns();
-  parts_.store.AddIndividuals(parts_.search_id, newborns);
+  parts_.store.AddIndividuals(parts_.search_id, parts_.search.TakeNewborns());
   SavedState state;
   state.search = parts_.search_id;
   state.generation = parts_.search.Progress().generation;
@@ -196,17 +179,16 @@ void SearchDriver::SaveState() {
 
   double sum = 0.0;
   int counted = 0;
-  best_fitness_ = std::numeric_limits<double>::infinity();
+  best_fitness_ = kNone;
   std::map<IndividualId, double> ticks;
   for (const Individual& individual : parts_.search.Population()) {
     if (const auto known = ticks_.find(individual.id); known != ticks_.end()) ticks.insert(*known);
     if (!std::isfinite(individual.fitness)) continue;
-    best_fitness_ = std::min(best_fitness_, individual.fitness);
+    best_fitness_ = std::fmin(best_fitness_, individual.fitness);
     sum += individual.fitness;
     ++counted;
   }
-  mean_fitness_ = counted > 0 ? sum / counted : std::numeric_limits<double>::quiet_NaN();
-  if (counted == 0) best_fitness_ = mean_fitness_;
+  mean_fitness_ = counted > 0 ? sum / counted : kNone;
   ticks_ = std::move(ticks);
 }
 

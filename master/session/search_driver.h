@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <limits>
 #include <map>
 #include <vector>
 
@@ -57,9 +58,8 @@ class SearchDriver {
   std::uint64_t runs_done() const { return runs_done_; }  // stored, earlier sessions included
   std::uint64_t total_failures() const { return total_failures_; }
   std::uint64_t runs_failed() const { return runs_failed_; }  // verdict other than completed
-  double best_fitness() const {
-    return best_fitness_;
-  }  // of the last complete generation; NaN before the first
+  // Of the last complete generation; NaN before the first.
+  double best_fitness() const { return best_fitness_; }
   double mean_fitness() const { return mean_fitness_; }
 
  private:
@@ -74,6 +74,8 @@ class SearchDriver {
     std::vector<PendingRun> runs;
   };
 
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
   Status Ask();
   // Ticks that the individual's runs took so far, or its parents'; 0 = unknown.
   double PredictedLength(const EvaluationRequest& request) const;
@@ -84,19 +86,19 @@ class SearchDriver {
   Parts parts_;
   bool has_generations_;  // else everybody is evaluated once, without children
   std::deque<PendingEvaluation> pending_;
-  std::map<RunId, StoredRun>
-      stored_ahead_;  // results that a former session stored and the saved state has not seen
+  // Results that a former session stored and the saved state has not seen.
+  std::map<RunId, StoredRun> stored_ahead_;
   std::uint64_t at_backend_ = 0;
   std::map<IndividualId, double> ticks_;  // of the newest run of those who may run or breed again
-  RunId last_asked_ = 0;
-  RunId last_told_ = 0;
-  RunId saved_until_ = 0;
+  RunId last_asked_;
+  RunId last_told_;
+  RunId saved_until_;
   ResultsDigest digest_;
   std::uint64_t runs_done_ = 0;
   std::uint64_t total_failures_ = 0;
   std::uint64_t runs_failed_ = 0;
-  double best_fitness_;
-  double mean_fitness_;
+  double best_fitness_ = kNone;
+  double mean_fitness_ = kNone;
 };
 
 }  // namespace gauntlet::master

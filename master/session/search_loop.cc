@@ -23,9 +23,8 @@ Status SearchLoop::Restore() {
   if (!stored) return stored.error();
   for (SearchDriver* search : parts_.searches) {
     if (Status restored = search->Restore(); !restored) return restored;
-    if (std::ranges::none_of(
-            *stored, [search](const StoredSearch& one) { return one.finished && one.id == search->id(); }))
-      waiting_.push_back(search);
+    const auto has_ended = [search](const auto& one) { return one.finished && one.id == search->id(); };
+    if (std::ranges::none_of(*stored, has_ended)) waiting_.push_back(search);
   }
   return Ok{};
 }
@@ -41,7 +40,7 @@ Status SearchLoop::Advance() {
     if (search->finished()) parts_.store.MarkFinished(search->id());
   }
   const std::size_t before = running_.size();
-  std::erase_if(running_, [](const SearchDriver* search) { return search->finished(); });
+  std::erase_if(running_, std::mem_fn(&SearchDriver::finished));
   return running_.size() < before && !waiting_.empty() ? Advance() : Ok{};
 }
 
@@ -132,9 +131,7 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
       if (Status ended = EndSession(); !ended) return ended.error();
       return searched ? CampaignEnd::kFinished : CampaignEnd::kStopped;
     }
-    if (!searched && std::none_of(running_.begin(), running_.end(),
-                                  [](const SearchDriver* search) { return search->pending(); }))
-      continue;
+    if (!searched && std::ranges::none_of(running_, &SearchDriver::pending)) continue;
     Result<std::vector<FinishedRun>> finished = parts_.backend.Poll(kPollTime);
     if (!finished) {
       if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();
@@ -147,9 +144,7 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
       search.Store(std::move(run));
     }
     // A search cannot go on before its last results are durable.
-    if (std::any_of(fed.begin(), fed.end(),
-                    [](const SearchDriver* search) { return search->at_backend() == 0; }))
-      parts_.store.Hurry();
+    if (std::ranges::count(fed, 0U, &SearchDriver::at_backend) > 0) parts_.store.Hurry();
     StoreEvents();
   }
   if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();

@@ -9,9 +9,8 @@
 #include "base/result.h"
 #include "base/system/clock.h"
 #include "master/dispatch/evaluation_backend.h"
-#include "master/report/campaign_progress.h"
+#include "master/report/campaign_status.h"
 #include "master/session/search_driver.h"
-#include "master/session/session_options.h"
 #include "master/store/result_store.h"
 
 namespace gauntlet::master {

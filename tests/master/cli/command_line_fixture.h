@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "master/cli/command_line.h"
+#include "tests/support/fake_campaigns.h"
 
 namespace gauntlet::master {
 
@@ -25,11 +24,11 @@ class CommandLine : public ::testing::Test {
         (std::string("gauntlet-cli-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::remove_all(directory_);
     std::filesystem::create_directories(directory_);
-    report_.summary.experiment = "flocking";
-    report_.summary.search = "genetic";
-    report_.summary.finished = true;
-    report_.runs_this_session = 100;
-    report_.wall_seconds = 4.0;
+    campaigns_.report.summary.experiment = "flocking";
+    campaigns_.report.summary.search = "genetic";
+    campaigns_.report.summary.finished = true;
+    campaigns_.report.runs_this_session = 100;
+    campaigns_.report.wall_seconds = 4.0;
   }
   void TearDown() override { std::filesystem::remove_all(directory_); }
 
@@ -37,51 +36,7 @@ class CommandLine : public ::testing::Test {
     out_.str("");
     err_.str("");
     CommandContext context{
-        .out = out_, .err = err_, .err_is_terminal = err_is_terminal_, .program = "gauntlet", .service = {}};
-    context.service.start = [this](const std::string& directory, const Experiment& experiment,
-                                   const std::vector<sim::TestCase>& cases,
-                                   const SessionOptions& options) -> Result<SessionReport> {
-      ++starts_;
-      started_directory_ = directory;
-      started_ = experiment;
-      cases_ = cases;
-      workers_ = options.workers;
-      if (during_) during_(options);
-      if (error_) return *error_;
-      return report_;
-    };
-    context.service.resume = [this](const std::string& directory,
-                                    const SessionOptions& options) -> Result<SessionReport> {
-      ++resumes_;
-      started_directory_ = directory;
-      workers_ = options.workers;
-      if (during_) during_(options);
-      if (error_) return *error_;
-      return report_;
-    };
-    context.service.status = [this](const std::string&) -> Result<std::string> {
-      if (error_) return *error_;
-      return status_;
-    };
-    context.service.lives = [this](const std::string&) -> Result<bool> { return lives_-- > 0; };
-    context.service.stop = [this](const std::string& directory) -> Status {
-      stopped_ = directory;
-      return Ok{};
-    };
-    context.service.read = [this](const std::string&) -> Result<CampaignSummary> {
-      if (error_) return *error_;
-      return report_.summary;
-    };
-    context.service.for_each_run = [this](const std::string&,
-                                          const std::function<void(const StoredRun&)>& visit) -> Status {
-      std::for_each(stored_.begin(), stored_.end(), visit);
-      return Ok{};
-    };
-    context.service.replay = [this](const std::string&, RunId run) -> Result<CampaignReplay> {
-      if (error_) return *error_;
-      replayed_run_ = run;
-      return replay_;
-    };
+        .out = out_, .err = err_, .err_is_terminal = err_is_terminal_, .campaigns = campaigns_};
     return RunCommandLine(arguments, context);
   }
   std::string Path(const std::string& name) const { return (directory_ / name).string(); }
@@ -102,28 +57,14 @@ class CommandLine : public ::testing::Test {
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
     EXPECT_THAT(text, message);
     EXPECT_THAT(out_.str(), ::testing::IsEmpty());
-    EXPECT_EQ(starts_, 0);
+    EXPECT_EQ(campaigns_.starts, 0);
   }
 
   std::filesystem::path directory_;
   std::ostringstream out_;
   std::ostringstream err_;
   bool err_is_terminal_ = false;
-  int starts_ = 0;
-  int resumes_ = 0;
-  int lives_ = 0;  // how often a master is found alive
-  std::string status_;
-  std::string stopped_;
-  std::string started_directory_;
-  Experiment started_;
-  std::vector<sim::TestCase> cases_;
-  int workers_ = 0;
-  std::function<void(const SessionOptions&)> during_;
-  SessionReport report_;
-  std::vector<StoredRun> stored_;
-  CampaignReplay replay_;
-  RunId replayed_run_ = 0;
-  std::optional<Error> error_;
+  testing_support::FakeCampaigns campaigns_;
 };
 
 }  // namespace gauntlet::master

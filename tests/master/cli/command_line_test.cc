@@ -59,9 +59,9 @@ TEST_F(CommandLine, WorkersMustBeSensible) {
               HasSubstr("this machine has")));
   }
   EXPECT_EQ(Run({"evolve", "flocking", "--workers", "1024", "--dir", Path("c")}), kExitDone);
-  EXPECT_EQ(workers_, 1024);
+  EXPECT_EQ(campaigns_.workers, 1024);
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), kExitDone);
-  EXPECT_GE(workers_, 1) << "by default the machine's cores";
+  EXPECT_GE(campaigns_.workers, 1) << "by default the machine's cores";
 }
 
 TEST_F(CommandLine, SeedIsA64BitNumberOrRandom) {
@@ -70,17 +70,17 @@ TEST_F(CommandLine, SeedIsA64BitNumberOrRandom) {
                      HasSubstr(std::string("--seed ") + seed + ": must be a whole number from 0 to"));
   }
   EXPECT_EQ(Run({"evolve", "flocking", "--seed", "18446744073709551615", "--dir", Path("c")}), kExitDone);
-  EXPECT_EQ(started_.seed, 18446744073709551615U);
+  EXPECT_EQ(campaigns_.experiment.seed, 18446744073709551615U);
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), kExitDone);
-  EXPECT_EQ(started_.seed, 1U);
+  EXPECT_EQ(campaigns_.experiment.seed, 1U);
 }
 
 TEST_F(CommandLine, RandomSeedIsDrawnAndPrinted) {
   EXPECT_EQ(Run({"evolve", "flocking", "--seed", "random", "--dir", Path("c")}), kExitDone);
-  const std::uint64_t first = started_.seed;
+  const std::uint64_t first = campaigns_.experiment.seed;
   EXPECT_THAT(err_.str(), HasSubstr("seed " + std::to_string(first)));
   EXPECT_EQ(Run({"evolve", "flocking", "--seed", "random", "--dir", Path("c")}), kExitDone);
-  EXPECT_NE(started_.seed, first);
+  EXPECT_NE(campaigns_.experiment.seed, first);
 }
 
 TEST_F(CommandLine, SettingsReachTheExperiment) {
@@ -88,11 +88,11 @@ TEST_F(CommandLine, SettingsReachTheExperiment) {
                  "search.mutation_probability=0.2", "--generations", "7", "--population", "12", "--workers",
                  "3", "--dir", Path("c")}),
             kExitDone);
-  EXPECT_EQ(started_.search.crossover, CrossoverKind::kUniform);
-  EXPECT_EQ(started_.search.mutation_probability, 0.2);
-  EXPECT_EQ(started_.search.generations, 7);
-  EXPECT_EQ(started_.search.population, 12);
-  EXPECT_EQ(started_directory_, Path("c"));
+  EXPECT_EQ(campaigns_.experiment.search.crossover, CrossoverKind::kUniform);
+  EXPECT_EQ(campaigns_.experiment.search.mutation_probability, 0.2);
+  EXPECT_EQ(campaigns_.experiment.search.generations, 7);
+  EXPECT_EQ(campaigns_.experiment.search.population, 12);
+  EXPECT_EQ(campaigns_.directory, Path("c"));
   EXPECT_THAT(err_.str(),
               HasSubstr("flocking: genetic search, 12 test cases x 7 generations, seed 1, 3 workers, in "));
   EXPECT_EQ(Run({"evolve", "flocking", "--generations", "1", "--dir", Path("d")}), kExitDone);
@@ -170,22 +170,23 @@ TEST_F(CommandLine, ControlCharactersOfNamesDoNotReachTheTerminal) {
 }
 
 TEST_F(CommandLine, SearchWithoutAnyResultExitsOne) {
-  report_.summary.runs_done = report_.summary.runs_failed = 8;
-  report_.summary.runs_without_result = {{sim::Verdict::kRefused, "no-path", "no-path: walled in", 8}};
+  campaigns_.report.summary.runs_done = campaigns_.report.summary.runs_failed = 8;
+  campaigns_.report.summary.runs_without_result = {
+      {sim::Verdict::kRefused, "no-path", "no-path: walled in", 8}};
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), kExitNegative);
   EXPECT_THAT(err_.str(), HasSubstr("none of the 8 runs gave a result, most often: no-path: walled in"));
   EXPECT_THAT(out_.str(),
               AllOf(HasSubstr("NO RUN GAVE A RESULT"), HasSubstr("8 of 8 refused: no-path: walled in")));
-  report_.summary.runs_failed = 7;
-  report_.summary.runs_without_result[0].runs = 7;
+  campaigns_.report.summary.runs_failed = 7;
+  campaigns_.report.summary.runs_without_result[0].runs = 7;
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("d")}), kExitDone);
   EXPECT_THAT(out_.str(), HasSubstr("7 of 8 refused: no-path: walled in"));
 }
 
 TEST_F(CommandLine, RandomSearchesAtRandom) {
   EXPECT_EQ(Run({"random", "flocking", "--cases", "33", "--dir", Path("c")}), kExitDone);
-  EXPECT_EQ(started_.search.algorithm, "random");
-  EXPECT_EQ(started_.search.parameters.at("cases"), 33.0);
+  EXPECT_EQ(campaigns_.experiment.search.algorithm, "random");
+  EXPECT_EQ(campaigns_.experiment.search.parameters.at("cases"), 33.0);
 }
 
 TEST_F(CommandLine, DirectoryThatHoldsSomethingIsRefusedNamingResume) {
@@ -205,7 +206,7 @@ TEST_F(CommandLine, JsonIsExactlyOneDocument) {
 }
 
 TEST_F(CommandLine, ProgressGoesToStandardErrorAndCanBeSilenced) {
-  during_ = [](const SessionOptions& options) {
+  campaigns_.during = [](const SessionOptions& options) {
     CampaignProgress progress;
     progress.runs_done = 7;
     options.on_progress(progress);
@@ -220,9 +221,9 @@ TEST_F(CommandLine, ProgressGoesToStandardErrorAndCanBeSilenced) {
 }
 
 TEST_F(CommandLine, StoppedCampaignExitsThreeAndSaysHowToGoOn) {
-  report_.end = CampaignEnd::kStopped;
-  report_.summary.finished = false;
-  report_.summary.runs_done = 1234;
+  campaigns_.report.end = CampaignEnd::kStopped;
+  campaigns_.report.summary.finished = false;
+  campaigns_.report.summary.runs_done = 1234;
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), kExitStopped);
   EXPECT_THAT(
       err_.str(),
@@ -233,7 +234,7 @@ TEST_F(CommandLine, StoppedCampaignExitsThreeAndSaysHowToGoOn) {
 TEST_F(CommandLine, FirstSignalAsksTheCampaignToStop) {
   bool before = true;
   bool after = false;
-  during_ = [&](const SessionOptions& options) {
+  campaigns_.during = [&](const SessionOptions& options) {
     before = options.stop_requested();
     std::raise(SIGTERM);
     after = options.stop_requested();
@@ -267,8 +268,8 @@ TEST_F(CommandLine, ErrorsExitByTheirKind) {
                                       {ErrorKind::kIo, true, kExitStopped},
                                       {ErrorKind::kNoSpace, false, kExitStopped},
                                       {ErrorKind::kInternal, true, kExitInternal}}) {
-    error_ = Error{expected.kind, "what went wrong"};
-    during_ = [&](const SessionOptions& options) {
+    campaigns_.error = Error{expected.kind, "what went wrong"};
+    campaigns_.during = [&](const SessionOptions& options) {
       if (!expected.began) return;
       std::filesystem::create_directories(Path("c"));
       std::ofstream(Path("c") + "/campaign.db") << "made";
@@ -288,7 +289,7 @@ TEST_F(CommandLine, ErrorsExitByTheirKind) {
 }
 
 TEST_F(CommandLine, ResumeAndShowPassErrorsOn) {
-  error_ = Error{ErrorKind::kInUse, "d is in use by gauntlet on host node7, process 4711"};
+  campaigns_.error = Error{ErrorKind::kInUse, "d is in use by gauntlet on host node7, process 4711"};
   EXPECT_EQ(Run({"resume", "d"}), kExitUsage);
   EXPECT_THAT(err_.str(), HasSubstr("host node7, process 4711"));
   EXPECT_EQ(Run({"show", "d"}), kExitUsage);
@@ -296,10 +297,10 @@ TEST_F(CommandLine, ResumeAndShowPassErrorsOn) {
 }
 
 TEST_F(CommandLine, ResumeOfAFinishedCampaignSaysSo) {
-  report_.runs_this_session = 0;
+  campaigns_.report.runs_this_session = 0;
   EXPECT_EQ(Run({"resume", "d", "--workers", "5"}), kExitDone);
-  EXPECT_EQ(workers_, 5);
-  EXPECT_EQ(started_directory_, "d");
+  EXPECT_EQ(campaigns_.workers, 5);
+  EXPECT_EQ(campaigns_.directory, "d");
   EXPECT_THAT(err_.str(), HasSubstr("d is finished, nothing was left to do"));
 }
 

@@ -23,20 +23,20 @@ TEST_F(CommandLine, EvaluateRefusesByRuleAndSimulatesTheRest) {
   sim::RunResult result;
   result.fitness = 0.75;
   result.hash = HashOf(result);
-  stored_.resize(2);
+  campaigns_.stored.resize(2);
   for (std::size_t i = 0; i < 2; ++i) {
-    stored_[i].id = i + 1;
-    stored_[i].individual = 1;
-    stored_[i].seed = 40 + i;
-    stored_[i].result = proto::EncodeRunResult(result);
+    campaigns_.stored[i].id = i + 1;
+    campaigns_.stored[i].individual = 1;
+    campaigns_.stored[i].seed = 40 + i;
+    campaigns_.stored[i].result = proto::EncodeRunResult(result);
   }
   EXPECT_EQ(Run({"evaluate", "flocking", "--case", blocked, good, broken, "--replicates", "2", "--json",
                  "--dir", Path("c")}),
             kExitDone);
-  EXPECT_EQ(started_.search.algorithm, "cases");
-  EXPECT_EQ(started_.search.replicates, 2);
-  ASSERT_EQ(cases_.size(), 1U);
-  EXPECT_EQ(cases_[0].name, "good.json");
+  EXPECT_EQ(campaigns_.experiment.search.algorithm, "cases");
+  EXPECT_EQ(campaigns_.experiment.search.replicates, 2);
+  ASSERT_EQ(campaigns_.cases.size(), 1U);
+  EXPECT_EQ(campaigns_.cases[0].name, "good.json");
   const Json cases = Json::parse(out_.str()).at("cases");
   ASSERT_EQ(cases.size(), 3U);
   EXPECT_EQ(cases[0].at("file"), blocked);
@@ -68,7 +68,7 @@ TEST_F(CommandLine, EvaluateExitsTwoWhenNothingCouldBeSimulated) {
       Write("blocked.json", R"({"obstacles": [{"x": 2.5, "y": 2.5, "length": 1, "width": 0.4}]})");
   EXPECT_EQ(Run({"evaluate", "flocking", "--case", blocked, "none.json", "--json", "--dir", Path("c")}),
             kExitUsage);
-  EXPECT_EQ(starts_, 0);
+  EXPECT_EQ(campaigns_.starts, 0);
   const Json cases = Json::parse(out_.str()).at("cases");
   EXPECT_EQ(cases[0].at("refused"), "start-blocked");
   EXPECT_THAT(cases[1].at("error").get<std::string>(), HasSubstr("none.json: no such file"));

@@ -19,8 +19,8 @@ class Replay : public CommandLine {
  protected:
   void SetUp() override {
     CommandLine::SetUp();
-    replay_.experiment.name = "flocking";
-    ReplayReport& report = replay_.report;
+    campaigns_.replay.experiment.name = "flocking";
+    ReplayReport& report = campaigns_.replay.report;
     report.stored.id = 12;
     report.stored.individual = 3;
     report.spec.scenario = "flocking";
@@ -33,7 +33,7 @@ class Replay : public CommandLine {
 
 TEST_F(Replay, ReproducedRunExitsZeroAndWritesItsFiles) {
   EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("r.svg"), "--csv", Path("r.csv")}), kExitDone);
-  EXPECT_EQ(replayed_run_, 12U);
+  EXPECT_EQ(campaigns_.replayed_run, 12U);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("run 12: reproduced"), HasSubstr("0000000000001234  (the same)")));
   pugi::xml_document svg;
   EXPECT_TRUE(svg.load_file(Path("r.svg").c_str()));
@@ -44,7 +44,7 @@ TEST_F(Replay, ReproducedRunExitsZeroAndWritesItsFiles) {
 TEST_F(Replay, NoiseAndFaultsOfTheRunAreNamed) {
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitDone);
   EXPECT_THAT(out_.str(), AllOf(Not(HasSubstr("noise.")), Not(HasSubstr("faults"))));
-  sim::Disturbances& disturbances = replay_.report.spec.disturbances;
+  sim::Disturbances& disturbances = campaigns_.replay.report.spec.disturbances;
   disturbances.noise[sim::Device::kProximity].gaussian = 0.02;
   disturbances.faults = {{.robot = 3, .device = sim::Device::kWheels, .tick = 500}};
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitDone);
@@ -55,8 +55,8 @@ TEST_F(Replay, NoiseAndFaultsOfTheRunAreNamed) {
 }
 
 TEST_F(Replay, MetricsHaveUnitsAndNoneWhereNothingWasMeasured) {
-  replay_.report.spec.test_case.name = "three-walls.json";
-  replay_.report.replayed.metrics = {
+  campaigns_.replay.report.spec.test_case.name = "three-walls.json";
+  campaigns_.replay.report.replayed.metrics = {
       {"birds_left", 7},          {"arrival_time", 61.5},     {"timeout", 0},      {"split_time", -1},
       {"split_angle", 1.5707963}, {"prey_path_length", 8.25}, {"home_made", 0.125}};
   EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("r.svg")}), kExitDone);
@@ -68,8 +68,8 @@ TEST_F(Replay, MetricsHaveUnitsAndNoneWhereNothingWasMeasured) {
 }
 
 TEST_F(Replay, DifferenceExitsOneAndSaysWhatDiffers) {
-  replay_.report.replayed.hash = 0x9999;
-  replay_.report.differences = {"hash differs: stored 1234, replayed 9999", "fitness differs"};
+  campaigns_.replay.report.replayed.hash = 0x9999;
+  campaigns_.replay.report.differences = {"hash differs: stored 1234, replayed 9999", "fitness differs"};
   EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("r.svg")}), kExitNegative);
   EXPECT_THAT(out_.str(),
               AllOf(HasSubstr("NOT REPRODUCED"), HasSubstr("(DIFFERENT)"), HasSubstr("  fitness differs\n")));
@@ -78,22 +78,23 @@ TEST_F(Replay, DifferenceExitsOneAndSaysWhatDiffers) {
 }
 
 TEST_F(Replay, DamagedRunExitsOne) {
-  replay_.report.damage = "the stored spec of run 12 is damaged";
+  campaigns_.replay.report.damage = "the stored spec of run 12 is damaged";
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitNegative);
   EXPECT_THAT(err_.str(), HasSubstr("the stored spec of run 12 is damaged"));
   EXPECT_THAT(out_.str(), IsEmpty());
 }
 
 TEST_F(Replay, DamagedDatabaseExitsTwoBecauseNothingWasCompared) {
-  error_ = Error{ErrorKind::kCorrupt, "campaign.db is damaged"};
+  campaigns_.error = Error{ErrorKind::kCorrupt, "campaign.db is damaged"};
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitUsage);
 }
 
 TEST_F(Replay, RefusedRunIsReproducedWithItsRule) {
-  replay_.report.stored_result.verdict = replay_.report.replayed.verdict = sim::Verdict::kRefused;
-  replay_.report.replayed.message = "no-room-to-spawn: 3 of 100 robots placed";
-  replay_.report.replayed.trajectory.clear();
-  replay_.report.replayed.robots.clear();
+  campaigns_.replay.report.stored_result.verdict = campaigns_.replay.report.replayed.verdict =
+      sim::Verdict::kRefused;
+  campaigns_.replay.report.replayed.message = "no-room-to-spawn: 3 of 100 robots placed";
+  campaigns_.replay.report.replayed.trajectory.clear();
+  campaigns_.replay.report.replayed.robots.clear();
   EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("r.svg")}), kExitDone);
   EXPECT_THAT(out_.str(), HasSubstr("no-room-to-spawn: 3 of 100 robots placed"));
   pugi::xml_document svg;
@@ -112,8 +113,9 @@ TEST_F(Replay, TimelineIsWrittenForRunsThatSayWhatRobotsDid) {
   EXPECT_EQ(Run({"replay", "d", "12", "--timeline", Path("t.svg"), "--csv", Path("t.csv")}), kExitUsage);
   EXPECT_THAT(err_.str(), HasSubstr("--timeline: runs of flocking do not say what their robots did when"));
   EXPECT_FALSE(std::filesystem::exists(Path("t.svg")));
-  replay_.report.spec.scenario = "foraging";
-  replay_.report.replayed.annotations = {{"states", "wandering,beacon", {{0.0, 1.0}}, 0.0, -1, {0}}};
+  campaigns_.replay.report.spec.scenario = "foraging";
+  campaigns_.replay.report.replayed.annotations = {
+      {"states", "wandering,beacon", {{0.0, 1.0}}, 0.0, -1, {0}}};
   EXPECT_EQ(Run({"replay", "d", "12", "--timeline", Path("t.svg")}), kExitDone);
   pugi::xml_document svg;
   EXPECT_TRUE(svg.load_file(Path("t.svg").c_str()));

@@ -14,13 +14,13 @@ using ::testing::Not;
 TEST_F(CommandLine, MasterStartsNoWorkersAndSaysWhereTheyConnect) {
   std::string bind;
   bool insecure = true;
-  during_ = [&](const SessionOptions& options) {
+  campaigns_.during = [&](const SessionOptions& options) {
     bind = options.bind;
     insecure = options.insecure;
     options.on_serving({{"tcp://10.0.0.7:5555"}, true});
   };
   EXPECT_EQ(Run({"master", "flocking", "--bind", "tcp://0.0.0.0:5555", "--dir", Path("c")}), kExitDone);
-  EXPECT_EQ(workers_, 0);
+  EXPECT_EQ(campaigns_.workers, 0);
   EXPECT_EQ(bind, "tcp://0.0.0.0:5555");
   EXPECT_FALSE(insecure);
   EXPECT_THAT(err_.str(), HasSubstr("workers connect to tcp://10.0.0.7:5555, encrypted; start them with: "
@@ -30,7 +30,9 @@ TEST_F(CommandLine, MasterStartsNoWorkersAndSaysWhereTheyConnect) {
 }
 
 TEST_F(CommandLine, PlaintextToTheOutsideIsSaidEvenWhenQuiet) {
-  during_ = [](const SessionOptions& options) { options.on_serving({{"tcp://10.0.0.7:5555"}, false}); };
+  campaigns_.during = [](const SessionOptions& options) {
+    options.on_serving({{"tcp://10.0.0.7:5555"}, false});
+  };
   EXPECT_EQ(
       Run({"master", "flocking", "--bind", "tcp://0.0.0.0:*", "--insecure", "--quiet", "--dir", Path("c")}),
       kExitDone);
@@ -41,7 +43,9 @@ TEST_F(CommandLine, PlaintextToTheOutsideIsSaidEvenWhenQuiet) {
 }
 
 TEST_F(CommandLine, PlaintextToTheOutsideIsSaidInRedOnATerminal) {
-  during_ = [](const SessionOptions& options) { options.on_serving({{"tcp://10.0.0.7:5555"}, false}); };
+  campaigns_.during = [](const SessionOptions& options) {
+    options.on_serving({{"tcp://10.0.0.7:5555"}, false});
+  };
   err_is_terminal_ = true;
   EXPECT_EQ(
       Run({"master", "flocking", "--bind", "tcp://0.0.0.0:*", "--insecure", "--quiet", "--dir", Path("c")}),
@@ -57,23 +61,23 @@ TEST_F(CommandLine, AnAddressThatNobodyCouldConnectToIsRefusedBeforeAnythingBegi
     EXPECT_EQ(Run({"resume", directory_.string(), "--bind", bad}), kExitUsage);
     EXPECT_THAT(err_.str(), AllOf(HasSubstr(bad), HasSubstr("it must be tcp://ADDRESS:PORT")));
   }
-  EXPECT_EQ(std::pair(starts_, resumes_), std::pair(0, 0));
+  EXPECT_EQ(std::pair(campaigns_.starts, campaigns_.resumes), std::pair(0, 0));
 }
 
 TEST_F(CommandLine, MasterResumesOnlyWhenThereIsACampaignAndItIsAskedTo) {
   const std::vector<std::string> arguments = {"master", "flocking",          "--bind",  "tcp://127.0.0.1:*",
                                               "--dir",  directory_.string(), "--resume"};
   EXPECT_EQ(Run(arguments), kExitDone);
-  EXPECT_EQ(std::pair(starts_, resumes_), std::pair(1, 0));
+  EXPECT_EQ(std::pair(campaigns_.starts, campaigns_.resumes), std::pair(1, 0));
   Write("campaign.db", "");
   EXPECT_EQ(Run(arguments), kExitDone);
-  EXPECT_EQ(std::pair(starts_, resumes_), std::pair(1, 1));
+  EXPECT_EQ(std::pair(campaigns_.starts, campaigns_.resumes), std::pair(1, 1));
   EXPECT_EQ(Run({arguments.begin(), arguments.end() - 1}), kExitUsage);
   EXPECT_THAT(err_.str(), HasSubstr("gauntlet resume"));
   EXPECT_EQ(Run({"resume", "c", "--bind", "tcp://127.0.0.1:*"}), kExitDone);
-  EXPECT_EQ(workers_, 0);
+  EXPECT_EQ(campaigns_.workers, 0);
   EXPECT_EQ(Run({"resume", "c", "--bind", "tcp://127.0.0.1:*", "--workers", "3"}), kExitDone);
-  EXPECT_EQ(workers_, 3);
+  EXPECT_EQ(campaigns_.workers, 3);
 }
 
 TEST_F(CommandLine, MasterNeedsAnEndpoint) {
@@ -82,7 +86,8 @@ TEST_F(CommandLine, MasterNeedsAnEndpoint) {
 }
 
 TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
-  status_ = R"({"state": "running", "master": {"host": "n1", "pid": 7, "epoch": 2, "encrypted": true},
+  campaigns_.status =
+      R"({"state": "running", "master": {"host": "n1", "pid": 7, "epoch": 2, "encrypted": true},
                 "generation": 3, "generations": 50, "runs_done": 1234, "runs_running": 1, "runs_queued": 5,
                 "runs_per_second": 12.5, "why_nothing_runs": null, "worker_list": [
                  {"worker": "ab@n2", "state": "running", "silent_seconds": 0.2,
@@ -94,8 +99,9 @@ TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
                                 HasSubstr("generation 3/50, 1,234 runs done, 1 running, 5 waiting"),
                                 HasSubstr("812 (1.5 s, attempt 2), 813 (next)"), HasSubstr("idle")));
   EXPECT_EQ(Run({"status", "c", "--json"}), kExitDone);
-  EXPECT_EQ(out_.str(), status_);
-  status_ = R"({"state": "stopped", "master": null, "why_nothing_runs": "no master serves the campaign",
+  EXPECT_EQ(out_.str(), campaigns_.status);
+  campaigns_.status =
+      R"({"state": "stopped", "master": null, "why_nothing_runs": "no master serves the campaign",
                 "worker_list": []})";
   EXPECT_EQ(Run({"watch", "c"}), kExitDone) << "without a master it ends at once";
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("c: stopped"), HasSubstr("nothing runs: no master serves")));
@@ -104,10 +110,10 @@ TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
 TEST_F(CommandLine, StopAsksAndWaitsForTheMasterToEnd) {
   EXPECT_EQ(Run({"stop", "c"}), kExitDone);
   EXPECT_THAT(err_.str(), HasSubstr("nothing to stop"));
-  EXPECT_EQ(stopped_, "");
-  lives_ = 3;
+  EXPECT_EQ(campaigns_.stopped, "");
+  campaigns_.lives = 3;
   EXPECT_EQ(Run({"stop", "c"}), kExitDone);
-  EXPECT_EQ(stopped_, "c");
+  EXPECT_EQ(campaigns_.stopped, "c");
   EXPECT_THAT(err_.str(), HasSubstr("stopped"));
 }
 

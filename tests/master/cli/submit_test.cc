@@ -7,6 +7,7 @@
 
 #include "master/cli/command_line.h"
 #include "master/cli/sweep.h"
+#include "tests/support/fake_campaigns.h"
 #include "tests/support/fake_slurm.h"
 #include "tests/support/local_socket.h"
 
@@ -36,19 +37,8 @@ class Submit : public ::testing::Test {
   ExitCode Run(std::vector<std::string> arguments) {
     out_.str("");
     err_.str("");
-    CommandContext context{.out = out_, .err = err_, .program = "gauntlet", .service = {}};
+    CommandContext context{.out = out_, .err = err_, .campaigns = campaigns_};
     context.slurm = [this] { return cluster_.MakeClient(); };
-    context.service.prepare = [this](const std::string& directory, const std::vector<SearchPlan>& searches,
-                                     const std::string& slurm) -> Status {
-      prepared_ = searches;
-      slurm_ = slurm;
-      std::filesystem::create_directories(directory);
-      std::ofstream(directory + "/slurm.toml") << slurm;
-      return Ok{};
-    };
-    context.service.status = [this](const std::string&) -> Result<std::string> { return status_; };
-    context.service.lives = [](const std::string&) -> Result<bool> { return false; };
-    context.service.read = [](const std::string&) -> Result<CampaignSummary> { return CampaignSummary{}; };
     return RunCommandLine(arguments, context);
   }
   std::string dir() const { return root_ / "c"; }
@@ -61,9 +51,7 @@ class Submit : public ::testing::Test {
 
   std::filesystem::path root_;
   testing_support::FakeSlurm cluster_;
-  std::vector<SearchPlan> prepared_;
-  std::string slurm_;
-  std::string status_;
+  testing_support::FakeCampaigns campaigns_;
   std::ostringstream out_;
   std::ostringstream err_;
 };
@@ -75,8 +63,8 @@ TEST_F(Submit, MakesTheCampaignAndItsMastersJob) {
   ASSERT_THAT(cluster_.submitted, SizeIs(1));
   EXPECT_THAT(cluster_.submitted[0], AllOf(HasSubstr("resume " + dir() + " --as-job"), HasSubstr("--requeue"),
                                            HasSubstr("#SBATCH --partition=short")));
-  EXPECT_THAT(slurm_, HasSubstr("partition = \"short\""));
-  EXPECT_THAT(prepared_, SizeIs(1));
+  EXPECT_THAT(campaigns_.slurm, HasSubstr("partition = \"short\""));
+  EXPECT_THAT(campaigns_.prepared, SizeIs(1));
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("job 12 is the master"), HasSubstr("gauntlet status")));
 }
 
@@ -86,7 +74,7 @@ TEST_F(Submit, ReadsTheUsersFileThenTheExperimentThenTheCommandLine) {
   std::ofstream(root_ / "e.toml") << "scenario = \"flocking\"\n[slurm]\nqos = \"c\"\nmemory = \"2G\"\n";
   EXPECT_EQ(Run({"submit", root_ / "e.toml", "--dir", dir(), "--slurm", "memory=3G"}), kExitDone)
       << err_.str();
-  EXPECT_THAT(slurm_,
+  EXPECT_THAT(campaigns_.slurm,
               AllOf(HasSubstr("account = \"a\""), HasSubstr("qos = \"c\""), HasSubstr("memory = \"3G\"")));
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir() + "2", "--set", "slurm.qos=x"}), kExitUsage);
   EXPECT_THAT(err_.str(), HasSubstr("--slurm KEY=VALUE"));
@@ -141,7 +129,7 @@ TEST_F(Submit, StopCancelsWhatIsLeft) {
 TEST_F(Submit, StatusListsTheJobsWithSlurmsWordsWhetherAMasterLivesOrNot) {
   ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
   const std::string master = JobPrefix() + "master";
-  status_ =
+  campaigns_.status =
       R"json({"state": "running", "why_nothing_runs": null, "pool_trouble": "job 8 waits in the queue (Priority)",
                 "allocations": [
                  {"job": "7_1", "state": "RUNNING", "reason": "", "nodes": "n3", "workers": 2, "cancelled": false},
@@ -151,7 +139,8 @@ TEST_F(Submit, StatusListsTheJobsWithSlurmsWordsWhetherAMasterLivesOrNot) {
   EXPECT_EQ(Run({"status", dir()}), kExitDone);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("fewer workers than could be used: job 8 waits"), HasSubstr("7_1"),
                                 HasSubstr("n3"), HasSubstr("PENDING  Priority")));
-  status_ = R"({"state": "stopped", "why_nothing_runs": "no master serves the campaign", "worker_list": []})";
+  campaigns_.status =
+      R"({"state": "stopped", "why_nothing_runs": "no master serves the campaign", "worker_list": []})";
   cluster_.jobs.clear();
   cluster_.Add("13", master, "PENDING", "Resources");
   EXPECT_EQ(Run({"status", dir()}), kExitDone);
@@ -164,11 +153,11 @@ TEST_F(Submit, ASweepHasASearchForEachCombination) {
                  "search.crossover=uniform,single-point", "--seeds", "3..5"}),
             kExitDone)
       << err_.str();
-  ASSERT_THAT(prepared_, SizeIs(12));
-  EXPECT_EQ(prepared_[0].settings, "search.population=4, search.crossover=uniform, seed 3");
-  EXPECT_EQ(prepared_[11].settings, "search.population=6, search.crossover=single-point, seed 5");
-  EXPECT_EQ(prepared_[11].experiment.search.population, 6);
-  EXPECT_EQ(prepared_[11].experiment.seed, 5U);
+  ASSERT_THAT(campaigns_.prepared, SizeIs(12));
+  EXPECT_EQ(campaigns_.prepared[0].settings, "search.population=4, search.crossover=uniform, seed 3");
+  EXPECT_EQ(campaigns_.prepared[11].settings, "search.population=6, search.crossover=single-point, seed 5");
+  EXPECT_EQ(campaigns_.prepared[11].experiment.search.population, 6);
+  EXPECT_EQ(campaigns_.prepared[11].experiment.seed, 5U);
 }
 
 TEST_F(Submit, WrongSweepsAreRefusedByName) {

@@ -35,7 +35,7 @@ class ReproductionBundleTest : public testing::Test {
     finished_.result.message = "ended by signal 11";
     finished_.worker = "a1b2@host";
     finished_.stderr_tail = "Segmentation fault\n";
-    context_ = {scratch_.path(), "cafe", "1.2.3", {{experiment_.controller, 0xdeadbeef}}, {}};
+    context_ = {scratch_.path(), {"cafe", 1, "1.2.3", {{experiment_.controller, 0xdeadbeef}}}, {}};
     context_.limits.cpu_limit_seconds = 90.0;
     context_.limits.memory_limit_bytes = 1234567890;
   }

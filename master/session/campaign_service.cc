@@ -1,0 +1,246 @@
+#include "master/session/campaign_service.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/system/atomic_file.h"
+#include "base/system/clock.h"
+#include "master/directory/campaign_ownership.h"
+#include "master/dispatch/worker_program.h"
+#include "master/experiment/experiment_file.h"
+#include "master/report/stored_check.h"
+#include "master/search/make_search.h"
+#include "master/search/search_table.h"
+#include "master/session/bind_endpoint.h"
+#include "master/session/campaign_server.h"
+#include "master/store/run_numbers.h"
+#include "proto/json_text.h"
+
+namespace gauntlet::master {
+namespace {
+
+using nlohmann::ordered_json;
+
+// The golden hashes that the campaign was begun with. They decide whether this machine computes the bits that
+// it has stored so far.
+Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
+  Result<proto::GoldenHashes> begun_with = proto::ReadGoldenHashes(meta.golden_hashes);
+  if (!begun_with) return begun_with;
+  const Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine();
+  if (!ours) return ours;
+  const auto difference = proto::FirstDifference(*begun_with, *ours);
+  if (!difference) return begun_with;
+  if (!difference->offered) {
+    return Error{
+        ErrorKind::kVersion,
+        fmt::format("the campaign uses controller '{}', which this build of gauntlet-worker does not have",
+                    difference->controller)};
+  }
+  return Error{
+      ErrorKind::kVersion,
+      fmt::format("the campaign was begun by version {} with golden hash {:016x} of controller '{}', this is "
+                  "version {} with {:016x}: its simulations would not be comparable",
+                  meta.software_version, difference->needed, difference->controller, GAUNTLET_VERSION,
+                  *difference->offered)};
+}
+
+// Of the controllers that the searches use.
+Result<proto::GoldenHashes> GoldenHashesFor(const std::vector<SearchPlan>& plans) {
+  const Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine();
+  if (!ours) return ours;
+  proto::GoldenHashes used;
+  for (const SearchPlan& plan : plans) {
+    const auto hash = ours->find(plan.experiment.controller);
+    if (hash == ours->end()) {
+      return Error{ErrorKind::kVersion, fmt::format("gauntlet-worker was built without the controller '{}'",
+                                                    plan.experiment.controller)};
+    }
+    used.insert(*hash);
+  }
+  return used;
+}
+
+struct NewCampaign {
+  CampaignOwnership ownership;
+  proto::GoldenHashes golden_hashes;
+};
+
+// Whether every search can begin, asked before anything is written.
+Status CheckSearches(const std::vector<SearchPlan>& plans, const std::vector<sim::TestCase>& cases) {
+  for (const SearchPlan& plan : plans) {
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(plan.experiment, kOnlySearch, cases);
+    if (search) continue;
+    if (plan.settings.empty()) return search.error();
+    return Error{search.error().kind, fmt::format("{}: {}", plan.settings, search.error().message)};
+  }
+  return Ok{};
+}
+
+Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
+                           const std::vector<sim::TestCase>& cases, const std::string& slurm) {
+  if (Status possible = CheckSearches(plans, cases); !possible) return possible.error();
+  Result<proto::GoldenHashes> golden_hashes = GoldenHashesFor(plans);
+  if (!golden_hashes) return golden_hashes.error();
+  CampaignMeta meta;
+  meta.software_version = GAUNTLET_VERSION;
+  meta.golden_hashes = proto::WriteGoldenHashes(*golden_hashes);
+  const Experiment& experiment = plans.front().experiment;
+  std::vector<std::string> header = {
+      fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {:016x}.",
+                  GAUNTLET_VERSION, golden_hashes->at(experiment.controller))};
+  if (plans.size() > 1) header.emplace_back("It is the first of several: searches.json has all.");
+  const CampaignTexts texts{WriteExperiment(experiment, header, BuiltInCatalogue()),
+                            plans.size() > 1 ? WriteSearchPlans(plans) : "", slurm};
+  Result<CampaignOwnership> campaign = CreateCampaign(dir, texts, meta);
+  if (!campaign) return campaign.error();
+  SqliteStore& store = *campaign->store;
+  if (Status added = AddSearches(plans, store); !added) return added.error();
+  if (!cases.empty()) {
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(experiment, kOnlySearch, cases);
+    if (!search) return search.error();
+    store.AddIndividuals(kOnlySearch, (*search)->Population());
+  }
+  if (Status flushed = store.Flush(); !flushed) return flushed.error();
+  return NewCampaign{*std::move(campaign), *std::move(golden_hashes)};
+}
+
+class Campaigns final : public CampaignService {
+ public:
+  Result<SessionReport> Start(const std::string& dir, const Experiment& experiment,
+                              const std::vector<sim::TestCase>& cases,
+                              const SessionOptions& options) override {
+    const std::vector<SearchPlan> plans = {{"", experiment}};
+    // Before anything is made: the corrected command is to find the directory as this one did.
+    if (Status possible = TryToListen(options.bind); !possible) return possible.error();
+    Result<NewCampaign> created = Create(dir, plans, cases, "");
+    if (!created) return created.error();
+    return CampaignServer(created->ownership, plans, created->golden_hashes, options).Serve();
+  }
+
+  Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,
+                 const std::string& slurm) override {
+    const Result<NewCampaign> created = Create(dir, searches, {}, slurm);
+    if (!created) return created.error();
+    return Ok{};
+  }
+
+  Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) override {
+    Result<CampaignOwnership> campaign =
+        TakeCampaign(dir, options.batch_job.empty() ? LivingMaster::kRespect : LivingMaster::kFence);
+    if (!campaign) return campaign.error();
+    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
+    if (!plans) return plans.error();
+    const Result<proto::GoldenHashes> golden_hashes = CheckGoldenHashes(campaign->store->meta());
+    if (!golden_hashes) return golden_hashes.error();
+    if (Status whole = CheckStored(*plans, *campaign->store); !whole) return whole.error();
+    const Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
+    if (!searches) return searches.error();
+    const auto finished = std::ranges::count_if(*searches, &StoredSearch::finished);
+    if (static_cast<std::size_t>(finished) < plans->size())
+      return CampaignServer(*campaign, *plans, *golden_hashes, options).Serve();
+    Result<CampaignSummary> summary = Summarise(*plans, *campaign->store);
+    if (!summary) return summary.error();
+    return SessionReport{.summary = *std::move(summary)};
+  }
+
+  Result<CampaignSummary> Read(const std::string& dir) override {
+    const Result<CampaignView> campaign = ViewCampaign(dir);
+    if (!campaign) return campaign.error();
+    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
+    if (!plans) return plans.error();
+    if (Status whole = CheckStored(*plans, *campaign->store); !whole) return whole.error();
+    return Summarise(*plans, *campaign->store);
+  }
+
+  Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) override {
+    const Result<CampaignView> campaign = ViewCampaign(dir);
+    return campaign ? campaign->store->ForEachRun(kOnlySearch, 0, visit) : campaign.error();
+  }
+
+  Result<CampaignReplay> Replay(const std::string& dir, RunId run) override {
+    const Result<CampaignView> campaign = ViewCampaign(dir);
+    if (!campaign) return campaign.error();
+    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
+    if (!plans) return plans.error();
+    Result<ReplayReport> report = ReplayRun(*campaign->store, run);
+    if (!report) return report.error();
+    const std::size_t search = SearchOf(run) - 1;
+    if (search >= plans->size())
+      return Error{ErrorKind::kCorrupt,
+                   fmt::format("run {} is of a search that the campaign does not have", run)};
+    const Experiment& experiment = (*plans)[search].experiment;
+    if (report->damage.empty()) {
+      if (Status belongs = CheckSeed(experiment, report->stored); !belongs) return belongs.error();
+    }
+    return CampaignReplay{experiment, *std::move(report)};
+  }
+
+  Result<bool> MasterLives(const std::string& dir) override {
+    const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+    if (!directory) return directory.error();
+    LockOptions options;
+    options.patience = std::chrono::milliseconds(0);
+    options.is_copy = [&directory] { return IsUntakenCopy(*directory); };
+    const Result<std::unique_ptr<CampaignLock>> lock =
+        CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), options);
+    if (lock) return false;
+    if (lock.error().kind == ErrorKind::kInUse) return true;
+    return lock.error();
+  }
+
+  Result<std::string> ReadStatus(const std::string& dir) override {
+    const Result<bool> lives = MasterLives(dir);
+    if (!lives) return lives.error();
+    const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+    if (!directory) return directory.error();
+    if (*lives) {
+      const Result<std::string> text = ReadSmallFile(directory->status_path(), 16U << 20);
+      if (!text) {
+        if (text.error().kind != ErrorKind::kNotFound) return text.error();
+        return JsonText({{"state", "starting"},
+                         {"why_nothing_runs", "the master has just started, or is about to end"},
+                         {"worker_list", ordered_json::array()}});
+      }
+      ordered_json json = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
+      if (!json.is_object()) {
+        return Error{ErrorKind::kCorrupt, fmt::format("{} does not parse", directory->status_path())};
+      }
+      json["status_age_seconds"] =
+          static_cast<double>(UnixMilliseconds() - json.value("unix_ms", std::int64_t{0})) / 1000.0;
+      return JsonText(json);
+    }
+    const Result<CampaignSummary> summary = Read(dir);
+    if (!summary) return summary.error();
+    return JsonText({{"state", summary->finished ? "finished" : "stopped"},
+                     {"experiment", summary->experiment},
+                     {"master", nullptr},
+                     {"generation", summary->progress.generation},
+                     {"generations", summary->progress.generations},
+                     {"runs_done", summary->runs_done},
+                     {"total_failures", summary->total_failures},
+                     {"runs_failed", summary->runs_failed},
+                     {"workers", 0},
+                     {"nondeterministic", summary->nondeterministic},
+                     {"why_nothing_runs",
+                      summary->finished ? "the search has finished"
+                                        : "no master serves the campaign: go on with `gauntlet resume DIR`"},
+                     {"worker_list", ordered_json::array()}});
+  }
+
+  Status RequestStop(const std::string& dir) override {
+    const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
+    if (!directory) return directory.error();
+    return ReplaceFile(directory->stop_path(), "stop\n", kReadableByAll);
+  }
+};
+
+}  // namespace
+
+CampaignService& CampaignsOnDisk() {
+  static Campaigns campaigns;
+  return campaigns;
+}
+
+}  // namespace gauntlet::master

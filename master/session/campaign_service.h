@@ -1,0 +1,99 @@
+// Campaigns as commands know them: made, served, gone on with, looked at, stopped.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "master/directory/search_plans.h"
+#include "master/dispatch/worker_pool.h"
+#include "master/report/campaign_status.h"
+#include "master/report/campaign_summary.h"
+#include "master/report/replay.h"
+
+namespace gauntlet::master {
+
+class MetricsServer;
+
+// What a master says of itself once workers can reach it.
+struct ServingNotice {
+  std::vector<std::string> endpoints;
+  bool encrypted = false;
+};
+
+// Where the workers of a pool find what they need; absolute paths.
+struct PoolSite {
+  std::string access_file;
+  std::string log_directory;
+};
+
+struct SessionOptions {
+  int workers = 1;  // processes of the local pool; 0: workers come from elsewhere
+  // Makes another pool than the local one.
+  std::function<Result<std::unique_ptr<WorkerPool>>(const PoolSite&)> make_pool;
+  // For a master that is a batch job: a living master is a twin that a lost node has left behind, and is made
+  // to stop; and when a signal ends this one, its pool is left to the next.
+  std::string batch_job;  // its id; "" = no such master
+  // Where workers connect. Reachable from other machines: encrypted, for known keys only, unless `insecure`.
+  std::string bind = "tcp://127.0.0.1:*";
+  bool insecure = false;
+  double audit_share = 0.0;          // of runs, 0 to 1, that a second worker simulates too, to be compared
+  MetricsServer* metrics = nullptr;  // told every second what goes on; nullptr = nobody asks
+  std::function<void(const ServingNotice&)> on_serving = [](const ServingNotice&) {};
+  // Asks for a clean stop at once. Workers from elsewhere stay and look for the campaign's next master; when
+  // `gauntlet stop` asks, runs that have begun are waited for and all workers are let go.
+  std::function<bool()> stop_requested = [] { return false; };
+  std::function<void(const CampaignProgress&)> on_progress = [](const CampaignProgress&) {};
+};
+
+struct SessionReport {
+  CampaignEnd end = CampaignEnd::kFinished;
+  CampaignSummary summary;
+  double wall_seconds = 0.0;
+  double master_cpu_seconds = 0.0;      // user + system of the master process alone, in this session
+  std::uint64_t runs_this_session = 0;  // simulated, not taken from the store
+  WorkerStatistics workers = {};
+};
+
+// `dir` is the campaign's directory. Those that look at a campaign wait for a master that starts or ends just
+// now, and answer kInUse, with the owner, while one lives.
+class CampaignService {
+ public:
+  virtual ~CampaignService() = default;
+
+  // Creates the campaign in `dir` (which must not exist or be empty) and runs it. `cases`: what `evaluate`
+  // simulates, in order (a search through given cases); empty otherwise. Errors: kInvalidInput, kInUse;
+  // kNoSpace and kIo when the campaign stopped and can be resumed.
+  virtual Result<SessionReport> Start(const std::string& dir, const Experiment& experiment,
+                                      const std::vector<sim::TestCase>& cases,
+                                      const SessionOptions& options) = 0;
+  // Creates the campaign without running it: Resume does. `searches`: one, or those of a sweep; `slurm`: the
+  // text of its slurm.toml.
+  virtual Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,
+                         const std::string& slurm) = 0;
+  // Goes on where the campaign was; a finished one is only summarised.
+  virtual Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) = 0;
+
+  // Checks and summarises everything that is stored.
+  virtual Result<CampaignSummary> Read(const std::string& dir) = 0;
+  // The runs of a campaign of one search in logical order.
+  virtual Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) = 0;
+  virtual Result<CampaignReplay> Replay(const std::string& dir, RunId run) = 0;
+
+  // status.json of a living master (with "state": "running" or "stopping", and "status_age_seconds"); else
+  // what is stored, with "state": "stopped" or "finished" and no workers.
+  virtual Result<std::string> ReadStatus(const std::string& dir) = 0;
+  // Whether a master serves the campaign.
+  virtual Result<bool> MasterLives(const std::string& dir) = 0;
+  // Asks the living master to let the runs that have begun end, to let its workers go, and to stop. It
+  // answers by ending.
+  virtual Status RequestStop(const std::string& dir) = 0;
+};
+
+// The real one.
+CampaignService& CampaignsOnDisk();
+
+}  // namespace gauntlet::master

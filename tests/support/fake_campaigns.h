@@ -1,0 +1,91 @@
+// Campaigns that only note what they are asked.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "master/session/campaign_service.h"
+
+namespace gauntlet::testing_support {
+
+class FakeCampaigns : public master::CampaignService {
+ public:
+  // What is answered; an error to all that can fail for another reason than a wrong directory.
+  master::SessionReport report;
+  std::vector<master::StoredRun> stored;
+  master::CampaignReplay replay;
+  std::string status;
+  int lives = 0;  // how often a master is found alive
+  std::optional<Error> error;
+  // Called while a session runs.
+  std::function<void(const master::SessionOptions&)> during;
+
+  // What was asked.
+  int starts = 0;
+  int resumes = 0;
+  std::string directory;  // of the newest session
+  master::Experiment experiment;
+  std::vector<sim::TestCase> cases;
+  int workers = 0;
+  std::vector<master::SearchPlan> prepared;
+  std::string slurm;
+  std::string stopped;
+  master::RunId replayed_run = 0;
+
+  Result<master::SessionReport> Start(const std::string& dir, const master::Experiment& wanted,
+                                      const std::vector<sim::TestCase>& given,
+                                      const master::SessionOptions& options) override {
+    ++starts;
+    experiment = wanted;
+    cases = given;
+    return Serve(dir, options);
+  }
+  Status Prepare(const std::string& dir, const std::vector<master::SearchPlan>& searches,
+                 const std::string& text) override {
+    prepared = searches;
+    slurm = text;
+    std::filesystem::create_directories(dir);
+    std::ofstream(dir + "/slurm.toml") << text;
+    return Ok{};
+  }
+  Result<master::SessionReport> Resume(const std::string& dir,
+                                       const master::SessionOptions& options) override {
+    ++resumes;
+    return Serve(dir, options);
+  }
+  Result<master::CampaignSummary> Read(const std::string& /*dir*/) override { return Answer(report.summary); }
+  Status ForEachRun(const std::string& /*dir*/,
+                    const std::function<void(const master::StoredRun&)>& visit) override {
+    std::ranges::for_each(stored, visit);
+    return Ok{};
+  }
+  Result<master::CampaignReplay> Replay(const std::string& /*dir*/, master::RunId run) override {
+    replayed_run = run;
+    return Answer(replay);
+  }
+  Result<std::string> ReadStatus(const std::string& /*dir*/) override { return Answer(status); }
+  Result<bool> MasterLives(const std::string& /*dir*/) override { return lives-- > 0; }
+  Status RequestStop(const std::string& dir) override {
+    stopped = dir;
+    return Ok{};
+  }
+
+ private:
+  template <typename Value>
+  Result<Value> Answer(const Value& value) const {
+    return error ? Result<Value>(*error) : Result<Value>(value);
+  }
+  Result<master::SessionReport> Serve(const std::string& dir, const master::SessionOptions& options) {
+    directory = dir;
+    workers = options.workers;
+    if (during) during(options);
+    return Answer(report);
+  }
+};
+
+}  // namespace gauntlet::testing_support
