@@ -1,5 +1,6 @@
 #include "base/utf8.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace gauntlet {
@@ -57,6 +58,14 @@ std::string ToUtf8(std::string_view text) {
     }
   }
   return clean;
+}
+
+std::string PlaceIn(std::string_view text, std::size_t offset) {
+  const std::string_view before = text.substr(0, offset);
+  const std::string_view line = before.substr(before.rfind('\n') + 1);  // npos + 1 is the beginning
+  const auto begins_character = [](char c) { return (static_cast<std::uint8_t>(c) & 0xC0U) != 0x80U; };
+  return std::to_string(std::ranges::count(before, '\n') + 1) + ":" +
+         std::to_string(std::ranges::count_if(line, begins_character) + 1);
 }
 
 }  // namespace gauntlet

@@ -18,4 +18,7 @@ bool IsUtf8(std::string_view text);
 // line feed, replaced by '?'.
 std::string ToUtf8(std::string_view text);
 
+// "2:7": line and column, in characters, of the byte at `offset` of `text`; both count from 1.
+std::string PlaceIn(std::string_view text, std::size_t offset);
+
 }  // namespace gauntlet

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/printable.h"
+#include "base/utf8.h"
 
 namespace gauntlet {
 namespace {
@@ -62,15 +63,6 @@ class Path {
   std::vector<Level> levels_;
 };
 
-// "2:7", line and column of the last of the first `bytes` bytes.
-std::string PlaceIn(std::string_view text, std::size_t bytes) {
-  const std::string_view before = text.substr(0, std::max<std::size_t>(bytes, 1) - 1);
-  const std::string_view line = before.substr(before.rfind('\n') + 1);
-  const auto begins_character = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
-  return fmt::format("{}:{}", std::count(before.begin(), before.end(), '\n') + 1,
-                     std::count_if(line.begin(), line.end(), begins_character) + 1);
-}
-
 // The library's words without what it has read: "unexpected number literal; expected ':'".
 std::string WordsOf(const json::parse_error& error) {
   std::string words = error.what();
@@ -96,11 +88,16 @@ Result<json> ParseJson(std::string_view text, const std::string& file_name) {
   } catch (const Error& error) {
     return wrong(": " + error.message);
   } catch (const json::parse_error& error) {
-    return wrong(fmt::format(":{}: {}", PlaceIn(text, error.byte), WordsOf(error)));
+    return wrong(
+        fmt::format(":{}: {}", PlaceIn(text, std::max<std::size_t>(error.byte, 1) - 1), WordsOf(error)));
   } catch (const json::exception&) {
     return wrong(fmt::format(": {}{}a number beyond the range of a double", path.Text(),
                              path.Text().empty() ? "" : ": "));
   }
+}
+
+std::string TextAt(const json& json, const char* key) {
+  return json.is_object() && json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
 }
 
 }  // namespace gauntlet

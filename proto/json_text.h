@@ -18,4 +18,7 @@ std::string JsonText(const nlohmann::ordered_json& value);
 // it may be a part of a key.
 Result<nlohmann::json> ParseJson(std::string_view text, const std::string& file_name);
 
+// The text that an object has at `key`; "" when it has none, or is no object.
+std::string TextAt(const nlohmann::json& json, const char* key);
+
 }  // namespace gauntlet

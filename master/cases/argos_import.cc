@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +13,9 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include "base/parse_number.h"
 #include "base/printable.h"
+#include "base/utf8.h"
 
 namespace gauntlet::master {
 namespace {
@@ -31,14 +32,11 @@ std::string_view Trimmed(std::string_view text) {
 }
 
 template <typename Number>
-std::optional<Number> ParseNumber(std::string_view text) {
+std::optional<Number> ReadNumber(std::string_view text) {
   text = Trimmed(text);
   if (text.starts_with('+')) text.remove_prefix(1);
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
-  if (!std::isfinite(static_cast<double>(value))) return std::nullopt;
-  return value;
+  const std::optional<Number> value = ParseNumber<Number>(text);
+  return value && std::isfinite(static_cast<double>(*value)) ? value : std::nullopt;
 }
 
 class Importer {
@@ -73,12 +71,8 @@ class Importer {
   using Triple = std::array<double, 3>;
 
   Error Fail(std::ptrdiff_t offset, std::string_view message) const {
-    const auto end = std::min(static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)), text_.size());
-    const std::string_view before(text_.data(), end);
-    const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-    const auto last_break = before.rfind('\n');
-    const auto column = last_break == std::string_view::npos ? end + 1 : end - last_break;
-    return InvalidInput(Printable(fmt::format("{}:{}:{}: {}", file_name_, line, column, message)));
+    const std::string place = PlaceIn(text_, static_cast<std::size_t>(std::max<std::ptrdiff_t>(offset, 0)));
+    return InvalidInput(Printable(fmt::format("{}:{}: {}", file_name_, place, message)));
   }
   Error Fail(const pugi::xml_node& node, std::string_view message) const {
     return Fail(node.offset_debug(), message);
@@ -101,7 +95,7 @@ class Importer {
     for (std::size_t begin = 0; begin <= text.size(); ++count) {
       const std::size_t end = std::min(text.find(',', begin), text.size());
       const std::string_view part = text.substr(begin, end - begin);
-      const std::optional<double> number = ParseNumber<double>(part);
+      const std::optional<double> number = ReadNumber<double>(part);
       if (!number) {
         return Fail(node, fmt::format("{} has {}=\"{}\": '{}' is not a number, expected \"{}\"",
                                       Called(owner), name, text, Trimmed(part), meaning));
@@ -121,7 +115,7 @@ class Importer {
   }
 
   void Ignore(std::string_view what) {
-    if (std::find(ignored_.begin(), ignored_.end(), what) == ignored_.end()) ignored_.emplace_back(what);
+    if (std::ranges::count(ignored_, what) == 0) ignored_.emplace_back(what);
   }
 
   Status ReadArena(const pugi::xml_node& arena) {
@@ -194,7 +188,7 @@ class Importer {
         continue;
       }
       const pugi::xml_attribute quantity = entity.attribute("quantity");
-      const std::optional<std::int32_t> count = ParseNumber<std::int32_t>(quantity.value());
+      const std::optional<std::int32_t> count = ReadNumber<std::int32_t>(quantity.value());
       if (!count || *count < 1) {
         return Fail(entity,
                     fmt::format("<entity> of {} has quantity=\"{}\", expected a whole number from 1 on",
@@ -282,7 +276,6 @@ class Importer {
       parts.push_back(fmt::format("{} boxes lower than a robot's camera were made as high as a wall", low_));
     }
     if (!ignored_.empty()) parts.push_back(fmt::format("ignored: {}", fmt::join(ignored_, ", ")));
-    if (parts.empty()) return {};
     return fmt::format("{}", fmt::join(parts, "; "));
   }
 

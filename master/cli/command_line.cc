@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <exception>
 #include <string_view>
-#include <utility>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "base/nearest_name.h"
+#include "base/printable.h"
 #include "master/cli/commands.h"
 
 namespace gauntlet::master {
@@ -20,6 +20,7 @@ void Configure(CLI::App& app, CommandAction& chosen) {
       "Runs a swarm of robots through evolved obstacle courses until its control algorithm breaks.");
   app.set_version_flag("--version", "gauntlet " GAUNTLET_VERSION);
   app.get_formatter()->column_width(34);
+  app.require_subcommand(1);
   CommandParser parser(app, chosen);
   for (const auto add : kCommands) add(parser);
   const CLI::Validator given(
@@ -43,35 +44,27 @@ Exit codes: 0 done; 1 a check came out negative; 2 usage or configuration; 3 sto
 4 internal error, or standard output cannot be written.)");
 }
 
-std::vector<std::string> CommandNames(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-  }
-  return names;
-}
-
-std::string Nearest(std::string_view unknown, const std::vector<std::string>& known) {
+// "; did you mean 'evolve'?"; "" when no known name is near.
+std::string Suggestion(std::string_view unknown, const std::vector<std::string>& known) {
   const std::vector<std::string_view> views(known.begin(), known.end());
-  return NearestName(unknown, views);
-}
-
-std::string Suggestion(const std::string& nearest) {
+  const std::string nearest = NearestName(unknown, views);
   return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
 // What is wrong with arguments that the parser refused, for a person.
 std::string Explain(const CLI::App& app, const CLI::ParseError& error,
                     const std::vector<std::string>& arguments) {
-  const std::vector<std::string> commands = CommandNames(app);
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
   if (arguments.empty())
     return fmt::format("which command? One of {} (try 'gauntlet --help')", fmt::join(commands, ", "));
   const std::string& name = arguments.front();
-  if (!name.starts_with('-') && std::find(commands.begin(), commands.end(), name) == commands.end()) {
-    return fmt::format("unknown command '{}'{}", name,
-                       Nearest(name, commands).empty()
-                           ? fmt::format("; there are {}", fmt::join(commands, ", "))
-                           : Suggestion(Nearest(name, commands)));
+  if (!name.starts_with('-') && std::ranges::count(commands, name) == 0) {
+    const std::string suggestion = Suggestion(name, commands);
+    return fmt::format(
+        "unknown command '{}'{}", name,
+        suggestion.empty() ? fmt::format("; there are {}", fmt::join(commands, ", ")) : suggestion);
   }
   const std::vector<CLI::App*> used = app.get_subcommands();
   const CLI::App& command = used.empty() ? app : *used.front();
@@ -86,40 +79,28 @@ std::string Explain(const CLI::App& app, const CLI::ParseError& error,
     }
     // The parser lists an option's value before the option.
     const std::vector<std::string> extras = app.remaining(true);
-    const auto option = std::find_if(extras.begin(), extras.end(),
-                                     [](const std::string& extra) { return extra.starts_with("--"); });
+    const auto option =
+        std::ranges::find_if(extras, [](const std::string& extra) { return extra.starts_with("--"); });
     if (option != extras.end()) {
       const std::string unknown = option->substr(0, option->find('='));
-      return fmt::format("{}unknown option {}{} {}", place, unknown, Suggestion(Nearest(unknown, options)),
-                         help);
+      return fmt::format("{}unknown option {}{} {}", place, unknown, Suggestion(unknown, options), help);
     }
     if (!extras.empty()) return fmt::format("{}unexpected argument '{}' {}", place, extras.front(), help);
   }
   return fmt::format("{}{} {}", place, error.what(), help);
 }
 
-// The action of the command that the arguments ask for; nothing when the answer, help or an error, has been
-// given already: `exit_code`.
-CommandAction Parse(const std::vector<std::string>& arguments, CommandContext& context, ExitCode& exit_code) {
-  CLI::App app;
-  CommandAction chosen;
-  Configure(app, chosen);
-  app.require_subcommand(1);
-  exit_code = kExitDone;
-  try {
-    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
-    return chosen;
-  } catch (const CLI::CallForHelp&) {
-    context.out << app.help() << std::flush;
-  } catch (const CLI::CallForVersion& version) {
-    context.out << version.what() << std::endl;
-  } catch (const CLI::ParseError& error) {
-    exit_code = Fail(context, InvalidInput(Explain(app, error, arguments)));
-  }
-  return nullptr;
+}  // namespace
+
+void PrintMessage(CommandContext& context, std::string_view message) {
+  context.err << "gauntlet: " << Printable(message) << std::endl;
 }
 
-}  // namespace
+ExitCode Fail(CommandContext& context, const Error& error) {
+  PrintMessage(context, error.message);
+  if (error.kind == ErrorKind::kInternal) return kExitInternal;
+  return error.kind == ErrorKind::kNoSpace ? kExitStopped : kExitUsage;
+}
 
 CLI::App& CommandParser::AddSubcommand(const char* name, const char* description, CommandAction action) {
   CLI::App* command = app_.add_subcommand(name, description);
@@ -128,15 +109,25 @@ CLI::App& CommandParser::AddSubcommand(const char* name, const char* description
 }
 
 ExitCode RunCommandLine(const std::vector<std::string>& arguments, CommandContext& context) {
+  std::vector<std::string> words = arguments;
+  if (!words.empty() && words.front() == "help") {  // "help evolve" is "evolve --help"
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  CLI::App app;
   try {
-    std::vector<std::string> words = arguments;
-    if (!words.empty() && words.front() == "help") {  // "help evolve" is "evolve --help"
-      words.erase(words.begin());
-      words.emplace_back("--help");
-    }
-    ExitCode exit_code = kExitDone;
-    const CommandAction action = Parse(words, context, exit_code);
-    return action ? action(context) : exit_code;
+    CommandAction chosen;
+    Configure(app, chosen);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    return chosen(context);
+  } catch (const CLI::CallForHelp&) {
+    context.out << app.help() << std::flush;
+    return kExitDone;
+  } catch (const CLI::CallForVersion& version) {
+    context.out << version.what() << std::endl;
+    return kExitDone;
+  } catch (const CLI::ParseError& error) {
+    return Fail(context, InvalidInput(Explain(app, error, words)));
   } catch (const std::exception& error) {
     PrintMessage(context, fmt::format("internal error: {}", error.what()));
     return kExitInternal;

@@ -1,9 +1,43 @@
-// The commands of gauntlet. Each is one file: its options, its help, its action.
+// The commands of gauntlet, and what a command needs to set itself up: its options, its help, its action.
 #pragma once
 
-#include "master/cli/command.h"
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "master/cli/command_line.h"
+
+namespace CLI {
+class App;
+}
 
 namespace gauntlet::master {
+
+using CommandAction = std::function<ExitCode(CommandContext&)>;
+
+// The command line while it is set up.
+class CommandParser {
+ public:
+  // `chosen` is set to the action of the command that is found when `app` parses. Both must outlive this.
+  CommandParser(CLI::App& app, CommandAction& chosen) : app_(app), chosen_(chosen) {}
+
+  // A new subcommand, to which the caller adds its options, and where their values go. When the command is
+  // chosen, its action calls `run` with these values.
+  template <typename Options>
+  std::pair<CLI::App&, Options&> Add(const char* name, const char* description,
+                                     ExitCode (*run)(CommandContext&, const Options&)) {
+    const auto options = std::make_shared<Options>();
+    CLI::App& command = AddSubcommand(
+        name, description, [options, run](CommandContext& context) { return run(context, *options); });
+    return {command, *options};
+  }
+
+ private:
+  CLI::App& AddSubcommand(const char* name, const char* description, CommandAction action);
+
+  CLI::App& app_;
+  CommandAction& chosen_;
+};
 
 void AddEvolve(CommandParser& parser);
 void AddRandom(CommandParser& parser);

@@ -1,4 +1,5 @@
 // gauntlet evaluate: simulate given test cases.
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -11,10 +12,8 @@
 #include "controllers/registry.h"
 #include "master/cases/case_file.h"
 #include "master/cli/commands.h"
-#include "master/cli/options.h"
 #include "master/cli/run_campaign.h"
-#include "master/cli/summary_json.h"
-#include "master/cli/summary_text.h"
+#include "master/cli/summary.h"
 #include "master/report/verdict_text.h"
 #include "master/search/make_search.h"
 #include "proto/run_codec.h"
@@ -23,10 +22,7 @@
 namespace gauntlet::master {
 namespace {
 
-struct EvaluateOptions {
-  ExperimentOptions experiment;
-  SizeOptions refused;
-  RunningOptions running;
+struct EvaluateOptions : LocalOptions {
   std::vector<std::string> files;
   std::string replicates;
 };
@@ -88,11 +84,10 @@ Status AddRuns(CommandContext& context, const std::string& directory, CaseList& 
   std::optional<Error> damaged;
   const Status read = context.campaigns.ForEachRun(directory, [&](const StoredRun& stored) {
     Result<sim::RunResult> result = proto::DecodeRunResult(stored.result);
+    if (damaged) return;
     if (!result || stored.individual < 1 || stored.individual > list.cases.size()) {
-      if (!damaged) {
-        damaged =
-            Error{ErrorKind::kCorrupt, fmt::format("run {} of {} does not read back", stored.id, directory)};
-      }
+      damaged =
+          Error{ErrorKind::kCorrupt, fmt::format("run {} of {} does not read back", stored.id, directory)};
       return;
     }
     EvaluatedCase& evaluated = list.files[list.file_of_case[static_cast<std::size_t>(stored.individual) - 1]];
@@ -102,13 +97,6 @@ Status AddRuns(CommandContext& context, const std::string& directory, CaseList& 
   if (damaged) return *damaged;
   for (EvaluatedCase& evaluated : list.files) NoteRefusal(evaluated);
   return Ok{};
-}
-
-bool AnyFitness(const CaseList& list) {
-  for (const EvaluatedCase& evaluated : list.files) {
-    if (MeanFitness(evaluated)) return true;
-  }
-  return false;
 }
 
 void Print(CommandContext& context, const EvaluateOptions& options, const CaseList& list,
@@ -132,7 +120,7 @@ void Print(CommandContext& context, const EvaluateOptions& options, const CaseLi
 
 // kExitUsage when none of the cases gave a fitness.
 ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
-  for (const ExtraSet& size : SetsOf(options.refused)) {
+  for (const ExtraSet& size : SetsOf(options.size)) {
     return Fail(context, InvalidInput(fmt::format(
                              "{} {}: 'evaluate' searches nothing; the runs per case are --replicates K",
                              size.option, size.value)));
@@ -141,31 +129,27 @@ ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
   if (!options.replicates.empty()) extra.push_back({"--replicates", "search.replicates", options.replicates});
   const Result<Experiment> experiment = LoadExperimentWith(options.experiment, extra);
   if (!experiment) return Fail(context, experiment.error());
-  const Result<int> workers = ParseWorkers(options.running.workers);
-  if (!workers) return Fail(context, workers.error());
-  const Result<std::string> directory = NewDirectory(options.experiment.directory, *experiment);
-  if (!directory) return Fail(context, directory.error());
+  Result<CampaignRun> campaign = LocalRun(*experiment, options);
+  if (!campaign) return Fail(context, campaign.error());
+  const std::string& directory = campaign->directory;
 
   CaseList list = LoadCases(context, options, *experiment);
   if (list.cases.empty()) {
-    Print(context, options, list, nullptr, *directory);
+    Print(context, options, list, nullptr, directory);
     return kExitUsage;
   }
-  CampaignRun campaign;
-  campaign.directory = *directory;
-  campaign.announcement = Announcement(*experiment, *workers, *directory);
-  campaign.workers = *workers;
-  campaign.serving = options.running;
-  campaign.run = [&](const SessionOptions& session) {
-    return context.campaigns.Start(*directory, *experiment, list.cases, session);
+  campaign->run = [&](const SessionOptions& session) {
+    return context.campaigns.Start(directory, *experiment, list.cases, session);
   };
-  campaign.report = [&](const SessionReport& report) -> Status {
-    if (Status added = AddRuns(context, *directory, list); !added) return added;
-    Print(context, options, list, &report.summary, *directory);
+  campaign->report = [&](const SessionReport& report) -> Status {
+    if (Status added = AddRuns(context, directory, list); !added) return added;
+    Print(context, options, list, &report.summary, directory);
     return Ok{};
   };
-  const ExitCode code = RunCampaign(context, campaign);
-  return code == kExitDone && !AnyFitness(list) ? kExitUsage : code;
+  const ExitCode code = RunCampaign(context, *campaign);
+  const bool none =
+      std::ranges::none_of(list.files, [](const auto& one) { return MeanFitness(one).has_value(); });
+  return code == kExitDone && none ? kExitUsage : code;
 }
 
 }  // namespace
@@ -173,9 +157,7 @@ ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
 void AddEvaluate(CommandParser& parser) {
   const auto [command, options] =
       parser.Add("evaluate", "simulate given test cases (case JSON or .argos files)", RunEvaluate);
-  AddExperimentOptions(command, options.experiment);
-  AddRefusedSizeOptions(command, options.refused);
-  AddRunningOptions(command, options.running);
+  AddLocalOptions(command, options, /*sizes=*/false);
   command.add_option("--case", options.files, "case files, .json or .argos; several may follow")
       ->type_name("FILE...")
       ->required();

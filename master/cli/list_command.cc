@@ -1,7 +1,7 @@
 // gauntlet list: what can be named, and every parameter with unit, default and range.
 #include <algorithm>
+#include <functional>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -36,6 +36,12 @@ std::vector<Key> KeysOf(const SearchInfo& search) {
   return keys;
 }
 
+std::vector<Key> DisturbanceKeys() {
+  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  std::erase_if(keys, std::not_fn(IsDisturbance));
+  return keys;
+}
+
 std::string Number(double value) {
   return fmt::format("{:.6g}", value);
 }
@@ -61,16 +67,12 @@ std::string DefaultOf(const Key& key) {
   return text != nullptr ? *text : ToToml(key.default_value);
 }
 
-std::vector<Table::Column> ParameterColumns() {
-  return {{"parameter", Align::kLeft},
-          {"default", Align::kRight},
-          {"unit", Align::kLeft},
-          {"range", Align::kLeft},
-          {"", Align::kLeft}};
+Table NewParameterTable() {
+  return Table({"parameter", ">default", "unit", "range", ""});
 }
 
 std::string ParameterTable(std::span<const controllers::ParameterInfo> parameters) {
-  Table table(ParameterColumns());
+  Table table = NewParameterTable();
   for (const controllers::ParameterInfo& info : parameters) {
     table.AddRow({std::string(info.name), Number(info.default_value), std::string(info.unit),
                   RangeOf(info.min, info.max), std::string(info.description)});
@@ -78,8 +80,15 @@ std::string ParameterTable(std::span<const controllers::ParameterInfo> parameter
   return table.ToText(4);
 }
 
+std::string KeyTable(const std::vector<Key>& keys, std::size_t indent) {
+  Table table = NewParameterTable();
+  for (const Key& key : keys)
+    table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
+  return table.ToText(indent);
+}
+
 std::string MetricTable(std::span<const controllers::MetricInfo> metrics) {
-  Table table({{"metric", Align::kLeft}, {"unit", Align::kLeft}, {"", Align::kLeft}});
+  Table table({"metric", "unit", ""});
   for (const controllers::MetricInfo& info : metrics) {
     table.AddRow({std::string(info.name), std::string(info.unit),
                   fmt::format("{}{}{}", info.description, info.may_be_none ? "; -1 = none" : "",
@@ -90,7 +99,7 @@ std::string MetricTable(std::span<const controllers::MetricInfo> metrics) {
 
 std::string FailureTable(std::span<const controllers::FailureType> failures) {
   if (failures.empty()) return {};
-  Table table({{"failure type", Align::kRight}, {"", Align::kLeft}});
+  Table table({">failure type", ""});
   for (const controllers::FailureType& failure : failures) {
     table.AddRow({fmt::format("{}", failure.type), failure.name});
   }
@@ -98,7 +107,7 @@ std::string FailureTable(std::span<const controllers::FailureType> failures) {
 }
 
 std::string ExperimentsText() {
-  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  Table table({"", ""});
   for (const ShippedExperiment& shipped : ListExperiments(BuiltInCatalogue())) {
     table.AddRow({shipped.name, shipped.error.empty() ? shipped.description : "ERROR: " + shipped.error});
   }
@@ -132,56 +141,45 @@ std::string SearchesText() {
   std::string text = "Searches (--set search.algorithm=NAME, --set PARAMETER=VALUE)\n";
   for (const SearchInfo& search : BuiltInCatalogue().searches) {
     text += fmt::format("\n  {}: {}\n\n", search.name, search.description);
-    Table table(ParameterColumns());
-    for (const Key& key : KeysOf(search)) {
-      table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
-    }
-    text += table.ToText(4);
+    text += KeyTable(KeysOf(search), 4);
   }
   return text;
 }
 
 std::string DisturbancesText() {
-  Table table(ParameterColumns());
-  for (const Key& key : CommonKeys(BuiltInCatalogue())) {
-    if (!IsDisturbance(key)) continue;
-    table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
-  }
-  return "Disturbances (--set PARAMETER=VALUE on any experiment)\n\n" + table.ToText();
+  return "Disturbances (--set PARAMETER=VALUE on any experiment)\n\n" + KeyTable(DisturbanceKeys(), 2);
 }
 
-Json ParametersJson(std::span<const controllers::ParameterInfo> parameters) {
+// What `to_json` makes of each item.
+template <typename Items>
+Json JsonOf(const Items& items, const auto& to_json) {
   Json list = Json::array();
-  for (const controllers::ParameterInfo& info : parameters) {
-    list.push_back({{"name", info.name},
-                    {"type", info.unit == "bool" ? "flag"
-                             : info.integer      ? "integer"
-                                                 : "number"},
-                    {"unit", info.unit == "bool" ? "" : info.unit},
-                    {"default", info.default_value},
-                    {"min", info.min},
-                    {"max", info.max},
-                    {"description", info.description}});
-  }
+  for (const auto& item : items) list.push_back(to_json(item));
   return list;
 }
 
-Json MetricsJson(std::span<const controllers::MetricInfo> metrics) {
-  Json list = Json::array();
-  for (const controllers::MetricInfo& info : metrics) {
-    list.push_back({{"name", info.name},
-                    {"unit", info.unit},
-                    {"may_be_none", info.may_be_none},
-                    {"descriptor", info.descriptor},
-                    {"description", info.description}});
-  }
-  return list;
+Json ParameterJson(const controllers::ParameterInfo& info) {
+  return {{"name", info.name},
+          {"type", info.unit == "bool" ? "flag"
+                   : info.integer      ? "integer"
+                                       : "number"},
+          {"unit", info.unit == "bool" ? "" : info.unit},
+          {"default", info.default_value},
+          {"min", info.min},
+          {"max", info.max},
+          {"description", info.description}};
 }
 
-Json FailuresJson(std::span<const controllers::FailureType> failures) {
-  Json list = Json::array();
-  for (const auto& [type, name] : failures) list.push_back({{"type", type}, {"name", name}});
-  return list;
+Json MetricJson(const controllers::MetricInfo& info) {
+  return {{"name", info.name},
+          {"unit", info.unit},
+          {"may_be_none", info.may_be_none},
+          {"descriptor", info.descriptor},
+          {"description", info.description}};
+}
+
+Json FailureJson(const controllers::FailureType& failure) {
+  return {{"type", failure.type}, {"name", failure.name}};
 }
 
 Json KeyJson(const Key& key) {
@@ -206,61 +204,33 @@ Json KeyJson(const Key& key) {
   return json;
 }
 
-Json ExperimentsJson() {
-  Json list = Json::array();
-  for (const ShippedExperiment& shipped : ListExperiments(BuiltInCatalogue())) {
-    list.push_back({{"name", shipped.name},
-                    {"description", shipped.description},
-                    {"scenario", shipped.scenario},
-                    {"controller", shipped.controller},
-                    {"path", shipped.path.string()},
-                    {"error", shipped.error.empty() ? Json(nullptr) : Json(shipped.error)}});
-  }
-  return list;
+Json ExperimentJson(const ShippedExperiment& shipped) {
+  return {{"name", shipped.name},          {"description", shipped.description},
+          {"scenario", shipped.scenario},  {"controller", shipped.controller},
+          {"path", shipped.path.string()}, {"error", shipped.error.empty() ? Json() : Json(shipped.error)}};
 }
 
-Json ScenariosJson() {
-  Json list = Json::array();
-  for (const controllers::ScenarioInfo& scenario : controllers::Scenarios()) {
-    list.push_back({{"name", scenario.name},
-                    {"description", scenario.description},
-                    {"default_controller", scenario.default_controller},
-                    {"parameters", ParametersJson(scenario.parameters)},
-                    {"time_limit", scenario.time_limit},
-                    {"metrics", MetricsJson(scenario.metrics)},
-                    {"failure_types", FailuresJson(scenario.failure_types)}});
-  }
-  return list;
+Json ScenarioJson(const controllers::ScenarioInfo& scenario) {
+  return {{"name", scenario.name},
+          {"description", scenario.description},
+          {"default_controller", scenario.default_controller},
+          {"parameters", JsonOf(scenario.parameters, ParameterJson)},
+          {"time_limit", scenario.time_limit},
+          {"metrics", JsonOf(scenario.metrics, MetricJson)},
+          {"failure_types", JsonOf(scenario.failure_types, FailureJson)}};
 }
 
-Json ControllersJson() {
-  Json list = Json::array();
-  for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
-    list.push_back({{"name", controller.name},
-                    {"description", controller.description},
-                    {"scenario", controller.scenario},
-                    {"parameters", ParametersJson(controller.parameters)}});
-  }
-  return list;
+Json ControllerJson(const controllers::ControllerInfo& controller) {
+  return {{"name", controller.name},
+          {"description", controller.description},
+          {"scenario", controller.scenario},
+          {"parameters", JsonOf(controller.parameters, ParameterJson)}};
 }
 
-Json SearchesJson() {
-  Json list = Json::array();
-  for (const SearchInfo& search : BuiltInCatalogue().searches) {
-    Json parameters = Json::array();
-    for (const Key& key : KeysOf(search)) parameters.push_back(KeyJson(key));
-    list.push_back(
-        {{"name", search.name}, {"description", search.description}, {"parameters", std::move(parameters)}});
-  }
-  return list;
-}
-
-Json DisturbancesJson() {
-  Json list = Json::array();
-  for (const Key& key : CommonKeys(BuiltInCatalogue())) {
-    if (IsDisturbance(key)) list.push_back(KeyJson(key));
-  }
-  return list;
+Json SearchJson(const SearchInfo& search) {
+  return {{"name", search.name},
+          {"description", search.description},
+          {"parameters", JsonOf(KeysOf(search), KeyJson)}};
 }
 
 struct Section {
@@ -268,11 +238,13 @@ struct Section {
   std::string (*text)();
   Json (*json)();
 };
-constexpr Section kSections[] = {{"experiments", ExperimentsText, ExperimentsJson},
-                                 {"scenarios", ScenariosText, ScenariosJson},
-                                 {"controllers", ControllersText, ControllersJson},
-                                 {"searches", SearchesText, SearchesJson},
-                                 {"disturbances", DisturbancesText, DisturbancesJson}};
+constexpr Section kSections[] = {
+    {"experiments", ExperimentsText,
+     [] { return JsonOf(ListExperiments(BuiltInCatalogue()), ExperimentJson); }},
+    {"scenarios", ScenariosText, [] { return JsonOf(controllers::Scenarios(), ScenarioJson); }},
+    {"controllers", ControllersText, [] { return JsonOf(controllers::Controllers(), ControllerJson); }},
+    {"searches", SearchesText, [] { return JsonOf(BuiltInCatalogue().searches, SearchJson); }},
+    {"disturbances", DisturbancesText, [] { return JsonOf(DisturbanceKeys(), KeyJson); }}};
 
 ExitCode RunList(CommandContext& context, const ListOptions& options) {
   std::string text;

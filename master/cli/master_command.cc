@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 
 #include "master/cli/commands.h"
-#include "master/cli/options.h"
 #include "master/cli/run_campaign.h"
 
 namespace gauntlet::master {
@@ -32,7 +31,7 @@ ExitCode RunMaster(CommandContext& context, const MasterOptions& options) {
 
   CampaignRun campaign;
   campaign.directory = *directory;
-  campaign.workers = 0;
+  campaign.session.workers = 0;
   campaign.serving = options.serving;
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) {

@@ -3,28 +3,21 @@
 #include <sched.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
-#include <optional>
 #include <random>
 #include <system_error>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "base/parse_number.h"
 #include "master/directory/campaign_directory.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 
 namespace gauntlet::master {
 namespace {
-
-std::optional<std::uint64_t> ParseUnsigned(std::string_view text) {
-  std::uint64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 int AvailableCores() {
   cpu_set_t cores;
@@ -96,8 +89,11 @@ void AddSizeOptions(CLI::App& command, SizeOptions& options) {
       ->type_name("P");
 }
 
-void AddRefusedSizeOptions(CLI::App& command, SizeOptions& options) {
-  AddSizeOptions(command, options);
+void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes) {
+  AddExperimentOptions(command, options.experiment);
+  AddSizeOptions(command, options.size);
+  AddRunningOptions(command, options.running);
+  if (sizes) return;
   for (const char* option : {"--generations", "--population"}) command.get_option(option)->group("");
 }
 
@@ -107,20 +103,17 @@ void AddDirectory(CLI::App& command, std::string& directory) {
 
 Result<int> ParseWorkers(const std::string& text) {
   if (text.empty()) return AvailableCores();
-  const std::optional<std::uint64_t> workers = ParseUnsigned(text);
-  if (!workers || *workers < 1 || *workers > static_cast<std::uint64_t>(kMostWorkers)) {
-    return InvalidInput(
-        fmt::format("--workers {}: must be a whole number from 1 to {}; this machine has {} cores", text,
-                    kMostWorkers, AvailableCores()));
-  }
-  return static_cast<int>(*workers);
+  const auto workers = ParseNumber<int>(text);
+  if (workers && *workers >= 1 && *workers <= kMostWorkers) return *workers;
+  return InvalidInput(
+      fmt::format("--workers {}: must be a whole number from 1 to {}; this machine has {} cores", text,
+                  kMostWorkers, AvailableCores()));
 }
 
 Result<double> ParseShare(const std::string& option, const std::string& text) {
   if (text.empty()) return 0.0;
-  double share = -1.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), share);
-  if (error == std::errc() && end == text.data() + text.size() && share >= 0.0 && share <= 1.0) return share;
+  const auto share = ParseNumber<double>(text);
+  if (share && *share >= 0.0 && *share <= 1.0) return *share;
   return InvalidInput(fmt::format("{} {}: must be a share from 0 to 1, e.g. 0.05", option, text));
 }
 
@@ -129,21 +122,19 @@ Result<std::uint64_t> ParseSeed(const std::string& text) {
     std::random_device device;
     return (static_cast<std::uint64_t>(device()) << 32) | device();
   }
-  if (const std::optional<std::uint64_t> seed = ParseUnsigned(text)) return *seed;
+  if (const auto seed = ParseNumber<std::uint64_t>(text)) return *seed;
   return InvalidInput(
       fmt::format("--seed {}: must be a whole number from 0 to 18446744073709551615, or 'random'", text));
 }
 
 Result<int> ParseMetricsPort(const std::string& text) {
-  const std::optional<std::uint64_t> port = ParseUnsigned(text);
-  if (port && *port <= 65535) return static_cast<int>(*port);
+  if (const auto port = ParseNumber<std::uint16_t>(text)) return *port;
   return InvalidInput(
       fmt::format("--metrics-port {}: must be a port from 1 to 65535, or 0 for any free one", text));
 }
 
 Result<std::uint64_t> ParseRunId(const std::string& text) {
-  const std::optional<std::uint64_t> id = ParseUnsigned(text);
-  if (id && *id >= 1) return *id;
+  if (const auto id = ParseNumber<std::uint64_t>(text); id && *id >= 1) return *id;
   return InvalidInput(fmt::format("{} is no run: RUN_ID is a whole number, see 'gauntlet show DIR'", text));
 }
 
@@ -156,12 +147,8 @@ std::vector<ExtraSet> SetsOf(const SizeOptions& options) {
 }
 
 Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const std::vector<ExtraSet>& extra) {
-  std::optional<std::uint64_t> seed;
-  if (!options.seed.empty()) {
-    const Result<std::uint64_t> parsed = ParseSeed(options.seed);
-    if (!parsed) return parsed.error();
-    seed = *parsed;
-  }
+  const Result<std::uint64_t> seed = options.seed.empty() ? 0 : ParseSeed(options.seed);
+  if (!seed) return seed.error();
   std::vector<std::string> sets = options.sets;
   for (const auto& [option, key, value] : extra) {
     const std::string one = fmt::format("{}={}", key, value);
@@ -173,7 +160,7 @@ Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const st
   }
   Result<Experiment> experiment = LoadExperiment(options.experiment, sets, BuiltInCatalogue());
   if (experiment) {
-    if (seed) experiment->seed = *seed;
+    if (!options.seed.empty()) experiment->seed = *seed;
     return experiment;
   }
   // The person typed --generations 0, not --set search.generations=0.
@@ -188,11 +175,7 @@ Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const st
 }
 
 std::string DefaultDirectory(const std::string& experiment_name, std::time_t now) {
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  const std::string base =
-      fmt::format("campaigns/{}-{:04}{:02}{:02}T{:02}{:02}{:02}Z", experiment_name, utc.tm_year + 1900,
-                  utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+  const std::string base = fmt::format("campaigns/{}-{:%Y%m%dT%H%M%SZ}", experiment_name, fmt::gmtime(now));
   std::string directory = base;
   std::error_code error;
   for (int i = 2; std::filesystem::exists(directory, error); ++i) directory = fmt::format("{}-{}", base, i);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <ctime>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -50,6 +49,12 @@ struct SizeOptions {
   std::string generations;
   std::string population;
 };
+// Of a new campaign with workers on this machine.
+struct LocalOptions {
+  ExperimentOptions experiment;
+  SizeOptions size;
+  RunningOptions running;
+};
 
 void AddMessageOptions(CLI::App& command, MessageOptions& options);
 void AddServingOptions(CLI::App& command, ServingOptions& options);
@@ -57,8 +62,9 @@ void AddRunningOptions(CLI::App& command, RunningOptions& options);
 void AddBindOptions(CLI::App& command, BindOptions& options);
 void AddExperimentOptions(CLI::App& command, ExperimentOptions& options);
 void AddSizeOptions(CLI::App& command, SizeOptions& options);
-// Not in the command's help: they are read so that the command can say why it refuses them.
-void AddRefusedSizeOptions(CLI::App& command, SizeOptions& options);
+// `sizes`: else those of size are not in the command's help, and are read so that it can say why it refuses
+// them.
+void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes);
 // The directory of a campaign that exists.
 void AddDirectory(CLI::App& command, std::string& directory);
 

@@ -14,11 +14,11 @@
 #include "base/printable.h"
 #include "controllers/registry.h"
 #include "master/cli/commands.h"
-#include "master/cli/evaluation.h"
-#include "master/cli/metric_text.h"
 #include "master/cli/options.h"
-#include "master/cli/summary_json.h"
+#include "master/cli/summary.h"
 #include "master/cli/table.h"
+#include "master/report/verdict_text.h"
+#include "sim/geometry/trigonometry.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
@@ -64,21 +64,35 @@ Status CheckOwnFiles(const ReplayOptions& options) {
   return Ok{};
 }
 
+// Angles are shown in degrees; a metric that the scenario does not describe is shown as its bare number.
+std::string MetricText(const controllers::MetricInfo* info, double value) {
+  if (info == nullptr) return fmt::format("{:.6g}", value);
+  if (info->may_be_none && value == -1.0) return "none";
+  if (info->unit == "yes/no") return value == 0.0 ? "no" : "yes";
+  if (info->unit == "rad") return fmt::format("{:.4g} deg", value / sim::kDegree);
+  if (info->unit.empty()) return fmt::format("{:.6g}", value);
+  return fmt::format("{:.6g} {}", value, info->unit);
+}
+
 analysis::RunFigure FigureOf(const CampaignReplay& replay) {
   analysis::RunFigure figure;
   figure.experiment = replay.experiment.name;
   figure.run = fmt::format("run {}", replay.report.stored.id);
   figure.spec = replay.report.spec;
   figure.result = replay.report.replayed;
-  figure.metrics = MetricTexts(figure.spec.scenario, figure.result.metrics);
-  if (const auto* scenario = controllers::FindScenario(figure.spec.scenario)) figure.style = scenario->style;
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(figure.spec.scenario);
+  if (scenario != nullptr) figure.style = scenario->style;
+  for (const auto& [name, value] : figure.result.metrics) {
+    const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, name);
+    figure.metrics.emplace_back(name, MetricText(info, value));
+  }
   return figure;
 }
 
 std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure) {
   const ReplayReport& report = replay.report;
   const bool same = report.differences.empty();
-  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  Table table({"", ""});
   table.AddRow(
       {"test case", fmt::format("{} (generation {})", report.stored.individual, report.stored.generation)});
   if (const std::string& name = report.spec.test_case.name; !name.empty()) {
@@ -127,22 +141,14 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
                 InvalidInput(fmt::format("--timeline: runs of {} do not say what their robots did when",
                                          figure.spec.scenario)));
   }
-  if (!options.svg.empty()) {
-    if (const Status written = WriteFile(options.svg, analysis::DrawRun(figure)); !written) {
-      return Fail(context, written.error());
-    }
-    PrintMessage(context, fmt::format("wrote {}", options.svg));
-  }
-  if (!options.timeline.empty()) {
-    if (const Status written = WriteFile(options.timeline, analysis::DrawTimeline(figure)); !written) {
-      return Fail(context, written.error());
-    }
-    PrintMessage(context, fmt::format("wrote {}", options.timeline));
-  }
-  if (!options.csv.empty()) {
-    const std::string csv = analysis::WriteTrajectoryCsv(replay->report.replayed.trajectory);
-    if (const Status written = WriteFile(options.csv, csv); !written) return Fail(context, written.error());
-    PrintMessage(context, fmt::format("wrote {}", options.csv));
+  const std::pair<const std::string&, std::function<std::string()>> outputs[] = {
+      {options.svg, [&] { return analysis::DrawRun(figure); }},
+      {options.timeline, [&] { return analysis::DrawTimeline(figure); }},
+      {options.csv, [&] { return analysis::WriteTrajectoryCsv(figure.result.trajectory); }}};
+  for (const auto& [path, content] : outputs) {
+    if (path.empty()) continue;
+    if (const Status written = WriteFile(path, content()); !written) return Fail(context, written.error());
+    PrintMessage(context, fmt::format("wrote {}", path));
   }
   context.out << (options.json ? ReplayJson(replay->report) : Text(*replay, figure)) << std::flush;
   if (replay->report.differences.empty()) return kExitDone;

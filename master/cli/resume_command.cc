@@ -6,7 +6,6 @@
 
 #include "base/shell_quoted.h"
 #include "master/cli/commands.h"
-#include "master/cli/options.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/submitted_campaign.h"
 
@@ -71,7 +70,7 @@ ExitCode RunResume(CommandContext& context, const ResumeOptions& options) {
   if (!workers) return Fail(context, workers.error());
   CampaignRun campaign;
   campaign.directory = options.directory;
-  campaign.workers = *workers;
+  campaign.session.workers = *workers;
   campaign.serving = options.running;
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) {

@@ -8,8 +8,7 @@
 #include "base/shell_quoted.h"
 #include "master/cli/progress.h"
 #include "master/cli/stop_signal.h"
-#include "master/cli/summary_json.h"
-#include "master/cli/summary_text.h"
+#include "master/cli/summary.h"
 #include "master/cli/table.h"
 #include "master/dispatch/curve_keys.h"
 #include "master/search/search_table.h"
@@ -79,7 +78,7 @@ void PrintServing(CommandContext& context, const CampaignRun& campaign, const Se
   }
   if (campaign.serving.quiet) return;
   // The worker beside this program, as a person who started this one can start it.
-  const std::string start = campaign.make_pool
+  const std::string start = campaign.session.make_pool
                                 ? ""
                                 : fmt::format("; start them with: {}-worker --dir {}", context.program,
                                               ShellQuoted(campaign.directory));
@@ -142,10 +141,8 @@ ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
   const std::string& endpoint = campaign.bind.endpoint;
   const Result<double> audit_share = ParseShare("--audit", options.audit);
   if (!audit_share) return Fail(context, audit_share.error());
-  if (!endpoint.empty()) {
-    if (const Status possible = CheckBindEndpoint(endpoint); !possible)
-      return Fail(context, possible.error());
-  }
+  const Status possible = endpoint.empty() ? Status(Ok{}) : CheckBindEndpoint(endpoint);
+  if (!possible) return Fail(context, possible.error());
   if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
   const Result<std::unique_ptr<MetricsServer>> metrics = StartMetrics(context, options);
   if (!metrics) return Fail(context, metrics.error());
@@ -157,13 +154,10 @@ ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
       mode, clock, [&](const std::string& text) { context.err << text << std::flush; }, TerminalColumns);
   bool began = false;
 
-  SessionOptions session;
+  SessionOptions session = campaign.session;
   session.metrics = metrics->get();
-  session.workers = campaign.workers;
   session.insecure = campaign.bind.insecure;
   session.audit_share = *audit_share;
-  session.batch_job = campaign.batch_job;
-  session.make_pool = campaign.make_pool;
   if (!endpoint.empty()) {
     session.bind = endpoint;
     session.on_serving = [&](const ServingNotice& notice) { PrintServing(context, campaign, notice); };
@@ -194,10 +188,20 @@ void PrintFinished(CommandContext& context, const CampaignSummary& summary, cons
   PrintSummary(context, summary, directory, options.json);
 }
 
-std::string Announcement(const Experiment& experiment, int workers, const std::string& directory) {
+Result<CampaignRun> LocalRun(const Experiment& experiment, const LocalOptions& options) {
+  const Result<int> workers = ParseWorkers(options.running.workers);
+  if (!workers) return workers.error();
+  const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
+  if (!directory) return directory.error();
   const SearchRow& search = RowOf(experiment);
-  return fmt::format("{}: {}, {}, seed {}, {} worker{}, in {}", experiment.name, search.title,
-                     search.plan(experiment), experiment.seed, workers, workers == 1 ? "" : "s", directory);
+  CampaignRun campaign;
+  campaign.directory = *directory;
+  campaign.announcement =
+      fmt::format("{}: {}, {}, seed {}, {} worker{}, in {}", experiment.name, search.title,
+                  search.plan(experiment), experiment.seed, *workers, *workers == 1 ? "" : "s", *directory);
+  campaign.serving = options.running;
+  campaign.session.workers = *workers;
+  return campaign;
 }
 
 }  // namespace gauntlet::master

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <string>
 
-#include "master/cli/command_context.h"
+#include "master/cli/command_line.h"
 #include "master/cli/options.h"
 
 namespace gauntlet::master {
@@ -15,9 +14,7 @@ struct CampaignRun {
   std::string announcement;  // one line before it begins, without "gauntlet: "; "" = none
   ServingOptions serving;
   BindOptions bind;
-  int workers = 1;                                                                // on this machine
-  std::string batch_job;                                                          // SessionOptions::batch_job
-  std::function<Result<std::unique_ptr<WorkerPool>>(const PoolSite&)> make_pool;  // nothing: the local pool
+  SessionOptions session;  // its workers; the rest follows from what stands above
   std::function<Result<SessionReport>(const SessionOptions&)> run;
   // Prints the result to context.out; nothing: the summary.
   std::function<Status(const SessionReport&)> report;
@@ -34,7 +31,7 @@ void PrintSummary(CommandContext& context, const CampaignSummary& summary, const
 void PrintFinished(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
                    const MessageOptions& options);
 
-// "flocking: genetic search, 20 test cases x 50 generations, seed 1, 2 workers, in DIR".
-std::string Announcement(const Experiment& experiment, int workers, const std::string& directory);
+// A new campaign with workers on this machine, but for what it is to run.
+Result<CampaignRun> LocalRun(const Experiment& experiment, const LocalOptions& options);
 
 }  // namespace gauntlet::master

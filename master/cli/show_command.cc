@@ -2,7 +2,6 @@
 #include <CLI/CLI.hpp>
 
 #include "master/cli/commands.h"
-#include "master/cli/options.h"
 #include "master/cli/run_campaign.h"
 
 namespace gauntlet::master {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <ostream>
 #include <streambuf>
 
 namespace gauntlet::master {

@@ -5,7 +5,7 @@
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/stop_signal.h"
-#include "master/cli/submitted_campaign.h"
+#include "slurm/slurm_campaign.h"
 
 namespace gauntlet::master {
 namespace {

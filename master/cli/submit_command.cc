@@ -12,7 +12,6 @@
 #include "master/cli/options.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/sweep.h"
-#include "master/cli/table.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"

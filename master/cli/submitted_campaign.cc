@@ -6,7 +6,6 @@
 
 #include "base/shell_quoted.h"
 #include "master/cli/run_campaign.h"
-#include "master/cli/table.h"
 
 namespace gauntlet::master {
 
@@ -16,9 +15,9 @@ ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, 
   run.directory = directory;
   run.serving = options;
   run.bind.endpoint = campaign.settings().bind;
-  run.workers = 0;
-  run.batch_job = batch_job;
-  run.make_pool = [&](const PoolSite&) -> Result<std::unique_ptr<WorkerPool>> {
+  run.session.workers = 0;
+  run.session.batch_job = batch_job;
+  run.session.make_pool = [&](const PoolSite&) -> Result<std::unique_ptr<WorkerPool>> {
     return campaign.MakePool(context.slurm());
   };
   bool served = false;

@@ -1,11 +1,9 @@
 // Campaigns that run in Slurm, for the commands that meet one.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "master/cli/command_context.h"
+#include "master/cli/command_line.h"
 #include "master/cli/options.h"
 #include "slurm/slurm_campaign.h"
 

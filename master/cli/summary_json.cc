@@ -1,12 +1,10 @@
-#include "master/cli/summary_json.h"
-
 #include <cmath>
-#include <optional>
-#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "master/cli/summary.h"
+#include "master/report/verdict_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/json_text.h"
 
@@ -29,7 +27,7 @@ Json IdsJson(const std::vector<std::uint64_t>& ids) {
 }
 
 Json FitnessJson(double fitness) {
-  return std::isfinite(fitness) ? Json(fitness) : Json(nullptr);
+  return std::isfinite(fitness) ? Json(fitness) : Json();
 }
 
 // Keys as in case files (proto/run.proto, message Obstacle), so that a genome can be copied into one.
@@ -53,20 +51,25 @@ Json GenomeJson(const sim::Genome& genome) {
 
 Json FailureJson(const sim::SwarmFailure& failure) {
   return {{"total", failure.total},
-          {"type", failure.type >= 0 ? Json(failure.type) : Json(nullptr)},
+          {"type", failure.type >= 0 ? Json(failure.type) : Json()},
           {"label", failure.label}};
+}
+
+// Metrics or statistics by their names.
+Json FiguresJson(const std::vector<std::pair<std::string, double>>& figures) {
+  Json json = Json::object();
+  for (const auto& [name, value] : figures) json[name] = FitnessJson(value);
+  return json;
 }
 
 Json RunJson(const EvaluatedRun& run) {
   const sim::RunResult& result = run.result;
-  Json metrics = Json::object();
-  for (const auto& [name, value] : result.metrics) metrics[name] = FitnessJson(value);
   const bool completed = result.verdict == sim::Verdict::kCompleted;
   Json json = {{"id", IdJson(run.id)},
                {"seed", fmt::format("{}", run.seed)},
-               {"fitness", completed ? FitnessJson(result.fitness) : Json(nullptr)},
+               {"fitness", completed ? FitnessJson(result.fitness) : Json()},
                {"verdict", NameOf(result.verdict)},
-               {"metrics", std::move(metrics)},
+               {"metrics", FiguresJson(result.metrics)},
                {"failure", FailureJson(result.failure)},
                {"hash", fmt::format("{:016x}", result.hash)}};
   if (!completed) json["message"] = result.message;
@@ -74,25 +77,18 @@ Json RunJson(const EvaluatedRun& run) {
 }
 
 Json TextOrNull(const std::string& text) {
-  return text.empty() ? Json(nullptr) : Json(text);
+  return text.empty() ? Json() : Json(text);
 }
 
-}  // namespace
-
-namespace {
-
 Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
-  Json statistics = Json::object();
-  for (const auto& [name, value] : summary.statistics) statistics[name] = FitnessJson(value);
-
   Json generations = Json::array();
   for (const GenerationSummary& generation : summary.generations) {
-    const bool any = generation.completed > 0;
+    const auto fitness = [&](double value) { return generation.completed > 0 ? FitnessJson(value) : Json(); };
     generations.push_back({{"generation", generation.generation},
                            {"runs", generation.runs},
-                           {"best_fitness", any ? FitnessJson(generation.best) : Json(nullptr)},
-                           {"mean_fitness", any ? FitnessJson(generation.mean) : Json(nullptr)},
-                           {"worst_fitness", any ? FitnessJson(generation.worst) : Json(nullptr)},
+                           {"best_fitness", fitness(generation.best)},
+                           {"mean_fitness", fitness(generation.mean)},
+                           {"worst_fitness", fitness(generation.worst)},
                            {"total_failures", generation.total_failures}});
   }
 
@@ -119,7 +115,7 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
          {"message", group.message},
          {"runs", group.runs},
          {"first_run", group.first_run},
-         {"bundle", LeavesBundle(group.verdict) ? Json(BundleName(group.first_run)) : Json(nullptr)}});
+         {"bundle", LeavesBundle(group.verdict) ? Json(BundleName(group.first_run)) : Json()}});
   }
 
   return {{"experiment", summary.experiment},
@@ -140,7 +136,7 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
           {"total_failures", summary.total_failures},
           {"failure_types", std::move(failure_types)},
           {"unclassified_failures", summary.untyped_failures},
-          {"statistics", std::move(statistics)},
+          {"statistics", FiguresJson(summary.statistics)},
           {"history", std::move(generations)},
           {"population", std::move(population)},
           {"state_hash", summary.state_hash},
@@ -177,7 +173,7 @@ std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const Campai
     for (const EvaluatedRun& run : evaluated.runs) runs.push_back(RunJson(run));
     const std::optional<double> fitness = MeanFitness(evaluated);
     list.push_back({{"file", evaluated.file},
-                    {"fitness", fitness ? FitnessJson(*fitness) : Json(nullptr)},
+                    {"fitness", fitness ? FitnessJson(*fitness) : Json()},
                     {"refused", TextOrNull(evaluated.refused_rule)},
                     {"error", TextOrNull(evaluated.error)},
                     {"runs", std::move(runs)}});
@@ -197,8 +193,6 @@ std::string ReplayJson(const ReplayReport& report) {
   Json disturbances = Json::object();
   for (const auto& [key, value] : sim::DisturbanceTexts(report.spec.disturbances)) disturbances[key] = value;
   const bool completed = report.replayed.verdict == sim::Verdict::kCompleted;
-  Json metrics = Json::object();
-  for (const auto& [name, value] : report.replayed.metrics) metrics[name] = FitnessJson(value);
   return JsonText({{"run", IdJson(report.stored.id)},
                    {"reproduced", report.differences.empty()},
                    {"stored_hash", fmt::format("{:016x}", report.stored_result.hash)},
@@ -207,10 +201,10 @@ std::string ReplayJson(const ReplayReport& report) {
                    {"disturbances", std::move(disturbances)},
                    {"verdict", NameOf(report.replayed.verdict)},
                    {"message", TextOrNull(report.replayed.message)},
-                   {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json(nullptr)},
+                   {"fitness", completed ? FitnessJson(report.replayed.fitness) : Json()},
                    {"total_failure", report.replayed.failure.total},
                    {"failure", TextOrNull(report.replayed.failure.label)},
-                   {"metrics", std::move(metrics)}});
+                   {"metrics", FiguresJson(report.replayed.metrics)}});
 }
 
 }  // namespace gauntlet::master

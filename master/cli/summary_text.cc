@@ -1,14 +1,12 @@
-#include "master/cli/summary_text.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <optional>
 
 #include <fmt/format.h>
 
 #include "base/printable.h"
 #include "base/shell_quoted.h"
+#include "master/cli/summary.h"
 #include "master/cli/table.h"
 #include "master/report/verdict_text.h"
 #include "master/search/search_table.h"
@@ -20,19 +18,9 @@ namespace {
 constexpr std::size_t kMostGenerations = 12;  // rows of the table
 constexpr std::size_t kMostMembers = 10;
 
-std::string Percent(std::uint64_t part, std::uint64_t whole) {
-  return whole == 0 ? "-"
-                    : fmt::format("{:.1f} %", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
-}
-
-std::string NameOfSearch(const CampaignSummary& summary) {
-  const SearchRow* search = FindSearch(summary.search);
-  return search == nullptr ? summary.search : std::string(search->title);
-}
-
 std::string Overview(const CampaignSummary& summary) {
   const SearchRow* search = FindSearch(summary.search);
-  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  Table table({"", ""});
   if (summary.progress.generations > 1) {
     table.AddRow(
         {"generations", fmt::format("{} of {}", summary.progress.generation, summary.progress.generations)});
@@ -49,9 +37,11 @@ std::string Overview(const CampaignSummary& summary) {
        fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
                    FormatFitness(summary.best_fitness), FormatFitness(summary.mean_fitness),
                    FormatFitness(summary.worst_fitness), search == nullptr ? "cases" : search->members)});
-  table.AddRow({"total failures", fmt::format("{} of {} runs ({})", FormatCount(summary.total_failures),
-                                              FormatCount(summary.runs_done),
-                                              Percent(summary.total_failures, summary.runs_done))});
+  const double share = static_cast<double>(summary.total_failures) / static_cast<double>(summary.runs_done);
+  table.AddRow(
+      {"total failures",
+       fmt::format("{} of {} runs ({})", FormatCount(summary.total_failures), FormatCount(summary.runs_done),
+                   std::isnan(share) ? "-" : fmt::format("{:.1f} %", 100.0 * share))});
   if (summary.total_failures > 0 && !summary.failure_types.empty()) {
     const auto seen =
         std::ranges::count_if(summary.failure_types, [](const auto& one) { return one.runs > 0; });
@@ -72,7 +62,7 @@ std::string FailuresByType(const CampaignSummary& summary) {
   std::erase_if(failures, [](const FailureCount& one) { return one.runs == 0; });
   if (failures.empty()) return {};
   std::ranges::stable_sort(failures, std::greater(), &FailureCount::runs);
-  Table table({{"runs", Align::kRight}, {"type", Align::kRight}, {"total failure", Align::kLeft}});
+  Table table({">runs", ">type", "total failure"});
   for (const FailureCount& one : failures) {
     table.AddRow({FormatCount(one.runs), fmt::format("{}", one.type), one.name});
   }
@@ -101,26 +91,14 @@ std::string RunsWithoutAResult(const CampaignSummary& summary, const std::string
   return text;
 }
 
-// Rows of the first, the last and generations at even distances between them.
-std::vector<std::size_t> ShownGenerations(std::size_t count) {
-  std::vector<std::size_t> shown;
-  const std::size_t rows = std::min(count, kMostGenerations);
-  for (std::size_t i = 0; i < rows; ++i) {
-    shown.push_back(rows == 1 ? 0 : (i * (count - 1) + (rows - 1) / 2) / (rows - 1));
-  }
-  return shown;
-}
-
 std::string Generations(const CampaignSummary& summary) {
   if (summary.generations.size() < 2) return {};
-  Table table({{"generation", Align::kRight},
-               {"runs", Align::kRight},
-               {"best", Align::kRight},
-               {"mean", Align::kRight},
-               {"worst", Align::kRight},
-               {"total failures", Align::kRight}});
-  for (const std::size_t index : ShownGenerations(summary.generations.size())) {
-    const GenerationSummary& generation = summary.generations[index];
+  Table table({">generation", ">runs", ">best", ">mean", ">worst", ">total failures"});
+  // The first, the last and generations at even distances between them.
+  const std::size_t gaps = summary.generations.size() - 1;
+  const std::size_t shown = std::min(gaps, kMostGenerations - 1);
+  for (std::size_t i = 0; i <= shown; ++i) {
+    const GenerationSummary& generation = summary.generations[(i * gaps + shown / 2) / shown];
     const auto fitness = [&](double value) { return generation.completed > 0 ? FormatFitness(value) : "-"; };
     table.AddRow({fmt::format("{}", generation.generation), FormatCount(generation.runs),
                   fitness(generation.best), fitness(generation.mean), fitness(generation.worst),
@@ -134,21 +112,14 @@ std::vector<const PopulationMember*> Toughest(const CampaignSummary& summary) {
   for (const PopulationMember& member : summary.population) {
     if (std::isfinite(member.fitness) && !member.runs.empty()) members.push_back(&member);
   }
-  std::stable_sort(members.begin(), members.end(), [](const PopulationMember* a, const PopulationMember* b) {
-    return a->fitness < b->fitness;
-  });
+  std::ranges::stable_sort(members, {}, &PopulationMember::fitness);
   return members;
 }
 
 std::string Members(const CampaignSummary& summary) {
   const std::vector<const PopulationMember*> members = Toughest(summary);
   if (members.empty()) return {};
-  Table table({{"test case", Align::kRight},
-               {"fitness", Align::kRight},
-               {"obstacles", Align::kRight},
-               {"born in generation", Align::kRight},
-               {"runs", Align::kRight},
-               {"latest run", Align::kRight}});
+  Table table({">test case", ">fitness", ">obstacles", ">born in generation", ">runs", ">latest run"});
   for (std::size_t i = 0; i < std::min(kMostMembers, members.size()); ++i) {
     const PopulationMember& member = *members[i];
     table.AddRow({fmt::format("{}", member.id), FormatFitness(member.fitness),
@@ -161,40 +132,35 @@ std::string Members(const CampaignSummary& summary) {
   return text + table.ToText();
 }
 
-struct Hint {
-  std::string command;
-  std::string meaning;
-};
-
-std::string Hints(const std::vector<Hint>& hints) {
-  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
-  for (const Hint& hint : hints) table.AddRow({hint.command, "# " + hint.meaning});
+// What to type next; `replay`: of a run that is worth it, or an empty row.
+std::string Hints(const HintContext& context, bool finished, const std::vector<std::string>& replay) {
+  const std::string directory = ShellQuoted(context.directory);
+  Table table({"", ""});
+  if (!finished)
+    table.AddRow({fmt::format("{} resume {}", context.program, directory), "# go on where it stopped"});
+  table.AddRow(replay);
+  table.AddRow({fmt::format("{} show {} --json", context.program, directory), "# everything, for scripts"});
   return "\nNext commands to try\n" + table.ToText();
 }
 
-}  // namespace
-
-namespace {
+// "gauntlet replay DIR 812 --svg case-7.svg"
+std::string ReplayHint(const HintContext& context, RunId run, std::string_view what, std::uint64_t number) {
+  return fmt::format("{} replay {} {} --svg {}-{}.svg", context.program, ShellQuoted(context.directory), run,
+                     what, number);
+}
 
 constexpr const char* kNotReproducible =
     "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
     "figures.\n\n";
 
 std::string SweepText(const CampaignSummary& summary, const HintContext& context) {
-  const auto finished = std::count_if(summary.searches.begin(), summary.searches.end(),
-                                      [](const CampaignSummary& one) { return one.finished; });
+  const auto finished = std::ranges::count(summary.searches, true, &CampaignSummary::finished);
   std::string text = fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
                                  Printable(summary.experiment), summary.searches.size(), finished,
                                  FormatCount(summary.runs_done), FormatCount(summary.total_failures));
   if (summary.nondeterministic > 0) text += kNotReproducible;
-  Table table({{"search", Align::kRight},
-               {"settings", Align::kLeft},
-               {"generation", Align::kRight},
-               {"runs", Align::kRight},
-               {"best", Align::kRight},
-               {"mean", Align::kRight},
-               {"total failures", Align::kRight},
-               {"state hash", Align::kLeft}});
+  Table table(
+      {">search", "settings", ">generation", ">runs", ">best", ">mean", ">total failures", "state hash"});
   constexpr std::size_t kShownDigits = 16;
   for (std::size_t i = 0; i < summary.searches.size(); ++i) {
     const CampaignSummary& one = summary.searches[i];
@@ -204,23 +170,17 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
                   FormatFitness(one.mean_fitness), FormatCount(one.total_failures),
                   one.state_hash.substr(0, kShownDigits)});
   }
-  text += table.ToText();
-  std::vector<Hint> hints;
-  const std::string directory = ShellQuoted(context.directory);
-  if (!summary.finished)
-    hints.push_back({fmt::format("{} resume {}", context.program, directory), "go on where it stopped"});
-  hints.push_back({fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"});
-  return text + Hints(hints);
+  return text + table.ToText() + Hints(context, summary.finished, {});
 }
 
 }  // namespace
 
 std::string SummaryText(const CampaignSummary& summary, const HintContext& context) {
   if (!summary.searches.empty()) return SweepText(summary, context);
-  const std::string directory = ShellQuoted(context.directory);
-  std::string text =
-      fmt::format("{}: {}, seed {}, {}\n\n", Printable(summary.experiment), NameOfSearch(summary),
-                  summary.seed, summary.finished ? "finished" : "not finished");
+  const SearchRow* search = FindSearch(summary.search);
+  std::string text = fmt::format("{}: {}, seed {}, {}\n\n", Printable(summary.experiment),
+                                 search == nullptr ? summary.search : std::string(search->title),
+                                 summary.seed, summary.finished ? "finished" : "not finished");
   if (summary.nondeterministic > 0) text += kNotReproducible;
   if (summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
@@ -229,27 +189,29 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
   text += Overview(summary) + FailuresByType(summary) + RunsWithoutAResult(summary, context.directory) +
           Generations(summary) + Members(summary);
 
-  std::vector<Hint> hints;
-  if (!summary.finished) {
-    hints.push_back({fmt::format("{} resume {}", context.program, directory), "go on where it stopped"});
-  }
+  std::vector<std::string> replay;
   if (const auto members = Toughest(summary); !members.empty()) {
     const PopulationMember& best = *members.front();
-    hints.push_back({fmt::format("{} replay {} {} --svg case-{}.svg", context.program, directory,
-                                 best.runs.back(), best.id),
-                     "see what happened in the toughest case"});
+    replay = {ReplayHint(context, best.runs.back(), "case", best.id),
+              "# see what happened in the toughest case"};
   }
-  hints.push_back({fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"});
-  return text + Hints(hints);
+  return text + Hints(context, summary.finished, replay);
+}
+
+std::optional<double> MeanFitness(const EvaluatedCase& evaluated) {
+  double sum = 0.0;
+  int completed = 0;
+  for (const EvaluatedRun& run : evaluated.runs) {
+    if (run.result.verdict != sim::Verdict::kCompleted) continue;
+    sum += run.result.fitness;
+    ++completed;
+  }
+  if (completed == 0) return std::nullopt;
+  return sum / completed;
 }
 
 std::string EvaluationText(const std::vector<EvaluatedCase>& cases, const HintContext& context) {
-  Table table({{"file", Align::kLeft},
-               {"fitness", Align::kRight},
-               {"runs", Align::kRight},
-               {"total failures", Align::kRight},
-               {"first run", Align::kRight},
-               {"", Align::kLeft}});
+  Table table({"file", ">fitness", ">runs", ">total failures", ">first run", ""});
   const EvaluatedRun* toughest = nullptr;
   for (const EvaluatedCase& evaluated : cases) {
     if (evaluated.runs.empty()) {
@@ -278,16 +240,10 @@ std::string EvaluationText(const std::vector<EvaluatedCase>& cases, const HintCo
     table.AddRow({evaluated.file, fitness ? FormatFitness(*fitness) : "-", FormatCount(evaluated.runs.size()),
                   FormatCount(failures), fmt::format("{}", evaluated.runs.front().id), remark});
   }
-  std::string text = table.ToText();
-  if (toughest != nullptr) {
-    const std::string directory = ShellQuoted(context.directory);
-    text +=
-        Hints({{fmt::format("{} replay {} {} --svg run-{}.svg", context.program, directory, toughest->id,
-                            toughest->id),
-                "see the toughest of these runs"},
-               {fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"}});
-  }
-  return text;
+  if (toughest == nullptr) return table.ToText();
+  return table.ToText() +
+         Hints(context, /*finished=*/true,
+               {ReplayHint(context, toughest->id, "run", toughest->id), "# see the toughest of these runs"});
 }
 
 }  // namespace gauntlet::master

@@ -1,8 +1,12 @@
 #include "master/cli/sweep.h"
 
+#include <algorithm>
 #include <optional>
+#include <ranges>
 
 #include <fmt/format.h>
+
+#include "base/parse_number.h"
 
 namespace gauntlet::master {
 namespace {
@@ -15,14 +19,9 @@ struct Sweep {
 // "a,b,c"; none of them may be empty.
 std::optional<std::vector<std::string>> SplitList(std::string_view text) {
   std::vector<std::string> items;
-  while (true) {
-    const std::size_t comma = text.find(',');
-    const std::string_view item = text.substr(0, comma);
-    if (item.empty()) return std::nullopt;
-    items.emplace_back(item);
-    if (comma == std::string_view::npos) return items;
-    text.remove_prefix(comma + 1);
-  }
+  for (const auto item : std::views::split(text, ',')) items.emplace_back(item.begin(), item.end());
+  if (items.empty() || std::ranges::count(items, "") > 0) return std::nullopt;
+  return items;
 }
 
 Result<Sweep> ParseSweep(const std::string& text) {
@@ -36,18 +35,12 @@ Result<Sweep> ParseSweep(const std::string& text) {
   return Sweep{key, *values};
 }
 
-std::optional<std::uint64_t> SeedOf(const std::string& text) {
-  const Result<std::uint64_t> seed = ParseSeed(text);
-  if (!seed || text == "random") return std::nullopt;
-  return *seed;
-}
-
 // "1..20" or "1,5,9".
 std::optional<std::vector<std::uint64_t>> SeedsOf(const std::string& text) {
   std::vector<std::uint64_t> seeds;
   if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
-    const auto first = SeedOf(text.substr(0, dots));
-    const auto last = SeedOf(text.substr(dots + 2));
+    const auto first = ParseNumber<std::uint64_t>(text.substr(0, dots));
+    const auto last = ParseNumber<std::uint64_t>(text.substr(dots + 2));
     if (!first || !last || *first > *last || *last - *first >= kMostSearches) return std::nullopt;
     for (std::uint64_t i = 0; i <= *last - *first; ++i) seeds.push_back(*first + i);
     return seeds;
@@ -55,7 +48,7 @@ std::optional<std::vector<std::uint64_t>> SeedsOf(const std::string& text) {
   const auto items = SplitList(text);
   if (!items || items->size() > kMostSearches) return std::nullopt;
   for (const std::string& item : *items) {
-    const auto seed = SeedOf(item);
+    const auto seed = ParseNumber<std::uint64_t>(item);
     if (!seed) return std::nullopt;
     seeds.push_back(*seed);
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <fmt/format.h>
 
@@ -11,41 +10,37 @@
 
 namespace gauntlet::master {
 
-Table::Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
+Table::Table(const std::vector<std::string>& headers) : rows_(1) {
+  for (const std::string& header : headers) {
+    at_right_.push_back(header.starts_with('>'));
+    rows_[0].push_back(header.substr(at_right_.back() ? 1 : 0));
+  }
+}
 
 void Table::AddRow(std::vector<std::string> cells) {
-  GAUNTLET_CHECK(cells.size() <= columns_.size(),
-                 fmt::format("{} cells, {} columns", cells.size(), columns_.size()));
-  cells.resize(columns_.size());
+  GAUNTLET_CHECK(cells.size() <= at_right_.size(),
+                 fmt::format("{} cells, {} columns", cells.size(), at_right_.size()));
+  cells.resize(at_right_.size());
   for (std::string& cell : cells) cell = Printable(cell);
   rows_.push_back(std::move(cells));
 }
 
 std::string Table::ToText(std::size_t indent) const {
-  std::vector<std::string> headers;
-  std::vector<std::size_t> widths;
-  bool has_header = false;
-  for (const Column& column : columns_) {
-    headers.push_back(column.header);
-    widths.push_back(DisplayWidth(column.header));
-    has_header |= !column.header.empty();
-  }
+  std::vector<std::size_t> widths(at_right_.size());
   for (const auto& row : rows_) {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], DisplayWidth(row[i]));
   }
   std::string text;
-  const auto add_line = [&](const std::vector<std::string>& cells) {
+  for (const auto& row : rows_) {
     std::string line(indent, ' ');
-    for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
       if (i > 0) line += "  ";
-      const std::string padding(widths[i] - DisplayWidth(cells[i]), ' ');
-      line += columns_[i].align == Align::kRight ? padding + cells[i] : cells[i] + padding;
+      const std::string padding(widths[i] - DisplayWidth(row[i]), ' ');
+      line += at_right_[i] ? padding + row[i] : row[i] + padding;
     }
     line.erase(line.find_last_not_of(' ') + 1);
-    text += line + '\n';
-  };
-  if (has_header) add_line(headers);
-  for (const auto& row : rows_) add_line(row);
+    if (!line.empty()) text += line + '\n';
+  }
   return text;
 }
 

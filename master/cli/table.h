@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,25 +10,20 @@
 
 namespace gauntlet::master {
 
-enum class Align { kLeft, kRight };
-
 class Table {
  public:
-  struct Column {
-    std::string header;
-    Align align = Align::kLeft;
-  };
-  // A table whose columns have no header prints no header line.
-  explicit Table(std::vector<Column> columns);
+  // The columns' headers; '>' in front, which is not printed, moves a column's cells to the right.
+  explicit Table(const std::vector<std::string>& headers);
 
   // Missing cells are empty; there must not be more cells than columns.
   void AddRow(std::vector<std::string> cells);
-  // Lines end with '\n', without trailing blanks; columns are two blanks apart.
+  // Lines end with '\n', without trailing blanks; columns are two blanks apart. A line without text, such as
+  // that of empty headers, is left out.
   std::string ToText(std::size_t indent = 2) const;
 
  private:
-  std::vector<Column> columns_;
-  std::vector<std::vector<std::string>> rows_;
+  std::vector<bool> at_right_;                  // one a column
+  std::vector<std::vector<std::string>> rows_;  // the headers first
 };
 
 // Columns that the text takes on a terminal, counting code points (wide and combining characters count one).

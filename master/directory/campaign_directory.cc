@@ -2,18 +2,18 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <filesystem>
+#include <random>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "base/parse_number.h"
 #include "base/system/atomic_file.h"
 #include "base/system/unique_fd.h"
 
@@ -33,7 +33,7 @@ std::string WithoutSlash(std::string path) {
 
 // Ours, or a draft of it ("campaign.db.new", "epoch.a8f3Gz").
 bool IsOwnName(const std::string& name) {
-  return std::any_of(kOwnNames.begin(), kOwnNames.end(), [&name](std::string_view own) {
+  return std::ranges::any_of(kOwnNames, [&name](std::string_view own) {
     return name == own || (name.starts_with(own) && name[own.size()] == '.');
   });
 }
@@ -69,24 +69,16 @@ Result<std::uint64_t> ParseEpoch(const Result<std::string>& text, const std::str
   if (!text) return text.error();
   std::string_view digits = *text;
   while (!digits.empty() && digits.back() == '\n') digits.remove_suffix(1);
-  std::uint64_t epoch = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), epoch);
-  if (error != std::errc() || end != digits.data() + digits.size() || epoch == 0) {
-    return Error{ErrorKind::kCorrupt,
-                 fmt::format("{} holds '{}' where the number of the newest master's start should stand", path,
-                             digits.substr(0, 40))};
-  }
-  return epoch;
+  if (const auto epoch = ParseNumber<std::uint64_t>(digits); epoch && *epoch > 0) return *epoch;
+  return Error{ErrorKind::kCorrupt,
+               fmt::format("{} holds '{}' where the number of the newest master's start should stand", path,
+                           digits.substr(0, 40))};
 }
 
 std::optional<FileIdentity> IdentifyFile(const std::string& path) {
   struct stat info {};
   if (stat(path.c_str(), &info) != 0) return std::nullopt;
   return FileIdentity{info.st_dev, info.st_ino, info.st_mtim.tv_sec, info.st_mtim.tv_nsec};
-}
-
-Result<std::uint64_t> ReadEpoch(const std::string& path) {
-  return ParseEpoch(ReadSmallFile(path), path);
 }
 
 }  // namespace
@@ -151,17 +143,11 @@ Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
 }
 
 Result<std::uint64_t> CampaignDirectory::StartEpoch() {
-  Result<std::uint64_t> newest = ReadEpoch(epoch_path());
-  std::uint64_t epoch = 1;
-  if (newest) {
-    epoch = *newest + 1;
-  } else if (newest.error().kind != ErrorKind::kNotFound) {
-    return newest.error();
-  }
-  if (Status written = WriteFileAtomically(epoch_path(), fmt::format("{}\n", epoch), kReadableByAll);
-      !written) {
-    return written.error();
-  }
+  const Result<std::uint64_t> newest = ParseEpoch(ReadSmallFile(epoch_path()), epoch_path());
+  if (!newest && newest.error().kind != ErrorKind::kNotFound) return newest.error();
+  const std::uint64_t epoch = newest ? *newest + 1 : 1;
+  const Status written = WriteFileAtomically(epoch_path(), fmt::format("{}\n", epoch), kReadableByAll);
+  if (!written) return written.error();
   epoch_file_ = IdentifyFile(epoch_path());
   return epoch;
 }
@@ -193,14 +179,9 @@ Status CampaignDirectory::CheckEpoch(std::uint64_t mine) const {
           path_, *newest, mine)};
 }
 
-Result<std::string> NewCampaignId() {
-  std::array<unsigned char, 16> bits{};
-  if (getrandom(bits.data(), bits.size(), 0) != static_cast<ssize_t>(bits.size())) {
-    return SystemError("no random bits to be had", errno);
-  }
-  std::string id;
-  for (const unsigned char byte : bits) id += fmt::format("{:02x}", byte);
-  return id;
+std::string NewCampaignId() {
+  std::random_device device;  // the operating system's random numbers
+  return fmt::format("{:08x}{:08x}{:08x}{:08x}", device(), device(), device(), device());
 }
 
 }  // namespace gauntlet::master

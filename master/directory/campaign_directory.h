@@ -66,6 +66,6 @@ class CampaignDirectory {
 };
 
 // 128 random bits as 32 hex digits.
-Result<std::string> NewCampaignId();
+std::string NewCampaignId();
 
 }  // namespace gauntlet::master

@@ -47,8 +47,7 @@ Result<CampaignKeys> LoadOrMakeKeys(const std::string& path) {
                                   std::pair{"server_secret", &keys.master.secret_key},
                                   std::pair{"worker_public", &keys.worker.public_key},
                                   std::pair{"worker_secret", &keys.worker.secret_key}}) {
-    if (json.is_object() && json.contains(name) && json[name].is_string())
-      *key = json[name].get<std::string>();
+    *key = TextAt(json, name);
     if (!IsCurveKey(*key)) {
       return Error{
           ErrorKind::kCorrupt,

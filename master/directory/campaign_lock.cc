@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/system/atomic_file.h"
+#include "proto/json_text.h"
 
 namespace gauntlet::master {
 namespace {
@@ -21,10 +22,10 @@ constexpr int kLockFormat = 1;
 constexpr std::size_t kContentSize = 1024;
 constexpr std::chrono::milliseconds kRetryAfter{20};
 
-std::int64_t SystemUnixTime() {
-  return std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
-      .count();
-}
+struct LockOwner {
+  ProcessIdentity process;
+  std::int64_t heartbeat = 0;  // Unix time, s, of its last sign of life
+};
 
 std::string WriteContent(const ProcessIdentity& process, std::int64_t heartbeat) {
   const nlohmann::ordered_json json = {{"format", kLockFormat},      {"host", process.host},
@@ -38,63 +39,44 @@ std::string WriteContent(const ProcessIdentity& process, std::int64_t heartbeat)
   return content;
 }
 
-std::optional<LockOwner> ParseContent(std::string_view content) {
-  const nlohmann::json json = nlohmann::json::parse(content, nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) return std::nullopt;
-  const auto text = [&json](const char* key) {
-    const auto found = json.find(key);
-    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
-  };
-  const auto number = [&json](const char* key) -> std::int64_t {
-    const auto found = json.find(key);
-    return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
-  };
-  LockOwner owner;
-  owner.process.host = text("host");
-  owner.process.boot_id = text("boot_id");
-  owner.process.pid_namespace = text("pid_namespace");
-  owner.process.pid = static_cast<pid_t>(number("pid"));
-  owner.process.start_time = static_cast<std::uint64_t>(number("start_time"));
-  owner.heartbeat = number("heartbeat");
-  if (owner.process.host.empty() || owner.process.pid <= 0) return std::nullopt;
-  return owner;
-}
-
+// The owner that a lock file names; empty when it is free or does not read back.
 std::optional<LockOwner> ReadOwner(int fd) {
   std::array<char, kContentSize> content{};
   const ssize_t size = pread(fd, content.data(), content.size(), 0);
   if (size <= 0) return std::nullopt;
-  return ParseContent({content.data(), static_cast<std::size_t>(size)});
-}
-
-Error InUse(const std::string& campaign, const LockOwner& owner, bool elsewhere, std::int64_t now) {
-  const ProcessIdentity& process = owner.process;
-  if (!elsewhere) {
-    return {ErrorKind::kInUse, fmt::format("campaign {0} is in use by a living master (host {1}, pid {2}): "
-                                           "`gauntlet status {0}` says how it "
-                                           "goes, `gauntlet stop {0}` ends it",
-                                           campaign, process.host, process.pid)};
-  }
-  return {ErrorKind::kInUse,
-          fmt::format(
-              "campaign {} is in use by a master elsewhere (host {}, pid {}, last sign of life {} s ago; it "
-              "counts as dead after {} s without one); stop it there with Ctrl-C or `kill {}`",
-              campaign, process.host, process.pid, std::max<std::int64_t>(0, now - owner.heartbeat),
-              CampaignLock::kStaleAfter.count(), process.pid)};
+  const nlohmann::json json =
+      nlohmann::json::parse(content.data(), content.data() + size, nullptr, /*allow_exceptions=*/false);
+  const auto number = [&json](const char* key) -> std::int64_t {
+    return json.is_object() && json.contains(key) && json[key].is_number_integer()
+               ? json[key].get<std::int64_t>()
+               : 0;
+  };
+  LockOwner owner{{TextAt(json, "host"), TextAt(json, "boot_id"), TextAt(json, "pid_namespace"),
+                   static_cast<pid_t>(number("pid")), static_cast<std::uint64_t>(number("start_time"))},
+                  number("heartbeat")};
+  if (owner.process.host.empty() || owner.process.pid <= 0) return std::nullopt;
+  return owner;
 }
 
 // The error that a named owner gives rise to, if it lives.
 std::optional<Error> Objection(const LockOwner& owner, const std::string& campaign, std::int64_t now) {
-  switch (LivenessOf(owner.process, IdentifyThisProcess())) {
-    case Liveness::kAlive:
-      return InUse(campaign, owner, false, now);
-    case Liveness::kDead:
-      return std::nullopt;
-    case Liveness::kUnknown:
-      break;
+  const ProcessIdentity& process = owner.process;
+  const Liveness liveness = LivenessOf(process, IdentifyThisProcess());
+  if (liveness == Liveness::kAlive) {
+    return Error{ErrorKind::kInUse,
+                 fmt::format("campaign {0} is in use by a living master (host {1}, pid {2}): "
+                             "`gauntlet status {0}` says how it goes, `gauntlet stop {0}` ends it",
+                             campaign, process.host, process.pid)};
   }
-  if (now - owner.heartbeat >= CampaignLock::kStaleAfter.count()) return std::nullopt;
-  return InUse(campaign, owner, true, now);
+  if (liveness == Liveness::kDead || now - owner.heartbeat >= CampaignLock::kStaleAfter.count())
+    return std::nullopt;
+  return Error{
+      ErrorKind::kInUse,
+      fmt::format(
+          "campaign {} is in use by a master elsewhere (host {}, pid {}, last sign of life {} s ago; it "
+          "counts as dead after {} s without one); stop it there with Ctrl-C or `kill {}`",
+          campaign, process.host, process.pid, std::max<std::int64_t>(0, now - owner.heartbeat),
+          CampaignLock::kStaleAfter.count(), process.pid)};
 }
 
 // An owner elsewhere whose last sign of life, of a clock ahead of ours, will not be old for a long time.
@@ -105,8 +87,7 @@ bool IsAhead(const LockOwner& owner, std::int64_t now) {
 
 // The owner lives here, and is the master of another directory, of which this one is a copy.
 bool BelongsToOriginal(const LockOwner& owner, const LockOptions& options) {
-  return options.is_copy && LivenessOf(owner.process, IdentifyThisProcess()) == Liveness::kAlive &&
-         options.is_copy();
+  return LivenessOf(owner.process, IdentifyThisProcess()) == Liveness::kAlive && options.is_copy();
 }
 
 enum class FlockAnswer { kLocked, kHeldByOther, kUnsupported };
@@ -120,11 +101,6 @@ FlockAnswer TryFlock(int fd, bool exclusive) {
 }
 
 }  // namespace
-
-std::optional<LockOwner> ReadLockOwner(const std::string& path) {
-  const Result<std::string> content = ReadSmallFile(path);
-  return content ? ParseContent(*content) : std::nullopt;
-}
 
 CampaignLock::CampaignLock(std::string path, std::string campaign, LockOptions options, int fd)
     : path_(std::move(path)), campaign_(std::move(campaign)), options_(std::move(options)), fd_(fd) {}
@@ -151,11 +127,9 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::AcquireForReading(const std:
 
 Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path, const std::string& campaign,
                                                          const LockOptions& options, bool exclusive) {
-  LockOptions complete = options;
-  if (!complete.unix_time) complete.unix_time = SystemUnixTime;
   const int fd = open(path.c_str(), exclusive ? O_RDWR | O_CREAT | O_CLOEXEC : O_RDONLY | O_CLOEXEC, 0644);
   if (fd < 0 && exclusive) return SystemError(fmt::format("cannot open {}", path), errno);
-  std::unique_ptr<CampaignLock> lock(new CampaignLock(path, campaign, complete, fd));
+  std::unique_ptr<CampaignLock> lock(new CampaignLock(path, campaign, options, fd));
   if (fd < 0) return lock;
 
   const auto started = std::chrono::steady_clock::now();
@@ -168,17 +142,17 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path
     const std::optional<LockOwner> owner = ReadOwner(fd);
     bool undecided = false;
     if (owner) {
-      const std::int64_t now = complete.unix_time();
+      const std::int64_t now = options.unix_time();
       const std::optional<Error> objection = Objection(*owner, campaign, now);
-      if (objection && !(answer != FlockAnswer::kUnsupported && BelongsToOriginal(*owner, complete))) {
+      if (objection && !(answer != FlockAnswer::kUnsupported && BelongsToOriginal(*owner, options))) {
         const bool beats = ahead && ahead->heartbeat != owner->heartbeat;
         if (!exclusive || beats || !(ahead || IsAhead(*owner, now))) return *objection;
         ahead = owner;
-        undecided = waited < complete.beat_patience;
+        undecided = waited < options.beat_patience;
       }
     }
     if (answer != FlockAnswer::kHeldByOther && !undecided) return lock;
-    if (waited >= complete.patience && !undecided) {
+    if (waited >= options.patience && !undecided) {
       const std::string last =
           owner ? fmt::format(" (its last master: host {}, pid {})", owner->process.host, owner->process.pid)
                 : "";

@@ -12,17 +12,13 @@
 #include <thread>
 
 #include "base/result.h"
+#include "base/system/clock.h"
 #include "base/system/process_identity.h"
 
 namespace gauntlet::master {
 
-struct LockOwner {
-  ProcessIdentity process;
-  std::int64_t heartbeat = 0;  // Unix time, s, of its last sign of life
-};
-
 struct LockOptions {
-  std::function<std::int64_t()> unix_time;          // s; default: the system's clock
+  std::function<std::int64_t()> unix_time = [] { return UnixMilliseconds() / 1000; };  // s
   std::chrono::milliseconds heartbeat_every{5000};  // 0 = only when Heartbeat is called
   // How long to wait for an owner that has not said its name yet, or for readers.
   std::chrono::milliseconds patience{2000};
@@ -32,8 +28,7 @@ struct LockOptions {
   // Whether the campaign's directory was copied, and its lock file with it. The lock file then names the
   // master of the original, which is no reason to keep away from the copy. It is asked only when that master
   // lives on this machine: had it locked this very file and not the original's, flock(2) would say so.
-  // Default: it was not copied.
-  std::function<bool()> is_copy;
+  std::function<bool()> is_copy = [] { return false; };
 };
 
 // Whoever holds it is the campaign's master. It is taken from an owner that is dead (a process of this
@@ -86,8 +81,5 @@ class CampaignLock {
   std::condition_variable closing_changed_;
   std::thread heartbeat_;
 };
-
-// The owner that a lock file names; empty when it is free, absent or does not read back.
-std::optional<LockOwner> ReadLockOwner(const std::string& path);
 
 }  // namespace gauntlet::master

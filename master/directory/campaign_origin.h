@@ -11,8 +11,8 @@ namespace gauntlet::master {
 
 struct CampaignOrigin {
   std::string campaign_id;
-  std::string copied_from =
-      "";  // the id that the directory had when it was copied; "" = it was not, this time
+  // The id that the directory had when it was copied; "" = it was not, this time.
+  std::string copied_from = "";
 };
 
 // To be called under the campaign's lock. `born_as`: the id in the database. A campaign is known again by the

@@ -23,23 +23,26 @@ LockOptions OptionsFor(const CampaignDirectory& directory) {
   return options;
 }
 
-// The epoch is counted before the database is opened: from then on no former master commits anything that we
-// might not have read.
-Status OpenStore(CampaignOwnership& ownership) {
+// Counts the epoch, makes the database of a campaign that begins (`born` says what it is), and opens it: in
+// this order, for from the epoch on no former master commits anything that we might not have read.
+Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<CampaignLock> lock,
+                              const CampaignMeta* born) {
+  const Result<std::uint64_t> epoch = directory.StartEpoch();
+  if (!epoch) return epoch.error();
+  if (born != nullptr) {
+    if (Status made = CreateDatabase(directory.database_path(), *born); !made) return made.error();
+  }
   SqliteStore::Options options;
-  options.guard = [directory = ownership.directory, lock = ownership.lock.get(),
-                   epoch = ownership.epoch]() -> Status {
+  options.guard = [directory, lock = lock.get(), epoch = *epoch]() -> Status {
     if (Status held = lock->Check(); !held) return held;
     return directory.CheckEpoch(epoch);
   };
-  Result<std::unique_ptr<SqliteStore>> store =
-      SqliteStore::Open(ownership.directory.database_path(), std::move(options));
+  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::Open(directory.database_path(), options);
   if (!store) return store.error();
-  ownership.store = *std::move(store);
-  Result<CampaignOrigin> origin = ConfirmOrigin(ownership.directory, ownership.store->meta().campaign_id);
+  Result<CampaignOrigin> origin = ConfirmOrigin(directory, (*store)->meta().campaign_id);
   if (!origin) return origin.error();
-  ownership.origin = *std::move(origin);
-  return Ok{};
+  return CampaignOwnership{std::move(directory), std::move(lock), *epoch, *std::move(origin),
+                           *std::move(store)};
 }
 
 }  // namespace
@@ -55,9 +58,7 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
   if (Result<CampaignDirectory> unchanged = CampaignDirectory::Create(dir); !unchanged)
     return unchanged.error();
 
-  Result<std::string> id = NewCampaignId();
-  if (!id) return id.error();
-  meta.campaign_id = *std::move(id);
+  meta.campaign_id = NewCampaignId();
   meta.created_unix_ms = UnixMilliseconds();
   for (const auto& [path, text] : {std::pair(directory->experiment_path(), texts.experiment),
                                    std::pair(directory->searches_path(), texts.searches),
@@ -65,13 +66,7 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
     if (text.empty()) continue;
     if (Status written = WriteFileAtomically(path, text, kReadableByAll); !written) return written.error();
   }
-  Result<std::uint64_t> epoch = directory->StartEpoch();
-  if (!epoch) return epoch.error();
-  if (Status created = CreateDatabase(directory->database_path(), meta); !created) return created.error();
-
-  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, {}, nullptr};
-  if (Status opened = OpenStore(ownership); !opened) return opened.error();
-  return ownership;
+  return Own(*std::move(directory), *std::move(lock), &meta);
 }
 
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other) {
@@ -95,11 +90,7 @@ Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster othe
   std::error_code ignored;
   std::filesystem::remove(directory->stop_path(), ignored);
   std::filesystem::remove(directory->status_path(), ignored);
-  Result<std::uint64_t> epoch = directory->StartEpoch();
-  if (!epoch) return epoch.error();
-  CampaignOwnership ownership{*std::move(directory), *std::move(lock), *epoch, {}, nullptr};
-  if (Status opened = OpenStore(ownership); !opened) return opened.error();
-  return ownership;
+  return Own(*std::move(directory), *std::move(lock), nullptr);
 }
 
 Result<CampaignView> ViewCampaign(const std::string& dir) {

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "base/parse_number.h"
 #include "base/printable.h"
 #include "master/experiment/toml_text.h"
 
@@ -58,12 +57,7 @@ std::optional<std::uint64_t> SeedOf(const TomlValue& value) {
     return static_cast<std::uint64_t>(*integer);
   }
   const auto* text = std::get_if<std::string>(&value);
-  if (text == nullptr) return std::nullopt;
-  std::uint64_t seed = 0;
-  const char* end = text->data() + text->size();
-  const auto [parsed, error] = std::from_chars(text->data(), end, seed);
-  if (error != std::errc() || parsed != end) return std::nullopt;
-  return seed;
+  return text == nullptr ? std::nullopt : ParseNumber<std::uint64_t>(*text);
 }
 
 // The assignment's value in the type of the key, or nothing when it is of another kind.
@@ -113,13 +107,9 @@ class Reader {
 
   Result<Experiment> Read() {
     for (Key& key : CommonKeys(catalogue_)) AddWithDefault(std::move(key));
-    if (Status status = AssignWhere([](std::string_view path) { return IsBase(path); }); !status.ok()) {
-      return status.error();
-    }
+    if (Status status = AssignAll(/*base=*/true); !status.ok()) return status.error();
     if (Status status = ResolveNames(); !status.ok()) return status.error();
-    if (Status status = AssignWhere([](std::string_view path) { return !IsBase(path); }); !status.ok()) {
-      return status.error();
-    }
+    if (Status status = AssignAll(/*base=*/false); !status.ok()) return status.error();
     if (experiment_.name.empty()) experiment_.name = NameFromFile(file_name_);
     if (const std::optional<BrokenRule> broken = CheckRules(experiment_, catalogue_)) {
       return InvalidInput(fmt::format("{}: {}", PlaceOf(broken->path), broken->message));
@@ -128,21 +118,17 @@ class Reader {
   }
 
  private:
-  // The keys that decide which other keys there are.
-  static bool IsBase(std::string_view path) { return path == "scenario" || path == "controller"; }
-
-  template <typename Predicate>
-  Status AssignWhere(Predicate wanted) {
+  // `base`: the keys that decide which other keys there are; else the others.
+  Status AssignAll(bool base) {
     for (const Assignment& assignment : assignments_) {
-      if (!wanted(assignment.path)) continue;
+      if (base != (assignment.path == "scenario" || assignment.path == "controller")) continue;
       if (Status status = Assign(assignment); !status.ok()) return status;
     }
     return Ok{};
   }
 
   Status Assign(const Assignment& assignment) {
-    const auto key =
-        std::find_if(keys_.begin(), keys_.end(), [&](const Key& k) { return k.path == assignment.path; });
+    const auto key = std::ranges::find(keys_, assignment.path, &Key::path);
     if (key == keys_.end()) return UnknownKey(assignment);
     const std::optional<KeyValue> value = Convert(*key, assignment);
     if (!value.has_value()) {
@@ -164,26 +150,24 @@ class Reader {
       return InvalidInput(
           fmt::format("{}: settings of Slurm are given with --slurm KEY=VALUE", assignment.where));
     }
-    const bool known_table =
-        IsParameterTable(assignment.path) || std::any_of(keys_.begin(), keys_.end(), [&](const Key& key) {
-          return key.path.starts_with(assignment.path + ".");
-        });
+    const std::string example = FirstKeyOf(assignment.path);
     const auto* other = std::get_if<OtherToml>(&assignment.value);
-    if (known_table && other != nullptr && other->kind == "a table") return Ok{};  // an empty one is harmless
-    if (known_table) {
+    if (!example.empty() && other != nullptr && other->kind == "a table")
+      return Ok{};  // an empty one is harmless
+    if (!example.empty()) {
       return InvalidInput(fmt::format("{}: {} is a table of keys such as {}, not {}", assignment.where,
-                                      assignment.path, FirstKeyOf(assignment.path),
-                                      KindOf(assignment.value)));
+                                      assignment.path, example, KindOf(assignment.value)));
     }
     return InvalidInput(
         fmt::format("{}: unknown key '{}'; {}", assignment.where, assignment.path, HintFor(assignment.path)));
   }
 
-  // "search.algorithm" of "search".
+  // "search.algorithm" of "search"; "" when there is no such table.
   std::string FirstKeyOf(const std::string& table) const {
-    const auto key = std::find_if(keys_.begin(), keys_.end(),
-                                  [&](const Key& one) { return one.path.starts_with(table + "."); });
-    return key == keys_.end() ? table + ".NAME" : key->path;
+    for (const Key& key : keys_) {
+      if (key.path.starts_with(table + ".")) return key.path;
+    }
+    return table == "scenario_parameters" || table == "controller_parameters" ? table + ".NAME" : "";
   }
 
   // "did you mean ...?", or the keys that could have been meant.
@@ -209,10 +193,6 @@ class Reader {
     if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
     if (!siblings_text.empty()) return siblings_text;
     return "known at the top: name, description, seed, scenario, controller, physics, faults";
-  }
-
-  static bool IsParameterTable(std::string_view path) {
-    return path == "scenario_parameters" || path == "controller_parameters";
   }
 
   // Looks scenario and controller up and adds the keys of their parameters, with defaults.

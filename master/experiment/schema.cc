@@ -35,35 +35,31 @@ Key MakeKey(const std::string& path, KeyType type, const std::string& descriptio
   return key;
 }
 
+// The key of the place at Path: text, whole number, number or seed, as what stands there.
 template <auto... Path>
-Key TextKey(const std::string& path, const std::string& description) {
-  Key key = MakeKey(path, KeyType::kText, description);
-  key.get = [](const Experiment& e) -> KeyValue { return Field<Path...>(e); };
-  key.set = [](Experiment& e, const KeyValue& v) { Field<Path...>(e) = std::get<std::string>(v); };
-  return key;
-}
-
-template <auto... Path>
-Key IntegerKey(const std::string& path, double min, double max, const std::string& description) {
-  Key key = MakeKey(path, KeyType::kInteger, description);
-  key.min = min;
-  key.max = max;
-  key.get = [](const Experiment& e) -> KeyValue { return std::int64_t{Field<Path...>(e)}; };
+Key FieldKey(const std::string& path, const std::string& description) {
+  using Place = std::remove_reference_t<decltype(Field<Path...>(std::declval<Experiment&>()))>;
+  using Value = std::conditional_t<std::is_same_v<Place, int>, std::int64_t, Place>;
+  const KeyType type = std::is_same_v<Place, std::string> ? KeyType::kText
+                       : std::is_same_v<Place, int>       ? KeyType::kInteger
+                       : std::is_same_v<Place, double>    ? KeyType::kNumber
+                                                          : KeyType::kSeed;
+  Key key = MakeKey(path, type, description);
+  key.get = [](const Experiment& e) -> KeyValue { return Value{Field<Path...>(e)}; };
   key.set = [](Experiment& e, const KeyValue& v) {
-    Field<Path...>(e) = static_cast<int>(std::get<std::int64_t>(v));
+    Field<Path...>(e) = static_cast<Place>(std::get<Value>(v));
   };
   return key;
 }
 
+// The same of numbers, whole ones and others.
 template <auto... Path>
 Key NumberKey(const std::string& path, const std::string& unit, double min, double max,
               const std::string& description) {
-  Key key = MakeKey(path, KeyType::kNumber, description);
+  Key key = FieldKey<Path...>(path, description);
   key.unit = unit;
   key.min = min;
   key.max = max;
-  key.get = [](const Experiment& e) -> KeyValue { return Field<Path...>(e); };
-  key.set = [](Experiment& e, const KeyValue& v) { Field<Path...>(e) = std::get<double>(v); };
   return key;
 }
 
@@ -81,14 +77,6 @@ Key ChoiceKey(const std::string& path, const std::vector<std::string>& choices,
     const auto found = std::find(choices.begin(), choices.end(), std::get<std::string>(v));
     field = static_cast<std::remove_reference_t<decltype(field)>>(found - choices.begin());
   };
-  return key;
-}
-
-Key SeedKey() {
-  Key key = MakeKey("seed", KeyType::kSeed, "all seeds of test cases, variation and runs derive from it");
-  key.max = 18446744073709551615.0;
-  key.get = [](const Experiment& e) -> KeyValue { return e.seed; };
-  key.set = [](Experiment& e, const KeyValue& v) { e.seed = std::get<std::uint64_t>(v); };
   return key;
 }
 
@@ -155,10 +143,10 @@ std::vector<Key> NoiseKeys() {
 }
 
 Key AlgorithmKey(const Catalogue& catalogue) {
-  Key key = MakeKey("search.algorithm", KeyType::kChoice, "how test cases are found: gauntlet list searches");
+  Key key = FieldKey<&Experiment::search, &SearchSpec::algorithm>(
+      "search.algorithm", "how test cases are found: gauntlet list searches");
+  key.type = KeyType::kChoice;
   for (const SearchInfo& search : catalogue.searches) key.choices.emplace_back(search.name);
-  key.get = [](const Experiment& e) -> KeyValue { return e.search.algorithm; };
-  key.set = [](Experiment& e, const KeyValue& v) { e.search.algorithm = std::get<std::string>(v); };
   return key;
 }
 
@@ -216,10 +204,10 @@ std::vector<Key> SearchKeys(const Catalogue& catalogue) {
   constexpr auto kSearch = &Experiment::search;
   std::vector<Key> keys = {
       AlgorithmKey(catalogue),
-      IntegerKey<kSearch, &SearchSpec::population>("search.population", 4, 10000,
-                                                   "individuals, an even number (thesis Table 4.1)"),
-      IntegerKey<kSearch, &SearchSpec::generations>("search.generations", 1, 1e6,
-                                                    "the initial population is generation 1"),
+      NumberKey<kSearch, &SearchSpec::population>("search.population", "", 4, 10000,
+                                                  "individuals, an even number (thesis Table 4.1)"),
+      NumberKey<kSearch, &SearchSpec::generations>("search.generations", "", 1, 1e6,
+                                                   "the initial population is generation 1"),
       ChoiceKey<kSearch, &SearchSpec::parent_selection>(
           "search.parent_selection",
           {"AllParent-BestHalf", "2BestParents-2WorseAway", "2RandomParents-2WorseAway"}, "thesis 3.2.3.3"),
@@ -234,10 +222,10 @@ std::vector<Key> SearchKeys(const Catalogue& catalogue) {
           "who is simulated in a generation; scheme = the children in AllParent-BestHalf, else everybody"),
       ChoiceKey<kSearch, &SearchSpec::aggregation>("search.fitness_aggregation", {"mean", "last"},
                                                    "how an individual's evaluations make its fitness"),
-      IntegerKey<kSearch, &SearchSpec::replicates>("search.replicates", 1, 10000,
-                                                   "runs per evaluation, each with its own seed"),
-      IntegerKey<kSearch, &SearchSpec::variation_tries>(
-          "search.variation_tries", 1, 1e6,
+      NumberKey<kSearch, &SearchSpec::replicates>("search.replicates", "", 1, 10000,
+                                                  "runs per evaluation, each with its own seed"),
+      NumberKey<kSearch, &SearchSpec::variation_tries>(
+          "search.variation_tries", "", 1, 1e6,
           "of an offspring that breaks a validity rule; then the step leaves it unchanged"),
   };
   for (const SearchInfo& search : catalogue.searches) {
@@ -258,8 +246,8 @@ std::vector<Key> GenomeKeys() {
       NumberKey<kArena, &ArenaSpec::wall_thickness>("arena.wall_thickness", "m", 0.01, 1.0,
                                                     "half of it stands inside the centre lines"),
 
-      IntegerKey<kGenome, &GenomeSpec::genes>("genome.genes", 0, 64,
-                                              "obstacles per test case (thesis Table 4.1)"),
+      NumberKey<kGenome, &GenomeSpec::genes>("genome.genes", "", 0, 64,
+                                             "obstacles per test case (thesis Table 4.1)"),
       NumberKey<kGenome, &GenomeSpec::position_min>("genome.position_min", "m", -25.0, 25.0,
                                                     "least x and y of an obstacle's centre"),
       NumberKey<kGenome, &GenomeSpec::position_max>("genome.position_max", "m", -25.0, 25.0,
@@ -272,8 +260,8 @@ std::vector<Key> GenomeKeys() {
                                             "grid of positions and sizes; 0 = continuous"),
       NumberKey<kGenome, &GenomeSpec::moving>("genome.moving", "", 0.0, 1.0,
                                               "share of the obstacles that move (thesis 7.4)"),
-      IntegerKey<kGenome, &GenomeSpec::waypoints>("genome.waypoints", 1, sim::kMaxObstaclePath,
-                                                  "places that they visit in turn; 1 = back and forth"),
+      NumberKey<kGenome, &GenomeSpec::waypoints>("genome.waypoints", "", 1, sim::kMaxObstaclePath,
+                                                 "places that they visit in turn; 1 = back and forth"),
       NumberKey<kGenome, &GenomeSpec::speed_min>("genome.speed_min", "m/s", 0.001, sim::kMaxObstacleSpeed,
                                                  "slowest moving obstacle"),
       NumberKey<kGenome, &GenomeSpec::speed_max>("genome.speed_max", "m/s", 0.001, sim::kMaxObstacleSpeed,
@@ -281,8 +269,8 @@ std::vector<Key> GenomeKeys() {
       NumberKey<kGenome, &GenomeSpec::lights>("genome.lights", "", 0.0, 1.0,
                                               "share of the obstacles that carry lights (thesis 7.4)"),
       LightColorKey(),
-      IntegerKey<kGenome, &GenomeSpec::tries_per_gene>(
-          "genome.tries_per_gene", 1, 1e6, "redraws of one obstacle before the whole case starts anew"),
+      NumberKey<kGenome, &GenomeSpec::tries_per_gene>(
+          "genome.tries_per_gene", "", 1, 1e6, "redraws of one obstacle before the whole case starts anew"),
   };
 }
 
@@ -290,11 +278,14 @@ std::vector<Key> GenomeKeys() {
 
 std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   std::vector<Key> keys = {
-      ForPeople(TextKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -")),
-      ForPeople(TextKey<&Experiment::description>("description", "one line for people")),
-      SeedKey(),
-      TextKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
-      TextKey<&Experiment::controller>("controller", "the algorithm under test; default: the scenario's own"),
+      ForPeople(
+          FieldKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -")),
+      ForPeople(FieldKey<&Experiment::description>("description", "one line for people")),
+      NumberKey<&Experiment::seed>("seed", "", 0.0, 18446744073709551615.0,
+                                   "all seeds of test cases, variation and runs derive from it"),
+      FieldKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
+      FieldKey<&Experiment::controller>("controller",
+                                        "the algorithm under test; default: the scenario's own"),
       ChoiceKey<&Experiment::physics>("physics", {"box2d", "relaxation"},
                                       "relaxation = hand-written, without friction: fast, for comparison"),
       FaultsKey(),
@@ -307,21 +298,8 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
 }
 
 std::string_view NameOf(KeyType type) {
-  switch (type) {
-    case KeyType::kText:
-      return "text";
-    case KeyType::kChoice:
-      return "choice";
-    case KeyType::kInteger:
-      return "integer";
-    case KeyType::kNumber:
-      return "number";
-    case KeyType::kFlag:
-      return "flag";
-    case KeyType::kSeed:
-      break;
-  }
-  return "seed";
+  constexpr std::string_view kNames[] = {"text", "choice", "integer", "number", "flag", "seed"};
+  return kNames[static_cast<std::size_t>(type)];
 }
 
 double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& given) {
@@ -371,7 +349,7 @@ std::optional<std::string> CheckValue(const Key& key, const KeyValue& value) {
   };
   if (key.type == KeyType::kChoice) {
     const auto& text = std::get<std::string>(value);
-    if (std::find(key.choices.begin(), key.choices.end(), text) != key.choices.end()) return std::nullopt;
+    if (std::ranges::count(key.choices, text) > 0) return std::nullopt;
     return message(fmt::format("is unknown, allowed {}", fmt::join(key.choices, ", ")));
   }
   if (key.type == KeyType::kInteger || key.type == KeyType::kNumber) {

@@ -1,7 +1,6 @@
 // Finding experiment files: by path, or by name among the shipped ones.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <system_error>

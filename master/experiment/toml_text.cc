@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "base/utf8.h"
+
 namespace gauntlet::master {
 namespace {
 
@@ -89,10 +91,6 @@ class KeyDepthScan {
   int dots_ = 0;
 };
 
-std::string DepthMessage() {
-  return fmt::format("a key of more than {} parts; those of an experiment have at most 2", kMostKeyParts);
-}
-
 struct Located {
   toml::source_position position;
   Assignment assignment;
@@ -133,13 +131,9 @@ std::optional<TomlValue> ParseValue(const std::string& text) {
 
 Result<std::vector<Assignment>> ReadToml(std::string_view text, const std::string& file_name) {
   if (const std::optional<std::size_t> deep = KeyDepthScan(text).Find()) {
-    const std::string_view before = text.substr(0, *deep);
-    const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-    const std::string_view in_line = before.substr(before.rfind('\n') + 1);  // npos + 1 is the beginning
-    const auto column = 1 + std::count_if(in_line.begin(), in_line.end(), [](char c) {
-                          return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-                        });
-    return InvalidInput(fmt::format("{}:{}:{}: {}", file_name, line, column, DepthMessage()));
+    return InvalidInput(
+        fmt::format("{}:{}: a key of more than {} parts; those of an experiment have at most 2", file_name,
+                    PlaceIn(text, *deep), kMostKeyParts));
   }
   std::vector<Located> located;
   try {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "proto/json_text.h"
@@ -14,13 +14,11 @@ namespace {
 using nlohmann::ordered_json;
 
 // Runs that workers have: being simulated, or waiting there.
-std::size_t RunsOf(const BackendView& backend, bool waiting) {
-  std::ptrdiff_t runs = 0;
-  for (const WorkerView& worker : backend.workers) {
-    runs += std::count_if(worker.leases.begin(), worker.leases.end(),
-                          [&](const WorkerView::Lease& lease) { return lease.waits == waiting; });
-  }
-  return static_cast<std::size_t>(runs);
+std::uint64_t RunsOf(const BackendView& backend, bool waiting) {
+  std::uint64_t runs = 0;
+  for (const WorkerView& worker : backend.workers)
+    runs += static_cast<std::uint64_t>(std::ranges::count(worker.leases, waiting, &WorkerView::Lease::waits));
+  return runs;
 }
 
 // Who wanted to work and may not: "; 2 workers were refused, the last because ...". "" for nobody.
@@ -76,30 +74,23 @@ std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& pro
   if (RunsOf(backend, false) > 0) return "";
   if (progress.search.finished) return "the search has finished";
   if (master.stopping) return "the campaign is stopping: no more runs are given away";
-  int connected = 0;
-  int leaving = 0;
-  int lost = 0;
-  for (const WorkerView& worker : backend.workers) {
-    if (worker.lost) {
-      ++lost;
-    } else {
-      ++connected;
-      if (worker.leaving) ++leaving;
-    }
-  }
+  const auto lost = std::ranges::count(backend.workers, true, &WorkerView::lost);
+  const auto connected = std::ssize(backend.workers) - lost;
+  const auto leaving = std::ranges::count_if(
+      backend.workers, [](const WorkerView& worker) { return worker.leaving && !worker.lost; });
   if (connected == 0) {
-    const std::string gone =
-        lost > 0 ? fmt::format(" ({} {} silent now)", lost, lost == 1 ? "is" : "are") : "";
-    if (!backend.pool_trouble.empty())
-      return fmt::format("no worker is connected{}: {}{}", gone, backend.pool_trouble, TurnedAway(backend));
-    if (!backend.allocations.empty())
-      return fmt::format("no worker is connected{}: {} allocations are starting or ending{}", gone,
-                         backend.allocations.size(), TurnedAway(backend));
-    if (backend.own_workers > 0)
-      return fmt::format("no worker is connected{}: {} of the master's own {} starting{}", gone,
-                         backend.own_workers, backend.own_workers == 1 ? "is" : "are", TurnedAway(backend));
-    return fmt::format("no worker is connected{}: start some with `gauntlet-worker --dir DIR`{}", gone,
-                       TurnedAway(backend));
+    std::string reason = "start some with `gauntlet-worker --dir DIR`";
+    if (!backend.pool_trouble.empty()) {
+      reason = backend.pool_trouble;
+    } else if (!backend.allocations.empty()) {
+      reason = fmt::format("{} allocations are starting or ending", backend.allocations.size());
+    } else if (backend.own_workers > 0) {
+      reason = fmt::format("{} of the master's own {} starting", backend.own_workers,
+                           backend.own_workers == 1 ? "is" : "are");
+    }
+    return fmt::format("no worker is connected{}: {}{}",
+                       lost > 0 ? fmt::format(" ({} {} silent now)", lost, lost == 1 ? "is" : "are") : "",
+                       reason, TurnedAway(backend));
   }
   if (leaving == connected) return fmt::format("all {} connected workers are leaving", connected);
   if (backend.queued == 0)

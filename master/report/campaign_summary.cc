@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 
@@ -48,7 +49,7 @@ void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>
   const std::string message = result ? result->message : result.error().message;
   const auto verdict = static_cast<sim::Verdict>(run.verdict);
   const std::string rule = RuleOf(message);
-  auto group = std::find_if(groups.begin(), groups.end(), [&](const RunsWithoutResult& one) {
+  auto group = std::ranges::find_if(groups, [&](const RunsWithoutResult& one) {
     return one.verdict == verdict && one.rule == rule && (!rule.empty() || one.message == message);
   });
   if (group == groups.end()) group = groups.insert(groups.end(), {verdict, rule, message, 0, run.id});
@@ -117,8 +118,7 @@ Result<std::uint64_t> CountNondeterministic(ResultStore& store) {
   const Result<std::vector<StoredEvent>> events = store.LoadEvents();
   if (!events) return events.error();
   return static_cast<std::uint64_t>(
-      std::count_if(events->begin(), events->end(),
-                    [](const StoredEvent& event) { return event.kind == event::kNondeterministic; }));
+      std::ranges::count(*events, event::kNondeterministic, &StoredEvent::kind));
 }
 
 Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
@@ -150,8 +150,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
     AddToGeneration(run, generations);
   });
   if (!read) return read.error();
-  std::stable_sort(summary.runs_without_result.begin(), summary.runs_without_result.end(),
-                   [](const RunsWithoutResult& a, const RunsWithoutResult& b) { return a.runs > b.runs; });
+  std::ranges::stable_sort(summary.runs_without_result, std::greater(), &RunsWithoutResult::runs);
   for (const auto& [number, generation] : generations) summary.generations.push_back(generation);
 
   summary.progress = search.Progress();
@@ -182,9 +181,8 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.nondeterministic = *nondeterministic;
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
-  for (const StoredSearch& stored : *searches) {
-    if (stored.id == search_id) summary.finished = stored.finished;
-  }
+  summary.finished = std::ranges::any_of(
+      *searches, [&](const StoredSearch& stored) { return stored.id == search_id && stored.finished; });
   return summary;
 }
 

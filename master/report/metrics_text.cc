@@ -4,7 +4,6 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
@@ -42,9 +41,9 @@ class Page {
   void Sample(std::string_view name, std::string_view labels, double value) {
     text_ += fmt::format("{}{} {}\n", name, labels, Number(value));
   }
-  void Add(std::string_view name, std::string_view type, std::string_view help, double value) {
+  void Add(std::string_view name, std::string_view type, std::string_view help, auto value) {
     Describe(name, type, help);
-    Sample(name, "", value);
+    Sample(name, "", static_cast<double>(value));
   }
   std::string Take() { return std::move(text_); }
 
@@ -53,23 +52,18 @@ class Page {
 };
 
 void AddWorkers(Page& page, const BackendView& backend) {
-  struct State {
-    std::string_view name;
-    int workers = 0;
-  };
-  std::array<State, 4> states{{{"running"}, {"idle"}, {"leaving"}, {"lost"}}};
-  std::size_t running = 0;
+  int states[] = {0, 0, 0, 0};
+  std::size_t leased = 0;
   for (const WorkerView& worker : backend.workers) {
-    running += worker.leases.size();
-    ++states[worker.lost ? 3 : worker.leaving ? 2 : worker.leases.empty() ? 1 : 0].workers;
+    leased += worker.leases.size();
+    ++states[worker.lost ? 3 : worker.leaving ? 2 : worker.leases.empty() ? 1 : 0];
   }
   page.Describe("gauntlet_workers", "gauge", "Workers that the master knows, by what they do.");
-  for (const State& state : states)
-    page.Sample("gauntlet_workers", fmt::format("{{state=\"{}\"}}", state.name), state.workers);
+  for (int i = 0; const char* state : {"running", "idle", "leaving", "lost"})
+    page.Sample("gauntlet_workers", fmt::format("{{state=\"{}\"}}", state), states[i++]);
   page.Add("gauntlet_runs_leased", "gauge", "Runs that workers have, those that wait there included.",
-           static_cast<double>(running));
-  page.Add("gauntlet_runs_queued", "gauge", "Runs that wait for a worker.",
-           static_cast<double>(backend.queued));
+           leased);
+  page.Add("gauntlet_runs_queued", "gauge", "Runs that wait for a worker.", backend.queued);
 }
 
 }  // namespace
@@ -93,7 +87,6 @@ ProcessCost CostOfThisProcess() {
 
 std::string MetricsText(const MasterView& master, const CampaignProgress& progress,
                         const BackendView& backend, const ProcessCost& cost) {
-  const auto count = [](std::uint64_t value) { return static_cast<double>(value); };
   const WorkerStatistics& workers = progress.workers;
   Page page;
   page.Describe("gauntlet_campaign_info", "gauge", "Always 1; which campaign this is.");
@@ -103,38 +96,37 @@ std::string MetricsText(const MasterView& master, const CampaignProgress& progre
                           EscapeLabel(master.host), master.epoch),
               1);
   page.Add("gauntlet_runs_stored_total", "counter", "Runs whose result is stored, earlier masters included.",
-           count(progress.runs_done));
+           progress.runs_done);
   page.Add("gauntlet_runs_planned", "gauge", "Runs of the whole campaign; 0 = unknown.",
-           count(progress.runs_planned));
+           progress.runs_planned);
   page.Add("gauntlet_runs_failed_total", "counter", "Stored runs without a result: crashed, hung, refused.",
-           count(progress.runs_failed));
+           progress.runs_failed);
   page.Add("gauntlet_total_failures_total", "counter", "Stored runs in which the whole swarm failed.",
-           count(progress.total_failures));
+           progress.total_failures);
   page.Add("gauntlet_runs_per_second", "gauge", "Over the last seconds.", progress.runs_per_second);
   page.Add("gauntlet_generation", "gauge", "Generations that are complete, summed over the searches.",
-           static_cast<double>(progress.search.generation));
+           progress.search.generation);
   page.Add("gauntlet_generations", "gauge", "Generations that are planned, summed over the searches.",
-           static_cast<double>(progress.search.generations));
+           progress.search.generations);
   page.Add("gauntlet_best_fitness", "gauge", "Lowest fitness of the population (lower = tougher test case).",
            progress.best_fitness);
   page.Add("gauntlet_mean_fitness", "gauge", "Mean fitness of the population.", progress.mean_fitness);
   AddWorkers(page, backend);
   page.Add("gauntlet_workers_lost_total", "counter", "Workers that fell silent or died, since this start.",
-           static_cast<double>(workers.lost));
+           workers.lost);
   page.Add("gauntlet_runs_leased_again_total", "counter", "Leases whose worker was lost, since this start.",
-           count(workers.releases));
+           workers.releases);
   page.Add("gauntlet_duplicate_results_total", "counter", "Second results of a run, compared with the first.",
-           count(workers.duplicates));
+           workers.duplicates);
   page.Add("gauntlet_nondeterministic_results_total", "counter",
            "Second results that differed from the first, since the campaign began.",
-           count(master.nondeterministic_before + workers.nondeterministic));
+           master.nondeterministic_before + workers.nondeterministic);
   page.Add("gauntlet_rejected_messages_total", "counter", "Messages and connections that were dropped.",
-           count(workers.rejected_messages));
+           workers.rejected_messages);
   page.Add("gauntlet_stopping", "gauge", "1 while the master lets the runs that have begun end.",
            master.stopping ? 1 : 0);
   page.Add("process_cpu_seconds_total", "counter", "CPU time of the master, s.", cost.cpu_seconds);
-  page.Add("process_resident_memory_bytes", "gauge", "Resident memory of the master.",
-           count(cost.resident_bytes));
+  page.Add("process_resident_memory_bytes", "gauge", "Resident memory of the master.", cost.resident_bytes);
   page.Add("process_start_time_seconds", "gauge", "When this master began, s since 1970.",
            static_cast<double>(master.started_unix_ms) / 1000.0);
   return page.Take();

@@ -11,49 +11,29 @@
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {
-namespace {
-
-void Compare(const char* name, double stored, double replayed, std::vector<std::string>& differences) {
-  if (stored != replayed)
-    differences.push_back(fmt::format("{} differs: stored {}, replayed {}", name, stored, replayed));
-}
-
-void CompareHash(const char* name, std::uint64_t stored, std::uint64_t replayed,
-                 std::vector<std::string>& differences) {
-  if (stored != replayed) {
-    differences.push_back(
-        fmt::format("{} differs: stored {:016x}, replayed {:016x}", name, stored, replayed));
-  }
-}
-
-}  // namespace
 
 std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::RunResult& replayed) {
   std::vector<std::string> differences;
   if (stored.hash == replayed.hash) return differences;
-  CompareHash("hash", stored.hash, replayed.hash, differences);
-  CompareHash("trajectory hash", stored.trajectory_hash, replayed.trajectory_hash, differences);
-  if (stored.verdict != replayed.verdict) {
-    differences.push_back(fmt::format("verdict differs: stored {}, replayed {}", NameOf(stored.verdict),
-                                      NameOf(replayed.verdict)));
-  }
-  if (stored.message != replayed.message) {
-    differences.push_back(
-        fmt::format("message differs: stored '{}', replayed '{}'", stored.message, replayed.message));
-  }
-  Compare("fitness", stored.fitness, replayed.fitness, differences);
-  Compare("number of ticks", stored.ticks, replayed.ticks, differences);
-  Compare("failure type", stored.failure.type, replayed.failure.type, differences);
-  for (std::size_t i = 0; i < std::min(stored.metrics.size(), replayed.metrics.size()); ++i) {
-    Compare(fmt::format("metric {}", stored.metrics[i].first).c_str(), stored.metrics[i].second,
-            replayed.metrics[i].second, differences);
-  }
+  const auto compare = [&](const std::string& what, const auto& then, const auto& now) {
+    if (then != now)
+      differences.push_back(fmt::format("{} differs: stored {}, replayed {}", what, then, now));
+  };
+  const auto hex = [](std::uint64_t hash) { return fmt::format("{:016x}", hash); };
+  compare("hash", hex(stored.hash), hex(replayed.hash));
+  compare("trajectory hash", hex(stored.trajectory_hash), hex(replayed.trajectory_hash));
+  compare("verdict", NameOf(stored.verdict), NameOf(replayed.verdict));
+  compare("message", "'" + stored.message + "'", "'" + replayed.message + "'");
+  compare("fitness", stored.fitness, replayed.fitness);
+  compare("number of ticks", stored.ticks, replayed.ticks);
+  compare("failure type", stored.failure.type, replayed.failure.type);
+  for (std::size_t i = 0; i < std::min(stored.metrics.size(), replayed.metrics.size()); ++i)
+    compare("metric " + stored.metrics[i].first, stored.metrics[i].second, replayed.metrics[i].second);
   for (std::size_t i = 0; i < std::min(stored.robots.size(), replayed.robots.size()); ++i) {
-    const std::string name = fmt::format("start of robot {}", i);
-    Compare((name + " (x)").c_str(), stored.robots[i].start.position.x(),
-            replayed.robots[i].start.position.x(), differences);
-    Compare((name + " (y)").c_str(), stored.robots[i].start.position.y(),
-            replayed.robots[i].start.position.y(), differences);
+    const sim::Vec2& then = stored.robots[i].start.position;
+    const sim::Vec2& now = replayed.robots[i].start.position;
+    compare(fmt::format("start of robot {} (x)", i), then.x(), now.x());
+    compare(fmt::format("start of robot {} (y)", i), then.y(), now.y());
   }
   return differences;
 }

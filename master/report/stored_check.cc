@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <map>
 #include <optional>
@@ -80,10 +81,8 @@ Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
 Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store) {
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
-  bool finished = false;
-  for (const StoredSearch& stored : *searches) {
-    if (stored.id == search) finished = stored.finished;
-  }
+  const bool finished = std::ranges::any_of(
+      *searches, [&](const StoredSearch& stored) { return stored.id == search && stored.finished; });
   Result<std::optional<SavedState>> state = store.LoadNewestState(search);
   if (!state) return state.error();
   if (finished && !state->has_value()) return Damaged("the search has finished, but its states are missing");

@@ -1,5 +1,7 @@
 #include "master/report/verdict_text.h"
 
+#include <iterator>
+
 namespace gauntlet::master {
 
 std::string RuleOf(std::string_view message) {
@@ -11,21 +13,10 @@ std::string RuleOf(std::string_view message) {
 }
 
 std::string_view NameOf(sim::Verdict verdict) {
-  switch (verdict) {
-    case sim::Verdict::kCompleted:
-      return "completed";
-    case sim::Verdict::kRefused:
-      return "refused";
-    case sim::Verdict::kCrashed:
-      return "crashed";
-    case sim::Verdict::kHung:
-      return "hung";
-    case sim::Verdict::kOutOfMemory:
-      return "out-of-memory";
-    case sim::Verdict::kInvalidCommand:
-      return "invalid-command";
-  }
-  return "unknown";
+  constexpr std::string_view kNames[] = {"unknown", "completed",     "refused",        "crashed",
+                                         "hung",    "out-of-memory", "invalid-command"};
+  const auto number = static_cast<std::size_t>(verdict);
+  return kNames[number < std::size(kNames) ? number : 0];
 }
 
 }  // namespace gauntlet::master

@@ -8,12 +8,12 @@
 #include <sys/un.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
-#include <charconv>
+#include <cstdint>
 #include <memory>
 #include <string_view>
 
+#include "base/parse_number.h"
 #include "master/dispatch/zmq_transport.h"
 
 namespace gauntlet::master {
@@ -25,11 +25,8 @@ constexpr std::string_view kIpcScheme = "ipc://";
 constexpr std::size_t kLongestSocketPath = sizeof(sockaddr_un::sun_path) - 1;
 
 bool IsPort(std::string_view text) {
-  if (text == "*") return true;
-  if (text.empty() || !std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) return false;
-  int port = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
-  return error == std::errc() && port >= 1 && port <= 65535;
+  const auto port = ParseNumber<std::uint16_t>(text);
+  return text == "*" || (port && *port >= 1);
 }
 
 bool IsInterface(const std::string& host, ListenOn where) {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "base/parse_number.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
 #include "base/utf8.h"
@@ -52,6 +53,22 @@ TEST(ShellQuoted, QuotesOnlyWhatAShellWouldChange) {
   EXPECT_EQ(ShellQuoted("it's"), "'it'\\''s'");
   EXPECT_EQ(ShellQuoted(""), "''");
   EXPECT_EQ(ShellQuoted("$HOME"), "'$HOME'");
+}
+
+TEST(PlaceIn, CountsLinesAndCharactersFromOne) {
+  EXPECT_EQ(PlaceIn("ab", 0), "1:1");
+  EXPECT_EQ(PlaceIn("a\nbc", 2), "2:1");
+  EXPECT_EQ(PlaceIn("a\nZ\xc3\xbcx", 5), "2:3") << "characters, not bytes";
+  EXPECT_EQ(PlaceIn("a\n", 100), "2:1");
+}
+
+TEST(ParseNumber, TakesTheWholeTextOrNothing) {
+  EXPECT_EQ(ParseNumber<int>("-12"), -12);
+  EXPECT_EQ(ParseNumber<double>("1e-2"), 0.01);
+  for (const char* text : {"", "12 ", " 12", "+12", "12x", "1.5", "99999999999"}) {
+    EXPECT_FALSE(ParseNumber<int>(text).has_value()) << text;
+  }
+  EXPECT_FALSE(ParseNumber<unsigned>("-1").has_value());
 }
 
 }  // namespace

@@ -5,9 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "master/cli/evaluation.h"
-#include "master/cli/summary_json.h"
-#include "master/cli/summary_text.h"
+#include "master/cli/summary.h"
+#include "master/report/verdict_text.h"
 
 namespace gauntlet::master {
 namespace {

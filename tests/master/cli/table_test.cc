@@ -10,7 +10,7 @@ namespace gauntlet::master {
 namespace {
 
 TEST(Table, AlignsColumnsAndLeavesNoTrailingBlanks) {
-  Table table({{"name", Align::kLeft}, {"runs", Align::kRight}, {"note", Align::kLeft}});
+  Table table({"name", ">runs", "note"});
   table.AddRow({"first", "7", "x"});
   table.AddRow({"a longer name", "1,234"});
   EXPECT_EQ(table.ToText(),
@@ -20,7 +20,7 @@ TEST(Table, AlignsColumnsAndLeavesNoTrailingBlanks) {
 }
 
 TEST(Table, WithoutHeadersThereIsNoHeaderLine) {
-  Table table({{"", Align::kLeft}, {"", Align::kRight}});
+  Table table({"", ">"});
   table.AddRow({"a", "10"});
   table.AddRow({"bc", "9"});
   EXPECT_EQ(table.ToText(0),
@@ -29,7 +29,7 @@ TEST(Table, WithoutHeadersThereIsNoHeaderLine) {
 }
 
 TEST(Table, CountsCharactersNotBytes) {
-  Table table({{"", Align::kLeft}, {"", Align::kLeft}});
+  Table table({"", ""});
   table.AddRow({"D\u00fcsseldorf", "|"});
   table.AddRow({"Duesseldorf", "|"});
   EXPECT_EQ(table.ToText(0),
