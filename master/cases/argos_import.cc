@@ -1,4 +1,4 @@
-#include "master/cases/argos_import.h"
+#include "master/cases/case_file.h"
 
 #include <algorithm>
 #include <array>

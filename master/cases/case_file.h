@@ -2,15 +2,35 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "base/result.h"
-#include "master/cases/argos_import.h"
+#include "sim/arena/test_case.h"
 
 namespace gauntlet::master {
+
+// A test case out of a file.
+struct LoadedCase {
+  sim::TestCase test_case;
+  std::string notice;  // one line, without the file's name: what was changed and ignored; "" when nothing
+};
 
 // Reads a case file: .json (proto/README.md) or .argos by its extension, any other by its content. A case
 // without a name is named after the file. Error: no such file, larger than 16 MiB, or "FILE:LINE:COLUMN:
 // ...".
 Result<LoadedCase> LoadCase(const std::filesystem::path& path);
+
+// Reads the environment out of an ARGoS3 experiment file (.argos): arena, boxes, number and start area of the
+// foot-bots. `file_name` stands in messages and becomes the case's name.
+//
+// - Coordinates are relative to the arena's centre. Boxes that stand where our walls are (centre on the
+//   arena's edge, length of the side, within 1 cm) become the walls; all others become obstacles in file
+//   order.
+// - <distribute> of foot-bots gives the number and, with method="uniform", the spawn area. Foot-bots that
+//   stand in the file by themselves are counted only.
+// - Movable boxes become fixed and all boxes count as full height; the notice says so.
+// - Error "FILE:LINE:COLUMN: ..." for malformed XML, a missing arena, values that are no numbers, boxes
+//   rotated about another axis than z and cylinders.
+Result<LoadedCase> ParseArgos(const std::string& text, const std::string& file_name);
 
 }  // namespace gauntlet::master

@@ -161,8 +161,7 @@ void AddEvaluate(CommandParser& parser) {
   command.add_option("--case", options.files, "case files, .json or .argos; several may follow")
       ->type_name("FILE...")
       ->required();
-  command.add_option("--replicates", options.replicates, "runs per case, each with its own seed")
-      ->type_name("K");
+  AddValue(command, "--replicates", "K", options.replicates, "runs per case, each with its own seed");
   command.footer(
       R"(Simulates each case and prints its fitness (mean of the replicates; lower = tougher). A case that
 breaks a validity rule is refused by the rule's name; the others go on. Exit 2 when all were refused.

@@ -19,6 +19,8 @@
 namespace gauntlet::master {
 namespace {
 
+constexpr int kMostWorkers = 1024;
+
 int AvailableCores() {
   cpu_set_t cores;
   CPU_ZERO(&cores);
@@ -26,7 +28,28 @@ int AvailableCores() {
   return std::clamp(CPU_COUNT(&cores), 1, kMostWorkers);
 }
 
+// A decimal number below 2^64, or "random", which draws one from the operating system.
+Result<std::uint64_t> ParseSeed(const std::string& text) {
+  if (text == "random") {
+    std::random_device device;
+    return (static_cast<std::uint64_t>(device()) << 32) | device();
+  }
+  if (const auto seed = ParseNumber<std::uint64_t>(text)) return *seed;
+  return InvalidInput(
+      fmt::format("--seed {}: must be a whole number from 0 to 18446744073709551615, or 'random'", text));
+}
+
 }  // namespace
+
+CLI::Option* AddValue(CLI::App& command, const char* name, const char* type, std::string& value,
+                      const char* help) {
+  return command.add_option(name, value, help)->type_name(type);
+}
+
+void AddValue(CLI::App& command, const char* name, const char* type, std::vector<std::string>& values,
+              const char* help) {
+  command.add_option(name, values, help)->type_name(type)->allow_extra_args(false);
+}
 
 void AddMessageOptions(CLI::App& command, MessageOptions& options) {
   command.add_flag("--json", options.json, "the result as one JSON document on standard output");
@@ -35,30 +58,24 @@ void AddMessageOptions(CLI::App& command, MessageOptions& options) {
 }
 
 void AddServingOptions(CLI::App& command, ServingOptions& options) {
-  command
-      .add_option("--audit", options.audit,
-                  "share of runs, 0 to 1, that a second worker simulates too; a difference is told (default: "
-                  "0; not kept: tell `resume` too)")
-      ->type_name("P");
-  command
-      .add_option("--metrics-port", options.metrics_port,
-                  "serve Prometheus metrics on this port of 127.0.0.1 (0: any free one)")
-      ->type_name("PORT");
+  AddValue(command, "--audit", "P", options.audit,
+           "share of runs, 0 to 1, that a second worker simulates too; a difference is told (default: 0; not "
+           "kept: tell `resume` too)");
+  AddValue(command, "--metrics-port", "PORT", options.metrics_port,
+           "serve Prometheus metrics on this port of 127.0.0.1 (0: any free one)");
   AddMessageOptions(command, options);
 }
 
 void AddRunningOptions(CLI::App& command, RunningOptions& options) {
-  command.add_option("--workers", options.workers, "worker processes on this machine (default: its cores)")
-      ->type_name("N");
+  AddValue(command, "--workers", "N", options.workers,
+           "worker processes on this machine (default: its cores)");
   AddServingOptions(command, options);
 }
 
 void AddBindOptions(CLI::App& command, BindOptions& options) {
-  command
-      .add_option("--bind", options.endpoint,
-                  "where workers connect: tcp://ADDRESS:PORT (IPv4, 0.0.0.0: all; port *: any free one) or "
-                  "ipc://PATH")
-      ->type_name("ENDPOINT");
+  AddValue(command, "--bind", "ENDPOINT", options.endpoint,
+           "where workers connect: tcp://ADDRESS:PORT (IPv4, 0.0.0.0: all; port *: any free one) or "
+           "ipc://PATH");
   command.add_flag("--insecure", options.insecure,
                    "plaintext, open to everybody, also on an address that other machines can reach");
 }
@@ -68,25 +85,17 @@ void AddExperimentOptions(CLI::App& command, ExperimentOptions& options) {
       .add_option("EXPERIMENT", options.experiment,
                   "a shipped experiment (see: gauntlet list experiments), or a TOML file")
       ->required();
-  command
-      .add_option("--dir", options.directory,
-                  "directory of the campaign, new or empty (default: campaigns/EXPERIMENT-<UTC time>)")
-      ->type_name("DIR");
-  command.add_option("--seed", options.seed, "seed of the campaign (default: the experiment's, 1)")
-      ->type_name("S|random");
-  command
-      .add_option(
-          "--set", options.sets,
-          "change one value of the experiment, e.g. --set search.mutation_probability=0.1; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
+  AddValue(command, "--dir", "DIR", options.directory,
+           "directory of the campaign, new or empty (default: campaigns/EXPERIMENT-<UTC time>)");
+  AddValue(command, "--seed", "S|random", options.seed,
+           "seed of the campaign (default: the experiment's, 1)");
+  AddValue(command, "--set", "KEY=VALUE", options.sets,
+           "change one value of the experiment, e.g. --set search.mutation_probability=0.1; repeatable");
 }
 
 void AddSizeOptions(CLI::App& command, SizeOptions& options) {
-  command.add_option("--generations", options.generations, "short for --set search.generations=G")
-      ->type_name("G");
-  command.add_option("--population", options.population, "short for --set search.population=P")
-      ->type_name("P");
+  AddValue(command, "--generations", "G", options.generations, "short for --set search.generations=G");
+  AddValue(command, "--population", "P", options.population, "short for --set search.population=P");
 }
 
 void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes) {
@@ -115,16 +124,6 @@ Result<double> ParseShare(const std::string& option, const std::string& text) {
   const auto share = ParseNumber<double>(text);
   if (share && *share >= 0.0 && *share <= 1.0) return *share;
   return InvalidInput(fmt::format("{} {}: must be a share from 0 to 1, e.g. 0.05", option, text));
-}
-
-Result<std::uint64_t> ParseSeed(const std::string& text) {
-  if (text == "random") {
-    std::random_device device;
-    return (static_cast<std::uint64_t>(device()) << 32) | device();
-  }
-  if (const auto seed = ParseNumber<std::uint64_t>(text)) return *seed;
-  return InvalidInput(
-      fmt::format("--seed {}: must be a whole number from 0 to 18446744073709551615, or 'random'", text));
 }
 
 Result<int> ParseMetricsPort(const std::string& text) {

@@ -11,7 +11,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace gauntlet::master {
 
@@ -56,6 +57,11 @@ struct LocalOptions {
   RunningOptions running;
 };
 
+// An option with a value, which the help calls `type`. One with a list is repeated for each value.
+CLI::Option* AddValue(CLI::App& command, const char* name, const char* type, std::string& value,
+                      const char* help);
+void AddValue(CLI::App& command, const char* name, const char* type, std::vector<std::string>& values,
+              const char* help);
 void AddMessageOptions(CLI::App& command, MessageOptions& options);
 void AddServingOptions(CLI::App& command, ServingOptions& options);
 void AddRunningOptions(CLI::App& command, RunningOptions& options);
@@ -68,14 +74,10 @@ void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes);
 // The directory of a campaign that exists.
 void AddDirectory(CLI::App& command, std::string& directory);
 
-inline constexpr int kMostWorkers = 1024;
-
-// 1 to kMostWorkers; "" gives the cores that this process may use.
+// 1 to 1024; "" gives the cores that this process may use.
 Result<int> ParseWorkers(const std::string& text);
 // A share, 0 to 1; "" gives 0.
 Result<double> ParseShare(const std::string& option, const std::string& text);
-// A decimal number below 2^64, or "random", which draws one from the operating system.
-Result<std::uint64_t> ParseSeed(const std::string& text);
 // 0 (any free one) to 65535.
 Result<int> ParseMetricsPort(const std::string& text);
 // Decimal, at least 1.

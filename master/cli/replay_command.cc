@@ -164,14 +164,11 @@ void AddReplay(CommandParser& parser) {
       parser.Add("replay", "simulate one stored run again, check its hash, draw it", RunReplay);
   AddDirectory(command, options.directory);
   command.add_option("RUN_ID", options.run, "number of the run, as 'show' names it")->required();
-  command
-      .add_option("--svg", options.svg, "write a picture: arena, every robot's way, where the swarm split")
-      ->type_name("F");
-  command
-      .add_option("--timeline", options.timeline,
-                  "write a picture: what every robot did when (foraging, task-partitioning)")
-      ->type_name("F");
-  command.add_option("--csv", options.csv, "write every pose of every tick")->type_name("F");
+  AddValue(command, "--svg", "F", options.svg,
+           "write a picture: arena, every robot's way, where the swarm split");
+  AddValue(command, "--timeline", "F", options.timeline,
+           "write a picture: what every robot did when (foraging, task-partitioning)");
+  AddValue(command, "--csv", "F", options.csv, "write every pose of every tick");
   command.add_flag("--json", options.json, "the result as one JSON document");
   command.footer(
       R"(Same run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying what

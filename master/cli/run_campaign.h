@@ -14,7 +14,7 @@ struct CampaignRun {
   std::string announcement;  // one line before it begins, without "gauntlet: "; "" = none
   ServingOptions serving;
   BindOptions bind;
-  SessionOptions session;  // its workers; the rest follows from what stands above
+  SessionOptions session;  // workers, pool and batch job; the rest follows from what stands above
   std::function<Result<SessionReport>(const SessionOptions&)> run;
   // Prints the result to context.out; nothing: the summary.
   std::function<Status(const SessionReport&)> report;

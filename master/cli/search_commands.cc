@@ -84,9 +84,8 @@ void AddRandom(CommandParser& parser) {
   const auto [command, options] =
       parser.Add("random", "random test cases: the baseline to hold an evolution against", RunRandom);
   AddLocalOptions(command, options, /*sizes=*/false);
-  command
-      .add_option("--cases", options.cases, "how many test cases (default: the experiment's search.cases)")
-      ->type_name("N");
+  AddValue(command, "--cases", "N", options.cases,
+           "how many test cases (default: the experiment's search.cases)");
   command.footer(
       R"(Generates valid random test cases by the experiment's rules and simulates each once (more often with
 --set search.replicates=K). The population that 'show' reports are all cases.

@@ -141,24 +141,16 @@ void AddSubmit(CommandParser& parser) {
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);
   AddMessageOptions(command, options.messages);
-  command
-      .add_option("--master", options.master,
-                  "job (default): the master is a job too; here: it runs in this process")
-      ->type_name("job|here")
+  AddValue(command, "--master", "job|here", options.master,
+           "job (default): the master is a job too; here: it runs in this process")
       ->check(CLI::IsMember({"job", "here"}));
-  command
-      .add_option("--slurm", options.slurm,
-                  "one setting of the jobs or the pool, e.g. --slurm partition=short; repeatable")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false);
-  command
-      .add_option(
-          "--sweep", options.sweeps,
-          "one search for each value, e.g. --sweep search.population=10,20,40; repeatable: all combinations")
-      ->type_name("KEY=A,B,...")
-      ->allow_extra_args(false);
-  command.add_option("--seeds", options.seeds, "one search for each seed (and each combination of --sweep)")
-      ->type_name("1..20|1,5,9");
+  AddValue(command, "--slurm", "KEY=VALUE", options.slurm,
+           "one setting of the jobs or the pool, e.g. --slurm partition=short; repeatable");
+  AddValue(
+      command, "--sweep", "KEY=A,B,...", options.sweeps,
+      "one search for each value, e.g. --sweep search.population=10,20,40; repeatable: all combinations");
+  AddValue(command, "--seeds", "1..20|1,5,9", options.seeds,
+           "one search for each seed (and each combination of --sweep)");
   command.add_flag("--dry-run", options.dry_run,
                    "submit nothing: print the scripts and what sbatch --test-only says of them");
   std::string settings;

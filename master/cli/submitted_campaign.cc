@@ -17,9 +17,7 @@ ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, 
   run.bind.endpoint = campaign.settings().bind;
   run.session.workers = 0;
   run.session.batch_job = batch_job;
-  run.session.make_pool = [&](const PoolSite&) -> Result<std::unique_ptr<WorkerPool>> {
-    return campaign.MakePool(context.slurm());
-  };
+  run.session.make_pool = [&] { return campaign.MakePool(context.slurm()); };
   bool served = false;
   run.run = [&](const SessionOptions& session) {
     Result<SessionReport> report = context.campaigns.Resume(directory, session);

@@ -11,6 +11,8 @@
 namespace gauntlet::master {
 namespace {
 
+constexpr std::size_t kMostSearches = 1000;
+
 struct Sweep {
   std::string key;
   std::vector<std::string> values;

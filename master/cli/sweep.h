@@ -10,8 +10,6 @@
 
 namespace gauntlet::master {
 
-inline constexpr std::size_t kMostSearches = 1000;
-
 // The experiment of `options` and `size`, once for each combination of the values of `sweeps` ("key=a,b,c",
 // the last varies fastest) and each of `seeds` ("1..20" or "1,5,9"; "" = the experiment's own); all of them
 // valid. A single one has no settings. Errors name the option and what would be right.

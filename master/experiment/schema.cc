@@ -150,11 +150,6 @@ Key AlgorithmKey(const Catalogue& catalogue) {
   return key;
 }
 
-Key ForPeople(Key key) {
-  key.for_people = true;
-  return key;
-}
-
 KeyType TypeOf(const controllers::ParameterInfo& info) {
   if (info.unit == "bool") return KeyType::kFlag;
   return info.integer ? KeyType::kInteger : KeyType::kNumber;
@@ -278,9 +273,8 @@ std::vector<Key> GenomeKeys() {
 
 std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   std::vector<Key> keys = {
-      ForPeople(
-          FieldKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -")),
-      ForPeople(FieldKey<&Experiment::description>("description", "one line for people")),
+      FieldKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -"),
+      FieldKey<&Experiment::description>("description", "one line for people"),
       NumberKey<&Experiment::seed>("seed", "", 0.0, 18446744073709551615.0,
                                    "all seeds of test cases, variation and runs derive from it"),
       FieldKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
@@ -293,7 +287,10 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   for (std::vector<Key>& more : std::array{GenomeKeys(), SearchKeys(catalogue), NoiseKeys()}) {
     std::move(more.begin(), more.end(), std::back_inserter(keys));
   }
-  for (Key& key : keys) key.default_value = key.get(Experiment{});
+  for (Key& key : keys) {
+    key.default_value = key.get(Experiment{});
+    key.for_people = key.path == "name" || key.path == "description";
+  }
   return keys;
 }
 

@@ -11,7 +11,9 @@
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {
+namespace {
 
+// What differs between two results of one spec, field by field; empty when the hashes are equal.
 std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::RunResult& replayed) {
   std::vector<std::string> differences;
   if (stored.hash == replayed.hash) return differences;
@@ -37,6 +39,8 @@ std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::
   }
   return differences;
 }
+
+}  // namespace
 
 Result<ReplayReport> ReplayRun(ResultStore& store, RunId run) {
   Result<std::optional<StoredRun>> loaded = store.LoadRun(run);

@@ -31,7 +31,4 @@ struct CampaignReplay {
 // Error: the run is not there (kNotFound), or its row contradicts the result stored in it (kCorrupt).
 Result<ReplayReport> ReplayRun(ResultStore& store, RunId run);
 
-// What differs between two results of one spec, field by field; empty when the hashes are equal.
-std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::RunResult& replayed);
-
 }  // namespace gauntlet::master

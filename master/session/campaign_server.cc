@@ -141,20 +141,13 @@ Status CampaignServer::Listen() {
 }
 
 Status CampaignServer::StartPool() {
-  const CampaignDirectory& directory = campaign_.directory;
   if (options_.make_pool) {
-    std::error_code error;
-    const std::filesystem::path absolute = std::filesystem::absolute(directory.path(), error);
-    if (error) return SystemError(fmt::format("cannot find {}", directory.path()), error.value());
-    Result<std::unique_ptr<WorkerPool>> pool =
-        options_.make_pool({absolute / "access.json", absolute / "log"});
-    if (!pool) return pool.error();
-    pool_ = *std::move(pool);
+    pool_ = options_.make_pool();
   } else if (options_.workers > 0) {
     LocalPoolOptions local;
     local.workers = options_.workers;
-    local.access_file = directory.access_path();
-    local.log_directory = directory.log_path();
+    local.access_file = campaign_.directory.access_path();
+    local.log_directory = campaign_.directory.log_path();
     Result<std::unique_ptr<LocalPool>> pool = LocalPool::Start(local, clock_.Now());
     if (!pool) return pool.error();
     pool_ = *std::move(pool);

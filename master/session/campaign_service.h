@@ -24,16 +24,10 @@ struct ServingNotice {
   bool encrypted = false;
 };
 
-// Where the workers of a pool find what they need; absolute paths.
-struct PoolSite {
-  std::string access_file;
-  std::string log_directory;
-};
-
 struct SessionOptions {
   int workers = 1;  // processes of the local pool; 0: workers come from elsewhere
   // Makes another pool than the local one.
-  std::function<Result<std::unique_ptr<WorkerPool>>(const PoolSite&)> make_pool;
+  std::function<std::unique_ptr<WorkerPool>()> make_pool;
   // For a master that is a batch job: a living master is a twin that a lost node has left behind, and is made
   // to stop; and when a signal ends this one, its pool is left to the next.
   std::string batch_job;  // its id; "" = no such master
@@ -58,8 +52,8 @@ struct SessionReport {
   WorkerStatistics workers = {};
 };
 
-// `dir` is the campaign's directory. Those that look at a campaign wait for a master that starts or ends just
-// now, and answer kInUse, with the owner, while one lives.
+// `dir` is the campaign's directory: kNotFound when there is no campaign in it. Those that look at a campaign
+// wait for a master that starts or ends just now, and answer kInUse, with the owner, while one lives.
 class CampaignService {
  public:
   virtual ~CampaignService() = default;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "master/cases/argos_import.h"
+#include "master/cases/case_file.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 #include "proto/access_file.h"

@@ -1,5 +1,3 @@
-#include "master/cases/argos_import.h"
-
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
