@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace gauntlet::analysis {
+namespace gauntlet::testing_support {
 
 struct Interval {
   double low = 0.0;
@@ -21,4 +21,4 @@ Interval ClusterBootstrapA(const std::vector<std::vector<double>>& first,
                            const std::vector<std::vector<double>>& second, double confidence, int resamples,
                            std::uint64_t seed);
 
-}  // namespace gauntlet::analysis
+}  // namespace gauntlet::testing_support

@@ -1,11 +1,11 @@
-#include "analysis/statistics/equivalence_test.h"
+#include "tests/statistics/equivalence_test.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-namespace gauntlet::analysis {
+namespace gauntlet::testing_support {
 namespace {
 
 TEST(StudentUpperTail, AgreesWithTablesAndClosedForms) {
@@ -50,4 +50,4 @@ TEST(TestEquivalence, EqualDifferencesAreTakenForExact) {
 }
 
 }  // namespace
-}  // namespace gauntlet::analysis
+}  // namespace gauntlet::testing_support
