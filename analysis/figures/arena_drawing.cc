@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -18,14 +17,6 @@ void DrawBox(SvgCanvas& canvas, const FigureFrame& frame, const sim::Vec2& min, 
 // Between the lines of the grid, m.
 double GridStep(const FigureFrame& frame) {
   return NiceStep(2 * std::max(frame.half_x(), frame.half_y()), 12);
-}
-
-// Where the number of a convex polygon stands; nothing when it has no corners.
-std::optional<Pixel> CenterOf(const FigureFrame& frame, const sim::Polygon& polygon) {
-  if (polygon.empty()) return std::nullopt;
-  sim::Vec2 sum = sim::Vec2::Zero();
-  for (const sim::Vec2& corner : polygon) sum += corner;
-  return frame.At(sum / static_cast<double>(polygon.size()));
 }
 
 void DrawWalls(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
@@ -98,20 +89,17 @@ void DrawObstacles(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena
   DrawWalls(canvas, frame, arena);
 }
 
-void DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+  std::vector<Pixel> places;
   for (std::size_t i = 0; i < arena.obstacles().size(); ++i) {
-    if (const auto p = CenterOf(frame, arena.VisiblePart(i))) {
-      canvas.Text({p->x, p->y + 4.5}, fmt::format("{}", i + 1), "class=\"obstacle-number\"");
-    }
+    const sim::Polygon corners = arena.VisiblePart(i);
+    if (corners.empty()) continue;
+    sim::Vec2 sum = sim::Vec2::Zero();
+    for (const sim::Vec2& corner : corners) sum += corner;
+    const Pixel p = places.emplace_back(frame.At(sum / static_cast<double>(corners.size())));
+    canvas.Text({p.x, p.y + 4.5}, fmt::format("{}", i + 1), "class=\"obstacle-number\"");
   }
-}
-
-std::vector<Pixel> ObstacleCenters(const FigureFrame& frame, const sim::Arena& arena) {
-  std::vector<Pixel> centers;
-  for (std::size_t i = 0; i < arena.obstacles().size(); ++i) {
-    if (const auto center = CenterOf(frame, arena.VisiblePart(i))) centers.push_back(*center);
-  }
-  return centers;
+  return places;
 }
 
 void DrawAxes(SvgCanvas& canvas, const FigureFrame& frame) {

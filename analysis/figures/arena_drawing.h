@@ -10,11 +10,9 @@ namespace gauntlet::analysis {
 void DrawFloor(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
 // With the ways of those that move, the lamps of those that are lit, and the walls.
 void DrawObstacles(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
-void DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
+// Returns where they stand.
+std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
 // Ticks in m along the walls, and a scale.
 void DrawAxes(SvgCanvas& canvas, const FigureFrame& frame);
-
-// Where the obstacles' numbers stand.
-std::vector<Pixel> ObstacleCenters(const FigureFrame& frame, const sim::Arena& arena);
 
 }  // namespace gauntlet::analysis

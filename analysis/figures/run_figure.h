@@ -1,4 +1,4 @@
-// The picture of one run: a person sees at a glance where everybody went, who was lost, and where the swarm
+// The pictures of one run: a person sees at a glance where everybody went, who was lost, and where the swarm
 // broke.
 #pragma once
 
@@ -32,5 +32,12 @@ std::string DescribeOutcome(const RunFigure& figure);
 // Annotations are drawn as the style says; besides, of robots that an annotation "trapped" names, the way
 // from its tick on stands out.
 std::string DrawRun(const RunFigure& figure);
+
+// Whether the run says what its robots did, so that there is a time-line to draw.
+bool HasTimeline(const RunFigure& figure);
+
+// Its time-line, likewise: a row per robot, coloured by what it did, and how many robots did what. Rows of
+// robots with an annotation "trapped" are marked from its tick on.
+std::string DrawTimeline(const RunFigure& figure);
 
 }  // namespace gauntlet::analysis

@@ -5,8 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/figures/annotation_marks.h"
-#include "analysis/figures/robot_states.h"
+#include "analysis/figures/run_annotations.h"
 
 namespace gauntlet::analysis {
 namespace {
@@ -86,14 +85,14 @@ void DrawSwatch(SvgCanvas& canvas, Pixel p, sim::Mark mark) {
       return canvas.Circle(p, 8.0, fmt::format("class=\"{}\"", ClassOf(mark)));
     case sim::Mark::kSplit:
       canvas.Circle({p.x - 6, p.y}, 8.0, "class=\"split\"");
-      return DrawSplitRobot(canvas, {p.x + 10, p.y}, 5.0);
+      return DrawDiamond(canvas, {p.x + 10, p.y}, 5.0, "split-robot");
     case sim::Mark::kTransfer:
       return DrawTransfer(canvas, p);
     case sim::Mark::kBeacon:
-      DrawBeacon(canvas, p, 12.0, true);
+      DrawDiamond(canvas, p, 12.0, "beacon");
       return DrawRobot(canvas, p, 5.0, 0.0, kKeptColor, "");
     case sim::Mark::kFormerBeacon:
-      return DrawBeacon(canvas, p, 6.0, false);
+      return DrawDiamond(canvas, p, 6.0, "beacon-before");
   }
 }
 
@@ -212,18 +211,11 @@ void DrawFigures(Panel& panel, const RunFigure& figure) {
 }  // namespace
 
 std::string_view ClassOf(sim::Mark mark) {
-  switch (mark) {
-    case sim::Mark::kPlan:
-      return "plan";
-    case sim::Mark::kChain:
-      return "chain";
-    case sim::Mark::kNest:
-      return "nest";
-    case sim::Mark::kFood:
-      return "food";
-    default:
-      return "goal";
-  }
+  return mark == sim::Mark::kPlan    ? "plan"
+         : mark == sim::Mark::kChain ? "chain"
+         : mark == sim::Mark::kNest  ? "nest"
+         : mark == sim::Mark::kFood  ? "food"
+                                     : "goal";
 }
 
 std::string DescribeOutcome(const RunFigure& figure) {

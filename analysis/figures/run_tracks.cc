@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "analysis/figures/annotation_marks.h"
+#include "analysis/figures/run_annotations.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::analysis {
@@ -110,14 +110,6 @@ void DrawArrows(SvgCanvas& canvas, const Track& track) {
     if (length > 0)
       DrawArrow(canvas, b, (b.x - before.x) / length, (b.y - before.y) / length, size, track.color);
   }
-}
-
-void DrawDiamond(SvgCanvas& canvas, Pixel center, double half, std::string_view style) {
-  canvas.Polygon({{center.x, center.y - half},
-                  {center.x + half, center.y},
-                  {center.x, center.y + half},
-                  {center.x - half, center.y}},
-                 style);
 }
 
 }  // namespace
@@ -260,12 +252,12 @@ void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Tra
   }
 }
 
-void DrawSplitRobot(SvgCanvas& canvas, Pixel center, double half) {
-  DrawDiamond(canvas, center, half, "class=\"split-robot\"");
-}
-
-void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands) {
-  DrawDiamond(canvas, center, half, stands ? "class=\"beacon\"" : "class=\"beacon-before\"");
+void DrawDiamond(SvgCanvas& canvas, Pixel center, double half, std::string_view name) {
+  canvas.Polygon({{center.x, center.y - half},
+                  {center.x + half, center.y},
+                  {center.x, center.y + half},
+                  {center.x - half, center.y}},
+                 fmt::format("class=\"{}\"", name));
 }
 
 void DrawTransfer(SvgCanvas& canvas, Pixel center) {

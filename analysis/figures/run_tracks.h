@@ -40,10 +40,9 @@ void DrawEnds(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<Tra
 void DrawRobot(SvgCanvas& canvas, Pixel center, double radius, double heading, std::string_view color,
                std::string_view label);
 void DrawLostRing(SvgCanvas& canvas, Pixel center, double radius, std::string_view color);
-// One of those who left at a split: a square on its corner, `half` its diagonal, in pixels.
-void DrawSplitRobot(SvgCanvas& canvas, Pixel center, double half);
-// A square on its corner, full where a beacon stands, hollow where one stood.
-void DrawBeacon(SvgCanvas& canvas, Pixel center, double half, bool stands);
+// A square on its corner, `half` its diagonal in pixels: a "split-robot", one of those who left at a split, a
+// "beacon", or, hollow, the place of a "beacon-before".
+void DrawDiamond(SvgCanvas& canvas, Pixel center, double half, std::string_view name);
 // The mark of a hand-over between two robots.
 void DrawTransfer(SvgCanvas& canvas, Pixel center);
 

@@ -1,8 +1,8 @@
 #include "analysis/figures/svg_canvas.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 
 #include <fmt/format.h>
 
@@ -23,9 +23,24 @@ constexpr std::string_view kStyleSheet =
 .tick { stroke: #5b6470; stroke-width: 1; }
 )";
 
-// U+FFFE and U+FFFF are no XML characters.
-bool IsNonCharacter(std::string_view sequence) {
-  return sequence == "\xef\xbf\xbe" || sequence == "\xef\xbf\xbf";
+// U+FFFE and U+FFFF, the last two, are no XML characters.
+constexpr std::pair<std::string_view, std::string_view> kEscapes[] = {
+    {"&", "&amp;"}, {"<", "&lt;"}, {">", "&gt;"},           {"\"", "&quot;"},       {"\t", " "},
+    {"\n", " "},    {"\r", " "},   {"\xef\xbf\xbe", "???"}, {"\xef\xbf\xbf", "???"}};
+
+std::string_view Escaped(std::string_view character) {
+  for (const auto& [plain, escaped] : kEscapes) {
+    if (character == plain) return escaped;
+  }
+  return character.size() == 1 && static_cast<std::uint8_t>(character[0]) < 0x20 ? "?" : character;
+}
+
+std::string PointsText(const std::vector<Pixel>& points) {
+  std::string text;
+  for (const Pixel& p : points) {
+    text += fmt::format("{}{},{}", text.empty() ? "" : " ", SvgNumber(p.x), SvgNumber(p.y));
+  }
+  return text;
 }
 
 }  // namespace
@@ -35,38 +50,8 @@ std::string EscapeXml(std::string_view text) {
   out.reserve(text.size());
   while (!text.empty()) {
     const std::size_t length = Utf8Length(text, 0);
-    if (length == 0) {
-      out += '?';
-      text.remove_prefix(1);
-      continue;
-    }
-    if (IsNonCharacter(text.substr(0, length))) {
-      out += "???";
-      text.remove_prefix(length);
-      continue;
-    }
-    const char c = text.front();
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        if (length == 1 && static_cast<std::uint8_t>(c) < 0x20) {
-          out += c == '\t' || c == '\n' || c == '\r' ? ' ' : '?';
-        } else {
-          out += text.substr(0, length);
-        }
-    }
-    text.remove_prefix(length);
+    out += length == 0 ? "?" : Escaped(text.substr(0, length));
+    text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return out;
 }
@@ -82,8 +67,7 @@ std::string SvgNumber(double value) {
 SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::string_view style_sheet) {
   const std::string w = SvgNumber(width);
   const std::string h = SvgNumber(height);
-  fmt::format_to(
-      std::back_inserter(out_),
+  out_ += fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\">\n"
       "<title>{}</title>\n<style>\n{}{}</style>\n",
@@ -92,7 +76,7 @@ SvgCanvas::SvgCanvas(double width, double height, std::string_view title, std::s
 }
 
 void SvgCanvas::OpenGroup(std::string_view style) {
-  fmt::format_to(std::back_inserter(out_), "<g {}>\n", style);
+  out_ += fmt::format("<g {}>\n", style);
 }
 
 void SvgCanvas::CloseGroup() {
@@ -100,46 +84,31 @@ void SvgCanvas::CloseGroup() {
 }
 
 void SvgCanvas::Line(Pixel a, Pixel b, std::string_view style) {
-  fmt::format_to(std::back_inserter(out_), "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n",
-                 SvgNumber(a.x), SvgNumber(a.y), SvgNumber(b.x), SvgNumber(b.y), style);
-}
-
-void SvgCanvas::Points(const std::vector<Pixel>& points) {
-  bool first = true;
-  for (const Pixel& p : points) {
-    if (!first) out_ += ' ';
-    first = false;
-    out_ += SvgNumber(p.x);
-    out_ += ',';
-    out_ += SvgNumber(p.y);
-  }
+  out_ += fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" {}/>\n", SvgNumber(a.x), SvgNumber(a.y),
+                      SvgNumber(b.x), SvgNumber(b.y), style);
 }
 
 void SvgCanvas::Polyline(const std::vector<Pixel>& points, std::string_view style) {
-  out_ += "<polyline points=\"";
-  Points(points);
-  fmt::format_to(std::back_inserter(out_), "\" {}/>\n", style);
+  out_ += fmt::format("<polyline points=\"{}\" {}/>\n", PointsText(points), style);
 }
 
 void SvgCanvas::Polygon(const std::vector<Pixel>& points, std::string_view style) {
-  out_ += "<polygon points=\"";
-  Points(points);
-  fmt::format_to(std::back_inserter(out_), "\" {}/>\n", style);
+  out_ += fmt::format("<polygon points=\"{}\" {}/>\n", PointsText(points), style);
 }
 
 void SvgCanvas::Circle(Pixel center, double radius, std::string_view style) {
-  fmt::format_to(std::back_inserter(out_), "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {}/>\n", SvgNumber(center.x),
-                 SvgNumber(center.y), SvgNumber(radius), style);
+  out_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\" {}/>\n", SvgNumber(center.x), SvgNumber(center.y),
+                      SvgNumber(radius), style);
 }
 
 void SvgCanvas::Rectangle(Pixel corner, double width, double height, std::string_view style) {
-  fmt::format_to(std::back_inserter(out_), "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {}/>\n",
-                 SvgNumber(corner.x), SvgNumber(corner.y), SvgNumber(width), SvgNumber(height), style);
+  out_ += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" {}/>\n", SvgNumber(corner.x),
+                      SvgNumber(corner.y), SvgNumber(width), SvgNumber(height), style);
 }
 
 void SvgCanvas::Text(Pixel baseline, std::string_view text, std::string_view style) {
-  fmt::format_to(std::back_inserter(out_), "<text x=\"{}\" y=\"{}\" {}>{}</text>\n", SvgNumber(baseline.x),
-                 SvgNumber(baseline.y), style, EscapeXml(text));
+  out_ += fmt::format("<text x=\"{}\" y=\"{}\" {}>{}</text>\n", SvgNumber(baseline.x), SvgNumber(baseline.y),
+                      style, EscapeXml(text));
 }
 
 std::string SvgCanvas::Take() {

@@ -38,8 +38,6 @@ class SvgCanvas {
   std::string Take();
 
  private:
-  void Points(const std::vector<Pixel>& points);
-
   std::string out_;
 };
 

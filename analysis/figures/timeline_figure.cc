@@ -1,5 +1,3 @@
-#include "analysis/figures/timeline_figure.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -7,7 +5,8 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/figure_frame.h"
-#include "analysis/figures/robot_states.h"
+#include "analysis/figures/run_annotations.h"
+#include "analysis/figures/run_figure.h"
 #include "analysis/figures/run_panel.h"
 #include "analysis/figures/svg_canvas.h"
 

@@ -9,7 +9,6 @@
 #include <CLI/CLI.hpp>
 
 #include "analysis/figures/run_figure.h"
-#include "analysis/figures/timeline_figure.h"
 #include "analysis/figures/trajectory_csv.h"
 #include "base/printable.h"
 #include "controllers/registry.h"

@@ -1,12 +1,10 @@
-#include "analysis/figures/timeline_figure.h"
-
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <pugixml.hpp>
 
-#include "analysis/figures/robot_states.h"
+#include "analysis/figures/run_annotations.h"
 
 namespace gauntlet::analysis {
 namespace {

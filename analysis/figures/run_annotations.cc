@@ -1,32 +1,48 @@
-#include "analysis/figures/robot_states.h"
+#include "analysis/figures/run_annotations.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <sstream>
 
 #include "sim/robot/foot_bot.h"
 
 namespace gauntlet::analysis {
-namespace {
 
-std::vector<std::string> SplitAtCommas(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
+std::vector<const sim::Annotation*> MarkedBy(const RunFigure& figure, const sim::AnnotationStyle& style) {
+  std::vector<const sim::Annotation*> marked;
+  for (const sim::Annotation& annotation : figure.result.annotations) {
+    if (annotation.kind != style.kind || annotation.points.empty()) continue;
+    if (style.label.empty() || annotation.label == style.label) marked.push_back(&annotation);
   }
-  return parts;
+  return marked;
 }
 
-}  // namespace
+std::vector<const sim::Annotation*> MarkedAs(const RunFigure& figure, sim::Mark mark) {
+  std::vector<const sim::Annotation*> marked;
+  for (const sim::AnnotationStyle& style : figure.style.annotations) {
+    if (style.mark != mark) continue;
+    const auto some = MarkedBy(figure, style);
+    marked.insert(marked.end(), some.begin(), some.end());
+  }
+  return marked;
+}
+
+const sim::Annotation* LatestMarkedAs(const RunFigure& figure, sim::Mark mark) {
+  const auto marked = MarkedAs(figure, mark);
+  const auto latest = std::max_element(marked.begin(), marked.end(),
+                                       [](const auto* a, const auto* b) { return a->tick <= b->tick; });
+  return latest == marked.end() ? nullptr : *latest;
+}
 
 RobotStates StatesOf(const sim::RunResult& result) {
   RobotStates states;
   const double end = result.ticks * sim::kTickSeconds;
   for (const sim::Annotation& line : result.annotations) {
     if (line.kind != "states" || line.robots.size() != 1 || line.robots.front() < 0) continue;
-    if (states.names.empty()) states.names = SplitAtCommas(line.label);
+    if (states.names.empty()) {
+      std::istringstream names(line.label);
+      for (std::string name; std::getline(names, name, ',');) states.names.push_back(name);
+    }
     const int robot = line.robots.front();
     bool first = true;
     for (const sim::Vec2& change : line.points) {

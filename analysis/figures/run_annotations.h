@@ -1,13 +1,20 @@
-// What every robot did when, as scenarios with states annotate it.
+// What the annotations of a run say: which are drawn how, and what every robot did when.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "sim/run_result.h"
+#include "analysis/figures/run_figure.h"
 
 namespace gauntlet::analysis {
+
+// Those with points that the style declares as `mark`, in the result's order.
+std::vector<const sim::Annotation*> MarkedAs(const RunFigure& figure, sim::Mark mark);
+// Those of one row of the style.
+std::vector<const sim::Annotation*> MarkedBy(const RunFigure& figure, const sim::AnnotationStyle& style);
+// Of these the one with the latest tick; nullptr when there is none.
+const sim::Annotation* LatestMarkedAs(const RunFigure& figure, sim::Mark mark);
 
 // One robot in one state.
 struct StateSpell {
