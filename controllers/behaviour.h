@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "base/result.h"
 #include "controllers/common/odometer.h"
@@ -33,7 +34,7 @@ struct ControllerContext {
   double pickup_distance = 0.0;      // m from the source's centre to its own, where it gets an item
   Lamp nest_lamp = {};               // above the nest
   bool starts_in_relay = false;      // where items pass in a swarm at work, rather than in the nest
-  std::unique_ptr<Odometer> odometer = nullptr;  // its own motion
+  Odometer odometer = nullptr;       // its own motion
 };
 
 // What a scenario has to know of a controller to judge its swarm.
@@ -46,7 +47,7 @@ struct ControllerTraits {
 
 // A controller with its parameters.
 struct ControllerFactory {
-  std::function<std::unique_ptr<sim::Controller>(ControllerContext context)> create;
+  std::function<std::unique_ptr<sim::Controller>(const ControllerContext& context)> create;
   ControllerTraits traits = {};
   // Parameters that contradict one another or the arena: the message begins with a rule's name and a colon.
   // May be empty.
@@ -92,18 +93,36 @@ struct ScenarioInfo {
   std::string_view description;
   std::string_view default_controller;
   sim::RunStyle style = {};
-  std::span<const ParameterInfo> parameters;
-  std::string_view time_limit;  // the parameter, in s, after which a run ends at the latest
+  std::span<const ParameterInfo> parameters = {};
+  std::string_view time_limit = "time_limit";  // the parameter, in s, after which a run ends at the latest
   std::span<const MetricInfo> metrics;
   std::span<const FailureType> failure_types = {};
   std::string_view untyped_failure = "without a type";  // a total failure whose type is -1
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
-  sim::ArenaRequirements (*requirements)(const sim::Parameters& parameters, const sim::TestCase& test_case);
+  std::function<sim::ArenaRequirements(const sim::Parameters& parameters, const sim::TestCase& test_case)>
+      requirements = nullptr;
   // Builds the scenario of a resolved, valid spec.
-  std::unique_ptr<sim::Scenario> (*create)(const sim::RunSpec& spec, ControllerFactory controller);
+  std::function<std::unique_ptr<sim::Scenario>(const sim::RunSpec& spec, ControllerFactory controller)>
+      create = nullptr;
 
   // The longest that a run with these parameters simulates, s; what they do not name has its default.
   double TimeLimit(const sim::Parameters& given) const;
 };
+
+// The row with a scenario that gets its settings from a table, which outlives it. The settings know what they
+// require of a test case's arena. The test case that a scenario is built for obeys that; its number of robots
+// and its spawn area override the settings. The seed decides the start poses.
+template <typename Scenario, typename Settings>
+ScenarioInfo ScenarioRow(const ParameterTable<Settings>& table, ScenarioInfo row) {
+  row.parameters = table.infos();
+  row.requirements = [&table](const sim::Parameters& parameters, const sim::TestCase& test_case) {
+    return table.Read(parameters).Requirements(test_case);
+  };
+  row.create = [&table](const sim::RunSpec& spec, ControllerFactory controller) {
+    return std::make_unique<Scenario>(spec.test_case, table.Read(spec.scenario_parameters),
+                                      std::move(controller), spec.seed);
+  };
+  return row;
+}
 
 }  // namespace gauntlet::controllers

@@ -123,7 +123,7 @@ Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {
     const auto scenario = CreateScenario(trial);
     if (!scenario.ok()) return scenario.error();
     const sim::Observer observer(0, 0);
-    const auto swarm = (*scenario)->CreateSwarm(sim::Headquarters((*scenario)->arena(), observer));
+    const auto swarm = (*scenario)->CreateSwarm(sim::Headquarters(observer));
     if (swarm.ok()) return swarm->size();
     error = swarm.error();
   }

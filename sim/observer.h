@@ -1,10 +1,11 @@
 // The Observer (thesis 3.3.3.1): position, facing direction and moving speed of every robot in every tick.
-// The one place that records poses.
+// The one place that records poses. Headquarters is the one door through which robots get any of it.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "base/check.h"
 #include "sim/geometry/vec2.h"
 #include "sim/robot/foot_bot.h"
 
@@ -23,11 +24,20 @@ struct RobotState {
 // `tick_limit`.
 class Observer {
  public:
-  Observer(int robots, Tick tick_limit, std::size_t moving_obstacles = 0);
+  Observer(int robots, Tick tick_limit, std::size_t moving_obstacles = 0)
+      : robots_(robots), moving_obstacles_(moving_obstacles) {
+    obstacles_.reserve(moving_obstacles * (static_cast<std::size_t>(tick_limit) + 1));
+    states_.reserve(static_cast<std::size_t>(robots) * (static_cast<std::size_t>(tick_limit) + 1));
+  }
 
   // Appends one tick; `states` has robots() entries, `obstacles` the centres (m) of the moving obstacles in
   // the order of Arena::moving().
-  void Record(std::span<const RobotState> states, std::span<const Vec2> obstacles = {});
+  void Record(std::span<const RobotState> states, std::span<const Vec2> obstacles = {}) {
+    GAUNTLET_CHECK(states.size() == static_cast<std::size_t>(robots_), "one state per robot");
+    GAUNTLET_CHECK(obstacles.size() == moving_obstacles_, "one centre per moving obstacle");
+    obstacles_.insert(obstacles_.end(), obstacles.begin(), obstacles.end());
+    states_.insert(states_.end(), states.begin(), states.end());
+  }
 
   int robots() const { return robots_; }
   // The newest recorded tick; -1 before the first.
@@ -50,6 +60,23 @@ class Observer {
   std::size_t moving_obstacles_;
   std::vector<RobotState> states_;
   std::vector<Vec2> obstacles_;
+};
+
+// Headquarters (thesis 3.3.3.2): the one explicit door through which a scenario hands global information to a
+// robot. The prey of the flocking scenario is given one, and the odometers of task partitioning, which tell
+// their robot its own motion only.
+class Headquarters {
+ public:
+  explicit Headquarters(const Observer& observer) : observer_(observer) {}
+
+  // Pose of the robot at the newest tick.
+  Pose PoseOf(RobotIndex robot) const {
+    const RobotState& state = observer_.Latest()[static_cast<std::size_t>(robot)];
+    return {state.position(), state.heading};
+  }
+
+ private:
+  const Observer& observer_;
 };
 
 }  // namespace gauntlet::sim

@@ -7,12 +7,16 @@
 namespace gauntlet::sim {
 namespace {
 
+bool FiniteAndNotNegative(double value) {
+  return std::isfinite(value) && value >= 0.0;
+}
+
 // Why this robot cannot be simulated, or nothing.
 std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, const RobotSetup& setup) {
   const Vec2& p = setup.pose.position;
   const std::string start =
       "bad-start: " + RobotName(index) + ", tick 0: at " + PointText(p.x(), p.y()) + " m";
-  if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(setup.pose.heading)) {
+  if (!p.allFinite() || !std::isfinite(setup.pose.heading)) {
     return start + ", heading " + NumberText(setup.pose.heading) + "; a pose is finite";
   }
   if (!arena.InInterior(p)) {
@@ -24,7 +28,7 @@ std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, co
     if (Contains(arena.obstacles()[box], p)) return start + ", inside obstacle " + std::to_string(box + 1);
   }
   for (const double range : {setup.camera_range, setup.radio_range}) {
-    if (!std::isfinite(range) || range < 0.0) {
+    if (!FiniteAndNotNegative(range)) {
       return "bad-range: " + RobotName(index) + ", tick 0: camera or radio range " + NumberText(range) +
              " m; a range is finite and not negative";
     }
@@ -42,8 +46,8 @@ std::optional<std::string> RefuseRobot(const Arena& arena, std::size_t index, co
 std::optional<std::string> CheckLights(std::span<const Light> lights, Tick tick) {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
-    if (std::isfinite(light.position.x()) && std::isfinite(light.position.y()) && light.height >= 0.0 &&
-        std::isfinite(light.height) && light.intensity >= 0.0 && std::isfinite(light.intensity)) [[likely]] {
+    if (light.position.allFinite() && FiniteAndNotNegative(light.height) &&
+        FiniteAndNotNegative(light.intensity)) [[likely]] {
       continue;
     }
     return "invalid-light: light " + std::to_string(i) + ", tick " + std::to_string(tick) + ": at " +
@@ -57,8 +61,7 @@ std::optional<std::string> CheckLights(std::span<const Light> lights, Tick tick)
 std::optional<std::string> CheckRadioBeacons(std::span<const RadioBeacon> beacons, Tick tick) {
   for (std::size_t i = 0; i < beacons.size(); ++i) {
     const RadioBeacon& beacon = beacons[i];
-    if (std::isfinite(beacon.position.x()) && std::isfinite(beacon.position.y()) && beacon.range >= 0.0 &&
-        std::isfinite(beacon.range)) [[likely]] {
+    if (beacon.position.allFinite() && FiniteAndNotNegative(beacon.range)) [[likely]] {
       continue;
     }
     return "invalid-radio-beacon: radio beacon " + std::to_string(i) + ", tick " + std::to_string(tick) +

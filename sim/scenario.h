@@ -10,11 +10,9 @@
 #include "base/result.h"
 #include "sim/arena/arena.h"
 #include "sim/arena/validity.h"
-#include "sim/headquarters.h"
 #include "sim/observer.h"
 #include "sim/robot/controller.h"
 #include "sim/robot/grippers.h"
-#include "sim/robot/signals.h"
 #include "sim/robot/surroundings.h"
 #include "sim/run_result.h"
 

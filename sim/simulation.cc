@@ -49,6 +49,7 @@ class Loop {
   void Disturb();
   void SendObstacles();
   bool CheckPoses();
+  bool Refuse(const std::string& rule, std::size_t robot, const std::string& what);
   void Observe();
   void Control();
   void Enter(Phase phase) {
@@ -177,24 +178,28 @@ bool Loop::Act() {
       grippers_.SetClosed(static_cast<RobotIndex>(i), actuators.gripper_closed);
     }
     if (devices_[i].Has(Device::kDistanceScanner) && !std::isfinite(actuators.scanner.value)) [[unlikely]] {
-      invalid_command_ = "invalid-command: " + RobotName(i) + ", tick " +
-                         std::to_string(observer_.last_tick()) + ": distance scanner command " +
-                         NumberText(actuators.scanner.value) + "; an angle or a speed is finite";
-      return false;
+      return Refuse("invalid-command", i,
+                    "distance scanner command " + NumberText(actuators.scanner.value) +
+                        "; an angle or a speed is finite");
     }
     if (!devices_[i].Has(Device::kWheels)) continue;
     if (!WithinLimit(actuators.left_wheel) || !WithinLimit(actuators.right_wheel)) [[unlikely]] {
       const bool left = !WithinLimit(actuators.left_wheel);
-      invalid_command_ = "invalid-command: " + RobotName(i) + ", tick " +
-                         std::to_string(observer_.last_tick()) + ": " + (left ? "left" : "right") +
-                         " wheel speed " + NumberText(left ? actuators.left_wheel : actuators.right_wheel) +
-                         " m/s; a wheel turns at a finite speed of at most " +
-                         NumberText(foot_bot::kMaxWheelSpeed) + " m/s";
-      return false;
+      return Refuse("invalid-command", i,
+                    (left ? "left wheel speed " : "right wheel speed ") +
+                        NumberText(left ? actuators.left_wheel : actuators.right_wheel) +
+                        " m/s; a wheel turns at a finite speed of at most " +
+                        NumberText(foot_bot::kMaxWheelSpeed) + " m/s");
     }
     wheels_[i] = {.left = actuators.left_wheel, .right = actuators.right_wheel};
   }
   return true;
+}
+
+bool Loop::Refuse(const std::string& rule, std::size_t robot, const std::string& what) {
+  invalid_command_ =
+      rule + ": " + RobotName(robot) + ", tick " + std::to_string(observer_.last_tick()) + ": " + what;
+  return false;
 }
 
 // Noise and faults of what the robots do.
@@ -219,13 +224,11 @@ bool Loop::CheckPoses() {
   const Arena& arena = scenario_.arena();
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     const Vec2& p = poses_[i].position;
-    if (arena.InInterior(p)) [[likely]] {
-      continue;
+    if (!arena.InInterior(p)) [[unlikely]] {
+      return Refuse(
+          "left-arena", i,
+          "at " + PointText(p.x(), p.y()) + " m, outside the walls: bodies that overlap pushed it there");
     }
-    invalid_command_ = "left-arena: " + RobotName(i) + ", tick " + std::to_string(observer_.last_tick()) +
-                       ": at " + PointText(p.x(), p.y()) +
-                       " m, outside the walls: bodies that overlap pushed it there";
-    return false;
   }
   return true;
 }
@@ -291,7 +294,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
                    const SimulationOptions& options) {
   // Headquarters knows the observer from the beginning; how many robots it observes is known only afterwards.
   Observer observer(0, 0);
-  const Headquarters headquarters(scenario.arena(), observer);
+  const Headquarters headquarters(observer);
   Result<std::vector<RobotSetup>> swarm = scenario.CreateSwarm(headquarters);
   if (!swarm.ok()) return Refusal(swarm.error().message);
   if (std::optional<std::string> reason = RefuseSwarm(scenario.arena(), *swarm))

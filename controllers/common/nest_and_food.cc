@@ -1,34 +1,60 @@
 #include "controllers/common/nest_and_food.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "base/number_text.h"
 
 namespace gauntlet::controllers {
 namespace {
 
 constexpr sim::Tick kFoodWindow = 120 * sim::kTicksPerSecond;
 
+constexpr int kMaxRobots = 100;  // also the largest value of the parameter `robots`
+
+NestAndFood WithRobots(NestAndFood site, std::optional<int> robots) {
+  site.robots = robots.value_or(site.robots);
+  return site;
+}
+
 }  // namespace
-
-sim::Vec2 NestOf(const NestAndFood& settings) {
-  return {0.0, -settings.nest_food_distance / 2.0};
-}
-
-sim::Vec2 FoodOf(const NestAndFood& settings) {
-  return {0.0, settings.nest_food_distance / 2.0};
-}
-
-sim::ArenaRequirements RequirementsOf(const NestAndFood& settings) {
-  sim::ArenaRequirements requirements;
-  requirements.start = NestOf(settings);
-  requirements.goal = FoodOf(settings);
-  requirements.clearance = settings.clearance;
-  return requirements;
-}
 
 bool StandsInNest(const sim::SensorReadings& readings) {
   constexpr double kNestGrey = 0.5;  // the floor is nest where it is darker
   return std::all_of(readings.motor_ground.begin(), readings.motor_ground.end(),
                      [](double grey) { return grey < kNestGrey; });
+}
+
+FoodSource::FoodSource(const NestAndFood& site) : site_(site) {
+  queue_.reserve(static_cast<std::size_t>(site.robots));
+}
+
+bool FoodSource::Demands(sim::RobotIndex robot, std::span<const sim::RobotState> robots,
+                         const sim::Grippers& grippers) const {
+  if (!grippers.Closed(robot) || grippers.Holds(robot)) return false;
+  const sim::Vec2 offset = robots[static_cast<std::size_t>(robot)].position() - site_.Food();
+  return offset.squaredNorm() <= site_.pickup_distance * site_.pickup_distance;
+}
+
+std::optional<sim::RobotIndex> FoodSource::Serve(sim::Tick tick, std::span<const sim::RobotState> robots,
+                                                 sim::Grippers& grippers) {
+  std::erase_if(queue_, [&](const Customer& customer) { return !Demands(customer.robot, robots, grippers); });
+  for (sim::RobotIndex robot = 0; robot < static_cast<sim::RobotIndex>(robots.size()); ++robot) {
+    if (Demands(robot, robots, grippers) && !Waits(robot)) queue_.push_back({robot, tick});
+  }
+  if (queue_.empty() || tick < next_item_ || tick - queue_.front().arrival < site_.pickup) {
+    return std::nullopt;
+  }
+  const sim::RobotIndex served = queue_.front().robot;
+  queue_.erase(queue_.begin());
+  grippers.Give(served);
+  next_item_ = tick + site_.serving_interval;
+  return served;
+}
+
+bool FoodSource::Waits(sim::RobotIndex robot) const {
+  return std::any_of(queue_.begin(), queue_.end(),
+                     [&](const Customer& customer) { return customer.robot == robot; });
 }
 
 std::size_t FoodCount::WindowOf(sim::Tick tick) {
@@ -60,6 +86,120 @@ void FoodCount::AddWindows(std::vector<std::pair<std::string, double>>& metrics)
   for (std::size_t i = 0; i < dropped_in_window_.size(); ++i) {
     metrics.emplace_back("food_window_" + std::to_string(i + 1), dropped_in_window_[i]);
   }
+}
+
+sim::Tick StillSince(const sim::Observer& observer, sim::RobotIndex robot, sim::Tick window, double radius) {
+  const auto place = [&](sim::Tick tick) {
+    return observer.At(tick)[static_cast<std::size_t>(robot)].position();
+  };
+  const sim::Tick last = observer.last_tick();
+  sim::Vec2 sum = sim::Vec2::Zero();
+  for (sim::Tick tick = last - window; tick <= last; ++tick) sum += place(tick);
+  const sim::Vec2 center = sum / static_cast<double>(window + 1);
+  sim::Tick since = last + 1;
+  while (since > 0 && (place(since - 1) - center).squaredNorm() <= radius * radius) --since;
+  return since;
+}
+
+NestAndFoodScenario::NestAndFoodScenario(const sim::TestCase& test_case, const NestAndFood& site,
+                                         ControllerFactory controller,
+                                         std::span<const std::string_view> states)
+    : arena_(test_case),
+      site_(WithRobots(site, test_case.robots)),
+      nest_(site.Nest()),
+      food_(site.Food()),
+      controller_(std::move(controller)),
+      source_(site_),
+      states_(states) {}
+
+Status NestAndFoodScenario::CheckSite(std::string_view food) const {
+  if (site_.robots < 1 || site_.robots > kMaxRobots) {
+    return InvalidInput("swarm-size: " + std::to_string(site_.robots) + " robots; from 1 to " +
+                        std::to_string(kMaxRobots) + " can be tested");
+  }
+  if (site_.nest_food_distance <= site_.nest_radius) {
+    return InvalidInput("nest-and-food: the " + std::string(food) + " is " +
+                        NumberText(site_.nest_food_distance) +
+                        " m from the nest's centre (nest_food_distance), inside the nest (nest_radius " +
+                        NumberText(site_.nest_radius) + " m)");
+  }
+  return Ok{};
+}
+
+sim::RobotSetup NestAndFoodScenario::SetUp(const sim::Pose& pose, ControllerContext context) const {
+  context.communication_range = site_.communication_range;
+  context.pickup_distance = site_.pickup_distance;
+  sim::RobotSetup robot;
+  robot.pose = pose;
+  robot.camera_range = site_.camera_range;
+  robot.radio_range = site_.communication_range;
+  robot.controller = controller_.create(context);
+  return robot;
+}
+
+void NestAndFoodScenario::Begin(std::uint8_t state) {
+  const auto robots = static_cast<std::size_t>(site_.robots);
+  states_.Begin(site_.robots, site_.tick_limit, state);
+  items_.Begin(site_.tick_limit);
+  last_at_rest_.assign(robots, -1);
+  carrying_.assign(robots, 0);
+}
+
+bool NestAndFoodScenario::InNest(const sim::Vec2& point) const {
+  return (point - nest_).squaredNorm() <= site_.nest_radius * site_.nest_radius;
+}
+
+void NestAndFoodScenario::DropItems(const sim::Interaction& interaction) {
+  const auto robots = interaction.observer.Latest();
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    const auto robot = static_cast<sim::RobotIndex>(i);
+    if (!interaction.grippers.Holds(robot) || interaction.grippers.Closed(robot)) continue;
+    interaction.grippers.Take(robot);
+    items_.Drop(interaction.observer.last_tick(), InNest(robots[i].position()));
+  }
+}
+
+void NestAndFoodScenario::ServeItems(const sim::Interaction& interaction) {
+  const sim::Observer& observer = interaction.observer;
+  if (source_.Serve(observer.last_tick(), observer.Latest(), interaction.grippers)) items_.Take();
+}
+
+void NestAndFoodScenario::Record(const sim::Interaction& interaction, sim::RobotIndex robot,
+                                 std::uint8_t state, bool at_rest) {
+  const auto index = static_cast<std::size_t>(robot);
+  states_.Add(state);
+  if (at_rest || source_.Waits(robot)) last_at_rest_[index] = interaction.observer.last_tick();
+  carrying_[index] = interaction.grippers.Holds(robot) ? 1 : 0;
+}
+
+bool NestAndFoodScenario::Trapped(const sim::Observer& observer, sim::RobotIndex robot) const {
+  const sim::Tick first = observer.last_tick() - site_.trapped_window;
+  if (first < 0 || last_at_rest_[static_cast<std::size_t>(robot)] >= first) return false;
+  return StillSince(observer, robot, site_.trapped_window, site_.trapped_radius) <= first;
+}
+
+sim::Outcome NestAndFoodScenario::Judge(const sim::Observer& observer) const {
+  sim::Outcome outcome;
+  outcome.fitness = items_.dropped();
+  for (sim::RobotIndex robot = 0; robot < site_.robots; ++robot) {
+    outcome.lost.push_back(Trapped(observer, robot));
+  }
+  outcome.failure.total = items_.dropped() == 0;
+  return outcome;
+}
+
+NestAndFoodScenario::Metrics NestAndFoodScenario::ItemMetrics() const {
+  return items_.Metrics(static_cast<int>(std::count(carrying_.begin(), carrying_.end(), 1)));
+}
+
+std::vector<sim::Annotation> NestAndFoodScenario::Places() const {
+  return {{"disc", "nest", {nest_}, site_.nest_radius, -1, {}},
+          {"disc", "food", {food_}, site_.food_radius, -1, {}}};
+}
+
+sim::Annotation NestAndFoodScenario::TrappedMark(sim::RobotIndex robot, sim::Tick since) const {
+  const bool carries = carrying_[static_cast<std::size_t>(robot)] != 0;
+  return {"trapped", carries ? "trapped with an item" : "trapped", {}, 0.0, since, {robot}};
 }
 
 }  // namespace gauntlet::controllers

@@ -16,17 +16,14 @@ sim::Vec2 AfterMotion(const sim::Vec2& point, const BodyMotion& motion) {
   return Rotated(point - motion.shift, -motion.turn);
 }
 
-BodyOdometer::BodyOdometer(const sim::Headquarters& headquarters, sim::RobotIndex robot,
-                           const sim::Pose& start)
-    : headquarters_(headquarters), robot_(robot), last_(start) {}
-
-BodyMotion BodyOdometer::Next() {
-  const sim::Pose now = headquarters_.PoseOf(robot_);
-  BodyMotion motion;
-  motion.shift = Rotated(now.position - last_.position, -last_.heading);
-  motion.turn = sim::WrapAngle(now.heading - last_.heading);
-  last_ = now;
-  return motion;
+Odometer OdometerOf(const sim::Headquarters& headquarters, sim::RobotIndex robot, const sim::Pose& start) {
+  return [&headquarters, robot, last = start]() mutable {
+    const sim::Pose now = headquarters.PoseOf(robot);
+    const BodyMotion motion = {Rotated(now.position - last.position, -last.heading),
+                               sim::WrapAngle(now.heading - last.heading)};
+    last = now;
+    return motion;
+  };
 }
 
 }  // namespace gauntlet::controllers

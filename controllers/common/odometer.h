@@ -1,10 +1,10 @@
 // How a robot knows its own motion: exactly (thesis 3.3.2). Errors are SourceEstimate's.
 #pragma once
 
-#include <cstdint>
+#include <functional>
 
 #include "sim/geometry/vec2.h"
-#include "sim/headquarters.h"
+#include "sim/observer.h"
 
 namespace gauntlet::controllers {
 
@@ -17,26 +17,11 @@ struct BodyMotion {
 // Where a point that was at `point` in the body's frame is after the body moved.
 sim::Vec2 AfterMotion(const sim::Vec2& point, const BodyMotion& motion);
 
-class Odometer {
- public:
-  virtual ~Odometer() = default;
-  // The motion since the last call, or since the start.
-  virtual BodyMotion Next() = 0;
-};
+// The motion since the last call, or since the start.
+using Odometer = std::function<BodyMotion()>;
 
 // Takes the motion from the simulation through Headquarters, pushes by others included, and hands out nothing
-// else of it: no position and no heading.
-class BodyOdometer : public Odometer {
- public:
-  // `headquarters` outlives it.
-  BodyOdometer(const sim::Headquarters& headquarters, sim::RobotIndex robot, const sim::Pose& start);
-
-  BodyMotion Next() override;
-
- private:
-  const sim::Headquarters& headquarters_;
-  sim::RobotIndex robot_;
-  sim::Pose last_;
-};
+// else of it: no position and no heading. `headquarters` outlives it.
+Odometer OdometerOf(const sim::Headquarters& headquarters, sim::RobotIndex robot, const sim::Pose& start);
 
 }  // namespace gauntlet::controllers

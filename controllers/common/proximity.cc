@@ -67,15 +67,11 @@ ProximityReadings WithoutBodies(const ProximityReadings& readings, std::span<con
   return result;
 }
 
-ProximitySum SumProximity(const ProximityReadings& readings, const std::optional<SeenBody>& ignored) {
-  const auto& directions = ProximityDirections();
-  const bool ignore = ignored && ignored->range < kBodyReach;
-  const sim::Vec2 body_direction = ignore ? sim::UnitVector(ignored->bearing) : sim::Vec2(sim::Vec2::Zero());
+ProximitySum SumProximity(const ProximityReadings& readings) {
   ProximitySum result;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     if (readings[i] == 0.0) continue;
-    if (ignore && LooksAt(directions[i], ignored->range, body_direction)) continue;
-    result.sum += readings[i] * directions[i];
+    result.sum += readings[i] * ProximityDirections()[i];
     result.largest = std::max(result.largest, readings[i]);
   }
   return result;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <span>
 
 #include "sim/geometry/vec2.h"
@@ -32,7 +31,8 @@ struct SeenBody {
   double bearing = 0.0;  // rad from the heading
 };
 
-// The readings without those of sensors that look at one of `bodies`, by the rule of SumProximity.
+// The readings without those of sensors that look at one of `bodies`: a ray hits it when it passes its centre
+// at 0.10 m or less, and it is nearer than 0.30 m.
 ProximityReadings WithoutBodies(const ProximityReadings& readings, std::span<const SeenBody> bodies);
 
 // All readings as one push.
@@ -40,8 +40,6 @@ struct ProximitySum {
   sim::Vec2 sum = sim::Vec2::Zero();  // of reading * direction of the sensor; points at what is near
   double largest = 0.0;               // reading
 };
-// Sensors that look at `ignored` are left out: a ray hits it when it passes its centre at 0.10 m or less, and
-// it is nearer than 0.30 m.
-ProximitySum SumProximity(const ProximityReadings& readings, const std::optional<SeenBody>& ignored);
+ProximitySum SumProximity(const ProximityReadings& readings);
 
 }  // namespace gauntlet::controllers

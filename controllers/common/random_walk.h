@@ -3,6 +3,7 @@
 
 #include "controllers/common/steering.h"
 #include "sim/random/random_stream.h"
+#include "sim/robot/foot_bot.h"
 
 namespace gauntlet::controllers {
 
@@ -18,12 +19,25 @@ class RandomWalk {
   explicit RandomWalk(const RandomWalkParameters& parameters) : parameters_(parameters) {}
 
   // Drives the walk's bearing of this tick and reports the turn to itself: all that wandering takes.
-  DriveCommand Drive(double speed, const SteeringThresholds& steering, sim::RandomStream& random);
+  DriveCommand Drive(double speed, const SteeringThresholds& steering, sim::RandomStream& random) {
+    const DriveCommand command = Steer(Next(random), speed, steering);
+    if (command.turn == 0.0) {
+      Reset();
+    } else {
+      Turned(command.turn * sim::kTickSeconds);
+    }
+    return command;
+  }
   // Still turning to a heading that it took.
   bool turning() const { return remaining_ != 0.0; }
 
   // The bearing to take in this tick, rad. Draws once or twice from `random`.
-  double Next(sim::RandomStream& random);
+  double Next(sim::RandomStream& random) {
+    if (random.Chance(parameters_.turn_probability)) {
+      remaining_ = random.Uniform(-parameters_.turn_limit, parameters_.turn_limit);
+    }
+    return remaining_;
+  }
   // Takes a heading that differs by `angle` rad from the present one.
   void TurnBy(double angle) { remaining_ = angle; }
   // The controller commanded a turn of `angle` rad for the coming tick.

@@ -1,9 +1,7 @@
 #include "controllers/examples/light_flocking_registry.h"
 
 #include <array>
-#include <utility>
 
-#include "controllers/common/corners.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -22,16 +20,6 @@ constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
     {"area", "", sim::Mark::kArea, "area the swarm starts in"},
     {"disc", "light", sim::Mark::kGoal, ""},
 });
-
-sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& test_case) {
-  return CornerToCorner(test_case, LightFlockingScenarioParameters().Read(parameters).corner_distance);
-}
-
-std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec, ControllerFactory controller) {
-  return std::make_unique<LightFlockingScenario>(
-      spec.test_case, LightFlockingScenarioParameters().Read(spec.scenario_parameters), std::move(controller),
-      spec.seed);
-}
 
 }  // namespace
 
@@ -89,17 +77,15 @@ ControllerFactory MakeLightFlockers(const LightFlockingSettings& settings) {
 }
 
 const ScenarioInfo& LightFlockingScenarioInfo() {
-  static const ScenarioInfo info = {
-      .name = "light-flocking",
-      .description = "example: robots flock from corner to corner, to a light (ARGoS' sample behaviour)",
-      .default_controller = "light-flocking",
-      .style = {.annotations = kAnnotations},
-      .parameters = LightFlockingScenarioParameters().infos(),
-      .time_limit = "time_limit",
-      .metrics = kMetrics,
-      .requirements = Requirements,
-      .create = Create,
-  };
+  static const ScenarioInfo info = ScenarioRow<LightFlockingScenario>(
+      LightFlockingScenarioParameters(),
+      {
+          .name = "light-flocking",
+          .description = "example: robots flock from corner to corner, to a light (ARGoS' sample behaviour)",
+          .default_controller = "light-flocking",
+          .style = {.annotations = kAnnotations},
+          .metrics = kMetrics,
+      });
   return info;
 }
 

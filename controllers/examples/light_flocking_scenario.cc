@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "controllers/common/corners.h"
 #include "controllers/examples/light_flocking_metrics.h"
 #include "sim/arena/spawn.h"
 
@@ -29,9 +28,9 @@ LightFlockingScenario::LightFlockingScenario(const sim::TestCase& test_case,
       settings_(settings),
       robots_(std::move(robots)),
       seed_(seed),
-      start_(CornerToCorner(test_case, settings.corner_distance).start),
+      start_(settings.Requirements(test_case).start),
       light_({.position = -start_, .height = settings.light_height, .intensity = settings.light_intensity}),
-      spawn_area_(StartArea(test_case, settings.spawn_side)) {
+      spawn_area_(settings.StartArea(test_case)) {
   settings_.robots = test_case.robots.value_or(settings.robots);
 }
 
@@ -48,11 +47,10 @@ Result<std::vector<sim::Pose>> LightFlockingScenario::StartPoses() const {
     return InvalidInput("swarm-size: " + std::to_string(settings_.robots) + " robots; from 1 to " +
                         std::to_string(kMaxRobots) + " can be tested");
   }
-  sim::SpawnRequest request;
-  request.count = settings_.robots;
-  request.area = spawn_area_;
-  request.robot_radius = sim::foot_bot::kRadius;
-  request.start = start_;
+  const sim::SpawnRequest request = {.count = settings_.robots,
+                                     .area = spawn_area_,
+                                     .robot_radius = sim::foot_bot::kRadius,
+                                     .start = start_};
   sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
   const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
   return sim::Spawn(request, grid, random);

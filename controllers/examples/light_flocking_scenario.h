@@ -6,16 +6,13 @@
 #include <vector>
 
 #include "controllers/behaviour.h"
+#include "controllers/common/corners.h"
 #include "sim/scenario.h"
 
 namespace gauntlet::controllers {
 
-struct LightFlockingScenarioSettings {
+struct LightFlockingScenarioSettings : CornerToCorner {
   int robots = 0;
-  sim::Tick tick_limit = 0;      // the run ends then
-  double corner_distance = 0.0;  // m from the walls' centre lines to the middle of the start and to the light
-  double spawn_side = 0.0;       // m, side of the square in the corner that robots start in
-  double camera_range = 0.0;     // m, half side of the square a robot sees
   double light_height = 0.0;     // m
   double light_intensity = 0.0;  // of ARGoS' light model
 };
@@ -29,8 +26,6 @@ class LightFlockingScenario : public sim::Scenario {
   static constexpr sim::Tick kStoppedTicks = 300;       // over these last ticks
   static constexpr sim::Tick kStoppedSampleTicks = 20;  // looked at this often
 
-  // `test_case` is valid for the scenario; its number of robots and its spawn area override the settings.
-  // `seed` decides the start poses.
   LightFlockingScenario(const sim::TestCase& test_case, const LightFlockingScenarioSettings& settings,
                         ControllerFactory robots, std::uint64_t seed);
   // From these start poses instead; for comparisons with recorded swarms.

@@ -59,12 +59,7 @@ class SplitFinder {
     const RobotFlags& now = Cluster(tick);
     const RobotFlags& before = tick == first_ ? everybody_ : Cluster(tick - 1);
     RobotFlags left(now.size(), 0);
-    bool somebody = false;
-    for (std::size_t i = 0; i < now.size(); ++i) {
-      left[i] = before[i] != 0 && now[i] == 0 ? 1 : 0;
-      somebody = somebody || left[i] != 0;
-    }
-    if (!somebody) return;
+    for (std::size_t i = 0; i < now.size(); ++i) left[i] = before[i] != 0 && now[i] == 0 ? 1 : 0;
     RobotFlags remaining = now;
     remaining[static_cast<std::size_t>(prey_)] = 0;
     for (std::size_t i = 0; i < left.size(); ++i) {

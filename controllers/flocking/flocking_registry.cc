@@ -1,9 +1,7 @@
 #include "controllers/flocking/flocking_registry.h"
 
 #include <array>
-#include <utility>
 
-#include "controllers/common/corners.h"
 #include "controllers/flocking/bird_controller.h"
 #include "sim/geometry/trigonometry.h"
 
@@ -41,15 +39,6 @@ const std::vector<FailureType>& FailureTypes() {
     return all;
   }();
   return types;
-}
-
-sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& test_case) {
-  return CornerToCorner(test_case, FlockingParameters().Read(parameters).corner_distance);
-}
-
-std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec, ControllerFactory controller) {
-  return std::make_unique<FlockingScenario>(
-      spec.test_case, FlockingParameters().Read(spec.scenario_parameters), std::move(controller), spec.seed);
 }
 
 ControllerFactory MakeBirds(const BirdSettings& settings) {
@@ -139,19 +128,17 @@ const ParameterTable<BirdSettings>& ImprovedBirdParameters() {
 }
 
 const ScenarioInfo& FlockingScenarioInfo() {
-  static const ScenarioInfo info = {
-      .name = "flocking",
-      .description = "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
-      .default_controller = "flocking",
-      .style = {.member = "bird", .guide = "prey", .annotations = kAnnotations},
-      .parameters = FlockingParameters().infos(),
-      .time_limit = "time_limit",
-      .metrics = kMetrics,
-      .failure_types = FailureTypes(),
-      .untyped_failure = "without a split",
-      .requirements = Requirements,
-      .create = Create,
-  };
+  static const ScenarioInfo info = ScenarioRow<FlockingScenario>(
+      FlockingParameters(),
+      {
+          .name = "flocking",
+          .description = "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
+          .default_controller = "flocking",
+          .style = {.member = "bird", .guide = "prey", .annotations = kAnnotations},
+          .metrics = kMetrics,
+          .failure_types = FailureTypes(),
+          .untyped_failure = "without a split",
+      });
   return info;
 }
 

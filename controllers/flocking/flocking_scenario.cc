@@ -3,7 +3,6 @@
 #include <string>
 #include <utility>
 
-#include "controllers/common/corners.h"
 #include "controllers/flocking/flocking_metrics.h"
 #include "sim/arena/spawn.h"
 #include "sim/geometry/trigonometry.h"
@@ -36,9 +35,9 @@ FlockingScenario::FlockingScenario(const sim::TestCase& test_case, const Flockin
       settings_(settings),
       birds_(std::move(birds)),
       seed_(seed),
-      start_(CornerToCorner(test_case, settings.corner_distance).start),
+      start_(settings.Requirements(test_case).start),
       goal_(-start_),
-      spawn_area_(StartArea(test_case, settings.spawn_side)) {
+      spawn_area_(settings.StartArea(test_case)) {
   settings_.birds = test_case.robots.value_or(settings.birds);
 }
 
@@ -54,12 +53,11 @@ Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::He
     return InvalidInput(std::string(NameOf(sim::ValidityRule::kNoPath)) + ": the prey finds no path");
   }
 
-  sim::SpawnRequest request;
-  request.count = settings_.birds;
-  request.area = spawn_area_;
-  request.robot_radius = sim::foot_bot::kRadius;
-  request.occupied = {start_};
-  request.start = start_;
+  const sim::SpawnRequest request = {.count = settings_.birds,
+                                     .area = spawn_area_,
+                                     .robot_radius = sim::foot_bot::kRadius,
+                                     .occupied = {start_},
+                                     .start = start_};
   sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
   const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
   const auto poses = sim::Spawn(request, grid, random);
@@ -77,13 +75,9 @@ Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::He
   return swarm;
 }
 
-bool FlockingScenario::Arrived(const sim::Observer& observer) const {
+bool FlockingScenario::Finished(const sim::Observer& observer) {
   const sim::Vec2 position = observer.Latest()[static_cast<std::size_t>(prey())].position();
   return (position - goal_).squaredNorm() <= settings_.goal_radius * settings_.goal_radius;
-}
-
-bool FlockingScenario::Finished(const sim::Observer& observer) {
-  return Arrived(observer);
 }
 
 sim::Outcome FlockingScenario::Evaluate(const sim::Observer& observer) {
@@ -126,13 +120,12 @@ sim::Outcome FlockingScenario::Evaluate(const sim::Observer& observer) {
     split_speed_ratio = motion.speed_ratio;
   }
 
-  const bool arrived = Arrived(observer);
   outcome.metrics = {
       {"angular_order", order},
       {"birds_left", remaining},
       {"proportion_left", static_cast<double>(remaining) / settings_.birds},
       {"arrival_time", observer.last_tick() * sim::kTickSeconds},
-      {"timeout", arrived ? 0.0 : 1.0},
+      {"timeout", Finished(observer) ? 0.0 : 1.0},
       {"prey_path_length", Length(prey_path_)},
       {"splits", static_cast<double>(history.events.size())},
       {"split_time", split_time},

@@ -10,20 +10,17 @@
 #include <vector>
 
 #include "controllers/behaviour.h"
+#include "controllers/common/corners.h"
 #include "controllers/flocking/failure_classifier.h"
 #include "controllers/flocking/prey_controller.h"
 #include "sim/scenario.h"
 
 namespace gauntlet::controllers {
 
-struct FlockingSettings {
+struct FlockingSettings : CornerToCorner {
   int birds = 0;
-  int min_swarm = 0;             // fewer birds than this with the prey at the end: total failure
-  sim::Tick tick_limit = 0;      // the run is judged then if the prey has not arrived
-  double corner_distance = 0.0;  // m from the walls' centre lines to the start and to the goal
-  double spawn_side = 0.0;       // m, side of the square in the corner that birds start in
-  double goal_radius = 0.0;      // m
-  double camera_range = 0.0;     // m, half side of the square a bird sees
+  int min_swarm = 0;         // fewer birds than this with the prey at the end: total failure
+  double goal_radius = 0.0;  // m
   PreySettings prey;
   SplitRule split;
 };
@@ -34,20 +31,18 @@ inline constexpr sim::Color kPreyColor = sim::Color::kBlue;
 
 class FlockingScenario : public sim::Scenario {
  public:
-  // `test_case` is valid for the requirements of the scenario; its number of robots and its spawn area
-  // override the settings. `seed` decides the start poses.
   FlockingScenario(const sim::TestCase& test_case, const FlockingSettings& settings, ControllerFactory birds,
                    std::uint64_t seed);
 
   const sim::Arena& arena() const override { return arena_; }
   sim::Tick tick_limit() const override { return settings_.tick_limit; }
   Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters& headquarters) override;
+  // The prey has arrived.
   bool Finished(const sim::Observer& observer) override;
   sim::Outcome Evaluate(const sim::Observer& observer) override;
 
  private:
   sim::RobotIndex prey() const { return settings_.birds; }
-  bool Arrived(const sim::Observer& observer) const;
 
   sim::Arena arena_;
   FlockingSettings settings_;

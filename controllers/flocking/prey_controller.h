@@ -5,7 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "sim/headquarters.h"
+#include "sim/arena/arena.h"
+#include "sim/observer.h"
 #include "sim/robot/controller.h"
 
 namespace gauntlet::controllers {

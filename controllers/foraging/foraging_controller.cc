@@ -220,8 +220,8 @@ DriveCommand ForagingController::DriveTo(const SeenBody& target, bool has_body,
   const ProximityReadings& proximity = step.readings.proximity;
   if (settings_.field) {
     turn_aside_.Reset();
-    const auto ignored = has_body ? std::optional<SeenBody>(target) : std::nullopt;
-    const sim::Vec2 repulsion = Repulsion(SumProximity(proximity, ignored), *settings_.field);
+    const auto near = SumProximity(has_body ? WithoutBodies(proximity, {&target, 1}) : proximity);
+    const sim::Vec2 repulsion = Repulsion(near, *settings_.field);
     return FollowField(target.bearing, repulsion, settings_.speed, settings_.steering);
   }
   if (const auto aside = turn_aside_.Next(proximity, step.random)) return *aside;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "base/number_text.h"
 #include "sim/geometry/trigonometry.h"
@@ -34,15 +33,6 @@ constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
     {"disc", "nest", sim::Mark::kNest, ""},
     {"disc", "food", sim::Mark::kFood, ""},
 });
-
-sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& /*test_case*/) {
-  return RequirementsOf(ForagingParameters().Read(parameters));
-}
-
-std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec, ControllerFactory controller) {
-  return std::make_unique<ForagingScenario>(
-      spec.test_case, ForagingParameters().Read(spec.scenario_parameters), std::move(controller), spec.seed);
-}
 
 Status CheckField(const ForagerSettings& settings) {
   const auto& field = settings.field;
@@ -194,18 +184,16 @@ const ParameterTable<ForagerSettings>& ImprovedForagerParameters() {
 }
 
 const ScenarioInfo& ForagingScenarioInfo() {
-  static const ScenarioInfo info = {
-      .name = "foraging",
-      .description = "robots bring items from a source of food to the nest (thesis chapter 5)",
-      .default_controller = "foraging",
-      .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
-      .parameters = ForagingParameters().infos(),
-      .time_limit = "time_limit",
-      .metrics = kMetrics,
-      .failure_types = ForagingFailureTypes(),
-      .requirements = Requirements,
-      .create = Create,
-  };
+  static const ScenarioInfo info = ScenarioRow<ForagingScenario>(
+      ForagingParameters(),
+      {
+          .name = "foraging",
+          .description = "robots bring items from a source of food to the nest (thesis chapter 5)",
+          .default_controller = "foraging",
+          .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
+          .metrics = kMetrics,
+          .failure_types = ForagingFailureTypes(),
+      });
   return info;
 }
 

@@ -24,27 +24,22 @@ ForagingScenario::ForagingScenario(const sim::TestCase& test_case, const Foragin
     : NestAndFoodScenario(test_case, settings, std::move(controller), kForagingStateNames),
       bodies_block_radio_(settings.bodies_block_radio),
       seed_(seed),
-      spawn_disc_(!test_case.spawn_area.has_value()) {
+      spawn_disc_(!test_case.spawn_area.has_value()),
+      food_light_({.position = food_, .height = sim::foot_bot::kBeaconHeight, .color = kFoodColor}),
+      nest_beacon_({nest_, settings.communication_range, Encode({.sender = RadioMessage::Sender::kNest})}) {
   const sim::Vec2 half_side(settings.spawn_radius, settings.spawn_radius);
   spawn_area_ = test_case.spawn_area.value_or(sim::Rectangle{nest_ - half_side, nest_ + half_side});
-  food_light_.position = food_;
-  food_light_.height = sim::foot_bot::kBeaconHeight;
-  food_light_.color = kFoodColor;
-  nest_beacon_.position = nest_;
-  nest_beacon_.range = settings.communication_range;
-  nest_beacon_.payload = Encode({.sender = RadioMessage::Sender::kNest});
 }
 
 Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
     const sim::Headquarters& /*headquarters*/) {
   if (const Status checked = CheckSite("food"); !checked.ok()) return checked.error();
   if (const Status checked = controller_.Check(arena_); !checked.ok()) return checked.error();
-  sim::SpawnRequest request;
-  request.count = site_.robots;
-  request.area = spawn_area_;
-  request.disc = spawn_disc_;
-  request.robot_radius = sim::foot_bot::kRadius;
-  request.start = nest_;
+  const sim::SpawnRequest request = {.count = site_.robots,
+                                     .area = spawn_area_,
+                                     .disc = spawn_disc_,
+                                     .robot_radius = sim::foot_bot::kRadius,
+                                     .start = nest_};
   sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
   const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
   const auto poses = sim::Spawn(request, grid, random);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "controllers/behaviour.h"
-#include "controllers/common/nest_and_food_scenario.h"
+#include "controllers/common/nest_and_food.h"
 #include "controllers/foraging/radio_message.h"
 #include "sim/scenario.h"
 
@@ -26,8 +26,6 @@ std::span<const FailureType> ForagingFailureTypes();
 
 class ForagingScenario : public NestAndFoodScenario {
  public:
-  // `test_case` is valid for the requirements of the scenario; its number of robots and its spawn area
-  // override the settings. `seed` decides the start poses.
   ForagingScenario(const sim::TestCase& test_case, const ForagingSettings& settings,
                    ControllerFactory controller, std::uint64_t seed);
 

@@ -8,6 +8,7 @@
 
 #include <limits>
 
+#include "sim/geometry/trigonometry.h"
 #include "sim/robot/foot_bot.h"
 
 namespace gauntlet::controllers {
@@ -22,10 +23,14 @@ inline constexpr double kNoPheromone = std::numeric_limits<double>::infinity();
 
 // Staleness of what a robot lays at a beacon at `distance` m when it left the place it comes from
 // `seconds` ago: phi = exp(-(seconds + distance / speed) / trail_time).
-double LaidStaleness(double seconds, double distance, const PheromoneSettings& settings);
+inline double LaidStaleness(double seconds, double distance, const PheromoneSettings& settings) {
+  return (seconds + distance / settings.speed) / settings.trail_time;
+}
 // Staleness of a beacon's own level towards the nest when it hears the nest at `distance` m, nearer than
 // `range`: phi = 1 + (range - distance) / 100, so that among such beacons the nearest is the most attractive.
-double NestStaleness(double distance, double range);
+inline double NestStaleness(double distance, double range) {
+  return -sim::Log(1.0 + 0.01 * (range - distance));
+}
 
 // One level of one beacon.
 class Pheromone {

@@ -2,7 +2,10 @@
 // (dynamic strategy; Buchanan, Pomfret and Timmis 2016, "DPS").
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+
+#include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
 
@@ -29,16 +32,30 @@ class PartitionLength {
 
   double value() const { return length_; }
   // An item was found where it was looked for.
-  void Succeed();
+  void Succeed() {
+    if (settings_.rule == PartitionLengthSettings::Rule::kStatic) return;
+    row_ = std::min(row_ + 1, kLongestRow);
+    length_ = std::min(length_ + Step(100.0 - settings_.balance), settings_.most);
+  }
   // It was not.
-  void Fail();
+  void Fail() {
+    if (settings_.rule == PartitionLengthSettings::Rule::kStatic) return;
+    row_ = std::max(row_ - 1, -kLongestRow);
+    length_ = std::max(length_ - Step(settings_.balance), settings_.least);
+  }
 
  private:
-  double Step(double share) const;
+  static constexpr int kLongestRow = 10;
+
+  double Step(double share) const {
+    return settings_.rule == PartitionLengthSettings::Rule::kSigned
+               ? settings_.gain * share / 1e4
+               : settings_.gain / 1e2 * sim::Exp(-settings_.decay * row_);
+  }
 
   PartitionLengthSettings settings_;
   double length_;
-  int row_ = 0;  // successes minus failures, within +-10
+  int row_ = 0;  // successes minus failures, within +-kLongestRow
 };
 
 }  // namespace gauntlet::controllers

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "controllers/common/nest_and_food.h"
 #include "controllers/common/potential_field.h"
@@ -32,12 +31,13 @@ BugSettings BugOf(const PartitionerSettings& settings) {
 
 }  // namespace
 
-PartitioningController::PartitioningController(const PartitionerSettings& settings, ControllerContext context)
+PartitioningController::PartitioningController(const PartitionerSettings& settings,
+                                               const ControllerContext& context)
     : settings_(settings),
       self_(static_cast<std::uint8_t>(context.robot)),
       pickup_distance_(context.pickup_distance),
       lamp_(context.nest_lamp),
-      odometer_(std::move(context.odometer)),
+      odometer_(context.odometer),
       walk_(settings.wander),
       bug_(BugOf(settings)),
       giver_(settings.handover, self_),
@@ -58,7 +58,7 @@ sim::DeviceSet PartitioningController::Devices() const {
 
 void PartitioningController::Step(const sim::ControlStep& step) {
   const bool travelling = state_ == State::kGoToNest || state_ == State::kGoToSource;
-  estimate_.Move(odometer_->Next(), travelling);
+  estimate_.Move(odometer_(), travelling);
   Hear(step.readings.range_and_bearing);
   const View view = Look(step.readings);
   HandOver(view);
@@ -234,8 +234,7 @@ DriveCommand PartitioningController::Travel(const Goal& goal, const sim::Control
   walk_.Reset();
   const ProximityReadings& proximity = step.readings.proximity;
   if (!settings_.bug || state_ == State::kNeighbourhood) {
-    return FollowField(goal.bearing, Diffusion(SumProximity(proximity, std::nullopt)), settings_.speed,
-                       settings_.steering);
+    return FollowField(goal.bearing, Diffusion(SumProximity(proximity)), settings_.speed, settings_.steering);
   }
   BugView view;
   view.proximity = WithoutBodies(proximity, bodies_);
@@ -248,7 +247,7 @@ DriveCommand PartitioningController::Travel(const Goal& goal, const sim::Control
   for (std::size_t i = 0; i < robots.size(); ++i) {
     if (view.proximity[i] != 0.0) robots[i] = 0.0;
   }
-  const ProximitySum near = SumProximity(robots, std::nullopt);
+  const ProximitySum near = SumProximity(robots);
   const bool robot_near = near.largest > 0.0;
   if (follow && !robot_near) return *follow;
   // On along the edge, to where its command would have it head in a second, or to the goal; away from robots.
@@ -261,7 +260,7 @@ DriveCommand PartitioningController::DriveToItem(const SeenBody& item, const sim
   walk_.Reset();
   bug_.Reset();
   if (item.range <= settings_.grab_distance) return Steer(item.bearing, settings_.speed, settings_.steering);
-  const ProximitySum near = SumProximity(step.readings.proximity, std::nullopt);
+  const ProximitySum near = SumProximity(step.readings.proximity);
   return FollowField(item.bearing, Diffusion(near), settings_.speed, settings_.steering);
 }
 

@@ -3,7 +3,6 @@
 // Three variants differ in settings only: static with a potential field, static with BugS, dynamic.
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -47,7 +46,7 @@ class PartitioningController : public sim::Controller {
  public:
   // `context` has an odometer. A robot that starts in the relay begins in Neighbourhood around the place
   // where it starts, others in Explore.
-  PartitioningController(const PartitionerSettings& settings, ControllerContext context);
+  PartitioningController(const PartitionerSettings& settings, const ControllerContext& context);
 
   sim::DeviceSet Devices() const override;
   void Step(const sim::ControlStep& step) override;
@@ -93,7 +92,7 @@ class PartitioningController : public sim::Controller {
   std::uint8_t self_;       // its number
   double pickup_distance_;  // m from the source's centre: stops and waits for an item
   Lamp lamp_;               // above the nest
-  std::unique_ptr<Odometer> odometer_;
+  Odometer odometer_;
   RandomWalk walk_;
   BugWalk bug_;
   Giver giver_;

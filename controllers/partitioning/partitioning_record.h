@@ -8,7 +8,6 @@
 
 #include "controllers/common/nest_and_food.h"
 #include "controllers/partitioning/partition_message.h"
-#include "sim/robot/signals.h"
 
 namespace gauntlet::controllers {
 

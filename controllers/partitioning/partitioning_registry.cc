@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "base/number_text.h"
 #include "sim/geometry/trigonometry.h"
@@ -41,16 +40,6 @@ constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
     {"disc", "light", sim::Mark::kGoal, ""},
 });
 
-sim::ArenaRequirements Requirements(const sim::Parameters& parameters, const sim::TestCase& /*test_case*/) {
-  return RequirementsOf(PartitioningParameters().Read(parameters));
-}
-
-std::unique_ptr<sim::Scenario> Create(const sim::RunSpec& spec, ControllerFactory controller) {
-  return std::make_unique<PartitioningScenario>(spec.test_case,
-                                                PartitioningParameters().Read(spec.scenario_parameters),
-                                                std::move(controller), spec.seed);
-}
-
 Status CheckLengths(const PartitionLengthSettings& length, const sim::Arena& arena) {
   const sim::Vec2 size = arena.interior_max() - arena.interior_min();
   const double longest = std::max(size.x(), size.y());
@@ -72,8 +61,8 @@ Status CheckLengths(const PartitionLengthSettings& length, const sim::Arena& are
 ControllerFactory MakePartitioners(const PartitionerSettings& settings) {
   return {
       .create =
-          [settings](ControllerContext context) {
-            return std::make_unique<PartitioningController>(settings, std::move(context));
+          [settings](const ControllerContext& context) {
+            return std::make_unique<PartitioningController>(settings, context);
           },
       .traits = {.learns_partition_length = settings.length.rule != PartitionLengthSettings::Rule::kStatic,
                  .handover_reach = settings.handover.keep_reach},
@@ -266,18 +255,16 @@ const ParameterTable<PartitionerSettings>& DynamicPartitionerParameters() {
 }
 
 const ScenarioInfo& PartitioningScenarioInfo() {
-  static const ScenarioInfo info = {
-      .name = "task-partitioning",
-      .description = "robots bring items to the nest and hand them over on the way (thesis chapter 6)",
-      .default_controller = "task-partitioning",
-      .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
-      .parameters = PartitioningParameters().infos(),
-      .time_limit = "time_limit",
-      .metrics = kMetrics,
-      .failure_types = PartitioningFailureTypes(),
-      .requirements = Requirements,
-      .create = Create,
-  };
+  static const ScenarioInfo info = ScenarioRow<PartitioningScenario>(
+      PartitioningParameters(),
+      {
+          .name = "task-partitioning",
+          .description = "robots bring items to the nest and hand them over on the way (thesis chapter 6)",
+          .default_controller = "task-partitioning",
+          .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
+          .metrics = kMetrics,
+          .failure_types = PartitioningFailureTypes(),
+      });
   return info;
 }
 

@@ -8,8 +8,6 @@
 #include <utility>
 
 #include "base/number_text.h"
-#include "controllers/common/odometer.h"
-#include "controllers/common/stillness.h"
 #include "sim/arena/spawn.h"
 
 namespace gauntlet::controllers {
@@ -42,16 +40,12 @@ PartitioningScenario::PartitioningScenario(const sim::TestCase& test_case,
       start_(settings.start),
       seed_(seed),
       spawn_area_(test_case.spawn_area),
-      lights_(2) {
-  sim::Light& lamp = lights_[0];
-  lamp.position = nest_ + settings.lamp_offset;
-  lamp.height = settings.lamp.height;
-  lamp.intensity = IntensityFor(arena_, lamp.position, lamp.height, settings.lamp.intensity);
-  lamp.occludable = false;
-  sim::Light& source = lights_[1];
-  source.position = food_;
-  source.height = sim::foot_bot::kBeaconHeight;
-  source.color = kSourceColor;
+      lights_{
+          sim::Light{
+              .position = nest_ + settings.lamp_offset, .height = settings.lamp.height, .occludable = false},
+          sim::Light{.position = food_, .height = sim::foot_bot::kBeaconHeight, .color = kSourceColor}} {
+  lights_[0].intensity =
+      IntensityFor(arena_, lights_[0].position, settings.lamp.height, settings.lamp.intensity);
 }
 
 Status PartitioningScenario::CheckSettings() const {
@@ -115,12 +109,11 @@ Result<std::vector<sim::RobotSetup>> PartitioningScenario::CreateSwarm(
   std::vector<sim::RobotSetup> swarm;
   swarm.reserve(poses->size());
   for (const sim::Pose& pose : *poses) {
-    ControllerContext context;
-    context.robot = static_cast<sim::RobotIndex>(swarm.size());
-    context.nest_lamp = {lights_[0].height, lights_[0].intensity};
-    context.starts_in_relay = in_relay;
-    context.odometer = std::make_unique<BodyOdometer>(headquarters, context.robot, pose);
-    swarm.push_back(SetUp(pose, std::move(context)));
+    const auto robot = static_cast<sim::RobotIndex>(swarm.size());
+    swarm.push_back(SetUp(pose, {.robot = robot,
+                                 .nest_lamp = {lights_[0].height, lights_[0].intensity},
+                                 .starts_in_relay = in_relay,
+                                 .odometer = OdometerOf(headquarters, robot, pose)}));
   }
   const PartitioningState state = in_relay ? PartitioningState::kNeighbourhood : PartitioningState::kExplore;
   record_.Begin(site_.robots, state, site_.tick_limit);

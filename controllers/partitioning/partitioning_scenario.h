@@ -3,13 +3,14 @@
 // in the nest (thesis 6.3.2, equation 5.1).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "controllers/behaviour.h"
-#include "controllers/common/nest_and_food_scenario.h"
+#include "controllers/common/nest_and_food.h"
 #include "controllers/partitioning/partitioning_record.h"
 #include "sim/arena/spawn.h"
 #include "sim/scenario.h"
@@ -37,8 +38,6 @@ inline constexpr sim::Color kCarrierColor = sim::Color::kGreen;
 
 class PartitioningScenario : public NestAndFoodScenario {
  public:
-  // `test_case` is valid for the requirements of the scenario; its number of robots and its spawn area
-  // override the settings. `seed` decides the start poses.
   PartitioningScenario(const sim::TestCase& test_case, const PartitioningSettings& settings,
                        ControllerFactory controller, std::uint64_t seed);
 
@@ -61,7 +60,7 @@ class PartitioningScenario : public NestAndFoodScenario {
   StartMode start_;
   std::uint64_t seed_;
   std::optional<sim::Rectangle> spawn_area_;
-  std::vector<sim::Light> lights_;  // the lamp above the nest, the source
+  std::array<sim::Light, 2> lights_;  // the lamp above the nest, the source
   PartitioningRecord record_;
 };
 

@@ -14,7 +14,7 @@
 #include "master/search/population_search.h"
 #include "master/store/event_kinds.h"
 #include "proto/run_codec.h"
-#include "sim/arena/genome_codec.h"
+#include "sim/arena/genome.h"
 #include "sim/run_result.h"
 
 namespace gauntlet::master {

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "master/experiment/experiment.h"
-#include "sim/arena/obstacle_gene.h"
+#include "sim/arena/genome.h"
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::master {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "master/search/genome_generator.h"
-#include "sim/arena/obstacle_gene.h"
+#include "sim/arena/genome.h"
 #include "sim/random/random_stream.h"
 
 namespace gauntlet::master {

@@ -9,7 +9,7 @@
 
 #include "base/check.h"
 #include "master/search/search_table.h"
-#include "sim/arena/genome_codec.h"
+#include "sim/arena/genome.h"
 
 namespace gauntlet::master {
 namespace {

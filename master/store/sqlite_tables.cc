@@ -8,7 +8,7 @@
 
 #include "base/canonical_encoder.h"
 #include "base/hash.h"
-#include "sim/arena/genome_codec.h"
+#include "sim/arena/genome.h"
 
 namespace gauntlet::master {
 namespace {

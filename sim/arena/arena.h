@@ -7,7 +7,6 @@
 
 #include "sim/arena/test_case.h"
 #include "sim/geometry/oriented_box.h"
-#include "sim/geometry/polygon.h"
 
 namespace gauntlet::sim {
 

@@ -4,25 +4,16 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <queue>
+#include <utility>
 
 namespace gauntlet::sim {
 namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-struct OpenEntry {
-  double estimate;  // m, length of the whole path through this cell
-  std::size_t node;
-};
-
-// Heap order: the least estimate on top, the lower cell index among equals.
-struct Later {
-  bool operator()(const OpenEntry& a, const OpenEntry& b) const {
-    return a.estimate != b.estimate ? a.estimate > b.estimate : a.node > b.node;
-  }
-};
 
 class ThetaStar {
  public:
@@ -32,9 +23,7 @@ class ThetaStar {
         goal_point_(goal),
         start_(grid.Index(grid.CellAt(start))),
         goal_(grid.Index(grid.CellAt(goal))),
-        nodes_(static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows())) {
-    open_.reserve(1024);
-  }
+        nodes_(static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows())) {}
 
   // Requires that both ends are connected.
   std::vector<Vec2> Search() {
@@ -42,9 +31,8 @@ class ThetaStar {
     nodes_[start_].parent = start_;
     Push(start_, start_point_);
     while (!open_.empty()) {
-      std::pop_heap(open_.begin(), open_.end(), Later());
-      const std::size_t node = open_.back().node;
-      open_.pop_back();
+      const std::size_t node = open_.top().second;
+      open_.pop();
       if (node == goal_) return Waypoints();
       if (nodes_[node].closed) continue;  // an entry from before the node was improved
       nodes_[node].closed = true;
@@ -75,9 +63,7 @@ class ThetaStar {
   }
 
   void Push(std::size_t node, const Vec2& point) {
-    const double rest = (goal_point_ - point).norm();
-    open_.push_back({nodes_[node].length + rest, node});
-    std::push_heap(open_.begin(), open_.end(), Later());
+    open_.emplace(nodes_[node].length + (goal_point_ - point).norm(), node);
   }
 
   void Expand(std::size_t node) {
@@ -135,7 +121,9 @@ class ThetaStar {
   std::size_t start_;
   std::size_t goal_;
   std::vector<Node> nodes_;
-  std::vector<OpenEntry> open_;
+  // Cells by the length of the whole path through them, m: the least on top, the lower index among equals.
+  using Open = std::pair<double, std::size_t>;
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> open_;
 };
 
 }  // namespace

@@ -12,8 +12,10 @@
 namespace gauntlet::sim {
 namespace {
 
+constexpr double kGap = 0.01;  // m, least between bodies, and between a body and an obstacle or wall
+constexpr int kTriesPerRobot = 100;
 constexpr double kEnlargementStep = 1.1;  // by 10 %
-constexpr double kMostEnlargement = 1000.0;
+constexpr double kMostEnlargement = 2.0;  // largest area side relative to the first
 
 Error NoRoom(const std::string& why) {
   return InvalidInput("no-room-to-spawn: " + why);
@@ -36,16 +38,8 @@ std::optional<Error> Refusal(const SpawnRequest& request) {
         (request.area.min.array() <= request.area.max.array()).all())) {
     return NoRoom("the area " + AreaText(request.area) + " must go from its least to its greatest corner");
   }
-  if (!(request.robot_radius > 0.0 && std::isfinite(request.robot_radius) && request.gap >= 0.0 &&
-        std::isfinite(request.gap))) {
-    return NoRoom("robot radius " + NumberText(request.robot_radius) + " m and gap " +
-                  NumberText(request.gap) + " m; want a positive radius and a gap of at least 0");
-  }
-  if (request.tries_per_robot < 1 ||
-      !(request.max_enlargement >= 1.0 && request.max_enlargement <= kMostEnlargement)) {
-    return NoRoom(std::to_string(request.tries_per_robot) + " tries per robot and enlargement up to " +
-                  NumberText(request.max_enlargement) + "; want at least 1 try and 1 to " +
-                  NumberText(kMostEnlargement));
+  if (!(request.robot_radius > 0.0 && std::isfinite(request.robot_radius))) {
+    return NoRoom("robot radius " + NumberText(request.robot_radius) + " m; want a positive one");
   }
   return std::nullopt;
 }
@@ -67,7 +61,7 @@ class Spawner {
 
   std::optional<Pose> PlaceNext() {
     while (true) {
-      for (int i = 0; i < request_.tries_per_robot; ++i) {
+      for (int i = 0; i < kTriesPerRobot; ++i) {
         const Vec2 point = Draw();
         if (!Fits(point)) continue;
         taken_.push_back(point);
@@ -75,7 +69,7 @@ class Spawner {
         return Pose{point, kPi - 2.0 * kPi * random_.Uniform()};
       }
       const double next = enlargement_ * kEnlargementStep;
-      if (next > request_.max_enlargement) return std::nullopt;
+      if (next > kMostEnlargement) return std::nullopt;
       Enlarge(next);
     }
   }
@@ -123,8 +117,8 @@ class Spawner {
     const Cell cell = grid_.CellAt(point);
     if (!grid_.InGrid(cell) || reachable_[grid_.Index(cell)] == 0) return false;
     // A cell is judged by its centre; near the cell's edge a body could still touch an obstacle.
-    if (grid_.Clearance(point) < request_.robot_radius + request_.gap) return false;
-    const double least = 2.0 * request_.robot_radius + request_.gap;
+    if (grid_.Clearance(point) < request_.robot_radius + kGap) return false;
+    const double least = 2.0 * request_.robot_radius + kGap;
     return std::none_of(taken_.begin(), taken_.end(),
                         [&](const Vec2& other) { return (other - point).squaredNorm() < least * least; });
   }

@@ -12,18 +12,17 @@ namespace gauntlet::sim {
 
 struct SpawnRequest {
   int count = 0;
-  Rectangle area;                // m; clipped to the free interior
-  bool disc = false;             // the area is the disc inscribed in `area` instead of the rectangle
-  double robot_radius = 0.0;     // m
-  double gap = 0.01;             // m, least gap between bodies, and between a body and an obstacle or wall
-  int tries_per_robot = 100;     // then the area is enlarged by 10 % about its centre
-  double max_enlargement = 2.0;  // largest area side relative to the first; beyond it the request is refused
-  std::vector<Vec2> occupied;    // centres of robots that are there already
-  Vec2 start = Vec2::Zero();     // spawn only in the component of the grid that this point is in
+  Rectangle area;                   // m; clipped to the free interior
+  bool disc = false;                // the area is the disc inscribed in `area` instead of the rectangle
+  double robot_radius = 0.0;        // m
+  std::vector<Vec2> occupied = {};  // centres of robots that are there already
+  Vec2 start = Vec2::Zero();        // spawn only in the component of the grid that this point is in
 };
 
-// Poses in spawn order with uniform headings; draws from `random` only. An enlarged area stays enlarged for
-// the robots that follow. Error "no-room-to-spawn: ..." when they do not fit or the request makes no sense.
+// Poses in spawn order with uniform headings, bodies at least 0.01 m apart and off obstacles and walls;
+// draws from `random` only. After 100 tries for a robot the area is enlarged by 10 % about its centre, up to
+// twice its sides, and stays so for the robots that follow. Error "no-room-to-spawn: ..." when they do not
+// fit or the request makes no sense.
 Result<std::vector<Pose>> Spawn(const SpawnRequest& request, const OccupancyGrid& grid, RandomStream& random);
 
 }  // namespace gauntlet::sim

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "sim/arena/obstacle_gene.h"
+#include "sim/arena/genome.h"
 
 namespace gauntlet::sim {
 

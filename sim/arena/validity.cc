@@ -9,6 +9,8 @@
 namespace gauntlet::sim {
 namespace {
 
+using enum ValidityRule;
+
 bool AllFinite(std::initializer_list<double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
@@ -31,18 +33,18 @@ std::optional<Violation> JudgeArenaNumbers(const TestCase& test_case) {
                          " m, walls " + NumberText(test_case.wall_thickness) + " m thick) " + what};
   };
   if (!AllFinite({test_case.side_x, test_case.side_y, test_case.wall_thickness})) {
-    return broken(ValidityRule::kFiniteNumbers, "has a number that is not finite");
+    return broken(kFiniteNumbers, "has a number that is not finite");
   }
   const auto [shorter, longer] = std::minmax(test_case.side_x, test_case.side_y);
   if (!(shorter > 0.0 && test_case.wall_thickness > 0.0)) {
-    return broken(ValidityRule::kPositiveSize, "must have positive sides and walls");
+    return broken(kPositiveSize, "must have positive sides and walls");
   }
   if (shorter < kMinArenaSide || longer > kMaxArenaSide) {
-    return broken(ValidityRule::kLimits, "must have sides of " + NumberText(kMinArenaSide) + " to " +
-                                             NumberText(kMaxArenaSide) + " m");
+    return broken(kLimits, "must have sides of " + NumberText(kMinArenaSide) + " to " +
+                               NumberText(kMaxArenaSide) + " m");
   }
   if (test_case.wall_thickness < kMinThickness || test_case.wall_thickness > shorter / 2.0) {
-    return broken(ValidityRule::kLimits,
+    return broken(kLimits,
                   "must have walls of " + NumberText(kMinThickness) + " m to half of its shorter side");
   }
   return std::nullopt;
@@ -54,32 +56,26 @@ std::optional<Violation> JudgeSwarmNumbers(const TestCase& test_case) {
     const auto& [min, max] = *test_case.spawn_area;
     const std::string area = "the spawn area from " + PointText(min) + " to " + PointText(max) + " m ";
     if (!(min.allFinite() && max.allFinite())) {
-      return Violation{ValidityRule::kFiniteNumbers, -1, area + "has a number that is not finite"};
+      return Violation{kFiniteNumbers, -1, area + "has a number that is not finite"};
     }
     if (!((min.array() <= max.array()).all())) {
-      return Violation{ValidityRule::kPositiveSize, -1,
-                       area + "must go from its least to its greatest corner"};
+      return Violation{kPositiveSize, -1, area + "must go from its least to its greatest corner"};
     }
     if (std::max(min.cwiseAbs().maxCoeff(), max.cwiseAbs().maxCoeff()) > kMaxCoordinate) {
-      return Violation{ValidityRule::kLimits, -1,
+      return Violation{kLimits, -1,
                        area + "must lie within " + NumberText(kMaxCoordinate) + " m of the origin"};
     }
   }
   if (test_case.robots && (*test_case.robots < 1 || *test_case.robots > kMaxRobots)) {
-    return Violation{ValidityRule::kLimits, -1,
+    return Violation{kLimits, -1,
                      std::to_string(*test_case.robots) + " robots; want 1 to " + std::to_string(kMaxRobots)};
   }
   if (test_case.obstacles.size() > kMaxObstacles) {
-    return Violation{ValidityRule::kLimits, -1,
+    return Violation{kLimits, -1,
                      std::to_string(test_case.obstacles.size()) + " obstacles; want at most " +
                          std::to_string(kMaxObstacles)};
   }
   return std::nullopt;
-}
-
-std::optional<Violation> JudgeArena(const TestCase& test_case) {
-  if (std::optional<Violation> violation = JudgeArenaNumbers(test_case)) return violation;
-  return JudgeSwarmNumbers(test_case);
 }
 
 // The arena without obstacles, or one to stand in for it when its numbers cannot be built.
@@ -104,47 +100,37 @@ std::optional<Violation> JudgeGeneNumbers(const ObstacleGene& gene, std::size_t 
     return BrokenByGene(rule, gene, index, what);
   };
   if (!AllFinite({gene.x, gene.y, gene.length, gene.width, gene.orientation_deg})) {
-    return broken(ValidityRule::kFiniteNumbers, "has a number that is not finite");
+    return broken(kFiniteNumbers, "has a number that is not finite");
   }
   const auto [shorter, longer] = std::minmax(gene.length, gene.width);
-  if (!(shorter > 0.0)) return broken(ValidityRule::kPositiveSize, "must have a positive length and width");
+  if (!(shorter > 0.0)) return broken(kPositiveSize, "must have a positive length and width");
   if (shorter < kMinThickness || longer > kMaxObstacleSize) {
-    return broken(ValidityRule::kLimits, "must have a length and width of " + NumberText(kMinThickness) +
-                                             " to " + NumberText(kMaxObstacleSize) + " m");
+    return broken(kLimits, "must have a length and width of " + NumberText(kMinThickness) + " to " +
+                               NumberText(kMaxObstacleSize) + " m");
   }
   if (std::max(std::fabs(gene.x), std::fabs(gene.y)) > kMaxCoordinate) {
-    return broken(ValidityRule::kLimits,
-                  "must have its centre within " + NumberText(kMaxCoordinate) + " m of the origin");
+    return broken(kLimits, "must have its centre within " + NumberText(kMaxCoordinate) + " m of the origin");
   }
-  return std::nullopt;
-}
-
-// The rules that concern nothing but its path.
-std::optional<Violation> JudgeMotion(const ObstacleGene& gene, std::size_t index) {
-  const auto broken = [&](ValidityRule rule, const std::string& what) {
-    return BrokenByGene(rule, gene, index, what);
-  };
   const bool finite =
       std::all_of(gene.path.begin(), gene.path.end(), [](const Vec2& p) { return p.allFinite(); });
   if (!finite || !std::isfinite(gene.speed)) {
-    return broken(ValidityRule::kFiniteNumbers, "moves along numbers that are not finite");
+    return broken(kFiniteNumbers, "moves along numbers that are not finite");
   }
   if (gene.speed < 0.0 || gene.speed > kMaxObstacleSpeed) {
-    return broken(ValidityRule::kLimits, "moves at " + NumberText(gene.speed) + " m/s; want 0 to " +
-                                             NumberText(kMaxObstacleSpeed) + " m/s");
+    return broken(kLimits, "moves at " + NumberText(gene.speed) + " m/s; want 0 to " +
+                               NumberText(kMaxObstacleSpeed) + " m/s");
   }
   const std::string path = "has a path of " + std::to_string(gene.path.size()) + " points";
   if (gene.path.empty() != (gene.speed == 0.0)) {
-    return broken(ValidityRule::kLimits,
-                  path + " and a speed of " + NumberText(gene.speed) + " m/s; want both or neither");
+    return broken(kLimits, path + " and a speed of " + NumberText(gene.speed) + " m/s; want both or neither");
   }
   if (gene.path.size() > kMaxObstaclePath) {
-    return broken(ValidityRule::kLimits, path + "; want at most " + std::to_string(kMaxObstaclePath));
+    return broken(kLimits, path + "; want at most " + std::to_string(kMaxObstaclePath));
   }
   for (const Vec2& point : gene.path) {
     if (point.cwiseAbs().maxCoeff() <= kMaxCoordinate) continue;
-    return broken(ValidityRule::kLimits, "moves to " + PointText(point) + " m; want paths within " +
-                                             NumberText(kMaxCoordinate) + " m of the origin");
+    return broken(kLimits, "moves to " + PointText(point) + " m; want paths within " +
+                               NumberText(kMaxCoordinate) + " m of the origin");
   }
   return std::nullopt;
 }
@@ -175,15 +161,14 @@ std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequire
   const std::string room =
       "; a robot's centre needs " + NumberText(requirements.inflation) + " m of room there";
   if (!grid.Free(start)) {
-    return Violation{ValidityRule::kStartBlocked, gene,
+    return Violation{kStartBlocked, gene,
                      culprit + " blocks the start " + PointText(requirements.start) + room};
   }
   if (!grid.Free(goal)) {
-    return Violation{ValidityRule::kGoalBlocked, gene,
-                     culprit + " blocks the goal " + PointText(requirements.goal) + room};
+    return Violation{kGoalBlocked, gene, culprit + " blocks the goal " + PointText(requirements.goal) + room};
   }
   if (!grid.Connected(start, goal)) {
-    return Violation{ValidityRule::kNoPath, gene,
+    return Violation{kNoPath, gene,
                      culprit + " leaves no path from " + PointText(requirements.start) + " to " +
                          PointText(requirements.goal) + " for a robot's body"};
   }
@@ -193,9 +178,9 @@ std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequire
 }  // namespace
 
 std::string_view NameOf(ValidityRule rule) {
-  constexpr std::string_view kNames[] = {
-      "finite-numbers", "positive-size", "gene-range", "contained-obstacle", "start-blocked",
-      "goal-blocked",   "clearance",     "no-path",    "no-room-to-spawn",   "limits"};
+  constexpr std::string_view kNames[] = {"finite-numbers", "positive-size", "contained-obstacle",
+                                         "start-blocked",  "goal-blocked",  "clearance",
+                                         "no-path",        "limits"};
   return kNames[static_cast<std::size_t>(rule)];
 }
 
@@ -210,9 +195,10 @@ std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaReq
 
 IncrementalValidity::IncrementalValidity(const TestCase& empty_arena, const ArenaRequirements& requirements)
     : requirements_(requirements),
-      arena_violation_(JudgeArena(empty_arena)),
+      arena_violation_(JudgeArenaNumbers(empty_arena)),
       grid_(EmptyArena(empty_arena), requirements.inflation),
       candidate_(grid_) {
+  if (!arena_violation_) arena_violation_ = JudgeSwarmNumbers(empty_arena);
   if (!arena_violation_) arena_violation_ = JudgePath(grid_, requirements_, -1, "the wall");
 }
 
@@ -220,19 +206,18 @@ std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene
   if (arena_violation_) return arena_violation_;
   const std::size_t index = boxes_.size();
   if (std::optional<Violation> violation = JudgeGeneNumbers(gene, index)) return violation;
-  if (std::optional<Violation> violation = JudgeMotion(gene, index)) return violation;
   const OrientedBox box = BoxOf(gene);
   const auto around = std::find_if(boxes_.begin(), boxes_.end(),
                                    [&](const OrientedBox& earlier) { return ContainsBox(earlier, box); });
   if (around != boxes_.end()) {
-    return BrokenByGene(ValidityRule::kContainedObstacle, gene, index,
+    return BrokenByGene(kContainedObstacle, gene, index,
                         "lies wholly inside obstacle " + std::to_string(around - boxes_.begin() + 1));
   }
   for (const auto& [place, name] : {std::pair{requirements_.start, "start"}, {requirements_.goal, "goal"}}) {
     if (requirements_.clearance <= 0.0) break;
     const double distance = LeastDistance(gene, place);
     if (distance >= requirements_.clearance) continue;
-    return BrokenByGene(ValidityRule::kClearance, gene, index,
+    return BrokenByGene(kClearance, gene, index,
                         "is " + NumberText(distance) + " m from the " + name + " " + PointText(place) +
                             "; want at least " + NumberText(requirements_.clearance) + " m");
   }

@@ -15,16 +15,14 @@ namespace gauntlet::sim {
 
 // Names are part of the command line's contract (`refused` in JSON).
 enum class ValidityRule {
-  kFiniteNumbers,  // "finite-numbers": every number is finite
-  kPositiveSize,   // "positive-size": length and width > 0, arena sides positive
-  kGeneRange,  // "gene-range": a generated gene stays inside the experiment's ranges (not for imported cases)
+  kFiniteNumbers,      // "finite-numbers": every number is finite
+  kPositiveSize,       // "positive-size": length and width > 0, arena sides positive
   kContainedObstacle,  // "contained-obstacle": an obstacle lies wholly inside an earlier one
   kStartBlocked,       // "start-blocked": the start cell is not free
   kGoalBlocked,        // "goal-blocked": the goal cell is not free
-  kClearance,      // "clearance": an obstacle is closer than the scenario's clearance to one of its places
-  kNoPath,         // "no-path": no path from start to goal for a robot's body
-  kNoRoomToSpawn,  // "no-room-to-spawn": the swarm does not fit even in the enlarged spawn area
-  kLimits,         // "limits": a number beyond what is simulated (constants below)
+  kClearance,  // "clearance": an obstacle is closer than the scenario's clearance to one of its places
+  kNoPath,     // "no-path": no path from start to goal for a robot's body
+  kLimits,     // "limits": a number beyond what is simulated (constants below)
 };
 std::string_view NameOf(ValidityRule rule);
 

@@ -1,8 +1,10 @@
-// A rectangle at any angle: the footprint of an obstacle or a wall.
+// A rectangle at any angle: the footprint of an obstacle or a wall; and the polygon that the edge of the
+// arena leaves of it.
 #pragma once
 
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "sim/geometry/vec2.h"
 
@@ -50,5 +52,12 @@ inline double SquaredDistance(const OrientedBox& box, const Vec2& p) {
 }
 // Euclidean distance; 0 inside.
 double Distance(const OrientedBox& box, const Vec2& p);
+
+using Polygon = std::vector<Vec2>;  // convex, corners counter-clockwise; empty = nothing left
+
+// The part of the box inside the axis-aligned rectangle [min, max] (Sutherland and Hodgman 1974).
+Polygon ClipToRectangle(const OrientedBox& box, const Vec2& min, const Vec2& max);
+// Area by the shoelace formula, m^2.
+double Area(const Polygon& polygon);
 
 }  // namespace gauntlet::sim

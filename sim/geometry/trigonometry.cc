@@ -39,52 +39,37 @@ Reduced ReduceToOctant(double angle) {
   return {r, static_cast<std::int64_t>(n)};
 }
 
+// c[0] + c[1] z + ... + c[6] z^6.
+inline double SevenTerms(const double (&c)[7], double z) {
+  const double z2 = z * z;
+  const double low = (c[0] + c[1] * z) + (c[2] + c[3] * z) * z2;
+  const double high = (c[4] + c[5] * z) + c[6] * z2;
+  return low + high * (z2 * z2);
+}
+
 // sin r for |r| <= pi/4; the first omitted term, r^17 / 17!, is below 5e-17.
 double SineSeries(double r) {
-  constexpr double c3 = -1.0 / 6.0;
-  constexpr double c5 = 1.0 / 120.0;
-  constexpr double c7 = -1.0 / 5040.0;
-  constexpr double c9 = 1.0 / 362880.0;
-  constexpr double c11 = -1.0 / 39916800.0;
-  constexpr double c13 = 1.0 / 6227020800.0;
-  constexpr double c15 = -1.0 / 1307674368000.0;
+  static constexpr double c[] = {-1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,         1.0 / 362880.0,
+                                 -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
   const double z = r * r;
-  const double z2 = z * z;
-  const double low = (c3 + c5 * z) + (c7 + c9 * z) * z2;
-  const double high = (c11 + c13 * z) + c15 * z2;
-  return r + (r * z) * (low + high * (z2 * z2));
+  return r + (r * z) * SevenTerms(c, z);
 }
 
 // cos r for |r| <= pi/4; the first omitted term, r^18 / 18!, is below 3e-18.
 double CosineSeries(double r) {
-  constexpr double c4 = 1.0 / 24.0;
-  constexpr double c6 = -1.0 / 720.0;
-  constexpr double c8 = 1.0 / 40320.0;
-  constexpr double c10 = -1.0 / 3628800.0;
-  constexpr double c12 = 1.0 / 479001600.0;
-  constexpr double c14 = -1.0 / 87178291200.0;
-  constexpr double c16 = 1.0 / 20922789888000.0;
+  static constexpr double c[] = {
+      1.0 / 24.0,        -1.0 / 720.0,         1.0 / 40320.0,         -1.0 / 3628800.0,
+      1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
   const double z = r * r;
-  const double z2 = z * z;
-  const double low = (c4 + c6 * z) + (c8 + c10 * z) * z2;
-  const double high = (c12 + c14 * z) + c16 * z2;
-  return (1.0 - 0.5 * z) + z2 * (low + high * (z2 * z2));
+  return (1.0 - 0.5 * z) + (z * z) * SevenTerms(c, z);
 }
 
 // atan u for |u| <= 1/8; the first omitted term, u^17 / 17, is below 3e-17.
 double ArctangentSeries(double u) {
-  constexpr double c3 = -1.0 / 3.0;
-  constexpr double c5 = 1.0 / 5.0;
-  constexpr double c7 = -1.0 / 7.0;
-  constexpr double c9 = 1.0 / 9.0;
-  constexpr double c11 = -1.0 / 11.0;
-  constexpr double c13 = 1.0 / 13.0;
-  constexpr double c15 = -1.0 / 15.0;
+  static constexpr double c[] = {-1.0 / 3.0,  1.0 / 5.0,  -1.0 / 7.0, 1.0 / 9.0,
+                                 -1.0 / 11.0, 1.0 / 13.0, -1.0 / 15.0};
   const double z = u * u;
-  const double z2 = z * z;
-  const double low = (c3 + c5 * z) + (c7 + c9 * z) * z2;
-  const double high = (c11 + c13 * z) + c15 * z2;
-  return u + (u * z) * (low + high * (z2 * z2));
+  return u + (u * z) * SevenTerms(c, z);
 }
 
 // Choices between results are made without branches: angles are random, so a branch would be guessed wrong
@@ -167,23 +152,15 @@ double Exp(double x) {
   const double n = std::floor(x * kOneOverLn2 + 0.5);
   const double r = (x - n * kLn2A) - n * kLn2B;
   // |r| <= ln(2) / 2; the first omitted term, r^14 / 14!, is below 5e-18.
-  constexpr double c2 = 1.0 / 2.0;
-  constexpr double c3 = 1.0 / 6.0;
-  constexpr double c4 = 1.0 / 24.0;
-  constexpr double c5 = 1.0 / 120.0;
-  constexpr double c6 = 1.0 / 720.0;
-  constexpr double c7 = 1.0 / 5040.0;
-  constexpr double c8 = 1.0 / 40320.0;
-  constexpr double c9 = 1.0 / 362880.0;
-  constexpr double c10 = 1.0 / 3628800.0;
-  constexpr double c11 = 1.0 / 39916800.0;
-  constexpr double c12 = 1.0 / 479001600.0;
-  constexpr double c13 = 1.0 / 6227020800.0;
+  // c[n] = 1 / (n + 2)!
+  static constexpr double c[] = {1.0 / 2.0,       1.0 / 6.0,        1.0 / 24.0,        1.0 / 120.0,
+                                 1.0 / 720.0,     1.0 / 5040.0,     1.0 / 40320.0,     1.0 / 362880.0,
+                                 1.0 / 3628800.0, 1.0 / 39916800.0, 1.0 / 479001600.0, 1.0 / 6227020800.0};
   const double r2 = r * r;
   const double r4 = r2 * r2;
-  const double low = (c2 + c3 * r) + (c4 + c5 * r) * r2;
-  const double middle = (c6 + c7 * r) + (c8 + c9 * r) * r2;
-  const double high = (c10 + c11 * r) + (c12 + c13 * r) * r2;
+  const double low = (c[0] + c[1] * r) + (c[2] + c[3] * r) * r2;
+  const double middle = (c[4] + c[5] * r) + (c[6] + c[7] * r) * r2;
+  const double high = (c[8] + c[9] * r) + (c[10] + c[11] * r) * r2;
   const double value = 1.0 + (r + r2 * (low + r4 * (middle + r4 * high)));
   // 2^n in two factors, because n may lie beyond the exponents of normal numbers.
   const auto exponent = static_cast<std::int64_t>(n);
@@ -209,22 +186,14 @@ double Log(double x) {
   // log m = 2 artanh s with s = (m - 1) / (m + 1), |s| <= 0.1716; the first omitted term, s^22 / 23 relative
   // to the first, is below 1e-18.
   const double s = (mantissa - 1.0) / (mantissa + 1.0);
-  constexpr double c3 = 2.0 / 3.0;
-  constexpr double c5 = 2.0 / 5.0;
-  constexpr double c7 = 2.0 / 7.0;
-  constexpr double c9 = 2.0 / 9.0;
-  constexpr double c11 = 2.0 / 11.0;
-  constexpr double c13 = 2.0 / 13.0;
-  constexpr double c15 = 2.0 / 15.0;
-  constexpr double c17 = 2.0 / 17.0;
-  constexpr double c19 = 2.0 / 19.0;
-  constexpr double c21 = 2.0 / 21.0;
+  static constexpr double c[] = {2.0,        2.0 / 3.0,  2.0 / 5.0,  2.0 / 7.0,  2.0 / 9.0, 2.0 / 11.0,
+                                 2.0 / 13.0, 2.0 / 15.0, 2.0 / 17.0, 2.0 / 19.0, 2.0 / 21.0};
   const double z = s * s;
   const double z2 = z * z;
   const double z4 = z2 * z2;
-  const double low = (c3 + c5 * z) + (c7 + c9 * z) * z2;
-  const double middle = (c11 + c13 * z) + (c15 + c17 * z) * z2;
-  const double high = c19 + c21 * z;
+  const double low = (c[1] + c[2] * z) + (c[3] + c[4] * z) * z2;
+  const double middle = (c[5] + c[6] * z) + (c[7] + c[8] * z) * z2;
+  const double high = c[9] + c[10] * z;
   const double log_mantissa = 2.0 * s + (s * z) * (low + z4 * (middle + z4 * high));
   return exponent * kLn2A + (log_mantissa + exponent * kLn2B);
 }

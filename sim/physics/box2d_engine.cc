@@ -61,14 +61,13 @@ Vec2 FromBox2d(const b2Vec2& v) {
   return Vec2(static_cast<double>(v.x), static_cast<double>(v.y)) / kScale;
 }
 
-struct Robot {
+// Its way: where a step begins, and where the motor pushes the body in it, then where it ends.
+struct Robot : StepWay {
   Pose pose;
   DriveState drive;
   DriveMotion motion;  // of this tick, were nothing in the way
   b2Body* body = nullptr;
   b2MotorJoint* motor = nullptr;  // holds the commanded velocity with the drive's limited force
-  Vec2 from = Vec2::Zero();       // m, where a step begins
-  Vec2 to = Vec2::Zero();         // m, where the motor pushes the body in it, then where it ends
   bool near = false;              // something is in reach in this tick
   bool in_solver = false;
   bool touched = false;  // in this tick
@@ -83,10 +82,6 @@ struct MovingBox : BoxMotion {
   bool shown = true;   // Box2D has it where it is
   double reach = 0.0;  // m, furthest that a point of it can get in this tick by itself
 };
-
-StepWay WayOf(const Robot& robot) {
-  return {robot.from, robot.to};
-}
 
 // The turned corners are given directly: a turned body would go through sinf and cosf, and
 // b2PolygonShape::Set refuses thin boxes.
@@ -420,7 +415,7 @@ void Box2dEngine::StepBackToContact() {
     for (; pair != pairs.end() && pair->first == i; ++pair) {
       Robot& other = robots_[pair->second];
       if (!in_solver || !other.in_solver) continue;
-      const auto back = WaysApart(WayOf(robots_[i]), robots_[i].held, WayOf(other), other.held);
+      const auto back = WaysApart(robots_[i], robots_[i].held, other, other.held);
       if (!back) continue;
       PutBack(robots_[i], back->a);
       PutBack(other, back->b);
@@ -431,11 +426,11 @@ void Box2dEngine::StepBackToContact() {
 void Box2dEngine::StepBackFromBoxes(std::size_t index) {
   Robot& robot = robots_[index];
   for (const std::size_t i : nearby_.Near(index, robot.from)) {
-    const Vec2 back = WayBack(nearby_.box(i), WayOf(robot));
+    const Vec2 back = WayBack(nearby_.box(i), robot);
     if (back != Vec2::Zero()) PutBack(robot, back);
   }
   for (MovingBox& moving : moving_) {
-    const Vec2 back = WayBack(moving.box, WayOf(robot));
+    const Vec2 back = WayBack(moving.box, robot);
     if (back == Vec2::Zero()) continue;
     if (moving.kinematic) {
       PutBack(robot, back);

@@ -12,8 +12,8 @@ namespace gauntlet::sim {
 
 // A robot's way in a step, m.
 struct StepWay {
-  Vec2 from;
-  Vec2 to;
+  Vec2 from = Vec2::Zero();
+  Vec2 to = Vec2::Zero();
 };
 
 // From where a robot is after a step to where it met the box in it; zero when it did not.

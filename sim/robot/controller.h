@@ -94,6 +94,16 @@ struct Actuators {
   }
 };
 
+// What a robot shows and says to others, as in action during a tick.
+struct Signals {
+  Color beacon = Color::kBlack;
+  std::array<Color, foot_bot::kRingLeds> ring{};
+  Payload message{};
+  bool silent = false;  // no message is sent: its radio is dead
+
+  bool RingLit() const { return ring != std::array<Color, foot_bot::kRingLeds>{}; }
+};
+
 struct ControlStep {
   Tick tick = 0;
   const SensorReadings& readings;

@@ -14,6 +14,8 @@ namespace {
 constexpr std::string_view kStopped = "stopped";
 constexpr Tick kLatestFault = 1'000'000'000;
 constexpr RobotIndex kLastRobot = kMaxRobots - 1;
+constexpr std::pair<const char*, double DeviceNoise::*> kNoiseValues[] = {
+    {"uniform", &DeviceNoise::uniform}, {"gaussian", &DeviceNoise::gaussian}, {"drop", &DeviceNoise::drop}};
 
 std::vector<std::string_view> FaultNames() {
   std::vector<std::string_view> names = {kStopped};
@@ -69,26 +71,15 @@ std::string FaultText(const RobotFault& fault) {
   return text.append("@").append(std::to_string(fault.tick));
 }
 
-// NaN is not within anything.
-bool Within(double value, double most) {
-  return value >= 0.0 && value <= most;
-}
-
 std::optional<std::string> RefuseNoise(Device device, const DeviceNoise& noise) {
   const std::string key = "noise." + KeyOf(device);
   const DeviceInfo& info = kDevices[IndexOf(device)];
   if (info.most_noise == 0.0) return "bad-noise: " + key + ": no noise is defined for this device";
-  struct Field {
-    const char* name;
-    double value;
-    double most;
-  };
-  for (const Field& field :
-       {Field{"uniform", noise.uniform, info.most_noise}, Field{"gaussian", noise.gaussian, info.most_noise},
-        Field{"drop", noise.drop, info.drops ? 1.0 : 0.0}}) {
-    if (Within(field.value, field.most)) continue;
-    return "bad-noise: " + key + "." + field.name + " = " + NumberText(field.value) + "; 0 to " +
-           NumberText(field.most) + " is possible";
+  for (const auto& [name, value] : kNoiseValues) {
+    const double most = value != &DeviceNoise::drop ? info.most_noise : info.drops ? 1.0 : 0.0;
+    if (noise.*value >= 0.0 && noise.*value <= most) continue;  // NaN is not within anything
+    return "bad-noise: " + key + "." + name + " = " + NumberText(noise.*value) + "; 0 to " +
+           NumberText(most) + " is possible";
   }
   return std::nullopt;
 }
@@ -118,10 +109,10 @@ std::string FaultsText(std::span<const RobotFault> faults) {
 std::vector<std::pair<std::string, std::string>> DisturbanceTexts(const Disturbances& disturbances) {
   std::vector<std::pair<std::string, std::string>> texts;
   for (const auto& [device, noise] : disturbances.noise) {
-    const std::string key = "noise." + KeyOf(device) + ".";
-    if (noise.uniform != 0.0) texts.emplace_back(key + "uniform", NumberText(noise.uniform));
-    if (noise.gaussian != 0.0) texts.emplace_back(key + "gaussian", NumberText(noise.gaussian));
-    if (noise.drop != 0.0) texts.emplace_back(key + "drop", NumberText(noise.drop));
+    for (const auto& [name, value] : kNoiseValues) {
+      if (noise.*value == 0.0) continue;
+      texts.emplace_back("noise." + KeyOf(device) + "." + name, NumberText(noise.*value));
+    }
   }
   if (!disturbances.faults.empty()) texts.emplace_back("faults", FaultsText(disturbances.faults));
   return texts;

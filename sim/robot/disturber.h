@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "sim/robot/controller.h"
 #include "sim/robot/disturbances.h"
 #include "sim/robot/grippers.h"
-#include "sim/robot/signals.h"
 
 namespace gauntlet::sim {
 

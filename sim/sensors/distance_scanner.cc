@@ -37,13 +37,9 @@ bool Reaches(const OrientedBox& box, const Vec2& center, double range) {
   return SquaredDistance(box, center) <= reach * reach;
 }
 
-double ShortReading(double hit) {
-  return hit == kNoHit ? ScannerReading::kNothing : hit;
-}
-
-double LongReading(double hit) {
+double ReadingOf(double hit, double nearest) {
   if (hit == kNoHit) return ScannerReading::kNothing;
-  return hit < kLongNearest ? ScannerReading::kTooNear : hit;
+  return hit < nearest ? ScannerReading::kTooNear : hit;
 }
 
 // The scanners of a swarm.
@@ -108,9 +104,9 @@ void DistanceScanner::Scan(const ScannerCommand& command, std::span<const BodyFr
       };
       const double across = angle + kPi / 2.0;
       short_[count_] = {.bearing = WrapAngle(angle),
-                        .distance = ShortReading(look(near_short_, angle, kShortRange))};
+                        .distance = ReadingOf(look(near_short_, angle, kShortRange), 0.0)};
       long_[count_] = {.bearing = WrapAngle(across),
-                       .distance = LongReading(look(near_long_, across, kLongFarthest))};
+                       .distance = ReadingOf(look(near_long_, across, kLongFarthest), kLongNearest)};
       ++count_;
     }
   }

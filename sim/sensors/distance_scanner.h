@@ -42,6 +42,4 @@ class DistanceScanner {
   std::array<ScannerReading, 2 * kRaysPerTick> long_;
 };
 
-std::unique_ptr<Sensor> MakeDistanceScanners(const Arena& arena, std::span<const RobotSensors> robots);
-
 }  // namespace gauntlet::sim

@@ -29,7 +29,4 @@ std::array<double, kCount> SenseGround(const BodyFrame& self, const std::array<V
   return grey;
 }
 
-std::unique_ptr<Sensor> MakeMotorGroundSensors(const Arena& arena, std::span<const RobotSensors> robots);
-std::unique_ptr<Sensor> MakeBaseGroundSensors(const Arena& arena, std::span<const RobotSensors> robots);
-
 }  // namespace gauntlet::sim

@@ -16,6 +16,4 @@ using LightReadings = std::array<double, foot_bot::kLightSensors>;
 LightReadings SenseLight(std::span<const BodyFrame> robots, RobotIndex self, std::span<const Light> lights,
                          const Occluders& occluders);
 
-std::unique_ptr<Sensor> MakeLightSensors(const Arena& arena, std::span<const RobotSensors> robots);
-
 }  // namespace gauntlet::sim

@@ -77,13 +77,9 @@ inline bool Occluders::HighBoxBetween(const Box& box, const Vec2& a, const Vec2&
 bool Occluders::BoxBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const {
   const Vec2 min = a.cwiseMin(b);
   const Vec2 max = a.cwiseMax(b);
-  for (const std::size_t index : boxes) {
-    if (HighBoxBetween(boxes_[index], a, b, min, max)) return true;
-  }
-  for (const Box& box : moving_) {
-    if (HighBoxBetween(box, a, b, min, max)) return true;
-  }
-  return false;
+  const auto between = [&](const Box& box) { return HighBoxBetween(box, a, b, min, max); };
+  return std::ranges::any_of(boxes, [&](std::size_t index) { return between(boxes_[index]); }) ||
+         std::ranges::any_of(moving_, between);
 }
 
 inline bool Occluders::LowBoxBetween(const Box& box, const Point3& a, const Point3& b) {
@@ -98,13 +94,8 @@ inline bool Occluders::LowBoxBetween(const Box& box, const Point3& a, const Poin
 }
 
 bool Occluders::BoxBetween(const Point3& a, const Point3& b) const {
-  for (const Box& box : boxes_) {
-    if (LowBoxBetween(box, a, b)) return true;
-  }
-  for (const Box& box : moving_) {
-    if (LowBoxBetween(box, a, b)) return true;
-  }
-  return false;
+  const auto between = [&](const Box& box) { return LowBoxBetween(box, a, b); };
+  return std::ranges::any_of(boxes_, between) || std::ranges::any_of(moving_, between);
 }
 
 bool BodyBetween(std::span<const BodyFrame> robots, const Point3& a, const Point3& b, RobotIndex self,

@@ -1,7 +1,10 @@
-#include "sim/sensors/omni_camera.h"
+// The foot-bot's omnidirectional camera and the LEDs and lamps it sees (ARGoS
+// colored_blob_omnidirectional_camera; measured in tests/golden/argos/sensors/cam_*.csv).
 
 #include <algorithm>
 #include <cmath>
+
+#include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
 namespace {

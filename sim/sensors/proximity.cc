@@ -14,23 +14,14 @@ constexpr std::size_t kSensors = foot_bot::kProximitySensors;
 constexpr double kReach = foot_bot::kRadius + foot_bot::kProximityRange;  // m from the centre
 constexpr double kNothing = 2.0 * kReach;
 
-// Rays of a robot with heading 0.
-std::array<Vec2, kSensors> MakeRestRays() {
-  std::array<Vec2, kSensors> rays;
-  for (std::size_t i = 0; i < kSensors; ++i) rays[i] = UnitVector(ProximityBearing(static_cast<int>(i)));
-  return rays;
-}
-
-const std::array<Vec2, kSensors>& RestRays() {
-  static const std::array<Vec2, kSensors> rays = MakeRestRays();
-  return rays;
-}
-
-// Thrice around, so that nobody who looks to both sides of the second turn meets the seam.
-const std::array<Vec2, 3 * kSensors>& ThreeTurnsOfRays() {
+// Rays of a robot with heading 0. Thrice around, so that nobody who looks to both sides of the second turn
+// meets the seam.
+const std::array<Vec2, 3 * kSensors>& RestRays() {
   static const std::array<Vec2, 3 * kSensors> rays = [] {
     std::array<Vec2, 3 * kSensors> result;
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = MakeRestRays()[i % kSensors];
+    for (std::size_t i = 0; i < result.size(); ++i) {
+      result[i] = UnitVector(ProximityBearing(static_cast<int>(i % kSensors)));
+    }
     return result;
   }();
   return rays;
@@ -146,7 +137,7 @@ void ProximityRing::See(const OrientedBox& box) {
   const double gap_squared = gap.squaredNorm();
   if (gap_squared >= kReach * kReach) return;
   const Vec2 forward(box.axis.dot(self_.direction), Cross(box.axis, self_.direction));
-  const std::array<Vec2, kSensors>& rays = RestRays();
+  const auto& rays = RestRays();
   for (std::size_t i = 0; i < kSensors; ++i) {
     const Vec2 ray = Turned(rays[i], forward);
     // The box lies behind the line through its closest point, across the gap: rays that do not get there
@@ -178,7 +169,7 @@ void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
   const double least_along =
       power > kReach * kReach ? (power + kReach * kReach) / (2.0 * kReach) : std::sqrt(power);
   const auto sees = [&](int sensor) {
-    const double along = ThreeTurnsOfRays()[static_cast<std::size_t>(sensor)].dot(center);
+    const double along = RestRays()[static_cast<std::size_t>(sensor)].dot(center);
     if (along <= least_along) return false;
     const double half_chord = std::sqrt(along * along - power);
     // Else it ends before the ray begins.
@@ -199,7 +190,7 @@ void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
 
 // A disc so near, or overlapped, that any sensor may see it.
 void ProximityRing::SeeNearDisc(const Vec2& center, double radius) {
-  const std::array<Vec2, kSensors>& rays = RestRays();
+  const auto& rays = RestRays();
   for (std::size_t sensor = 0; sensor < kSensors; ++sensor) {
     const double across = Cross(rays[sensor], center);
     const double half_chord_squared = radius * radius - across * across;
@@ -209,12 +200,6 @@ void ProximityRing::SeeNearDisc(const Vec2& center, double radius) {
     if (along + half_chord < foot_bot::kRadius) continue;  // ends before the ray begins
     Hit(sensor, along - half_chord - foot_bot::kRadius);
   }
-}
-
-ProximityReadings ProximityRing::Readings() const {
-  ProximityReadings readings{};
-  ForEachBit(hits_, [&](std::size_t sensor) { readings[sensor] = Reading(sensor); });
-  return readings;
 }
 
 std::unique_ptr<Sensor> MakeProximityRings(const Arena& arena, std::span<const RobotSensors> robots) {

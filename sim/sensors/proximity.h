@@ -31,7 +31,6 @@ class ProximityRing {
   std::uint32_t hits() const { return hits_; }
   // Of a sensor whose ray hit something.
   double Reading(std::size_t sensor) const { return ProximityReading(nearest_[sensor]); }
-  ProximityReadings Readings() const;
 
   // How near another robot must be to be seen, m, centre to centre.
   static constexpr double kBodyReach =
@@ -47,7 +46,5 @@ class ProximityRing {
   std::uint32_t hits_ = 0;
   std::array<double, foot_bot::kProximitySensors> nearest_;  // m from the surface, where hits_ says so
 };
-
-std::unique_ptr<Sensor> MakeProximityRings(const Arena& arena, std::span<const RobotSensors> robots);
 
 }  // namespace gauntlet::sim

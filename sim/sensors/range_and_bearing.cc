@@ -1,7 +1,9 @@
-#include "sim/sensors/range_and_bearing.h"
+// Range-and-bearing (ARGoS range_and_bearing_medium_sensor; measured in tests/golden/argos/sensors/rab*.csv).
 
 #include <algorithm>
 #include <cmath>
+
+#include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -1,5 +1,5 @@
 // What all sensors have in common. To add one: a row in robot/devices.h, its reading in robot/controller.h, a
-// class like the others here, and a row in sensor_suite.cc.
+// class like the others here with its Make below, and a row in sensor_suite.cc.
 #pragma once
 
 #include <memory>
@@ -7,30 +7,34 @@
 #include <vector>
 
 #include "sim/arena/arena.h"
-#include "sim/robot/controller.h"
 #include "sim/robot/disturber.h"
 #include "sim/robot/grippers.h"
-#include "sim/robot/signals.h"
 #include "sim/robot/surroundings.h"
-#include "sim/sensors/body_frame.h"
 #include "sim/sensors/occluders.h"
 #include "sim/sensors/robot_pairs.h"
 
 namespace gauntlet::sim {
 
 // What there is to be sensed in a tick.
-struct Scene {
-  std::span<const BodyFrame> robots;
-  std::span<const Vec2> positions;  // m, of the robots
+struct World {
+  std::span<const Pose> poses;
   std::span<const Signals> signals;
   std::span<const Actuators> actuators;  // as in action
   const Surroundings& surroundings;
   const Grippers& grippers;
-  const Occluders& occluders;
-  const RobotPairs& pairs;                         // of this tick, when a robot has a camera or a radio
-  bool any_ring_lit = false;                       // somebody's ring LEDs are on, and there is a camera
   std::span<const OrientedBox> moving_boxes = {};  // as many as the arena has moving obstacles
   std::span<const Light> obstacle_lights = {};
+  const Disturber* disturber = nullptr;  // of the run, when something is disturbed
+  Tick tick = 0;                         // which errors and faults depend on
+};
+
+// With what all sensors work out of it only once.
+struct Scene : World {
+  std::span<const BodyFrame> robots;
+  std::span<const Vec2> positions;  // m, of the robots
+  const Occluders& occluders;
+  const RobotPairs& pairs;    // of this tick, when a robot has a camera or a radio
+  bool any_ring_lit = false;  // somebody's ring LEDs are on, and there is a camera
 };
 
 // One kind of sensor on all robots of a swarm. After the first tick nothing is allocated, except by cameras
@@ -48,5 +52,23 @@ class Sensor {
   virtual void Disturb(const Scene& /*scene*/, RobotIndex /*robot*/, DeviceErrors& /*errors*/,
                        SensorReadings& /*readings*/) {}
 };
+
+// The sensors that there are, of the robots of a swarm in that arena.
+using MakeSensor = std::unique_ptr<Sensor>(const Arena& arena, std::span<const RobotSensors> robots);
+
+// Cameras see a blob for every beacon, ring LED and lamp that is not black, strictly inside their square and
+// not hidden: robots in robot order, of each the beacon, then its ring; then lights in their order, then
+// those of obstacles. Robots are lower than the line to a beacon and hide none; a ring LED may be hidden by a
+// robot, by its own too. A robot does not see its own LEDs. Lamps 0.577 m (twice the camera's height) or more
+// above the floor are not seen.
+MakeSensor MakeOmniCameras;
+// Radios hear those that are strictly nearer than the sender's range when no box and, if bodies block, no
+// third robot stands between: robots in robot order, then radio beacons in theirs.
+MakeSensor MakeRadios;
+MakeSensor MakeProximityRings;
+MakeSensor MakeLightSensors;
+MakeSensor MakeMotorGroundSensors;
+MakeSensor MakeBaseGroundSensors;
+MakeSensor MakeDistanceScanners;
 
 }  // namespace gauntlet::sim

@@ -2,13 +2,6 @@
 
 #include <algorithm>
 
-#include "sim/sensors/distance_scanner.h"
-#include "sim/sensors/ground_sensor.h"
-#include "sim/sensors/light_sensor.h"
-#include "sim/sensors/omni_camera.h"
-#include "sim/sensors/proximity.h"
-#include "sim/sensors/range_and_bearing.h"
-
 namespace gauntlet::sim {
 namespace {
 
@@ -26,7 +19,7 @@ std::unique_ptr<Sensor> MakeGripperSensor(const Arena& /*arena*/, std::span<cons
 
 struct SensorKind {
   Device device;
-  std::unique_ptr<Sensor> (*make)(const Arena& arena, std::span<const RobotSensors> robots);
+  MakeSensor* make;
 };
 constexpr SensorKind kSensorKinds[] = {
     {Device::kOmnidirectionalCamera, MakeOmniCameras}, {Device::kRangeAndBearing, MakeRadios},
@@ -66,17 +59,7 @@ void SensorSuite::Sense(const World& world) {
   if (camera || anybodys_devices_.Has(Device::kRangeAndBearing)) {
     pairs_.Update(positions_, occluders_, any_ring_lit);
   }
-  const Scene scene = {.robots = frames_,
-                       .positions = positions_,
-                       .signals = world.signals,
-                       .actuators = world.actuators,
-                       .surroundings = world.surroundings,
-                       .grippers = world.grippers,
-                       .occluders = occluders_,
-                       .pairs = pairs_,
-                       .any_ring_lit = any_ring_lit,
-                       .moving_boxes = world.moving_boxes,
-                       .obstacle_lights = world.obstacle_lights};
+  const Scene scene = {world, frames_, positions_, occluders_, pairs_, any_ring_lit};
   for (const auto& [device, sensor, robots] : equipment_) {
     sensor->Prepare(scene);
     for (const RobotIndex robot : robots) {

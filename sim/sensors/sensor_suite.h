@@ -14,17 +14,6 @@ class SensorSuite {
  public:
   SensorSuite(const Arena& arena, std::span<const RobotSensors> robots);
 
-  struct World {
-    std::span<const Pose> poses;
-    std::span<const Signals> signals;
-    std::span<const Actuators> actuators;  // as in action
-    const Surroundings& surroundings;
-    const Grippers& grippers;
-    std::span<const OrientedBox> moving_boxes = {};  // as many as the arena has moving obstacles
-    std::span<const Light> obstacle_lights = {};
-    const Disturber* disturber = nullptr;  // of the run, when something is disturbed
-    Tick tick = 0;                         // which errors and faults depend on
-  };
   // Reads every sensor. Allocates nothing, except in crowds where a robot sees or hears more than 64 others.
   void Sense(const World& world);
   // Of the last Sense; valid until the next.

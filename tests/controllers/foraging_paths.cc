@@ -56,8 +56,8 @@ class RunReader {
       : result_(result),
         arena_(spec.test_case),
         states_(StatesOf(result)),
-        nest_(controllers::NestOf(settings)),
-        food_(controllers::FoodOf(settings)),
+        nest_(settings.Nest()),
+        food_(settings.Food()),
         range_(settings.communication_range) {}
 
   void AddTo(Figures& figures) const {

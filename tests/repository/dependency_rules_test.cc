@@ -52,7 +52,7 @@ Prefixes operator+(Prefixes a, const Prefixes& b) {
 const Prefixes kRunData = {"sim/geometry/", "sim/arena/", "sim/random/", "sim/run_spec.h",
                            "sim/run_result.h"};
 const Prefixes kSwarmData = {"sim/observer.h", "sim/run_style.h", "sim/robot/foot_bot.h",
-                             "sim/robot/disturbances.h", "sim/robot/color.h"};
+                             "sim/robot/disturbances.h"};
 const Prefixes kBehaviours = {"controllers/registry.h", "controllers/behaviour.h"};
 
 // The house from the ground up: a room includes rooms that stand before it here, never one that comes later.
@@ -75,8 +75,7 @@ const std::vector<Room>& House() {
        kTheOutsideWorld},
       {"controllers",
        {"base"},
-       kRunData + Prefixes{"sim/robot/", "sim/scenario.h", "sim/observer.h", "sim/headquarters.h",
-                           "sim/run_style.h"},
+       kRunData + Prefixes{"sim/robot/", "sim/scenario.h", "sim/observer.h", "sim/run_style.h"},
        kTheOutsideWorld},
       {"proto", {"base", "base/system"}, kRunData + kSwarmData, {"zmq", "sqlite3", "box2d"}},
       {"worker",

@@ -1,4 +1,5 @@
 // Turning aside, the potential field, and what they read from the proximity ring.
+#include <array>
 #include <cmath>
 
 #include "controllers/common/potential_field.h"
@@ -34,17 +35,19 @@ TEST(Proximity, FrontIsWhatLiesWithinTheAngle) {
 }
 
 TEST(Proximity, TheSumPointsAtWhatIsNear) {
-  const ProximitySum sum = SumProximity(Hits({{82.5, 0.05}, {97.5, 0.05}}), std::nullopt);
+  const ProximitySum sum = SumProximity(Hits({{82.5, 0.05}, {97.5, 0.05}}));
   EXPECT_NEAR(sim::AngleOf(sum.sum), 90.0 * kDegree, 1e-12);
   EXPECT_EQ(sum.largest, ProximityReadingAt(0.05));
 }
 
 TEST(Proximity, ABodyCanBeLeftOut) {
   const ProximityReadings readings = Hits({{7.5, 0.05}, {-7.5, 0.05}, {97.5, 0.05}});
-  const ProximitySum sum = SumProximity(readings, SeenBody{0.22, 0.0});
+  const ProximitySum sum = SumProximity(WithoutBodies(readings, std::array{SeenBody{0.22, 0.0}}));
   EXPECT_NEAR(sim::AngleOf(sum.sum), 97.5 * kDegree, 1e-12);
-  EXPECT_GT(SumProximity(readings, SeenBody{0.31, 0.0}).sum.x(), 0.1) << "too far to be what was hit";
-  EXPECT_GT(SumProximity(readings, SeenBody{0.22, sim::kPi}).sum.x(), 0.1) << "behind";
+  EXPECT_GT(SumProximity(WithoutBodies(readings, std::array{SeenBody{0.31, 0.0}})).sum.x(), 0.1)
+      << "too far to be what was hit";
+  EXPECT_GT(SumProximity(WithoutBodies(readings, std::array{SeenBody{0.22, sim::kPi}})).sum.x(), 0.1)
+      << "behind";
 }
 
 TEST(TurnAside, DoesNothingInTheOpen) {
@@ -75,12 +78,12 @@ TEST(TurnAside, KeepsItsSideWhenTheWayOnIsBlockedToo) {
 constexpr SteeringThresholds kSteering = {10.0 * kDegree, 90.0 * kDegree, 0.7};
 
 TEST(PotentialField, NothingNearRepelsNobody) {
-  EXPECT_EQ(Repulsion(SumProximity(Hits({}), std::nullopt), {}), sim::Vec2(0.0, 0.0));
+  EXPECT_EQ(Repulsion(SumProximity(Hits({})), {}), sim::Vec2(0.0, 0.0));
   EXPECT_EQ(Repulsion({.sum = {0.05, 0.0}, .largest = 0.05}, {.least_push = 0.1}), sim::Vec2(0.0, 0.0));
 }
 
 TEST(PotentialField, RepulsionIsAUnitVectorAwayFromTheObstacle) {
-  const sim::Vec2 push = Repulsion(SumProximity(Hits({{7.5, 0.05}, {-7.5, 0.05}}), std::nullopt), {});
+  const sim::Vec2 push = Repulsion(SumProximity(Hits({{7.5, 0.05}, {-7.5, 0.05}})), {});
   EXPECT_NEAR(push.x(), -1.0, 1e-12);
   EXPECT_NEAR(push.y(), 0.0, 1e-12);
 }

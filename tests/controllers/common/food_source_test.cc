@@ -1,4 +1,4 @@
-#include "controllers/common/food_source.h"
+#include "controllers/common/nest_and_food.h"
 
 #include <vector>
 
@@ -26,7 +26,8 @@ class FoodSourceTest : public ::testing::Test {
 
   std::vector<sim::RobotState> robots_ = std::vector<sim::RobotState>(3);
   sim::Grippers grippers_ = sim::Grippers({true, true, true});
-  FoodSource source_ = FoodSource({.reach = 0.335, .pickup = 20, .interval = 100}, 3);
+  FoodSource source_ =
+      FoodSource({.robots = 3, .pickup_distance = 0.335, .pickup = 20, .serving_interval = 100});
   sim::Tick tick_ = 1;
 };
 

@@ -17,13 +17,12 @@ class OdometerTest : public ::testing::Test {
     observer_.Record({&state, 1});
   }
 
-  sim::Arena arena_ = sim::Arena(sim::TestCase{});
   sim::Observer observer_ = sim::Observer(1, 10000);
-  sim::Headquarters headquarters_ = sim::Headquarters(arena_, observer_);
+  sim::Headquarters headquarters_ = sim::Headquarters(observer_);
 };
 
 TEST_F(OdometerTest, FollowsAPointThroughAnyMotion) {
-  BodyOdometer odometer(headquarters_, 0, {{0.5, -0.5}, 0.3});
+  const Odometer odometer = OdometerOf(headquarters_, 0, {{0.5, -0.5}, 0.3});
   sim::Vec2 point(0.0, 0.0);  // where it started
   sim::RandomStream random(3, sim::StreamPurpose::kTest);
   double x = 0.5, y = -0.5, heading = 0.3;
@@ -32,7 +31,7 @@ TEST_F(OdometerTest, FollowsAPointThroughAnyMotion) {
     y += random.Uniform(-0.01, 0.01);
     heading = sim::WrapAngle(heading + random.Uniform(-0.2, 0.2));
     Move(x, y, heading);
-    point = AfterMotion(point, odometer.Next());
+    point = AfterMotion(point, odometer());
     const sim::Vec2 world = sim::Vec2(x, y) + point.norm() * sim::UnitVector(heading + sim::AngleOf(point));
     ASSERT_NEAR((world - sim::Vec2(0.5, -0.5)).norm(), 0.0, 1e-9);
   }

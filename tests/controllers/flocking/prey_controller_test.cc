@@ -24,9 +24,9 @@ sim::TestCase WallAcross() {
 }
 
 // Drives the prey along `path` without physics: speed and turn rate are reached at once.
-std::vector<Vec2> Drive(const sim::Arena& arena, const std::vector<Vec2>& path, sim::Tick ticks) {
+std::vector<Vec2> Drive(const std::vector<Vec2>& path, sim::Tick ticks) {
   sim::Observer observer(1, ticks);
-  const sim::Headquarters headquarters(arena, observer);
+  const sim::Headquarters headquarters(observer);
   PreyController prey(headquarters, 0, path, kSettings);
   const sim::SensorReadings readings;
   sim::Actuators actuators;
@@ -59,7 +59,7 @@ TEST(PreyController, GoesStraightToTheGoalInAnEmptyArena) {
   const sim::Arena arena{sim::TestCase{}};
   const std::vector<Vec2> path = PlanPreyPath(arena, kStart, kGoal, kSettings.inflation);
   ASSERT_EQ(path.size(), 2u);
-  const std::vector<Vec2> track = Drive(arena, path, 2000);
+  const std::vector<Vec2> track = Drive(path, 2000);
   EXPECT_LT((track.back() - kGoal).norm(), 0.011);
   for (const Vec2& point : track) EXPECT_LT(std::abs(point.x() - point.y()), 0.02);
   // 7.07 m at 0.05 m/s after turning by 135 degrees at 1.5 rad/s.
@@ -72,15 +72,14 @@ TEST(PreyController, FollowsItsPathAroundAWall) {
   const std::vector<Vec2> path = PlanPreyPath(arena, kStart, kGoal, kSettings.inflation);
   ASSERT_GT(path.size(), 2u);
   EXPECT_GE(ClearanceOf(path, arena), 0.15 - sim::OccupancyGrid::kCellSize);
-  const std::vector<Vec2> track = Drive(arena, path, 3000);
+  const std::vector<Vec2> track = Drive(path, 3000);
   EXPECT_LT((track.back() - kGoal).norm(), 0.011);
   // Its body never touches anything.
   EXPECT_GT(ClearanceOf(track, arena), sim::foot_bot::kRadius);
 }
 
 TEST(PreyController, StaysAtTheEndOfItsPath) {
-  const sim::Arena arena{sim::TestCase{}};
-  const std::vector<Vec2> track = Drive(arena, {Vec2(0.0, 0.0), Vec2(1.0, 0.0)}, 600);
+  const std::vector<Vec2> track = Drive({Vec2(0.0, 0.0), Vec2(1.0, 0.0)}, 600);
   EXPECT_EQ(track[400], track[600]);
 }
 

@@ -41,7 +41,7 @@ class Bookkeeper : public WatchedScenario {
       const bool holds = interaction.grippers.Holds(static_cast<sim::RobotIndex>(i));
       const sim::Vec2 place = robots[i].position();
       if (holds && !held_[i]) {
-        if ((place - controllers::FoodOf(settings_)).norm() > settings_.pickup_distance) {
+        if ((place - settings_.Food()).norm() > settings_.pickup_distance) {
           Say(tick, i, "an item taken beyond the reach of the food");
         }
         if (last_taken_ >= 0 && tick - last_taken_ < settings_.serving_interval) {
@@ -51,7 +51,7 @@ class Bookkeeper : public WatchedScenario {
         ++taken;
       }
       if (!holds && held_[i]) {
-        if ((place - controllers::NestOf(settings_)).norm() > settings_.nest_radius) {
+        if ((place - settings_.Nest()).norm() > settings_.nest_radius) {
           Say(tick, i, "an item dropped beside the nest");
         }
         ++dropped;
@@ -87,7 +87,7 @@ sim::RunSpec BusySpec(std::uint64_t seed) {
 }
 
 void AddRandomObstacles(sim::RunSpec& spec, const controllers::ForagingSettings& settings) {
-  const auto requirements = RequirementsOf(settings);
+  const auto requirements = settings.Requirements({});
   sim::RandomStream random(spec.seed, sim::StreamPurpose::kTest);
   const int tries = static_cast<int>(random.Below(9));
   testing_support::AddRandomBoxes(spec.test_case, requirements, random, tries, 8);

@@ -82,7 +82,7 @@ class PartitionBookkeeper : public WatchedScenario {
     }
     for (const std::size_t i : lost) {
       const sim::Vec2 place = robots[i].position();
-      if ((place - controllers::NestOf(settings_)).norm() <= settings_.nest_radius) {
+      if ((place - settings_.Nest()).norm() <= settings_.nest_radius) {
         ++dropped;
         continue;
       }
@@ -100,7 +100,7 @@ class PartitionBookkeeper : public WatchedScenario {
     }
     for (const std::size_t i : gained) {
       ++taken;
-      if ((robots[i].position() - controllers::FoodOf(settings_)).norm() > settings_.pickup_distance) {
+      if ((robots[i].position() - settings_.Food()).norm() > settings_.pickup_distance) {
         Complain(tick, i, "an item from nowhere");
       }
     }
@@ -149,7 +149,7 @@ constexpr double kHandoverReach = 0.30 + 1e-9;  // m
 
 void AddBoxes(sim::RunSpec& spec) {
   const controllers::PartitioningSettings settings = SettingsOf(spec);
-  const auto requirements = RequirementsOf(settings);
+  const auto requirements = settings.Requirements({});
   sim::RandomStream random(spec.seed, sim::StreamPurpose::kTest);
   const int tries = static_cast<int>(random.Below(7));
   testing_support::AddRandomBoxes(spec.test_case, requirements, random, tries, 6);

@@ -101,7 +101,7 @@ class PartitionRobot {
                                .pickup_distance = 0.36,
                                .nest_lamp = kNestLamp,
                                .starts_in_relay = state == State::kNeighbourhood,
-                               .odometer = MakeOdometer()}) {}
+                               .odometer = [motion = motion_] { return *motion; }}) {}
 
   State Step(PartitionScene scene) {
     scene.readings.blobs = scene.blobs;
@@ -126,16 +126,6 @@ class PartitionRobot {
   const PartitioningController& controller() const { return controller_; }
 
  private:
-  class HandOdometer : public Odometer {
-   public:
-    explicit HandOdometer(std::shared_ptr<BodyMotion> motion) : motion_(std::move(motion)) {}
-    BodyMotion Next() override { return *motion_; }
-
-   private:
-    std::shared_ptr<BodyMotion> motion_;
-  };
-  std::unique_ptr<Odometer> MakeOdometer() { return std::make_unique<HandOdometer>(motion_); }
-
   std::shared_ptr<BodyMotion> motion_ = std::make_shared<BodyMotion>();
   PartitioningController controller_;
   sim::Actuators actuators_;

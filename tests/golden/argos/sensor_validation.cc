@@ -11,9 +11,7 @@
 #include "sim/sensors/distance_scanner.h"
 #include "sim/sensors/ground_sensor.h"
 #include "sim/sensors/light_sensor.h"
-#include "sim/sensors/omni_camera.h"
 #include "sim/sensors/proximity.h"
-#include "sim/sensors/range_and_bearing.h"
 #include "tests/sim/sensors/sensing.h"
 #include "tests/support/make_box.h"
 #include "tests/support/paths.h"
@@ -122,12 +120,12 @@ std::vector<ValidationRow> Proximity(const Sweep& sweep, bool wall) {
             const BodyFrame self = At(-sim::foot_bot::kRadius - gap, 0.0, sweep.Number(row, "heading_deg"));
             sim::ProximityRing ring(self);
             ring.See(sim::MakeBox({0.1, 0.0}, 0.2, 6.0, 0.0));
-            return ring.Readings()[sensor];
+            return sim::ReadingsOf(ring)[sensor];
           }
           const BodyFrame self = At(0.0, 0.0, sweep.Number(row, "self_heading_deg"));
           sim::ProximityRing ring(self);
           ring.See(At(2.0 * sim::foot_bot::kRadius + gap, 0.0, sweep.Number(row, "other_heading_deg")));
-          return ring.Readings()[sensor];
+          return sim::ReadingsOf(ring)[sensor];
         },
         result);
   }

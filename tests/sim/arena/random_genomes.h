@@ -3,7 +3,7 @@
 
 #include <rapidcheck.h>
 
-#include "sim/arena/obstacle_gene.h"
+#include "sim/arena/genome.h"
 
 namespace gauntlet::sim {
 

@@ -39,13 +39,11 @@ void ExpectViolation(const TestCase& test_case, const ArenaRequirements& require
 TEST(ValidityTest, RuleNamesAreTheCommandLinesContract) {
   const std::map<ValidityRule, std::string> names = {{ValidityRule::kFiniteNumbers, "finite-numbers"},
                                                      {ValidityRule::kPositiveSize, "positive-size"},
-                                                     {ValidityRule::kGeneRange, "gene-range"},
                                                      {ValidityRule::kContainedObstacle, "contained-obstacle"},
                                                      {ValidityRule::kStartBlocked, "start-blocked"},
                                                      {ValidityRule::kGoalBlocked, "goal-blocked"},
                                                      {ValidityRule::kClearance, "clearance"},
                                                      {ValidityRule::kNoPath, "no-path"},
-                                                     {ValidityRule::kNoRoomToSpawn, "no-room-to-spawn"},
                                                      {ValidityRule::kLimits, "limits"}};
   for (const auto& [rule, name] : names) EXPECT_EQ(NameOf(rule), name);
 }

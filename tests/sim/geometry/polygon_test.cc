@@ -1,10 +1,9 @@
-#include "sim/geometry/polygon.h"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
 
+#include "sim/geometry/oriented_box.h"
 #include "tests/sim/geometry/generators.h"
 #include "tests/support/make_box.h"
 

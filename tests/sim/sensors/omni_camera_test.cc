@@ -1,5 +1,3 @@
-#include "sim/sensors/omni_camera.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -12,6 +12,7 @@
 #include "sim/geometry/ray_cast.h"
 #include "sim/robot/controller.h"
 #include "tests/sim/argos_csv.h"
+#include "tests/sim/sensors/sensing.h"
 #include "tests/support/make_box.h"
 
 namespace gauntlet::sim {
@@ -29,14 +30,14 @@ ProximityReadings BeforeWall(double gap, double heading_deg) {
   const BodyFrame self = FrameAt(-foot_bot::kRadius - gap, 0.0, heading_deg);
   ProximityRing ring(self);
   ring.See(MakeBox({0.1, 0.0}, 0.2, 6.0, 0.0));
-  return ring.Readings();
+  return ReadingsOf(ring);
 }
 
 ProximityReadings BeforeRobot(double gap, double heading_deg, double other_heading_deg) {
   const BodyFrame self = FrameAt(0.0, 0.0, heading_deg);
   ProximityRing ring(self);
   ring.See(FrameAt(2.0 * foot_bot::kRadius + gap, 0.0, other_heading_deg));
-  return ring.Readings();
+  return ReadingsOf(ring);
 }
 
 // An edge: what ARGoS says lies between our readings one step of the sweep nearer and farther.
@@ -107,7 +108,7 @@ TEST(ProximityRing, SeesNothingInTheOpen) {
   ring.See(MakeBox({0.5, 0.0}, 0.2, 6.0, 0.0));
   ring.See(FrameAt(0.0, 0.29, 0.0));
   EXPECT_EQ(ring.hits(), 0u);
-  EXPECT_THAT(ring.Readings(), Each(0.0));
+  EXPECT_THAT(ReadingsOf(ring), Each(0.0));
 }
 
 TEST(ProximityRing, ReadsOneWhereABodyIsTouchedOrOverlapped) {
@@ -115,8 +116,8 @@ TEST(ProximityRing, ReadsOneWhereABodyIsTouchedOrOverlapped) {
   ProximityRing ring(self);
   ring.See(FrameAt(2.0 * foot_bot::kRadius - 0.005, 0.0, 0.0));
   EXPECT_NE(ring.hits(), 0u);
-  EXPECT_EQ(ring.Readings()[0], 1.0);
-  EXPECT_EQ(ring.Readings()[12], 0.0);
+  EXPECT_EQ(ReadingsOf(ring)[0], 1.0);
+  EXPECT_EQ(ReadingsOf(ring)[12], 0.0);
 }
 
 TEST(ProximityRing, SeesTheFrontOfAnotherRobotOneCentimetreEarlier) {
@@ -124,7 +125,7 @@ TEST(ProximityRing, SeesTheFrontOfAnotherRobotOneCentimetreEarlier) {
   const double distance = 2.0 * foot_bot::kRadius + 0.105;
   ProximityRing facing(self);
   facing.See(FrameAt(distance, 0.0, 180.0));
-  EXPECT_NEAR(facing.Readings()[0], ProximityReading(0.095), 1e-9);
+  EXPECT_NEAR(ReadingsOf(facing)[0], ProximityReading(0.095), 1e-9);
   ProximityRing averted(self);
   averted.See(FrameAt(distance, 0.0, 0.0));
   EXPECT_EQ(averted.hits(), 0u);
@@ -140,7 +141,7 @@ RC_GTEST_PROP(ProximityRing, AgreesWithPlainRays, ()) {
   ProximityRing ring(self);
   ring.See(box);
   ring.See(robot);
-  const ProximityReadings readings = ring.Readings();
+  const ProximityReadings readings = ReadingsOf(ring);
   for (int i = 0; i < foot_bot::kProximitySensors; ++i) {
     const Vec2 ray = UnitVector(self.heading + ProximityBearing(i));
     const Vec2 origin = self.position + foot_bot::kRadius * ray;

@@ -1,4 +1,3 @@
-#include "sim/sensors/range_and_bearing.h"
 #include "tests/sim/sensors/sensing.h"
 #include "tests/support/make_box.h"
 

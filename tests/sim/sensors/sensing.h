@@ -5,9 +5,18 @@
 #include <utility>
 #include <vector>
 
+#include "base/bits.h"
+#include "sim/sensors/proximity.h"
 #include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
+
+// Of all sensors of a robot: 0 of those that hit nothing.
+inline ProximityReadings ReadingsOf(const ProximityRing& ring) {
+  ProximityReadings readings{};
+  ForEachBit(ring.hits(), [&](std::size_t sensor) { readings[sensor] = ring.Reading(sensor); });
+  return readings;
+}
 
 // A place with lamps and radio beacons, and a swarm in it.
 struct SensingPlace final : Surroundings {
@@ -36,15 +45,9 @@ struct SensingPlace final : Surroundings {
     pairs.Update(positions, occluders, any_ring_lit);
     const std::vector<Actuators> actuators(robots.size());
     const Grippers grippers(std::vector<bool>(robots.size(), false));
-    const Scene scene = {.robots = robots,
-                         .positions = positions,
-                         .signals = signals,
-                         .actuators = actuators,
-                         .surroundings = *this,
-                         .grippers = grippers,
-                         .occluders = occluders,
-                         .pairs = pairs,
-                         .any_ring_lit = any_ring_lit};
+    const World world = {
+        .poses = {}, .signals = signals, .actuators = actuators, .surroundings = *this, .grippers = grippers};
+    const Scene scene = {world, robots, positions, occluders, pairs, any_ring_lit};
     const std::unique_ptr<Sensor> sensor = make(arena, sensors);
     sensor->Prepare(scene);
     for (std::size_t i = 0; i < robots.size(); ++i) {

@@ -1,15 +1,16 @@
-// One obstacle of a test case as the genetic algorithm sees it (thesis 3.2.1: a "single descriptor"). It may
-// move slowly and carry lights that robots take for flockmates (thesis 7.4); the shipped experiments have
-// none such.
+// The obstacles of a test case as the genetic algorithm sees them, and their canonical encoding.
 #pragma once
 
 #include <vector>
 
+#include "base/canonical_encoder.h"
 #include "sim/arena/color.h"
 #include "sim/geometry/oriented_box.h"
 
 namespace gauntlet::sim {
 
+// One obstacle (thesis 3.2.1: a "single descriptor"). It may move slowly and carry lights that robots take
+// for flockmates (thesis 7.4); the shipped experiments have none such.
 struct ObstacleGene {
   double x = 0.0;                // m, centre
   double y = 0.0;                // m, centre
@@ -37,5 +38,16 @@ inline constexpr std::size_t kMaxObstaclePath = 16;
 using Genome = std::vector<ObstacleGene>;
 
 OrientedBox BoxOf(const ObstacleGene& gene);
+
+// The one canonical encoding of genomes: search states, stored test cases, digests and hashes use it. A
+// genome of fixed, dark obstacles has the bytes it had before there were others. Number of genes, then of
+// each x, y, length, width, orientation. When an obstacle moves or has lights, the number's highest bit is
+// set and each gene goes on with speed, light, number of the path's points, points.
+void EncodeGenome(const Genome& genome, CanonicalEncoder& encoder);
+// The opposite. After bytes that no genome has, decoder.ok() is false or genes are incomplete.
+Genome DecodeGenome(CanonicalDecoder& decoder);
+
+// FNV-1a over the genes; equal for equal genomes.
+std::uint64_t GenomeHash(const Genome& genome);
 
 }  // namespace gauntlet::sim

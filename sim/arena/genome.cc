@@ -1,8 +1,10 @@
-#include "sim/arena/genome_codec.h"
+#include "sim/arena/genome.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/hash.h"
+#include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::sim {
 namespace {
@@ -43,6 +45,16 @@ ObstacleGene DecodeGene(bool extended, CanonicalDecoder& decoder) {
 }
 
 }  // namespace
+
+OrientedBox BoxOf(const ObstacleGene& gene) {
+  // Quarter turns are taken off in degrees, where they are exact, so that 90, 180 and 270 degrees give exact
+  // axes.
+  const double degrees = std::fmod(gene.orientation_deg, 360.0);
+  const double quarters = std::floor(degrees / 90.0 + 0.5);
+  Vec2 axis = UnitVector((degrees - 90.0 * quarters) * kDegree);
+  for (int turns = (static_cast<int>(quarters) + 4) % 4; turns > 0; --turns) axis = LeftOf(axis);
+  return {{gene.x, gene.y}, {gene.length / 2.0, gene.width / 2.0}, axis};
+}
 
 void EncodeGenome(const Genome& genome, CanonicalEncoder& encoder) {
   const bool extended = IsExtended(genome);

@@ -1,4 +1,4 @@
-#include "sim/arena/genome_codec.h"
+#include "sim/arena/genome.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
