@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/statistics/bootstrap.h"
 #include "tests/integration/campaign_driver.h"
-#include "tests/statistics/bootstrap.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -88,8 +88,9 @@ void PrintSamples(const std::vector<std::pair<std::string, StudySample>>& sample
 }
 
 Comparison CompareSamples(const std::string& name, const StudySample& first, const StudySample& second) {
-  const Comparison comparison{MannWhitney(FlatFitness(first), FlatFitness(second)),
-                              ClusterBootstrapA(FitnessOf(first), FitnessOf(second), 0.90, 4000, 1).low};
+  const Comparison comparison{
+      analysis::MannWhitney(FlatFitness(first), FlatFitness(second)),
+      analysis::ClusterBootstrapA(FitnessOf(first), FitnessOf(second), 0.90, 4000, 1).low};
   fmt::print("{:<34} A {:.3f} (95 % lower bound {:.3f}), one-tailed p {:.3g}\n", name, comparison.test.a,
              comparison.lower_bound, comparison.test.p_greater);
   return comparison;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/statistics/rank_test.h"
+#include "analysis/statistics/rank_test.h"
 #include "tests/support/process.h"
 
 namespace gauntlet::testing_support {
@@ -31,7 +31,7 @@ bool BroughtNothing(const SimulatedCase& one);  // fitness 0
 void PrintSamples(const std::vector<std::pair<std::string, StudySample>>& samples);
 
 struct Comparison {
-  RankTest test;             // one-tailed Mann-Whitney
+  analysis::RankTest test;   // one-tailed Mann-Whitney
   double lower_bound = 0.0;  // one-sided 95 %, of A = P(first > second); clusters are resampled
 };
 // Computes and prints it.

@@ -8,13 +8,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "analysis/statistics/equivalence_test.h"
 #include "controllers/examples/light_flocking_metrics.h"
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/examples/light_flocking_scenario.h"
 #include "controllers/registry.h"
 #include "master/cases/case_file.h"
 #include "sim/simulation.h"
-#include "tests/statistics/equivalence_test.h"
 #include "tests/support/paths.h"
 
 namespace gauntlet::golden {
@@ -194,7 +194,7 @@ Verdict Judge(const std::vector<CaseComparison>& comparisons) {
     for (const CaseComparison& c : comparisons) {
       differences.push_back(c.ours.*metric.value - c.argos.*metric.value);
     }
-    const auto test = testing_support::TestEquivalence(differences, metric.margin, kAlpha);
+    const auto test = analysis::TestEquivalence(differences, metric.margin, kAlpha);
     verdict.holds = verdict.holds && test.equivalent;
     verdict.table += fmt::format(
         "| {} | {:.2f} | mean difference {:+.3f}, sd {:.3f}, 90 % interval {:+.3f} to {:+.3f}, p = {:.2g} | "

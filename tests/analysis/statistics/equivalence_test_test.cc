@@ -1,11 +1,11 @@
-#include "tests/statistics/equivalence_test.h"
+#include "analysis/statistics/equivalence_test.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 namespace {
 
 TEST(StudentUpperTail, AgreesWithTablesAndClosedForms) {
@@ -50,4 +50,4 @@ TEST(TestEquivalence, EqualDifferencesAreTakenForExact) {
 }
 
 }  // namespace
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 
 // Ranks of the values, 1 = smallest; tied values share the mean of their ranks (mid-ranks).
 std::vector<double> MidRanks(std::span<const double> values);
@@ -30,4 +30,4 @@ RankTest MannWhitney(std::span<const double> first, std::span<const double> seco
 // Upper tail of the standard normal distribution.
 double NormalUpperTail(double z);
 
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis

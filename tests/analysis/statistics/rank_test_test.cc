@@ -1,4 +1,4 @@
-#include "tests/statistics/rank_test.h"
+#include "analysis/statistics/rank_test.h"
 #include "tests/support/paths.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 #include <map>
 #include <sstream>
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 namespace {
 
 std::vector<std::string> SplitCsvLine(const std::string& line) {
@@ -97,4 +97,4 @@ RC_GTEST_PROP(RankTestProperty, AIsTheShareOfPairsWithTiesCountingHalf, ()) {
 }
 
 }  // namespace
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 
 struct Interval {
   double low = 0.0;
@@ -21,4 +21,4 @@ Interval ClusterBootstrapA(const std::vector<std::vector<double>>& first,
                            const std::vector<std::vector<double>>& second, double confidence, int resamples,
                            std::uint64_t seed);
 
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis

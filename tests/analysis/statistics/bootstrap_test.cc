@@ -1,4 +1,4 @@
-#include "tests/statistics/bootstrap.h"
+#include "analysis/statistics/bootstrap.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 
 #include "sim/random/random_stream.h"
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 namespace {
 
 std::vector<std::vector<double>> Singletons(const std::vector<double>& values) {
@@ -59,4 +59,4 @@ TEST(ClusterBootstrapTest, IsAFunctionOfItsSeed) {
 }
 
 }  // namespace
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis

@@ -1,4 +1,4 @@
-#include "tests/statistics/rank_test.h"
+#include "analysis/statistics/rank_test.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "base/check.h"
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 
 std::vector<double> MidRanks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
@@ -68,4 +68,4 @@ RankTest MannWhitney(std::span<const double> first, std::span<const double> seco
   return test;
 }
 
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis

@@ -1,10 +1,10 @@
-#include "tests/statistics/equivalence_test.h"
+#include "analysis/statistics/equivalence_test.h"
 
 #include <cmath>
 
 #include "base/check.h"
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 namespace {
 
 // The continued fraction of the incomplete beta function (Abramowitz and Stegun 26.5.8), by Lentz' method.
@@ -82,4 +82,4 @@ EquivalenceTest TestEquivalence(std::span<const double> differences, double marg
   return test;
 }
 
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis

@@ -1,13 +1,13 @@
-#include "tests/statistics/bootstrap.h"
+#include "analysis/statistics/bootstrap.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/statistics/rank_test.h"
 #include "base/check.h"
 #include "sim/random/random_stream.h"
-#include "tests/statistics/rank_test.h"
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 namespace {
 
 std::vector<double> Resample(const std::vector<std::vector<double>>& clusters, sim::RandomStream& random) {
@@ -41,4 +41,4 @@ Interval ClusterBootstrapA(const std::vector<std::vector<double>>& first,
   return {at((1.0 - confidence) / 2.0), at((1.0 + confidence) / 2.0)};
 }
 
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis

@@ -3,9 +3,9 @@
 
 #include <span>
 
-#include "tests/statistics/bootstrap.h"
+#include "analysis/statistics/bootstrap.h"
 
-namespace gauntlet::testing_support {
+namespace gauntlet::analysis {
 
 struct EquivalenceTest {
   double mean = 0.0;        // of the differences
@@ -23,4 +23,4 @@ EquivalenceTest TestEquivalence(std::span<const double> differences, double marg
 // P(T > t) of Student's t distribution; any degrees of freedom > 0.
 double StudentUpperTail(double t, double degrees_of_freedom);
 
-}  // namespace gauntlet::testing_support
+}  // namespace gauntlet::analysis
