@@ -15,7 +15,7 @@
 #include "master/cli/run_campaign.h"
 #include "master/cli/summary.h"
 #include "master/report/verdict_text.h"
-#include "master/search/make_search.h"
+#include "master/search/search_table.h"
 #include "proto/run_codec.h"
 #include "sim/arena/validity.h"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "master/report/verdict_text.h"
-#include "master/search/run_seed.h"
+#include "master/search/search_setup.h"
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
 

@@ -3,7 +3,6 @@
 #include <utility>
 #include <vector>
 
-#include "master/search/make_search.h"
 #include "master/search/search_table.h"
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"

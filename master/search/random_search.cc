@@ -1,7 +1,5 @@
 #include "master/search/random_search.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 

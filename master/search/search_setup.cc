@@ -46,6 +46,13 @@ std::uint64_t SearchSeed(const SearchSetup& setup) {
                          /*individual=*/0, /*evaluation=*/0, RowOf(setup.experiment).number);
 }
 
+std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, std::uint32_t evaluation,
+                      std::uint32_t replicate) {
+  constexpr std::uint32_t kSearch = 1;  // every search counts as the first of its campaign
+  return sim::DeriveSeed(experiment.seed, RowOf(experiment).purpose, kSearch, individual, evaluation,
+                         replicate);
+}
+
 sim::RandomStream GenomeStream(std::uint64_t search_seed, std::uint64_t id) {
   GAUNTLET_CHECK(id <= 0xFFFFFFFFULL, fmt::format("individual {}", id));
   return {search_seed, sim::StreamPurpose::kGenome, static_cast<std::uint32_t>(id)};

@@ -1,4 +1,4 @@
-// What every search starts from, and the key of its randomness.
+// What every search starts from, and the keys of its randomness and of its runs'.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 
 #include "master/experiment/experiment.h"
 #include "master/search/genome_generator.h"
+#include "master/search/search_algorithm.h"
 #include "sim/arena/test_case.h"
 #include "sim/arena/validity.h"
 
@@ -28,6 +29,11 @@ GenomeGenerator MakeGenerator(const SearchSetup& setup);
 // that random search and the initial population of an evolution share no case. No run has this seed: runs
 // belong to individuals from 1 on.
 std::uint64_t SearchSeed(const SearchSetup& setup);
+
+// The seed of replicate 0, 1, ... of an evaluation of an individual. It depends on these numbers and the
+// experiment's seed alone, so a search of a sweep has the seeds that it would have in a campaign of its own.
+std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, std::uint32_t evaluation,
+                      std::uint32_t replicate);
 
 // The random stream of the case that individual `id` starts life with.
 sim::RandomStream GenomeStream(std::uint64_t search_seed, std::uint64_t id);

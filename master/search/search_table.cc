@@ -1,8 +1,10 @@
 #include "master/search/search_table.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <vector>
+#include <utility>
 
 #include "base/check.h"
 #include "controllers/registry.h"
@@ -10,6 +12,7 @@
 #include "master/search/genetic_algorithm.h"
 #include "master/search/random_search.h"
 #include "master/search/steady_state_search.h"
+#include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
 
@@ -37,6 +40,38 @@ const Catalogue& BuiltInCatalogue() {
   }();
   static const Catalogue catalogue{controllers::Scenarios(), controllers::Controllers(), searches};
   return catalogue;
+}
+
+Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {
+  const Result<std::size_t> robots = controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed));
+  if (!robots.ok()) return robots.error();
+  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, *robots)) {
+    return InvalidInput(*refused);
+  }
+  return Ok{};
+}
+
+Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment, std::uint32_t search_id,
+                                                    std::vector<sim::TestCase> cases) {
+  const SearchRow& row = RowOf(experiment);
+  if (row.given_cases) {
+    if (!cases.empty()) return row.make({experiment, {}, search_id, std::move(cases)});
+    return InvalidInput(fmt::format(
+        "search.algorithm = \"{}\" needs a list of test cases: use `gauntlet evaluate`", row.info.name));
+  }
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
+  if (scenario == nullptr) {
+    return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};
+  }
+  const sim::TestCase empty = EmptyArena(experiment.arena);
+  auto search =
+      row.make({experiment, scenario->requirements(experiment.scenario_parameters, empty), search_id, {}});
+  if (!search.ok()) return search;
+  // Without this every run of the search would be refused for the same reason.
+  if (const Status fits = CheckSwarmFits(experiment, empty); !fits.ok()) {
+    return InvalidInput("no run can begin, even without obstacles: " + fits.error().message);
+  }
+  return search;
 }
 
 }  // namespace gauntlet::master

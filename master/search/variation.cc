@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "master/search/mutation.h"
-
 namespace gauntlet::master {
 namespace {
 
@@ -35,6 +33,15 @@ sim::Genome MutateUntilValid(sim::Genome genome, const SearchSpec& spec, const G
 }
 
 }  // namespace
+
+sim::Genome Mutate(const sim::Genome& genome, double probability, const GenomeGenerator& generator,
+                   sim::RandomStream& random) {
+  sim::Genome mutant = genome;
+  for (sim::ObstacleGene& gene : mutant) {
+    if (random.Chance(probability)) gene = generator.RandomGene(random);
+  }
+  return mutant;
+}
 
 Offspring Breed(const sim::Genome& first, const sim::Genome& second, const SearchSpec& spec,
                 const GenomeGenerator& generator, const CoupleKey& key) {

@@ -20,6 +20,11 @@ struct CoupleKey {
 // use the slots behind it.
 inline constexpr std::uint32_t kParentChoiceSlot = 0;
 
+// The genome with every gene, independently with `probability`, drawn anew as a whole (thesis 3.2.3.6).
+// Validity is not judged.
+sim::Genome Mutate(const sim::Genome& genome, double probability, const GenomeGenerator& generator,
+                   sim::RandomStream& random);
+
 // Crosses with spec.crossover_probability (else the children are copies), then mutates each child. A
 // step whose outcome breaks a validity rule is done again; after spec.variation_tries it leaves its input
 // unchanged, so children of valid parents are valid.

@@ -11,7 +11,6 @@
 #include "master/dispatch/worker_program.h"
 #include "master/experiment/experiment_file.h"
 #include "master/report/stored_check.h"
-#include "master/search/make_search.h"
 #include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/campaign_server.h"

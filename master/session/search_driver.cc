@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "master/report/stored_search.h"
-#include "master/search/run_seed.h"
+#include "master/search/search_setup.h"
 #include "proto/run_codec.h"
 
 namespace gauntlet::master {

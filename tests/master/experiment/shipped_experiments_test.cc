@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "master/experiment/experiment_file.h"
-#include "master/search/make_search.h"
 #include "master/search/search_table.h"
 
 namespace gauntlet::master {

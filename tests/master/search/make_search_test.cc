@@ -1,4 +1,3 @@
-#include "master/search/make_search.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

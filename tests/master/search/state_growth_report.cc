@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "master/experiment/experiment_file.h"
-#include "master/search/make_search.h"
 #include "master/search/search_table.h"
 #include "tests/master/search/state_growth.h"
 

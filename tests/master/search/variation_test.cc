@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "master/search/mutation.h"
 #include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {

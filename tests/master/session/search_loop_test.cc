@@ -9,7 +9,7 @@
 #include <set>
 
 #include "master/report/campaign_summary.h"
-#include "master/search/run_seed.h"
+#include "master/search/search_setup.h"
 #include "proto/run_codec.h"
 #include "tests/master/session/toy_campaign.h"
 
