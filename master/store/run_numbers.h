@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "base/hash.h"
 #include "master/store/result_store.h"
 
 namespace gauntlet::master {
@@ -12,13 +13,26 @@ namespace gauntlet::master {
 // its number is.
 inline constexpr SearchId kOnlySearch = 1;
 
+inline constexpr int kSequenceBits = 40;
+
 // The id of run number `sequence` (1, 2, ... below 2^40) of a search: searches do not share numbers, so ids
 // do not depend on which search was faster.
-RunId RunIdOf(SearchId search, std::uint64_t sequence);
+inline RunId RunIdOf(SearchId search, std::uint64_t sequence) {
+  GAUNTLET_CHECK(search >= 1 && sequence >= 1 && sequence < (1ULL << kSequenceBits),
+                 "run number out of range");
+  return (static_cast<RunId>(search - 1) << kSequenceBits) + sequence;
+}
+
 // The search of a run.
-SearchId SearchOf(RunId run);
+inline SearchId SearchOf(RunId run) {
+  return static_cast<SearchId>(run >> kSequenceBits) + 1;
+}
 
 // StoredRun::spec_hash of a serialized RunSpec.
-std::uint64_t SpecHash(std::string_view spec);
+inline std::uint64_t SpecHash(std::string_view spec) {
+  Fnv1a64 hash;
+  hash.AddBytes(spec);
+  return hash.value();
+}
 
 }  // namespace gauntlet::master

@@ -56,19 +56,19 @@ void SqliteStatement::BindInt(int index, std::int64_t value) {
   Remember(sqlite3_bind_int64(statement_.get(), index + 1, value));
 }
 
-void SqliteStatement::BindDouble(int index, double value) {
+void SqliteStatement::BindOne(int index, double value) {
   Remember(sqlite3_bind_double(statement_.get(), index + 1, value));
 }
 
-void SqliteStatement::BindText(int index, std::string_view value) {
+void SqliteStatement::BindOne(int index, std::string_view text) {
   // A null pointer would bind NULL.
-  const char* bytes = value.data() == nullptr ? "" : value.data();
-  Remember(sqlite3_bind_text64(statement_.get(), index + 1, bytes, value.size(), SQLITE_STATIC, SQLITE_UTF8));
+  const char* bytes = text.data() == nullptr ? "" : text.data();
+  Remember(sqlite3_bind_text64(statement_.get(), index + 1, bytes, text.size(), SQLITE_STATIC, SQLITE_UTF8));
 }
 
-void SqliteStatement::BindBlob(int index, std::string_view value) {
-  const char* bytes = value.data() == nullptr ? "" : value.data();
-  Remember(sqlite3_bind_blob64(statement_.get(), index + 1, bytes, value.size(), SQLITE_STATIC));
+void SqliteStatement::BindOne(int index, Blob blob) {
+  const char* bytes = blob.bytes.data() == nullptr ? "" : blob.bytes.data();
+  Remember(sqlite3_bind_blob64(statement_.get(), index + 1, bytes, blob.bytes.size(), SQLITE_STATIC));
 }
 
 Result<bool> SqliteStatement::Step() {
@@ -81,13 +81,6 @@ Result<bool> SqliteStatement::Step() {
   return ErrorOf(sqlite3_db_handle(statement_.get()), code);
 }
 
-Status SqliteStatement::Run() {
-  Result<bool> stepped = Step();
-  Reset();
-  if (!stepped) return stepped.error();
-  return Ok{};
-}
-
 void SqliteStatement::Reset() {
   sqlite3_reset(statement_.get());
   sqlite3_clear_bindings(statement_.get());
@@ -98,10 +91,10 @@ std::int64_t SqliteStatement::Int(int column) const {
   return sqlite3_column_int64(statement_.get(), column);
 }
 
-std::string SqliteStatement::Bytes(int column) const {
-  const void* bytes = sqlite3_column_blob(statement_.get(), column);
+void SqliteStatement::ReadOne(int column, std::string& bytes) const {
+  const void* data = sqlite3_column_blob(statement_.get(), column);
   const auto size = static_cast<std::size_t>(sqlite3_column_bytes(statement_.get(), column));
-  return bytes == nullptr ? std::string() : std::string(static_cast<const char*>(bytes), size);
+  bytes.assign(data == nullptr ? "" : static_cast<const char*>(data), size);
 }
 
 void SqliteConnection::Closer::operator()(sqlite3* database) const {
@@ -109,18 +102,10 @@ void SqliteConnection::Closer::operator()(sqlite3* database) const {
 }
 
 Result<SqliteConnection> SqliteConnection::Open(const std::string& file, Mode mode, const std::string& vfs) {
-  int flags = SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE;
-  switch (mode) {
-    case Mode::kReadOnly:
-      flags |= SQLITE_OPEN_READONLY;
-      break;
-    case Mode::kReadWrite:
-      flags |= SQLITE_OPEN_READWRITE;
-      break;
-    case Mode::kCreate:
-      flags |= SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
-      break;
-  }
+  const int access = mode == Mode::kReadOnly    ? SQLITE_OPEN_READONLY
+                     : mode == Mode::kReadWrite ? SQLITE_OPEN_READWRITE
+                                                : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
+  const int flags = SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | access;
   SqliteConnection connection;
   sqlite3* database = nullptr;
   const int code = sqlite3_open_v2(file.c_str(), &database, flags, vfs.empty() ? nullptr : vfs.c_str());

@@ -1,6 +1,7 @@
 // A thin RAII layer over SQLite's C interface: errors as values, nothing else added.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -13,29 +14,56 @@ struct sqlite3_stmt;
 
 namespace gauntlet::master {
 
-// A prepared statement. Parameters and columns are numbered from 0. Unsigned values travel as the bits of
+// Bytes for a column that is no text.
+struct Blob {
+  std::string_view bytes;
+};
+
+// A prepared statement. Unsigned values travel as the bits of
 // SQLite's signed 64-bit integer. Must not outlive its connection.
 class SqliteStatement {
  public:
   SqliteStatement() = default;
 
-  void BindInt(int index, std::int64_t value);
-  void BindUint(int index, std::uint64_t value) { BindInt(index, static_cast<std::int64_t>(value)); }
-  void BindDouble(int index, double value);  // NaN becomes NULL: SQLite has no NaN
-  // The bytes must live until Reset().
-  void BindText(int index, std::string_view value);
-  void BindBlob(int index, std::string_view value);
+  // Gives the parameters their values, the first one first: numbers, texts, Blobs; NaN becomes NULL, for
+  // SQLite has no NaN. Texts and blobs must live until Reset().
+  template <typename... Values>
+  void Bind(const Values&... values) {
+    int index = 0;
+    (BindOne(index++, values), ...);
+  }
 
   // True when there is a row to read, false at the end. The first failed Bind is reported here.
   Result<bool> Step();
-  // Steps a statement that returns no rows, and resets it whatever came of it.
-  Status Run();
+  // Calls visit() for every row that is left, until it answers with an error.
+  template <typename Visit>
+  Status ForEachRow(const Visit& visit) {
+    while (true) {
+      Result<bool> row = Step();
+      if (!row) return row.error();
+      if (!*row) return Ok{};
+      if (Status visited = visit(); !visited) return visited;
+    }
+  }
+  // Steps a statement that returns no rows, with these values, and resets it whatever came of it.
+  template <typename... Values>
+  Status Run(const Values&... values) {
+    Bind(values...);
+    Result<bool> stepped = Step();
+    Reset();
+    if (!stepped) return stepped.error();
+    return Ok{};
+  }
   // Makes it ready to be bound and stepped again.
   void Reset();
 
-  std::int64_t Int(int column) const;
-  std::uint64_t Uint(int column) const { return static_cast<std::uint64_t>(Int(column)); }
-  std::string Bytes(int column) const;  // of a text or a blob
+  // Sets the members from the row's columns, the first one first: numbers from integers, strings from texts
+  // or blobs.
+  template <typename... Members>
+  void Read(Members&... members) const {
+    int column = 0;
+    (ReadOne(column++, members), ...);
+  }
 
  private:
   friend class SqliteConnection;
@@ -43,6 +71,20 @@ class SqliteStatement {
     void operator()(sqlite3_stmt* statement) const;
   };
 
+  template <std::integral Number>
+  void BindOne(int index, Number value) {
+    BindInt(index, static_cast<std::int64_t>(value));
+  }
+  void BindOne(int index, double value);
+  void BindOne(int index, std::string_view text);
+  void BindOne(int index, Blob blob);
+  void BindInt(int index, std::int64_t value);
+  template <std::integral Number>
+  void ReadOne(int column, Number& number) const {
+    number = static_cast<Number>(Int(column));
+  }
+  void ReadOne(int column, std::string& bytes) const;
+  std::int64_t Int(int column) const;
   void Remember(int code);
 
   std::unique_ptr<sqlite3_stmt, Finalizer> statement_;

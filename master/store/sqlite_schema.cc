@@ -8,12 +8,13 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
+#include <cstdlib>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "base/system/atomic_file.h"
+#include "base/system/unique_fd.h"
 
 namespace gauntlet::master {
 namespace {
@@ -110,18 +111,12 @@ Error WithPath(const std::string& path, const Error& error) {
   return {error.kind, fmt::format("{}: {}", path, error.message)};
 }
 
-bool HasContent(const std::string& path) {
-  struct stat info {};
-  return stat(path.c_str(), &info) == 0 && info.st_size > 0;
-}
-
 // SQLite takes an empty or missing file for a new database; here it is none.
 Status CheckHeader(const std::string& path) {
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) return SystemError(fmt::format("cannot open {}", path), errno);
+  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.valid()) return SystemError(fmt::format("cannot open {}", path), errno);
   std::array<char, kHeaderSize> header{};
-  const ssize_t size = pread(fd, header.data(), header.size(), 0);
-  close(fd);
+  const ssize_t size = pread(file.get(), header.data(), header.size(), 0);
   if (size != static_cast<ssize_t>(header.size()) ||
       std::string_view(header.data(), kMagic.size()) != kMagic) {
     return Error{
@@ -162,9 +157,19 @@ Status CheckPages(SqliteConnection& connection, const std::string& path) {
   if (!check) return WithPath(path, check.error());
   Result<bool> row = check->Step();
   if (!row) return WithPath(path, row.error());
-  const std::string answer = *row ? check->Bytes(0) : "no answer";
+  std::string answer = "no answer";
+  if (*row) check->Read(answer);
   if (answer != "ok") return WithPath(path, {ErrorKind::kCorrupt, answer});
   return Ok{};
+}
+
+// The rows of the table meta.
+template <typename Meta, typename Text>
+std::array<std::pair<std::string_view, Text*>, 4> FieldsOf(Meta& meta, Text& created_unix_ms) {
+  return {{{"campaign_id", &meta.campaign_id},
+           {"software_version", &meta.software_version},
+           {"golden_hashes", &meta.golden_hashes},
+           {"created_unix_ms", &created_unix_ms}}};
 }
 
 Status FillDatabase(const std::string& path, const CampaignMeta& meta) {
@@ -181,14 +186,8 @@ Status FillDatabase(const std::string& path, const CampaignMeta& meta) {
   Result<SqliteStatement> insert = connection.Prepare("INSERT INTO meta (key, value) VALUES (?, ?)");
   if (!insert) return WithPath(path, insert.error());
   const std::string created = std::to_string(meta.created_unix_ms);
-  for (const auto& [key, value] :
-       {std::pair<std::string_view, std::string_view>{"campaign_id", meta.campaign_id},
-        {"software_version", meta.software_version},
-        {"golden_hashes", meta.golden_hashes},
-        {"created_unix_ms", created}}) {
-    insert->BindText(0, key);
-    insert->BindText(1, value);
-    if (Status inserted = insert->Run(); !inserted) return WithPath(path, inserted.error());
+  for (const auto& [key, value] : FieldsOf(meta, created)) {
+    if (Status inserted = insert->Run(key, *value); !inserted) return WithPath(path, inserted.error());
   }
   // The checkpoint, unlike the one that closing would do, reports its errors; it ends with a synchronised
   // database.
@@ -226,7 +225,8 @@ Result<SqliteConnection> OpenCheckedForReading(const std::string& path) {
   // Without a log the file alone is the database, and "immutable" keeps SQLite from creating one. With a log,
   // exclusive mode keeps the log's index in memory; the VFS without locks allows it on a file that is only
   // read.
-  const bool has_log = HasContent(path + "-wal");
+  struct stat log {};
+  const bool has_log = stat((path + "-wal").c_str(), &log) == 0 && log.st_size > 0;
   Result<SqliteConnection> opened =
       has_log ? SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadOnly, "unix-none")
               : SqliteConnection::Open(SqliteUri(path, "immutable=1"), SqliteConnection::Mode::kReadOnly);
@@ -261,25 +261,15 @@ Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const st
 Result<CampaignMeta> ReadMeta(SqliteConnection& connection) {
   Result<SqliteStatement> query = connection.Prepare("SELECT value FROM meta WHERE key = ?");
   if (!query) return query.error();
-  const auto read = [&query](std::string_view key) -> Result<std::string> {
-    query->BindText(0, key);
+  CampaignMeta meta;
+  std::string created;
+  for (const auto& [key, field] : FieldsOf(meta, created)) {
+    query->Bind(key);
     Result<bool> row = query->Step();
     if (!row) return row.error();
     if (!*row) return Error{ErrorKind::kCorrupt, fmt::format("the table meta has no {}", key)};
-    std::string value = query->Bytes(0);
+    query->Read(*field);
     query->Reset();
-    return value;
-  };
-  CampaignMeta meta;
-  std::string created;
-  for (const auto& [key, field] :
-       {std::pair<std::string_view, std::string*>{"campaign_id", &meta.campaign_id},
-        {"software_version", &meta.software_version},
-        {"golden_hashes", &meta.golden_hashes},
-        {"created_unix_ms", &created}}) {
-    Result<std::string> value = read(key);
-    if (!value) return value.error();
-    *field = *std::move(value);
   }
   meta.created_unix_ms = std::strtoll(created.c_str(), nullptr, 10);
   return meta;

@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
 namespace gauntlet::master {
 
@@ -115,46 +114,21 @@ bool SqliteStore::TakeGroup(Group& group) {
   return writing_;
 }
 
-Status SqliteStore::Insert(const Record& record) {
-  struct Visitor {
-    SqliteTables& tables;
-    Status operator()(const Newborns& newborns) const {
-      for (const Individual& individual : newborns.individuals) {
-        if (Status inserted = tables.Insert(newborns.search, individual); !inserted) return inserted;
-      }
-      return Ok{};
-    }
-    Status operator()(const Finished& finished) const { return tables.InsertFinished(finished.search); }
-    Status operator()(const StoredSearch& search) const { return tables.Insert(search); }
-    Status operator()(const StoredRun& run) const {
-      Status inserted = tables.Insert(run);
-      if (inserted) return inserted;
-      return Error{inserted.error().kind, fmt::format("run {}: {}", run.id, inserted.error().message)};
-    }
-    Status operator()(const SavedState& state) const { return tables.Insert(state); }
-    Status operator()(const StoredEvent& event) const { return tables.Insert(event); }
-  };
-  return std::visit(Visitor{*tables_}, record);
-}
-
 Status SqliteStore::WriteGroup(const Group& group) {
-  const std::lock_guard lock(database_mutex_);
-  Status status = tables_->Begin();
-  for (auto record = group.begin(); status && record != group.end(); ++record) status = Insert(*record);
-  // A guard's error speaks for itself; SQLite's need to be told where they come from.
-  if (!status) {
-    tables_->Rollback();
-    return WithPath(status.error());
+  const LockedTables tables = Tables();
+  Status status = tables->Begin();
+  for (auto record = group.begin(); status && record != group.end(); ++record) {
+    status = std::visit([&](const auto& concrete) { return tables->Insert(concrete); }, *record);
   }
-  if (options_.guard) {
+  if (status && options_.guard) {
     if (Status allowed = options_.guard(); !allowed) {
-      tables_->Rollback();
-      return allowed;
+      tables->Rollback();
+      return allowed;  // it speaks for itself; SQLite's errors need to be told where they come from
     }
   }
-  status = tables_->Commit();
+  if (status) status = tables->Commit();
   if (status) return status;
-  tables_->Rollback();
+  tables->Rollback();
   return WithPath(status.error());
 }
 
@@ -225,37 +199,6 @@ Error SqliteStore::WithPath(const Error& error) const {
                         path_, error.message)};
   }
   return {error.kind, fmt::format("{}: {}", path_, error.message)};
-}
-
-Result<std::vector<StoredSearch>> SqliteStore::LoadSearches() {
-  const std::lock_guard lock(database_mutex_);
-  return tables_->LoadSearches();
-}
-
-Result<std::vector<Individual>> SqliteStore::LoadIndividuals(SearchId search) {
-  const std::lock_guard lock(database_mutex_);
-  return tables_->LoadIndividuals(search);
-}
-
-Result<std::optional<SavedState>> SqliteStore::LoadNewestState(SearchId search) {
-  const std::lock_guard lock(database_mutex_);
-  return tables_->LoadNewestState(search);
-}
-
-Status SqliteStore::ForEachRun(SearchId search, RunId after,
-                               const std::function<void(const StoredRun&)>& visit) {
-  const std::lock_guard lock(database_mutex_);
-  return tables_->ForEachRun(search, after, visit);
-}
-
-Result<std::optional<StoredRun>> SqliteStore::LoadRun(RunId run) {
-  const std::lock_guard lock(database_mutex_);
-  return tables_->LoadRun(run);
-}
-
-Result<std::vector<StoredEvent>> SqliteStore::LoadEvents() {
-  const std::lock_guard lock(database_mutex_);
-  return tables_->LoadEvents();
 }
 
 }  // namespace gauntlet::master

@@ -74,35 +74,41 @@ class SqliteStore final : public ResultStore {
   void Hurry() override;
   int CommitNotifier() const override { return notifier_; }
 
-  Result<std::vector<StoredSearch>> LoadSearches() override;
-  Result<std::vector<Individual>> LoadIndividuals(SearchId search) override;
-  Result<std::optional<SavedState>> LoadNewestState(SearchId search) override;
+  Result<std::vector<StoredSearch>> LoadSearches() override { return Tables()->LoadSearches(); }
+  Result<std::vector<Individual>> LoadIndividuals(SearchId search) override {
+    return Tables()->LoadIndividuals(search);
+  }
+  Result<std::optional<SavedState>> LoadNewestState(SearchId search) override {
+    return Tables()->LoadNewestState(search);
+  }
   // `visit` must not call the store.
   Status ForEachRun(SearchId search, RunId after,
-                    const std::function<void(const StoredRun&)>& visit) override;
-  Result<std::optional<StoredRun>> LoadRun(RunId run) override;
-  Result<std::vector<StoredEvent>> LoadEvents() override;
+                    const std::function<void(const StoredRun&)>& visit) override {
+    return Tables()->ForEachRun(search, after, visit);
+  }
+  Result<std::optional<StoredRun>> LoadRun(RunId run) override { return Tables()->LoadRun(run); }
+  Result<std::vector<StoredEvent>> LoadEvents() override { return Tables()->LoadEvents(); }
 
  private:
-  struct Newborns {
-    SearchId search = 0;
-    std::vector<Individual> individuals;
-  };
-  struct Finished {
-    SearchId search = 0;
-  };
   using Record = std::variant<StoredSearch, Newborns, StoredRun, SavedState, Finished, StoredEvent>;
   using Group = std::vector<Record>;
+
+  // The tables and, as long as this lives, database_mutex_.
+  struct LockedTables {
+    std::unique_lock<std::mutex> lock;
+    SqliteTables* tables;
+    SqliteTables* operator->() const { return tables; }
+  };
 
   SqliteStore(std::string path, SqliteConnection connection, Options options);
   static Result<std::unique_ptr<SqliteStore>> Make(const std::string& path, SqliteConnection connection,
                                                    Options options);
 
+  LockedTables Tables() { return {std::unique_lock(database_mutex_), &*tables_}; }
   void Add(Record record);
   void WriteLoop();
   // Waits for records; false when there are none and none will come.
   bool TakeGroup(Group& group);
-  Status Insert(const Record& record);
   Status WriteGroup(const Group& group);
   void Report(const Group& group, const Status& written);
   void Notify() const;

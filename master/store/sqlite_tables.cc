@@ -15,9 +15,7 @@ namespace {
 
 constexpr std::string_view kRunColumns =
     "id, search, individual, evaluation, replicate, generation, seed, spec_hash, hash, verdict, "
-    "fitness_bits, "
-    "total_failure, "
-    "failure_type, worker, attempt, spec, result";
+    "fitness_bits, total_failure, failure_type, worker, attempt, spec, result";
 
 // What the search left out: how it was judged changes with every evaluation and follows from the runs.
 std::string EncodeParents(const Individual& individual) {
@@ -85,24 +83,11 @@ std::uint64_t ChecksumOf(const SavedState& state) {
 
 StoredRun ReadRun(const SqliteStatement& row) {
   StoredRun run;
-  int column = 0;
-  run.id = row.Uint(column++);
-  run.search = static_cast<SearchId>(row.Uint(column++));
-  run.individual = row.Uint(column++);
-  run.evaluation = static_cast<std::uint32_t>(row.Uint(column++));
-  run.replicate = static_cast<std::uint32_t>(row.Uint(column++));
-  run.generation = static_cast<std::uint32_t>(row.Uint(column++));
-  run.seed = row.Uint(column++);
-  run.spec_hash = row.Uint(column++);
-  run.hash = row.Uint(column++);
-  run.verdict = static_cast<int>(row.Int(column++));
-  run.fitness = std::bit_cast<double>(row.Uint(column++));
-  run.total_failure = row.Int(column++) != 0;
-  run.failure_type = static_cast<int>(row.Int(column++));
-  run.worker = row.Bytes(column++);
-  run.attempt = static_cast<std::uint32_t>(row.Uint(column++));
-  run.spec = row.Bytes(column++);
-  run.result = row.Bytes(column++);
+  std::uint64_t fitness_bits = 0;
+  row.Read(run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation, run.seed,
+           run.spec_hash, run.hash, run.verdict, fitness_bits, run.total_failure, run.failure_type,
+           run.worker, run.attempt, run.spec, run.result);
+  run.fitness = std::bit_cast<double>(fitness_bits);
   return run;
 }
 
@@ -114,21 +99,17 @@ Error Conflict(const std::string& what) {
 
 Result<SqliteTables> SqliteTables::Open(SqliteConnection& connection) {
   SqliteTables tables(connection);
-  const std::pair<SqliteStatement*, const char*> statements[] = {
+  const std::pair<SqliteStatement*, std::string> statements[] = {
       {&tables.insert_search_, "INSERT INTO searches (id, name, algorithm, seed) VALUES (?, ?, ?, ?)"},
       {&tables.insert_individual_,
        "INSERT INTO individuals (search, id, birth_generation, parents, test_case) VALUES (?, ?, ?, ?, ?) "
        "ON CONFLICT DO NOTHING"},
-      {&tables.insert_run_,
-       "INSERT INTO runs (id, search, individual, evaluation, replicate, generation, seed, spec_hash, hash, "
-       "verdict, "
-       "fitness, "
-       "fitness_bits, total_failure, failure_type, worker, attempt, spec, result) "
-       "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"},
+      {&tables.insert_run_, fmt::format("INSERT INTO runs ({}, fitness) "
+                                        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                                        kRunColumns)},
       {&tables.insert_state_,
-       "INSERT INTO states (search, last_run, generation, state, results_digest, checksum) VALUES (?, ?, ?, "
-       "?, ?, ?) "
-       "ON CONFLICT DO NOTHING"},
+       "INSERT INTO states (search, last_run, generation, state, results_digest, checksum) "
+       "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"},
       {&tables.insert_event_, "INSERT INTO events (unix_ms, kind, text) VALUES (?, ?, ?)"},
       {&tables.insert_finished_, "INSERT INTO finished (search) VALUES (?) ON CONFLICT DO NOTHING"},
       {&tables.select_individual_,
@@ -148,87 +129,63 @@ void SqliteTables::Rollback() {
 }
 
 Status SqliteTables::Insert(const StoredSearch& search) {
-  insert_search_.BindUint(0, search.id);
-  insert_search_.BindText(1, search.name);
-  insert_search_.BindText(2, search.algorithm);
-  insert_search_.BindUint(3, search.seed);
-  if (Status inserted = insert_search_.Run(); !inserted) return inserted;
-  return search.finished ? InsertFinished(search.id) : Ok{};
+  const Status inserted = insert_search_.Run(search.id, search.name, search.algorithm, search.seed);
+  return inserted && search.finished ? Insert(Finished{search.id}) : inserted;
+}
+
+Status SqliteTables::Insert(const Newborns& newborns) {
+  for (const Individual& individual : newborns.individuals) {
+    if (Status inserted = Insert(newborns.search, individual); !inserted) return inserted;
+  }
+  return Ok{};
 }
 
 Status SqliteTables::Insert(SearchId search, const Individual& individual) {
   const std::string parents = EncodeParents(individual);
   const std::string test_case = EncodeTestCase(individual.test_case);
-  insert_individual_.BindUint(0, search);
-  insert_individual_.BindUint(1, individual.id);
-  insert_individual_.BindUint(2, individual.birth_generation);
-  insert_individual_.BindBlob(3, parents);
-  insert_individual_.BindBlob(4, test_case);
-  if (Status inserted = insert_individual_.Run(); !inserted) return inserted;
-  if (connection_->Changes() > 0) return Ok{};
-
-  select_individual_.BindUint(0, search);
-  select_individual_.BindUint(1, individual.id);
+  if (Status inserted = insert_individual_.Run(search, individual.id, individual.birth_generation,
+                                               Blob{parents}, Blob{test_case});
+      !inserted || connection_->Changes() > 0) {
+    return inserted;
+  }
+  select_individual_.Bind(search, individual.id);
   Result<bool> row = select_individual_.Step();
-  const bool same = row.ok() && *row && select_individual_.Uint(0) == individual.birth_generation &&
-                    select_individual_.Bytes(1) == parents && select_individual_.Bytes(2) == test_case;
+  std::uint32_t stored_generation = 0;
+  std::string stored_parents;
+  std::string stored_case;
+  if (row && *row) select_individual_.Read(stored_generation, stored_parents, stored_case);
   select_individual_.Reset();
   if (!row) return row.error();
-  if (!same) return Conflict(fmt::format("individual {} of search {}", individual.id, search));
-  return Ok{};
+  if (*row && stored_generation == individual.birth_generation && stored_parents == parents &&
+      stored_case == test_case) {
+    return Ok{};
+  }
+  return Conflict(fmt::format("individual {} of search {}", individual.id, search));
 }
 
 Status SqliteTables::Insert(const StoredRun& run) {
-  int index = 0;
-  insert_run_.BindUint(index++, run.id);
-  insert_run_.BindUint(index++, run.search);
-  insert_run_.BindUint(index++, run.individual);
-  insert_run_.BindUint(index++, run.evaluation);
-  insert_run_.BindUint(index++, run.replicate);
-  insert_run_.BindUint(index++, run.generation);
-  insert_run_.BindUint(index++, run.seed);
-  insert_run_.BindUint(index++, run.spec_hash);
-  insert_run_.BindUint(index++, run.hash);
-  insert_run_.BindInt(index++, run.verdict);
-  insert_run_.BindDouble(index++, run.fitness);
-  insert_run_.BindUint(index++, std::bit_cast<std::uint64_t>(run.fitness));
-  insert_run_.BindInt(index++, run.total_failure ? 1 : 0);
-  insert_run_.BindInt(index++, run.failure_type);
-  insert_run_.BindText(index++, run.worker);
-  insert_run_.BindUint(index++, run.attempt);
-  insert_run_.BindBlob(index++, run.spec);
-  insert_run_.BindBlob(index++, run.result);
-  return insert_run_.Run();
+  Status inserted = insert_run_.Run(
+      run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation, run.seed,
+      run.spec_hash, run.hash, run.verdict, std::bit_cast<std::uint64_t>(run.fitness), run.total_failure,
+      run.failure_type, run.worker, run.attempt, Blob{run.spec}, Blob{run.result}, run.fitness);
+  if (inserted) return inserted;
+  return Error{inserted.error().kind, fmt::format("run {}: {}", run.id, inserted.error().message)};
 }
 
 Status SqliteTables::Insert(const SavedState& state) {
-  insert_state_.BindUint(0, state.search);
-  insert_state_.BindUint(1, state.last_run);
-  insert_state_.BindUint(2, state.generation);
-  insert_state_.BindBlob(3, state.state);
-  insert_state_.BindBlob(4, state.results_digest);
-  insert_state_.BindUint(5, ChecksumOf(state));
-  if (Status inserted = insert_state_.Run(); !inserted) return inserted;
-  if (connection_->Changes() > 0) return Ok{};
-
+  if (Status inserted = insert_state_.Run(state.search, state.last_run, state.generation, Blob{state.state},
+                                          Blob{state.results_digest}, ChecksumOf(state));
+      !inserted || connection_->Changes() > 0) {
+    return inserted;
+  }
   Result<std::optional<SavedState>> stored = LoadState(state.search, state.last_run);
   if (!stored) return stored.error();
-  if (!stored->has_value() || ChecksumOf(**stored) != ChecksumOf(state)) {
-    return Conflict(fmt::format("the state of search {} after run {}", state.search, state.last_run));
-  }
-  return Ok{};
+  if (stored->has_value() && ChecksumOf(**stored) == ChecksumOf(state)) return Ok{};
+  return Conflict(fmt::format("the state of search {} after run {}", state.search, state.last_run));
 }
 
 Status SqliteTables::Insert(const StoredEvent& event) {
-  insert_event_.BindInt(0, event.unix_ms);
-  insert_event_.BindText(1, event.kind);
-  insert_event_.BindText(2, event.text);
-  return insert_event_.Run();
-}
-
-Status SqliteTables::InsertFinished(SearchId search) {
-  insert_finished_.BindUint(0, search);
-  return insert_finished_.Run();
+  return insert_event_.Run(event.unix_ms, event.kind, event.text);
 }
 
 Result<std::vector<StoredSearch>> SqliteTables::LoadSearches() {
@@ -237,34 +194,32 @@ Result<std::vector<StoredSearch>> SqliteTables::LoadSearches() {
       "FROM searches ORDER BY id");
   if (!query) return query.error();
   std::vector<StoredSearch> searches;
-  while (true) {
-    Result<bool> row = query->Step();
-    if (!row) return row.error();
-    if (!*row) return searches;
-    searches.push_back({static_cast<SearchId>(query->Uint(0)), query->Bytes(1), query->Bytes(2),
-                        query->Uint(3), query->Int(4) != 0});
-  }
+  const Status read = query->ForEachRow([&]() -> Status {
+    StoredSearch& search = searches.emplace_back();
+    query->Read(search.id, search.name, search.algorithm, search.seed, search.finished);
+    return Ok{};
+  });
+  if (!read) return read.error();
+  return searches;
 }
 
 Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
   Result<SqliteStatement> query = connection_->Prepare(
       "SELECT id, birth_generation, parents, test_case FROM individuals WHERE search = ? ORDER BY id");
   if (!query) return query.error();
-  query->BindUint(0, search);
+  query->Bind(search);
   std::vector<Individual> individuals;
-  while (true) {
-    Result<bool> row = query->Step();
-    if (!row) return row.error();
-    if (!*row) return individuals;
+  const Status read = query->ForEachRow([&]() -> Status {
     Individual& individual = individuals.emplace_back();
-    individual.id = query->Uint(0);
-    individual.birth_generation = static_cast<std::uint32_t>(query->Uint(1));
-    if (!DecodeParents(query->Bytes(2), individual) ||
-        !DecodeTestCase(query->Bytes(3), individual.test_case)) {
-      return Error{ErrorKind::kCorrupt,
-                   fmt::format("individual {} of search {} does not read back", individual.id, search)};
-    }
-  }
+    std::string parents;
+    std::string test_case;
+    query->Read(individual.id, individual.birth_generation, parents, test_case);
+    if (DecodeParents(parents, individual) && DecodeTestCase(test_case, individual.test_case)) return Ok{};
+    return Error{ErrorKind::kCorrupt,
+                 fmt::format("individual {} of search {} does not read back", individual.id, search)};
+  });
+  if (!read) return read.error();
+  return individuals;
 }
 
 Result<std::optional<SavedState>> SqliteTables::LoadState(SearchId search, RunId until) {
@@ -272,23 +227,17 @@ Result<std::optional<SavedState>> SqliteTables::LoadState(SearchId search, RunId
       "SELECT search, last_run, generation, state, results_digest, checksum FROM states "
       "WHERE search = ? AND last_run <= ? ORDER BY last_run DESC LIMIT 1");
   if (!query) return query.error();
-  query->BindUint(0, search);
-  query->BindUint(1, until);
+  query->Bind(search, until);
   Result<bool> row = query->Step();
   if (!row) return row.error();
   if (!*row) return std::optional<SavedState>();
   SavedState state;
-  state.search = static_cast<SearchId>(query->Uint(0));
-  state.last_run = query->Uint(1);
-  state.generation = static_cast<std::uint32_t>(query->Uint(2));
-  state.state = query->Bytes(3);
-  state.results_digest = query->Bytes(4);
-  if (query->Uint(5) != ChecksumOf(state)) {
-    return Error{ErrorKind::kCorrupt,
-                 fmt::format("the state of search {} after run {} is damaged: its checksum differs",
-                             state.search, state.last_run)};
-  }
-  return std::optional<SavedState>(std::move(state));
+  std::uint64_t checksum = 0;
+  query->Read(state.search, state.last_run, state.generation, state.state, state.results_digest, checksum);
+  if (checksum == ChecksumOf(state)) return std::optional(std::move(state));
+  return Error{ErrorKind::kCorrupt,
+               fmt::format("the state of search {} after run {} is damaged: its checksum differs",
+                           state.search, state.last_run)};
 }
 
 Result<std::optional<SavedState>> SqliteTables::LoadNewestState(SearchId search) {
@@ -300,37 +249,34 @@ Status SqliteTables::ForEachRun(SearchId search, RunId after,
   Result<SqliteStatement> query = connection_->Prepare(
       fmt::format("SELECT {} FROM runs WHERE search = ? AND id > ? ORDER BY id", kRunColumns));
   if (!query) return query.error();
-  query->BindUint(0, search);
-  query->BindUint(1, after);
-  while (true) {
-    Result<bool> row = query->Step();
-    if (!row) return row.error();
-    if (!*row) return Ok{};
+  query->Bind(search, after);
+  return query->ForEachRow([&]() -> Status {
     visit(ReadRun(*query));
-  }
+    return Ok{};
+  });
 }
 
 Result<std::optional<StoredRun>> SqliteTables::LoadRun(RunId run) {
   Result<SqliteStatement> query =
       connection_->Prepare(fmt::format("SELECT {} FROM runs WHERE id = ?", kRunColumns));
   if (!query) return query.error();
-  query->BindUint(0, run);
+  query->Bind(run);
   Result<bool> row = query->Step();
   if (!row) return row.error();
-  if (!*row) return std::optional<StoredRun>();
-  return std::optional<StoredRun>(ReadRun(*query));
+  return *row ? std::optional(ReadRun(*query)) : std::nullopt;
 }
 
 Result<std::vector<StoredEvent>> SqliteTables::LoadEvents() {
   Result<SqliteStatement> query = connection_->Prepare("SELECT unix_ms, kind, text FROM events ORDER BY id");
   if (!query) return query.error();
   std::vector<StoredEvent> events;
-  while (true) {
-    Result<bool> row = query->Step();
-    if (!row) return row.error();
-    if (!*row) return events;
-    events.push_back({query->Int(0), query->Bytes(1), query->Bytes(2)});
-  }
+  const Status read = query->ForEachRow([&]() -> Status {
+    StoredEvent& event = events.emplace_back();
+    query->Read(event.unix_ms, event.kind, event.text);
+    return Ok{};
+  });
+  if (!read) return read.error();
+  return events;
 }
 
 }  // namespace gauntlet::master

@@ -11,6 +11,16 @@
 
 namespace gauntlet::master {
 
+// Individuals of one search that were born together.
+struct Newborns {
+  SearchId search = 0;
+  std::vector<Individual> individuals;
+};
+// A search that has come to its end.
+struct Finished {
+  SearchId search = 0;
+};
+
 // Inserting is idempotent where a resumed master repeats itself (individuals, states, finished): the very
 // same record again is no change, another one under the same key is kCorrupt. A run or a search is stored
 // once; a second time is kInternal. Not thread-safe; must not outlive its connection.
@@ -25,11 +35,11 @@ class SqliteTables {
   void Rollback();
 
   Status Insert(const StoredSearch& search);
-  Status Insert(SearchId search, const Individual& individual);
+  Status Insert(const Newborns& newborns);
   Status Insert(const StoredRun& run);
   Status Insert(const SavedState& state);
   Status Insert(const StoredEvent& event);
-  Status InsertFinished(SearchId search);
+  Status Insert(const Finished& finished) { return insert_finished_.Run(finished.search); }
 
   Result<std::vector<StoredSearch>> LoadSearches();
   Result<std::vector<Individual>> LoadIndividuals(SearchId search);
@@ -41,6 +51,7 @@ class SqliteTables {
  private:
   explicit SqliteTables(SqliteConnection& connection) : connection_(&connection) {}
 
+  Status Insert(SearchId search, const Individual& individual);
   // The newest state of `search` with last_run <= `until`.
   Result<std::optional<SavedState>> LoadState(SearchId search, RunId until);
 
