@@ -41,7 +41,7 @@ struct Hello {
   std::uint32_t slots = 1;  // runs simulated at the same time
   // Who the worker is, for a master on the same machine. `host` is for people; what is not known is "" or 0.
   ProcessIdentity process;
-  std::vector<Fence> held_leases;   // that the worker works on, or holds results for
+  std::vector<Fence> held_leases = {};  // that the worker works on, or holds results for
   std::string allocation;           // the batch job that holds the worker, as its script says; "" for none
   GoldenHashes golden_hashes = {};  // of the controllers that it was built with
   bool operator==(const Hello&) const = default;
@@ -86,8 +86,8 @@ struct RunnerFailure {
 struct LeaseResult {
   Fence fence = 0;
   RunId run_id = 0;
-  EncodedResult result;  // empty when `failure` is set
-  std::optional<RunnerFailure> failure;
+  EncodedResult result = {};  // empty when `failure` is set
+  std::optional<RunnerFailure> failure = {};
   double cpu_seconds = 0.0;
   bool operator==(const LeaseResult&) const = default;
 };

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <utility>
-#include <zmq.hpp>
 
 #include "base/thread_sanitizer.h"
 #include "proto/messages.h"
@@ -17,24 +16,14 @@ constexpr int kReconnectMaxMs = 2000;
 
 }  // namespace
 
-struct Connection::Socket {
-  zmq::context_t context{1};
-  zmq::socket_t dealer;
-  zmq::socket_t monitor;  // tells of every handshake of `dealer`
-  int opened = 0;
-};
-
-Connection::Connection() : socket_(std::make_unique<Socket>()) {}
-Connection::~Connection() = default;
-
 Status Connection::Open(const std::string& endpoint, const std::optional<proto::CurveKeys>& curve) {
   outbox_.clear();
   try {
-    if (socket_->dealer) {
-      socket_->dealer.set(zmq::sockopt::linger, 0);
-      socket_->dealer.close();
+    if (dealer_) {
+      dealer_.set(zmq::sockopt::linger, 0);
+      dealer_.close();
     }
-    zmq::socket_t dealer(socket_->context, zmq::socket_type::dealer);
+    zmq::socket_t dealer(context_, zmq::socket_type::dealer);
     dealer.set(zmq::sockopt::linger, kLingerMs);
     // Only a connection that stands takes messages: nothing piles up in front of a master that is away.
     dealer.set(zmq::sockopt::immediate, true);
@@ -46,34 +35,30 @@ Status Connection::Open(const std::string& endpoint, const std::optional<proto::
       dealer.set(zmq::sockopt::curve_publickey, curve->worker_public);
       dealer.set(zmq::sockopt::curve_secretkey, curve->worker_secret);
     }
-    const std::string events = fmt::format("inproc://connection-{}", ++socket_->opened);
+    const std::string events = fmt::format("inproc://connection-{}", ++opened_);
     if (zmq_socket_monitor(dealer.handle(), events.c_str(), ZMQ_EVENT_HANDSHAKE_SUCCEEDED) != 0) {
       throw zmq::error_t();
     }
-    zmq::socket_t monitor(socket_->context, zmq::socket_type::pair);
+    zmq::socket_t monitor(context_, zmq::socket_type::pair);
     monitor.set(zmq::sockopt::linger, 0);
     monitor.connect(events);
     dealer.connect(endpoint);
     fd_ = dealer.get(zmq::sockopt::fd);
     monitor_fd_ = monitor.get(zmq::sockopt::fd);
     stood_ = false;
-    socket_->dealer = std::move(dealer);
-    socket_->monitor = std::move(monitor);
+    dealer_ = std::move(dealer);
+    monitor_ = std::move(monitor);
   } catch (const zmq::error_t& error) {
     return InvalidInput(fmt::format("cannot connect to {}: {}", endpoint, error.what()));
   }
   return Ok{};
 }
 
-void Connection::Send(std::string frame) {
-  outbox_.push_back(std::move(frame));
-}
-
 void Connection::Flush() {
-  if (!socket_->dealer) return;
+  if (!dealer_) return;
   while (!outbox_.empty()) {
     try {
-      if (!socket_->dealer.send(zmq::buffer(outbox_.front()), zmq::send_flags::dontwait)) return;
+      if (!dealer_.send(zmq::buffer(outbox_.front()), zmq::send_flags::dontwait)) return;
     } catch (const zmq::error_t&) {
       return;  // as if it did not go through yet: after a reconnect the state machine sends again
     }
@@ -82,10 +67,10 @@ void Connection::Flush() {
 }
 
 std::optional<std::string> Connection::Receive() {
-  if (!socket_->dealer) return std::nullopt;
+  if (!dealer_) return std::nullopt;
   try {
     zmq::message_t first;
-    if (!socket_->dealer.recv(first, zmq::recv_flags::dontwait)) return std::nullopt;
+    if (!dealer_.recv(first, zmq::recv_flags::dontwait)) return std::nullopt;
     // A message of several frames is not ours: its parts arrive as messages of their own and do not decode.
     return first.to_string();
   } catch (const zmq::error_t&) {
@@ -97,7 +82,7 @@ bool Connection::TakeRestored() {
   bool restored = false;
   try {
     zmq::message_t event;
-    while (socket_->monitor && socket_->monitor.recv(event, zmq::recv_flags::dontwait)) {
+    while (monitor_ && monitor_.recv(event, zmq::recv_flags::dontwait)) {
       // An event has two frames, of which the second, the address, is the last.
       if (!event.more()) restored = std::exchange(stood_, true) || restored;
     }
@@ -110,7 +95,7 @@ bool Connection::TakeRestored() {
 
 bool Connection::Readable() {
   try {
-    return socket_->dealer && (socket_->dealer.get(zmq::sockopt::events) & ZMQ_POLLIN) != 0;
+    return dealer_ && (dealer_.get(zmq::sockopt::events) & ZMQ_POLLIN) != 0;
   } catch (const zmq::error_t&) {
     return true;  // interrupted by a signal: Receive will tell
   }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <deque>
-#include <memory>
 #include <optional>
 #include <string>
+#include <zmq.hpp>
 
 #include "base/result.h"
 #include "proto/access_file.h"
@@ -12,19 +12,14 @@
 namespace gauntlet::worker {
 
 // Sends and receives never wait. Messages that cannot be sent yet (not connected, or the master does not keep
-// up) are kept in order. Thread-safety: one calling thread.
+// up) are kept in order; the destructor gives those under way a second to leave. Thread-safety: one calling
+// thread.
 class Connection {
  public:
-  Connection();
-  Connection(const Connection&) = delete;
-  Connection& operator=(const Connection&) = delete;
-  // Gives messages under way a second to leave.
-  ~Connection();
-
   // Drops the old connection with everything that waits, and begins a new one.
   Status Open(const std::string& endpoint, const std::optional<proto::CurveKeys>& curve);
   // With the next Flush.
-  void Send(std::string frame);
+  void Send(std::string frame) { outbox_.push_back(std::move(frame)); }
   // True when something waits to be sent.
   bool congested() const { return !outbox_.empty(); }
   // Sends what waits, as far as possible.
@@ -42,8 +37,10 @@ class Connection {
   int monitor_fd() const { return monitor_fd_; }
 
  private:
-  struct Socket;
-  std::unique_ptr<Socket> socket_;
+  zmq::context_t context_{1};
+  zmq::socket_t dealer_;
+  zmq::socket_t monitor_;  // tells of every handshake of `dealer_`
+  int opened_ = 0;
   std::deque<std::string> outbox_;
   int fd_ = -1;
   int monitor_fd_ = -1;

@@ -37,6 +37,10 @@ struct RunnerNotStarted {
 struct ForkServerGone {};
 using ForkServerEvent = std::variant<RunnerStarted, RunnerExited, RunnerNotStarted, ForkServerGone>;
 
+// The kernel ends this process with its parent, from now on; false when the parent was gone already. Its pid
+// must come from itself: whoever asks for it only now may get that of the process that took its orphans over.
+bool DieWithParent(pid_t parent);
+
 // The supervisor's handle. Thread-safety: one calling thread, the one that called Start.
 class ForkServer {
  public:
@@ -52,9 +56,9 @@ class ForkServer {
   pid_t pid() const { return pid_; }
   // Neither this nor Kill waits: what the socket does not take yet is sent by Flush.
   // Answered by RunnerStarted or RunnerNotStarted.
-  void RequestRunner();
+  void RequestRunner() { Send({}); }
   // A signal to a runner; to nobody when it has ended meanwhile.
-  void Kill(pid_t runner, int signal);
+  void Kill(pid_t runner, int signal) { Send({runner, signal}); }
   // Sends what waits, as far as possible; again when fd() is writable.
   void Flush();
   bool congested() const { return !unsent_.empty(); }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -11,20 +10,12 @@
 namespace gauntlet::worker {
 namespace {
 
-constexpr std::size_t kPrefixBytes = 4;
+using Length = std::uint32_t;  // in the order of this machine: both ends are processes of it
 
-std::array<char, kPrefixBytes> PrefixOf(std::size_t size) {
-  std::array<char, kPrefixBytes> prefix{};
-  for (std::size_t i = 0; i < kPrefixBytes; ++i) prefix[i] = static_cast<char>(size >> (8 * i));
-  return prefix;
-}
-
-std::size_t SizeIn(const char* prefix) {
-  std::size_t size = 0;
-  for (std::size_t i = 0; i < kPrefixBytes; ++i) {
-    size |= static_cast<std::size_t>(static_cast<std::uint8_t>(prefix[i])) << (8 * i);
-  }
-  return size;
+std::size_t LengthIn(const char* prefix) {
+  Length length = 0;
+  std::memcpy(&length, prefix, sizeof length);
+  return length;
 }
 
 }  // namespace
@@ -39,11 +30,10 @@ Result<SocketPair> MakeSocketPair(int type) {
 
 std::string MakeFrame(std::string_view payload) {
   GAUNTLET_CHECK(payload.size() <= kMaxFrameBytes, fmt::format("a frame of {} bytes", payload.size()));
-  const auto prefix = PrefixOf(payload.size());
-  std::string frame;
-  frame.reserve(prefix.size() + payload.size());
-  frame.append(prefix.data(), prefix.size());
-  frame.append(payload);
+  const auto length = static_cast<Length>(payload.size());
+  std::string frame(sizeof length + payload.size(), '\0');
+  std::memcpy(frame.data(), &length, sizeof length);
+  payload.copy(frame.data() + sizeof length, payload.size());
   return frame;
 }
 
@@ -68,7 +58,7 @@ FrameBuffer::State FrameBuffer::ReadFrom(int fd, Wait wait) {
     if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return State::kOpen;
     if (got <= 0) return State::kEnded;
     bytes_.append(chunk.data(), static_cast<std::size_t>(got));
-    if (bytes_.size() >= taken_ + kPrefixBytes && SizeIn(bytes_.data() + taken_) > kMaxFrameBytes)
+    if (bytes_.size() >= taken_ + sizeof(Length) && LengthIn(bytes_.data() + taken_) > kMaxFrameBytes)
       return State::kDamaged;
     if (static_cast<std::size_t>(got) < chunk.size()) return State::kOpen;
     flags = MSG_DONTWAIT;
@@ -77,11 +67,11 @@ FrameBuffer::State FrameBuffer::ReadFrom(int fd, Wait wait) {
 
 std::optional<std::string> FrameBuffer::Next() {
   const std::string_view rest = std::string_view(bytes_).substr(taken_);
-  if (rest.size() >= kPrefixBytes) {
-    const std::size_t size = SizeIn(rest.data());
-    if (rest.size() >= kPrefixBytes + size) {
-      taken_ += kPrefixBytes + size;
-      return std::string(rest.substr(kPrefixBytes, size));
+  if (rest.size() >= sizeof(Length)) {
+    const std::size_t size = LengthIn(rest.data());
+    if (rest.size() >= sizeof(Length) + size) {
+      taken_ += sizeof(Length) + size;
+      return std::string(rest.substr(sizeof(Length), size));
     }
   }
   bytes_.erase(0, taken_);

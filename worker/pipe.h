@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +18,7 @@ struct SocketPair {
 // A connected pair of Unix sockets of `type` (SOCK_STREAM, SOCK_SEQPACKET), closed on exec. Error: kIo.
 Result<SocketPair> MakeSocketPair(int type);
 
-// A frame is its payload's length (4 bytes, least significant first) and the payload.
+// A frame is its payload's length (4 bytes) and the payload.
 inline constexpr std::size_t kMaxFrameBytes = 1u << 30;
 
 std::string MakeFrame(std::string_view payload);

@@ -6,9 +6,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <csignal>
-#include <cstring>
 #include <ctime>
 #include <exception>
 #include <new>
@@ -98,20 +98,10 @@ RunnerReport Execute(const RunnerJob& job, const RunFunction& run) {
 }
 
 bool OnlyOthersSend(int signal) {
-  switch (signal) {
-    case SIGKILL:
-    case SIGTERM:
-    case SIGINT:
-    case SIGHUP:
-    case SIGQUIT:
-    case SIGPIPE:  // the supervisor has closed the pipe
-    case SIGUSR1:
-    case SIGUSR2:
-    case SIGPWR:
-      return true;
-    default:
-      return false;
-  }
+  // SIGPIPE: the supervisor has closed the pipe.
+  constexpr std::array kSignals = {SIGKILL, SIGTERM, SIGINT,  SIGHUP, SIGQUIT,
+                                   SIGPIPE, SIGUSR1, SIGUSR2, SIGPWR};
+  return std::ranges::find(kSignals, signal) != kSignals.end();
 }
 
 }  // namespace
@@ -173,8 +163,6 @@ RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail) {
 
 RunnerFailure WaitedTooLong(double wall_seconds) {
   return {.kind = FailureKind::kHung,
-          .signal = 0,
-          .exit_code = 0,
           .stderr_tail = fmt::format("no end after {:.0f} s: it waits", wall_seconds)};
 }
 

@@ -26,16 +26,17 @@ pollfd Watch(int fd, bool writing = false) {
   return {.fd = fd, .events = static_cast<short>(writing ? POLLIN | POLLOUT : POLLIN), .revents = 0};
 }
 
-}  // namespace
-
-std::string Describe(const SlotNotStarted& event) {
-  const char* hint = event.error == EAGAIN   ? " (too many processes? ulimit -u, pids.max)"
-                     : event.error == ENOMEM ? " (too little memory? ulimit -v, memory.max)"
-                     : event.error == EMFILE || event.error == ENFILE || event.error == ETOOMANYREFS
+// What may be the matter when no runner can be started.
+std::string WhyNotStarted(int error) {
+  const char* hint = error == EAGAIN   ? " (too many processes? ulimit -u, pids.max)"
+                     : error == ENOMEM ? " (too little memory? ulimit -v, memory.max)"
+                     : error == EMFILE || error == ENFILE || error == ETOOMANYREFS
                          ? " (too many open files? ulimit -n)"
                          : "";
-  return fmt::format("cannot start a runner: {}{}", std::strerror(event.error), hint);
+  return fmt::format("cannot start a runner: {}{}", std::strerror(error), hint);
 }
+
+}  // namespace
 
 RunnerPool::RunnerPool(ForkServer& server, int slots)
     : server_(server), slots_(static_cast<std::size_t>(slots)) {
@@ -53,8 +54,8 @@ std::vector<pollfd> RunnerPool::Descriptors() const {
   return descriptors;
 }
 
-std::vector<PoolEvent> RunnerPool::Process(std::span<const pollfd> polled, TimePoint now) {
-  std::vector<PoolEvent> events;
+std::vector<WorkerEvent> RunnerPool::Process(std::span<const pollfd> polled, TimePoint now) {
+  std::vector<WorkerEvent> events;
   GAUNTLET_CHECK(polled.size() == 1 + kDescriptorsPerSlot * slots_.size(),
                  "Process takes what Descriptors gave");
   for (std::size_t i = 0; i < slots_.size(); ++i) {
@@ -96,7 +97,7 @@ void RunnerPool::Kill(int slot_index) {
   if (slot.pid >= 0 && !lost_) server_.Kill(slot.pid, SIGKILL);
 }
 
-void RunnerPool::HandleServer(std::vector<PoolEvent>& events, TimePoint now) {
+void RunnerPool::HandleServer(std::vector<WorkerEvent>& events, TimePoint now) {
   while (std::optional<ForkServerEvent> event = server_.Receive()) {
     if (auto* started = std::get_if<RunnerStarted>(&*event)) {
       Started(std::move(*started), events);
@@ -106,51 +107,52 @@ void RunnerPool::HandleServer(std::vector<PoolEvent>& events, TimePoint now) {
       // not reach the next runner.
       return;
     } else if (const auto* failed = std::get_if<RunnerNotStarted>(&*event)) {
-      events.emplace_back(SlotNotStarted{failed->error});
+      events.emplace_back(NoRunnerStarted{WhyNotStarted(failed->error)});
       ++to_retry_;
       retry_at_ = now + kForkRetryDelay;
     } else {
       lost_ = true;
       for (Slot& slot : slots_) slot = Slot{};
-      events.emplace_back(RunnersLost{});
+      events.emplace_back(AllRunnersLost{});
     }
   }
 }
 
-void RunnerPool::Started(RunnerStarted started, std::vector<PoolEvent>& events) {
-  const auto empty =
-      std::find_if(slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.pid < 0; });
+void RunnerPool::Started(RunnerStarted started, std::vector<WorkerEvent>& events) {
+  const auto empty = std::ranges::find(slots_, -1, &Slot::pid);
   GAUNTLET_CHECK(empty != slots_.end(), "a runner started that nobody asked for");
   empty->pid = started.pid;
   empty->pipe = std::move(started.pipe);
   empty->output = std::move(started.output);
   fcntl(empty->output.get(), F_SETFL, O_NONBLOCK);
-  events.emplace_back(SlotReady{static_cast<int>(empty - slots_.begin())});
+  events.emplace_back(SlotBecameReady{static_cast<int>(empty - slots_.begin())});
 }
 
-void RunnerPool::Exited(const RunnerExited& exited, std::vector<PoolEvent>& events) {
-  const auto slot =
-      std::find_if(slots_.begin(), slots_.end(), [&](const Slot& s) { return s.pid == exited.pid; });
+void RunnerPool::Exited(const RunnerExited& exited, std::vector<WorkerEvent>& events) {
+  const auto slot = std::ranges::find(slots_, exited.pid, &Slot::pid);
   if (slot == slots_.end()) return;
   const int index = static_cast<int>(slot - slots_.begin());
   // A report that was complete counts, whatever happened to the runner afterwards.
   ReadReports(index, events);
   ReadOutput(*slot);
   if (slot->jobs > 0) {
-    proto::RunnerFailure failure = ClassifyExit(exited.wait_status, slot->output_tail);
-    if (slot->broke_protocol) failure.kind = proto::FailureKind::kCrashed;
+    RunnerFailure failure = ClassifyExit(exited.wait_status, slot->output_tail);
+    if (slot->broke_protocol) failure.kind = FailureKind::kCrashed;
     // It ended before it had the job.
-    if (slot->unsent_frames.size() == slot->jobs) failure.kind = proto::FailureKind::kExternal;
+    if (slot->unsent_frames.size() == slot->jobs) failure.kind = FailureKind::kExternal;
     events.emplace_back(
-        SlotFailed{index, std::move(failure), std::max(0.0, exited.cpu_seconds - slot->process_cpu_seconds)});
+        RunnerDied{index, std::move(failure), std::max(0.0, exited.cpu_seconds - slot->process_cpu_seconds)});
   } else {
-    events.emplace_back(SlotEmptied{index});
+    events.emplace_back(
+        RunnerDied{.slot = index,
+                   .failure = {.kind = FailureKind::kExternal, .stderr_tail = "its runner had ended"},
+                   .at_work = false});
   }
   *slot = Slot{};
   server_.RequestRunner();
 }
 
-void RunnerPool::ReadReports(int slot_index, std::vector<PoolEvent>& events) {
+void RunnerPool::ReadReports(int slot_index, std::vector<WorkerEvent>& events) {
   Slot& slot = slots_[static_cast<std::size_t>(slot_index)];
   if (!slot.pipe.valid()) return;
   const FrameBuffer::State state = slot.reports.ReadFrom(slot.pipe.get());
@@ -159,7 +161,7 @@ void RunnerPool::ReadReports(int slot_index, std::vector<PoolEvent>& events) {
     if (!report || slot.jobs <= slot.unsent_frames.size()) return BreakOff(slot);
     --slot.jobs;
     slot.process_cpu_seconds = report->process_cpu_seconds;
-    events.emplace_back(SlotFinished{slot_index, std::move(*report)});
+    events.emplace_back(RunFinished{slot_index, std::move(report->result), report->cpu_seconds});
   }
   if (state == FrameBuffer::State::kDamaged) return BreakOff(slot);
   if (state == FrameBuffer::State::kEnded) {
@@ -188,8 +190,8 @@ void RunnerPool::ReadOutput(Slot& slot) {
       return;
     }
     slot.output_tail.append(chunk.data(), static_cast<std::size_t>(got));
-    if (slot.output_tail.size() > proto::kMaxStderrTail) {
-      slot.output_tail.erase(0, slot.output_tail.size() - proto::kMaxStderrTail);
+    if (slot.output_tail.size() > kMaxStderrTail) {
+      slot.output_tail.erase(0, slot.output_tail.size() - kMaxStderrTail);
     }
   }
 }

@@ -6,46 +6,15 @@
 
 #include <chrono>
 #include <deque>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "worker/fork_server.h"
-#include "worker/runner.h"
+#include "worker/worker_events.h"
 
 namespace gauntlet::worker {
-
-// A slot has a runner that waits for a job.
-struct SlotReady {
-  int slot = 0;
-};
-struct SlotFinished {
-  int slot = 0;
-  RunnerReport report;
-};
-// The slot's runner ended during its first job. SlotReady follows when it is replaced.
-struct SlotFailed {
-  int slot = 0;
-  proto::RunnerFailure failure;
-  double cpu_seconds = 0.0;  // of the job
-};
-// The slot's runner ended, but not during a job.
-struct SlotEmptied {
-  int slot = 0;
-};
-// No runner could be started for some slot; it is tried again.
-struct SlotNotStarted {
-  int error = 0;  // errno
-};
-// The fork server is gone and all runners with it; nothing more will come.
-struct RunnersLost {};
-using PoolEvent = std::variant<SlotReady, SlotFinished, SlotFailed, SlotEmptied, SlotNotStarted, RunnersLost>;
-
-// For a person, with what may be the matter: "cannot start a runner: Resource temporarily unavailable (...)".
-std::string Describe(const SlotNotStarted& event);
 
 // Thread-safety: one calling thread.
 class RunnerPool {
@@ -57,15 +26,16 @@ class RunnerPool {
 
   // What to poll for, in an order that Process expects.
   std::vector<pollfd> Descriptors() const;
-  // Works off what poll found in Descriptors() (same order, untouched since). `now` paces repeated starts.
-  std::vector<PoolEvent> Process(std::span<const pollfd> polled, TimePoint now);
+  // Works off what poll found in Descriptors() (same order, untouched since): SlotBecameReady, RunFinished,
+  // RunnerDied, NoRunnerStarted and, as the last one, AllRunnersLost. `now` paces repeated starts.
+  std::vector<WorkerEvent> Process(std::span<const pollfd> polled, TimePoint now);
 
-  // The slot must have been reported ready. When it has jobs already, this one follows them: SlotFinished
-  // comes in their order, SlotFailed is about the first one and ends all. Sent by Flush at the latest.
+  // The slot must have been reported ready. When it has jobs already, this one follows them: RunFinished
+  // comes in their order, RunnerDied is about the first one and ends all. Sent by Flush at the latest.
   void StartJob(int slot, const RunnerJob& job);
   // Sends what waits, as far as possible. Call before sleeping on Descriptors().
   void Flush();
-  // SIGKILL; the slot is heard of again by SlotFailed or SlotEmptied (or a report that was under way).
+  // SIGKILL; the slot is heard of again by RunnerDied (or a report that was under way).
   void Kill(int slot);
 
  private:
@@ -83,10 +53,10 @@ class RunnerPool {
     double process_cpu_seconds = 0.0;  // as of the last report
   };
 
-  void HandleServer(std::vector<PoolEvent>& events, TimePoint now);
-  void Started(RunnerStarted started, std::vector<PoolEvent>& events);
-  void Exited(const RunnerExited& exited, std::vector<PoolEvent>& events);
-  void ReadReports(int slot, std::vector<PoolEvent>& events);
+  void HandleServer(std::vector<WorkerEvent>& events, TimePoint now);
+  void Started(RunnerStarted started, std::vector<WorkerEvent>& events);
+  void Exited(const RunnerExited& exited, std::vector<WorkerEvent>& events);
+  void ReadReports(int slot, std::vector<WorkerEvent>& events);
   void ReadOutput(Slot& slot);
   void SendRest(Slot& slot);
   void BreakOff(Slot& slot);

@@ -8,9 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <csignal>
 #include <cstring>
-#include <deque>
 #include <optional>
 #include <set>
 #include <thread>
@@ -33,11 +31,9 @@ constexpr int kMessagesPerTurn = 256;
 // The parent is looked after at least this often.
 constexpr milliseconds kLongestWait{1000};
 
-}  // namespace
-
-class Supervisor::Loop {
+class Supervisor {
  public:
-  Loop(SupervisorOptions options, Access access, ForkServer& fork_server, int signals)
+  Supervisor(SupervisorOptions options, Access access, ForkServer& fork_server, int signals)
       : options_(std::move(options)),
         access_(std::move(access)),
         signals_(signals),
@@ -125,31 +121,20 @@ class Supervisor::Loop {
   }
 
   void HandlePoolEvents() {
-    for (PoolEvent& event : pool_.Process(polled_, std::chrono::steady_clock::now())) {
-      if (const auto* ready = std::get_if<SlotReady>(&event)) {
-        Tell(SlotBecameReady{ready->slot});
-      } else if (auto* finished = std::get_if<SlotFinished>(&event)) {
-        Tell(RunFinished{finished->slot, std::move(finished->report.result), finished->report.cpu_seconds});
-      } else if (auto* failed = std::get_if<SlotFailed>(&event)) {
-        const Lease* lease = state_.LeaseIn(failed->slot);
+    for (WorkerEvent& event : pool_.Process(polled_, std::chrono::steady_clock::now())) {
+      if (const auto* died = std::get_if<RunnerDied>(&event)) {
+        const Lease* lease = state_.LeaseIn(died->slot);
         // Without a lease it was this worker that ended the runner: its run is not needed any more.
-        if (lease != nullptr) {
-          spdlog::warn("slot {}: the runner {} (run {}, lease {:x})", failed->slot, Describe(failed->failure),
+        if (lease != nullptr && died->at_work) {
+          spdlog::warn("slot {}: the runner {} (run {}, lease {:x})", died->slot, Describe(died->failure),
                        lease->run_id, lease->fence);
         }
-        Tell(RunnerDied{failed->slot, std::move(failed->failure), failed->cpu_seconds});
-      } else if (const auto* emptied = std::get_if<SlotEmptied>(&event)) {
-        // It had nothing to do; what it was given since has not begun.
-        Tell(RunnerDied{
-            emptied->slot, {.kind = FailureKind::kExternal, .stderr_tail = "its runner had ended"}, 0.0});
-      } else if (const auto* not_started = std::get_if<SlotNotStarted>(&event)) {
-        const std::string reason = Describe(*not_started);
-        LogOnce(reason, fmt::format("{}; trying again", reason));
-        Tell(NoRunnerStarted{reason});
-      } else {
+      } else if (const auto* not_started = std::get_if<NoRunnerStarted>(&event)) {
+        LogOnce(not_started->reason, fmt::format("{}; trying again", not_started->reason));
+      } else if (std::holds_alternative<AllRunnersLost>(event)) {
         spdlog::error("the fork server ended: this worker cannot simulate any more");
-        Tell(AllRunnersLost{});
       }
+      Tell(std::move(event));
     }
   }
 
@@ -170,12 +155,7 @@ class Supervisor::Loop {
     }
     connection_.Send(EncodeWorkerMessage(send.message));
   }
-  void Do(StartRun& start) {
-    pool_.StartJob(start.slot, {.spec = std::move(start.spec),
-                                .cpu_limit_seconds = start.cpu_limit_seconds,
-                                .memory_limit_bytes = start.memory_limit_bytes,
-                                .max_result_bytes = kMaxResultBytes});
-  }
+  void Do(const StartRun& start) { pool_.StartJob(start.slot, start.job); }
   void Do(const KillRunner& kill) { pool_.Kill(kill.slot); }
   void Do(const CheckAccess&) {
     if (RereadAccess()) Tell(MasterMoved{});
@@ -186,13 +166,8 @@ class Supervisor::Loop {
   }
   void Do(const Note& note) { LogOnce(note.kind, fmt::format("{} ({})", note.text, endpoint_)); }
   void Do(const Exit& exit) {
-    if (exit.code == kExitRefused) {
-      spdlog::error("refused by the master: {}", exit.reason);
-    } else if (exit.code != kExitDone) {
-      spdlog::error("leaving: {}", exit.reason);
-    } else {
-      spdlog::info("leaving: {}", exit.reason);
-    }
+    spdlog::log(exit.code == kExitDone ? spdlog::level::info : spdlog::level::err, "{}: {}",
+                exit.code == kExitRefused ? "refused by the master" : "leaving", exit.reason);
     exit_code_ = exit.code;
   }
 
@@ -247,12 +222,10 @@ class Supervisor::Loop {
   std::optional<int> exit_code_;
 };
 
-Supervisor::Supervisor(SupervisorOptions options, Access access, ForkServer& fork_server, int signals)
-    : loop_(std::make_unique<Loop>(std::move(options), std::move(access), fork_server, signals)) {}
-Supervisor::~Supervisor() = default;
+}  // namespace
 
-int Supervisor::Run() {
-  return loop_->Run();
+int Supervise(SupervisorOptions options, Access access, ForkServer& fork_server, int signals) {
+  return Supervisor(std::move(options), std::move(access), fork_server, signals).Run();
 }
 
 }  // namespace gauntlet::worker

@@ -4,7 +4,6 @@
 
 #include <sys/types.h>
 
-#include <memory>
 #include <string>
 
 #include "proto/access_file.h"
@@ -20,21 +19,8 @@ struct SupervisorOptions {
   pid_t parent = 0;
 };
 
-class Supervisor {
- public:
-  // `signals`: a signalfd of the signals that stop the worker. `fork_server` outlives the supervisor.
-  Supervisor(SupervisorOptions options, proto::Access access, ForkServer& fork_server, int signals);
-  Supervisor(const Supervisor&) = delete;
-  Supervisor& operator=(const Supervisor&) = delete;
-  ~Supervisor();
-
-  // Serves the master until it is time to go; the process' exit code. Messages that cannot be understood are
-  // dropped and logged once per kind.
-  int Run();
-
- private:
-  class Loop;
-  std::unique_ptr<Loop> loop_;
-};
+// Serves the master until it is time to go; the process' exit code. `signals`: a signalfd of the signals that
+// stop the worker. Messages that cannot be understood are dropped and logged once per kind.
+int Supervise(SupervisorOptions options, proto::Access access, ForkServer& fork_server, int signals);
 
 }  // namespace gauntlet::worker

@@ -1,11 +1,11 @@
 // What happens to a worker, and what it then does: the events and actions of WorkerState.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <variant>
 
 #include "proto/messages.h"
+#include "worker/runner.h"
 
 namespace gauntlet::worker {
 
@@ -20,13 +20,14 @@ struct RunFinished {
   std::string result;  // serialized gauntlet.v1.RunResult
   double cpu_seconds = 0.0;
 };
-struct RunnerDied {  // with or without a job
+struct RunnerDied {  // SlotBecameReady follows when it is replaced
   int slot = 0;
   RunnerFailure failure;
-  double cpu_seconds = 0.0;
+  double cpu_seconds = 0.0;  // of its first job, which it had not ended
+  bool at_work = true;       // false: it had no job; what it was given since has not begun
 };
-struct NoRunnerStarted {  // and tried again; comes again every second or so while that fails
-  std::string reason;
+struct NoRunnerStarted {  // for some slot, and tried again; comes again every second or so while that fails
+  std::string reason;     // "cannot start a runner: Resource temporarily unavailable (...)"
 };
 struct AllRunnersLost {};      // the fork server is gone: this process cannot simulate any more
 struct MasterMoved {};         // access.json names another endpoint or epoch
@@ -44,9 +45,7 @@ struct Send {
 };
 struct StartRun {  // the slot may have a run already: then after it
   int slot = 0;
-  std::string spec;
-  double cpu_limit_seconds = 0.0;
-  std::uint64_t memory_limit_bytes = 0;
+  RunnerJob job;
 };
 struct KillRunner {
   int slot = 0;

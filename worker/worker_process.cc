@@ -3,20 +3,21 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <spdlog/sinks/rotating_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <random>
 #include <utility>
@@ -29,7 +30,6 @@
 #include "worker/fork_server.h"
 #include "worker/runner_pool.h"
 #include "worker/supervisor.h"
-#include "worker/worker_log.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -44,13 +44,6 @@ constexpr double kLongestWaitSeconds = 5.0;
 int Complain(const std::string& text, int code) {
   fmt::print(stderr, "gauntlet-worker: {}\n", text);
   return code;
-}
-
-// The kernel ends us with our parent, from now on; false when the parent was gone already. Its pid must come
-// from itself: whoever asks for it only now may get that of the process that took its orphans over.
-bool DieWithParent(pid_t parent) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  return getppid() == parent;
 }
 
 int WithoutParent(pid_t parent) {
@@ -124,10 +117,7 @@ ProcessIdentity Identity() {
 
 std::uint64_t RandomId() {
   std::random_device device;
-  while (true) {
-    const std::uint64_t id = (static_cast<std::uint64_t>(device()) << 32) | device();
-    if (id != 0) return id;
-  }
+  return std::uniform_int_distribution<std::uint64_t>(1)(device);
 }
 
 Result<std::string> ReadSpec(const std::string& file) {
@@ -149,11 +139,10 @@ std::string DescribeEnd(const Result<sim::RunResult>& result) {
 }
 
 // One job in one fresh runner.
-std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const RunnerJob& job) {
+std::variant<EncodedResult, RunnerFailure> RunInRunner(ForkServer& server, const RunnerJob& job) {
   RunnerPool pool(server, 1);
-  const auto external = [](std::string why) {
-    return RunnerFailure{
-        .kind = FailureKind::kExternal, .signal = 0, .exit_code = 0, .stderr_tail = std::move(why)};
+  const auto external = [](const std::string& why) {
+    return RunnerFailure{.kind = FailureKind::kExternal, .stderr_tail = why};
   };
   std::optional<steady_clock::time_point> not_started;
   const double wall_limit = kWallPerCpu * job.cpu_limit_seconds;  // 0: none
@@ -174,26 +163,47 @@ std::variant<RunnerReport, RunnerFailure> RunInRunner(ForkServer& server, const 
     if (poll(polled.data(), polled.size(), 1000) < 0) {
       for (pollfd& item : polled) item.revents = 0;
     }
-    for (PoolEvent& event : pool.Process(polled, steady_clock::now())) {
-      if (std::holds_alternative<SlotReady>(event)) {
+    for (WorkerEvent& event : pool.Process(polled, steady_clock::now())) {
+      if (std::holds_alternative<SlotBecameReady>(event)) {
         pool.StartJob(0, job);
         awake = 0.0;
-      } else if (auto* finished = std::get_if<SlotFinished>(&event)) {
-        return std::move(finished->report);
-      } else if (auto* failed = std::get_if<SlotFailed>(&event)) {
-        return std::move(failed->failure);
-      } else if (std::holds_alternative<RunnersLost>(event)) {
+      } else if (auto* finished = std::get_if<RunFinished>(&event)) {
+        return std::move(finished->result);
+      } else if (auto* died = std::get_if<RunnerDied>(&event); died != nullptr && died->at_work) {
+        return std::move(died->failure);
+      } else if (std::holds_alternative<AllRunnersLost>(event)) {
         return external("the fork server ended");
-      } else if (const auto* missing = std::get_if<SlotNotStarted>(&event)) {
+      } else if (const auto* missing = std::get_if<NoRunnerStarted>(&event)) {
         const auto now = steady_clock::now();
         if (!not_started) not_started = now;
-        if (now - *not_started >= kNoRunnerPatience) return external(Describe(*missing));
+        if (now - *not_started >= kNoRunnerPatience) return external(missing->reason);
       }
     }
   }
 }
 
 }  // namespace
+
+Status StartLogging(const std::string& file, bool quiet, const LogLimits& limits) {
+  try {
+    auto to_stderr = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+    std::vector<spdlog::sink_ptr> sinks{to_stderr};
+    if (!file.empty()) {
+      // What ends the worker stands on stderr too: whoever started it may not look into the file.
+      to_stderr->set_level(spdlog::level::err);
+      sinks.push_back(
+          std::make_shared<spdlog::sinks::rotating_file_sink_mt>(file, limits.bytes, limits.former));
+    }
+    auto logger = std::make_shared<spdlog::logger>("worker", sinks.begin(), sinks.end());
+    logger->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
+    logger->flush_on(spdlog::level::info);
+    logger->set_pattern(fmt::format("%Y-%m-%d %H:%M:%S.%e worker {} %l: %v", getpid()));
+    spdlog::set_default_logger(std::move(logger));
+  } catch (const spdlog::spdlog_ex& error) {
+    return InvalidInput(error.what());
+  }
+  return Ok{};
+}
 
 int RunWorker(const WorkerOptions& options, const RunFunction& run) {
   if (options.parent > 0 && !DieWithParent(options.parent)) return WithoutParent(options.parent);
@@ -225,13 +235,11 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
                             .software_version = options.software_version,
                             .slots = static_cast<std::uint32_t>(options.slots),
                             .process = Identity(),
-                            .held_leases = {},
                             .allocation = options.allocation,
                             .golden_hashes = options.golden_hashes()};
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
-  Supervisor supervisor(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());
-  return supervisor.Run();
+  return Supervise(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());
 }
 
 int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
@@ -243,11 +251,10 @@ int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
 
   const auto outcome = RunInRunner(**fork_server, {.spec = std::move(*spec),
                                                    .cpu_limit_seconds = options.cpu_limit_seconds,
-                                                   .memory_limit_bytes = options.memory_limit_bytes,
-                                                   .max_result_bytes = 0});
+                                                   .memory_limit_bytes = options.memory_limit_bytes});
   std::string result;
-  if (const auto* report = std::get_if<RunnerReport>(&outcome)) {
-    result = report->result;
+  if (const auto* given = std::get_if<EncodedResult>(&outcome)) {
+    result = *given;
     fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeEnd(DecodeRunResult(result)));
   } else {
     const RunnerFailure& failure = std::get<RunnerFailure>(outcome);

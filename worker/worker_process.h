@@ -4,10 +4,12 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
 
+#include "base/result.h"
 #include "proto/golden_hashes.h"
 #include "worker/runner.h"
 
@@ -28,6 +30,16 @@ struct WorkerOptions {
 // Serves until the master lets it go; the exit code (worker_state.h). To be called from main(), before any
 // thread exists. Changes signal masks and dispositions of the process.
 int RunWorker(const WorkerOptions& options, const RunFunction& run);
+
+struct LogLimits {
+  std::size_t bytes = 4U << 20;  // worker-1.log that would grow beyond becomes worker-1.1.log
+  std::size_t former = 1;        // files kept beside the current one
+};
+
+// From now on spdlog's default logger writes to this file, errors to stderr too; with "" everything goes to
+// stderr. `quiet`: warnings and errors only. Every line is written when the call that logs it returns.
+// Error: the file cannot be opened.
+Status StartLogging(const std::string& file, bool quiet, const LogLimits& limits = {});
 
 struct SpecOptions {
   std::string spec_file = "-";  // a serialized RunSpec; "-": stdin

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/check.h"
-#include "worker/runner.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -113,10 +112,6 @@ void WorkerState::On(const Welcome& welcome) {
   if (drain_) Act(Send{Drain{drain_->reason, true}});
 }
 
-void WorkerState::On(const Refused& refused) {
-  Leave(kExitRefused, refused.reason);
-}
-
 void WorkerState::On(Lease& lease) {
   if (phase_ != Phase::kWelcomed) {
     Act(Note{"early-lease", "a lease before the welcome: dropped"});
@@ -137,15 +132,8 @@ void WorkerState::On(const Acknowledge& acknowledge) {
   for (const Fence fence : acknowledge.fences) Forget(fence);
 }
 
-void WorkerState::On(const Heartbeat&) {}
-
-void WorkerState::On(const Cancel& cancel) {
-  Forget(cancel.fence);
-}
-
 void WorkerState::On(const Drain& drain) {
-  if (!drain_)
-    drain_ = DrainPlan{.reason = drain.reason, .exit_code = kExitDone, .drop_at = {}, .leave_at = {}};
+  if (!drain_) drain_ = DrainPlan{.reason = drain.reason};
   if (!drain.finish_current) drain_->drop_at = now_;
 }
 
@@ -167,11 +155,7 @@ void WorkerState::On(RunFinished& finished) {
   if (slot.runs.empty()) slot.state = SlotState::kIdle;
   lately_longest_ = std::max(finished.cpu_seconds, kForget * lately_longest_);
   if (!run.wanted) return;
-  HandIn({.fence = run.lease.fence,
-          .run_id = run.lease.run_id,
-          .result = std::move(finished.result),
-          .failure = std::nullopt,
-          .cpu_seconds = finished.cpu_seconds});
+  HandIn(run.lease, {.result = std::move(finished.result), .cpu_seconds = finished.cpu_seconds});
 }
 
 void WorkerState::On(RunnerDied& died) {
@@ -182,17 +166,12 @@ void WorkerState::On(RunnerDied& died) {
   const Given run = std::move(slot.runs.front());
   EndRuns(slot);
   if (!run.wanted) return;
-  HandIn({.fence = run.lease.fence,
-          .run_id = run.lease.run_id,
-          .result = {},
-          .failure = std::move(died.failure),
-          .cpu_seconds = died.cpu_seconds});
+  HandIn(run.lease, {.failure = std::move(died.failure), .cpu_seconds = died.cpu_seconds});
 }
 
 void WorkerState::On(const NoRunnerStarted& failed) {
-  const bool none = std::all_of(slots_.begin(), slots_.end(),
-                                [](const Slot& slot) { return slot.state == SlotState::kStarting; });
-  if (!none) {
+  if (std::ranges::any_of(
+          slots_, [](SlotState state) { return state != SlotState::kStarting; }, &Slot::state)) {
     without_runners_.reset();
   } else if (!without_runners_) {
     without_runners_ = awake_;
@@ -201,16 +180,10 @@ void WorkerState::On(const NoRunnerStarted& failed) {
   }
 }
 
-void WorkerState::On(const AllRunnersLost&) {
-  LeaveWithoutRunners("the fork server ended");
-}
-
 void WorkerState::LeaveWithoutRunners(const std::string& reason) {
   if (drain_ && drain_->exit_code == kExitInternal) return;
   for (Slot& slot : slots_) {
-    for (const Given& run : std::exchange(slot.runs, {})) {
-      if (run.wanted) GiveBack(run.lease, reason);
-    }
+    GiveBackRuns(slot, reason);
     slot.state = SlotState::kStarting;
   }
   for (const Lease& lease : std::exchange(waiting_, {})) GiveBack(lease, reason);
@@ -224,10 +197,6 @@ void WorkerState::LeaveWithoutRunners(const std::string& reason) {
 
 // --- Connection, signals and time ---
 
-void WorkerState::On(const MasterMoved&) {
-  GreetAgain();
-}
-
 void WorkerState::On(const ConnectionRestored&) {
   connected_ = now_;
   Greet();
@@ -236,7 +205,6 @@ void WorkerState::On(const ConnectionRestored&) {
 void WorkerState::On(const StopRequested& stop) {
   if (!drain_) {
     drain_ = DrainPlan{.reason = stop.reason,
-                       .exit_code = kExitDone,
                        .drop_at = now_ + settings_.stop_finish,
                        .leave_at = now_ + settings_.stop_leave};
     if (phase_ == Phase::kWelcomed) Act(Send{Drain{stop.reason, true}});
@@ -266,12 +234,7 @@ void WorkerState::EndBlockedRuns() {
     Kill(i);
     const Given run = std::move(slot.runs.front());
     EndRuns(slot);
-    if (!run.wanted) continue;
-    HandIn({.fence = run.lease.fence,
-            .run_id = run.lease.run_id,
-            .result = {},
-            .failure = WaitedTooLong(limit),
-            .cpu_seconds = 0.0});
+    if (run.wanted) HandIn(run.lease, {.failure = WaitedTooLong(limit)});
   }
 }
 
@@ -340,12 +303,9 @@ void WorkerState::ResendLateResults() {
 
 bool WorkerState::Holds(Fence fence) const {
   const auto given = [fence](const Given& run) { return run.wanted && run.lease.fence == fence; };
-  return finished_.contains(fence) ||
-         std::any_of(waiting_.begin(), waiting_.end(),
-                     [fence](const Lease& lease) { return lease.fence == fence; }) ||
-         std::any_of(slots_.begin(), slots_.end(), [&given](const Slot& slot) {
-           return std::any_of(slot.runs.begin(), slot.runs.end(), given);
-         });
+  return finished_.contains(fence) || std::ranges::find(waiting_, fence, &Lease::fence) != waiting_.end() ||
+         std::ranges::any_of(slots_,
+                             [&given](const Slot& slot) { return std::ranges::any_of(slot.runs, given); });
 }
 
 void WorkerState::Forget(Fence fence) {
@@ -353,8 +313,8 @@ void WorkerState::Forget(Fence fence) {
   std::erase_if(waiting_, [&](const Lease& lease) { return lease.fence == fence; });
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
-    const auto run = std::find_if(slot.runs.begin(), slot.runs.end(),
-                                  [fence](const Given& given) { return given.lease.fence == fence; });
+    const auto run =
+        std::ranges::find(slot.runs, fence, [](const Given& given) { return given.lease.fence; });
     if (run == slot.runs.end()) continue;
     run->wanted = false;
     if (run != slot.runs.begin()) continue;  // it is short: not worth a runner
@@ -385,10 +345,11 @@ void WorkerState::StartNext(std::size_t index) {
   slot.used = true;
   slot.runs.push_back({std::move(waiting_.front())});
   waiting_.pop_front();
-  Act(StartRun{.slot = static_cast<int>(index),
-               .spec = slot.runs.back().lease.spec,
-               .cpu_limit_seconds = welcome_.cpu_limit_seconds,
-               .memory_limit_bytes = welcome_.memory_limit_bytes});
+  Act(StartRun{static_cast<int>(index),
+               {.spec = slot.runs.back().lease.spec,
+                .cpu_limit_seconds = welcome_.cpu_limit_seconds,
+                .memory_limit_bytes = welcome_.memory_limit_bytes,
+                .max_result_bytes = kMaxResultBytes}});
 }
 
 void WorkerState::StartWaitingRuns() {
@@ -415,42 +376,40 @@ void WorkerState::StartWaitingRuns() {
 Duration WorkerState::Nap() const {
   const std::size_t ahead = RunsAhead();
   if (ahead < kLeastAheadForNap || drain_ || slots_.empty()) return Duration::zero();
-  const bool all_busy = std::all_of(slots_.begin(), slots_.end(), [&](const Slot& slot) {
+  const bool all_busy = std::ranges::all_of(slots_, [&](const Slot& slot) {
     return slot.state == SlotState::kRunning && slot.runs.size() > ahead / 2;
   });
   if (!all_busy) return Duration::zero();
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(kWorkAhead / 2));
 }
 
-void WorkerState::HandIn(LeaseResult result) {
-  const Fence fence = result.fence;
+void WorkerState::HandIn(const Lease& lease, LeaseResult result) {
+  result.fence = lease.fence;
+  result.run_id = lease.run_id;
   if (phase_ == Phase::kWelcomed) Act(Send{result});
-  finished_.insert_or_assign(fence, Finished{std::move(result), now_});
+  finished_.insert_or_assign(lease.fence, Finished{std::move(result), now_});
 }
 
 void WorkerState::GiveBack(const Lease& lease, const std::string& why) {
-  HandIn({.fence = lease.fence,
-          .run_id = lease.run_id,
-          .result = {},
-          .failure =
-              RunnerFailure{.kind = FailureKind::kExternal, .signal = 0, .exit_code = 0, .stderr_tail = why},
-          .cpu_seconds = 0.0});
+  HandIn(lease, {.failure = RunnerFailure{.kind = FailureKind::kExternal, .stderr_tail = why}});
+}
+
+void WorkerState::GiveBackRuns(Slot& slot, const std::string& why) {
+  for (const Given& run : std::exchange(slot.runs, {})) {
+    if (run.wanted) GiveBack(run.lease, why);
+  }
 }
 
 void WorkerState::DropRunning(const std::string& why) {
   for (std::size_t i = 0; i < slots_.size(); ++i) {
-    Slot& slot = slots_[i];
-    if (slot.state != SlotState::kRunning) continue;
+    if (slots_[i].state != SlotState::kRunning) continue;
     Kill(i);
-    for (const Given& run : std::exchange(slot.runs, {})) {
-      if (run.wanted) GiveBack(run.lease, why);
-    }
+    GiveBackRuns(slots_[i], why);
   }
 }
 
 std::size_t WorkerState::RunningCount() const {
-  return static_cast<std::size_t>(std::count_if(
-      slots_.begin(), slots_.end(), [](const Slot& slot) { return slot.state == SlotState::kRunning; }));
+  return static_cast<std::size_t>(std::ranges::count(slots_, SlotState::kRunning, &Slot::state));
 }
 
 // --- Leaving ---

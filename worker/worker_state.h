@@ -24,7 +24,6 @@
 #include <string>
 #include <vector>
 
-#include "proto/messages.h"
 #include "worker/worker_events.h"
 
 namespace gauntlet::worker {
@@ -96,24 +95,24 @@ class WorkerState {
   struct DrainPlan {
     std::string reason;
     int exit_code = kExitDone;
-    std::optional<TimePoint> drop_at;   // running runs are given up
-    std::optional<TimePoint> leave_at;  // exit, whatever is not acknowledged
+    std::optional<TimePoint> drop_at = {};   // running runs are given up
+    std::optional<TimePoint> leave_at = {};  // exit, whatever is not acknowledged
   };
 
   void On(MasterMessage& message);
   void On(const Welcome& welcome);
-  void On(const Refused& refused);
+  void On(const Refused& refused) { Leave(kExitRefused, refused.reason); }
   void On(Lease& lease);
   void On(const Acknowledge& acknowledge);
-  void On(const Heartbeat& heartbeat);
-  void On(const Cancel& cancel);
+  void On(const Heartbeat&) {}
+  void On(const Cancel& cancel) { Forget(cancel.fence); }
   void On(const Drain& drain);
   void On(const SlotBecameReady& ready);
   void On(RunFinished& finished);
   void On(RunnerDied& died);
   void On(const NoRunnerStarted& failed);
-  void On(const AllRunnersLost& lost);
-  void On(const MasterMoved& moved);
+  void On(const AllRunnersLost&) { LeaveWithoutRunners("the fork server ended"); }
+  void On(const MasterMoved&) { GreetAgain(); }
   void On(const ConnectionRestored& restored);
   void On(const StopRequested& stop);
   void On(const ClockTick& tick);
@@ -131,8 +130,10 @@ class WorkerState {
   void StartNext(std::size_t index);
   std::size_t RunsAhead() const;  // how many runs a runner may have, 1 or more
   void EndRuns(Slot& slot);       // all but the first wait again
-  void HandIn(LeaseResult result);
+  // The lease's result, whose other members are given.
+  void HandIn(const Lease& lease, LeaseResult result);
   void GiveBack(const Lease& lease, const std::string& why);
+  void GiveBackRuns(Slot& slot, const std::string& why);
   void DropRunning(const std::string& why);
   void LeaveWithoutRunners(const std::string& reason);
   void ContinueDrain();

@@ -20,7 +20,7 @@ Worker WorkerWithShortRuns(Fence last) {
 
 std::vector<std::string> Specs(const std::vector<WorkerAction>& actions) {
   std::vector<std::string> specs;
-  for (const StartRun& start : Only<StartRun>(actions)) specs.push_back(start.spec);
+  for (const StartRun& start : Only<StartRun>(actions)) specs.push_back(start.job.spec);
   return specs;
 }
 

@@ -1,5 +1,3 @@
-#include "worker/worker_log.h"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,6 +8,7 @@
 #include <thread>
 
 #include "tests/support/process.h"
+#include "worker/worker_process.h"
 
 namespace gauntlet::worker {
 namespace {

@@ -32,10 +32,10 @@ RC_GTEST_PROP(WorkerStateProperty, NoLeaseIsLostAndNoneRunsTwice, ()) {
       if (const auto* start = std::get_if<StartRun>(&action)) {
         RC_ASSERT(!dying.contains(start->slot));
         for (const auto& [other, specs] : busy) {
-          RC_ASSERT(std::find(specs.begin(), specs.end(), start->spec) == specs.end());
+          RC_ASSERT(std::find(specs.begin(), specs.end(), start->job.spec) == specs.end());
         }
-        RC_ASSERT(used.insert(start->slot).second || !repeated.contains(start->spec));
-        busy[start->slot].push_back(start->spec);
+        RC_ASSERT(used.insert(start->slot).second || !repeated.contains(start->job.spec));
+        busy[start->slot].push_back(start->job.spec);
         RC_ASSERT(busy[start->slot].size() <= (cpu_seconds < 1e-3 ? 10U : 1U));
       } else if (const auto* kill = std::get_if<KillRunner>(&action)) {
         RC_ASSERT(busy.erase(kill->slot) == 1U || (used.contains(kill->slot) && !repeated.empty()));

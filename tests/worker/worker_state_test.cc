@@ -72,9 +72,9 @@ TEST(WorkerStateTest, StartsALeaseWithTheMastersLimits) {
   const auto starts = Only<StartRun>(worker.Lease(5));
   ASSERT_EQ(starts.size(), 1u);
   EXPECT_EQ(starts[0].slot, 0);
-  EXPECT_EQ(starts[0].spec, "spec5");
-  EXPECT_EQ(starts[0].cpu_limit_seconds, 60.0);
-  EXPECT_EQ(starts[0].memory_limit_bytes, 1u << 30);
+  EXPECT_EQ(starts[0].job.spec, "spec5");
+  EXPECT_EQ(starts[0].job.cpu_limit_seconds, 60.0);
+  EXPECT_EQ(starts[0].job.memory_limit_bytes, 1u << 30);
 }
 
 TEST(WorkerStateTest, ARunThatOnlyWaitsIsEndedAfterTwentyTimesItsCpuTime) {
@@ -128,7 +128,7 @@ TEST(WorkerStateTest, ARepeatedRunGetsARunnerThatHasSimulatedNothing) {
               IsEmpty());
   const auto starts = Only<StartRun>(worker.Do(SlotBecameReady{0}));
   ASSERT_EQ(starts.size(), 1u);
-  EXPECT_EQ(starts[0].spec, "spec2");
+  EXPECT_EQ(starts[0].job.spec, "spec2");
 }
 
 TEST(WorkerStateTest, LeaseWaitsUntilARunnerIsReady) {
@@ -145,7 +145,7 @@ TEST(WorkerStateTest, LeasesBeyondTheSlotsWaitInOrder) {
   const auto starts = Only<StartRun>(worker.Finish(1));
   ASSERT_EQ(starts.size(), 1u);
   EXPECT_EQ(starts[0].slot, 1);
-  EXPECT_EQ(starts[0].spec, "spec3");
+  EXPECT_EQ(starts[0].job.spec, "spec3");
 }
 
 TEST(WorkerStateTest, LeaseThatComesTwiceRunsOnce) {
