@@ -1,6 +1,7 @@
 #include "slurm/job_script.h"
 
 #include <algorithm>
+#include <map>
 
 #include "base/shell_quoted.h"
 #include "slurm/job_status.h"
@@ -48,17 +49,22 @@ Result<std::string> Fill(std::string_view text, const Values& values) {
   return result;
 }
 
+bool IsBroken(const std::string& text) {
+  return text.find('\n') != std::string::npos;
+}
+
 Result<std::string> Directives(const JobRequest& request) {
   std::string lines;
-  const auto add = [&](const std::string& option, const std::string& value) {
-    if (!value.empty()) lines += "#SBATCH --" + option + "=" + value + "\n";
-  };
-  add("partition", request.partition);
-  add("account", request.account);
-  add("qos", request.qos);
-  add("constraint", request.constraint);
-  add("mem", request.memory);
+  for (const auto& [option, value] : {std::pair{"partition", &request.partition},
+                                      {"account", &request.account},
+                                      {"qos", &request.qos},
+                                      {"constraint", &request.constraint},
+                                      {"mem", &request.memory}}) {
+    if (IsBroken(*value)) return InvalidInput("a Slurm option cannot hold a line break: '" + *value + "'");
+    if (!value->empty()) lines += std::string("#SBATCH --") + option + "=" + *value + "\n";
+  }
   for (const std::string& option : request.extra) {
+    if (IsBroken(option)) return InvalidInput("slurm.extra: an option cannot hold a line break");
     if (!option.starts_with("-"))
       return InvalidInput("slurm.extra has '" + option +
                           "': give sbatch options as on its command line, --exclusive");
@@ -70,20 +76,9 @@ Result<std::string> Directives(const JobRequest& request) {
 
 Status CheckOneLine(const Values& values) {
   for (const auto& [name, value] : values) {
-    if (name != "SETUP" && name != "DIRECTIVES" && value.find('\n') != std::string::npos)
+    if (name != "SETUP" && name != "DIRECTIVES" && IsBroken(value))
       return InvalidInput("a job script cannot hold a line break: '" + value + "'");
   }
-  return Ok{};
-}
-
-Status CheckRequest(const JobRequest& request) {
-  const auto broken = [](const std::string& text) { return text.find('\n') != std::string::npos; };
-  for (const std::string* value : {&request.partition, &request.account, &request.qos, &request.constraint,
-                                   &request.memory, &request.time_limit}) {
-    if (broken(*value)) return InvalidInput("a Slurm option cannot hold a line break: '" + *value + "'");
-  }
-  if (std::any_of(request.extra.begin(), request.extra.end(), broken))
-    return InvalidInput("slurm.extra: an option cannot hold a line break");
   return Ok{};
 }
 
@@ -97,7 +92,6 @@ long SignalMargin(const std::string& time_limit) {
 }
 
 Result<std::string> Script(std::string_view job_template, Values values, const JobRequest& request) {
-  if (const Status checked = CheckRequest(request); !checked) return checked.error();
   const Result<std::string> directives = Directives(request);
   if (!directives) return directives.error();
   values["DIRECTIVES"] = *directives;

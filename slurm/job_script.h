@@ -1,7 +1,6 @@
 // The batch scripts that are handed to sbatch.
 #pragma once
 
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>

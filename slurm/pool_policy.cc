@@ -1,6 +1,7 @@
 #include "slurm/pool_policy.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace gauntlet::slurm {
 namespace {
@@ -22,6 +23,17 @@ bool IsFailure(std::string_view state) {
   return state == "FAILED" || state == "NODE_FAIL" || state == "OUT_OF_MEMORY" || state == "BOOT_FAIL";
 }
 
+// Takes over what Slurm says of the job.
+void Show(const JobStatus& job, Allocation& allocation, TimePoint now) {
+  allocation.missing = 0;
+  allocation.phase = job.phase;
+  allocation.state = job.state;
+  allocation.reason = job.reason;
+  if (!job.nodes.empty()) allocation.nodes = job.nodes;
+  if (job.phase == JobPhase::kRunning && !allocation.running_since)
+    allocation.running_since = allocation.silent_since = now;
+}
+
 std::string JobName(const Allocation& allocation) {
   std::string name = "job " + allocation.job;
   if (!allocation.nodes.empty()) name += " on " + allocation.nodes;
@@ -31,54 +43,39 @@ std::string JobName(const Allocation& allocation) {
 }  // namespace
 
 void PoolPolicy::Submitted(const std::string& job, TimePoint now) {
-  Entry entry;
-  entry.allocation.job = job;
-  entry.allocation.state = "PENDING";
-  entries_.try_emplace(job, std::move(entry));
+  const auto [entry, added] = allocations_.try_emplace(job);
+  if (added) {
+    entry->second.job = job;
+    entry->second.state = "PENDING";
+  }
   query_error_.clear();
   // Not seen by a query that was under way.
   last_query_ = now;
 }
 
 void PoolPolicy::SubmissionFailed(const std::string& message, TimePoint now) {
-  Entry none;
-  none.allocation.job = "(none)";
+  Allocation none;
+  none.job = "(none)";
   StartFailed(none, message, now);
 }
 
 void PoolPolicy::Adopt(const JobStatus& job, TimePoint now) {
   Submitted(job.id, now);
-  Entry& entry = entries_.at(job.id);
-  entry.allocation.phase = job.phase;
-  entry.allocation.state = job.state;
-  entry.allocation.reason = job.reason;
-  entry.allocation.nodes = job.nodes;
-  if (job.phase == JobPhase::kRunning) entry.allocation.running_since = entry.allocation.silent_since = now;
+  Show(job, allocations_.at(job.id), now);
 }
 
 void PoolPolicy::Observed(const std::vector<JobStatus>& jobs, TimePoint now) {
   query_running_ = false;
   query_error_.clear();
   last_query_ = now;
-  for (auto& [id, entry] : entries_) ++entry.missing;
+  for (auto& [id, allocation] : allocations_) ++allocation.missing;
   for (const JobStatus& job : jobs) {
-    const auto found = entries_.find(job.id);
-    if (found == entries_.end()) continue;
-    Entry& entry = found->second;
-    entry.missing = 0;
-    Allocation& allocation = entry.allocation;
-    allocation.phase = job.phase;
-    allocation.state = job.state;
-    allocation.reason = job.reason;
-    if (!job.nodes.empty()) allocation.nodes = job.nodes;
-    if (job.phase == JobPhase::kRunning && !allocation.running_since)
-      allocation.running_since = allocation.silent_since = now;
+    const auto found = allocations_.find(job.id);
+    if (found != allocations_.end()) Show(job, found->second, now);
   }
-  for (auto entry = entries_.begin(); entry != entries_.end();) {
-    const auto next = std::next(entry);
-    if (entry->second.allocation.phase == JobPhase::kEnded || entry->second.missing >= kMissingBeforeEnd)
-      End(entry, now);
-    entry = next;
+  for (auto next = allocations_.begin(); next != allocations_.end();) {
+    const auto one = next++;
+    if (one->second.phase == JobPhase::kEnded || one->second.missing >= kMissingBeforeEnd) End(one, now);
   }
 }
 
@@ -89,10 +86,9 @@ void PoolPolicy::QueryFailed(const std::string& message, TimePoint now) {
 }
 
 void PoolPolicy::Workers(const std::string& job, int connected, int busy, TimePoint now) {
-  const auto found = entries_.find(job);
-  if (found == entries_.end()) return;
-  Entry& entry = found->second;
-  Allocation& allocation = entry.allocation;
+  const auto found = allocations_.find(job);
+  if (found == allocations_.end()) return;
+  Allocation& allocation = found->second;
   allocation.workers = connected;
   if (connected > 0) {
     // A hello is faster than squeue.
@@ -120,43 +116,41 @@ void PoolPolicy::Workers(const std::string& job, int connected, int busy, TimePo
   }
 }
 
-void PoolPolicy::End(std::map<std::string, Entry>::iterator entry, TimePoint now) {
-  const Allocation& allocation = entry->second.allocation;
+void PoolPolicy::End(Allocations::iterator ended, TimePoint now) {
+  Allocation& allocation = ended->second;
   std::string how = allocation.state;
   if (!allocation.reason.empty()) how += ", " + allocation.reason;
   if (!allocation.cancelled && !allocation.first_hello) {
-    StartFailed(entry->second,
+    StartFailed(allocation,
                 JobName(allocation) + " ended (" + how + ") before its worker said hello" + kWhereToLook,
                 now);
   } else if (!allocation.cancelled && IsFailure(allocation.state) &&
              now - *allocation.first_hello < limits_.early_loss) {
-    StartFailed(entry->second, JobName(allocation) + " ended (" + how + ") soon after its start", now);
+    StartFailed(allocation, JobName(allocation) + " ended (" + how + ") soon after its start", now);
   }
-  entries_.erase(entry);
+  allocations_.erase(ended);
 }
 
-void PoolPolicy::StartFailed(Entry& entry, const std::string& what, TimePoint now) {
+void PoolPolicy::StartFailed(Allocation& allocation, const std::string& what, TimePoint now) {
   last_failure_ = what;
-  if (entry.counted) return;
-  entry.counted = true;
+  if (std::exchange(allocation.judged, true)) return;
   ++failures_in_a_row_;
   constexpr int kMostDoublings = 20;
   const auto back_off = limits_.first_back_off * (1 << std::min(failures_in_a_row_ - 1, kMostDoublings));
   not_before_ = now + std::min<seconds>(back_off, limits_.longest_back_off);
-  const std::string& node = entry.allocation.nodes;
+  const std::string& node = allocation.nodes;
   if (!node.empty() && ++failures_of_node_[node] >= limits_.failures_before_ban) banned_.insert(node);
 }
 
 void PoolPolicy::CancelLost(TimePoint now, Decisions& decisions) {
-  for (auto& [job, entry] : entries_) {
-    Allocation& allocation = entry.allocation;
+  for (auto& [job, allocation] : allocations_) {
     if (allocation.cancelled) continue;
     if (!stopping_) {
       if (allocation.phase == JobPhase::kQueued && NeverStarts(allocation.reason)) {
-        StartFailed(entry, "job " + job + " would never start: " + allocation.reason, now);
+        StartFailed(allocation, "job " + job + " would never start: " + allocation.reason, now);
       } else if (allocation.silent_since && now - *allocation.silent_since >= limits_.start_timeout) {
         const auto silent = duration_cast<seconds>(now - *allocation.silent_since);
-        StartFailed(entry,
+        StartFailed(allocation,
                     JobName(allocation) + " has run for " + std::to_string(silent.count()) +
                         " s without a word from its worker",
                     now);
@@ -174,8 +168,7 @@ void PoolPolicy::CancelIdle(const Demand& demand, TimePoint now, Decisions& deci
   if (demand.unfinished_runs > 0) unwanted_since_.reset();
   if (demand.unfinished_runs == 0 && !unwanted_since_) unwanted_since_ = now;
   const bool unwanted = unwanted_since_ && now - *unwanted_since_ >= limits_.idle_timeout;
-  for (auto& [job, entry] : entries_) {
-    Allocation& allocation = entry.allocation;
+  for (auto& [job, allocation] : allocations_) {
     if (allocation.cancelled) continue;
     const bool idle_too_long = allocation.idle_since && now - *allocation.idle_since >= limits_.idle_timeout;
     const bool not_wanted = allocation.phase == JobPhase::kQueued && unwanted;
@@ -190,7 +183,7 @@ Decisions PoolPolicy::Decide(const Demand& demand, TimePoint now) {
   CancelLost(now, decisions);
   CancelIdle(demand, now, decisions);
 
-  if (!entries_.empty() && !query_running_ &&
+  if (!allocations_.empty() && !query_running_ &&
       (!last_query_ || now - *last_query_ >= limits_.query_interval)) {
     decisions.query = true;
     query_running_ = true;
@@ -201,11 +194,11 @@ Decisions PoolPolicy::Decide(const Demand& demand, TimePoint now) {
   int living = 0;
   int queued = 0;
   int unproven = 0;
-  for (const auto& [job, entry] : entries_) {
-    if (entry.allocation.cancelled || entry.allocation.phase == JobPhase::kEnding) continue;
+  for (const auto& [job, allocation] : allocations_) {
+    if (allocation.cancelled || allocation.phase == JobPhase::kEnding) continue;
     ++living;
-    if (entry.allocation.phase == JobPhase::kQueued) ++queued;
-    if (!entry.allocation.first_hello) ++unproven;
+    if (allocation.phase == JobPhase::kQueued) ++queued;
+    if (!allocation.first_hello) ++unproven;
   }
   const int per_allocation = std::max(1, limits_.workers_per_allocation);
   const int useful = (demand.unfinished_runs + per_allocation - 1) / per_allocation;
@@ -219,7 +212,7 @@ Decisions PoolPolicy::Decide(const Demand& demand, TimePoint now) {
 
 std::vector<Allocation> PoolPolicy::allocations() const {
   std::vector<Allocation> result;
-  for (const auto& [job, entry] : entries_) result.push_back(entry.allocation);
+  for (const auto& [job, allocation] : allocations_) result.push_back(allocation);
   return result;
 }
 
@@ -237,11 +230,11 @@ std::string PoolPolicy::Trouble(TimePoint now) const {
   }
   int connected = 0;
   std::string waiting;
-  for (const auto& [job, entry] : entries_) {
-    connected += entry.allocation.workers;
-    if (entry.allocation.phase == JobPhase::kQueued && !entry.allocation.cancelled && waiting.empty()) {
+  for (const auto& [job, allocation] : allocations_) {
+    connected += allocation.workers;
+    if (allocation.phase == JobPhase::kQueued && !allocation.cancelled && waiting.empty()) {
       waiting = "job " + job + " waits in the queue";
-      if (!entry.allocation.reason.empty()) waiting += " (" + entry.allocation.reason + ")";
+      if (!allocation.reason.empty()) waiting += " (" + allocation.reason + ")";
     }
   }
   return connected == 0 ? waiting : "";

@@ -8,12 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "base/system/clock.h"
 #include "slurm/job_status.h"
 
 namespace gauntlet::slurm {
-
-using TimePoint = std::chrono::steady_clock::time_point;
-using Duration = std::chrono::steady_clock::duration;
 
 struct PoolLimits {
   int max_allocations = 8;                  // waiting and running together
@@ -53,6 +51,8 @@ struct Allocation {
   std::optional<TimePoint> silent_since;   // it runs, and none of its workers has been connected since
   std::optional<TimePoint> idle_since;     // none of its workers has had a run since
   bool cancelled = false;                  // by us
+  int missing = 0;                         // queries in a row that did not show it
+  bool judged = false;                     // whether its start has failed
 };
 
 // Fed with events and a clock, asked for decisions; pure, so that years of a cluster's moods run in a test in
@@ -87,19 +87,15 @@ class PoolPolicy {
   std::string Trouble(TimePoint now) const;
 
  private:
-  struct Entry {
-    Allocation allocation;
-    int missing = 0;       // queries in a row that did not show it
-    bool counted = false;  // its start has been judged
-  };
+  using Allocations = std::map<std::string, Allocation>;  // by job id
 
-  void End(std::map<std::string, Entry>::iterator entry, TimePoint now);
-  void StartFailed(Entry& entry, const std::string& what, TimePoint now);
+  void End(Allocations::iterator ended, TimePoint now);
+  void StartFailed(Allocation& allocation, const std::string& what, TimePoint now);
   void CancelLost(TimePoint now, Decisions& decisions);
   void CancelIdle(const Demand& demand, TimePoint now, Decisions& decisions);
 
   PoolLimits limits_;
-  std::map<std::string, Entry> entries_;  // by job id
+  Allocations allocations_;
   std::map<std::string, int> failures_of_node_;
   std::set<std::string> banned_;
   int failures_in_a_row_ = 0;

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <set>
-#include <utility>
 
 #include "base/check.h"
 
@@ -37,11 +36,11 @@ SlurmPool::~SlurmPool() {
 // By name, so that a submission whose answer was lost goes too.
 void SlurmPool::PostCancelAll() {
   Post([this]() -> std::function<void(TimePoint)> {
-    const Result<std::vector<JobStatus>> jobs = client_->Queue(options_.job.name);
-    if (!jobs) return [](TimePoint) {};
     std::vector<std::string> living;
-    for (const JobStatus& job : *jobs) {
-      if (job.phase != JobPhase::kEnded) living.push_back(job.id);
+    if (const Result<std::vector<JobStatus>> jobs = client_->Queue(options_.job.name); jobs) {
+      for (const JobStatus& job : *jobs) {
+        if (job.phase != JobPhase::kEnded) living.push_back(job.id);
+      }
     }
     (void)client_->Cancel(living).ok();
     return [](TimePoint) {};
@@ -219,10 +218,6 @@ std::vector<master::AllocationView> SlurmPool::Allocations() const {
   return views;
 }
 
-void SlurmPool::AppendWaitFds(std::vector<int>& fds) const {
-  fds.push_back(answer_fd_);
-}
-
 int SlurmPool::running() const {
   int living = submitting_;
   for (const Allocation& allocation : policy_.allocations()) living += allocation.cancelled ? 0 : 1;
@@ -233,14 +228,6 @@ void SlurmPool::SignalAll(int /*signal*/) {
   if (released_) return;
   policy_.Stop();
   CarryOut(policy_.Decide({}, {}));
-}
-
-std::vector<master::DispatchEvent> SlurmPool::TakeEvents() {
-  return std::exchange(events_, {});
-}
-
-void SlurmPool::Report(std::string text) {
-  events_.push_back({master::event::kSlurm, std::move(text)});
 }
 
 }  // namespace gauntlet::slurm

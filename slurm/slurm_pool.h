@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "master/dispatch/worker_pool.h"
@@ -42,13 +43,13 @@ class SlurmPool final : public master::WorkerPool {
 
   // Never an error: a cluster that starts nothing today may do so tomorrow; Trouble says what is wrong.
   Result<std::vector<pid_t>> Supervise(TimePoint now) override;
-  void AppendWaitFds(std::vector<int>& fds) const override;
+  void AppendWaitFds(std::vector<int>& fds) const override { fds.push_back(answer_fd_); }
   // Allocations that are not yet cancelled or ended.
   int running() const override;
   void StopReplacing() override { stopped_growing_ = true; }
   // Any signal: cancels all allocations; Slurm sends SIGTERM, then SIGKILL.
   void SignalAll(int signal) override;
-  std::vector<master::DispatchEvent> TakeEvents() override;
+  std::vector<master::DispatchEvent> TakeEvents() override { return std::exchange(events_, {}); }
   void Observe(const master::PoolView& view, TimePoint now) override;
   std::string Trouble(TimePoint now) const override;
   std::vector<master::AllocationView> Allocations() const override;
@@ -67,7 +68,7 @@ class SlurmPool final : public master::WorkerPool {
   void PostCancelAll();
   void PostCancel(const std::vector<std::string>& jobs);
   void OnQueue(const std::vector<JobStatus>& jobs, TimePoint now);
-  void Report(std::string text);
+  void Report(std::string text) { events_.push_back({master::event::kSlurm, std::move(text)}); }
 
   SlurmPoolOptions options_;
   std::unique_ptr<SlurmClient> client_;  // of the calling thread alone
