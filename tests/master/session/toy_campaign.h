@@ -58,15 +58,18 @@ inline std::unique_ptr<SearchAlgorithm> MakeToySearch(const Experiment& experime
 // One process's life with the campaign that a store holds.
 class ToySession {
  public:
+  using MakeSearch = std::function<std::unique_ptr<SearchAlgorithm>(const Experiment&)>;
+
   ToySession(const std::vector<Experiment>& experiments, testing_support::MemoryStore& store,
-             testing_support::FakeBackend::Simulate simulate = ToyRun)
+             testing_support::FakeBackend::Simulate simulate = ToyRun,
+             const MakeSearch& make_search = MakeToySearch)
       : backend(clock, std::move(simulate)), experiments_(experiments) {
     SearchLoop::Parts parts{{}, backend, store, clock};
     for (std::size_t i = 0; i < experiments_.size(); ++i) {
       const auto id = static_cast<SearchId>(i + 1);
       if (store.searches.size() < id)
         store.searches.push_back({id, "toy", "genetic", experiments_[i].seed, false});
-      searches_.push_back(MakeToySearch(experiments_[i]));
+      searches_.push_back(make_search(experiments_[i]));
       drivers.emplace_back(SearchDriver::Parts{.experiment = experiments_[i],
                                                .search_id = id,
                                                .search = *searches_.back(),
