@@ -17,9 +17,7 @@ std::string FormatCount(std::uint64_t count) {
 }
 
 std::string PointText(double x, double y) {
-  std::string text = "(";
-  text.append(NumberText(x)).append(", ").append(NumberText(y)).append(")");
-  return text;
+  return "(" + NumberText(x) + ", " + NumberText(y) + ")";
 }
 
 }  // namespace gauntlet

@@ -5,12 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "base/system/atomic_file.h"
 #include "base/system/unique_fd.h"
@@ -27,15 +24,20 @@ bool IsEndpoint(const std::string& text) {
   return (text.starts_with("tcp://") || text.starts_with("ipc://")) && text.size() > 6;
 }
 
-// Z85 (https://rfc.zeromq.org/spec/32/).
-bool IsKey(const std::string& text) {
-  constexpr std::string_view kOthers = ".-:+=^!/*?&<>()[]{}@%$#";
-  return text.size() == kKeyCharacters && std::all_of(text.begin(), text.end(), [&](char c) {
-           return std::isalnum(static_cast<unsigned char>(c)) != 0 || kOthers.find(c) != kOthers.npos;
-         });
-}
-
 }  // namespace
+
+bool IsCurveKey(std::string_view key) {
+  // Z85 (https://rfc.zeromq.org/spec/32/): five characters are the digits of 32 bits.
+  constexpr std::string_view kDigits =
+      "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?&<>()[]{}@%$#";
+  std::uint64_t value = 0;
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const std::size_t digit = kDigits.find(key[i]);
+    value = (i % 5 == 0 ? 0 : value * kDigits.size()) + digit;
+    if (digit == std::string_view::npos || value > UINT32_MAX) return false;
+  }
+  return key.size() == kKeyCharacters;
+}
 
 Result<Access> ParseAccess(const std::string& text, const std::string& place) {
   const auto wrong = [&](const std::string& what) {
@@ -45,28 +47,26 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
   if (!parsed) return parsed.error();
   const nlohmann::json& json = *parsed;
   if (!json.is_object()) return wrong("an object is needed");
+  const auto member = [&](const char* name) { return json.contains(name) ? json[name] : nlohmann::json(); };
 
-  const auto format = json.find("format");
-  if (format == json.end() || !format->is_number_integer()) return wrong("\"format\" must be a whole number");
-  if (*format != kFormat) {
+  const nlohmann::json format = member("format");
+  if (!format.is_number_integer()) return wrong("\"format\" must be a whole number");
+  if (format != kFormat) {
     return Error{ErrorKind::kVersion,
-                 fmt::format("{}: format {}, this version reads format {}", place, format->dump(), kFormat)};
+                 fmt::format("{}: format {}, this version reads format {}", place, format.dump(), kFormat)};
   }
   Access access;
-  const auto campaign = json.find("campaign");
-  if (campaign == json.end() || !campaign->is_string() || campaign->get_ref<const std::string&>().empty()) {
-    return wrong("\"campaign\" must be the campaign's id, a text");
-  }
-  access.campaign_id = campaign->get<std::string>();
-  const auto epoch = json.find("epoch");
-  if (epoch == json.end() || !epoch->is_number_unsigned())
-    return wrong("\"epoch\" must be a whole number from 0");
-  access.epoch = epoch->get<std::uint64_t>();
-  const auto endpoints = json.find("endpoints");
-  if (endpoints == json.end() || !endpoints->is_array() || endpoints->empty()) {
+  const nlohmann::json campaign = member("campaign");
+  if (!campaign.is_string() || campaign == "") return wrong("\"campaign\" must be the campaign's id, a text");
+  access.campaign_id = campaign.get<std::string>();
+  const nlohmann::json epoch = member("epoch");
+  if (!epoch.is_number_unsigned()) return wrong("\"epoch\" must be a whole number from 0");
+  access.epoch = epoch.get<std::uint64_t>();
+  const nlohmann::json endpoints = member("endpoints");
+  if (!endpoints.is_array() || endpoints.empty()) {
     return wrong("\"endpoints\" must be a list with at least one address");
   }
-  for (const nlohmann::json& endpoint : *endpoints) {
+  for (const nlohmann::json& endpoint : endpoints) {
     if (!endpoint.is_string() || !IsEndpoint(endpoint.get_ref<const std::string&>())) {
       return wrong(fmt::format("endpoint {} is neither tcp://HOST:PORT nor ipc://PATH", endpoint.dump()));
     }
@@ -80,7 +80,7 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
       // What stands there is not repeated: messages end in logs.
       const bool is_text = curve->is_object() && curve->contains(name) && (*curve)[name].is_string();
       if (is_text) *key = (*curve)[name].get<std::string>();
-      if (!IsKey(*key)) {
+      if (!IsCurveKey(*key)) {
         return wrong(
             fmt::format("\"curve\".\"{}\" must be a key of {} characters of Z85", name, kKeyCharacters));
       }

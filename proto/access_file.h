@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -18,6 +19,9 @@ struct CurveKeys {
   std::string worker_secret;
   bool operator==(const CurveKeys&) const = default;
 };
+
+// Whether `key` has the form of a key.
+bool IsCurveKey(std::string_view key);
 
 struct Access {
   std::string campaign_id;                        // hexadecimal

@@ -5,11 +5,11 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <vector>
 
 #include "base/nearest_name.h"
 #include "base/printable.h"
@@ -36,32 +36,14 @@ class CaseReader {
  public:
   const std::optional<std::string>& complaint() const { return complaint_; }
 
-  void ReadCase(const json& document, sim::TestCase& test_case) {
-    ReadObject(document, "",
-               {{"name", Into(test_case.name)},
-                {"side_x", Into(test_case.side_x)},
-                {"side_y", Into(test_case.side_y)},
-                {"wall_thickness", Into(test_case.wall_thickness)},
-                {"obstacles",
-                 [&](const json& value, const std::string& path) {
-                   ReadList(value, path, [&](const json& one, const std::string& its_path) {
-                     ReadObstacle(one, its_path, test_case.obstacles.emplace_back());
-                   });
-                 }},
-                {"spawn_area",
-                 [&](const json& value, const std::string& path) {
-                   ReadRectangle(value, path, test_case.spawn_area.emplace());
-                 }},
-                {"robots", [&](const json& value, const std::string& path) {
-                   ReadCount(value, path, test_case.robots.emplace());
-                 }}});
-  }
+  void Read(const json& document, sim::TestCase& test_case) { Into(test_case)(document, ""); }
 
  private:
-  using Read = std::function<void(const json& value, const std::string& path)>;
+  // Reads a value that stands at this path of the document.
+  using Reader = std::function<void(const json& value, const std::string& path)>;
   struct Key {
     std::string_view name;
-    Read read;
+    Reader read;
   };
 
   void Complain(const std::string& what) {
@@ -73,46 +55,53 @@ class CaseReader {
     Complain(fmt::format("{} must be {}, not {}", path.empty() ? "the document" : path, wanted, found));
   }
 
-  void ReadObject(const json& value, const std::string& path, std::initializer_list<Key> keys) {
-    if (!value.is_object()) return Want("an object { ... }", value, path);
-    std::set<std::string_view> given;
-    for (const auto& [name, member] : value.items()) {
-      const auto key = std::find_if(keys.begin(), keys.end(), [&name = name](const Key& one) {
-        return one.name == name || CamelCase(one.name) == name;
-      });
-      if (key == keys.end()) {
-        return Complain((path.empty() ? "" : path + ": ") + UnknownName("key", name, keys));
+  Reader Object(const std::vector<Key>& keys) {
+    return [this, keys](const json& value, const std::string& path) {
+      if (!value.is_object()) return Want("an object { ... }", value, path);
+      std::set<std::string_view> given;
+      for (const auto& [name, member] : value.items()) {
+        const auto key = std::find_if(keys.begin(), keys.end(), [&name = name](const Key& one) {
+          return one.name == name || CamelCase(one.name) == name;
+        });
+        if (key == keys.end()) {
+          return Complain((path.empty() ? "" : path + ": ") + UnknownName("key", name, keys));
+        }
+        const std::string its_path = path.empty() ? name : path + "." + name;
+        if (!given.insert(key->name).second) return Complain(its_path + " is given under two spellings");
+        if (!member.is_null()) key->read(member, its_path);
       }
-      const std::string its_path = path.empty() ? name : path + "." + name;
-      if (!given.insert(key->name).second) return Complain(its_path + " is given under two spellings");
-      if (!member.is_null()) key->read(member, its_path);
-    }
-  }
-
-  void ReadList(const json& value, const std::string& path, const Read& read) {
-    if (!value.is_array()) return Want("a list [ ... ]", value, path);
-    for (std::size_t i = 0; i < value.size() && !complaint_; ++i)
-      read(value[i], fmt::format("{}[{}]", path, i));
+    };
   }
 
   static double NumberIn(const json& value) {
-    double number = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     if (value.is_number()) return value.get<double>();
-    if (!value.is_string()) return number;
+    if (!value.is_string()) return kNone;
     const std::string& text = value.get_ref<const std::string&>();
+    double number = 0.0;
     const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool whole = error == std::errc() && stop == text.data() + text.size();
-    return whole ? number : std::numeric_limits<double>::quiet_NaN();
+    return error == std::errc() && stop == text.data() + text.size() ? number : kNone;
   }
 
-  Read Into(double& target) {
+  Reader Into(double& target) {
     return [this, &target](const json& value, const std::string& path) {
       target = NumberIn(value);
       if (!std::isfinite(target)) Want("a finite number", value, path);
     };
   }
 
-  Read Into(std::string& target) {
+  Reader Into(int& target) {
+    return [this, &target](const json& value, const std::string& path) {
+      constexpr int kMost = std::numeric_limits<int>::max();
+      const double number = NumberIn(value);
+      if (std::floor(number) != number || std::fabs(number) > kMost) {
+        return Want(fmt::format("a whole number of at most {}", kMost), value, path);
+      }
+      target = static_cast<int>(number);
+    };
+  }
+
+  Reader Into(std::string& target) {
     return [this, &target](const json& value, const std::string& path) {
       if (!value.is_string()) return Want("a text in double quotes", value, path);
       target = value.get<std::string>();
@@ -122,57 +111,63 @@ class CaseReader {
     };
   }
 
-  void ReadCount(const json& value, const std::string& path, int& target) {
-    const double number = NumberIn(value);
-    if (std::floor(number) != number || std::fabs(number) > std::numeric_limits<int>::max()) {
-      return Want(fmt::format("a whole number of at most {}", std::numeric_limits<int>::max()), value, path);
-    }
-    target = static_cast<int>(number);
+  Reader Into(sim::Color& target) {
+    return [this, &target](const json& value, const std::string& path) {
+      if (!value.is_string()) return Want("a text in double quotes", value, path);
+      const std::string& name = value.get_ref<const std::string&>();
+      const std::optional<sim::Color> light = sim::ColorNamed(name);
+      target = light.value_or(sim::Color::kBlack);
+      if (light) return;
+      Complain(fmt::format("{}: '{}' is no colour of lights; known: {}", path, name,
+                           fmt::join(sim::kColorNames, ", ")));
+    };
   }
 
-  void ReadPoint(const json& value, const std::string& path, sim::Vec2& point) {
-    ReadObject(value, path, {{"x", Into(point.x())}, {"y", Into(point.y())}});
+  template <typename Value>
+  Reader Into(std::optional<Value>& target) {
+    return
+        [this, &target](const json& value, const std::string& path) { Into(target.emplace())(value, path); };
   }
 
-  void ReadRectangle(const json& value, const std::string& path, sim::Rectangle& area) {
-    ReadObject(value, path,
-               {{"min_x", Into(area.min.x())},
-                {"min_y", Into(area.min.y())},
-                {"max_x", Into(area.max.x())},
-                {"max_y", Into(area.max.y())}});
+  template <typename Value>
+  Reader Into(std::vector<Value>& target) {
+    return [this, &target](const json& value, const std::string& path) {
+      if (!value.is_array()) return Want("a list [ ... ]", value, path);
+      for (std::size_t i = 0; i < value.size() && !complaint_; ++i)
+        Into(target.emplace_back())(value[i], fmt::format("{}[{}]", path, i));
+    };
   }
 
-  void ReadMotion(const json& value, const std::string& path, sim::ObstacleGene& gene) {
-    ReadObject(value, path,
-               {{"speed", Into(gene.speed)},
-                {"path", [&](const json& points, const std::string& path_of_points) {
-                   ReadList(points, path_of_points, [&](const json& point, const std::string& its_path) {
-                     ReadPoint(point, its_path, gene.path.emplace_back(sim::Vec2::Zero()));
-                   });
-                 }}});
+  Reader Into(sim::Vec2& point) {
+    point.setZero();
+    return Object({{"x", Into(point.x())}, {"y", Into(point.y())}});
   }
 
-  void ReadLight(const json& value, const std::string& path, sim::ObstacleGene& gene) {
-    if (!value.is_string()) return Want("a text in double quotes", value, path);
-    const std::string& name = value.get_ref<const std::string&>();
-    const std::optional<sim::Color> light = sim::ColorNamed(name);
-    gene.light = light.value_or(sim::Color::kBlack);
-    if (light) return;
-    Complain(fmt::format("{}: '{}' is no colour of lights; known: {}", path, name,
-                         fmt::join(sim::kColorNames, ", ")));
+  Reader Into(sim::Rectangle& area) {
+    return Object({{"min_x", Into(area.min.x())},
+                   {"min_y", Into(area.min.y())},
+                   {"max_x", Into(area.max.x())},
+                   {"max_y", Into(area.max.y())}});
   }
 
-  void ReadObstacle(const json& value, const std::string& path, sim::ObstacleGene& gene) {
-    ReadObject(value, path,
-               {{"x", Into(gene.x)},
-                {"y", Into(gene.y)},
-                {"length", Into(gene.length)},
-                {"width", Into(gene.width)},
-                {"orientation_deg", Into(gene.orientation_deg)},
-                {"motion", [&](const json& motion,
-                               const std::string& its_path) { ReadMotion(motion, its_path, gene); }},
-                {"light",
-                 [&](const json& light, const std::string& its_path) { ReadLight(light, its_path, gene); }}});
+  Reader Into(sim::ObstacleGene& gene) {
+    return Object({{"x", Into(gene.x)},
+                   {"y", Into(gene.y)},
+                   {"length", Into(gene.length)},
+                   {"width", Into(gene.width)},
+                   {"orientation_deg", Into(gene.orientation_deg)},
+                   {"motion", Object({{"speed", Into(gene.speed)}, {"path", Into(gene.path)}})},
+                   {"light", Into(gene.light)}});
+  }
+
+  Reader Into(sim::TestCase& test_case) {
+    return Object({{"name", Into(test_case.name)},
+                   {"side_x", Into(test_case.side_x)},
+                   {"side_y", Into(test_case.side_y)},
+                   {"wall_thickness", Into(test_case.wall_thickness)},
+                   {"obstacles", Into(test_case.obstacles)},
+                   {"spawn_area", Into(test_case.spawn_area)},
+                   {"robots", Into(test_case.robots)}});
   }
 
   std::optional<std::string> complaint_;
@@ -204,7 +199,7 @@ Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& 
   if (!document) return document.error();
   sim::TestCase test_case;
   CaseReader reader;
-  reader.ReadCase(*document, test_case);
+  reader.Read(*document, test_case);
   if (reader.complaint()) return InvalidInput(Printable(file_name + ": " + *reader.complaint()));
   return test_case;
 }

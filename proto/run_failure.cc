@@ -5,24 +5,6 @@
 #include "base/check.h"
 
 namespace gauntlet::proto {
-namespace {
-
-sim::Verdict VerdictOf(FailureKind kind) {
-  switch (kind) {
-    case FailureKind::kHung:
-      return sim::Verdict::kHung;
-    case FailureKind::kOutOfMemory:
-      return sim::Verdict::kOutOfMemory;
-    case FailureKind::kCrashed:
-    case FailureKind::kUnreadable:
-      return sim::Verdict::kCrashed;
-    case FailureKind::kExternal:
-      break;
-  }
-  GAUNTLET_CHECK(false, "an external failure gives no verdict");
-}
-
-}  // namespace
 
 std::string Describe(const RunnerFailure& failure) {
   switch (failure.kind) {
@@ -43,8 +25,11 @@ std::string Describe(const RunnerFailure& failure) {
 }
 
 sim::RunResult ResultOf(const RunnerFailure& failure) {
+  GAUNTLET_CHECK(failure.kind != FailureKind::kExternal, "an external failure gives no verdict");
   sim::RunResult result;
-  result.verdict = VerdictOf(failure.kind);
+  result.verdict = failure.kind == FailureKind::kHung          ? sim::Verdict::kHung
+                   : failure.kind == FailureKind::kOutOfMemory ? sim::Verdict::kOutOfMemory
+                                                               : sim::Verdict::kCrashed;
   result.message = Describe(failure);
   result.hash = sim::HashOf(result);
   return result;

@@ -8,14 +8,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 
 #include "base/system/unique_fd.h"
 
-extern char** environ;
+extern char** environ;  // NOLINT(readability-redundant-declaration)
 
 namespace gauntlet {
 namespace {
@@ -25,31 +24,15 @@ using Clock = std::chrono::steady_clock;
 struct Pipe {
   UniqueFd read;
   UniqueFd write;
-  bool Open() {
-    std::array<int, 2> ends{};
-    return pipe2(ends.data(), O_CLOEXEC) == 0 && Take(ends);
-  }
-  // Writing to a socket whose other end is gone is an error, to a pipe a signal that ends the process.
-  bool OpenSockets() {
-    std::array<int, 2> ends{};
-    return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0 && Take(ends);
-  }
-
- private:
-  bool Take(const std::array<int, 2>& ends) {
-    read.Reset(ends[0]);
-    write.Reset(ends[1]);
-    return true;
-  }
 };
 
-std::vector<char*> EnvironmentOf(const CallOptions& options) {
-  std::vector<char*> result;
-  for (char** entry = environ; *entry != nullptr; ++entry) {
-    if (!options.inherits || options.inherits(*entry)) result.push_back(*entry);
-  }
-  result.push_back(nullptr);
-  return result;
+// `make` is given room for the two ends.
+bool Open(Pipe& pipe, int (*make)(int* ends)) {
+  std::array<int, 2> ends{};
+  if (make(ends.data()) != 0) return false;
+  pipe.read.Reset(ends[0]);
+  pipe.write.Reset(ends[1]);
+  return true;
 }
 
 Error Failure(const std::string& program, const std::string& what) {
@@ -117,6 +100,39 @@ bool Reap(pid_t child, Clock::time_point deadline, int& status) {
 
 }  // namespace
 
+int Spawn(const std::vector<std::string>& arguments, const SpawnOptions& options, pid_t& child) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    const int ours = options.streams[static_cast<std::size_t>(stream)];
+    if (ours >= 0) posix_spawn_file_actions_adddup2(&actions, ours, stream);
+  }
+  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
+
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t signals;
+  sigemptyset(&signals);
+  posix_spawnattr_setsigmask(&attributes, &signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGCHLD}) sigaddset(&signals, signal);
+  posix_spawnattr_setsigdefault(&attributes, &signals);
+  posix_spawnattr_setflags(
+      &attributes, static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | options.flags));
+
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  std::vector<char*> environment;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    if (!options.inherits || options.inherits(*entry)) environment.push_back(*entry);
+  }
+  environment.push_back(nullptr);
+  const int failed = posix_spawnp(&child, argv[0], &actions, &attributes, argv.data(), environment.data());
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  return failed;
+}
+
 Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::string_view input,
                                const CallOptions& options) {
   const std::string& program = arguments.at(0);
@@ -125,37 +141,22 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
   Pipe in;
   Pipe out;
   Pipe err;
-  if (!in.OpenSockets() || !out.Open() || !err.Open()) return Failure(program, std::strerror(errno));
+  const auto make = [](int* ends) { return pipe2(ends, O_CLOEXEC); };
+  // Writing to a socket whose other end is gone is an error, to a pipe a signal that ends the process.
+  const auto make_sockets = [](int* ends) {
+    return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends);
+  };
+  if (!Open(in, make_sockets) || !Open(out, make) || !Open(err, make)) {
+    return Failure(program, std::strerror(errno));
+  }
 
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, in.read.get(), STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, out.write.get(), STDOUT_FILENO);
-  if (!options.part_of_us) posix_spawn_file_actions_adddup2(&actions, err.write.get(), STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  sigset_t defaults;
-  sigemptyset(&defaults);
-  sigaddset(&defaults, SIGPIPE);
-  sigaddset(&defaults, SIGINT);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setsigdefault(&attributes, &defaults);
-  const int group = options.part_of_us ? 0 : POSIX_SPAWN_SETPGROUP;
-  posix_spawnattr_setflags(&attributes,
-                           static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | group));
-
-  std::vector<char*> argv;
-  argv.reserve(arguments.size() + 1);
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
-  std::vector<char*> environment = EnvironmentOf(options);
   pid_t child = -1;
   const int failed =
-      posix_spawnp(&child, program.c_str(), &actions, &attributes, argv.data(), environment.data());
-  posix_spawn_file_actions_destroy(&actions);
-  posix_spawnattr_destroy(&attributes);
+      Spawn(arguments,
+            {.streams = {in.read.get(), out.write.get(), options.part_of_us ? -1 : err.write.get()},
+             .flags = options.part_of_us ? 0 : POSIX_SPAWN_SETPGROUP,
+             .inherits = options.inherits},
+            child);
   if (failed == ENOENT) return Error{ErrorKind::kNotFound, "there is no " + program};
   if (failed != 0) return Failure(program, std::strerror(failed));
   in.read.Reset();

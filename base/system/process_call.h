@@ -1,6 +1,9 @@
-// Runs one program and waits for it: the one way in which other programs are called and listened to.
+// Starts programs; and runs one and waits for it: the one way in which others are called and listened to.
 #pragma once
 
+#include <sys/types.h>
+
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -12,6 +15,18 @@
 #include "base/result.h"
 
 namespace gauntlet {
+
+struct SpawnOptions {
+  std::array<int, 3> streams;  // what becomes its stdin, stdout and stderr; -1: ours
+  int flags = 0;               // POSIX_SPAWN_SETSID, POSIX_SPAWN_SETPGROUP
+  // Which of our environment's entries ("NAME=value") it gets; default: all.
+  std::function<bool(std::string_view)> inherits = nullptr;
+};
+
+// Starts a program, which is looked for in PATH, without any other descriptor of ours and with the usual
+// signals: none is blocked, and those that we may handle or ignore do to it what they do by default. Its
+// number goes to `child`. The errno, 0 = none. Thread-safe.
+int Spawn(const std::vector<std::string>& arguments, const SpawnOptions& options, pid_t& child);
 
 struct CallOutput {
   int exit_code = 0;  // 128 + signal when a signal ended it

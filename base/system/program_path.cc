@@ -7,27 +7,24 @@
 namespace gauntlet {
 namespace {
 
-std::string FromEnvironment(const char* name) {
-  const char* value = std::getenv(name);
-  return value == nullptr ? "" : value;
-}
-
-std::filesystem::path ThisExecutable() {
+// What the environment's `variable` names, else `name` beside this executable; "": itself.
+std::string ProgramPath(const char* variable, const char* name) {
+  const char* given = std::getenv(variable);
+  if (given != nullptr && *given != '\0') return given;
   std::error_code error;
-  const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
-  return error ? "gauntlet" : path;
+  std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) path = "gauntlet";
+  return *name == '\0' ? path.string() : path.replace_filename(name).string();
 }
 
 }  // namespace
 
 std::string MasterProgramPath() {
-  const std::string given = FromEnvironment("GAUNTLET_PROGRAM");
-  return given.empty() ? ThisExecutable().string() : given;
+  return ProgramPath("GAUNTLET_PROGRAM", "");
 }
 
 std::string WorkerProgramPath() {
-  const std::string given = FromEnvironment("GAUNTLET_WORKER");
-  return given.empty() ? ThisExecutable().replace_filename("gauntlet-worker").string() : given;
+  return ProgramPath("GAUNTLET_WORKER", "gauntlet-worker");
 }
 
 }  // namespace gauntlet

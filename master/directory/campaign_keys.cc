@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/system/atomic_file.h"
+#include "proto/access_file.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -48,7 +49,7 @@ Result<CampaignKeys> LoadOrMakeKeys(const std::string& path) {
                                   std::pair{"worker_public", &keys.worker.public_key},
                                   std::pair{"worker_secret", &keys.worker.secret_key}}) {
     *key = TextAt(json, name);
-    if (!IsCurveKey(*key)) {
+    if (!proto::IsCurveKey(*key)) {
       return Error{
           ErrorKind::kCorrupt,
           fmt::format("{}: \"{}\" is not a key. Delete the file, and new keys are made", path, name)};

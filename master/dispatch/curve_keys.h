@@ -16,9 +16,6 @@ struct CurveKeyPair {
 // From the operating system's random numbers.
 CurveKeyPair NewCurveKeyPair();
 
-// Whether `key` has the form of a key.
-bool IsCurveKey(std::string_view key);
-
 // Whether nobody but this machine's processes can reach an endpoint: ipc, inproc, or tcp on a loopback
 // address (127.0.0.0/8, ::1, localhost).
 bool IsLocalEndpoint(std::string_view endpoint);

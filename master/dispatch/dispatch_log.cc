@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <chrono>
-#include <utility>
 
 #include "base/printable.h"
 
@@ -55,10 +54,6 @@ void DispatchLog::Refuse(const std::string& label, const std::string& reason, Ti
       event::kWorkerRefused,
       fmt::format("worker {} was refused: {}{}", label, reason,
                   untold == 0 ? "" : fmt::format(" (and {} others since the last that was told)", untold)));
-}
-
-std::vector<DispatchEvent> DispatchLog::TakeEvents() {
-  return std::exchange(events_, {});
 }
 
 }  // namespace gauntlet::master

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/system/clock.h"
@@ -26,7 +27,7 @@ class DispatchLog {
   void Refuse(const std::string& label, const std::string& reason, TimePoint now);
 
   // What happened since the last call, oldest first.
-  std::vector<DispatchEvent> TakeEvents();
+  std::vector<DispatchEvent> TakeEvents() { return std::exchange(events_, {}); }
   std::uint64_t rejected() const { return rejected_; }
   std::uint64_t refused() const { return refused_; }
   const std::string& last_refusal() const { return last_refusal_; }  // its reason

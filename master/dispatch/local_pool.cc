@@ -13,9 +13,9 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <utility>
 
-extern char** environ;  // NOLINT(readability-redundant-declaration)
+#include "base/system/process_call.h"
+#include "base/system/unique_fd.h"
 
 namespace gauntlet::master {
 namespace {
@@ -47,42 +47,6 @@ std::string TailOf(const std::string& path) {
   if (lines.size() > kTailLines) lines.erase(lines.begin(), lines.end() - kTailLines);
   return fmt::format("{}", fmt::join(lines, " | "));
 }
-
-// Owns the two attribute objects of posix_spawn.
-class SpawnSetup {
- public:
-  explicit SpawnSetup(const std::string& log_file) {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawnattr_init(&attributes_);
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, log_file.c_str(),
-                                     O_WRONLY | O_CREAT | O_APPEND, 0644);
-    posix_spawn_file_actions_adddup2(&actions_, STDOUT_FILENO, STDERR_FILENO);
-    posix_spawn_file_actions_addclosefrom_np(&actions_, STDERR_FILENO + 1);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes_, &none);
-    sigset_t defaults;
-    sigemptyset(&defaults);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGCHLD})
-      sigaddset(&defaults, signal);
-    posix_spawnattr_setsigdefault(&attributes_, &defaults);
-    posix_spawnattr_setflags(&attributes_,
-                             POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  }
-  SpawnSetup(const SpawnSetup&) = delete;
-  SpawnSetup& operator=(const SpawnSetup&) = delete;
-  ~SpawnSetup() {
-    posix_spawn_file_actions_destroy(&actions_);
-    posix_spawnattr_destroy(&attributes_);
-  }
-  const posix_spawn_file_actions_t* actions() const { return &actions_; }
-  const posix_spawnattr_t* attributes() const { return &attributes_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-  posix_spawnattr_t attributes_{};
-};
 
 // The first failure in a row costs no time.
 milliseconds DelayAfter(int failed_starts) {
@@ -134,25 +98,22 @@ LocalPool::~LocalPool() {
 }
 
 Status LocalPool::StartWorker(Slot& slot, TimePoint now) {
-  std::vector<std::string> arguments = {
-      options_.program, "--access", options_.access_file, "--die-with-parent", std::to_string(getpid()),
-      "--quiet",        "--log",    slot.log_file};
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-
-  const SpawnSetup setup(slot.log_file);
-  pid_t pid = -1;
+  const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const UniqueFd log(open(slot.log_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
   const int failed =
-      posix_spawn(&pid, options_.program.c_str(), setup.actions(), setup.attributes(), argv.data(), environ);
+      !log.valid() || !nothing.valid()
+          ? errno
+          : Spawn({options_.program, "--access", options_.access_file, "--die-with-parent",
+                   std::to_string(getpid()), "--quiet", "--log", slot.log_file},
+                  {.streams = {nothing.get(), log.get(), log.get()}, .flags = POSIX_SPAWN_SETSID}, slot.pid);
   if (failed != 0) {
+    slot.pid = -1;
     return Error{ErrorKind::kIo, fmt::format("cannot start {} with its output in {}: {}", options_.program,
                                              slot.log_file, std::strerror(failed))};
   }
-  slot.pid = pid;
   // By number: the header of glibc 2.36 gives pidfd_open C++ linkage. Closed on exec; not there before
   // Linux 5.3: then Supervise finds out.
-  slot.pidfd = static_cast<int>(syscall(SYS_pidfd_open, pid, 0));
+  slot.pidfd = static_cast<int>(syscall(SYS_pidfd_open, slot.pid, 0));
   slot.started = now;
   return Ok{};
 }
@@ -244,10 +205,6 @@ void LocalPool::SignalAll(int signal) {
     // Workers pass on what their runners should know; against SIGKILL they can do nothing.
     if (slot.pid >= 0) kill(signal == SIGKILL ? -slot.pid : slot.pid, signal);
   }
-}
-
-std::vector<DispatchEvent> LocalPool::TakeEvents() {
-  return std::exchange(events_, {});
 }
 
 }  // namespace gauntlet::master

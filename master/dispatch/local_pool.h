@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -41,7 +42,7 @@ class LocalPool final : public WorkerPool {
   int running() const override;
   void StopReplacing() override { replacing_ = false; }
   void SignalAll(int signal) override;
-  std::vector<DispatchEvent> TakeEvents() override;
+  std::vector<DispatchEvent> TakeEvents() override { return std::exchange(events_, {}); }
 
   std::vector<pid_t> pids() const;
 

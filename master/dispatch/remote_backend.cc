@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <csignal>
-#include <utility>
 
 #include "base/check.h"
-#include "master/dispatch/hello_check.h"
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
@@ -24,6 +22,7 @@ constexpr milliseconds kLongestWait{100};  // so that silence and pool deaths ar
 // often too.
 constexpr milliseconds kLookEvery{50};
 constexpr std::size_t kLongestHello = 1U << 20;  // bytes; what is longer is not even parsed for a stranger
+constexpr std::uint32_t kMaxSlots = 4096;        // of a worker
 // What a process said just before its end, its goodbye above all, is heard first.
 constexpr milliseconds kLastWords{200};
 
@@ -40,6 +39,39 @@ std::string ListRuns(const std::vector<RunId>& runs) {
 Fence FirstFence(std::uint64_t epoch) {
   GAUNTLET_CHECK(epoch >= 1 && epoch < (1ULL << 32), fmt::format("epoch {} does not fit 32 bits", epoch));
   return epoch << 32;
+}
+
+// Why the worker that says this may not work for this campaign, as a sentence for its log and ours; "" when
+// it may.
+std::string ReasonToRefuse(const proto::Hello& hello, const CampaignIdentity& identity) {
+  if (hello.protocol_version != proto::kProtocolVersion) {
+    return fmt::format(
+        "this worker speaks protocol version {}, this master speaks {}: use gauntlet-worker {}",
+        hello.protocol_version, proto::kProtocolVersion, identity.software_version);
+  }
+  if (hello.campaign_id != identity.campaign_id) {
+    return fmt::format("this worker belongs to campaign '{}', this master serves campaign '{}'",
+                       Shorten(hello.campaign_id), identity.campaign_id);
+  }
+  if (hello.software_version != identity.software_version) {
+    return fmt::format("this worker has software version {}, this master has {}",
+                       Shorten(hello.software_version), identity.software_version);
+  }
+  if (const auto difference = proto::FirstDifference(identity.golden_hashes, hello.golden_hashes)) {
+    if (!difference->offered) {
+      return fmt::format("this worker was built without the controller '{}', which the campaign uses",
+                         difference->controller);
+    }
+    return fmt::format(
+        "this worker's golden hash of controller '{}' is {:016x}, the campaign's is {:016x}: the same runs "
+        "end differently on its machine, so its results cannot be mixed with the others",
+        difference->controller, *difference->offered, difference->needed);
+  }
+  if (hello.instance_id == 0) return "this worker has instance id 0; it must be a random number";
+  if (hello.slots < 1 || hello.slots > kMaxSlots) {
+    return fmt::format("this worker has {} slots; 1 to {} are possible", hello.slots, kMaxSlots);
+  }
+  return "";
 }
 
 proto::Drain Farewell() {

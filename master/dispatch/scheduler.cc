@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 
 #include "base/check.h"
 #include "base/hash.h"
@@ -52,7 +51,11 @@ void Scheduler::Advance(TimePoint now) {
     listening_ += passed;
     last_now_ = now;
     if (leasing_ && next_fence_ > first_fence_) {
-      usage_.Pass(std::chrono::duration<double>(passed).count(), queue_.empty());
+      const double seconds = std::chrono::duration<double>(passed).count();
+      const double idle = seconds * static_cast<double>(slots_ - busy_);
+      statistics_.slot_seconds += seconds * static_cast<double>(slots_);
+      statistics_.idle_seconds += idle;
+      if (queue_.empty()) statistics_.barrier_seconds += idle;
     }
   }
 }
@@ -176,7 +179,7 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
     if (holds(fence) || listening_ - lease.granted < grace) continue;
     const RunId run = lease.run;
     EndLease(fence);
-    if (Requeue(run, runs_.at(run))) ++releases_;
+    if (Requeue(run, runs_.at(run))) ++statistics_.releases;
   }
   for (const Fence fence : std::vector<Fence>(worker.loose)) {
     Lease& lease = leases_.at(fence);
@@ -207,7 +210,10 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
 }
 
 void Scheduler::Count(Worker& worker) {
-  usage_.Set(worker.usage, worker.lost || worker.draining ? 0 : worker.slots, worker.live.size());
+  const std::uint32_t slots = worker.lost || worker.draining ? 0 : worker.slots;
+  const auto busy = static_cast<std::uint32_t>(std::min<std::size_t>(slots, worker.live.size()));
+  slots_ = slots_ - std::exchange(worker.counted_slots, slots) + slots;
+  busy_ = busy_ - std::exchange(worker.counted_busy, busy) + busy;
 }
 
 void Scheduler::List(InstanceId id, Worker& worker) {
@@ -269,13 +275,13 @@ std::vector<RunId> Scheduler::ReleaseAll(Worker& worker) {
     Loosen(fence, lease, LeaseState::kOrphaned);
     if (Requeue(lease.run, runs_.at(lease.run))) released.push_back(lease.run);
   }
-  releases_ += released.size();
+  statistics_.releases += released.size();
   return released;
 }
 
 void Scheduler::Lose(InstanceId id, Worker& worker) {
   worker.lost = true;
-  ++lost_;
+  ++statistics_.lost;
   Unlist(id, worker);
   Count(worker);
   orders_.lost.push_back({id, ReleaseAll(worker)});
@@ -298,15 +304,15 @@ void Scheduler::Finish(RunId id, Run& run, InstanceId worker, Fence fence) {
     run.spec = {};
     return;
   }
-  ++audits_open_;
+  ++statistics_.audits_open;
   audits_.insert(id);
 }
 
 Answer Scheduler::CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash) {
-  ++duplicates_;
+  ++statistics_.duplicates;
   orders_.acknowledgements.push_back({worker, fence});
   if (run.given_up || run.hash != hash) {
-    ++mismatches_;
+    ++statistics_.nondeterministic;
     orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, hash});
   }
   if (run.audit && (worker != run.finished_by || Alone(worker))) EndAudit(id, run, worker);
@@ -363,7 +369,7 @@ Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const proto::
   if (run.finished) {
     if (run.audit && failure.kind != proto::FailureKind::kExternal &&
         ++run.audit_failures >= options_.attempts) {
-      ++mismatches_;
+      ++statistics_.nondeterministic;
       orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, 0});
       EndAudit(id, run, worker);
     }
@@ -407,12 +413,12 @@ std::uint32_t Scheduler::LeasesOf(RunId run) const {
 }
 
 void Scheduler::EndAudit(RunId id, Run& run, InstanceId by) {
-  if (by == run.finished_by) ++audited_alone_;
+  if (by == run.finished_by) ++statistics_.audits_alone;
   run.audit = false;
   run.spec = {};
   audits_.erase(id);
-  --audits_open_;
-  ++audited_;
+  --statistics_.audits_open;
+  ++statistics_.audits;
 }
 
 void Scheduler::ForgetIfDone(RunId id) {

@@ -17,6 +17,7 @@
 #include <deque>
 #include <map>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -25,7 +26,6 @@
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/dispatch/scheduler_orders.h"
-#include "master/dispatch/slot_usage.h"
 
 namespace gauntlet::master {
 
@@ -97,8 +97,7 @@ class Scheduler {
     double length = 0.0;
     RunId run = 0;
     bool operator<(const Place& other) const {
-      if (batch != other.batch) return batch < other.batch;
-      return length != other.length ? length > other.length : run < other.run;
+      return std::tie(batch, other.length, run) < std::tie(other.batch, length, other.run);
     }
   };
   struct Run {
@@ -129,7 +128,9 @@ class Scheduler {
     bool draining = false;
     bool blocked = false;  // the last lease could not be delivered
     bool filled = false;   // was given as many leases as it may have, and has not worked off half of them
-    SlotUsage::Share usage;
+    // Its part in the sums slots_ and busy_.
+    std::uint32_t counted_slots = 0;
+    std::uint32_t counted_busy = 0;
     // Its place in available_, when it has one.
     bool listed = false;
     std::uint32_t level = 0;
@@ -178,7 +179,6 @@ class Scheduler {
   std::uint64_t batch_ = 0;
   std::size_t unfinished_ = 0;
   std::set<RunId> audits_;  // finished runs that wait for their second lease
-  std::size_t audits_open_ = 0;
   std::unordered_map<Fence, Lease> leases_;
   std::map<InstanceId, Worker> workers_;
   // Workers that can take a lease, least loaded first: (live leases / slots, id).
@@ -186,14 +186,10 @@ class Scheduler {
   // Stored runs of which some lease was never answered, by the time they were stored.
   std::deque<std::pair<Duration, RunId>> loose_ends_;
   SchedulerOrders orders_;
-  int lost_ = 0;
-  std::uint64_t releases_ = 0;
-  std::uint64_t duplicates_ = 0;
-  std::uint64_t mismatches_ = 0;
-  std::uint64_t copies_ = 0;
-  std::uint64_t audited_ = 0;
-  std::uint64_t audited_alone_ = 0;
-  SlotUsage usage_;
+  WorkerStatistics statistics_;  // all but the workers at the moment
+  // Of workers that are neither lost nor leaving: slots, and those of them that have a lease.
+  std::uint64_t slots_ = 0;
+  std::uint64_t busy_ = 0;
 };
 
 }  // namespace gauntlet::master

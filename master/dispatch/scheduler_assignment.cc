@@ -76,7 +76,7 @@ void Scheduler::AssignCopies() {
       return place.second != one.owner && worker.live.size() < worker.slots;
     });
     if (idle == available_.end()) return;
-    ++copies_;
+    ++statistics_.copies;
     Grant(idle->second, one.run);
   }
 }

@@ -30,23 +30,12 @@ std::vector<std::pair<InstanceId, WorkerView>> Scheduler::DescribeWorkers() cons
 }
 
 WorkerStatistics Scheduler::Statistics() const {
-  WorkerStatistics statistics;
+  WorkerStatistics statistics = statistics_;
   for (const auto& [id, worker] : workers_) {
     if (worker.lost) continue;
     ++statistics.connected;
     if (!worker.live.empty()) ++statistics.busy;
   }
-  statistics.lost = lost_;
-  statistics.releases = releases_;
-  statistics.duplicates = duplicates_;
-  statistics.nondeterministic = mismatches_;
-  statistics.copies = copies_;
-  statistics.audits = audited_;
-  statistics.audits_alone = audited_alone_;
-  statistics.audits_open = audits_open_;
-  statistics.slot_seconds = usage_.slot_seconds();
-  statistics.idle_seconds = usage_.idle_seconds();
-  statistics.barrier_seconds = usage_.barrier_seconds();
   return statistics;
 }
 

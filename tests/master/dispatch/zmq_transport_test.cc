@@ -14,6 +14,7 @@
 #include <thread>
 #include <zmq.hpp>
 
+#include "proto/access_file.h"
 #include "tests/support/process.h"
 
 namespace gauntlet::master {
@@ -203,12 +204,13 @@ TEST(CurveKeysTest, KnowsWhichEndpointsOnlyThisMachineReaches) {
 
 TEST(CurveKeysTest, KeysAreFreshAndHaveTheirForm) {
   const CurveKeyPair keys = NewCurveKeyPair();
-  EXPECT_TRUE(IsCurveKey(keys.public_key));
-  EXPECT_TRUE(IsCurveKey(keys.secret_key));
+  EXPECT_TRUE(proto::IsCurveKey(keys.public_key));
+  EXPECT_TRUE(proto::IsCurveKey(keys.secret_key));
   EXPECT_NE(NewCurveKeyPair(), keys);
-  for (const char* wrong : {"", "short", "0123456789012345678901234567890123456789x",
-                            "\"123456789012345678901234567890123456789"}) {
-    EXPECT_FALSE(IsCurveKey(wrong)) << wrong;
+  for (const char* wrong :
+       {"", "short", "0123456789012345678901234567890123456789x", "\"123456789012345678901234567890123456789",
+        "########################################"}) {
+    EXPECT_FALSE(proto::IsCurveKey(wrong)) << wrong;
   }
 }
 
