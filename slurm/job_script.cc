@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <map>
+#include <regex>
+#include <set>
 
 #include "base/shell_quoted.h"
 #include "slurm/job_status.h"
@@ -9,44 +11,32 @@
 namespace gauntlet::slurm {
 namespace {
 
-using Values = std::map<std::string, std::string, std::less<>>;
-
-bool IsNameCharacter(char c) {
-  return (c >= 'A' && c <= 'Z') || c == '_';
-}
+using Values = std::map<std::string, std::string>;
 
 // What a template need not name.
 constexpr std::string_view kOptionalName = "MARGIN";
 
-// Replaces each @NAME@ that is known; "@" in other places (--signal=B:TERM@120) stands.
+// Replaces each @NAME@; "@" in other places (--signal=B:TERM@120) stands.
 Result<std::string> Fill(std::string_view text, const Values& values) {
+  static const std::regex kName("@([A-Z_]+)@");
   std::string result;
-  std::map<std::string_view, bool> used;
-  for (const auto& [name, value] : values) used[name] = false;
-  while (!text.empty()) {
-    const std::size_t at = text.find('@');
-    result += text.substr(0, at);
-    if (at == std::string_view::npos) break;
-    text.remove_prefix(at + 1);
-    const auto end =
-        static_cast<std::size_t>(std::find_if_not(text.begin(), text.end(), IsNameCharacter) - text.begin());
-    const std::string_view name = text.substr(0, end);
-    if (end == 0 || end == text.size() || text[end] != '@') {
-      result += '@';
-      continue;
-    }
+  std::set<std::string> used;
+  const char* rest = text.data();
+  const char* end = text.data() + text.size();
+  for (std::cregex_iterator match(rest, end, kName); match != std::cregex_iterator(); ++match) {
+    const std::string name = match->str(1);
     const auto value = values.find(name);
     if (value == values.end())
-      return InvalidInput("the job template names @" + std::string(name) + "@, which is not known");
-    result += value->second;
-    used[value->first] = true;
-    text.remove_prefix(end + 1);
+      return InvalidInput("the job template names @" + name + "@, which is not known");
+    result.append(rest, (*match)[0].first).append(value->second);
+    used.insert(name);
+    rest = (*match)[0].second;
   }
-  for (const auto& [name, was_used] : used) {
-    if (!was_used && name != kOptionalName)
-      return InvalidInput("the job template lacks @" + std::string(name) + "@");
+  for (const auto& [name, value] : values) {
+    if (!used.contains(name) && name != kOptionalName)
+      return InvalidInput("the job template lacks @" + name + "@");
   }
-  return result;
+  return result.append(rest, end);
 }
 
 bool IsBroken(const std::string& text) {

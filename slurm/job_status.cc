@@ -1,16 +1,15 @@
 #include "slurm/job_status.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
+#include <initializer_list>
 #include <optional>
+#include <regex>
 
 namespace gauntlet::slurm {
 namespace {
 
-template <std::size_t N>
-bool IsOneOf(std::string_view word, const std::array<std::string_view, N>& words) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+bool IsOneOf(std::string_view word, std::initializer_list<std::string_view> words) {
+  return std::ranges::find(words, word) != words.end();
 }
 
 std::string_view Trimmed(std::string_view text) {
@@ -28,76 +27,39 @@ std::string_view TakeUntil(std::string_view& text, char separator) {
   return first;
 }
 
-std::optional<long> Digits(std::string_view text) {
-  constexpr std::size_t kMostDigits = 9;
-  if (text.empty() || text.size() > kMostDigits) return std::nullopt;
-  long value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || value < 0) return std::nullopt;
-  return value;
-}
-
+// D-H:M:S, H:M:S, M:S or M; after days, minutes and seconds may be left out.
 std::optional<long> SecondsOf(std::string_view text) {
-  long days = 0;
-  const bool with_days = text.find('-') != std::string_view::npos;
-  if (with_days) {
-    const std::optional<long> value = Digits(TakeUntil(text, '-'));
-    if (!value) return std::nullopt;
-    days = *value;
-  }
-  std::array<long, 3> fields{};
-  std::size_t count = 0;
-  bool more = true;
-  while (more) {
-    if (count == fields.size()) return std::nullopt;
-    more = text.find(':') != std::string_view::npos;
-    const std::optional<long> value = Digits(TakeUntil(text, ':'));
-    if (!value) return std::nullopt;
-    fields[count++] = *value;
-  }
+  static const std::regex kForm(R"((?:(\d{1,9})-)?(\d{1,9})(?::(\d{1,9}))?(?::(\d{1,9}))?)");
+  std::cmatch match;
+  if (!std::regex_match(text.data(), text.data() + text.size(), match, kForm)) return std::nullopt;
+  const auto field = [&](std::size_t i) { return match[i].matched ? std::stol(match.str(i)) : 0L; };
   constexpr long kMinute = 60;
   constexpr long kHour = 60 * kMinute;
   constexpr long kDay = 24 * kHour;
-  if (with_days) return days * kDay + fields[0] * kHour + fields[1] * kMinute + fields[2];
-  if (count == 1) return fields[0] * kMinute;
-  if (count == 2) return fields[0] * kMinute + fields[1];
-  return fields[0] * kHour + fields[1] * kMinute + fields[2];
+  if (match[1].matched || match[4].matched)
+    return field(1) * kDay + field(2) * kHour + field(3) * kMinute + field(4);
+  return field(2) * kMinute + field(3);
 }
 
 }  // namespace
 
 JobPhase PhaseOf(std::string_view state) {
-  static constexpr std::array<std::string_view, 5> kQueued = {"PENDING", "REQUEUED", "REQUEUE_FED",
-                                                              "REQUEUE_HOLD", "SPECIAL_EXIT"};
-  static constexpr std::array<std::string_view, 6> kRunning = {"RUNNING", "CONFIGURING", "SUSPENDED",
-                                                               "STOPPED", "SIGNALING",   "RESIZING"};
-  static constexpr std::array<std::string_view, 2> kEnding = {"COMPLETING", "STAGE_OUT"};
-  static constexpr std::array<std::string_view, 10> kEnded = {
-      "COMPLETED", "FAILED",    "CANCELLED", "TIMEOUT", "NODE_FAIL",
-      "PREEMPTED", "BOOT_FAIL", "DEADLINE",  "REVOKED", "OUT_OF_MEMORY"};
-  if (IsOneOf(state, kQueued)) return JobPhase::kQueued;
-  if (IsOneOf(state, kRunning)) return JobPhase::kRunning;
-  if (IsOneOf(state, kEnding)) return JobPhase::kEnding;
-  if (IsOneOf(state, kEnded)) return JobPhase::kEnded;
+  if (IsOneOf(state, {"PENDING", "REQUEUED", "REQUEUE_FED", "REQUEUE_HOLD", "SPECIAL_EXIT"}))
+    return JobPhase::kQueued;
+  if (IsOneOf(state, {"RUNNING", "CONFIGURING", "SUSPENDED", "STOPPED", "SIGNALING", "RESIZING"}))
+    return JobPhase::kRunning;
+  if (IsOneOf(state, {"COMPLETING", "STAGE_OUT"})) return JobPhase::kEnding;
+  if (IsOneOf(state, {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "PREEMPTED", "BOOT_FAIL",
+                      "DEADLINE", "REVOKED", "OUT_OF_MEMORY"}))
+    return JobPhase::kEnded;
   return JobPhase::kUnknown;
 }
 
 bool NeverStarts(std::string_view reason) {
-  static constexpr std::array<std::string_view, 14> kReasons = {"PartitionNodeLimit",
-                                                                "PartitionTimeLimit",
-                                                                "PartitionConfig",
-                                                                "BadConstraints",
-                                                                "DependencyNeverSatisfied",
-                                                                "JobHeldUser",
-                                                                "JobHeldAdmin",
-                                                                "InvalidAccount",
-                                                                "InvalidQOS",
-                                                                "AccountNotAllowed",
-                                                                "QOSNotAllowed",
-                                                                "JobLaunchFailure",
-                                                                "launch failed requeued held",
-                                                                "launch_failed_requeued_held"};
-  return IsOneOf(reason, kReasons);
+  return IsOneOf(reason, {"PartitionNodeLimit", "PartitionTimeLimit", "PartitionConfig", "BadConstraints",
+                          "DependencyNeverSatisfied", "JobHeldUser", "JobHeldAdmin", "InvalidAccount",
+                          "InvalidQOS", "AccountNotAllowed", "QOSNotAllowed", "JobLaunchFailure",
+                          "launch failed requeued held", "launch_failed_requeued_held"});
 }
 
 Result<std::vector<JobStatus>> ParseQueue(std::string_view text) {

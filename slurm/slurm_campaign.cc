@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <filesystem>
 #include <random>
 #include <utility>
@@ -19,8 +20,7 @@ namespace {
 constexpr std::size_t kMostTemplateBytes = 1 << 20;
 
 bool MayStandInAJobName(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '_' ||
-         c == '-';
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-';
 }
 
 std::string AsJobName(std::string text) {

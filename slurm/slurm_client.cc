@@ -1,7 +1,7 @@
 #include "slurm/slurm_client.h"
 
-#include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "base/system/process_call.h"
 
@@ -11,15 +11,12 @@ namespace {
 // "sbatch: error: Batch job submission failed: Invalid account" without the lines' prefixes, in one line.
 std::string WordsOf(const std::string& program, const std::string& text) {
   std::string words;
-  std::size_t begin = 0;
-  while (begin < text.size()) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    std::string line = text.substr(begin, end - begin);
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
     for (const std::string& prefix : {program + ": ", std::string("error: ")}) {
       if (line.starts_with(prefix)) line.erase(0, prefix.size());
     }
     if (!line.empty()) words += (words.empty() ? "" : "; ") + line;
-    begin = end + 1;
   }
   return words.empty() ? "it gave no reason" : words;
 }

@@ -86,20 +86,17 @@ SlurmKey Number(std::string_view name, std::string_view description, std::int64_
 
 // "--exclusive --comment=a b" is two options: one begins at each dash that follows a blank.
 std::vector<std::string> SplitOptions(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t\n";
   std::vector<std::string> options;
-  std::string option;
-  const auto finish = [&] {
-    const std::size_t end = option.find_last_not_of(" \t\n");
-    if (end != std::string::npos) options.push_back(option.substr(0, end + 1));
-    option.clear();
-  };
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool blank_before = i > 0 && (text[i - 1] == ' ' || text[i - 1] == '\n' || text[i - 1] == '\t');
-    if (text[i] == '-' && blank_before) finish();
-    if (option.empty() && (text[i] == ' ' || text[i] == '\n' || text[i] == '\t')) continue;
-    option += text[i];
+  for (std::size_t begin = text.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+    std::size_t end = begin;
+    do {
+      end = text.find('-', end + 1);
+    } while (end != std::string_view::npos && kBlanks.find(text[end - 1]) == std::string_view::npos);
+    const std::string_view option = text.substr(begin, end - begin);
+    options.emplace_back(option.substr(0, option.find_last_not_of(kBlanks) + 1));
+    begin = end;
   }
-  finish();
   return options;
 }
 

@@ -14,24 +14,23 @@
 namespace gauntlet::worker {
 namespace {
 
-constexpr const char* kDescription =
-    "Simulates runs for a Gauntlet master.\n\n"
-    "A worker looks for its master in the campaign's access.json, takes leases, simulates every run in a "
-    "child\n"
-    "process under limits, and hands the results in. When the master goes away the worker keeps what it has "
-    "and\n"
-    "looks for the master's successor in the same file. SIGTERM or Ctrl-C lets it finish the current runs "
-    "and\n"
-    "leave; a second one drops them.\n";
+constexpr const char* kDescription = R"(Simulates runs for a Gauntlet master.
 
-constexpr const char* kFooter =
-    "\nExit codes: 0 done (drained, or let go by the master); 2 wrong command line, or refused by the "
-    "master;\n"
-    "3 no master within the orphan timeout; 4 internal error.\n\n"
-    "Examples:\n"
-    "  gauntlet-worker --dir campaigns/flocking-1            serve the campaign in that directory\n"
-    "  gauntlet-worker --access /shared/access.json --slots 8\n"
-    "  gauntlet-worker --run-spec spec.bin > result.bin      simulate one stored spec\n";
+A worker looks for its master in the campaign's access.json, takes leases, simulates every run in a child
+process under limits, and hands the results in. When the master goes away the worker keeps what it has and
+looks for the master's successor in the same file. SIGTERM or Ctrl-C lets it finish the current runs and
+leave; a second one drops them.
+)";
+
+constexpr const char* kFooter = R"(
+Exit codes: 0 done (drained, or let go by the master); 2 wrong command line, or refused by the master;
+3 no master within the orphan timeout; 4 internal error.
+
+Examples:
+  gauntlet-worker --dir campaigns/flocking-1            serve the campaign in that directory
+  gauntlet-worker --access /shared/access.json --slots 8
+  gauntlet-worker --run-spec spec.bin > result.bin      simulate one stored spec
+)";
 
 // CLI::Range lets "nan" through.
 CLI::Validator Seconds() {

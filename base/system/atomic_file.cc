@@ -34,18 +34,6 @@ std::string DirectoryOf(const std::string& path) {
   return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
 }
 
-}  // namespace
-
-Error SystemError(const std::string& what, int error_number) {
-  ErrorKind kind = ErrorKind::kIo;
-  if (error_number == ENOSPC || error_number == EDQUOT) kind = ErrorKind::kNoSpace;
-  if (error_number == ENOENT) kind = ErrorKind::kNotFound;
-  const char* hint = kind == ErrorKind::kNoSpace ? "the disk is full: " : "";
-  return {kind, fmt::format("{}{}: {}", hint, what, std::strerror(error_number))};
-}
-
-namespace {
-
 Status Replace(const std::string& path, std::string_view bytes, mode_t mode, bool durable) {
   const std::string directory = DirectoryOf(path);
   std::string temporary = path + ".XXXXXX";
@@ -64,6 +52,14 @@ Status Replace(const std::string& path, std::string_view bytes, mode_t mode, boo
 }
 
 }  // namespace
+
+Error SystemError(const std::string& what, int error_number) {
+  ErrorKind kind = ErrorKind::kIo;
+  if (error_number == ENOSPC || error_number == EDQUOT) kind = ErrorKind::kNoSpace;
+  if (error_number == ENOENT) kind = ErrorKind::kNotFound;
+  const char* hint = kind == ErrorKind::kNoSpace ? "the disk is full: " : "";
+  return {kind, fmt::format("{}{}: {}", hint, what, std::strerror(error_number))};
+}
 
 Status SyncDirectory(const std::string& directory) {
   const UniqueFd fd(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <system_error>
 
@@ -34,9 +35,7 @@ std::string TargetOf(const char* link) {
 // field is the program's name in parentheses, which may hold anything.
 std::string StatFromState(const std::string& path) {
   std::ifstream file(path);
-  std::ostringstream stat;
-  if (!(stat << file.rdbuf())) return "";
-  const std::string text = stat.str();
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::size_t name_end = text.rfind(") ");
   return name_end == std::string::npos ? "" : text.substr(name_end + 2);
 }

@@ -1,31 +1,17 @@
 #include "master/dispatch/connection_watch.h"
 
-#include <dirent.h>
 #include <linux/tcp.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <charconv>
-#include <cstring>
-#include <memory>
+#include <filesystem>
+#include <string>
+#include <system_error>
 #include <utility>
 
 namespace gauntlet::master {
-namespace {
-
-struct CloseDirectory {
-  void operator()(DIR* directory) const { closedir(directory); }
-};
-
-// -1 for "." and "..".
-int NumberOf(const char* name) {
-  int number = -1;
-  std::from_chars(name, name + std::strlen(name), number);
-  return number;
-}
-
-}  // namespace
 
 void ConnectionWatch::Completed(int fd) {
   if (fd < 0) return;
@@ -35,12 +21,15 @@ void ConnectionWatch::Completed(int fd) {
 }
 
 int ConnectionWatch::Check() {
-  const std::unique_ptr<DIR, CloseDirectory> directory(opendir("/proc/self/fd"));
-  if (directory == nullptr) return 0;  // no descriptor is left; those who connect now are closed by ZeroMQ
+  std::error_code error;
+  std::filesystem::directory_iterator entry("/proc/self/fd", error);
+  if (error) return 0;  // no descriptor is left; those who connect now are closed by ZeroMQ
   std::unordered_map<int, Connection> present;
   int closed = 0;
-  while (const dirent* entry = readdir(directory.get())) {
-    const int fd = NumberOf(entry->d_name);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
+    int fd = -1;
+    const std::string name = entry->path().filename();
+    std::from_chars(name.data(), name.data() + name.size(), fd);
     sockaddr_in local{};
     socklen_t length = sizeof local;
     if (fd < 0 || getsockname(fd, reinterpret_cast<sockaddr*>(&local), &length) != 0) continue;
