@@ -1,7 +1,6 @@
 #include "controllers/examples/light_flocking_scenario.h"
 
 #include <algorithm>
-#include <memory>
 #include <string>
 #include <utility>
 

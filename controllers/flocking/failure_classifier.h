@@ -2,7 +2,6 @@
 // angle and the relative speed of the two clusters (thesis 4.4).
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 

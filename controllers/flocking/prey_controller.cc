@@ -1,6 +1,5 @@
 #include "controllers/flocking/prey_controller.h"
 
-#include <cmath>
 #include <utility>
 
 #include "base/check.h"

@@ -1,6 +1,5 @@
 #include "controllers/partitioning/partitioning_controller.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "controllers/common/nest_and_food.h"

@@ -1,6 +1,5 @@
 #include "controllers/partitioning/partitioning_record.h"
 
-#include <algorithm>
 
 namespace gauntlet::controllers {
 namespace {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
-#include <string>
 #include <utility>
 
 #include "base/number_text.h"

@@ -1,7 +1,6 @@
 // Ctrl-C and SIGTERM: the first asks the campaign to stop cleanly, the second ends the process at once.
 #pragma once
 
-#include <csignal>
 
 namespace gauntlet::master {
 

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 #include "sim/arena/color.h"
 #include "sim/run_spec.h"

@@ -3,7 +3,6 @@
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/spdlog.h>
 
-#include <memory>
 #include <utility>
 
 namespace gauntlet::master {

@@ -1,6 +1,5 @@
 #include "master/session/search_loop.h"
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>

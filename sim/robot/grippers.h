@@ -2,7 +2,6 @@
 // from and where they go is the scenario's business, which moves them between physics and sensing.
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "base/check.h"

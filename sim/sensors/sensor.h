@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "sim/arena/arena.h"
 #include "sim/robot/disturber.h"
