@@ -1,6 +1,5 @@
 #include "controllers/partitioning/partitioning_record.h"
 
-
 namespace gauntlet::controllers {
 namespace {
 
