@@ -1,6 +1,7 @@
 // Ctrl-C and SIGTERM: the first asks the campaign to stop cleanly, the second ends the process at once.
 #pragma once
 
+#include <csignal>
 
 namespace gauntlet::master {
 
