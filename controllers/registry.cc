@@ -40,7 +40,8 @@ double ScenarioInfo::TimeLimit(const sim::Parameters& given) const {
 
 std::span<const ScenarioInfo> Scenarios() {
   static const std::array scenarios = {FlockingScenarioInfo(), ForagingScenarioInfo(),
-                                       PartitioningScenarioInfo(), LightFlockingScenarioInfo()};
+                                       PartitioningScenarioInfo(),
+                                       light_flocking::LightFlockingScenarioInfo()};
   return scenarios;
 }
 
@@ -48,7 +49,7 @@ std::span<const ControllerInfo> Controllers() {
   static const std::vector<ControllerInfo> controllers = [] {
     std::vector<ControllerInfo> all;
     for (const auto& behaviour : {FlockingControllers(), ForagingControllers(), PartitioningControllers(),
-                                  LightFlockingControllers()}) {
+                                  light_flocking::LightFlockingControllers()}) {
       all.insert(all.end(), behaviour.begin(), behaviour.end());
     }
     return all;

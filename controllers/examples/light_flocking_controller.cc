@@ -7,7 +7,7 @@
 #include "controllers/examples/light_flocking_scenario.h"
 #include "sim/geometry/trigonometry.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 namespace {
 
 using sim::Vec2;
@@ -89,4 +89,4 @@ void LightFlockingController::Drive(const Vec2& velocity, sim::Actuators& actuat
   actuators.right_wheel = bearing > 0.0 ? outer : inner;
 }
 
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

@@ -6,7 +6,7 @@
 
 #include "sim/robot/controller.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 
 struct LightFlockingSettings {
   double target_distance = 0.0;  // m, where flockmates neither attract nor repel
@@ -52,4 +52,4 @@ class LightFlockingController : public sim::Controller {
   Turning turning_ = Turning::kNone;
 };
 
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 
 double MeanDistance(std::span<const sim::Vec2> robots, const sim::Vec2& point) {
   if (robots.empty()) return 0.0;
@@ -49,4 +49,4 @@ double ShareStopped(const std::vector<std::vector<sim::Vec2>>& samples, double t
   return static_cast<double>(stopped) / static_cast<double>(robots);
 }
 
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

@@ -7,7 +7,7 @@
 
 #include "sim/arena/arena.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 
 // Mean distance of the robots from `point`, m; 0 of nobody.
 double MeanDistance(std::span<const sim::Vec2> robots, const sim::Vec2& point);
@@ -21,4 +21,4 @@ int CountClusters(std::span<const sim::Vec2> robots, const sim::Arena& arena, do
 // sample has them; 0 of nobody.
 double ShareStopped(const std::vector<std::vector<sim::Vec2>>& samples, double threshold);
 
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

@@ -4,7 +4,7 @@
 
 #include "sim/geometry/trigonometry.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 namespace {
 
 using sim::kDegree;
@@ -97,4 +97,4 @@ std::span<const ControllerInfo> LightFlockingControllers() {
   return rows;
 }
 
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

@@ -7,7 +7,7 @@
 #include "controllers/examples/light_flocking_controller.h"
 #include "controllers/examples/light_flocking_scenario.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 
 const ScenarioInfo& LightFlockingScenarioInfo();
 std::span<const ControllerInfo> LightFlockingControllers();
@@ -18,4 +18,4 @@ const ParameterTable<LightFlockingSettings>& LightFlockingParameters();
 // The robots of the example, as its row makes them.
 ControllerFactory MakeLightFlockers(const LightFlockingSettings& settings);
 
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

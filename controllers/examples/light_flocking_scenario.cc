@@ -7,7 +7,7 @@
 #include "controllers/examples/light_flocking_metrics.h"
 #include "sim/arena/spawn.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 namespace {
 
 constexpr int kMaxRobots = 100;  // also the largest value of the parameter `robots`
@@ -95,4 +95,4 @@ sim::Outcome LightFlockingScenario::Evaluate(const sim::Observer& observer) {
   return outcome;
 }
 
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

@@ -9,7 +9,7 @@
 #include "controllers/common/corners.h"
 #include "sim/scenario.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 
 struct LightFlockingScenarioSettings : CornerToCorner {
   int robots = 0;
@@ -54,4 +54,4 @@ class LightFlockingScenario : public sim::Scenario {
   std::vector<sim::Pose> given_poses_;
 };
 
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

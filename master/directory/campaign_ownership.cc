@@ -1,6 +1,5 @@
 #include "master/directory/campaign_ownership.h"
 
-
 #include <chrono>
 #include <filesystem>
 #include <thread>

@@ -20,8 +20,8 @@ namespace gauntlet::master {
 
 struct SearchRow {
   SearchInfo info;  // what experiments may say of it: name, keys, rules between them
-  // Part of the key of its random numbers; 0 to 2 are taken. Searches that share one begin with the same
-  // random cases. Stored campaigns depend on it: do not renumber.
+  // Part of the key of its random numbers: take the next that no row has. Searches that share one begin with
+  // the same random cases. Stored campaigns depend on it: do not renumber.
   std::uint32_t number = 0;
   std::string_view title;    // "genetic search"
   std::string_view members;  // of what its population consists: "population", "cases"

@@ -20,7 +20,7 @@ enum class StreamPurpose : std::uint32_t {
   kVariation = 5,  // shuffling, crossover, mutation
   kTest = 6,
   kStatistics = 7,         // bootstrap
-  kFirstDeviceNoise = 16,  // to 47: one for each device (sim/sensors/disturber.h)
+  kFirstDeviceNoise = 16,  // to 47: one for each device (sim/robot/disturber.h)
 };
 
 // Draws from one stream. Copying copies the position. Not for sharing between threads.

@@ -1,5 +1,6 @@
 // What all sensors have in common. To add one: a row in robot/devices.h, its reading in robot/controller.h, a
-// class like the others here with its Make below, and a row in sensor_suite.cc.
+// class with its Make in a header and a source of its own (it overrides Disturb when the device may be
+// noisy), and a row in sensor_suite.cc, which includes that header.
 #pragma once
 
 #include <memory>

@@ -51,8 +51,8 @@ TEST(ParameterTables, EveryRowChangesTheSettings) {
   ExpectEveryRowFills(StaticPartitionerParameters());
   ExpectEveryRowFills(BugPartitionerParameters());
   ExpectEveryRowFills(DynamicPartitionerParameters());
-  ExpectEveryRowFills(LightFlockingScenarioParameters());
-  ExpectEveryRowFills(LightFlockingParameters());
+  ExpectEveryRowFills(light_flocking::LightFlockingScenarioParameters());
+  ExpectEveryRowFills(light_flocking::LightFlockingParameters());
 }
 
 struct Idle {

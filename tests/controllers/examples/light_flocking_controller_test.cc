@@ -10,7 +10,7 @@
 #include "controllers/registry.h"
 #include "sim/geometry/trigonometry.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 namespace {
 
 using sim::Blob;
@@ -124,4 +124,4 @@ TEST(LightFlockingController, ATurnOnTheSpotGoesOnDownToSeventyDegrees) {
 }
 
 }  // namespace
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

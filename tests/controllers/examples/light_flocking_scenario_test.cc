@@ -6,7 +6,7 @@
 #include "tests/controllers/run_support.h"
 #include "worker/run_executor.h"
 
-namespace gauntlet::controllers {
+namespace gauntlet::controllers::light_flocking {
 namespace {
 
 using sim::Vec2;
@@ -56,4 +56,4 @@ TEST(LightFlockingScenario, AWallBeforeTheLightKeepsItInTheDark) {
 }
 
 }  // namespace
-}  // namespace gauntlet::controllers
+}  // namespace gauntlet::controllers::light_flocking

@@ -21,7 +21,7 @@ namespace gauntlet::golden {
 namespace {
 
 namespace fs = std::filesystem;
-using controllers::LightFlockingScenario;
+using controllers::light_flocking::LightFlockingScenario;
 
 const sim::Vec2 kLight(-2.5, -2.5);
 constexpr sim::Tick kStoppedFrom = kLastTick - LightFlockingScenario::kStoppedTicks;
@@ -72,9 +72,10 @@ Ending EndingOf(const std::map<sim::Tick, std::vector<sim::Pose>>& poses, const 
   for (sim::Tick tick = kStoppedFrom; tick <= kLastTick; tick += kSampleTicks) {
     late.push_back(PositionsOf(poses.at(tick)));
   }
-  return {.light_distance = controllers::MeanDistance(late.back(), kLight),
-          .stopped = controllers::ShareStopped(late, LightFlockingScenario::kStopped),
-          .clusters = static_cast<double>(controllers::CountClusters(late.back(), arena, link_range))};
+  return {.light_distance = controllers::light_flocking::MeanDistance(late.back(), kLight),
+          .stopped = controllers::light_flocking::ShareStopped(late, LightFlockingScenario::kStopped),
+          .clusters = static_cast<double>(
+              controllers::light_flocking::CountClusters(late.back(), arena, link_range))};
 }
 
 double Mean(const std::vector<double>& values) {
@@ -132,11 +133,11 @@ CaseComparison Compare(const SwarmCase& swarm_case) {
   const auto defaults = [](const auto& table) {
     return table.Read(*controllers::ResolveParameters(table.infos(), {}));
   };
-  const controllers::ControllerFactory flockers =
-      controllers::MakeLightFlockers(defaults(controllers::LightFlockingParameters()));
+  const controllers::ControllerFactory flockers = controllers::light_flocking::MakeLightFlockers(
+      defaults(controllers::light_flocking::LightFlockingParameters()));
   LightFlockingScenario scenario(swarm_case.test_case,
-                                 defaults(controllers::LightFlockingScenarioParameters()), flockers,
-                                 swarm_case.argos.at(0));
+                                 defaults(controllers::light_flocking::LightFlockingScenarioParameters()),
+                                 flockers, swarm_case.argos.at(0));
   const sim::RunResult run = sim::Simulate(scenario, 0, true);
   GAUNTLET_CHECK(run.verdict == sim::Verdict::kCompleted, swarm_case.name + ": " + run.message);
 
