@@ -5,6 +5,7 @@
 #include <google/protobuf/stubs/logging.h>
 #include <google/protobuf/unknown_field_set.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -297,6 +298,101 @@ Status TrajectoryFromProto(const v1::Trajectory& message, sim::RunResult& result
   return Ok{};
 }
 
+enum class Ways { kLeaveOut, kInclude };
+
+// Without the trajectory; waypoints and annotations as asked for.
+void ToProto(const sim::RunResult& result, Ways ways, v1::RunResult& wire) {
+  wire.set_verdict(static_cast<v1::Verdict>(result.verdict));
+  wire.set_message(Utf8(result.message));
+  wire.set_fitness(result.fitness);
+  for (const auto& [name, value] : result.metrics) {
+    v1::Metric& metric = *wire.add_metrics();
+    metric.set_name(Utf8(name));
+    metric.set_value(value);
+  }
+  wire.mutable_failure()->set_total(result.failure.total);
+  wire.mutable_failure()->set_type(result.failure.type);
+  wire.mutable_failure()->set_label(Utf8(result.failure.label));
+  wire.set_ticks(result.ticks);
+  for (const sim::RobotSummary& summary : result.robots) {
+    v1::RobotSummary& robot = *wire.add_robots();
+    ToProto(summary.start, *robot.mutable_start());
+    ToProto(summary.end, *robot.mutable_end());
+    robot.set_path_length(summary.path_length);
+    robot.set_lost(summary.lost);
+    if (ways == Ways::kInclude) PointsToProto(summary.waypoints, *robot.mutable_waypoints());
+  }
+  for (const sim::Annotation& annotation : result.annotations) {
+    if (ways == Ways::kLeaveOut) break;
+    v1::Annotation& mark = *wire.add_annotations();
+    mark.set_kind(Utf8(annotation.kind));
+    mark.set_label(Utf8(annotation.label));
+    PointsToProto(annotation.points, *mark.mutable_points());
+    mark.set_radius(annotation.radius);
+    mark.set_tick(annotation.tick);
+    mark.mutable_robots()->Add(annotation.robots.begin(), annotation.robots.end());
+  }
+  wire.set_trajectory_hash(result.trajectory_hash);
+  wire.set_hash(result.hash);
+  wire.set_cpu_seconds(result.cpu_seconds);
+}
+
+// `ways`: kLeaveOut takes a result without its waypoints and annotations too, whose hash cannot be checked.
+Result<sim::RunResult> Decode(std::string_view bytes, Ways ways) {
+  const google::protobuf::LogSilencer silencer;  // the error says enough
+  v1::RunResult message;
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
+    return Corrupt(fmt::format("the {} bytes of the run result do not parse", bytes.size()));
+  }
+  if (!v1::Verdict_IsValid(message.verdict()) || message.verdict() == v1::VERDICT_UNSPECIFIED) {
+    return Corrupt(
+        fmt::format("the run result has the unknown verdict {}", static_cast<int>(message.verdict())));
+  }
+  sim::RunResult result;
+  result.verdict = static_cast<sim::Verdict>(message.verdict());
+  result.message = message.message();
+  result.fitness = message.fitness();
+  result.metrics.reserve(static_cast<std::size_t>(message.metrics_size()));
+  for (const v1::Metric& metric : message.metrics())
+    result.metrics.emplace_back(metric.name(), metric.value());
+  result.failure = {message.failure().total(), message.failure().type(), message.failure().label()};
+  result.ticks = message.ticks();
+  result.robots.reserve(static_cast<std::size_t>(message.robots_size()));
+  for (const v1::RobotSummary& summary : message.robots()) {
+    sim::RobotSummary& robot = result.robots.emplace_back();
+    robot.start = FromProto(summary.start());
+    robot.end = FromProto(summary.end());
+    robot.path_length = summary.path_length();
+    robot.lost = summary.lost();
+    if (!PointsFromProto(summary.waypoints(), robot.waypoints)) {
+      return Corrupt("a robot of the run result has half a waypoint");
+    }
+  }
+  for (const v1::Annotation& mark : message.annotations()) {
+    sim::Annotation& annotation = result.annotations.emplace_back();
+    annotation.kind = mark.kind();
+    annotation.label = mark.label();
+    if (!PointsFromProto(mark.points(), annotation.points)) {
+      return Corrupt("an annotation of the run result has half a point");
+    }
+    annotation.radius = mark.radius();
+    annotation.tick = mark.tick();
+    annotation.robots.assign(mark.robots().begin(), mark.robots().end());
+  }
+  result.trajectory_hash = message.trajectory_hash();
+  result.hash = message.hash();
+  if (message.has_trajectory()) {
+    if (Status read = TrajectoryFromProto(message.trajectory(), result); !read) return read.error();
+  }
+  result.cpu_seconds = message.cpu_seconds();
+  if (ways == Ways::kLeaveOut && message.without_ways()) return result;
+  if (const std::uint64_t hash = sim::HashOf(result); hash != result.hash) {
+    return Corrupt(
+        fmt::format("the run result's hash is {:016x}, its content's hash is {:016x}", result.hash, hash));
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string EncodeRunSpec(const sim::RunSpec& spec) {
@@ -346,96 +442,28 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
 
 std::string EncodeRunResult(const sim::RunResult& result, TrajectoryEncoding trajectory) {
   v1::RunResult wire;
-  wire.set_verdict(static_cast<v1::Verdict>(result.verdict));
-  wire.set_message(Utf8(result.message));
-  wire.set_fitness(result.fitness);
-  for (const auto& [name, value] : result.metrics) {
-    v1::Metric& metric = *wire.add_metrics();
-    metric.set_name(Utf8(name));
-    metric.set_value(value);
-  }
-  wire.mutable_failure()->set_total(result.failure.total);
-  wire.mutable_failure()->set_type(result.failure.type);
-  wire.mutable_failure()->set_label(Utf8(result.failure.label));
-  wire.set_ticks(result.ticks);
-  for (const sim::RobotSummary& summary : result.robots) {
-    v1::RobotSummary& robot = *wire.add_robots();
-    ToProto(summary.start, *robot.mutable_start());
-    ToProto(summary.end, *robot.mutable_end());
-    robot.set_path_length(summary.path_length);
-    robot.set_lost(summary.lost);
-    PointsToProto(summary.waypoints, *robot.mutable_waypoints());
-  }
-  for (const sim::Annotation& annotation : result.annotations) {
-    v1::Annotation& mark = *wire.add_annotations();
-    mark.set_kind(Utf8(annotation.kind));
-    mark.set_label(Utf8(annotation.label));
-    PointsToProto(annotation.points, *mark.mutable_points());
-    mark.set_radius(annotation.radius);
-    mark.set_tick(annotation.tick);
-    mark.mutable_robots()->Add(annotation.robots.begin(), annotation.robots.end());
-  }
-  wire.set_trajectory_hash(result.trajectory_hash);
-  wire.set_hash(result.hash);
+  ToProto(result, Ways::kInclude, wire);
   if (trajectory == TrajectoryEncoding::kInclude && !result.trajectory.empty()) {
     TrajectoryToProto(result, *wire.mutable_trajectory());
   }
-  wire.set_cpu_seconds(result.cpu_seconds);
+  return wire.SerializeAsString();
+}
+
+std::string EncodeWithoutWays(const sim::RunResult& result) {
+  const bool has_ways =
+      !result.annotations.empty() ||
+      std::ranges::any_of(result.robots, [](const auto& robot) { return !robot.waypoints.empty(); });
+  v1::RunResult wire;
+  ToProto(result, Ways::kLeaveOut, wire);
+  if (has_ways) wire.set_without_ways(true);
   return wire.SerializeAsString();
 }
 
 Result<sim::RunResult> DecodeRunResult(std::string_view bytes) {
-  const google::protobuf::LogSilencer silencer;  // the error says enough
-  v1::RunResult message;
-  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
-    return Corrupt(fmt::format("the {} bytes of the run result do not parse", bytes.size()));
-  }
-  if (!v1::Verdict_IsValid(message.verdict()) || message.verdict() == v1::VERDICT_UNSPECIFIED) {
-    return Corrupt(
-        fmt::format("the run result has the unknown verdict {}", static_cast<int>(message.verdict())));
-  }
-  sim::RunResult result;
-  result.verdict = static_cast<sim::Verdict>(message.verdict());
-  result.message = message.message();
-  result.fitness = message.fitness();
-  result.metrics.reserve(static_cast<std::size_t>(message.metrics_size()));
-  for (const v1::Metric& metric : message.metrics())
-    result.metrics.emplace_back(metric.name(), metric.value());
-  result.failure = {message.failure().total(), message.failure().type(), message.failure().label()};
-  result.ticks = message.ticks();
-  result.robots.reserve(static_cast<std::size_t>(message.robots_size()));
-  for (const v1::RobotSummary& summary : message.robots()) {
-    sim::RobotSummary& robot = result.robots.emplace_back();
-    robot.start = FromProto(summary.start());
-    robot.end = FromProto(summary.end());
-    robot.path_length = summary.path_length();
-    robot.lost = summary.lost();
-    if (!PointsFromProto(summary.waypoints(), robot.waypoints)) {
-      return Corrupt("a robot of the run result has half a waypoint");
-    }
-  }
-  for (const v1::Annotation& mark : message.annotations()) {
-    sim::Annotation& annotation = result.annotations.emplace_back();
-    annotation.kind = mark.kind();
-    annotation.label = mark.label();
-    if (!PointsFromProto(mark.points(), annotation.points)) {
-      return Corrupt("an annotation of the run result has half a point");
-    }
-    annotation.radius = mark.radius();
-    annotation.tick = mark.tick();
-    annotation.robots.assign(mark.robots().begin(), mark.robots().end());
-  }
-  result.trajectory_hash = message.trajectory_hash();
-  result.hash = message.hash();
-  if (message.has_trajectory()) {
-    if (Status read = TrajectoryFromProto(message.trajectory(), result); !read) return read.error();
-  }
-  result.cpu_seconds = message.cpu_seconds();
-  if (const std::uint64_t hash = sim::HashOf(result); hash != result.hash) {
-    return Corrupt(
-        fmt::format("the run result's hash is {:016x}, its content's hash is {:016x}", result.hash, hash));
-  }
-  return result;
+  return Decode(bytes, Ways::kInclude);
 }
 
+Result<sim::RunResult> DecodeStoredResult(std::string_view bytes) {
+  return Decode(bytes, Ways::kLeaveOut);
+}
 }  // namespace gauntlet::proto

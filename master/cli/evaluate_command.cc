@@ -83,7 +83,7 @@ void NoteRefusal(EvaluatedCase& evaluated) {
 Status AddRuns(CommandContext& context, const std::string& directory, CaseList& list) {
   std::optional<Error> damaged;
   const Status read = context.campaigns.ForEachRun(directory, [&](const StoredRun& stored) {
-    Result<sim::RunResult> result = proto::DecodeRunResult(stored.result);
+    Result<sim::RunResult> result = proto::DecodeStoredResult(stored.result);
     if (damaged) return;
     if (!result || stored.individual < 1 || stored.individual > list.cases.size()) {
       damaged =

@@ -14,6 +14,7 @@
 #include "controllers/registry.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
+#include "master/cli/run_campaign.h"
 #include "master/cli/summary.h"
 #include "master/cli/table.h"
 #include "master/report/verdict_text.h"
@@ -130,6 +131,7 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
   if (const Status own_files = CheckOwnFiles(options); !own_files) return Fail(context, own_files.error());
   const Result<CampaignReplay> replay = context.campaigns.Replay(options.directory, *run);
   if (!replay) return Fail(context, replay.error());
+  PrintAsOf(context, options.directory, replay->as_of);
   if (!replay->report.damage.empty()) {  // what does not read back did not reproduce
     PrintMessage(context, replay->report.damage);
     return kExitNegative;

@@ -176,6 +176,12 @@ ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
                 : FailCampaign(context, campaign, report.error(), began);
 }
 
+void PrintAsOf(CommandContext& context, const std::string& directory, const std::string& as_of) {
+  if (as_of.empty()) return;
+  PrintMessage(context, fmt::format("{} is served from another machine; this is what was stored {}",
+                                    directory, as_of));
+}
+
 void PrintSummary(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
                   bool json) {
   context.out << (json ? SummaryJson(summary, directory) : SummaryText(summary, {context.program, directory}))

@@ -24,6 +24,8 @@ struct CampaignRun {
 // none of its runs gave a result; 3 when it was stopped and can be resumed; or as the error demands.
 ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign);
 
+// To stderr: that what follows is a snapshot (CampaignView::as_of). Nothing when `as_of` is empty.
+void PrintAsOf(CommandContext& context, const std::string& directory, const std::string& as_of);
 // The summary as text or JSON.
 void PrintSummary(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
                   bool json);

@@ -15,6 +15,7 @@ struct ShowOptions {
 ExitCode RunShow(CommandContext& context, const ShowOptions& options) {
   const Result<CampaignSummary> summary = context.campaigns.Read(options.directory);
   if (!summary) return Fail(context, summary.error());
+  PrintAsOf(context, options.directory, summary->as_of);
   PrintSummary(context, *summary, options.directory, options.json);
   return kExitDone;
 }

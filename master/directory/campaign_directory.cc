@@ -22,9 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 12> kOwnNames = {
-    "access.json", "campaign.db", "epoch", "lock",       "experiment.toml", "log",
-    "status.json", "master.key",  "stop",  "slurm.toml", "searches.json",   "origin.json"};
+constexpr std::array<std::string_view, 13> kOwnNames = {
+    "access.json",   "campaign.db", "epoch",      "lock", "experiment.toml",
+    "log",           "status.json", "master.key", "stop", "slurm.toml",
+    "searches.json", "origin.json", "snapshot.db"};
 
 std::string WithoutSlash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();

@@ -34,6 +34,8 @@ class CampaignDirectory {
   std::string experiment_path() const { return path_ + "/experiment.toml"; }
   // The campaign exists from the moment this file does.
   std::string database_path() const { return path_ + "/campaign.db"; }
+  // What a living master has stored so far, for those who look at it from another machine.
+  std::string snapshot_path() const { return path_ + "/snapshot.db"; }
   std::string epoch_path() const { return path_ + "/epoch"; }
   std::string lock_path() const { return path_ + "/lock"; }
   std::string access_path() const { return path_ + "/access.json"; }

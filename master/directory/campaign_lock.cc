@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/system/atomic_file.h"
+#include "base/system/unique_fd.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -165,6 +166,12 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path
     }
     std::this_thread::sleep_for(kRetryAfter);
   }
+}
+
+std::optional<ProcessIdentity> CampaignLock::OwnerOf(const std::string& path) {
+  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  const std::optional<LockOwner> owner = file.valid() ? ReadOwner(file.get()) : std::nullopt;
+  return owner ? std::optional(owner->process) : std::nullopt;
 }
 
 CampaignLock::~CampaignLock() {

@@ -50,6 +50,9 @@ class CampaignLock {
                                                                  const std::string& campaign,
                                                                  const LockOptions& options = {});
 
+  // Whom a lock file names, living or not; empty when it is free or does not read back.
+  static std::optional<ProcessIdentity> OwnerOf(const std::string& path);
+
   CampaignLock(const CampaignLock&) = delete;
   CampaignLock& operator=(const CampaignLock&) = delete;
   // Releases it.

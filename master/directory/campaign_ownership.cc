@@ -1,12 +1,18 @@
 #include "master/directory/campaign_ownership.h"
 
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
+#include "base/system/process_identity.h"
 
 namespace gauntlet::master {
 namespace {
@@ -14,6 +20,9 @@ namespace {
 // A master waits so long for those who read. `show` of a large campaign takes its time, and `status` may come
 // again and again.
 constexpr std::chrono::seconds kReadersPatience{30};
+
+// Those who read wait so long for a master that starts or ends.
+constexpr std::chrono::seconds kMastersPatience{2};
 
 LockOptions OptionsFor(const CampaignDirectory& directory) {
   LockOptions options;
@@ -41,6 +50,28 @@ Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<Campa
   if (!origin) return origin.error();
   return CampaignOwnership{std::move(directory), std::move(lock), *epoch, *std::move(origin),
                            *std::move(store)};
+}
+
+Result<CampaignView> ViewBesideMaster(const CampaignDirectory& directory, Checked what) {
+  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenBesideMaster(directory.database_path(), what);
+  if (!store) return store.error();
+  return CampaignView{directory, nullptr, *std::move(store)};
+}
+
+// `in_use`: what there is to say without a snapshot.
+Result<CampaignView> ViewSnapshot(const CampaignDirectory& directory, Checked what, const std::string& host,
+                                  const Error& in_use) {
+  const std::string path = directory.snapshot_path();
+  struct stat info {};
+  if (stat(path.c_str(), &info) != 0) {
+    return Error{in_use.kind, in_use.message +
+                                  "; it has published nothing yet that could be read from this machine: "
+                                  "try again in a moment"};
+  }
+  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(path, what);
+  if (!store) return store.error();
+  return CampaignView{directory, nullptr, *std::move(store),
+                      fmt::format("as of {:%H:%M}, on {}", fmt::localtime(info.st_mtim.tv_sec), host)};
 }
 
 }  // namespace
@@ -88,18 +119,35 @@ Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster othe
   std::error_code ignored;
   std::filesystem::remove(directory->stop_path(), ignored);
   std::filesystem::remove(directory->status_path(), ignored);
+  std::filesystem::remove(directory->snapshot_path(), ignored);
   return Own(*std::move(directory), *std::move(lock), nullptr);
 }
 
-Result<CampaignView> ViewCampaign(const std::string& dir) {
+Result<CampaignView> ViewCampaign(const std::string& dir, Checked what) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
-  Result<std::unique_ptr<CampaignLock>> lock =
-      CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), OptionsFor(*directory));
-  if (!lock) return lock.error();
-  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(directory->database_path());
-  if (!store) return store.error();
-  return CampaignView{*std::move(directory), *std::move(lock), *std::move(store)};
+  const auto deadline = std::chrono::steady_clock::now() + kMastersPatience;
+  while (true) {
+    Result<std::unique_ptr<CampaignLock>> lock =
+        CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), OptionsFor(*directory));
+    if (lock) {
+      Result<std::unique_ptr<SqliteStore>> store =
+          SqliteStore::OpenReadOnly(directory->database_path(), what);
+      if (!store) return store.error();
+      return CampaignView{*std::move(directory), *std::move(lock), *std::move(store)};
+    }
+    if (lock.error().kind != ErrorKind::kInUse) return lock.error();
+    const std::optional<ProcessIdentity> owner = CampaignLock::OwnerOf(directory->lock_path());
+    if (!owner) return lock.error();
+    const bool here = LivenessOf(*owner, IdentifyThisProcess()) == Liveness::kAlive;
+    Result<CampaignView> view =
+        here ? ViewBesideMaster(*directory, what) : ViewSnapshot(*directory, what, owner->host, lock.error());
+    // A master that has just ended, or taken its snapshot away, is looked for anew.
+    const bool may_change =
+        !view && (view.error().kind == ErrorKind::kInUse || view.error().kind == ErrorKind::kIo);
+    if (!may_change || std::chrono::steady_clock::now() >= deadline) return view;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
 }
 
 }  // namespace gauntlet::master

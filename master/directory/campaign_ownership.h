@@ -47,13 +47,17 @@ enum class LivingMaster {
 // SqliteStore::Open.
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other = LivingMaster::kRespect);
 
-// A campaign without a living master, to look at; masters wait meanwhile. Changes no byte of the directory,
-// which may be read-only.
+// A campaign to look at. Without a living master: masters wait meanwhile, and no byte of the directory
+// changes, which may be read-only. Beside a master of this machine: what it has committed by now; it does not
+// wait. Beside one of another machine: the newest snapshot that it has published.
 struct CampaignView {
   CampaignDirectory directory;
-  std::unique_ptr<CampaignLock> lock;
+  std::unique_ptr<CampaignLock> lock;  // none beside a master
   std::unique_ptr<SqliteStore> store;
+  std::string as_of = "";  // of a snapshot, "as of 14:03, on node7"
 };
-Result<CampaignView> ViewCampaign(const std::string& dir);
+// Errors: those of CampaignDirectory::Open and SqliteStore::OpenReadOnly; kInUse when a master just starts or
+// ends, or when one on another machine has published no snapshot yet.
+Result<CampaignView> ViewCampaign(const std::string& dir, Checked what = Checked::kEverything);
 
 }  // namespace gauntlet::master

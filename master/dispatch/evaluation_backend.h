@@ -26,11 +26,10 @@ struct RunRequest {
 
 struct FinishedRun {
   RunId id = 0;
-  sim::RunResult result;         // without a trajectory
-  proto::EncodedResult encoded;  // `result`, as it is stored
-  std::string worker;            // instance id and host, for the log
-  std::uint32_t attempt = 1;     // how many leases it took
-  std::string stderr_tail;       // of a run that failed in all attempts, what the last one printed
+  sim::RunResult result;      // without a trajectory
+  std::string worker;         // instance id and host, for the log
+  std::uint32_t attempt = 1;  // how many leases it took
+  std::string stderr_tail;    // of a run that failed in all attempts, what the last one printed
 };
 
 struct WorkerStatistics {

@@ -270,13 +270,10 @@ void RemoteBackend::OnResult(InstanceId worker, proto::LeaseResult message) {
   }
   if (answer != Answer::kAccepted) return;  // the scheduler counts what was not needed
   scheduler_.RunTook(message.cpu_seconds);
-  // What arrived is stored as it came: decoding has checked it against its hash.
-  const bool as_it_came = result->trajectory.empty() && result->cpu_seconds > 0.0;
   result->trajectory.clear();
   if (result->cpu_seconds == 0.0) result->cpu_seconds = message.cpu_seconds;
   FinishedRun& finished = finished_.emplace_back();
   finished.id = message.run_id;
-  finished.encoded = as_it_came ? std::move(message.result) : proto::EncodeRunResult(*result);
   finished.result = std::move(*result);
   finished.worker = workers_.LabelOf(worker);
   finished.attempt = std::max(1U, scheduler_.LeasesOf(message.run_id));
@@ -344,7 +341,6 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
   FinishedRun& run = finished_.emplace_back();
   run.id = order.run;
   run.result = ResultOf(order.last);
-  run.encoded = proto::EncodeRunResult(run.result);
   run.worker = workers_.LabelOf(order.worker);
   run.attempt = order.leases;
   run.stderr_tail = order.last.stderr_tail;

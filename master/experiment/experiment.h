@@ -58,6 +58,11 @@ struct ArenaSpec {
   double wall_thickness = 0.1;  // m
 };
 
+// What is kept of a run. No influence on any result.
+struct StoreSpec {
+  bool trajectories = false;  // the robots' waypoints and the annotations too; replay computes them anyway
+};
+
 struct Experiment {
   std::string name;
   std::string description;
@@ -71,6 +76,7 @@ struct Experiment {
   std::uint64_t seed = 1;
   sim::PhysicsKind physics = sim::PhysicsKind::kBox2d;
   sim::Disturbances disturbances;
+  StoreSpec store;
 };
 
 // A run of the experiment.

@@ -35,12 +35,13 @@ Key MakeKey(const std::string& path, KeyType type, const std::string& descriptio
   return key;
 }
 
-// The key of the place at Path: text, whole number, number or seed, as what stands there.
+// The key of the place at Path: text, flag, whole number, number or seed, as what stands there.
 template <auto... Path>
 Key FieldKey(const std::string& path, const std::string& description) {
   using Place = std::remove_reference_t<decltype(Field<Path...>(std::declval<Experiment&>()))>;
   using Value = std::conditional_t<std::is_same_v<Place, int>, std::int64_t, Place>;
   const KeyType type = std::is_same_v<Place, std::string> ? KeyType::kText
+                       : std::is_same_v<Place, bool>      ? KeyType::kFlag
                        : std::is_same_v<Place, int>       ? KeyType::kInteger
                        : std::is_same_v<Place, double>    ? KeyType::kNumber
                                                           : KeyType::kSeed;
@@ -287,9 +288,12 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   for (std::vector<Key>& more : std::array{GenomeKeys(), SearchKeys(catalogue), NoiseKeys()}) {
     std::move(more.begin(), more.end(), std::back_inserter(keys));
   }
+  keys.push_back(FieldKey<&Experiment::store, &StoreSpec::trajectories>(
+      "store.trajectories",
+      "keep every robot's way and the annotations of each run; without them replay computes them anew"));
   for (Key& key : keys) {
     key.default_value = key.get(Experiment{});
-    key.for_people = key.path == "name" || key.path == "description";
+    key.for_people = key.path == "name" || key.path == "description" || key.path.starts_with("store.");
   }
   return keys;
 }

@@ -13,7 +13,6 @@
 #include "master/report/verdict_text.h"
 #include "master/search/population_search.h"
 #include "master/store/event_kinds.h"
-#include "proto/run_codec.h"
 #include "sim/arena/genome.h"
 #include "sim/run_result.h"
 
@@ -45,8 +44,7 @@ void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
 
 void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
   if (run.verdict == static_cast<int>(sim::Verdict::kCompleted)) return;
-  const Result<sim::RunResult> result = proto::DecodeRunResult(run.result);
-  const std::string message = result ? result->message : result.error().message;
+  const std::string& message = run.message;
   const auto verdict = static_cast<sim::Verdict>(run.verdict);
   const std::string rule = RuleOf(message);
   auto group = std::ranges::find_if(groups, [&](const RunsWithoutResult& one) {
@@ -142,7 +140,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
 
   std::map<IndividualId, std::vector<RunId>> runs_of;
   std::map<std::uint32_t, GenerationSummary> generations;
-  Status read = store.ForEachRun(search_id, 0, [&](const StoredRun& run) {
+  Status read = store.ForEachRow(search_id, 0, [&](const StoredRun& run) {
     ++summary.runs_done;
     runs_of[run.individual].push_back(run.id);
     AddToFailures(run, summary);
@@ -184,6 +182,34 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.finished = std::ranges::any_of(
       *searches, [&](const StoredSearch& stored) { return stored.id == search_id && stored.finished; });
   return summary;
+}
+
+Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  const Result<std::vector<SearchTotals>> totals = store.LoadTotals();
+  if (!totals) return totals.error();
+  std::vector<CampaignSummary> searches(plans.size());
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const auto id = static_cast<SearchId>(i + 1);
+    CampaignSummary& summary = searches[i];
+    summary.experiment = plans[i].experiment.name;
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(plans[i].experiment, id, store);
+    if (!search) return search.error();
+    const Result<std::optional<SavedState>> state = store.LoadNewestState(id);
+    if (!state) return state.error();
+    summary.progress = (*search)->Progress();
+    if (*state) summary.progress.generation = (*state)->generation;
+    const auto mine = std::ranges::find(*totals, id, &SearchTotals::search);
+    if (mine == totals->end()) continue;
+    summary.runs_done = mine->runs;
+    summary.runs_failed = mine->runs_failed;
+    summary.total_failures = mine->total_failures;
+    summary.finished = mine->finished;
+  }
+  CampaignSummary all = TotalsOf(searches);
+  const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
+  if (!nondeterministic) return nondeterministic.error();
+  all.nondeterministic = *nondeterministic;
+  return all;
 }
 
 Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store) {

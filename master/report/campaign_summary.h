@@ -71,6 +71,7 @@ struct CampaignSummary {
   std::string state_hash;
   std::uint64_t nondeterministic = 0;  // second results of a spec that differed from the first
   bool finished = false;
+  std::string as_of = "";  // CampaignView::as_of
   // Of a sweep, one for each search, in the order of their numbers; the rest are then totals, and what has no
   // meaning over several searches is empty.
   std::vector<CampaignSummary> searches;
@@ -84,6 +85,9 @@ Result<std::uint64_t> CountNondeterministic(ResultStore& store);
 // complete generation; runs and failures count everything stored.
 Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
                                   ResultStore& store);
+// How far all searches together have come and what they have met, without a look at a single run: the fields
+// of a summary that `status` tells.
+Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, ResultStore& store);
 // Of an only search its summary; of several the totals, with one summary each in `searches`.
 Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store);
 

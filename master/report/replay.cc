@@ -55,7 +55,7 @@ Result<ReplayReport> ReplayRun(ResultStore& store, RunId run) {
     return report;
   }
   report.spec = std::move(*spec);
-  Result<sim::RunResult> stored_result = proto::DecodeRunResult(report.stored.result);
+  Result<sim::RunResult> stored_result = proto::DecodeStoredResult(report.stored.result);
   if (!stored_result) {
     report.damage =
         fmt::format("the stored result of run {} is damaged: {}", run, stored_result.error().message);

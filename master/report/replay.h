@@ -26,6 +26,7 @@ struct ReplayReport {
 struct CampaignReplay {
   Experiment experiment;
   ReplayReport report;
+  std::string as_of = "";  // CampaignView::as_of
 };
 
 // Error: the run is not there (kNotFound), or its row contradicts the result stored in it (kCorrupt).

@@ -28,13 +28,12 @@ Status Same(const StoredRun& run, const char* column, const Value& in_row, const
       fmt::format("run {} has {} {} in its row, {} in its result", run.id, column, in_row, in_result));
 }
 
-Status CheckRun(const Experiment& experiment, const StoredRun& run) {
+Status CheckRecord(const StoredRun& run) {
   if (const std::uint64_t hash = SpecHash(run.spec); hash != run.spec_hash) {
     return Damaged(fmt::format("the spec of run {} has hash {:016x}, when it was stored it had {:016x}",
                                run.id, hash, run.spec_hash));
   }
-  if (Status belongs = CheckSeed(experiment, run); !belongs) return belongs;
-  const Result<sim::RunResult> result = proto::DecodeRunResult(run.result);
+  const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
   if (!result) return Damaged(fmt::format("the result of run {}: {}", run.id, result.error().message));
   return CheckCopies(run, *result);
 }
@@ -66,6 +65,7 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
     return Damaged(fmt::format("run {} has fitness {} in its row, {} in its result", run.id, run.fitness,
                                result.fitness));
   }
+  if (Status same = Same(run, "message", run.message, result.message); !same) return same;
   if (Status same = Same(run, "total_failure", run.total_failure, result.failure.total); !same) return same;
   return Same(run, "failure_type", run.failure_type, result.failure.type);
 }
@@ -78,7 +78,7 @@ Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
       run.id, run.seed, run.replicate, run.evaluation, run.individual, seed, experiment.seed));
 }
 
-Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store) {
+Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store, Checked what) {
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
   const bool finished = std::ranges::any_of(
@@ -88,8 +88,9 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
   if (finished && !state->has_value()) return Damaged("the search has finished, but its states are missing");
   const RunId last_seen = state->has_value() ? (*state)->last_run : 0;
 
+  const bool everything = what == Checked::kEverything;
   std::map<IndividualId, sim::TestCase> test_cases;
-  {
+  if (everything) {
     Result<std::vector<Individual>> individuals = store.LoadIndividuals(search);
     if (!individuals) return individuals.error();
     for (Individual& individual : *individuals)
@@ -101,18 +102,20 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
   };
   std::optional<Error> damage;
   RunId expected = RunIdOf(search, 1);
-  const Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
+  const auto check = [&](const StoredRun& run) {
     if (damage) return;
     if (run.id != expected && expected <= last_seen) {
       damage = missing(expected);
       return;
     }
     expected = run.id + 1;
-    Status whole = CheckRun(experiment, run);
-    if (whole) whole = CheckTestCase(test_cases, run);
+    Status whole = CheckSeed(experiment, run);
+    if (whole && everything) whole = CheckRecord(run);
+    if (whole && everything) whole = CheckTestCase(test_cases, run);
     if (!whole) damage = whole.error();
     test_cases.erase(run.individual);
-  });
+  };
+  const Status read = everything ? store.ForEachRun(search, 0, check) : store.ForEachRow(search, 0, check);
   if (!read) return read;
   if (damage) return *damage;
   if (expected <= last_seen) return missing(expected);
@@ -124,9 +127,9 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
   return Ok{};
 }
 
-Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store) {
+Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store, Checked what) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    const Status whole = CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store);
+    const Status whole = CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store, what);
     if (!whole) return whole;
   }
   return Ok{};

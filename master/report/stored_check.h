@@ -19,11 +19,14 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result);
 // Error: kCorrupt, naming the run.
 Status CheckSeed(const Experiment& experiment, const StoredRun& run);
 
-// All runs of a search against their own results, specs and seeds, against the newest state (no run that it
-// has seen is missing; of a finished search it has seen all) and against the individuals' test cases. Reads
-// and decodes every run once. Error: kCorrupt, naming the first damage; or reading failed.
-Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store);
+// All runs of a search against their seeds and against the newest state (no run that it has seen is missing;
+// of a finished search it has seen all); with kEverything also against their own results and specs, and
+// against the individuals' test cases, for which every run is decoded once. Error: kCorrupt, naming the first
+// damage; or reading failed.
+Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store,
+                   Checked what = Checked::kEverything);
 // The same of every search.
-Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store);
+Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store,
+                   Checked what = Checked::kEverything);
 
 }  // namespace gauntlet::master

@@ -30,7 +30,7 @@ Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics) {
                      .failure_type = run.failure_type,
                      .metrics = {}};
   if (!with_metrics) return outcome;
-  Result<sim::RunResult> result = proto::DecodeRunResult(run.result);
+  Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
   if (!result) return result.error();
   outcome.metrics = std::move(result->metrics);
   return outcome;
@@ -55,18 +55,20 @@ Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgor
       if (next.runs.empty()) return;
       visit(OutcomeOfRuns(next.individual, next.evaluation, std::exchange(next.runs, {})));
     };
-    Status read = store.ForEachRun(id, 0, [&](const StoredRun& run) {
+    const bool with_metrics = search.WantsMetrics();  // they stand in the results
+    const auto take = [&](const StoredRun& run) {
       if (damage || run.id > saved.last_run) return;
       if (run.individual != next.individual || run.evaluation != next.evaluation) tell();
       next.individual = run.individual;
       next.evaluation = run.evaluation;
-      Result<RunOutcome> outcome = OutcomeOf(run, search.WantsMetrics());
+      Result<RunOutcome> outcome = OutcomeOf(run, with_metrics);
       if (!outcome) {
         damage = outcome.error();
       } else {
         next.runs.push_back(*std::move(outcome));
       }
-    });
+    };
+    const Status read = with_metrics ? store.ForEachRun(id, 0, take) : store.ForEachRow(id, 0, take);
     if (!read) return read;
     if (damage) return *damage;
     tell();

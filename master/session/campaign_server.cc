@@ -83,6 +83,7 @@ CampaignServer::Files::~Files() {
   std::error_code ignored;
   std::filesystem::remove(directory.status_path(), ignored);
   std::filesystem::remove(directory.stop_path(), ignored);
+  std::filesystem::remove(directory.snapshot_path(), ignored);
 }
 
 Result<SessionReport> CampaignServer::Serve() {
@@ -192,6 +193,9 @@ Status CampaignServer::Announce() {
   const Result<std::uint64_t> nondeterministic = CountNondeterministic(*campaign_.store);
   if (!nondeterministic) return nondeterministic.error();
   view_.nondeterministic_before = *nondeterministic;
+  snapshots_.emplace(SnapshotOptions{.database = campaign_.directory.database_path(),
+                                     .snapshot = campaign_.directory.snapshot_path(),
+                                     .commits = [this] { return campaign_.store->Commits(); }});
   options_.on_serving({view_.endpoints, view_.encrypted});
   return Ok{};
 }

@@ -18,6 +18,7 @@
 #include "master/session/campaign_service.h"
 #include "master/session/search_driver.h"
 #include "master/session/search_loop.h"
+#include "master/session/snapshot_publisher.h"
 
 namespace gauntlet::master {
 
@@ -78,6 +79,7 @@ class CampaignServer {
   std::unique_ptr<RemoteBackend> backend_;
   std::deque<SearchDriver> drivers_;
   std::optional<SearchLoop> loop_;
+  std::optional<SnapshotPublisher> snapshots_;
 };
 
 }  // namespace gauntlet::master

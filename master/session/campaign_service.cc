@@ -145,12 +145,14 @@ class Campaigns final : public CampaignService {
   }
 
   Result<CampaignSummary> Read(const std::string& dir) override {
-    const Result<CampaignView> campaign = ViewCampaign(dir);
+    const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
     if (!campaign) return campaign.error();
     const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
     if (!plans) return plans.error();
-    if (Status whole = CheckStored(*plans, *campaign->store); !whole) return whole.error();
-    return Summarise(*plans, *campaign->store);
+    if (Status whole = CheckStored(*plans, *campaign->store, Checked::kRows); !whole) return whole.error();
+    Result<CampaignSummary> summary = Summarise(*plans, *campaign->store);
+    if (summary) summary->as_of = campaign->as_of;
+    return summary;
   }
 
   Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) override {
@@ -159,7 +161,7 @@ class Campaigns final : public CampaignService {
   }
 
   Result<CampaignReplay> Replay(const std::string& dir, RunId run) override {
-    const Result<CampaignView> campaign = ViewCampaign(dir);
+    const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
     if (!campaign) return campaign.error();
     const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
     if (!plans) return plans.error();
@@ -173,7 +175,7 @@ class Campaigns final : public CampaignService {
     if (report->damage.empty()) {
       if (Status belongs = CheckSeed(experiment, report->stored); !belongs) return belongs.error();
     }
-    return CampaignReplay{experiment, *std::move(report)};
+    return CampaignReplay{experiment, *std::move(report), campaign->as_of};
   }
 
   Result<bool> MasterLives(const std::string& dir) override {
@@ -210,7 +212,11 @@ class Campaigns final : public CampaignService {
           static_cast<double>(UnixMilliseconds() - json.value("unix_ms", std::int64_t{0})) / 1000.0;
       return JsonText(json);
     }
-    const Result<CampaignSummary> summary = Read(dir);
+    const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kTotals);
+    if (!campaign) return campaign.error();
+    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
+    if (!plans) return plans.error();
+    const Result<CampaignSummary> summary = SummariseTotals(*plans, *campaign->store);
     if (!summary) return summary.error();
     return JsonText({{"state", summary->finished ? "finished" : "stopped"},
                      {"experiment", summary->experiment},

@@ -53,7 +53,7 @@ struct SessionReport {
 };
 
 // `dir` is the campaign's directory: kNotFound when there is no campaign in it. Those that look at a campaign
-// wait for a master that starts or ends just now, and answer kInUse, with the owner, while one lives.
+// do so beside a living master too (CampaignView), and wait for one that starts or ends just now.
 class CampaignService {
  public:
   virtual ~CampaignService() = default;
@@ -71,7 +71,7 @@ class CampaignService {
   // Goes on where the campaign was; a finished one is only summarised.
   virtual Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) = 0;
 
-  // Checks and summarises everything that is stored.
+  // Checks and summarises what is stored, but for specs and results in full (Resume checks them too).
   virtual Result<CampaignSummary> Read(const std::string& dir) = 0;
   // The runs of a campaign of one search in logical order.
   virtual Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) = 0;

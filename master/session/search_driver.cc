@@ -35,10 +35,16 @@ Status SearchDriver::Restore() {
   if (!saved) return saved.error();
   digest_ = saved->results;
   last_asked_ = last_told_ = saved_until_ = saved->last_run;
-  return parts_.store.ForEachRun(parts_.search_id, 0, [this](const StoredRun& run) {
-    Count(run);
-    if (run.id > saved_until_) stored_ahead_.emplace(run.id, run);
-  });
+  const Result<std::vector<SearchTotals>> totals = parts_.store.LoadTotals();
+  if (!totals) return totals.error();
+  for (const SearchTotals& mine : *totals) {
+    if (mine.search != parts_.search_id) continue;
+    runs_done_ = mine.runs;
+    total_failures_ = mine.total_failures;
+    runs_failed_ = mine.runs_failed;
+  }
+  return parts_.store.ForEachRun(parts_.search_id, saved_until_,
+                                 [this](const StoredRun& run) { stored_ahead_.emplace(run.id, run); });
 }
 
 double SearchDriver::PredictedLength(const EvaluationRequest& request) const {
@@ -121,7 +127,11 @@ void SearchDriver::Store(FinishedRun finished) {
   --at_backend_;
   if (has_generations_) ticks_[run.individual] = static_cast<double>(finished.result.ticks);
   if (parts_.on_run) parts_.on_run(run, finished);
-  run.result = std::move(finished.encoded);
+  // Encoded anew: what a worker may have put in beside the result is not stored.
+  run.result = parts_.experiment.store.trajectories
+                   ? proto::EncodeRunResult(finished.result, proto::TrajectoryEncoding::kLeaveOut)
+                   : proto::EncodeWithoutWays(finished.result);
+  run.message = finished.result.message;
   run.hash = finished.result.hash;
   run.worker = std::move(finished.worker);
   run.attempt = finished.attempt;

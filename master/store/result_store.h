@@ -36,8 +36,8 @@ struct StoredRun {
   std::uint64_t seed = 0;
   proto::EncodedSpec spec;      // as it was sent
   std::uint64_t spec_hash = 0;  // FNV-1a of `spec`: finds a changed byte that would not change the result
-  proto::EncodedResult result;  // without a trajectory
-  std::uint64_t hash = 0;
+  proto::EncodedResult result;  // without a trajectory, mostly without ways (proto::DecodeStoredResult)
+  std::uint64_t hash = 0;       // of the whole result
   std::string worker;
   std::uint32_t attempt = 1;
   // Copies of a few result fields, so that they can be queried: what show needs without decoding every
@@ -46,6 +46,17 @@ struct StoredRun {
   double fitness = 0.0;
   bool total_failure = false;
   int failure_type = -1;
+  std::string message;  // of a verdict other than completed
+};
+
+// How much of a search is stored.
+struct SearchTotals {
+  SearchId search = 0;
+  std::uint64_t runs = 0;
+  std::uint64_t runs_failed = 0;  // verdict other than completed
+  std::uint64_t total_failures = 0;
+  std::uint64_t individuals = 0;
+  bool finished = false;
 };
 
 struct SavedState {
@@ -60,6 +71,13 @@ struct StoredEvent {
   std::int64_t unix_ms = 0;
   std::string kind;  // one of master/store/event_kinds.h
   std::string text;
+};
+
+// What of a store somebody is going to rely on.
+enum class Checked {
+  kTotals,      // searches, which of them have finished, and how much is stored: O(1) in the number of runs
+  kRows,        // everything but specs and results in full
+  kEverything,  // every byte
 };
 
 class ResultStore {
@@ -86,12 +104,17 @@ class ResultStore {
 
   // Reading what is durable (call Flush first to see all).
   virtual Result<std::vector<StoredSearch>> LoadSearches() = 0;
+  // Of every search, in the order of their numbers; does not look at a single run.
+  virtual Result<std::vector<SearchTotals>> LoadTotals() = 0;
   // What is known from birth: id, parents, birth_generation, test_case; in id order. The rest follows from
   // the runs.
   virtual Result<std::vector<Individual>> LoadIndividuals(SearchId search) = 0;
   virtual Result<std::optional<SavedState>> LoadNewestState(SearchId search) = 0;
-  // Runs of a search with id > after, in id order.
+  // Runs of a search with id > after, in id order. Error: kCorrupt, naming the first that was changed.
   virtual Status ForEachRun(SearchId search, RunId after,
+                            const std::function<void(const StoredRun&)>& visit) = 0;
+  // The same without specs and results, which is ten times as fast.
+  virtual Status ForEachRow(SearchId search, RunId after,
                             const std::function<void(const StoredRun&)>& visit) = 0;
   virtual Result<std::optional<StoredRun>> LoadRun(RunId run) = 0;
   virtual Result<std::vector<StoredEvent>> LoadEvents() = 0;

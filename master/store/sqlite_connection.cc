@@ -142,6 +142,10 @@ Result<std::int64_t> SqliteConnection::QueryInt(std::string_view sql) {
   return statement->Int(0);
 }
 
+void SqliteConnection::Interrupt() const {
+  sqlite3_interrupt(database_.get());
+}
+
 int SqliteConnection::Changes() const {
   return sqlite3_changes(database_.get());
 }

@@ -113,6 +113,10 @@ class SqliteConnection {
   // The single integer that a query (a PRAGMA, mostly) answers with; kCorrupt when it answers with none.
   Result<std::int64_t> QueryInt(std::string_view sql);
 
+  // Ends what another thread does with this connection: it answers with an error (kInternal). The one
+  // function that any thread may call; the connection must not be closed meanwhile.
+  void Interrupt() const;
+
   // Rows that the last INSERT added: 0 when it met ON CONFLICT DO NOTHING.
   int Changes() const;
   // When off, closing the connection leaves the write-ahead log as it is; SQLite's default is to move it into

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/system/atomic_file.h"
 #include "base/system/unique_fd.h"
@@ -20,6 +21,10 @@ namespace gauntlet::master {
 namespace {
 
 constexpr int kPageSize = 8192;
+// What a connection waits for another process's lock, which none holds for longer than a moment.
+constexpr int kBusyMilliseconds = 10000;
+// Of the write-ahead log, between readers that make it longer.
+constexpr int kLogBytes = 64 << 20;
 
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kHeaderSize = 100;
@@ -44,6 +49,7 @@ CREATE TABLE individuals (
   birth_generation INTEGER NOT NULL,
   parents          BLOB NOT NULL,
   test_case        BLOB NOT NULL,
+  checksum         INTEGER NOT NULL,
   PRIMARY KEY (search, id)
 ) STRICT, WITHOUT ROWID;
 CREATE TABLE runs (
@@ -54,19 +60,29 @@ CREATE TABLE runs (
   replicate     INTEGER NOT NULL,
   generation    INTEGER NOT NULL,
   seed          INTEGER NOT NULL,
-  spec_hash     INTEGER NOT NULL,
-  hash          INTEGER NOT NULL,
   verdict       INTEGER NOT NULL,
   fitness       REAL,
   fitness_bits  INTEGER NOT NULL,
   total_failure INTEGER NOT NULL,
   failure_type  INTEGER NOT NULL,
+  message       TEXT NOT NULL,
+  hash          INTEGER NOT NULL,
+  spec_hash     INTEGER NOT NULL,
   worker        TEXT NOT NULL,
   attempt       INTEGER NOT NULL,
-  spec          BLOB NOT NULL,
-  result        BLOB NOT NULL
+  record_hash   INTEGER NOT NULL,
+  checksum      INTEGER NOT NULL
 ) STRICT;
-CREATE INDEX runs_by_search ON runs (search);
+CREATE TABLE records (
+  run    INTEGER PRIMARY KEY,
+  spec   BLOB NOT NULL,
+  result BLOB NOT NULL
+) STRICT;
+CREATE TABLE examples (
+  kind     TEXT PRIMARY KEY,
+  bytes    BLOB NOT NULL,
+  checksum INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
 CREATE TABLE states (
   search         INTEGER NOT NULL REFERENCES searches (id),
   last_run       INTEGER NOT NULL,
@@ -82,12 +98,24 @@ CREATE TABLE events (
   kind    TEXT NOT NULL,
   text    TEXT NOT NULL
 ) STRICT;
+CREATE TABLE totals (
+  search         INTEGER PRIMARY KEY,
+  runs           INTEGER NOT NULL,
+  runs_failed    INTEGER NOT NULL,
+  total_failures INTEGER NOT NULL,
+  individuals    INTEGER NOT NULL,
+  states         INTEGER NOT NULL,
+  finished       INTEGER NOT NULL,
+  events         INTEGER NOT NULL,
+  examples       INTEGER NOT NULL,
+  checksum       INTEGER NOT NULL
+) STRICT;
 )sql";
 
-constexpr std::array kTableNames = {"meta", "searches", "finished", "individuals",
-                                    "runs", "states",   "events"};
+constexpr std::array kTableNames = {"meta",    "searches", "finished", "individuals", "runs",
+                                    "records", "examples", "states",   "events"};
 
-// What was stored is never rewritten, not even by a defect of ours.
+// What was stored is never rewritten, not even by a defect of ours. (The totals are, with every commit.)
 std::string InsertOnlyTriggers() {
   std::string sql;
   for (const char* table : kTableNames) {
@@ -140,26 +168,46 @@ Status CheckFormat(SqliteConnection& connection, const std::string& path) {
   if (*format > kStoreFormat) {
     return Error{
         ErrorKind::kVersion,
-        fmt::format(
-            "{} has format {}, made by a newer gauntlet; this one knows formats up to {}: use the newer "
-            "version (nothing was changed)",
-            path, *format, kStoreFormat)};
+        fmt::format("{} has format {}, made by a newer gauntlet; this one reads format {}: use the newer "
+                    "version (nothing was changed)",
+                    path, *format, kStoreFormat)};
   }
   if (*format < 1) {
     return Error{ErrorKind::kCorrupt,
                  fmt::format("{} is damaged (format {} never existed); it was left as it is", path, *format)};
   }
+  if (*format < kStoreFormat) {
+    return Error{ErrorKind::kVersion,
+                 fmt::format("{} has format {}, made by an older gauntlet; this one reads format {}: use the "
+                             "older version (nothing was changed)",
+                             path, *format, kStoreFormat)};
+  }
   return Ok{};
 }
 
-Status CheckPages(SqliteConnection& connection, const std::string& path) {
-  Result<SqliteStatement> check = connection.Prepare("PRAGMA quick_check(1)");
-  if (!check) return WithPath(path, check.error());
+Status CheckIntegrity(SqliteConnection& connection, const std::string& of) {
+  Result<SqliteStatement> check = connection.Prepare(fmt::format("PRAGMA integrity_check({})", of));
+  if (!check) return check.error();
   Result<bool> row = check->Step();
-  if (!row) return WithPath(path, row.error());
+  if (!row) return row.error();
   std::string answer = "no answer";
   if (*row) check->Read(answer);
-  if (answer != "ok") return WithPath(path, {ErrorKind::kCorrupt, answer});
+  if (answer != "ok") return Error{ErrorKind::kCorrupt, answer};
+  return Ok{};
+}
+
+// Pages, the order of rows, types, and that every index holds every row.
+Status CheckPages(SqliteConnection& connection, const std::string& path, Checked what) {
+  if (what == Checked::kEverything) {
+    const Status whole = CheckIntegrity(connection, "1");
+    return whole ? whole : WithPath(path, whole.error());
+  }
+  std::vector<std::string> tables = {"meta", "searches", "finished", "totals"};
+  if (what == Checked::kRows)
+    tables.insert(tables.end(), {"individuals", "runs", "states", "events", "examples"});
+  for (const std::string& table : tables) {
+    if (Status whole = CheckIntegrity(connection, table); !whole) return WithPath(path, whole.error());
+  }
   return Ok{};
 }
 
@@ -220,7 +268,7 @@ Status CreateDatabase(const std::string& path, const CampaignMeta& meta) {
   return SyncDirectory(std::filesystem::absolute(path).parent_path());
 }
 
-Result<SqliteConnection> OpenCheckedForReading(const std::string& path) {
+Result<SqliteConnection> OpenCheckedForReading(const std::string& path, Checked what) {
   if (Status header = CheckHeader(path); !header) return header.error();
   // Without a log the file alone is the database, and "immutable" keeps SQLite from creating one. With a log,
   // exclusive mode keeps the log's index in memory; the VFS without locks allows it on a file that is only
@@ -236,24 +284,45 @@ Result<SqliteConnection> OpenCheckedForReading(const std::string& path) {
     return WithPath(path, set.error());
   }
   if (Status format = CheckFormat(*opened, path); !format) return format.error();
-  if (Status pages = CheckPages(*opened, path); !pages) return pages.error();
+  if (Status pages = CheckPages(*opened, path, what); !pages) return pages.error();
+  return opened;
+}
+
+Result<SqliteConnection> OpenCheckedBesideWriter(const std::string& path, Checked what) {
+  Result<SqliteConnection> opened =
+      SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadOnly);
+  if (!opened) return WithPath(path, opened.error());
+  opened->CheckpointOnClose(false);
+  const std::string sql =
+      fmt::format("PRAGMA busy_timeout = {}; PRAGMA query_only = ON; BEGIN", kBusyMilliseconds);
+  if (Status set = opened->Execute(sql); !set) return WithPath(path, set.error());
+  if (Status format = CheckFormat(*opened, path); !format) return format.error();
+  if (Status pages = CheckPages(*opened, path, what); !pages) return pages.error();
   return opened;
 }
 
 Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs,
                                                int checkpoint_pages) {
-  if (Result<SqliteConnection> checked = OpenCheckedForReading(path); !checked) return checked.error();
+  if (Result<SqliteConnection> checked = OpenCheckedForReading(path, Checked::kEverything); !checked)
+    return checked.error();
   Result<SqliteConnection> opened =
       SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadWrite, vfs);
   if (!opened) return WithPath(path, opened.error());
   // cache_spill: before a commit nothing reaches the file, so that a commit that is refused leaves no trace.
   // recursive_triggers: without it INSERT OR REPLACE would delete a row behind the triggers' back.
-  const std::string sql = fmt::format(
-      "PRAGMA locking_mode = EXCLUSIVE; PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL;"
-      "PRAGMA foreign_keys = ON; PRAGMA recursive_triggers = ON; PRAGMA cache_spill = OFF;"
-      "PRAGMA temp_store = MEMORY; PRAGMA wal_autocheckpoint = {}; BEGIN IMMEDIATE; COMMIT",
-      checkpoint_pages);
-  if (Status set = opened->Execute(sql); !set) return WithPath(path, set.error());
+  // journal_size_limit: a reader that took long lets the log grow; afterwards it shrinks again.
+  const auto begin = [&](const char* locking_mode) {
+    return opened->Execute(fmt::format(
+        "PRAGMA locking_mode = {}; PRAGMA busy_timeout = {}; PRAGMA journal_mode = WAL; PRAGMA synchronous = "
+        "FULL;"
+        "PRAGMA foreign_keys = ON; PRAGMA recursive_triggers = ON; PRAGMA cache_spill = OFF;"
+        "PRAGMA temp_store = MEMORY; PRAGMA wal_autocheckpoint = {}; PRAGMA journal_size_limit = {};"
+        "BEGIN IMMEDIATE; COMMIT",
+        locking_mode, kBusyMilliseconds, checkpoint_pages, kLogBytes));
+  };
+  Status set = begin("NORMAL");
+  if (!set && set.error().kind == ErrorKind::kIo) set = begin("EXCLUSIVE");  // there is no memory to share
+  if (!set) return WithPath(path, set.error());
   if (Status format = CheckFormat(*opened, path); !format) return format.error();
   return opened;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/result.h"
+#include "master/store/result_store.h"
 #include "master/store/sqlite_connection.h"
 
 namespace gauntlet::master {
@@ -21,8 +22,8 @@ struct CampaignMeta {
   bool operator==(const CampaignMeta&) const = default;
 };
 
-// The database's format. A file of a higher one is refused, never changed.
-inline constexpr std::int64_t kStoreFormat = 1;
+// The database's format. A file of another one is refused, never changed.
+inline constexpr std::int64_t kStoreFormat = 2;
 // "GNTL": tells a campaign.db from any other SQLite file.
 inline constexpr std::int64_t kStoreApplicationId = 0x474E544C;
 
@@ -36,10 +37,16 @@ Status CreateDatabase(const std::string& path, const CampaignMeta& meta);
 // Opens a database for reading and checks it: kNotFound, kVersion (both formats are named) or kCorrupt.
 // Neither the check nor the connection changes a byte of the campaign's directory. A write-ahead log left by
 // a killed master is read. The caller sees to it that nobody writes meanwhile: no lock is taken.
-Result<SqliteConnection> OpenCheckedForReading(const std::string& path);
+Result<SqliteConnection> OpenCheckedForReading(const std::string& path, Checked what);
 
-// Checks as OpenCheckedForReading does, then opens for writing: exclusively locked, write-ahead log, every
-// commit synchronised. kInUse when another process holds it. `vfs`: SqliteConnection::Open.
+// Opens and checks a database that a process of this machine writes. What is read is what it had committed at
+// this moment, as long as the connection lives; the writer does not wait for it. Errors: those of
+// OpenCheckedForReading; kIo and kInUse also when the writer has just ended.
+Result<SqliteConnection> OpenCheckedBesideWriter(const std::string& path, Checked what);
+
+// Checks as OpenCheckedForReading does, then opens for writing: write-ahead log, every commit synchronised.
+// Other processes of the machine may read meanwhile; only where the file system has no memory to share with
+// them the database is locked against them. `vfs`: SqliteConnection::Open.
 Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs,
                                                int checkpoint_pages);
 

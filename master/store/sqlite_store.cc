@@ -12,7 +12,8 @@ namespace gauntlet::master {
 Result<std::unique_ptr<SqliteStore>> SqliteStore::Open(const std::string& path, Options options) {
   Result<SqliteConnection> connection = OpenCheckedForWriting(path, options.vfs, options.checkpoint_pages);
   if (!connection) return connection.error();
-  Result<std::unique_ptr<SqliteStore>> store = Make(path, *std::move(connection), std::move(options));
+  Result<std::unique_ptr<SqliteStore>> store =
+      Make(path, *std::move(connection), std::move(options), Checked::kEverything);
   if (!store) return store;
   (*store)->notifier_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   if ((*store)->notifier_ < 0) {
@@ -22,14 +23,20 @@ Result<std::unique_ptr<SqliteStore>> SqliteStore::Open(const std::string& path, 
   return store;
 }
 
-Result<std::unique_ptr<SqliteStore>> SqliteStore::OpenReadOnly(const std::string& path) {
-  Result<SqliteConnection> connection = OpenCheckedForReading(path);
+Result<std::unique_ptr<SqliteStore>> SqliteStore::OpenReadOnly(const std::string& path, Checked what) {
+  Result<SqliteConnection> connection = OpenCheckedForReading(path, what);
   if (!connection) return connection.error();
-  return Make(path, *std::move(connection), {});
+  return Make(path, *std::move(connection), {}, what);
+}
+
+Result<std::unique_ptr<SqliteStore>> SqliteStore::OpenBesideMaster(const std::string& path, Checked what) {
+  Result<SqliteConnection> connection = OpenCheckedBesideWriter(path, what);
+  if (!connection) return connection.error();
+  return Make(path, *std::move(connection), {}, what);
 }
 
 Result<std::unique_ptr<SqliteStore>> SqliteStore::Make(const std::string& path, SqliteConnection connection,
-                                                       Options options) {
+                                                       Options options, Checked what) {
   std::unique_ptr<SqliteStore> store(new SqliteStore(path, std::move(connection), std::move(options)));
   Result<CampaignMeta> meta = ReadMeta(store->connection_);
   if (!meta) return store->WithPath(meta.error());
@@ -37,6 +44,7 @@ Result<std::unique_ptr<SqliteStore>> SqliteStore::Make(const std::string& path, 
   Result<SqliteTables> tables = SqliteTables::Open(store->connection_);
   if (!tables) return store->WithPath({ErrorKind::kCorrupt, tables.error().message});
   store->tables_.emplace(*std::move(tables));
+  if (Status counted = store->tables_->CheckTotals(what); !counted) return store->WithPath(counted.error());
   return store;
 }
 
@@ -120,6 +128,7 @@ Status SqliteStore::WriteGroup(const Group& group) {
   for (auto record = group.begin(); status && record != group.end(); ++record) {
     status = std::visit([&](const auto& concrete) { return tables->Insert(concrete); }, *record);
   }
+  if (status) status = tables->StoreTotals();
   if (status && options_.guard) {
     if (Status allowed = options_.guard(); !allowed) {
       tables->Rollback();
@@ -198,6 +207,8 @@ Error SqliteStore::WithPath(const Error& error) const {
                         "everything reported as done is stored",
                         path_, error.message)};
   }
+  if (error.kind == ErrorKind::kCorrupt)
+    return {error.kind, fmt::format("{} was changed or is damaged: {}", path_, error.message)};
   return {error.kind, fmt::format("{}: {}", path_, error.message)};
 }
 

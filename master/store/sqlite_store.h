@@ -48,7 +48,12 @@ class SqliteStore final : public ResultStore {
   static Result<std::unique_ptr<SqliteStore>> Open(const std::string& path, Options options);
   // For looking at a campaign that no master serves: no byte of it is changed, and adding anything is a
   // broken invariant. Errors: those of OpenCheckedForReading.
-  static Result<std::unique_ptr<SqliteStore>> OpenReadOnly(const std::string& path);
+  static Result<std::unique_ptr<SqliteStore>> OpenReadOnly(const std::string& path,
+                                                           Checked what = Checked::kEverything);
+
+  // The same of a campaign that a master of this machine serves: what it had committed at this moment.
+  // Errors: those of OpenCheckedBesideWriter.
+  static Result<std::unique_ptr<SqliteStore>> OpenBesideMaster(const std::string& path, Checked what);
 
   SqliteStore(const SqliteStore&) = delete;
   SqliteStore& operator=(const SqliteStore&) = delete;
@@ -75,6 +80,7 @@ class SqliteStore final : public ResultStore {
   int CommitNotifier() const override { return notifier_; }
 
   Result<std::vector<StoredSearch>> LoadSearches() override { return Tables()->LoadSearches(); }
+  Result<std::vector<SearchTotals>> LoadTotals() override { return Tables()->LoadTotals(); }
   Result<std::vector<Individual>> LoadIndividuals(SearchId search) override {
     return Tables()->LoadIndividuals(search);
   }
@@ -85,6 +91,10 @@ class SqliteStore final : public ResultStore {
   Status ForEachRun(SearchId search, RunId after,
                     const std::function<void(const StoredRun&)>& visit) override {
     return Tables()->ForEachRun(search, after, visit);
+  }
+  Status ForEachRow(SearchId search, RunId after,
+                    const std::function<void(const StoredRun&)>& visit) override {
+    return Tables()->ForEachRow(search, after, visit);
   }
   Result<std::optional<StoredRun>> LoadRun(RunId run) override { return Tables()->LoadRun(run); }
   Result<std::vector<StoredEvent>> LoadEvents() override { return Tables()->LoadEvents(); }
@@ -102,7 +112,7 @@ class SqliteStore final : public ResultStore {
 
   SqliteStore(std::string path, SqliteConnection connection, Options options);
   static Result<std::unique_ptr<SqliteStore>> Make(const std::string& path, SqliteConnection connection,
-                                                   Options options);
+                                                   Options options, Checked what);
 
   LockedTables Tables() { return {std::unique_lock(database_mutex_), &*tables_}; }
   void Add(Record record);

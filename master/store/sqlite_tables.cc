@@ -2,20 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 #include "base/canonical_encoder.h"
 #include "base/hash.h"
+#include "master/store/checksums.h"
+#include "master/store/run_numbers.h"
 #include "sim/arena/genome.h"
+#include "sim/run_result.h"
 
 namespace gauntlet::master {
 namespace {
 
 constexpr std::string_view kRunColumns =
-    "id, search, individual, evaluation, replicate, generation, seed, spec_hash, hash, verdict, "
-    "fitness_bits, total_failure, failure_type, worker, attempt, spec, result";
+    "id, search, individual, evaluation, replicate, generation, seed, verdict, fitness_bits, "
+    "total_failure, failure_type, message, hash, spec_hash, worker, attempt, record_hash, checksum";
+// A run whose record is missing is damaged, not absent.
+constexpr std::string_view kRuns = "runs";
+constexpr std::string_view kWholeRuns = "runs LEFT JOIN records ON records.run = runs.id";
+
+// Names in the table examples.
+constexpr const char* kSpec = "spec";
+constexpr const char* kResult = "result";
 
 // What the search left out: how it was judged changes with every evaluation and follows from the runs.
 std::string EncodeParents(const Individual& individual) {
@@ -81,14 +93,45 @@ std::uint64_t ChecksumOf(const SavedState& state) {
   return hash.value();
 }
 
-StoredRun ReadRun(const SqliteStatement& row) {
-  StoredRun run;
-  std::uint64_t fitness_bits = 0;
-  row.Read(run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation, run.seed,
-           run.spec_hash, run.hash, run.verdict, fitness_bits, run.total_failure, run.failure_type,
-           run.worker, run.attempt, run.spec, run.result);
-  run.fitness = std::bit_cast<double>(fitness_bits);
-  return run;
+std::uint64_t RecordHash(std::string_view packed_spec, std::string_view packed_result) {
+  return RowChecksum().Bytes(packed_spec).Bytes(packed_result).value();
+}
+
+std::uint64_t ChecksumOf(const StoredRun& run, std::uint64_t record_hash) {
+  return RowChecksum()
+      .Number(run.id)
+      .Number(run.search)
+      .Number(run.individual)
+      .Number(run.evaluation)
+      .Number(run.replicate)
+      .Number(run.generation)
+      .Number(run.seed)
+      .Number(static_cast<std::uint64_t>(run.verdict))
+      .Number(std::bit_cast<std::uint64_t>(run.fitness))
+      .Number(run.total_failure)
+      .Number(static_cast<std::uint64_t>(run.failure_type))
+      .Bytes(run.message)
+      .Number(run.hash)
+      .Number(run.spec_hash)
+      .Bytes(run.worker)
+      .Number(run.attempt)
+      .Number(record_hash)
+      .value();
+}
+
+std::uint64_t ChecksumOf(SearchId search, IndividualId id, std::uint32_t birth_generation,
+                         std::string_view parents, std::string_view test_case) {
+  return RowChecksum()
+      .Number(search)
+      .Number(id)
+      .Number(birth_generation)
+      .Bytes(parents)
+      .Bytes(test_case)
+      .value();
+}
+
+Error Damaged(const std::string& what) {
+  return {ErrorKind::kCorrupt, "the campaign's database was changed or is damaged: " + what};
 }
 
 Error Conflict(const std::string& what) {
@@ -98,15 +141,19 @@ Error Conflict(const std::string& what) {
 }  // namespace
 
 Result<SqliteTables> SqliteTables::Open(SqliteConnection& connection) {
-  SqliteTables tables(connection);
+  Result<TotalsTable> totals = TotalsTable::Open(connection);
+  if (!totals) return totals.error();
+  SqliteTables tables(connection, *std::move(totals));
   const std::pair<SqliteStatement*, std::string> statements[] = {
       {&tables.insert_search_, "INSERT INTO searches (id, name, algorithm, seed) VALUES (?, ?, ?, ?)"},
       {&tables.insert_individual_,
-       "INSERT INTO individuals (search, id, birth_generation, parents, test_case) VALUES (?, ?, ?, ?, ?) "
-       "ON CONFLICT DO NOTHING"},
+       "INSERT INTO individuals (search, id, birth_generation, parents, test_case, checksum) "
+       "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"},
       {&tables.insert_run_, fmt::format("INSERT INTO runs ({}, fitness) "
-                                        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+                                        "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
                                         kRunColumns)},
+      {&tables.insert_record_, "INSERT INTO records (run, spec, result) VALUES (?, ?, ?)"},
+      {&tables.insert_example_, "INSERT INTO examples (kind, bytes, checksum) VALUES (?, ?, ?)"},
       {&tables.insert_state_,
        "INSERT INTO states (search, last_run, generation, state, results_digest, checksum) "
        "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"},
@@ -120,7 +167,31 @@ Result<SqliteTables> SqliteTables::Open(SqliteConnection& connection) {
     if (!prepared) return prepared.error();
     *statement = *std::move(prepared);
   }
+  if (Status loaded = tables.LoadExamples(); !loaded) return loaded.error();
   return tables;
+}
+
+Status SqliteTables::LoadExamples() {
+  Result<SqliteStatement> query = connection_->Prepare("SELECT kind, bytes, checksum FROM examples");
+  if (!query) return query.error();
+  return query->ForEachRow([&]() -> Status {
+    std::string kind;
+    std::string bytes;
+    std::uint64_t checksum = 0;
+    query->Read(kind, bytes, checksum);
+    if (checksum != RowChecksum().Bytes(kind).Bytes(bytes).value())
+      return Error{ErrorKind::kCorrupt,
+                   fmt::format("the example of a {} was changed: its checksum differs", kind)};
+    if (kind == kSpec) specs_.Learn(bytes);
+    if (kind == kResult) results_.Learn(bytes);
+    return Ok{};
+  });
+}
+
+Status SqliteTables::Learn(Packing& packing, const char* kind, std::string_view example) {
+  packing.Learn(example);
+  ++totals_.Of(TotalsTable::kNoSearch).examples;
+  return insert_example_.Run(kind, Blob{example}, RowChecksum().Bytes(kind).Bytes(example).value());
 }
 
 void SqliteTables::Rollback() {
@@ -130,7 +201,15 @@ void SqliteTables::Rollback() {
 
 Status SqliteTables::Insert(const StoredSearch& search) {
   const Status inserted = insert_search_.Run(search.id, search.name, search.algorithm, search.seed);
-  return inserted && search.finished ? Insert(Finished{search.id}) : inserted;
+  if (!inserted) return inserted;
+  totals_.Of(search.id).search = search.id;
+  return search.finished ? Insert(Finished{search.id}) : inserted;
+}
+
+Status SqliteTables::Insert(const Finished& finished) {
+  const Status inserted = insert_finished_.Run(finished.search);
+  if (inserted && connection_->Changes() > 0) totals_.Of(finished.search).finished = true;
+  return inserted;
 }
 
 Status SqliteTables::Insert(const Newborns& newborns) {
@@ -143,10 +222,14 @@ Status SqliteTables::Insert(const Newborns& newborns) {
 Status SqliteTables::Insert(SearchId search, const Individual& individual) {
   const std::string parents = EncodeParents(individual);
   const std::string test_case = EncodeTestCase(individual.test_case);
-  if (Status inserted = insert_individual_.Run(search, individual.id, individual.birth_generation,
-                                               Blob{parents}, Blob{test_case});
-      !inserted || connection_->Changes() > 0) {
-    return inserted;
+  const std::string packed = specs_.Pack(test_case);
+  const Status inserted = insert_individual_.Run(
+      search, individual.id, individual.birth_generation, Blob{parents}, Blob{packed},
+      ChecksumOf(search, individual.id, individual.birth_generation, parents, test_case));
+  if (!inserted) return inserted;
+  if (connection_->Changes() > 0) {
+    ++totals_.Of(search).individuals;
+    return Ok{};
   }
   select_individual_.Bind(search, individual.id);
   Result<bool> row = select_individual_.Step();
@@ -156,27 +239,46 @@ Status SqliteTables::Insert(SearchId search, const Individual& individual) {
   if (row && *row) select_individual_.Read(stored_generation, stored_parents, stored_case);
   select_individual_.Reset();
   if (!row) return row.error();
-  if (*row && stored_generation == individual.birth_generation && stored_parents == parents &&
-      stored_case == test_case) {
-    return Ok{};
+  if (*row && stored_generation == individual.birth_generation && stored_parents == parents) {
+    const Result<std::string> unpacked = specs_.Unpack(stored_case);
+    if (unpacked && *unpacked == test_case) return Ok{};
   }
   return Conflict(fmt::format("individual {} of search {}", individual.id, search));
 }
 
 Status SqliteTables::Insert(const StoredRun& run) {
-  Status inserted = insert_run_.Run(
-      run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation, run.seed,
-      run.spec_hash, run.hash, run.verdict, std::bit_cast<std::uint64_t>(run.fitness), run.total_failure,
-      run.failure_type, run.worker, run.attempt, Blob{run.spec}, Blob{run.result}, run.fitness);
-  if (inserted) return inserted;
-  return Error{inserted.error().kind, fmt::format("run {}: {}", run.id, inserted.error().message)};
+  const bool completed = run.verdict == static_cast<int>(sim::Verdict::kCompleted);
+  Status inserted = Ok{};
+  if (!specs_.learned()) inserted = Learn(specs_, kSpec, run.spec);
+  if (inserted && completed && !results_.learned()) inserted = Learn(results_, kResult, run.result);
+  const std::string spec = specs_.Pack(run.spec);
+  const std::string result = results_.Pack(run.result);
+  const std::uint64_t record_hash = RecordHash(spec, result);
+  if (inserted) {
+    inserted =
+        insert_run_.Run(run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation,
+                        run.seed, run.verdict, std::bit_cast<std::uint64_t>(run.fitness), run.total_failure,
+                        run.failure_type, run.message, run.hash, run.spec_hash, run.worker, run.attempt,
+                        record_hash, ChecksumOf(run, record_hash), run.fitness);
+  }
+  if (inserted) inserted = insert_record_.Run(run.id, Blob{spec}, Blob{result});
+  if (!inserted)
+    return Error{inserted.error().kind, fmt::format("run {}: {}", run.id, inserted.error().message)};
+  Totals& totals = totals_.Of(run.search);
+  ++totals.runs;
+  if (!completed) ++totals.runs_failed;
+  if (run.total_failure) ++totals.total_failures;
+  return Ok{};
 }
 
 Status SqliteTables::Insert(const SavedState& state) {
-  if (Status inserted = insert_state_.Run(state.search, state.last_run, state.generation, Blob{state.state},
-                                          Blob{state.results_digest}, ChecksumOf(state));
-      !inserted || connection_->Changes() > 0) {
-    return inserted;
+  const std::string packed = specs_.Pack(state.state);  // genomes, too
+  const Status inserted = insert_state_.Run(state.search, state.last_run, state.generation, Blob{packed},
+                                            Blob{state.results_digest}, ChecksumOf(state));
+  if (!inserted) return inserted;
+  if (connection_->Changes() > 0) {
+    ++totals_.Of(state.search).states;
+    return Ok{};
   }
   Result<std::optional<SavedState>> stored = LoadState(state.search, state.last_run);
   if (!stored) return stored.error();
@@ -185,7 +287,9 @@ Status SqliteTables::Insert(const SavedState& state) {
 }
 
 Status SqliteTables::Insert(const StoredEvent& event) {
-  return insert_event_.Run(event.unix_ms, event.kind, event.text);
+  const Status inserted = insert_event_.Run(event.unix_ms, event.kind, event.text);
+  if (inserted) ++totals_.Of(TotalsTable::kNoSearch).events;
+  return inserted;
 }
 
 Result<std::vector<StoredSearch>> SqliteTables::LoadSearches() {
@@ -203,9 +307,18 @@ Result<std::vector<StoredSearch>> SqliteTables::LoadSearches() {
   return searches;
 }
 
+Result<std::vector<SearchTotals>> SqliteTables::LoadTotals() {
+  std::vector<SearchTotals> all;
+  for (const auto& [search, totals] : totals_.all()) {
+    if (search != TotalsTable::kNoSearch) all.push_back(totals);
+  }
+  return all;
+}
+
 Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
   Result<SqliteStatement> query = connection_->Prepare(
-      "SELECT id, birth_generation, parents, test_case FROM individuals WHERE search = ? ORDER BY id");
+      "SELECT id, birth_generation, parents, test_case, checksum FROM individuals WHERE search = ? ORDER BY "
+      "id");
   if (!query) return query.error();
   query->Bind(search);
   std::vector<Individual> individuals;
@@ -213,7 +326,14 @@ Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
     Individual& individual = individuals.emplace_back();
     std::string parents;
     std::string test_case;
-    query->Read(individual.id, individual.birth_generation, parents, test_case);
+    std::uint64_t checksum = 0;
+    query->Read(individual.id, individual.birth_generation, parents, test_case, checksum);
+    Result<std::string> unpacked = specs_.Unpack(test_case);
+    if (unpacked) test_case = *std::move(unpacked);
+    if (checksum != ChecksumOf(search, individual.id, individual.birth_generation, parents, test_case)) {
+      return Damaged(
+          fmt::format("individual {} of search {} was changed: its checksum differs", individual.id, search));
+    }
     if (DecodeParents(parents, individual) && DecodeTestCase(test_case, individual.test_case)) return Ok{};
     return Error{ErrorKind::kCorrupt,
                  fmt::format("individual {} of search {} does not read back", individual.id, search)};
@@ -234,7 +354,10 @@ Result<std::optional<SavedState>> SqliteTables::LoadState(SearchId search, RunId
   SavedState state;
   std::uint64_t checksum = 0;
   query->Read(state.search, state.last_run, state.generation, state.state, state.results_digest, checksum);
-  if (checksum == ChecksumOf(state)) return std::optional(std::move(state));
+  if (Result<std::string> bytes = specs_.Unpack(state.state)) {
+    state.state = *std::move(bytes);
+    if (checksum == ChecksumOf(state)) return std::optional(std::move(state));
+  }
   return Error{ErrorKind::kCorrupt,
                fmt::format("the state of search {} after run {} is damaged: its checksum differs",
                            state.search, state.last_run)};
@@ -244,26 +367,78 @@ Result<std::optional<SavedState>> SqliteTables::LoadNewestState(SearchId search)
   return LoadState(search, std::numeric_limits<std::int64_t>::max());
 }
 
-Status SqliteTables::ForEachRun(SearchId search, RunId after,
-                                const std::function<void(const StoredRun&)>& visit) {
+Result<StoredRun> SqliteTables::ReadRun(const SqliteStatement& row, bool whole) {
+  StoredRun run;
+  std::uint64_t fitness_bits = 0;
+  std::uint64_t record_hash = 0;
+  std::uint64_t checksum = 0;
+  std::string spec;
+  std::string result;
+  const auto read = [&](auto&... more) {
+    row.Read(run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation, run.seed,
+             run.verdict, fitness_bits, run.total_failure, run.failure_type, run.message, run.hash,
+             run.spec_hash, run.worker, run.attempt, record_hash, checksum, more...);
+  };
+  if (whole) {
+    read(spec, result);
+  } else {
+    read();
+  }
+  run.fitness = std::bit_cast<double>(fitness_bits);
+  if (checksum != ChecksumOf(run, record_hash))
+    return Damaged(fmt::format("the row of run {} was changed: its checksum differs", run.id));
+  if (!whole) return run;
+  if (record_hash != RecordHash(spec, result))
+    return Damaged(
+        fmt::format("the spec or the result of run {} was changed: their checksum differs", run.id));
+  for (const auto& [packing, packed, into] :
+       {std::tuple(&specs_, &spec, &run.spec), std::tuple(&results_, &result, &run.result)}) {
+    Result<std::string> bytes = packing->Unpack(*packed);
+    if (!bytes) return Damaged(fmt::format("run {}: {}", run.id, bytes.error().message));
+    *into = *std::move(bytes);
+  }
+  return run;
+}
+
+Status SqliteTables::ForEach(SearchId search, RunId after, bool whole,
+                             const std::function<void(const StoredRun&)>& visit) {
+  // The ids of a search's runs stand together: that is the index.
+  const RunId before_first = RunIdOf(search, 1) - 1;
+  const RunId last = before_first + (1ULL << kSequenceBits) - 1;
   Result<SqliteStatement> query = connection_->Prepare(
-      fmt::format("SELECT {} FROM runs WHERE search = ? AND id > ? ORDER BY id", kRunColumns));
+      fmt::format("SELECT {}{} FROM {} WHERE id > ? AND id <= ? ORDER BY id", kRunColumns,
+                  whole ? ", records.spec, records.result" : "", whole ? kWholeRuns : kRuns));
   if (!query) return query.error();
-  query->Bind(search, after);
+  query->Bind(std::max(after, before_first), last);
   return query->ForEachRow([&]() -> Status {
-    visit(ReadRun(*query));
+    const Result<StoredRun> run = ReadRun(*query, whole);
+    if (!run) return run.error();
+    visit(*run);
     return Ok{};
   });
 }
 
+Status SqliteTables::ForEachRun(SearchId search, RunId after,
+                                const std::function<void(const StoredRun&)>& visit) {
+  return ForEach(search, after, /*whole=*/true, visit);
+}
+
+Status SqliteTables::ForEachRow(SearchId search, RunId after,
+                                const std::function<void(const StoredRun&)>& visit) {
+  return ForEach(search, after, /*whole=*/false, visit);
+}
+
 Result<std::optional<StoredRun>> SqliteTables::LoadRun(RunId run) {
-  Result<SqliteStatement> query =
-      connection_->Prepare(fmt::format("SELECT {} FROM runs WHERE id = ?", kRunColumns));
+  Result<SqliteStatement> query = connection_->Prepare(
+      fmt::format("SELECT {}, records.spec, records.result FROM {} WHERE id = ?", kRunColumns, kWholeRuns));
   if (!query) return query.error();
   query->Bind(run);
   Result<bool> row = query->Step();
   if (!row) return row.error();
-  return *row ? std::optional(ReadRun(*query)) : std::nullopt;
+  if (!*row) return std::optional<StoredRun>();
+  Result<StoredRun> read = ReadRun(*query, /*whole=*/true);
+  if (!read) return read.error();
+  return std::optional(*std::move(read));
 }
 
 Result<std::vector<StoredEvent>> SqliteTables::LoadEvents() {

@@ -3,11 +3,15 @@
 
 #include <functional>
 #include <optional>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
+#include "master/store/packing.h"
 #include "master/store/result_store.h"
 #include "master/store/sqlite_connection.h"
+#include "master/store/totals_table.h"
 
 namespace gauntlet::master {
 
@@ -39,26 +43,45 @@ class SqliteTables {
   Status Insert(const StoredRun& run);
   Status Insert(const SavedState& state);
   Status Insert(const StoredEvent& event);
-  Status Insert(const Finished& finished) { return insert_finished_.Run(finished.search); }
+  Status Insert(const Finished& finished);
+  // What the insertions since Begin have added, into the table totals; before Commit.
+  Status StoreTotals() { return totals_.Store(); }
+
+  // Error: kCorrupt, naming a table that has lost rows.
+  Status CheckTotals(Checked what) const { return totals_.Check(what); }
 
   Result<std::vector<StoredSearch>> LoadSearches();
+  Result<std::vector<SearchTotals>> LoadTotals();
   Result<std::vector<Individual>> LoadIndividuals(SearchId search);
   Result<std::optional<SavedState>> LoadNewestState(SearchId search);
   Status ForEachRun(SearchId search, RunId after, const std::function<void(const StoredRun&)>& visit);
+  Status ForEachRow(SearchId search, RunId after, const std::function<void(const StoredRun&)>& visit);
   Result<std::optional<StoredRun>> LoadRun(RunId run);
   Result<std::vector<StoredEvent>> LoadEvents();
 
  private:
-  explicit SqliteTables(SqliteConnection& connection) : connection_(&connection) {}
+  SqliteTables(SqliteConnection& connection, TotalsTable totals)
+      : connection_(&connection), totals_(std::move(totals)) {}
+  Status LoadExamples();
+  // The first of its kind becomes what later ones are packed with.
+  Status Learn(Packing& packing, const char* kind, std::string_view example);
+  Result<StoredRun> ReadRun(const SqliteStatement& row, bool whole);
+  Status ForEach(SearchId search, RunId after, bool whole,
+                 const std::function<void(const StoredRun&)>& visit);
 
   Status Insert(SearchId search, const Individual& individual);
   // The newest state of `search` with last_run <= `until`.
   Result<std::optional<SavedState>> LoadState(SearchId search, RunId until);
 
   SqliteConnection* connection_;
+  TotalsTable totals_;
+  Packing specs_;
+  Packing results_;
   SqliteStatement insert_search_;
   SqliteStatement insert_individual_;
   SqliteStatement insert_run_;
+  SqliteStatement insert_record_;
+  SqliteStatement insert_example_;
   SqliteStatement insert_state_;
   SqliteStatement insert_event_;
   SqliteStatement insert_finished_;

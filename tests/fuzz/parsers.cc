@@ -53,7 +53,10 @@ void ReadRun(std::string_view bytes) {
   if (const Result<sim::RunResult> result = proto::DecodeRunResult(bytes); result) {
     const Result<sim::RunResult> again = proto::DecodeRunResult(proto::EncodeRunResult(*result));
     GAUNTLET_CHECK(again.ok() && again->hash == result->hash, "a result does not survive");
+    const Result<sim::RunResult> stored = proto::DecodeStoredResult(proto::EncodeWithoutWays(*result));
+    GAUNTLET_CHECK(stored.ok() && stored->hash == result->hash, "a result without ways does not survive");
   }
+  (void)proto::DecodeStoredResult(bytes);
 }
 
 void ReadCaseJson(std::string_view bytes) {

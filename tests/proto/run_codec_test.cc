@@ -123,6 +123,32 @@ TEST(RunCodecTest, ARefusedRunMayHaveATrajectoryOfNoRobots) {
   EXPECT_TRUE(decoded->trajectory.empty());
 }
 
+TEST(RunCodecTest, AStoredResultMayLackItsWaysButNeverAWorkersAnswer) {
+  const sim::RunResult result = SampleResult(0.5);
+  const std::string bytes = EncodeWithoutWays(result);
+  EXPECT_LT(bytes.size(), EncodeRunResult(result, TrajectoryEncoding::kLeaveOut).size());
+  const Result<sim::RunResult> stored = DecodeStoredResult(bytes);
+  ASSERT_TRUE(stored.ok()) << stored.error().message;
+  EXPECT_EQ(stored->hash, result.hash);
+  EXPECT_EQ(stored->metrics, result.metrics);
+  EXPECT_EQ(stored->robots.at(1).path_length, result.robots.at(1).path_length);
+  EXPECT_TRUE(stored->robots.at(1).waypoints.empty());
+  EXPECT_TRUE(stored->annotations.empty());
+  const Result<sim::RunResult> answer = DecodeRunResult(bytes);
+  ASSERT_FALSE(answer.ok());
+  EXPECT_THAT(answer.error().message, HasSubstr("hash"));
+}
+
+TEST(RunCodecTest, AStoredResultWithoutAnyWaysIsHeldAgainstItsHash) {
+  sim::RunResult result;
+  result.fitness = 0.5;
+  result.hash = sim::HashOf(result);
+  EXPECT_TRUE(DecodeStoredResult(EncodeWithoutWays(result)).ok());
+  EXPECT_TRUE(DecodeStoredResult(EncodeRunResult(SampleResult(0.5))).ok()) << "whole ones are read, too";
+  result.fitness = 0.25;
+  EXPECT_FALSE(DecodeStoredResult(EncodeWithoutWays(result)).ok());
+}
+
 TEST(RunCodecTest, UnreadableBytesAreCorrupt) {
   EXPECT_EQ(DecodeRunSpec("\xff\xff\xff").error().kind, ErrorKind::kCorrupt);
   EXPECT_EQ(DecodeRunResult("\xff\xff\xff").error().kind, ErrorKind::kCorrupt);

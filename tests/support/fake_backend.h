@@ -79,7 +79,6 @@ class FakeBackend final : public master::EvaluationBackend {
     finished.id = run.id;
     finished.result = simulate_(*spec);
     finished.result.hash = sim::HashOf(finished.result);
-    finished.encoded = proto::EncodeRunResult(finished.result);
     finished.worker = "fake";
     return finished;
   }

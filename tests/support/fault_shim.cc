@@ -1,7 +1,8 @@
 // A library for LD_PRELOAD that lets a program meet what a test machine does not offer. For tests only.
 //   GAUNTLET_FAULT_LOSE_UNSYNCED=DIR  files in DIR reach the disk when they are synchronised and not before:
 //       until then what is written is kept in memory, so a kill loses it as a loss of power would. Without
-//       effect on DIR/log, DIR/lock and DIR/status.json, which nobody relies on after a loss of power.
+//       effect on DIR/log, DIR/lock, DIR/status.json and DIR/*-shm, which nobody relies on after a loss of
+//       power.
 //   GAUNTLET_FAULT_CLOCK_OFFSET=S     the wall clock is S seconds ahead
 //   GAUNTLET_FAULT_CLOCK_JUMPS=S      the wall clock jumps by up to S seconds, to and fro, at every look at
 //   it GAUNTLET_FAULT_LOCAL_LOCKS=1      locks on files always succeed, as on a file system that other hosts
@@ -54,7 +55,9 @@ bool Loses(std::string_view path) {
   static const std::string directory(Setting("GAUNTLET_FAULT_LOSE_UNSYNCED"));
   if (directory.empty() || !path.starts_with(directory + "/")) return false;
   const std::string_view name = path.substr(directory.size() + 1);
-  return !name.starts_with("log/") && name != "lock" && !name.starts_with("status.json");
+  // SQLite's shared memory is no content: it is made anew after a loss of power.
+  return !name.starts_with("log/") && name != "lock" && !name.starts_with("status.json") &&
+         !name.ends_with("-shm");
 }
 
 // Takes the place of `fd`, which stays open under another number.

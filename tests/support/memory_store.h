@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "master/store/result_store.h"
+#include "sim/run_result.h"
 
 namespace gauntlet::testing_support {
 
@@ -77,6 +78,22 @@ class MemoryStore final : public master::ResultStore {
   int CommitNotifier() const override { return -1; }
 
   Result<std::vector<master::StoredSearch>> LoadSearches() override { return searches; }
+  Result<std::vector<master::SearchTotals>> LoadTotals() override {
+    std::vector<master::SearchTotals> all;
+    for (const master::StoredSearch& search : searches) {
+      master::SearchTotals& totals = all.emplace_back();
+      totals.search = search.id;
+      totals.finished = search.finished;
+      totals.individuals = individuals[search.id].size();
+      for (const auto& [id, run] : runs) {
+        if (run.search != search.id) continue;
+        ++totals.runs;
+        totals.runs_failed += run.verdict != static_cast<int>(sim::Verdict::kCompleted) ? 1 : 0;
+        totals.total_failures += run.total_failure ? 1 : 0;
+      }
+    }
+    return all;
+  }
   Result<std::vector<master::Individual>> LoadIndividuals(master::SearchId search) override {
     return individuals[search];
   }
@@ -90,6 +107,14 @@ class MemoryStore final : public master::ResultStore {
       if (run->second.search == search) visit(run->second);
     }
     return Ok{};
+  }
+  Status ForEachRow(master::SearchId search, master::RunId after,
+                    const std::function<void(const master::StoredRun&)>& visit) override {
+    return ForEachRun(search, after, [&visit](master::StoredRun run) {
+      run.spec.clear();
+      run.result.clear();
+      visit(run);
+    });
   }
   Result<std::optional<master::StoredRun>> LoadRun(master::RunId run) override {
     const auto found = runs.find(run);

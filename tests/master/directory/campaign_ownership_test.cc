@@ -75,18 +75,14 @@ TEST_F(CampaignOwnershipTest, ACampaignIsMadeTakenAndViewed) {
   EXPECT_EQ(RunsOf(*view->store).size(), 1u);
 }
 
-TEST_F(CampaignOwnershipTest, OneMasterAtATimeAndNoReadersMeanwhile) {
+TEST_F(CampaignOwnershipTest, OneMasterAtATime) {
   Result<CampaignOwnership> owner = Create();
   ASSERT_TRUE(owner.ok());
   const Result<CampaignOwnership> taken = TakeCampaign(dir_);
-  const Result<CampaignView> view = ViewCampaign(dir_);
   ASSERT_FALSE(taken.ok());
-  ASSERT_FALSE(view.ok());
-  for (const Error& error : {taken.error(), view.error()}) {
-    EXPECT_EQ(error.kind, ErrorKind::kInUse);
-    EXPECT_THAT(error.message, HasSubstr(fmt::format("pid {}", getpid())));
-    EXPECT_THAT(error.message, HasSubstr(dir_));
-  }
+  EXPECT_EQ(taken.error().kind, ErrorKind::kInUse);
+  EXPECT_THAT(taken.error().message, HasSubstr(fmt::format("pid {}", getpid())));
+  EXPECT_THAT(taken.error().message, HasSubstr(dir_));
   EXPECT_TRUE(owner->directory.CheckEpoch(1).ok()) << "a refused master counted an epoch";
 }
 
@@ -145,7 +141,7 @@ TEST_F(CampaignOwnershipTest, AMasterKilledWhileItMakesTheCampaignIsNoObstacle) 
   });
   // As if it had been killed a moment before the database got its name.
   std::filesystem::rename(dir_ + "/campaign.db", dir_ + "/campaign.db.new");
-  std::filesystem::remove(dir_ + "/campaign.db-wal");
+  for (const char* name : {"/campaign.db-wal", "/campaign.db-shm"}) std::filesystem::remove(dir_ + name);
   Result<CampaignOwnership> owner = Create();
   ASSERT_TRUE(owner.ok()) << owner.error().message;
 }
@@ -171,7 +167,7 @@ TEST_F(CampaignOwnershipTest, ANewerFormatIsLeftAsItIs) {
   ASSERT_TRUE(Create().ok());
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open((dir_ + "/campaign.db").c_str(), &db), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version = 2", nullptr, nullptr, nullptr), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version = 3", nullptr, nullptr, nullptr), SQLITE_OK);
   sqlite3_close(db);
   const std::string before = ReadFile(dir_ + "/campaign.db");
   const Result<CampaignOwnership> taken = TakeCampaign(dir_);

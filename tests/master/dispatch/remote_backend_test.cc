@@ -95,10 +95,7 @@ TEST_F(RemoteBackendTest, AResultComesOutAndIsAcknowledgedWhenStored) {
   ASSERT_THAT(finished, SizeIs(1));
   EXPECT_EQ(finished[0].id, 1U);
   EXPECT_EQ(finished[0].result.hash, SampleResult(0.5).hash);
-  const Result<sim::RunResult> stored = proto::DecodeRunResult(finished[0].encoded);
-  ASSERT_TRUE(stored.ok()) << stored.error().message;
-  EXPECT_EQ(stored->hash, finished[0].result.hash);
-  EXPECT_TRUE(stored->trajectory.empty()) << "trajectories are not stored";
+  EXPECT_TRUE(finished[0].result.trajectory.empty()) << "trajectories are not stored";
   EXPECT_EQ(finished[0].worker, "000000000000000a@node7");
   EXPECT_EQ(finished[0].attempt, 1U);
   Poll();

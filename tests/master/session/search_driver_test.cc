@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "proto/run_codec.h"
 #include "tests/master/session/toy_campaign.h"
 
 namespace gauntlet::master {
@@ -109,6 +110,31 @@ TEST_P(SearchDriverTest, TellsTheSameLiveAndAfterACrash) {
     const Life resumed = Live(experiment, wants_metrics, store, SIZE_MAX);
     EXPECT_TRUE(resumed.finished);
     EXPECT_THAT(resumed.heard, ElementsAreArray(whole.heard)) << "after a crash at " << results << " results";
+  }
+}
+
+TEST(SearchDriverStoreTest, StoresTheWaysOfRobotsOnlyWhenAskedTo) {
+  for (const bool trajectories : {false, true}) {
+    Experiment experiment = ToyExperiment();
+    experiment.store.trajectories = trajectories;
+    MemoryStore store;
+    ToySession session({experiment}, store, [](const sim::RunSpec& spec) {
+      sim::RunResult result = ToyRun(spec);
+      sim::RobotSummary& robot = result.robots.emplace_back();
+      robot.path_length = 2.0;
+      robot.waypoints = {{1.0, 2.0}, {3.0, 4.0}};
+      result.annotations = {{.kind = "disc", .label = "goal", .points = {{0.0, 1.0}}, .robots = {}}};
+      return result;
+    });
+    ASSERT_TRUE(session.Run().ok());
+    const StoredRun& run = store.runs.at(1);
+    const Result<sim::RunResult> stored = proto::DecodeStoredResult(run.result);
+    ASSERT_TRUE(stored.ok()) << stored.error().message;
+    EXPECT_EQ(stored->hash, run.hash);
+    EXPECT_EQ(stored->robots.at(0).path_length, 2.0);
+    EXPECT_EQ(stored->robots.at(0).waypoints.size(), trajectories ? 2U : 0U);
+    EXPECT_EQ(stored->annotations.size(), trajectories ? 1U : 0U);
+    EXPECT_EQ(proto::DecodeRunResult(run.result).ok(), trajectories);
   }
 }
 

@@ -46,7 +46,7 @@ TEST(SearchLoopTest, EveryRunIsStoredWithWhatItWasMadeOf) {
     EXPECT_EQ(run.seed, RunSeed(experiment, run.individual, run.evaluation, run.replicate));
     EXPECT_EQ(run.spec_hash, SpecHash(run.spec));
     const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
-    const Result<sim::RunResult> result = proto::DecodeRunResult(run.result);
+    const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
     ASSERT_TRUE(spec.ok() && result.ok());
     EXPECT_EQ(spec->seed, run.seed);
     EXPECT_EQ(run.fitness, result->fitness);

@@ -70,7 +70,12 @@ TEST_P(StoreOpenTest, AMissingFileIsNotFoundAndNotMade) {
 
 TEST_P(StoreOpenTest, ANewerFormatIsRefusedNamingBothVersions) {
   Execute(path_, "PRAGMA user_version = 999");
-  ExpectRefusal(ErrorKind::kVersion, {"format 999", "formats up to 1"});
+  ExpectRefusal(ErrorKind::kVersion, {"format 999", "newer gauntlet", "reads format 2"});
+}
+
+TEST_P(StoreOpenTest, AnOlderFormatIsRefusedNamingBothVersions) {
+  Execute(path_, "PRAGMA user_version = 1");
+  ExpectRefusal(ErrorKind::kVersion, {"format 1", "older gauntlet", "reads format 2"});
 }
 
 TEST_P(StoreOpenTest, AnotherProgramsDatabaseIsRefused) {

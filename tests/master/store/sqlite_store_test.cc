@@ -74,9 +74,10 @@ TEST_F(SqliteStoreTest, ARunThatWasNeverStoredIsNoError) {
 
 TEST_F(SqliteStoreTest, RunsAreVisitedInIdOrderWhateverOrderTheyCameIn) {
   store_->AddSearch(MakeSearch(2));
-  for (const RunId id : {9, 2, 7, 30, 1, 8}) {
+  const RunId of_search_2 = RunIdOf(2, 7);
+  for (const RunId id : {RunId{9}, RunId{2}, of_search_2, RunId{30}, RunId{1}, RunId{8}}) {
     StoredRun run = MakeRun(id);
-    run.search = id == 7 ? 2 : 1;
+    run.search = SearchOf(id);
     store_->AddRun(run);
   }
   Flush();
@@ -89,7 +90,7 @@ TEST_F(SqliteStoreTest, RunsAreVisitedInIdOrderWhateverOrderTheyCameIn) {
   EXPECT_THAT(ids, testing::ElementsAre(8, 9, 30));
   ids.clear();
   ASSERT_TRUE(store_->ForEachRun(2, 0, collect).ok());
-  EXPECT_THAT(ids, testing::ElementsAre(7));
+  EXPECT_THAT(ids, testing::ElementsAre(of_search_2));
   ids.clear();
   ASSERT_TRUE(store_->ForEachRun(3, 0, collect).ok());
   EXPECT_THAT(ids, testing::IsEmpty());
@@ -229,6 +230,8 @@ TEST_P(InsertOnlyTest, RowsCanNeitherBeChangedNorDeleted) {
   const std::string table = GetParam();
   const std::string column = table == "meta"                            ? "value"
                              : table == "searches" || table == "events" ? "id"
+                             : table == "records"                       ? "run"
+                             : table == "examples"                      ? "kind"
                                                                         : "search";
   for (const std::string& sql : {"UPDATE " + table + " SET " + column + " = 5", "DELETE FROM " + table}) {
     EXPECT_EQ(sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_CONSTRAINT) << sql;
@@ -238,8 +241,8 @@ TEST_P(InsertOnlyTest, RowsCanNeitherBeChangedNorDeleted) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Tables, InsertOnlyTest,
-                         testing::Values("meta", "searches", "finished", "individuals", "runs", "states",
-                                         "events"),
+                         testing::Values("meta", "searches", "finished", "individuals", "runs", "records",
+                                         "examples", "states", "events"),
                          [](const testing::TestParamInfo<const char*>& table) {
                            return std::string(table.param);
                          });

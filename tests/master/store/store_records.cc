@@ -49,6 +49,7 @@ StoredRun MakeRun(RunId id, std::size_t result_size) {
   if (id % 8 == 5) run.fitness = -std::numeric_limits<double>::infinity();
   run.total_failure = id % 2 == 0;
   run.failure_type = static_cast<int>(small % 21) - 1;
+  if (run.verdict != 1) run.message = fmt::format("rule-{}: as it was said", id % 3);
   return run;
 }
 
@@ -84,7 +85,7 @@ bool SameRun(const StoredRun& a, const StoredRun& b) {
          a.seed == b.seed && a.spec == b.spec && a.spec_hash == b.spec_hash && a.result == b.result &&
          a.hash == b.hash && a.worker == b.worker && a.attempt == b.attempt && a.verdict == b.verdict &&
          std::bit_cast<std::uint64_t>(a.fitness) == std::bit_cast<std::uint64_t>(b.fitness) &&
-         a.total_failure == b.total_failure && a.failure_type == b.failure_type;
+         a.total_failure == b.total_failure && a.failure_type == b.failure_type && a.message == b.message;
 }
 
 bool SameBirth(const Individual& a, const Individual& b) {
@@ -123,7 +124,8 @@ void WriteFile(const std::string& path, const std::string& bytes) {
 std::string ContentOf(const std::string& directory) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(directory)) {
-    names.insert(entry.path().filename().string());
+    const std::string name = entry.path().filename().string();
+    if (!name.ends_with("-shm")) names.insert(name);  // memory that open connections share, not content
   }
   std::string content;
   for (const std::string& name : names) {
