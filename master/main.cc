@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/system/resource_limits.h"
 #include "master/cli/command_line.h"
 #include "master/cli/standard_output.h"
 
@@ -27,6 +28,8 @@ std::string ProgramName(const char* first_argument) {
 
 int main(int argc, char** argv) {
   gauntlet::master::ReserveStandardDescriptors();
+  gauntlet::ExplainAborts("gauntlet");
+  const gauntlet::Status prepared = gauntlet::PrepareProgram();
   std::signal(SIGPIPE, SIG_IGN);  // a reader that leaves must not end a campaign
   gauntlet::master::DescriptorBuffer buffer(STDOUT_FILENO);
   std::ostream out(&buffer);
@@ -35,6 +38,7 @@ int main(int argc, char** argv) {
                                            .err_is_terminal = isatty(STDERR_FILENO) == 1,
                                            .out_is_terminal = isatty(STDOUT_FILENO) == 1,
                                            .program = ProgramName(argc > 0 ? argv[0] : "gauntlet")};
+  if (!prepared) return gauntlet::master::Fail(context, prepared.error());
   const int code = gauntlet::master::RunCommandLine(
       std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc), context);
   out.flush();

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
 #include "base/system/unique_fd.h"
 #include "proto/json_text.h"
 
@@ -19,6 +20,7 @@ namespace {
 constexpr int kFormat = 1;
 constexpr std::size_t kKeyCharacters = 40;
 constexpr std::size_t kMaxBytes = 1U << 20;
+constexpr mode_t kWritableByOthers = 022;
 
 bool IsEndpoint(const std::string& text) {
   return (text.starts_with("tcp://") || text.starts_with("ipc://")) && text.size() > 6;
@@ -99,7 +101,19 @@ Result<Access> ReadAccess(const std::string& path) {
     return Error{error == ENOENT || error == ENOTDIR ? ErrorKind::kNotFound : ErrorKind::kIo,
                  fmt::format("{}: {}", path, std::strerror(error))};
   }
-  if (!S_ISREG(status.st_mode)) return Error{ErrorKind::kIo, fmt::format("{} is no regular file", path)};
+  if (!S_ISREG(status.st_mode)) return InvalidInput(fmt::format("{} is no regular file", path));
+  if (status.st_uid != geteuid() && status.st_uid != 0) {
+    return InvalidInput(fmt::format(
+        "{} belongs to user {}, not to the user of this worker ({}), which so would simulate what "
+        "somebody else says; start the worker as the user of the master",
+        path, status.st_uid, geteuid()));
+  }
+  if ((status.st_mode & kWritableByOthers) != 0) {
+    return InvalidInput(fmt::format(
+        "{} has mode {:03o}: other users may write it; make it 600 (chmod 600), or better let a new master "
+        "write it",
+        path, status.st_mode & 0777));
+  }
   const Result<std::string> text = ReadAll(file.get(), path, kMaxBytes);
   if (!text.ok()) return text.error();
   Result<Access> access = ParseAccess(*text, path);
@@ -126,7 +140,7 @@ Status WriteAccess(const std::string& path, const Access& access) {
 }
 
 Status RemoveAccess(const std::string& path, std::uint64_t epoch) {
-  const Result<std::string> text = ReadSmallFile(path);
+  const Result<std::string> text = ReadRegularFile(path);
   if (!text) return text.error().kind == ErrorKind::kNotFound ? Status(Ok{}) : text.error();
   const nlohmann::json json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
   if (json.is_object()) {

@@ -36,7 +36,8 @@ struct Access {
 Result<Access> ParseAccess(const std::string& text, const std::string& place);
 
 // Error kNotFound when there is no such file: the master may not have written it yet; kInvalidInput when it
-// holds keys and others than its owner may read it.
+// is no regular file, belongs to neither this user nor root, others may write it, or it holds keys and others
+// may read it; kIo when it cannot be read now.
 Result<Access> ReadAccess(const std::string& path);
 
 // Writes the file for its owner alone (0600), at once and whole.

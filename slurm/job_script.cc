@@ -43,6 +43,34 @@ bool IsBroken(const std::string& text) {
   return text.find('\n') != std::string::npos;
 }
 
+// Between the double quotes in which a directive gives a value.
+std::string InQuotes(std::string_view value) {
+  std::string quoted;
+  for (const char c : value) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted;
+}
+
+bool FillsNothingIn(const std::string& directory) {
+  return directory.find('\\') != std::string::npos;
+}
+
+// A value of --output: the file `stem` + `pattern` + ".log" in the directory, in which "%%" stands for "%".
+// With a backslash anywhere Slurm takes "%" for itself and two backslashes for one (sbatch(1), "filename
+// pattern").
+std::string LogFile(const std::string& directory, std::string_view stem, std::string_view pattern) {
+  const bool literal = FillsNothingIn(directory);
+  std::string path;
+  for (const char c : directory) {
+    if (c == (literal ? '\\' : '%')) path += c;
+    path += c;
+  }
+  path.append("/").append(stem);
+  return InQuotes(literal ? path + ".log" : path.append(pattern).append(".log"));
+}
+
 Result<std::string> Directives(const JobRequest& request) {
   std::string lines;
   for (const auto& [option, value] : {std::pair{"partition", &request.partition},
@@ -67,7 +95,7 @@ Result<std::string> Directives(const JobRequest& request) {
 Status CheckOneLine(const Values& values) {
   for (const auto& [name, value] : values) {
     if (name != "SETUP" && name != "DIRECTIVES" && IsBroken(value))
-      return InvalidInput("a job script cannot hold a line break: '" + value + "'");
+      return InvalidInput("a job script cannot hold a line break, in a path neither: '" + value + "'");
   }
   return Ok{};
 }
@@ -99,11 +127,12 @@ Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob&
   // In the log's name %j is the job's id, %A_%a an array's and the task's; it is not for the shell.
   JobRequest all = request;
   if (job.array > 1) all.extra.push_back("--array=1-" + std::to_string(job.array));
+  if (FillsNothingIn(job.log_directory)) all.extra.emplace_back("--open-mode=append");
   return Script(job_template,
                 {{"JOB_NAME", job.name},
                  {"CPUS", std::to_string(job.slots)},
                  {"SLOTS", std::to_string(job.slots)},
-                 {"LOG", job.log_directory + (job.array > 1 ? "/worker-%A_%a.log" : "/worker-%j.log")},
+                 {"LOG", LogFile(job.log_directory, "worker", job.array > 1 ? "-%A_%a" : "-%j")},
                  {"ACCESS", ShellQuoted(job.access_file)},
                  {"WORKER", job.worker}},
                 all);
@@ -114,7 +143,10 @@ Result<std::string> MasterScript(std::string_view job_template, const MasterJob&
   std::string command;
   for (const std::string& argument : job.command)
     command += (command.empty() ? "" : " ") + ShellQuoted(argument);
-  return Script(job_template, {{"JOB_NAME", job.name}, {"LOG", job.log_file}, {"MASTER", command}}, request);
+  return Script(
+      job_template,
+      {{"JOB_NAME", job.name}, {"LOG", LogFile(job.log_directory, "master-job", "-%j")}, {"MASTER", command}},
+      request);
 }
 
 }  // namespace gauntlet::slurm

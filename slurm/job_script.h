@@ -33,13 +33,15 @@ struct WorkerJob {
 struct MasterJob {
   std::string name;
   std::vector<std::string> command;  // arguments
-  std::string log_file;              // absolute
+  std::string log_directory;         // absolute
 };
 
 // The shipped templates slurm/worker.sbatch and slurm/master.sbatch.
 extern const std::string_view kWorkerTemplate;
 extern const std::string_view kMasterTemplate;
 
+// Paths may hold whatever a name may hold except line breaks. The log's name has the job's id in it, unless a
+// directory's name has a backslash: Slurm then fills nothing in, and all jobs append to one file.
 // Errors: a value that cannot stand in a directive (a line break), a template without a name that is needed
 // or with one that is not known.
 Result<std::string> WorkerScript(std::string_view job_template, const WorkerJob& job,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <random>
@@ -12,12 +13,15 @@
 #include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "base/system/program_path.h"
+#include "base/system/regular_file.h"
+#include "base/system/trusted_path.h"
 #include "slurm/slurm_pool.h"
 
 namespace gauntlet::slurm {
 namespace {
 
 constexpr std::size_t kMostTemplateBytes = 1 << 20;
+constexpr const char* kSettingsFile = "slurm.toml";
 
 bool MayStandInAJobName(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.' || c == '_' || c == '-';
@@ -63,10 +67,12 @@ Result<SlurmCampaign> SlurmCampaign::Make(const SlurmSettings& settings, const s
 Result<std::optional<SlurmCampaign>> SlurmCampaign::Find(const std::string& directory) {
   std::error_code ignored;
   if (!std::filesystem::is_directory(directory, ignored)) return std::optional<SlurmCampaign>();
-  const std::string path = directory + "/slurm.toml";
-  const Result<std::string> text = ReadSmallFile(path);
+  const std::string path = directory + "/" + kSettingsFile;
+  const Result<std::string> text = ReadRegularFile(path);
   if (!text && text.error().kind == ErrorKind::kNotFound) return std::optional<SlurmCampaign>();
   if (!text) return text.error();
+  const std::array<std::string_view, 1> obeyed = {kSettingsFile};
+  if (const Status trusted = CheckOnlyWeWrite(directory, obeyed); !trusted) return trusted.error();
   const Result<SlurmSettings> settings = ReadSlurmSettings({{*text, path, true}}, {});
   if (!settings) return settings.error();
   Result<SlurmCampaign> campaign = Make(*settings, directory);
@@ -107,7 +113,7 @@ Status SlurmCampaign::MakeScripts() {
       MasterScript(*master_template,
                    {.name = master_job_name(),
                     .command = {MasterProgramPath(), "resume", directory_, "--as-job", "--no-progress"},
-                    .log_file = directory_ + "/log/master-job-%j.log"},
+                    .log_directory = directory_ + "/log"},
                    request);
   if (!master) return master.error();
   master_script_ = *std::move(master);

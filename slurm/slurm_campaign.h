@@ -18,7 +18,8 @@ class SlurmCampaign {
  public:
   // `directory` need not exist yet. Error: a template of the site cannot be read, or does not give a script.
   static Result<SlurmCampaign> Make(const SlurmSettings& settings, const std::string& directory);
-  // The campaign in `directory` as it was submitted, from its slurm.toml; nothing when it was not.
+  // The campaign in `directory` as it was submitted, from its slurm.toml, which says what jobs execute;
+  // nothing when it was not. Error: also when somebody else could have written that file.
   static Result<std::optional<SlurmCampaign>> Find(const std::string& directory);
 
   const SlurmSettings& settings() const { return settings_; }

@@ -6,10 +6,14 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "base/system/resource_limits.h"
 #include "worker/worker_process.h"
+#include "worker/worker_state.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -24,7 +28,7 @@ leave; a second one drops them.
 
 constexpr const char* kFooter = R"(
 Exit codes: 0 done (drained, or let go by the master); 2 wrong command line, or refused by the master;
-3 no master within the orphan timeout; 4 internal error.
+3 no master within the orphan timeout, or the machine gave no memory, process or file; 4 internal error.
 
 Examples:
   gauntlet-worker --dir campaigns/flocking-1            serve the campaign in that directory
@@ -125,10 +129,7 @@ int PrintGoldenHashes(const proto::GoldenHashes& hashes) {
   return 4;
 }
 
-}  // namespace
-
-int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions) {
-  OccupyStandardStreams();
+int Obey(int argc, char** argv, const WorkerFunctions& functions) {
   CLI::App app(kDescription, "gauntlet-worker");
   app.footer(kFooter);
   app.set_version_flag("--version", "gauntlet-worker " GAUNTLET_VERSION);
@@ -158,6 +159,24 @@ int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions
   line.worker.software_version = GAUNTLET_VERSION;
   line.worker.golden_hashes = functions.golden_hashes;
   return RunWorker(line.worker, functions.run);
+}
+
+}  // namespace
+
+int RunWorkerCommandLine(int argc, char** argv, const WorkerFunctions& functions) {
+  OccupyStandardStreams();
+  if (const Status prepared = PrepareProgram(); !prepared) {
+    fmt::print(stderr, "gauntlet-worker: {}\n", prepared.error().message);
+    return kExitRefused;
+  }
+  try {
+    return Obey(argc, argv, functions);
+  } catch (const std::exception& exception) {
+    const std::optional<Error> resources = ErrorOfResources(exception);
+    fmt::print(stderr, "gauntlet-worker: {}\n",
+               resources ? resources->message : fmt::format("internal error: {}", exception.what()));
+    return resources ? kExitWithoutResources : kExitInternal;
+  }
 }
 
 }  // namespace gauntlet::worker

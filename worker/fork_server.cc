@@ -20,6 +20,8 @@
 #include <iterator>
 #include <set>
 
+#include "base/system/atomic_file.h"
+
 namespace gauntlet::worker {
 namespace {
 
@@ -269,7 +271,7 @@ Result<std::unique_ptr<ForkServer>> ForkServer::Start(const RunFunction& run) {
   if (!control.ok()) return control.error();
   const pid_t supervisor = getpid();
   const pid_t pid = fork();
-  if (pid < 0) return Error{ErrorKind::kIo, fmt::format("fork: {}", std::strerror(errno))};
+  if (pid < 0) return SystemError("cannot start a process", errno);
   if (pid == 0) {
     control->first.Reset();
     ForkServerMain(std::move(control->second), supervisor, run);

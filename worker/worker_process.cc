@@ -6,7 +6,6 @@
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
 #include <sys/signalfd.h>
 #include <unistd.h>
 
@@ -24,6 +23,7 @@
 #include <vector>
 
 #include "base/system/atomic_file.h"
+#include "base/system/resource_limits.h"
 #include "proto/access_file.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
@@ -56,21 +56,17 @@ constexpr rlim_t kDescriptorsPerSlot = 2;
 // Everything else: sockets, logs, ZeroMQ, and what we inherited.
 constexpr rlim_t kOtherDescriptors = 128;
 
-// Raises the soft limit of open files to what so many slots need. Error: the hard one is below.
+// Error: so many slots need more open files than are allowed.
 Status AllowDescriptors(int slots) {
-  const rlim_t needed = kDescriptorsPerSlot * static_cast<rlim_t>(slots) + kOtherDescriptors;
-  rlimit limit{};
-  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= needed) return Ok{};
-  if (limit.rlim_max < needed) {
-    return InvalidInput(
-        fmt::format("{} slots need up to {} open files, and at most {} are allowed here (ulimit -Hn): "
-                    "use fewer slots in each of several workers, or raise the limit",
-                    slots, needed, limit.rlim_max));
-  }
-  limit.rlim_cur = needed;
-  if (setrlimit(RLIMIT_NOFILE, &limit) == 0) return Ok{};
-  return Error{ErrorKind::kIo,
-               fmt::format("{} open files cannot be allowed: {}", needed, std::strerror(errno))};
+  Status allowed = AllowOpenFiles(kDescriptorsPerSlot * static_cast<rlim_t>(slots) + kOtherDescriptors,
+                                  fmt::format("{} slots", slots));
+  if (allowed) return allowed;
+  return Error{allowed.error().kind,
+               allowed.error().message + ": use fewer slots in each of several workers, or raise the limit"};
+}
+
+int ExitCodeOf(const Error& error) {
+  return error.kind == ErrorKind::kNoSpace ? kExitWithoutResources : kExitInternal;
 }
 
 // A signalfd of the signals that stop a worker; they are blocked in this thread and those it starts.
@@ -211,7 +207,8 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
     return Complain(allowed.error().message, kExitRefused);
   }
   Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
-  if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
+  if (!fork_server.ok()) return Complain(fork_server.error().message, ExitCodeOf(fork_server.error()));
+  ExplainAborts("gauntlet-worker");  // not of the fork server and its runners, whose aborts are theirs
   const UniqueFd signals = BlockStopSignals();
   if (const Status logging = StartLogging(options.log_file, options.quiet); !logging.ok()) {
     return Complain(logging.error().message, kExitRefused);
@@ -245,7 +242,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
 int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
   if (options.parent > 0 && !DieWithParent(options.parent)) return WithoutParent(options.parent);
   Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
-  if (!fork_server.ok()) return Complain(fork_server.error().message, kExitInternal);
+  if (!fork_server.ok()) return Complain(fork_server.error().message, ExitCodeOf(fork_server.error()));
   Result<std::string> spec = ReadSpec(options.spec_file);
   if (!spec.ok()) return Complain(spec.error().message, kExitRefused);
 

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "base/system/resource_limits.h"
 #include "base/system/unique_fd.h"
 
 namespace gauntlet {
@@ -53,12 +54,22 @@ Status Replace(const std::string& path, std::string_view bytes, mode_t mode, boo
 
 }  // namespace
 
+std::string ErrnoText(int error_number) {
+  std::string text = std::strerror(error_number);
+  if (error_number == EFBIG) text += " for this process (ulimit -f)";
+  if (error_number == EMFILE || error_number == EAGAIN || error_number == ENOMEM)
+    text += "; limits here: " + DescribeLimits();
+  return text;
+}
+
 Error SystemError(const std::string& what, int error_number) {
   ErrorKind kind = ErrorKind::kIo;
   if (error_number == ENOSPC || error_number == EDQUOT) kind = ErrorKind::kNoSpace;
   if (error_number == ENOENT) kind = ErrorKind::kNotFound;
   const char* hint = kind == ErrorKind::kNoSpace ? "the disk is full: " : "";
-  return {kind, fmt::format("{}{}: {}", hint, what, std::strerror(error_number))};
+  if (error_number == EMFILE || error_number == ENFILE || error_number == EAGAIN || error_number == ENOMEM)
+    kind = ErrorKind::kNoSpace;
+  return {kind, fmt::format("{}{}: {}", hint, what, ErrnoText(error_number))};
 }
 
 Status SyncDirectory(const std::string& directory) {

@@ -26,13 +26,18 @@ Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode)
 // The names in a directory survive a loss of power from now on.
 Status SyncDirectory(const std::string& directory);
 
-// A whole file of at most `limit` bytes. Errors: kNotFound, kIo, kCorrupt when it is longer.
+// A whole file of at most `limit` bytes, for what a user names: it may be a link or a pipe (for files of a
+// campaign there is regular_file.h). Errors: kNotFound, kIo, kCorrupt when it is longer.
 Result<std::string> ReadSmallFile(const std::string& path, std::size_t limit = 1 << 20);
 
 // The same of a file or pipe that is open, from where it stands. `path` is for messages.
 Result<std::string> ReadAll(int fd, const std::string& path, std::size_t limit);
 
-// The error of a failed system call, by errno.
+// What an errno means, with the limit to raise where one was met.
+std::string ErrnoText(int error_number);
+
+// The error of a failed system call, by errno: kNoSpace when there was no room on the disk, in memory, in the
+// table of processes or in that of open files; kNotFound; else kIo.
 Error SystemError(const std::string& what, int error_number);
 
 }  // namespace gauntlet

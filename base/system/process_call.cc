@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 
+#include "base/system/atomic_file.h"
 #include "base/system/unique_fd.h"
 
 extern char** environ;  // NOLINT(readability-redundant-declaration)
@@ -114,7 +114,8 @@ int Spawn(const std::vector<std::string>& arguments, const SpawnOptions& options
   sigset_t signals;
   sigemptyset(&signals);
   posix_spawnattr_setsigmask(&attributes, &signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGCHLD}) sigaddset(&signals, signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGCHLD, SIGXFSZ})
+    sigaddset(&signals, signal);
   posix_spawnattr_setsigdefault(&attributes, &signals);
   posix_spawnattr_setflags(
       &attributes, static_cast<short>(POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | options.flags));
@@ -147,7 +148,7 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
     return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends);
   };
   if (!Open(in, make_sockets) || !Open(out, make) || !Open(err, make)) {
-    return Failure(program, std::strerror(errno));
+    return SystemError("cannot call " + program, errno);
   }
 
   pid_t child = -1;
@@ -158,7 +159,7 @@ Result<CallOutput> CallProcess(const std::vector<std::string>& arguments, std::s
              .inherits = options.inherits},
             child);
   if (failed == ENOENT) return Error{ErrorKind::kNotFound, "there is no " + program};
-  if (failed != 0) return Failure(program, std::strerror(failed));
+  if (failed != 0) return SystemError("cannot call " + program, failed);
   in.read.Reset();
   out.write.Reset();
   err.write.Reset();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include "base/nearest_name.h"
 #include "base/printable.h"
+#include "base/system/resource_limits.h"
 #include "master/cli/commands.h"
 
 namespace gauntlet::master {
@@ -40,8 +42,8 @@ void Configure(CLI::App& app, CommandAction& chosen) {
 Results go to standard output, progress and messages to standard error. An error leaves standard output
 empty, also with --json: look at the exit code first. Outcomes that are negative (a run not reproduced, every
 case refused) are results and are printed.
-Exit codes: 0 done; 1 a check came out negative; 2 usage or configuration; 3 stopped, resumable;
-4 internal error, or standard output cannot be written.)");
+Exit codes: 0 done; 1 a check came out negative; 2 usage or configuration; 3 stopped, resumable, or the
+machine gave too little (space, memory, processes); 4 internal error, or standard output cannot be written.)");
 }
 
 // "; did you mean 'evolve'?"; "" when no known name is near.
@@ -129,6 +131,7 @@ ExitCode RunCommandLine(const std::vector<std::string>& arguments, CommandContex
   } catch (const CLI::ParseError& error) {
     return Fail(context, InvalidInput(Explain(app, error, words)));
   } catch (const std::exception& error) {
+    if (const std::optional<Error> resources = ErrorOfResources(error)) return Fail(context, *resources);
     PrintMessage(context, fmt::format("internal error: {}", error.what()));
     return kExitInternal;
   }

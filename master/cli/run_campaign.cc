@@ -23,17 +23,13 @@ std::string ResumeHint(const CommandContext& context, const std::string& directo
 }
 
 // Whether there is anything to resume decides how to go on after an error.
-std::string HowToGoOn(const CommandContext& context, const std::string& directory, bool began) {
+std::string HowToGoOn(const CommandContext& context, const std::string& directory) {
   std::error_code ignored;
   if (std::filesystem::exists(directory + "/campaign.db", ignored)) {
     return fmt::format("stopped; what was finished is stored. Go on with: {}",
                        ResumeHint(context, directory));
   }
-  if (began) {
-    return fmt::format("stopped; what was finished is stored where {} is now. Go on with: {} resume THERE",
-                       directory, context.program);
-  }
-  return fmt::format("nothing was simulated. When there is space, the same command with --dir {} starts anew",
+  return fmt::format("nothing was simulated. When there is room, the same command with --dir {} starts anew",
                      ShellQuoted(directory));
 }
 
@@ -97,11 +93,13 @@ Result<std::unique_ptr<MetricsServer>> StartMetrics(CommandContext& context, con
 
 // `began`: some progress was made.
 ExitCode FailCampaign(CommandContext& context, const CampaignRun& campaign, const Error& error, bool began) {
+  const ExitCode code = Fail(context, error);
+  // What was deleted or replaced under this master says itself what is left.
+  if (began && error.kind == ErrorKind::kNotFound) return kExitStopped;
   const bool resumable = error.kind == ErrorKind::kNoSpace ||
                          (began && (error.kind == ErrorKind::kIo || error.kind == ErrorKind::kInUse));
-  const ExitCode code = Fail(context, error);
   if (!resumable) return code;
-  PrintMessage(context, HowToGoOn(context, campaign.directory, began));
+  PrintMessage(context, HowToGoOn(context, campaign.directory));
   return kExitStopped;
 }
 

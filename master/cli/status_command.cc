@@ -137,11 +137,10 @@ Result<std::string> CurrentStatus(CommandContext& context, const std::string& di
   const std::string state = status.value("state", "");
   if (state == "stopped" || state == "finished") {
     const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
-    if (!submitted) return submitted.error();
-    if (submitted->has_value()) {
-      AddJobs(context, **submitted, status);
-      text = JsonText(status);
-    }
+    // Somebody else's campaign may be looked at; whether Slurm has jobs of it is theirs to ask.
+    if (!submitted) status["pool_trouble"] = "Slurm was not asked: " + submitted.error().message;
+    if (submitted && submitted->has_value()) AddJobs(context, **submitted, status);
+    if (!submitted || submitted->has_value()) text = JsonText(status);
   }
   return json ? text : StatusText(status, directory);
 }

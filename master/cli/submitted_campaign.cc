@@ -1,10 +1,9 @@
 #include "master/cli/submitted_campaign.h"
 
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include "base/shell_quoted.h"
+#include "base/system/regular_file.h"
 #include "master/cli/run_campaign.h"
 
 namespace gauntlet::master {
@@ -35,8 +34,7 @@ ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, 
 
 Result<std::string> SubmitMasterJob(CommandContext& context, const std::string& directory,
                                     const slurm::SlurmCampaign& campaign) {
-  std::error_code error;
-  std::filesystem::create_directories(directory + "/log", error);  // Slurm does not make it
+  if (const Status made = MakeDirectory(directory + "/log"); !made) return made.error();  // Slurm makes none
   Result<std::string> job = context.slurm()->Submit(campaign.master_script(), {});
   if (!job) {
     const std::string& words = job.error().message;

@@ -1,12 +1,10 @@
 #include "master/directory/campaign_directory.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <filesystem>
 #include <random>
 #include <string_view>
@@ -15,7 +13,7 @@
 
 #include "base/parse_number.h"
 #include "base/system/atomic_file.h"
-#include "base/system/unique_fd.h"
+#include "base/system/trusted_path.h"
 
 namespace gauntlet::master {
 namespace {
@@ -26,6 +24,13 @@ constexpr std::array<std::string_view, 13> kOwnNames = {
     "access.json",   "campaign.db", "epoch",      "lock", "experiment.toml",
     "log",           "status.json", "master.key", "stop", "slurm.toml",
     "searches.json", "origin.json", "snapshot.db"};
+
+// What a master obeys of a campaign, or writes to.
+constexpr std::array<std::string_view, 16> kTrustedNames = {
+    "access.json",         "bundles",    "campaign.db",   "campaign.db-wal", "campaign.db-shm",
+    "campaign.db-journal", "epoch",      "lock",          "experiment.toml", "log",
+    "log/master.log",      "master.key", "searches.json", "origin.json",     "slurm.toml",
+    "status.json"};
 
 std::string WithoutSlash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
@@ -48,8 +53,10 @@ Status MakeDirectories(const std::string& path) {
        there = there.parent_path()) {
     missing.push_back(there);
   }
-  fs::create_directories(path, error);
   if (error) return SystemError(fmt::format("cannot make the directory {}", path), error.value());
+  for (auto place = missing.rbegin(); place != missing.rend(); ++place) {
+    if (Status made = MakeDirectory(place->string()); !made) return made;
+  }
   for (const fs::path& made : missing) (void)SyncDirectory(made.parent_path());
   return Ok{};
 }
@@ -65,21 +72,28 @@ bool IsUnfinished(const fs::path& dir) {
 }
 
 constexpr std::size_t kLongestEpoch = 4096;
+// The number begins those of the leases, in 32 bits.
+constexpr std::uint64_t kLastEpoch = (1ULL << 32) - 1;
 
-Result<std::uint64_t> ParseEpoch(const Result<std::string>& text, const std::string& path) {
+// At most `largest` can be right.
+Result<std::uint64_t> ParseEpoch(const Result<std::string>& text, const std::string& path,
+                                 std::uint64_t largest) {
   if (!text) return text.error();
   std::string_view digits = *text;
   while (!digits.empty() && digits.back() == '\n') digits.remove_suffix(1);
-  if (const auto epoch = ParseNumber<std::uint64_t>(digits); epoch && *epoch > 0) return *epoch;
-  return Error{ErrorKind::kCorrupt,
-               fmt::format("{} holds '{}' where the number of the newest master's start should stand", path,
-                           digits.substr(0, 40))};
+  const auto epoch = ParseNumber<std::uint64_t>(digits);
+  if (epoch && *epoch > 0 && *epoch <= largest) return *epoch;
+  return Error{
+      ErrorKind::kCorrupt,
+      fmt::format("{} holds '{}' where the number of the newest master's start should stand, 1 to {}. "
+                  "It counts up by one: log/master*.log names the last ones",
+                  path, digits.substr(0, 40), largest)};
 }
 
-std::optional<FileIdentity> IdentifyFile(const std::string& path) {
+std::optional<FileVersion> VersionOf(const std::string& path) {
   struct stat info {};
-  if (stat(path.c_str(), &info) != 0) return std::nullopt;
-  return FileIdentity{info.st_dev, info.st_ino, info.st_mtim.tv_sec, info.st_mtim.tv_nsec};
+  if (lstat(path.c_str(), &info) != 0) return std::nullopt;
+  return FileVersion{{info.st_dev, info.st_ino}, info.st_mtim.tv_sec, info.st_mtim.tv_nsec};
 }
 
 }  // namespace
@@ -95,6 +109,7 @@ Status CampaignDirectory::CheckCreatable(const std::string& dir) {
   if (!fs::is_directory(directory.path_, error)) {
     return InvalidInput(fmt::format("{} is a file; a campaign needs a directory", directory.path_));
   }
+  if (Status trusted = directory.CheckTrusted(); !trusted) return trusted;
   if (fs::exists(directory.database_path(), error)) {
     return InvalidInput(
         fmt::format("{0} holds a campaign already; go on with it by `gauntlet resume {0}`, or choose another "
@@ -143,33 +158,33 @@ Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
   return directory;
 }
 
+Status CampaignDirectory::CheckTrusted() const {
+  return CheckOnlyWeWrite(path_, kTrustedNames);
+}
+
 Result<std::uint64_t> CampaignDirectory::StartEpoch() {
-  const Result<std::uint64_t> newest = ParseEpoch(ReadSmallFile(epoch_path()), epoch_path());
+  const Result<std::uint64_t> newest =
+      ParseEpoch(ReadRegularFile(epoch_path(), kLongestEpoch), epoch_path(), kLastEpoch - 1);
   if (!newest && newest.error().kind != ErrorKind::kNotFound) return newest.error();
   const std::uint64_t epoch = newest ? *newest + 1 : 1;
   const Status written = WriteFileAtomically(epoch_path(), fmt::format("{}\n", epoch), kReadableByAll);
   if (!written) return written.error();
-  epoch_file_ = IdentifyFile(epoch_path());
+  epoch_file_ = VersionOf(epoch_path());
   return epoch;
 }
 
+Status CampaignDirectory::RestoreEpoch(std::uint64_t mine) const {
+  return WriteFileAtomically(epoch_path(), fmt::format("{}\n", mine), kReadableByAll);
+}
+
 Status CampaignDirectory::CheckEpoch(std::uint64_t mine) const {
-  const int fd = open(epoch_path().c_str(), O_RDONLY | O_CLOEXEC);
-  const int error = errno;
-  if (fd < 0 && (error == EMFILE || error == ENFILE) && epoch_file_) {
-    // Strangers have used up the descriptors (with connections): looking at the file needs none. A newer
-    // master would have put another one in its place.
-    if (IdentifyFile(epoch_path()) == epoch_file_) return Ok{};
-  }
-  // Of a directory that is gone, workers that start may make the folder of logs again.
-  if (std::error_code ignored; fd < 0 && error == ENOENT && !fs::exists(database_path(), ignored)) {
-    return Error{ErrorKind::kIo, fmt::format("the directory {} is gone: removed, or moved to a place that "
-                                             "this master does not know",
-                                             path_)};
-  }
-  if (fd < 0) return SystemError(fmt::format("cannot open {}", epoch_path()), error);
-  const Result<std::uint64_t> newest =
-      ParseEpoch(ReadAll(UniqueFd(fd).get(), epoch_path(), kLongestEpoch), epoch_path());
+  const Result<std::string> text = ReadRegularFile(epoch_path(), kLongestEpoch);
+  // Strangers have used up the descriptors (with connections): looking at the file needs none. A newer
+  // master would have put another one in its place.
+  if (!text && text.error().kind == ErrorKind::kNoSpace && epoch_file_ &&
+      VersionOf(epoch_path()) == epoch_file_)
+    return Ok{};
+  const Result<std::uint64_t> newest = ParseEpoch(text, epoch_path(), kLastEpoch);
   if (!newest) return newest.error();
   if (*newest == mine) return Ok{};
   return Error{

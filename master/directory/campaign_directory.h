@@ -7,21 +7,21 @@
 #include <string>
 
 #include "base/result.h"
+#include "base/system/regular_file.h"
 
 namespace gauntlet::master {
 
-// Which file a path names, by what can be asked without opening it.
-struct FileIdentity {
-  std::uint64_t device = 0;
-  std::uint64_t inode = 0;
+// Which content a file has, by what can be asked without opening it.
+struct FileVersion {
+  FileId file;
   std::int64_t modified_seconds = 0;
   std::int64_t modified_nanoseconds = 0;
-  bool operator==(const FileIdentity&) const = default;
+  bool operator==(const FileVersion&) const = default;
 };
 
 class CampaignDirectory {
  public:
-  // Whether Create would take `dir`; makes nothing.
+  // Whether Create would take `dir`; makes nothing. It takes no directory in which others may write.
   static Status CheckCreatable(const std::string& dir);
   // Makes `dir`, and the directories above it. kInvalidInput, naming `gauntlet resume`, when it holds a
   // campaign, and when it holds anything else but what a creation that was killed has left.
@@ -29,6 +29,10 @@ class CampaignDirectory {
   // kNotFound when there is no such directory or no campaign in it. Whether the database can be read is the
   // store's business.
   static Result<CampaignDirectory> Open(const std::string& dir);
+
+  // Whether nobody but this user (and root) could have written what the directory holds: to be asked before
+  // anything is obeyed that stands there. kInvalidInput says who could, and the way out.
+  Status CheckTrusted() const;
 
   const std::string& path() const { return path_; }
   std::string experiment_path() const { return path_ + "/experiment.toml"; }
@@ -53,18 +57,21 @@ class CampaignDirectory {
   std::string stop_path() const { return path_ + "/stop"; }
   std::string log_path() const { return path_ + "/log"; }
 
-  // Counts one more start of a master, durably, and returns its number (1, 2, ...). Only under the campaign's
-  // lock.
+  // Counts one more start of a master, durably, and returns its number (1, 2, ... 2^32 - 1). Only under the
+  // campaign's lock. kCorrupt when the file holds something else.
   Result<std::uint64_t> StartEpoch();
-  // Whether the master number `mine` is still the newest: kInUse when not. Opens and reads one small file; a
-  // process that may open no more files only looks whether it is still the one that StartEpoch has written.
+  // Whether the master number `mine` is still the newest: kInUse when not, kNotFound when the file is gone.
+  // Opens and reads one small file; a process that may open no more files only looks whether it is still the
+  // one that StartEpoch has written.
   Status CheckEpoch(std::uint64_t mine) const;
+  // Writes the number again, for the master that has it, when somebody has deleted the file.
+  Status RestoreEpoch(std::uint64_t mine) const;
 
  private:
   explicit CampaignDirectory(std::string path) : path_(std::move(path)) {}
 
-  std::string path_;                        // without a slash at its end
-  std::optional<FileIdentity> epoch_file_;  // as StartEpoch left it
+  std::string path_;                       // without a slash at its end
+  std::optional<FileVersion> epoch_file_;  // as StartEpoch left it
 };
 
 // 128 random bits as 32 hex digits.

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
 #include "proto/access_file.h"
 #include "proto/json_text.h"
 
@@ -30,7 +31,7 @@ Result<CampaignKeys> Make(const std::string& path) {
 }  // namespace
 
 Result<CampaignKeys> LoadOrMakeKeys(const std::string& path) {
-  const Result<std::string> text = ReadSmallFile(path);
+  const Result<std::string> text = ReadRegularFile(path);
   if (!text) {
     if (text.error().kind == ErrorKind::kNotFound) return Make(path);
     return text.error();

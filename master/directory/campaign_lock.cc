@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
 #include "base/system/unique_fd.h"
 #include "proto/json_text.h"
 
@@ -103,8 +104,11 @@ FlockAnswer TryFlock(int fd, bool exclusive) {
 
 }  // namespace
 
-CampaignLock::CampaignLock(std::string path, std::string campaign, LockOptions options, int fd)
-    : path_(std::move(path)), campaign_(std::move(campaign)), options_(std::move(options)), fd_(fd) {}
+CampaignLock::CampaignLock(std::string path, std::string campaign, LockOptions options, UniqueFd fd)
+    : path_(std::move(path)),
+      campaign_(std::move(campaign)),
+      options_(std::move(options)),
+      fd_(std::move(fd)) {}
 
 Result<std::unique_ptr<CampaignLock>> CampaignLock::Acquire(const std::string& path,
                                                             const std::string& campaign,
@@ -128,9 +132,11 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::AcquireForReading(const std:
 
 Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path, const std::string& campaign,
                                                          const LockOptions& options, bool exclusive) {
-  const int fd = open(path.c_str(), exclusive ? O_RDWR | O_CREAT | O_CLOEXEC : O_RDONLY | O_CLOEXEC, 0644);
-  if (fd < 0 && exclusive) return SystemError(fmt::format("cannot open {}", path), errno);
-  std::unique_ptr<CampaignLock> lock(new CampaignLock(path, campaign, options, fd));
+  Result<UniqueFd> file = OpenRegularFile(path, exclusive ? O_RDWR | O_CREAT : O_RDONLY, kReadableByAll);
+  if (!file && (exclusive || file.error().kind == ErrorKind::kInvalidInput)) return file.error();
+  std::unique_ptr<CampaignLock> lock(
+      new CampaignLock(path, campaign, options, file ? *std::move(file) : UniqueFd()));
+  const int fd = lock->fd_.get();
   if (fd < 0) return lock;
 
   const auto started = std::chrono::steady_clock::now();
@@ -183,29 +189,27 @@ CampaignLock::~CampaignLock() {
     closing_changed_.notify_all();
     heartbeat_.join();
   }
-  if (fd_ < 0) return;
-  if (identity_ && Check()) {
-    const std::optional<LockOwner> owner = ReadOwner(fd_);
-    // A failed truncation leaves the name of a process that will be dead in a moment.
-    if (owner && owner->process == *identity_ && ftruncate(fd_, 0) != 0) fsync(fd_);
-  }
-  close(fd_);
+  if (!fd_.valid() || !identity_ || !Check()) return;
+  const std::optional<LockOwner> owner = ReadOwner(fd_.get());
+  // A failed truncation leaves the name of a process that will be dead in a moment.
+  if (owner && owner->process == *identity_ && ftruncate(fd_.get(), 0) != 0) fsync(fd_.get());
 }
 
 Status CampaignLock::WriteOwner(const std::string& content) const {
-  const ssize_t size = pwrite(fd_, content.data(), content.size(), 0);
-  if (size < 0) return SystemError(fmt::format("cannot write {}", path_), errno);
-  if (size < static_cast<ssize_t>(content.size())) {
-    return SystemError(fmt::format("cannot write {}", path_), ENOSPC);
+  for (std::size_t written = 0; written < content.size();) {
+    const ssize_t size =
+        pwrite(fd_.get(), content.data() + written, content.size() - written, static_cast<off_t>(written));
+    if (size < 0) return SystemError(fmt::format("cannot write {}", path_), errno);
+    written += static_cast<std::size_t>(size);
   }
-  if (fsync(fd_) != 0) return SystemError(fmt::format("cannot synchronise {}", path_), errno);
+  if (fsync(fd_.get()) != 0) return SystemError(fmt::format("cannot synchronise {}", path_), errno);
   return Ok{};
 }
 
 Status CampaignLock::Heartbeat() {
   const std::lock_guard beating(heartbeat_mutex_);
   if (Status checked = Check(); !checked || !identity_) return checked;
-  const std::optional<LockOwner> owner = ReadOwner(fd_);
+  const std::optional<LockOwner> owner = ReadOwner(fd_.get());
   if (owner && owner->process == *identity_)
     return WriteOwner(WriteContent(*identity_, options_.unix_time()));
 

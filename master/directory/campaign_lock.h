@@ -14,6 +14,7 @@
 #include "base/result.h"
 #include "base/system/clock.h"
 #include "base/system/process_identity.h"
+#include "base/system/unique_fd.h"
 
 namespace gauntlet::master {
 
@@ -34,7 +35,8 @@ struct LockOptions {
 // Whoever holds it is the campaign's master. It is taken from an owner that is dead (a process of this
 // machine's present boot that is gone) or, on another host or boot, has given no sign of life for
 // kStaleAfter; never from a living one. The file stays when the lock is released, empty: deleting it would
-// let two masters lock two files. Thread-safety: Check may be called from any thread, the rest from one.
+// let two masters lock two files. Thread-safety: Check and Heartbeat may be called from any thread, the rest
+// from one.
 class CampaignLock {
  public:
   static constexpr std::chrono::seconds kStaleAfter{60};
@@ -46,6 +48,7 @@ class CampaignLock {
 
   // Keeps masters away while a campaign without one is looked at; several readers may hold it at once. kInUse
   // names the owner when a master lives. Changes nothing; a missing or unreadable lock file locks nothing.
+  // Both: kInvalidInput when it is no regular file.
   static Result<std::unique_ptr<CampaignLock>> AcquireForReading(const std::string& path,
                                                                  const std::string& campaign,
                                                                  const LockOptions& options = {});
@@ -65,7 +68,7 @@ class CampaignLock {
   Status Check() const;
 
  private:
-  CampaignLock(std::string path, std::string campaign, LockOptions options, int fd);
+  CampaignLock(std::string path, std::string campaign, LockOptions options, UniqueFd fd);
   static Result<std::unique_ptr<CampaignLock>> Wait(const std::string& path, const std::string& campaign,
                                                     const LockOptions& options, bool exclusive);
   Status WriteOwner(const std::string& content) const;
@@ -74,7 +77,7 @@ class CampaignLock {
   const std::string path_;
   const std::string campaign_;
   const LockOptions options_;
-  const int fd_;
+  const UniqueFd fd_;
   std::optional<ProcessIdentity> identity_;  // none: held for reading
 
   std::mutex heartbeat_mutex_;  // one heartbeat at a time

@@ -10,6 +10,7 @@
 
 #include "base/parse_number.h"
 #include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -67,7 +68,7 @@ Result<CampaignOrigin> ConfirmOrigin(const CampaignDirectory& directory, const s
   const std::string path = directory.origin_path();
   const Result<Inodes> inodes = InodesOf(directory);
   if (!inodes) return inodes.error();
-  const Result<std::string> text = ReadSmallFile(path);
+  const Result<std::string> text = ReadRegularFile(path);
   if (!text && text.error().kind != ErrorKind::kNotFound) return text.error();
   if (!text) {
     // Just made, or made before there was such a file.
@@ -90,7 +91,7 @@ Result<CampaignOrigin> ConfirmOrigin(const CampaignDirectory& directory, const s
 }
 
 bool IsUntakenCopy(const CampaignDirectory& directory) {
-  const Result<std::string> text = ReadSmallFile(directory.origin_path());
+  const Result<std::string> text = ReadRegularFile(directory.origin_path());
   if (!text) return false;
   const Result<Recorded> recorded = Parse(*text, directory.origin_path());
   const Result<Inodes> inodes = InodesOf(directory);

@@ -13,6 +13,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
 #include "base/system/process_identity.h"
+#include "master/directory/opened_files.h"
 
 namespace gauntlet::master {
 namespace {
@@ -30,6 +31,20 @@ LockOptions OptionsFor(const CampaignDirectory& directory) {
   return options;
 }
 
+Status CheckOwned(const CampaignDirectory& directory, const std::optional<OpenedFiles>& identity,
+                  CampaignLock& lock, std::uint64_t epoch) {
+  if (Status held = lock.Check(); !held) return held;
+  if (identity) {
+    if (Status same = identity->Check(); !same) return same;
+  }
+  Status newest = directory.CheckEpoch(epoch);
+  if (newest || newest.error().kind != ErrorKind::kNotFound) return newest;
+  // Somebody has deleted it. The lock file is the one that we hold and still names us, so no other master can
+  // have counted since.
+  if (Status held = lock.Heartbeat(); !held) return held;
+  return directory.RestoreEpoch(epoch);
+}
+
 // Counts the epoch, makes the database of a campaign that begins (`born` says what it is), and opens it: in
 // this order, for from the epoch on no former master commits anything that we might not have read.
 Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<CampaignLock> lock,
@@ -39,17 +54,22 @@ Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<Campa
   if (born != nullptr) {
     if (Status made = CreateDatabase(directory.database_path(), *born); !made) return made.error();
   }
-  SqliteStore::Options options;
-  options.guard = [directory, lock = lock.get(), epoch = *epoch]() -> Status {
-    if (Status held = lock->Check(); !held) return held;
-    return directory.CheckEpoch(epoch);
+  // Of the files as they are once the store has them open.
+  const auto identity = std::make_shared<std::optional<OpenedFiles>>();
+  const auto check = [directory, identity, lock = lock.get(), epoch = *epoch] {
+    return CheckOwned(directory, *identity, *lock, epoch);
   };
+  SqliteStore::Options options;
+  options.guard = check;
   Result<std::unique_ptr<SqliteStore>> store = SqliteStore::Open(directory.database_path(), options);
   if (!store) return store.error();
+  Result<OpenedFiles> opened = OpenedFiles::Of(directory);
+  if (!opened) return opened.error();
+  *identity = *std::move(opened);
   Result<CampaignOrigin> origin = ConfirmOrigin(directory, (*store)->meta().campaign_id);
   if (!origin) return origin.error();
-  return CampaignOwnership{std::move(directory), std::move(lock), *epoch, *std::move(origin),
-                           *std::move(store)};
+  return CampaignOwnership{std::move(directory), std::move(lock), *epoch,
+                           *std::move(origin),   check,           *std::move(store)};
 }
 
 Result<CampaignView> ViewBesideMaster(const CampaignDirectory& directory, Checked what) {
@@ -101,6 +121,7 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
+  if (Status trusted = directory->CheckTrusted(); !trusted) return trusted.error();
   LockOptions options = OptionsFor(*directory);
   options.patience = kReadersPatience;
   Result<std::unique_ptr<CampaignLock>> lock =

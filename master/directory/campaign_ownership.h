@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -20,7 +21,11 @@ struct CampaignOwnership {
   std::unique_ptr<CampaignLock> lock;
   std::uint64_t epoch = 0;
   CampaignOrigin origin;
-  // Commits nothing any more once a newer master has started or the lock is lost (kInUse).
+  // Whether the campaign is still this master's: kInUse once a newer master has started or the lock is lost,
+  // kNotFound once the directory or a file that must not change was deleted or replaced. An epoch that was
+  // deleted is written again. Thread-safe.
+  std::function<Status()> check;
+  // Commits nothing any more once `check` fails.
   std::unique_ptr<SqliteStore> store;
 };
 
@@ -43,8 +48,8 @@ enum class LivingMaster {
   kFence,    // its epoch becomes outdated, which makes it stop; waited for until its lock is stale
 };
 
-// Takes an existing campaign. Errors: those of CampaignDirectory::Open, CampaignLock::Acquire and
-// SqliteStore::Open.
+// Takes an existing campaign. Errors: those of CampaignDirectory::Open and CheckTrusted,
+// CampaignLock::Acquire and SqliteStore::Open.
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other = LivingMaster::kRespect);
 
 // A campaign to look at. Without a living master: masters wait meanwhile, and no byte of the directory

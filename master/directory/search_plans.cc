@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 
@@ -39,10 +39,10 @@ Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directo
     return Ok{};
   };
   const std::string path = directory.searches_path();
-  const Result<std::string> list = ReadSmallFile(path, kMostListBytes);
+  const Result<std::string> list = ReadRegularFile(path, kMostListBytes);
   if (!list) {
     if (list.error().kind != ErrorKind::kNotFound) return list.error();
-    const Result<std::string> text = ReadSmallFile(directory.experiment_path());
+    const Result<std::string> text = ReadRegularFile(directory.experiment_path());
     if (!text) return text.error();
     if (Status added = add("", *text, directory.experiment_path()); !added) return added.error();
     return plans;

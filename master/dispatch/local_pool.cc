@@ -14,7 +14,10 @@
 #include <cstring>
 #include <fstream>
 
+#include "base/system/atomic_file.h"
 #include "base/system/process_call.h"
+#include "base/system/regular_file.h"
+#include "base/system/resource_limits.h"
 #include "base/system/unique_fd.h"
 
 namespace gauntlet::master {
@@ -22,7 +25,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kFirstDelay{100};
+constexpr milliseconds kFirstDelay{50};
 constexpr milliseconds kLongestDelay{2000};
 constexpr int kGraceMilliseconds = 1000;  // between SIGTERM and SIGKILL when the pool is destroyed
 constexpr std::size_t kTailBytes = 2000;
@@ -46,6 +49,14 @@ std::string TailOf(const std::string& path) {
   }
   if (lines.size() > kTailLines) lines.erase(lines.begin(), lines.end() - kTailLines);
   return fmt::format("{}", fmt::join(lines, " | "));
+}
+
+// What gauntlet-worker says by its exit status (its --help): another attempt would end in the same way.
+constexpr int kRefusesToStart = 2;
+
+ErrorKind KindOfEnd(int exit_status) {
+  if (exit_status == kRefusesToStart) return ErrorKind::kInvalidInput;
+  return exit_status == kExitWithoutResources ? ErrorKind::kNoSpace : ErrorKind::kInternal;
 }
 
 // The first failure in a row costs no time.
@@ -99,17 +110,16 @@ LocalPool::~LocalPool() {
 
 Status LocalPool::StartWorker(Slot& slot, TimePoint now) {
   const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
-  const UniqueFd log(open(slot.log_file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644));
+  if (!nothing.valid()) return SystemError("cannot open /dev/null", errno);
+  const Result<UniqueFd> log = OpenRegularFile(slot.log_file, O_WRONLY | O_CREAT | O_APPEND, kReadableByAll);
+  if (!log) return log.error();
   const int failed =
-      !log.valid() || !nothing.valid()
-          ? errno
-          : Spawn({options_.program, "--access", options_.access_file, "--die-with-parent",
-                   std::to_string(getpid()), "--quiet", "--log", slot.log_file},
-                  {.streams = {nothing.get(), log.get(), log.get()}, .flags = POSIX_SPAWN_SETSID}, slot.pid);
+      Spawn({options_.program, "--access", options_.access_file, "--die-with-parent",
+             std::to_string(getpid()), "--quiet", "--log", slot.log_file},
+            {.streams = {nothing.get(), log->get(), log->get()}, .flags = POSIX_SPAWN_SETSID}, slot.pid);
   if (failed != 0) {
     slot.pid = -1;
-    return Error{ErrorKind::kIo, fmt::format("cannot start {} with its output in {}: {}", options_.program,
-                                             slot.log_file, std::strerror(failed))};
+    return SystemError(fmt::format("cannot start {}", options_.program), failed);
   }
   // By number: the header of glibc 2.36 gives pidfd_open C++ linkage. Closed on exec; not there before
   // Linux 5.3: then Supervise finds out.
@@ -129,15 +139,17 @@ void LocalPool::Bury(Slot& slot, int status, TimePoint now) {
       WIFSIGNALED(status) && (WTERMSIG(status) == SIGKILL || WTERMSIG(status) == SIGTERM);
   const bool failed_start = !from_outside && now - slot.started < options_.start_time;
   slot.failed_starts = failed_start ? slot.failed_starts + 1 : 0;
-  if (slot.failed_starts > options_.start_attempts) {
+  const int exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  if (slot.failed_starts > options_.start_attempts || (failed_start && exit_status == kRefusesToStart)) {
     const std::string tail = TailOf(slot.log_file);
-    error_ = Error{
-        ErrorKind::kInternal,
-        fmt::format("workers do not stay alive: {} ended {} times in a row within {:.3g} s of its start, the "
-                    "last time with {}; {} {}",
-                    options_.program, slot.failed_starts,
-                    std::chrono::duration<double>(options_.start_time).count(), EndingOf(status),
-                    slot.log_file, tail.empty() ? "is empty" : "ends: " + tail)};
+    error_ =
+        Error{KindOfEnd(exit_status),
+              fmt::format("workers do not stay alive: {} ended {} in a row within {:.3g} s of its start, the "
+                          "last time with {}; {} {}",
+                          options_.program,
+                          slot.failed_starts == 1 ? "once" : fmt::format("{} times", slot.failed_starts),
+                          std::chrono::duration<double>(options_.start_time).count(), EndingOf(status),
+                          slot.log_file, tail.empty() ? "is empty" : "ends: " + tail)};
     return;
   }
   slot.start_again = now + DelayAfter(slot.failed_starts);

@@ -65,7 +65,7 @@ CampaignServer::CampaignServer(CampaignOwnership& campaign, const std::vector<Se
       identity_{campaign.origin.campaign_id, campaign.epoch, GAUNTLET_VERSION, golden_hashes},
       cpu_before_(CostOfThisProcess().cpu_seconds),
       dispatch_(LimitsFor(plans, options.audit_share)),
-      files_{campaign.directory, campaign.epoch} {
+      files_{campaign} {
   view_.campaign_id = identity_.campaign_id;
   view_.experiment = plans.front().experiment.name;
   view_.host = IdentifyThisProcess().host;
@@ -77,9 +77,12 @@ CampaignServer::CampaignServer(CampaignOwnership& campaign, const std::vector<Se
 }
 
 CampaignServer::Files::~Files() {
-  if (Status removed = proto::RemoveAccess(directory.access_path(), epoch); !removed)
+  // In the place of a directory that is gone may stand another campaign's.
+  if (const Status ours = campaign.check(); !ours && ours.error().kind == ErrorKind::kNotFound) return;
+  const CampaignDirectory& directory = campaign.directory;
+  if (Status removed = proto::RemoveAccess(directory.access_path(), campaign.epoch); !removed)
     spdlog::warn("{}", removed.error().message);
-  if (!directory.CheckEpoch(epoch)) return;
+  if (!directory.CheckEpoch(campaign.epoch)) return;
   std::error_code ignored;
   std::filesystem::remove(directory.status_path(), ignored);
   std::filesystem::remove(directory.stop_path(), ignored);
@@ -87,7 +90,8 @@ CampaignServer::Files::~Files() {
 }
 
 Result<SessionReport> CampaignServer::Serve() {
-  OpenMasterLog(campaign_.directory.log_path() + "/master.log");
+  if (Status logging = OpenMasterLog(campaign_.directory.log_path() + "/master.log"); !logging)
+    return logging.error();
   spdlog::info("master {} of campaign {} with {}", view_.epoch, view_.campaign_id, DescribePool(options_));
   for (const auto step : {&CampaignServer::MakeSearches, &CampaignServer::Listen, &CampaignServer::StartPool,
                           &CampaignServer::RestoreSearches, &CampaignServer::Announce}) {
@@ -219,10 +223,10 @@ Result<CampaignEnd> CampaignServer::Run() {
 
 void CampaignServer::Publish(const CampaignProgress& progress) {
   const CampaignDirectory& directory = campaign_.directory;
-  if (const Status newest = directory.CheckEpoch(campaign_.epoch);
-      !newest && newest.error().kind == ErrorKind::kInUse) {
-    outdated_ = newest.error();
-    return;  // what lies there is the newer one's
+  if (const Status ours = campaign_.check();
+      !ours && (ours.error().kind == ErrorKind::kInUse || ours.error().kind == ErrorKind::kNotFound)) {
+    outdated_ = ours.error();
+    return;  // what lies there is not ours
   }
   if (std::error_code ignored; !view_.stopping && std::filesystem::exists(directory.stop_path(), ignored)) {
     view_.stopping = true;
@@ -265,6 +269,7 @@ Result<SessionReport> CampaignServer::Report(CampaignEnd end) {
   NoteEvent(end == CampaignEnd::kFinished ? event::kFinished : event::kStop,
             fmt::format("{} runs stored", loop_->runs_done()));
   if (Status flushed = campaign_.store->Flush(); !flushed) return flushed.error();
+  if (Status ours = campaign_.check(); !ours) return ours.error();
   report.runs_this_session = loop_->runs_done() - runs_before_;
   report.wall_seconds = std::chrono::duration<double>(clock_.Now() - started_).count();
   report.master_cpu_seconds = CostOfThisProcess().cpu_seconds - cpu_before_;

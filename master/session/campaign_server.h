@@ -31,16 +31,16 @@ class CampaignServer {
                  const proto::GoldenHashes& golden_hashes, const SessionOptions& options);
 
   // Takes all the steps below, once. Error: what is stored does not fit the plans (kCorrupt), workers cannot
-  // be served (kInvalidInput, kInUse), a newer master has begun (kInUse), or the store or all workers have
-  // failed (kNoSpace, kIo); whatever was acknowledged to workers is stored.
+  // be served (kInvalidInput, kInUse), a newer master has begun (kInUse), somebody has deleted or replaced
+  // the campaign's files (kNotFound), or the store or all workers have failed (kNoSpace, kIo);
+  // except with kNotFound, whatever was acknowledged to workers is stored.
   Result<SessionReport> Serve();
 
  private:
   // The files by which a living master is found, followed and asked to stop: removed at its end, unless a
   // newer master has written its own.
   struct Files {
-    const CampaignDirectory& directory;
-    const std::uint64_t epoch;
+    const CampaignOwnership& campaign;
     ~Files();
   };
 
@@ -68,7 +68,7 @@ class CampaignServer {
   const DispatchOptions dispatch_;
   MasterView view_;
   TimePoint next_status_ = started_;
-  std::optional<Error> outdated_;  // a newer master has begun
+  std::optional<Error> outdated_;  // a newer master has begun, or what this one writes is gone
   std::uint64_t runs_before_ = 0;
 
   // From here on in the order in which they are made; they end the other way round.

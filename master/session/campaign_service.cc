@@ -7,6 +7,7 @@
 
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
+#include "base/system/regular_file.h"
 #include "master/directory/campaign_ownership.h"
 #include "master/dispatch/worker_program.h"
 #include "master/experiment/experiment_file.h"
@@ -197,7 +198,7 @@ class Campaigns final : public CampaignService {
     const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
     if (!directory) return directory.error();
     if (*lives) {
-      const Result<std::string> text = ReadSmallFile(directory->status_path(), 16U << 20);
+      const Result<std::string> text = ReadRegularFile(directory->status_path(), 16U << 20);
       if (!text) {
         if (text.error().kind != ErrorKind::kNotFound) return text.error();
         return JsonText({{"state", "starting"},

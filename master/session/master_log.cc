@@ -3,11 +3,18 @@
 #include <spdlog/sinks/rotating_file_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <filesystem>
 #include <utility>
+
+#include "base/system/regular_file.h"
 
 namespace gauntlet::master {
 
-void OpenMasterLog(const std::string& path, const LogLimits& limits) {
+Status OpenMasterLog(const std::string& path, const LogLimits& limits) {
+  for (const Status& usable :
+       {MakeDirectory(std::filesystem::path(path).parent_path()), CheckRegularFile(path)}) {
+    if (!usable && usable.error().kind == ErrorKind::kInvalidInput) return usable;
+  }
   try {
     auto sink = std::make_shared<spdlog::sinks::rotating_file_sink_mt>(path, limits.bytes, limits.former);
     auto logger = std::make_shared<spdlog::logger>("master", std::move(sink));
@@ -16,6 +23,7 @@ void OpenMasterLog(const std::string& path, const LogLimits& limits) {
   } catch (const spdlog::spdlog_ex&) {
     spdlog::set_level(spdlog::level::off);
   }
+  return Ok{};
 }
 
 }  // namespace gauntlet::master

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "base/result.h"
+
 namespace gauntlet::master {
 
 struct LogLimits {
@@ -12,7 +14,9 @@ struct LogLimits {
 };
 
 // From now on spdlog's default logger writes to this file; every line is in the file when the call that logs
-// it returns. Logging is no reason to stop: when the file cannot be opened nothing is logged.
-void OpenMasterLog(const std::string& path, const LogLimits& limits = {});
+// it returns. The folder is made when there is none. Logging is no reason to stop: when the file cannot be
+// opened nothing is logged. kInvalidInput when the folder or the file is something else, a link too: who
+// knows what would be written to.
+Status OpenMasterLog(const std::string& path, const LogLimits& limits = {});
 
 }  // namespace gauntlet::master

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <system_error>
 
 #include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
 #include "master/experiment/experiment_file.h"
 #include "master/report/verdict_text.h"
 #include "master/search/search_table.h"
@@ -26,10 +26,9 @@ std::string BundleName(RunId run) {
 Status WriteBundle(const BundleContext& context, const Experiment& experiment, const StoredRun& run,
                    const FinishedRun& finished) {
   const std::filesystem::path folder = std::filesystem::path(context.directory) / BundleName(run.id);
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) return SystemError(fmt::format("cannot make {}", folder.string()), error.value());
-
+  for (const std::filesystem::path& part : {folder.parent_path(), folder}) {
+    if (Status made = MakeDirectory(part.string()); !made) return made;
+  }
   const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
   if (!spec) return spec.error();
   const std::string command =

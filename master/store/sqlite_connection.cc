@@ -4,7 +4,11 @@
 #include <sqlite3.h>
 
 #include <cerrno>
-#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+#include "base/system/atomic_file.h"
+#include "base/system/resource_limits.h"
 
 namespace gauntlet::master {
 namespace {
@@ -22,6 +26,7 @@ ErrorKind KindOf(int code, int system_errno) {
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
       return ErrorKind::kInUse;
+    case SQLITE_NOMEM:
     case SQLITE_IOERR:
     case SQLITE_CANTOPEN:
     case SQLITE_PERM:
@@ -36,8 +41,10 @@ ErrorKind KindOf(int code, int system_errno) {
 Error ErrorOf(sqlite3* database, int code) {
   const int system_errno = sqlite3_system_errno(database);
   std::string message = sqlite3_errmsg(database);
-  if ((code & 0xff) == SQLITE_IOERR && system_errno != 0) {
-    message += fmt::format(" ({})", std::strerror(system_errno));
+  if ((code & 0xff) == SQLITE_IOERR || (code & 0xff) == SQLITE_CANTOPEN) {
+    // SQLite does not always remember the reason.
+    message += system_errno != 0 ? fmt::format(" ({})", ErrnoText(system_errno))
+                                 : fmt::format(" (limits here: {})", DescribeLimits());
   }
   return {KindOf(code, system_errno), std::move(message)};
 }
@@ -105,7 +112,8 @@ Result<SqliteConnection> SqliteConnection::Open(const std::string& file, Mode mo
   const int access = mode == Mode::kReadOnly    ? SQLITE_OPEN_READONLY
                      : mode == Mode::kReadWrite ? SQLITE_OPEN_READWRITE
                                                 : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE;
-  const int flags = SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | access;
+  const int flags =
+      SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_NOFOLLOW | access;
   SqliteConnection connection;
   sqlite3* database = nullptr;
   const int code = sqlite3_open_v2(file.c_str(), &database, flags, vfs.empty() ? nullptr : vfs.c_str());
@@ -154,10 +162,16 @@ void SqliteConnection::CheckpointOnClose(bool on) {
   sqlite3_db_config(database_.get(), SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, on ? 0 : 1, nullptr);
 }
 
-std::string SqliteUri(std::string_view path, std::string_view parameters) {
+std::string SqliteUri(const std::string& path, std::string_view parameters) {
+  // A connection follows no link at all, and a user's directory may well be reached through some.
+  const std::filesystem::path given(path);
+  std::error_code error;
+  const std::filesystem::path directory = std::filesystem::canonical(
+      given.has_parent_path() ? given.parent_path() : std::filesystem::path("."), error);
+  const std::string resolved = error ? path : (directory / given.filename()).string();
   // An absolute path may begin with two slashes, which would be read as a host.
-  std::string uri = path.starts_with('/') ? "file://" : "file:";
-  for (const char c : path) {
+  std::string uri = resolved.starts_with('/') ? "file://" : "file:";
+  for (const char c : resolved) {
     const auto byte = static_cast<unsigned char>(c);
     if (c == '?' || c == '#' || c == '%' || byte <= 0x20 || byte >= 0x7f) {
       uri += fmt::format("%{:02X}", byte);

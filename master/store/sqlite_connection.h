@@ -132,6 +132,6 @@ class SqliteConnection {
 };
 
 // A `file:` URI of a path, for query parameters such as "immutable=1".
-std::string SqliteUri(std::string_view path, std::string_view parameters);
+std::string SqliteUri(const std::string& path, std::string_view parameters);
 
 }  // namespace gauntlet::master

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/system/atomic_file.h"
-#include "base/system/unique_fd.h"
+#include "base/system/regular_file.h"
 
 namespace gauntlet::master {
 namespace {
@@ -28,6 +28,8 @@ constexpr int kLogBytes = 64 << 20;
 
 constexpr std::string_view kMagic("SQLite format 3\0", 16);
 constexpr std::size_t kHeaderSize = 100;
+// What SQLite opens or makes beside a database of this name.
+constexpr std::array kBesideTheDatabase = {"-wal", "-shm", "-journal"};
 
 constexpr const char* kTables = R"sql(
 CREATE TABLE meta (
@@ -139,12 +141,16 @@ Error WithPath(const std::string& path, const Error& error) {
   return {error.kind, fmt::format("{}: {}", path, error.message)};
 }
 
-// SQLite takes an empty or missing file for a new database; here it is none.
+// SQLite takes an empty or missing file for a new database, and would wait for the other end of a named pipe;
+// here neither is a database.
 Status CheckHeader(const std::string& path) {
-  const UniqueFd file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file.valid()) return SystemError(fmt::format("cannot open {}", path), errno);
+  const Result<UniqueFd> file = OpenRegularFile(path, O_RDONLY);
+  if (!file) return file.error();
+  for (const char* beside : kBesideTheDatabase) {
+    if (Status regular = CheckRegularFile(path + beside); !regular) return regular;
+  }
   std::array<char, kHeaderSize> header{};
-  const ssize_t size = pread(file.get(), header.data(), header.size(), 0);
+  const ssize_t size = pread(file->get(), header.data(), header.size(), 0);
   if (size != static_cast<ssize_t>(header.size()) ||
       std::string_view(header.data(), kMagic.size()) != kMagic) {
     return Error{
@@ -246,7 +252,8 @@ Status FillDatabase(const std::string& path, const CampaignMeta& meta) {
 }
 
 void RemoveDatabase(const std::string& path) {
-  for (const char* suffix : {"", "-wal", "-journal"}) unlink((path + suffix).c_str());
+  unlink(path.c_str());
+  for (const char* beside : kBesideTheDatabase) unlink((path + beside).c_str());
 }
 
 }  // namespace

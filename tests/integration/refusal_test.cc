@@ -160,7 +160,7 @@ TEST(FullDiskTest, ACampaignThatCouldNotBeMadeIsMadeByTheSameCommandWhenThereIsS
   const std::string said = ReadFile(scratch / "err");
   for (const std::string code : {"8k 3\n", "40k 3\n", "100k 3\n", "64m 0\n"})
     EXPECT_THAT(result.out, HasSubstr(code)) << said;
-  EXPECT_THAT(said, HasSubstr("nothing was simulated. When there is space, the same command with --dir " +
+  EXPECT_THAT(said, HasSubstr("nothing was simulated. When there is room, the same command with --dir " +
                               mount + "/c starts anew"));
   EXPECT_THAT(said, testing::Not(HasSubstr("resume")));
 }

@@ -61,7 +61,7 @@ TEST(WorkerScript, TheSignalComesEarlierInShortJobsButNeverAtTheirStart) {
 TEST(MasterScript, QuotesItsCommand) {
   const Result<std::string> script =
       MasterScript(kMasterTemplate,
-                   {.name = "m", .command = {"/opt/g", "resume", "it's here"}, .log_file = "/l/m.log"}, {});
+                   {.name = "m", .command = {"/opt/g", "resume", "it's here"}, .log_directory = "/l"}, {});
   ASSERT_TRUE(script.ok());
   EXPECT_THAT(*script, HasSubstr("\n/opt/g resume 'it'\\''s here' &\n"));
   EXPECT_THAT(*script, HasSubstr("#SBATCH --requeue --open-mode=append\n"));
@@ -75,6 +75,41 @@ TEST(WorkerScript, RefusesWhatWouldSmuggleInALine) {
   EXPECT_THAT(script.error().message, HasSubstr("line break"));
   WorkerJob job = AWorkerJob();
   job.name = "a\nb";
+  EXPECT_FALSE(WorkerScript(kWorkerTemplate, job, {}).ok());
+}
+
+// What sbatch and slurmd make of these lines was tried with Slurm 22.05 (tests/slurm/cluster/submit_test.cc).
+TEST(WorkerScript, APathMayHoldWhatSlurmAndTheShellReadDifferently) {
+  WorkerJob job = AWorkerJob();
+  job.log_directory = "/work/it's \"50%\" odd/log";
+  job.access_file = "/work/it's \"50%\" odd/access.json";
+  const Result<std::string> script = WorkerScript(kWorkerTemplate, job, {});
+  ASSERT_TRUE(script.ok()) << script.error().message;
+  EXPECT_THAT(*script, HasSubstr("#SBATCH --output=\"/work/it's \\\"50%%\\\" odd/log/worker-%j.log\"\n"));
+  EXPECT_THAT(*script, HasSubstr("--access '/work/it'\\''s \"50%\" odd/access.json' --slots"));
+  EXPECT_THAT(*script, Not(HasSubstr("--open-mode")));
+}
+
+TEST(WorkerScript, BesideABackslashSlurmFillsNothingInSoAllJobsShareALog) {
+  WorkerJob job = AWorkerJob();
+  job.log_directory = "/work/a\\b 5%/log";
+  job.array = 3;
+  const Result<std::string> script = WorkerScript(kWorkerTemplate, job, {});
+  ASSERT_TRUE(script.ok()) << script.error().message;
+  EXPECT_THAT(*script, HasSubstr("#SBATCH --output=\"/work/a\\\\\\\\b 5%/log/worker.log\"\n"));
+  EXPECT_THAT(*script, HasSubstr("#SBATCH --open-mode=append\n"));
+  const Result<std::string> master =
+      MasterScript(kMasterTemplate, {.name = "m", .command = {"g"}, .log_directory = job.log_directory}, {});
+  ASSERT_TRUE(master.ok());
+  EXPECT_THAT(*master, HasSubstr("/log/master-job.log\"\n"));
+}
+
+TEST(WorkerScript, RefusesAPathWithALineBreak) {
+  WorkerJob job = AWorkerJob();
+  job.log_directory = "/work/two\nlines/log";
+  EXPECT_THAT(WorkerScript(kWorkerTemplate, job, {}).error().message, HasSubstr("line break"));
+  job = AWorkerJob();
+  job.access_file = "/work/two\nlines/access.json";
   EXPECT_FALSE(WorkerScript(kWorkerTemplate, job, {}).ok());
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 
@@ -142,11 +143,10 @@ TEST_F(EpochTest, ItIsCheckedWithoutADescriptorToo) {
   EXPECT_FALSE(outdated.ok());
 }
 
-TEST_F(EpochTest, AFileThatIsGoneOrDamagedStopsTheMaster) {
-  // Without the file alone somebody has deleted it; without the database too the directory is elsewhere.
-  EXPECT_THAT(directory_.CheckEpoch(1).error().message, HasSubstr("is gone"));
-  WriteFile(directory_.database_path(), "");
+TEST_F(EpochTest, AFileThatIsGoneIsToldAndOneThatIsDamagedStopsTheMaster) {
   EXPECT_EQ(directory_.CheckEpoch(1).error().kind, ErrorKind::kNotFound);
+  ASSERT_TRUE(directory_.RestoreEpoch(1).ok());
+  EXPECT_TRUE(directory_.CheckEpoch(1).ok());
   for (const std::string text : {"", "x", "-1\n", "0\n", "1 2\n", "99999999999999999999999\n"}) {
     WriteFile(directory_.epoch_path(), text);
     EXPECT_EQ(directory_.CheckEpoch(1).error().kind, ErrorKind::kCorrupt) << text;
@@ -154,6 +154,38 @@ TEST_F(EpochTest, AFileThatIsGoneOrDamagedStopsTheMaster) {
     ASSERT_FALSE(started.ok()) << text;
     EXPECT_THAT(started.error().message, HasSubstr(directory_.epoch_path()));
   }
+}
+
+// The number begins those of the leases, in 32 bits.
+TEST_F(EpochTest, ANumberThatCannotBeCountedOnIsDamage) {
+  for (const std::string number : {"4294967295", "4294967296", "18446744073709551615"}) {
+    WriteFile(directory_.epoch_path(), number + "\n");
+    const Result<std::uint64_t> started = directory_.StartEpoch();
+    ASSERT_FALSE(started.ok()) << number;
+    EXPECT_EQ(started.error().kind, ErrorKind::kCorrupt);
+    EXPECT_THAT(started.error().message, HasSubstr("holds '" + number + "'"));
+    EXPECT_THAT(started.error().message, HasSubstr("1 to 4294967294"));
+  }
+  WriteFile(directory_.epoch_path(), "4294967294\n");
+  EXPECT_EQ(*directory_.StartEpoch(), 4294967295U);
+  EXPECT_TRUE(directory_.CheckEpoch(4294967295U).ok());
+}
+
+TEST(CampaignDirectoryTest, IsMadeForItsOwnerToWriteAloneAndNotMadeWhereOthersWrite) {
+  const ScratchDirectory scratch;
+  const mode_t before = umask(0);
+  ASSERT_TRUE(CampaignDirectory::Create(scratch / "a/b").ok());
+  umask(before);
+  for (const std::string made : {"a", "a/b"}) {
+    EXPECT_EQ(fs::status(scratch / made).permissions() & (fs::perms::group_write | fs::perms::others_write),
+              fs::perms::none)
+        << made;
+  }
+  fs::permissions(scratch / "a/b", fs::perms::all);
+  const Result<CampaignDirectory> again = CampaignDirectory::Create(scratch / "a/b");
+  ASSERT_FALSE(again.ok());
+  EXPECT_EQ(again.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_THAT(again.error().message, HasSubstr("a/b has mode 777: other users may write it"));
 }
 
 TEST(CampaignIdTest, IsNewEveryTime) {

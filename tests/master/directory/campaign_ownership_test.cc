@@ -180,6 +180,69 @@ TEST_F(CampaignOwnershipTest, ANewerFormatIsLeftAsItIs) {
   EXPECT_FALSE(std::filesystem::exists(dir_ + "/campaign.db-wal"));
 }
 
+// What a master writes into a file that has no name any more is lost.
+TEST_F(CampaignOwnershipTest, NothingIsReportedAsStoredOnceTheFilesAreGone) {
+  struct Case {
+    std::string name;  // in the directory; "" is the directory itself
+    bool replaced;
+    const char* words;
+  };
+  for (const Case& attack :
+       {Case{"", false, "is gone, deleted or moved away"}, Case{"", true, "another one has its name"},
+        Case{"campaign.db", false, "What was stored is lost, unless there is a copy"},
+        Case{"campaign.db", true, "campaign.db is gone, and another one has its name"},
+        Case{"campaign.db-wal", false, "The runs that were stored last are lost"},
+        Case{"campaign.db-wal", true, "-wal is gone, and another one has its name"},
+        Case{"lock", false, "Another master may have begun"},
+        Case{"lock", true, "lock is gone, and another one has its name"}}) {
+    dir_ = scratch_ / fmt::format("campaign{}", attack.name + (attack.replaced ? "-replaced" : "-gone"));
+    Result<CampaignOwnership> owner = Create();
+    ASSERT_TRUE(owner.ok()) << owner.error().message;
+    owner->store->AddSearch(MakeSearch(1));
+    owner->store->AddRun(MakeRun(1));
+    ASSERT_TRUE(owner->store->Flush().ok());
+    ASSERT_TRUE(owner->check().ok());
+    const std::string path = attack.name.empty() ? dir_ : dir_ + "/" + attack.name;
+    std::filesystem::rename(path, scratch_ / "taken");
+    if (attack.replaced)
+      std::filesystem::copy(scratch_ / "taken", path, std::filesystem::copy_options::recursive);
+    owner->store->AddRun(MakeRun(2));
+    const Status flushed = owner->store->Flush();
+    ASSERT_FALSE(flushed.ok()) << path;
+    EXPECT_EQ(flushed.error().kind, ErrorKind::kNotFound) << path;
+    EXPECT_THAT(flushed.error().message, HasSubstr(path));
+    EXPECT_THAT(flushed.error().message, HasSubstr(attack.words));
+    EXPECT_FALSE(owner->check().ok());
+    std::filesystem::remove_all(scratch_ / "taken");
+  }
+}
+
+TEST_F(CampaignOwnershipTest, AnEpochThatWasDeletedIsWrittenAgain) {
+  { ASSERT_TRUE(Create().ok()); }
+  Result<CampaignOwnership> owner = TakeCampaign(dir_);
+  ASSERT_TRUE(owner.ok());
+  std::filesystem::remove(dir_ + "/epoch");
+  EXPECT_TRUE(owner->check().ok());
+  EXPECT_EQ(ReadFile(dir_ + "/epoch"), "2\n");
+}
+
+TEST_F(CampaignOwnershipTest, IsTakenOnlyFromWhereNobodyElseWrites) {
+  { ASSERT_TRUE(Create().ok()); }
+  for (const std::string name : {"", "/campaign.db", "/experiment.toml", "/epoch"}) {
+    const std::string path = dir_ + name;
+    const std::filesystem::perms before = std::filesystem::status(path).permissions();
+    std::filesystem::permissions(path, std::filesystem::perms::others_write,
+                                 std::filesystem::perm_options::add);
+    const Result<CampaignOwnership> taken = TakeCampaign(dir_);
+    ASSERT_FALSE(taken.ok()) << path;
+    EXPECT_EQ(taken.error().kind, ErrorKind::kInvalidInput);
+    EXPECT_THAT(taken.error().message, HasSubstr("chmod go-w " + path));
+    EXPECT_TRUE(ViewCampaign(dir_).ok()) << "looking executes nothing";
+    std::filesystem::permissions(path, before);
+  }
+  EXPECT_TRUE(TakeCampaign(dir_).ok());
+}
+
 TEST_F(CampaignOwnershipTest, ACampaignCanBeMoved) {
   ASSERT_TRUE(Create().ok());
   std::filesystem::rename(dir_, scratch_ / "moved");

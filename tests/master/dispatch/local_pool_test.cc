@@ -200,7 +200,7 @@ TEST_F(LocalPoolTest, WaitsLongerAndLongerBeforeItStartsAFailingWorkerAgain) {
   ASSERT_THAT(*NextEnds(*pool), SizeIs(1));
   ASSERT_THAT(*NextEnds(*pool), SizeIs(1)) << "the first time at once";
   EXPECT_EQ(pool->running(), 0);
-  clock_.Advance(milliseconds(99));
+  clock_.Advance(milliseconds(49));
   ASSERT_TRUE(pool->Supervise(clock_.Now()).ok());
   EXPECT_EQ(pool->running(), 0);
   clock_.Advance(milliseconds(1));

@@ -36,7 +36,7 @@ TEST_F(MasterLogTest, Keeps4FormerFilesAndLosesAndTearsNoLine) {
       spdlog::info("run-failure: run {} crashed (lease {:x}) {} {}", i, (1ULL << 32) + i, who, i);
     }
   };
-  OpenMasterLog(file_, {kBytes, 4});
+  ASSERT_TRUE(OpenMasterLog(file_, {kBytes, 4}).ok());
   std::thread other(log, "other", kLines);
   log("this", kLines);
   other.join();
@@ -67,7 +67,7 @@ TEST_F(MasterLogTest, Keeps4FormerFilesAndLosesAndTearsNoLine) {
 }
 
 TEST_F(MasterLogTest, WithoutAFileItIsSilent) {
-  OpenMasterLog("/proc/none/master.log");
+  ASSERT_TRUE(OpenMasterLog("/proc/none/master.log").ok());
   EXPECT_FALSE(spdlog::default_logger()->should_log(spdlog::level::critical));
 }
 

@@ -1,6 +1,7 @@
 // The short one of the tests on a real Slurm.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -43,6 +44,27 @@ TEST_F(SlurmTest, ASubmittedSearchEndsLikeALocalOneAndLeavesNothing) {
   EXPECT_THAT(all, SizeIs(testing::Le(3U)));
   unsetenv("SBATCH_PARTITION");
   unsetenv("SLURM_JOB_ID");
+
+  // Names that Slurm and the shell read each in their own way.
+  for (const std::string name : {"it's \"50%\" odd", "it's \"50%\" \\ odd"}) {
+    const std::string odd = scratch_ / name;
+    std::vector<std::string> arguments = SubmitArguments(campaign, "here", {"max_allocations=1"});
+    std::ranges::replace(arguments, dir(), odd);
+    const ProcessResult submitted = Gauntlet(arguments);
+    EXPECT_EQ(submitted.exit_code, 0) << submitted.err;
+    EXPECT_EQ(StateHash(odd), hash);
+    EXPECT_TRUE(QueueEmpties());
+    int logs = 0;
+    for (const auto& log : std::filesystem::directory_iterator(odd + "/log"))
+      logs += log.path().filename().string().starts_with("worker") ? 1 : 0;
+    EXPECT_GE(logs, 1) << odd;
+  }
+  std::vector<std::string> broken = SubmitArguments(campaign, "here");
+  std::ranges::replace(broken, dir(), scratch_ / "two\nlines");
+  const ProcessResult refused = Gauntlet(broken);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("a job script cannot hold a line break"));
+  EXPECT_FALSE(std::filesystem::exists(scratch_ / "two\nlines"));
 }
 
 }  // namespace

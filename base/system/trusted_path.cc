@@ -1,0 +1,50 @@
+#include "base/system/trusted_path.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+#include "base/shell_quoted.h"
+#include "base/system/atomic_file.h"
+
+namespace gauntlet {
+namespace {
+
+Status Check(const std::string& path, const std::string& directory, const struct stat& status) {
+  const uid_t us = geteuid();
+  if (status.st_uid != us && status.st_uid != 0) {
+    return InvalidInput(fmt::format(
+        "{} belongs to user {}, not to you (user {}), who so would decide what this command does in your "
+        "name. Look at what the directory holds, then work on a copy of your own: `cp -r {} COPY`",
+        path, status.st_uid, us, ShellQuoted(directory)));
+  }
+  if (!S_ISLNK(status.st_mode) && (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+    return InvalidInput(fmt::format(
+        "{} has mode {:03o}: other users may write it, who so would decide what this command does in your "
+        "name. If it holds what you left there: `chmod go-w {}`",
+        path, status.st_mode & 0777, ShellQuoted(path)));
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Status CheckOnlyWeWrite(const std::string& directory, std::span<const std::string_view> files) {
+  struct stat status {};
+  if (stat(directory.c_str(), &status) != 0)
+    return SystemError(fmt::format("cannot look at {}", directory), errno);
+  if (Status ours = Check(directory, directory, status); !ours) return ours;
+  for (const std::string_view file : files) {
+    const std::string path = fmt::format("{}/{}", directory, file);
+    if (lstat(path.c_str(), &status) != 0) {
+      if (errno == ENOENT || errno == ENOTDIR) continue;
+      return SystemError(fmt::format("cannot look at {}", path), errno);
+    }
+    if (Status ours = Check(path, directory, status); !ours) return ours;
+  }
+  return Ok{};
+}
+
+}  // namespace gauntlet
