@@ -65,15 +65,13 @@ struct Lease {
   std::uint32_t attempt = 1;  // 1 = the run's first lease
 };
 
-// How a runner ended that gave no result. All but kUnreadable have the wire's numbers.
+// How a runner ended that gave no result. The numbers are the wire's.
 enum class FailureKind : int {
   kCrashed = 1,      // own fault: SIGSEGV, SIGABRT, an exception, an exit
   kHung = 2,         // own fault: more CPU time than allowed
   kOutOfMemory = 3,  // own fault: more memory than allowed
   kExternal = 4,     // not the run's fault, never an attempt: killed from outside, dropped by a drain
-  kUnreadable = 5,   // a master's judgement: the result does not decode, or its hash is not its content's
 };
-inline constexpr std::size_t kFailureKinds = 6;  // one more than the largest number
 
 struct RunnerFailure {
   FailureKind kind = FailureKind::kExternal;

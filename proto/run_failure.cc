@@ -15,8 +15,6 @@ std::string Describe(const RunnerFailure& failure) {
       return "exceeded its CPU time";
     case FailureKind::kOutOfMemory:
       return "exceeded its memory";
-    case FailureKind::kUnreadable:
-      return "gave an unreadable result";
     case FailureKind::kExternal:
       return failure.signal != 0 ? fmt::format("was ended from outside by signal {}", failure.signal)
                                  : "was given back";

@@ -54,8 +54,8 @@ void AddMaster(CommandParser& parser) {
   command.add_flag("--resume", options.resume, "go on with the campaign in --dir when there is one");
   command.footer(
       R"(Evolves like 'evolve', but starts no workers: they find the master through access.json in the campaign's
-directory ('gauntlet-worker --dir DIR' on any machine that sees it). On an address that other machines can
-reach, everything is encrypted and only workers with the keys in access.json are let in. Ctrl-C or SIGTERM
+directory ('gauntlet-worker --dir DIR' on any machine that sees it). Everything is encrypted, and only workers
+with the keys in access.json are let in, on loopback too (unless --insecure). Ctrl-C or SIGTERM
 stops the master alone (exit 3): workers finish, keep their results and wait 10 minutes for a successor.
 'gauntlet stop DIR' lets the workers go too.
 

@@ -76,8 +76,10 @@ void AddBindOptions(CLI::App& command, BindOptions& options) {
   AddValue(command, "--bind", "ENDPOINT", options.endpoint,
            "where workers connect: tcp://ADDRESS:PORT (IPv4, 0.0.0.0: all; port *: any free one) or "
            "ipc://PATH");
-  command.add_flag("--insecure", options.insecure,
-                   "plaintext, open to everybody, also on an address that other machines can reach");
+  command.add_flag(
+      "--insecure", options.insecure,
+      "plaintext without keys: whoever reaches the address, any user of this machine at least, can "
+      "feed results");
 }
 
 void AddExperimentOptions(CLI::App& command, ExperimentOptions& options) {

@@ -10,7 +10,6 @@
 #include "master/cli/stop_signal.h"
 #include "master/cli/summary.h"
 #include "master/cli/table.h"
-#include "master/dispatch/curve_keys.h"
 #include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_server.h"
@@ -63,7 +62,7 @@ std::string Timing(const SessionReport& report) {
 // Where workers connect, and that nothing protects the campaign when that is so.
 void PrintServing(CommandContext& context, const CampaignRun& campaign, const ServingNotice& notice) {
   const std::string& endpoint = notice.endpoints.front();
-  if (!notice.encrypted && !IsLocalEndpoint(campaign.bind.endpoint)) {
+  if (!notice.encrypted) {
     // Said even with --quiet.
     context.err << (context.err_is_terminal ? "\x1b[1;31m" : "") << std::flush;
     PrintMessage(context,
@@ -72,7 +71,7 @@ void PrintServing(CommandContext& context, const CampaignRun& campaign, const Se
                              endpoint));
     context.err << (context.err_is_terminal ? "\x1b[0m" : "") << std::flush;
   }
-  if (campaign.serving.quiet) return;
+  if (campaign.serving.quiet || campaign.bind.endpoint.empty()) return;
   // The worker beside this program, as a person who started this one can start it.
   const std::string start = campaign.session.make_pool
                                 ? ""
@@ -156,10 +155,9 @@ ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
   session.metrics = metrics->get();
   session.insecure = campaign.bind.insecure;
   session.audit_share = *audit_share;
-  if (!endpoint.empty()) {
-    session.bind = endpoint;
+  if (!endpoint.empty()) session.bind = endpoint;
+  if (!endpoint.empty() || session.insecure)
     session.on_serving = [&](const ServingNotice& notice) { PrintServing(context, campaign, notice); };
-  }
   session.stop_requested = StopSignal::Requested;
   session.on_progress = [&](const CampaignProgress& now) {
     began = true;

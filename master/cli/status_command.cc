@@ -82,6 +82,12 @@ std::string StatusText(const Json& status, const std::string& directory) {
     text += fmt::format("NONDETERMINISTIC: {} runs ended differently on two workers, see log/master.log\n",
                         status["nondeterministic"].get<std::uint64_t>());
   }
+  if (const auto lone = status.value("verdicts_of_one_worker", std::uint64_t{0}); lone > 0) {
+    text += fmt::format(
+        "{} runs were given up on the word of one worker each: there was no other to ask, see "
+        "log/master.log\n",
+        FormatCount(lone));
+  }
   if (const Json& why = status.value("why_nothing_runs", Json()); why.is_string())
     text += "nothing runs: " + WithDirectory(Printable(why.get<std::string>()), directory) + "\n";
   if (const Json& trouble = status.value("pool_trouble", Json());
@@ -92,6 +98,11 @@ std::string StatusText(const Json& status, const std::string& directory) {
   text += JobsText(status);
   const Json& workers = status["worker_list"];
   if (workers.empty()) return text;
+  for (const Json& worker : workers) {
+    if (const Json& reason = worker.value("quarantined", Json()); reason.is_string())
+      text += fmt::format("worker {} is quarantined: {}\n", Printable(worker["worker"].get<std::string>()),
+                          reason.get<std::string>());
+  }
   Table table({"worker", "state", ">heard", "runs"});
   for (std::size_t i = 0; i < std::min(kShownWorkers, workers.size()); ++i) {
     const Json& worker = workers[i];

@@ -141,6 +141,7 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
           {"population", std::move(population)},
           {"state_hash", summary.state_hash},
           {"nondeterministic", summary.nondeterministic > 0},
+          {"verdicts_of_one_worker", summary.lone_verdicts},
           {"finished", summary.finished}};
 }
 
@@ -161,6 +162,7 @@ std::string SummaryJson(const CampaignSummary& summary, const std::string& direc
                    {"runs_failed", summary.runs_failed},
                    {"total_failures", summary.total_failures},
                    {"nondeterministic", summary.nondeterministic > 0},
+                   {"verdicts_of_one_worker", summary.lone_verdicts},
                    {"finished", summary.finished},
                    {"searches", std::move(searches)}});
 }

@@ -153,12 +153,23 @@ constexpr const char* kNotReproducible =
     "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
     "figures.\n\n";
 
+// What a broken machine alone may have made up; "" when there is nothing of the kind.
+std::string LoneVerdicts(const CampaignSummary& summary) {
+  if (summary.lone_verdicts == 0) return "";
+  return fmt::format(
+      "{} runs without a result stand on the word of one worker each: there was no other to ask. `replay` "
+      "shows "
+      "whether they end so elsewhere.\n\n",
+      FormatCount(summary.lone_verdicts));
+}
+
 std::string SweepText(const CampaignSummary& summary, const HintContext& context) {
   const auto finished = std::ranges::count(summary.searches, true, &CampaignSummary::finished);
   std::string text = fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
                                  Printable(summary.experiment), summary.searches.size(), finished,
                                  FormatCount(summary.runs_done), FormatCount(summary.total_failures));
   if (summary.nondeterministic > 0) text += kNotReproducible;
+  text += LoneVerdicts(summary);
   Table table(
       {">search", "settings", ">generation", ">runs", ">best", ">mean", ">total failures", "state hash"});
   constexpr std::size_t kShownDigits = 16;
@@ -182,6 +193,7 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
                                  search == nullptr ? summary.search : std::string(search->title),
                                  summary.seed, summary.finished ? "finished" : "not finished");
   if (summary.nondeterministic > 0) text += kNotReproducible;
+  text += LoneVerdicts(summary);
   if (summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
                         FormatCount(summary.runs_done));

@@ -16,12 +16,4 @@ CurveKeyPair NewCurveKeyPair() {
   return {public_key.data(), secret_key.data()};
 }
 
-bool IsLocalEndpoint(std::string_view endpoint) {
-  if (endpoint.starts_with("ipc://") || endpoint.starts_with("inproc://")) return true;
-  constexpr std::string_view kTcp = "tcp://";
-  if (!endpoint.starts_with(kTcp)) return false;
-  const std::string_view host = endpoint.substr(kTcp.size(), endpoint.rfind(':') - kTcp.size());
-  return host.starts_with("127.") || host == "localhost" || host == "[::1]";
-}
-
 }  // namespace gauntlet::master

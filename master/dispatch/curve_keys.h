@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 namespace gauntlet::master {
 
@@ -15,9 +14,5 @@ struct CurveKeyPair {
 
 // From the operating system's random numbers.
 CurveKeyPair NewCurveKeyPair();
-
-// Whether nobody but this machine's processes can reach an endpoint: ipc, inproc, or tcp on a loopback
-// address (127.0.0.0/8, ::1, localhost).
-bool IsLocalEndpoint(std::string_view endpoint);
 
 }  // namespace gauntlet::master

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "master/dispatch/worker_record.h"
 #include "master/store/event_kinds.h"
 #include "proto/messages.h"
 #include "sim/run_result.h"
@@ -35,8 +36,10 @@ struct FinishedRun {
 struct WorkerStatistics {
   int connected = 0;
   int busy = 0;
-  int lost = 0;                // since the start
-  std::uint64_t releases = 0;  // runs leased again because their worker was lost
+  int quarantined = 0;              // of those connected: get no runs any more
+  int lost = 0;                     // since the start
+  std::uint64_t lone_verdicts = 0;  // runs given up on the word of one worker: there was no other
+  std::uint64_t releases = 0;       // runs leased again because their worker was lost
   std::uint64_t duplicates = 0;
   std::uint64_t rejected_messages = 0;
   std::uint64_t nondeterministic = 0;  // duplicates whose result differed from the first one
@@ -64,6 +67,7 @@ struct WorkerView {
   std::uint32_t slots = 1;
   bool lost = false;            // silent: its runs wait for others, late results are taken
   bool leaving = false;         // finishes what it has, wants nothing new
+  WorkerRecord record;          // what it has done so far; says whether it is quarantined
   double silent_seconds = 0.0;  // since it was heard
   std::vector<Lease> leases;    // in the order in which they were given
 };

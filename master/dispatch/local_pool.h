@@ -40,6 +40,7 @@ class LocalPool final : public WorkerPool {
   Result<std::vector<pid_t>> Supervise(TimePoint now) override;
   void AppendWaitFds(std::vector<int>& fds) const override;
   int running() const override;
+  bool OnThisMachine() const override { return true; }
   void StopReplacing() override { replacing_ = false; }
   void SignalAll(int signal) override;
   std::vector<DispatchEvent> TakeEvents() override { return std::exchange(events_, {}); }

@@ -6,6 +6,7 @@
 #include <csignal>
 
 #include "base/check.h"
+#include "master/dispatch/admission.h"
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
@@ -39,39 +40,6 @@ std::string ListRuns(const std::vector<RunId>& runs) {
 Fence FirstFence(std::uint64_t epoch) {
   GAUNTLET_CHECK(epoch >= 1 && epoch < (1ULL << 32), fmt::format("epoch {} does not fit 32 bits", epoch));
   return epoch << 32;
-}
-
-// Why the worker that says this may not work for this campaign, as a sentence for its log and ours; "" when
-// it may.
-std::string ReasonToRefuse(const proto::Hello& hello, const CampaignIdentity& identity) {
-  if (hello.protocol_version != proto::kProtocolVersion) {
-    return fmt::format(
-        "this worker speaks protocol version {}, this master speaks {}: use gauntlet-worker {}",
-        hello.protocol_version, proto::kProtocolVersion, identity.software_version);
-  }
-  if (hello.campaign_id != identity.campaign_id) {
-    return fmt::format("this worker belongs to campaign '{}', this master serves campaign '{}'",
-                       Shorten(hello.campaign_id), identity.campaign_id);
-  }
-  if (hello.software_version != identity.software_version) {
-    return fmt::format("this worker has software version {}, this master has {}",
-                       Shorten(hello.software_version), identity.software_version);
-  }
-  if (const auto difference = proto::FirstDifference(identity.golden_hashes, hello.golden_hashes)) {
-    if (!difference->offered) {
-      return fmt::format("this worker was built without the controller '{}', which the campaign uses",
-                         difference->controller);
-    }
-    return fmt::format(
-        "this worker's golden hash of controller '{}' is {:016x}, the campaign's is {:016x}: the same runs "
-        "end differently on its machine, so its results cannot be mixed with the others",
-        difference->controller, *difference->offered, difference->needed);
-  }
-  if (hello.instance_id == 0) return "this worker has instance id 0; it must be a random number";
-  if (hello.slots < 1 || hello.slots > kMaxSlots) {
-    return fmt::format("this worker has {} slots; 1 to {} are possible", hello.slots, kMaxSlots);
-  }
-  return "";
 }
 
 proto::Drain Farewell() {
@@ -146,7 +114,23 @@ Status RemoteBackend::SupervisePool(TimePoint now) {
       if (worker.pid == pid) scheduler_.WorkerDied(id);
     }
   }
-  return Ok{};
+  return CheckPoolIsOfUse();
+}
+
+// Workers that this master keeps running itself, all of them quarantined, will do nothing for ever.
+Status RemoteBackend::CheckPoolIsOfUse() const {
+  if (shutting_down_ || !pool_->OnThisMachine() || scheduler_.unfinished() == 0) return Ok{};
+  const int own = pool_->running();
+  if (own == 0 || !scheduler_.AllQuarantined() || scheduler_.Statistics().quarantined < own) return Ok{};
+  std::string reasons;
+  for (const auto& [worker, described] : scheduler_.DescribeWorkers()) {
+    if (!described.record.quarantined || described.lost || !reasons.empty()) continue;
+    reasons = fmt::format("of worker {}, {}", workers_.LabelOf(worker), InWords(described.record));
+  }
+  return Error{
+      ErrorKind::kIo,
+      fmt::format("all {} workers on this machine are quarantined, and nobody is left to do {} runs: {}", own,
+                  scheduler_.unfinished(), reasons)};
 }
 
 // On a machine with far more to do than it can, a worker may get no turn for seconds.
@@ -222,9 +206,10 @@ void RemoteBackend::Handle(const PeerMessage& message, TimePoint now) {
 }
 
 void RemoteBackend::OnHello(const PeerId& peer, const proto::Hello& hello, TimePoint now) {
-  if (const std::string reason = ReasonToRefuse(hello, identity_); !reason.empty()) {
-    transport_.Send(peer, proto::EncodeMasterMessage(proto::Refused{reason}));
-    log_.Refuse(LabelOf(hello), reason, now);
+  if (const std::optional<Refusal> refusal = ReasonToRefuse(hello, identity_)) {
+    const std::string& told = transport_.KnowsItsPeers() ? refusal->reason : refusal->for_strangers;
+    transport_.Send(peer, proto::EncodeMasterMessage(proto::Refused{told}));
+    log_.Refuse(LabelOf(hello), refusal->reason, now);
     return;
   }
   if (const auto former = workers_.SpeakerOf(peer); former && *former != hello.instance_id) {
@@ -239,7 +224,7 @@ void RemoteBackend::OnHello(const PeerId& peer, const proto::Hello& hello, TimeP
                                                                   options_.cpu_limit_seconds,
                                                                   options_.memory_limit_bytes}));
   if (!repeated || !scheduler_.WorkerHeartbeat(hello.instance_id, hello.held_leases, now)) {
-    scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held_leases, now);
+    scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held_leases, now, hello.process.host);
   }
   if (shutting_down_) transport_.Send(peer, proto::EncodeMasterMessage(Farewell()));
   if (repeated) return;
@@ -260,13 +245,13 @@ void RemoteBackend::OnResult(InstanceId worker, proto::LeaseResult message) {
   }
   Result<sim::RunResult> result = proto::DecodeRunResult(message.result);
   if (!result) {
-    OnFailure(worker, message, {proto::FailureKind::kUnreadable, 0, 0, result.error().message});
+    OnUnreadable(worker, message, result.error().message);
     return;
   }
   const Answer answer = scheduler_.Completed(worker, message.fence, message.run_id, result->hash);
   if (answer == Answer::kRejected) {
-    log_.Reject("lease",
-                fmt::format("worker {} answered a lease that is not its own", workers_.LabelOf(worker)));
+    const std::string& label = workers_.LabelOf(worker);
+    log_.Reject("lease " + label, fmt::format("worker {} answered a lease that is not its own", label));
   }
   if (answer != Answer::kAccepted) return;  // the scheduler counts what was not needed
   scheduler_.RunTook(message.cpu_seconds);
@@ -279,12 +264,21 @@ void RemoteBackend::OnResult(InstanceId worker, proto::LeaseResult message) {
   finished.attempt = std::max(1U, scheduler_.LeasesOf(message.run_id));
 }
 
+void RemoteBackend::OnUnreadable(InstanceId worker, const proto::LeaseResult& message,
+                                 const std::string& why) {
+  scheduler_.Unreadable(worker, message.fence, message.run_id);
+  const std::string& label = workers_.LabelOf(worker);
+  log_.Reject("result " + label,
+              fmt::format("worker {} gave a result of run {} (lease {:x}) that cannot be read ({})", label,
+                          message.run_id, message.fence, Shorten(why)));
+}
+
 void RemoteBackend::OnFailure(InstanceId worker, const proto::LeaseResult& message,
                               const proto::RunnerFailure& failure) {
   const Answer answer = scheduler_.Failed(worker, message.fence, message.run_id, failure);
   if (answer == Answer::kRejected) {
-    log_.Reject("lease",
-                fmt::format("worker {} reported on a lease that is not its own", workers_.LabelOf(worker)));
+    const std::string& label = workers_.LabelOf(worker);
+    log_.Reject("lease " + label, fmt::format("worker {} reported on a lease that is not its own", label));
   } else if (answer == Answer::kAccepted) {
     const bool own = failure.kind != proto::FailureKind::kExternal;
     log_.Report(own ? event::kRunnerFailure : event::kRunReturned,
@@ -329,6 +323,11 @@ void RemoteBackend::Tell(const SchedulerOrders& orders) {
     log_.Report(event::kWorkerBack,
                 fmt::format("worker {} was lost and is heard again", workers_.LabelOf(worker)));
   }
+  for (const WorkerQuarantined& order : orders.quarantined) {
+    log_.Report(event::kWorkerQuarantined,
+                fmt::format("worker {} is quarantined and gets no more runs: {}",
+                            workers_.LabelOf(order.worker), InWords(order.record)));
+  }
   for (const ResultMismatch& mismatch : orders.mismatches) {
     log_.Report(event::kNondeterministic,
                 fmt::format("run {} ended differently on two workers: {} gave {:016x}, {} gave {:016x}",
@@ -340,12 +339,16 @@ void RemoteBackend::Tell(const SchedulerOrders& orders) {
 void RemoteBackend::GiveUp(const RunGivenUp& order) {
   FinishedRun& run = finished_.emplace_back();
   run.id = order.run;
-  run.result = ResultOf(order.last);
+  run.result = ResultOf(order.failure);
   run.worker = workers_.LabelOf(order.worker);
   run.attempt = order.leases;
-  run.stderr_tail = order.last.stderr_tail;
-  log_.Report(event::kRunGivenUp, fmt::format("run {} {} in {} of {} attempts", order.run, run.result.message,
-                                              order.of_last_kind, order.attempts));
+  run.stderr_tail = order.failure.stderr_tail;
+  const bool alone = order.workers == 1;
+  log_.Report(alone ? event::kRunGivenUpAlone : event::kRunGivenUp,
+              fmt::format("run {} {} in {} of {} attempts, {}", order.run, run.result.message, order.alike,
+                          order.attempts,
+                          alone ? fmt::format("all on worker {}: there was no other to ask", run.worker)
+                                : fmt::format("on {} workers", order.workers)));
 }
 
 void RemoteBackend::SendHeartbeats(TimePoint now) {
@@ -390,6 +393,8 @@ void RemoteBackend::CountRejections() {
   count(rejections.keys, reported_rejections_.keys, "keys",
         "a connection's keys are not the campaign's: its access.json is another campaign's, or older than a "
         "change of keys");
+  count(rejections.silent, reported_rejections_.silent, "silent",
+        "a connection said nothing, and there were so many of its kind that workers could not have got in");
 }
 
 void RemoteBackend::Shutdown(milliseconds deadline) {

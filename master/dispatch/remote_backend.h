@@ -42,6 +42,7 @@ class RemoteBackend final : public EvaluationBackend {
  private:
   Status Step();
   Status SupervisePool(TimePoint now);
+  Status CheckPoolIsOfUse() const;
   void BuryEnded(TimePoint now);
   void ExcuseStarving(TimePoint now);
   PoolView ViewForPool() const;
@@ -49,6 +50,7 @@ class RemoteBackend final : public EvaluationBackend {
   void Handle(const PeerMessage& message, TimePoint now);
   void OnHello(const PeerId& peer, const proto::Hello& hello, TimePoint now);
   void OnResult(InstanceId worker, proto::LeaseResult message);
+  void OnUnreadable(InstanceId worker, const proto::LeaseResult& message, const std::string& why);
   void OnFailure(InstanceId worker, const proto::LeaseResult& message, const proto::RunnerFailure& failure);
   void GiveLeases(TimePoint now);
   // False when a lease could not be delivered: others may take it.

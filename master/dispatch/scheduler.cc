@@ -99,11 +99,12 @@ void Scheduler::Acknowledge(RunId id) {
 }
 
 void Scheduler::WorkerJoined(InstanceId id, std::uint32_t slots, const std::vector<Fence>& held,
-                             TimePoint now) {
+                             TimePoint now, const std::string& host) {
   Advance(now);
   Worker& worker = workers_[id];
   Unlist(id, worker);
   worker.slots = std::max<std::uint32_t>(1, slots);
+  worker.host = host;
   worker.draining = false;
   worker.lost = false;
   Heard(id, worker);
@@ -188,14 +189,14 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
     if (!holds(fence)) {
       EndLease(fence);
       ForgetIfDone(run_id);
-    } else if (lease.state == LeaseState::kOrphaned && !run.finished) {
+    } else if (lease.state == LeaseState::kOrphaned && !run.finished && !worker.record.quarantined) {
       // Back in time. Should somebody else have the run by now, the first answer counts and ends the other's
       // lease: this worker has done more of it.
       lease.state = LeaseState::kLive;
       Erase(worker.loose, fence);
       worker.live.push_back(fence);
       ++run.live;
-      queue_.erase({run.batch, run.length, run_id});
+      queue_.erase(PlaceOf(run_id, run));
     } else {
       lease.state = LeaseState::kCancelled;
       orders_.cancels.push_back({id, fence});
@@ -210,7 +211,7 @@ void Scheduler::Reconcile(InstanceId id, Worker& worker, const std::vector<Fence
 }
 
 void Scheduler::Count(Worker& worker) {
-  const std::uint32_t slots = worker.lost || worker.draining ? 0 : worker.slots;
+  const std::uint32_t slots = Standing(worker) ? worker.slots : 0;
   const auto busy = static_cast<std::uint32_t>(std::min<std::size_t>(slots, worker.live.size()));
   slots_ = slots_ - std::exchange(worker.counted_slots, slots) + slots;
   busy_ = busy_ - std::exchange(worker.counted_busy, busy) + busy;
@@ -219,8 +220,9 @@ void Scheduler::Count(Worker& worker) {
 void Scheduler::List(InstanceId id, Worker& worker) {
   Count(worker);
   Unlist(id, worker);
-  if (worker.lost || worker.draining || worker.blocked) return;
-  const std::uint32_t credit = Credit();
+  if (!Standing(worker) || worker.blocked || Slowed(id, worker)) return;
+  // Work is only given ahead to who has done some.
+  const std::uint32_t credit = worker.record.finished > 0 ? Credit() : options_.credit;
   const std::size_t least = std::size_t{worker.slots} * options_.credit;
   const std::size_t most = std::max(least, std::min(std::size_t{worker.slots} * credit, kMostAtAWorker));
   // Many short runs are leased at once, when half of them are done: then a message costs a fraction.
@@ -264,7 +266,7 @@ bool Scheduler::Requeue(RunId id, Run& run) {
     if (run.audit) audits_.insert(id);
     return false;
   }
-  queue_.insert({run.batch, run.length, id});
+  if (run.attempts.empty()) queue_.insert(PlaceOf(id, run));
   return true;
 }
 
@@ -292,7 +294,8 @@ void Scheduler::Finish(RunId id, Run& run, InstanceId worker, Fence fence) {
   run.finished_by = worker;
   run.accepted = fence;
   --unfinished_;
-  queue_.erase({run.batch, run.length, id});
+  queue_.erase(PlaceOf(id, run));
+  failing_.erase(PlaceOf(id, run));
   for (const Fence other : run.fences) {
     Lease& lease = leases_.at(other);
     if (lease.state != LeaseState::kLive) continue;
@@ -339,11 +342,12 @@ Answer Scheduler::Completed(InstanceId worker, Fence fence, RunId id, std::uint6
     if (run.finished) return CompareDuplicate(id, run, worker, fence, hash);
     run.hash = hash;
     Finish(id, run, worker, fence);
+    Praise(worker, std::exchange(run.attempts, {}));
     return Answer::kAccepted;
   }
 
-  Lease& lease = found->second;
-  if (lease.worker != worker || lease.run != id) return Answer::kRejected;
+  const Lease& lease = found->second;
+  if (lease.worker != worker || lease.run != id) return Misaddressed(worker, fence, lease);
   if (lease.state == LeaseState::kAnswered) return Answer::kRepeated;
   Run& run = runs_.at(id);
   EndLease(fence);
@@ -351,43 +355,7 @@ Answer Scheduler::Completed(InstanceId worker, Fence fence, RunId id, std::uint6
   run.hash = hash;
   leases_[fence] = Lease{id, worker, LeaseState::kAnswered, listening_};
   Finish(id, run, worker, fence);
-  return Answer::kAccepted;
-}
-
-Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const proto::RunnerFailure& failure) {
-  const auto found = leases_.find(fence);
-  if (found == leases_.end()) {
-    orders_.acknowledgements.push_back({worker, fence});
-    return Answer::kUnwanted;
-  }
-  const Lease& lease = found->second;
-  if (lease.worker != worker || lease.run != id) return Answer::kRejected;
-  if (lease.state == LeaseState::kAnswered) return Answer::kRepeated;
-  Run& run = runs_.at(id);
-  EndLease(fence);
-  orders_.acknowledgements.push_back({worker, fence});
-  if (run.finished) {
-    if (run.audit && failure.kind != proto::FailureKind::kExternal &&
-        ++run.audit_failures >= options_.attempts) {
-      ++statistics_.nondeterministic;
-      orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, 0});
-      EndAudit(id, run, worker);
-    }
-    Requeue(id, run);
-    ForgetIfDone(id);
-    return Answer::kUnwanted;
-  }
-  if (failure.kind != proto::FailureKind::kExternal) {
-    ++run.own_failures;
-    const std::uint32_t of_kind = ++run.failures_of_kind[static_cast<std::size_t>(failure.kind)];
-    if (run.own_failures >= options_.attempts) {
-      run.given_up = true;
-      orders_.given_up.push_back({id, worker, run.leases, failure, of_kind, run.own_failures});
-      Finish(id, run, worker, fence);
-      return Answer::kAccepted;
-    }
-  }
-  Requeue(id, run);
+  Praise(worker, std::exchange(run.attempts, {}));
   return Answer::kAccepted;
 }
 
@@ -480,11 +448,14 @@ SchedulerOrders Scheduler::Decide(TimePoint now) {
     next_check_ = listening_ + Duration(options_.heartbeat) / kChecksPerHeartbeat;
     for (auto& [id, worker] : workers_) {
       if (IsSilent(worker)) Lose(id, worker);
+      if (worker.record.failed_in_a_row >= WorkerRecord::kBlackHole) List(id, worker);
     }
     Purge();
+    JudgeAll();
     Assign();
     AssignCopies();
   }
+  for (const RunId run : std::exchange(unjudged_, {})) Judge(run);
   Assign();
   AssignAudits();
   return std::exchange(orders_, {});

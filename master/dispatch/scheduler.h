@@ -10,14 +10,19 @@
 //
 // When no run waits, idle workers get a second lease of runs that take unusually long (copy_after), or of
 // finished runs that are to be audited; a finished run is remembered until its audit has been answered.
+//
+// No worker is believed alone while there are others. A run that failed goes to workers that have not failed
+// it, on other hosts first, and becomes a verdict when enough of those that have shown that they can work
+// have failed it, or all there are (scheduler_verdicts.cc). What they have shown is kept of every worker
+// (worker_record.h); one whose runs only fail while others finish them gets no more.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
-#include <tuple>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -26,6 +31,7 @@
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/dispatch/scheduler_orders.h"
+#include "master/dispatch/scheduler_state.h"
 
 namespace gauntlet::master {
 
@@ -45,8 +51,9 @@ class Scheduler {
   void StopLeasing() { leasing_ = false; }
 
   // A worker said hello, for the first time or after a reconnect; `held`: the leases it works on or has
-  // results for.
-  void WorkerJoined(InstanceId id, std::uint32_t slots, const std::vector<Fence>& held, TimePoint now);
+  // results for; `host`: where it says it is, "" when it does not.
+  void WorkerJoined(InstanceId id, std::uint32_t slots, const std::vector<Fence>& held, TimePoint now,
+                    const std::string& host = "");
   // The following return false when the worker is unknown.
   bool WorkerHeard(InstanceId id, TimePoint now);
   bool WorkerHeartbeat(InstanceId id, const std::vector<Fence>& held, TimePoint now);
@@ -56,6 +63,8 @@ class Scheduler {
 
   Answer Completed(InstanceId worker, Fence fence, RunId id, std::uint64_t hash);
   Answer Failed(InstanceId worker, Fence fence, RunId id, const proto::RunnerFailure& failure);
+  // It answered with something that is no result. That is its own fault: the run waits for others.
+  Answer Unreadable(InstanceId worker, Fence fence, RunId id);
   // How long a run takes, as one that has just ended did: predicts the length of those to come.
   void RunTook(double seconds);
   // The lease could not be sent. The worker gets no other before it is heard of again.
@@ -72,69 +81,29 @@ class Scheduler {
   bool Known(InstanceId worker) const { return workers_.contains(worker); }
   bool Works(InstanceId worker) const;      // has a lease that it has not answered
   std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown runs
-  std::size_t queued() const { return queue_.size(); }
+  std::size_t queued() const;               // runs that nobody has
   std::size_t unfinished() const { return unfinished_; }
   std::size_t remembered_runs() const { return runs_.size(); }  // all that takes memory
   WorkerStatistics Statistics() const;
   // Without labels and pids, in the order of the ids; times as of the last event. Runs that several workers
   // do are named with each.
   std::vector<std::pair<InstanceId, WorkerView>> DescribeWorkers() const;
+  // Of the workers that are connected and want to work; none of them gets any: all are quarantined.
+  bool AllQuarantined() const;
 
  private:
   static constexpr int kChecksPerHeartbeat = 8;  // for what is silent or slow
   // Leases, unless its slots need more: a worker keeps 4,096 that wait, and gives the others back.
   static constexpr std::size_t kMostAtAWorker = 4096;
 
-  enum class LeaseState { kLive, kOrphaned, kCancelled, kAnswered };
-  struct Lease {
-    RunId run = 0;
-    InstanceId worker = 0;
-    LeaseState state = LeaseState::kLive;
-    Duration granted{};
-  };
-  struct Place {  // in the queue
-    std::uint64_t batch = 0;
-    double length = 0.0;
-    RunId run = 0;
-    bool operator<(const Place& other) const {
-      return std::tie(batch, other.length, run) < std::tie(other.batch, length, other.run);
-    }
-  };
-  struct Run {
-    proto::EncodedSpec spec;  // empty when the run has finished and its audit is not open
-    std::uint64_t batch = 0;
-    double length = 0.0;
-    std::vector<Fence> fences;  // live, orphaned and cancelled leases
-    std::uint32_t live = 0;
-    std::uint32_t leases = 0;  // given so far
-    std::uint32_t own_failures = 0;
-    std::array<std::uint32_t, proto::kFailureKinds> failures_of_kind{};
-    bool finished = false;
-    bool given_up = false;
-    bool acknowledged = false;
-    bool audit = false;  // is to be simulated once more, and has not been
-    std::uint32_t audit_failures = 0;
-    Fence accepted = 0;
-    InstanceId finished_by = 0;
-    std::uint64_t hash = 0;
-  };
-  struct Worker {
-    std::uint32_t slots = 1;
-    std::vector<Fence> live;
-    std::vector<Fence> loose;  // orphaned and cancelled
-    Duration heard{};
-    Duration excused{};  // value of listening_ at the last excuse
-    bool lost = false;
-    bool draining = false;
-    bool blocked = false;  // the last lease could not be delivered
-    bool filled = false;   // was given as many leases as it may have, and has not worked off half of them
-    // Its part in the sums slots_ and busy_.
-    std::uint32_t counted_slots = 0;
-    std::uint32_t counted_busy = 0;
-    // Its place in available_, when it has one.
-    bool listed = false;
-    std::uint32_t level = 0;
-  };
+  using LeaseState = scheduling::LeaseState;
+  using Lease = scheduling::Lease;
+  using Place = scheduling::Place;
+  using Attempt = scheduling::Attempt;
+  using Run = scheduling::Run;
+  using Worker = scheduling::Worker;
+  using Tally = scheduling::Tally;
+  using Others = scheduling::Others;
 
   void Advance(TimePoint now);
   std::uint32_t Credit() const;  // leases per slot, by the predicted length of a run
@@ -161,6 +130,29 @@ class Scheduler {
   void AssignCopies();
   bool Alone(InstanceId worker) const;  // there is no other worker
 
+  // scheduler_verdicts.cc.
+  static bool Standing(const Worker& worker) {
+    return !worker.lost && !worker.draining && !worker.record.quarantined;
+  }
+  static Place PlaceOf(RunId id, const Run& run) { return {run.batch, run.length, id}; }
+  static bool FailedOn(const Run& run, InstanceId worker);
+  bool PatienceLasts() const;
+  bool Trusted(const Attempt& attempt) const;
+  Tally TallyOf(const Run& run) const;
+  Others OthersFor(const Run& run, const Tally& tally) const;
+  bool Condemned(const Tally& tally, const Others& others) const;
+  void Judge(RunId id);
+  void JudgeAll();
+  void NoteAttempt(RunId id, Run& run, InstanceId worker, std::optional<proto::RunnerFailure> failure);
+  void Praise(InstanceId worker, const std::vector<Attempt>& contradicted);
+  void Strike(InstanceId worker);
+  void QuarantineIfDue(InstanceId id, Worker& worker);
+  Answer Misaddressed(InstanceId worker, Fence fence, const Lease& lease);
+  bool Slowed(InstanceId id, const Worker& worker) const;
+  void AssignFailing();
+  std::optional<InstanceId> NextFor(const Run& run) const;
+  std::optional<InstanceId> HelperFor(const Run& run, InstanceId owner) const;
+
   DispatchOptions options_;
   Fence first_fence_;
   Fence next_fence_;
@@ -175,7 +167,11 @@ class Scheduler {
   double predicted_seconds_ = -1.0;  // of a run; negative: none has ended yet
 
   std::unordered_map<RunId, Run> runs_;
-  std::set<Place> queue_;
+  std::set<Place> queue_;           // nobody has them, and nobody has failed them
+  std::set<Place> failing_;         // somebody has failed them, and they are unfinished
+  std::vector<RunId> unjudged_;     // of these, that failed since the last decision
+  bool somebody_finished_ = false;  // a run, for this master
+  std::optional<Duration> first_failure_;
   std::uint64_t batch_ = 0;
   std::size_t unfinished_ = 0;
   std::set<RunId> audits_;  // finished runs that wait for their second lease

@@ -14,12 +14,69 @@ void Scheduler::Grant(InstanceId worker_id, RunId id) {
   ++run.live;
   ++run.leases;
   worker.live.push_back(fence);
+  worker.slowed_until = listening_ + Duration(options_.heartbeat);
   List(worker_id, worker);
   orders_.leases.push_back({worker_id, {fence, id, run.spec, run.leases}});
 }
 
+// A run that failed goes to who has not failed it, even if that one is busy now; to another host first.
+std::optional<InstanceId> Scheduler::NextFor(const Run& run) const {
+  const Tally tally = TallyOf(run);
+  const Others others = OthersFor(run, tally);
+  const bool enough = tally.failures >= options_.attempts;
+  if (enough && others.all == 0) return std::nullopt;  // it waits to be judged
+  std::optional<InstanceId> best;
+  std::pair<bool, std::ptrdiff_t> best_rank;
+  for (const auto& [level, id] : available_) {
+    const Worker& worker = workers_.at(id);
+    const bool trusted = worker.record.trusted();
+    if (others.all > 0) {
+      if (FailedOn(run, id) || (others.elsewhere && worker.host == *tally.only_host)) continue;
+      // Whom nobody trusts yet can say little, and may earn trust meanwhile. Where nobody has finished
+      // anything, those who have failed something have said enough.
+      const bool said_enough =
+          !somebody_finished_ && worker.record.tried() && tally.workers >= options_.attempts;
+      if (enough && !trusted && (!queue_.empty() || said_enough)) continue;
+    }
+    // Trusted ones first, then those that have tried it least often.
+    const std::pair rank{trusted, -std::ranges::count(run.attempts, id, &Attempt::worker)};
+    if (best && rank <= best_rank) continue;
+    best = id;
+    best_rank = rank;
+  }
+  return best;
+}
+
+void Scheduler::AssignFailing() {
+  for (const Place& place : failing_) {
+    if (available_.empty()) return;
+    const Run& run = runs_.at(place.run);
+    if (run.live > 0) continue;
+    if (const std::optional<InstanceId> next = NextFor(run)) Grant(*next, place.run);
+  }
+}
+
+// An idle worker for a second lease: one that is known to bring results, if there is one, and rather none
+// that has failed the run.
+std::optional<InstanceId> Scheduler::HelperFor(const Run& run, InstanceId owner) const {
+  std::optional<InstanceId> best;
+  std::pair<bool, bool> best_rank;
+  for (const auto& [level, id] : available_) {
+    const Worker& worker = workers_.at(id);
+    if (id == owner || worker.live.size() >= worker.slots) continue;
+    const bool failed = FailedOn(run, id);
+    if (failed && TallyOf(run).failures >= options_.attempts) continue;
+    const std::pair rank{!failed, worker.record.trusted()};
+    if (best && rank <= best_rank) continue;
+    best = id;
+    best_rank = rank;
+  }
+  return best;
+}
+
 void Scheduler::Assign() {
   if (!leasing_) return;
+  AssignFailing();
   while (!queue_.empty() && !available_.empty()) {
     const RunId id = queue_.begin()->run;
     queue_.erase(queue_.begin());
@@ -29,7 +86,7 @@ void Scheduler::Assign() {
 
 bool Scheduler::Alone(InstanceId worker) const {
   return std::none_of(workers_.begin(), workers_.end(), [worker](const auto& other) {
-    return other.first != worker && !other.second.lost && !other.second.draining;
+    return other.first != worker && Standing(other.second);
   });
 }
 
@@ -71,13 +128,11 @@ void Scheduler::AssignCopies() {
     return a.granted != b.granted ? a.granted < b.granted : a.run < b.run;
   });
   for (const Slow& one : slow) {
-    const auto idle = std::find_if(available_.begin(), available_.end(), [&](const auto& place) {
-      const Worker& worker = workers_.at(place.second);
-      return place.second != one.owner && worker.live.size() < worker.slots;
-    });
-    if (idle == available_.end()) return;
+    if (available_.empty()) return;
+    const std::optional<InstanceId> idle = HelperFor(runs_.at(one.run), one.owner);
+    if (!idle) continue;
     ++statistics_.copies;
-    Grant(idle->second, one.run);
+    Grant(*idle, one.run);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "master/dispatch/worker_record.h"
 #include "proto/messages.h"
 
 namespace gauntlet::master {
@@ -23,14 +24,21 @@ struct FenceOrder {
   Fence fence = 0;
 };
 
-// The run ended with a verdict: `attempts` own failures, the last of which is `last`.
+// The run ended with a verdict.
 struct RunGivenUp {
   RunId run = 0;
-  InstanceId worker = 0;  // of the last failure
+  InstanceId worker = 0;  // of the failure that is the verdict
   std::uint32_t leases = 1;
-  proto::RunnerFailure last;
-  std::uint32_t of_last_kind = 0;
-  std::uint32_t attempts = 0;
+  proto::RunnerFailure failure;  // the last of those that are told alike and most often
+  std::uint32_t alike = 0;       // how many these were
+  std::uint32_t attempts = 0;    // failures of all sorts
+  std::uint32_t workers = 0;     // on which it failed; 1: there was no other to ask
+};
+
+// It gets no more leases, and what it said of unfinished runs does not count.
+struct WorkerQuarantined {
+  InstanceId worker = 0;
+  WorkerRecord record;  // the reason
 };
 
 struct WorkerLost {
@@ -54,6 +62,7 @@ struct SchedulerOrders {
   std::vector<RunGivenUp> given_up;
   std::vector<WorkerLost> lost;
   std::vector<ResultMismatch> mismatches;
+  std::vector<WorkerQuarantined> quarantined;
   std::vector<InstanceId> back;       // these were lost, and are heard again
   std::vector<InstanceId> forgotten;  // these lost workers are unknown from now on
 };

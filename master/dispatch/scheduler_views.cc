@@ -15,6 +15,7 @@ std::vector<std::pair<InstanceId, WorkerView>> Scheduler::DescribeWorkers() cons
     view.slots = worker.slots;
     view.lost = worker.lost;
     view.leaving = worker.draining;
+    view.record = worker.record;
     view.silent_seconds = seconds_since(worker.heard);
     std::vector<Fence> fences = worker.live;
     std::sort(fences.begin(), fences.end());
@@ -29,12 +30,18 @@ std::vector<std::pair<InstanceId, WorkerView>> Scheduler::DescribeWorkers() cons
   return views;
 }
 
+std::size_t Scheduler::queued() const {
+  const auto waits = [this](const Place& place) { return runs_.at(place.run).live == 0; };
+  return queue_.size() + static_cast<std::size_t>(std::ranges::count_if(failing_, waits));
+}
+
 WorkerStatistics Scheduler::Statistics() const {
   WorkerStatistics statistics = statistics_;
   for (const auto& [id, worker] : workers_) {
     if (worker.lost) continue;
     ++statistics.connected;
     if (!worker.live.empty()) ++statistics.busy;
+    if (worker.record.quarantined) ++statistics.quarantined;
   }
   return statistics;
 }

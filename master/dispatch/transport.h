@@ -37,6 +37,7 @@ struct TransportRejections {
   std::uint64_t oversized = 0;   // longer than the limit of a message
   std::uint64_t handshakes = 0;  // connections that did not get through ZeroMQ's greeting
   std::uint64_t keys = 0;        // connections whose keys are not admitted
+  std::uint64_t silent = 0;      // connections closed because too many had said nothing
 };
 
 // Thread-safety: one thread, but WakeUp may be called from any thread and from a signal handler.
@@ -51,6 +52,9 @@ class Transport {
   virtual WaitOutcome Wait(std::chrono::milliseconds timeout, std::span<const int> fds) = 0;
   virtual void WakeUp() = 0;
   virtual TransportRejections Rejections() const = 0;
+  // Whether every peer that is heard has proven to know the campaign's key. Otherwise anybody may be
+  // speaking.
+  virtual bool KnowsItsPeers() const = 0;
 };
 
 }  // namespace gauntlet::master

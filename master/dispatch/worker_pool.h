@@ -32,6 +32,8 @@ class WorkerPool {
   // Descriptors that become readable when Supervise has something to do.
   virtual void AppendWaitFds(std::vector<int>& fds) const = 0;
   virtual int running() const = 0;
+  // Whether what runs are the workers themselves, here; otherwise batch jobs, in which some are elsewhere.
+  virtual bool OnThisMachine() const { return false; }
   // From now on ended processes are not replaced.
   virtual void StopReplacing() = 0;
   virtual void SignalAll(int signal) = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -67,6 +68,12 @@ std::uint16_t PortOf(std::string_view endpoint) {
   return port;
 }
 
+// Connections that have said nothing may take half of the descriptors that this process may have.
+std::size_t MostSilent() {
+  rlimit limit{};
+  return getrlimit(RLIMIT_NOFILE, &limit) == 0 ? static_cast<std::size_t>(limit.rlim_cur / 2) : 512;
+}
+
 // All of it; keeps zmq.hpp out of the header.
 class RouterTransport final : public ZmqTransport {
  public:
@@ -93,7 +100,7 @@ class RouterTransport final : public ZmqTransport {
     monitor_fd_ = monitor_.get(zmq::sockopt::fd);
     endpoint_ = router_.get(zmq::sockopt::last_endpoint);
     if (const std::uint16_t port = PortOf(endpoint_); port != 0)
-      watch_.emplace(port, kLongestUnended * options.max_message_bytes);
+      watch_.emplace(port, kLongestUnended * options.max_message_bytes, MostSilent());
   }
 
   const std::string& endpoint() const override { return endpoint_; }
@@ -102,6 +109,7 @@ class RouterTransport final : public ZmqTransport {
   WaitOutcome Wait(std::chrono::milliseconds timeout, std::span<const int> fds) override;
   void WakeUp() override;
   TransportRejections Rejections() const override { return rejections_; }
+  bool KnowsItsPeers() const override { return zap_.has_value(); }
 
  private:
   void NoteWhole(zmq::message_t& last_part) {
@@ -112,7 +120,9 @@ class RouterTransport final : public ZmqTransport {
     const auto now = std::chrono::steady_clock::now();
     if (now < watched_ + every) return;
     watched_ = now;
-    rejections_.malformed += static_cast<std::uint64_t>(watch_->Check());
+    const ConnectionWatch::Closed closed = watch_->Check();
+    rejections_.malformed += static_cast<std::uint64_t>(closed.endless);
+    rejections_.silent += static_cast<std::uint64_t>(closed.silent);
   }
 
   void UseCurve(const CurveServer& curve) {

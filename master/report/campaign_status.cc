@@ -39,6 +39,7 @@ std::string TurnedAway(const BackendView& backend) {
 
 std::string_view StateOf(const WorkerView& worker) {
   if (worker.lost) return "lost";
+  if (worker.record.quarantined) return "quarantined";
   if (worker.leaving) return "leaving";
   return worker.leases.empty() ? "idle" : "running";
 }
@@ -56,9 +57,18 @@ ordered_json Json(const WorkerView& worker) {
                     {"state", lease.waits ? "waiting" : "running"},
                     {"seconds", lease.seconds}});
   }
-  return {{"worker", worker.label},   {"pid", worker.pid},
-          {"slots", worker.slots},    {"allocation", worker.allocation},
-          {"state", StateOf(worker)}, {"silent_seconds", worker.silent_seconds},
+  const WorkerRecord& record = worker.record;
+  return {{"worker", worker.label},
+          {"pid", worker.pid},
+          {"slots", worker.slots},
+          {"allocation", worker.allocation},
+          {"state", StateOf(worker)},
+          {"silent_seconds", worker.silent_seconds},
+          {"runs_finished", record.finished},
+          {"runs_failed", record.failed},
+          {"failures_contradicted", record.contradicted},
+          {"bad_answers", record.strikes},
+          {"quarantined", OrNull(record.quarantined ? InWords(record) : "")},
           {"runs", std::move(runs)}};
 }
 
@@ -92,11 +102,20 @@ std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& pro
                        lost > 0 ? fmt::format(" ({} {} silent now)", lost, lost == 1 ? "is" : "are") : "",
                        reason, TurnedAway(backend));
   }
+  const auto quarantined = std::ranges::count_if(backend.workers, [](const WorkerView& worker) {
+    return worker.record.quarantined && !worker.leaving && !worker.lost;
+  });
+  if (quarantined > 0 && quarantined + leaving == connected) {
+    const auto first = std::ranges::find_if(
+        backend.workers, [](const WorkerView& worker) { return worker.record.quarantined && !worker.lost; });
+    return fmt::format("all {} connected workers are quarantined, of {}, {}: start others elsewhere",
+                       connected, first->label, InWords(first->record));
+  }
   if (leaving == connected) return fmt::format("all {} connected workers are leaving", connected);
   if (backend.queued == 0)
     return "all runs that were asked for are done; the master stores them and asks for more";
   return fmt::format("nothing is wrong, {} runs are just being given to {} workers", backend.queued,
-                     connected - leaving);
+                     connected - leaving - quarantined);
 }
 
 std::string StatusJson(const MasterView& master, const CampaignProgress& progress,
@@ -135,9 +154,11 @@ std::string StatusJson(const MasterView& master, const CampaignProgress& progres
                    {"workers", progress.workers.connected},
                    {"workers_busy", progress.workers.busy},
                    {"workers_lost", progress.workers.lost},
+                   {"workers_quarantined", progress.workers.quarantined},
                    {"leased_again", progress.workers.releases},
                    {"duplicates", progress.workers.duplicates},
                    {"nondeterministic", master.nondeterministic_before + progress.workers.nondeterministic},
+                   {"verdicts_of_one_worker", master.lone_verdicts_before + progress.workers.lone_verdicts},
                    {"copies", progress.workers.copies},
                    {"audits", progress.workers.audits},
                    {"audits_alone", progress.workers.audits_alone},

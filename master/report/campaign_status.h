@@ -54,6 +54,7 @@ struct MasterView {
   std::string batch_job;                      // that it is, "" = none
   std::string metrics_url = "";               // "" = none
   std::uint64_t nondeterministic_before = 0;  // results that differed, under former masters
+  std::uint64_t lone_verdicts_before = 0;     // verdicts on the word of one worker, likewise
   bool stopping = false;                      // lets the runs that have begun end
 };
 

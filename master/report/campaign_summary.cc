@@ -103,6 +103,7 @@ CampaignSummary TotalsOf(const std::vector<CampaignSummary>& searches) {
     Add(one.progress, totals.progress);
     totals.finished = totals.finished && one.finished;
     totals.nondeterministic = std::max(totals.nondeterministic, one.nondeterministic);  // each has all
+    totals.lone_verdicts = std::max(totals.lone_verdicts, one.lone_verdicts);           // likewise
     totals.best_fitness = std::fmin(totals.best_fitness, one.best_fitness);
     totals.worst_fitness = std::fmax(totals.worst_fitness, one.worst_fitness);
   }
@@ -110,13 +111,20 @@ CampaignSummary TotalsOf(const std::vector<CampaignSummary>& searches) {
   return totals;
 }
 
+Result<std::uint64_t> CountEvents(ResultStore& store, const char* kind) {
+  const Result<std::vector<StoredEvent>> events = store.LoadEvents();
+  if (!events) return events.error();
+  return static_cast<std::uint64_t>(std::ranges::count(*events, kind, &StoredEvent::kind));
+}
+
 }  // namespace
 
 Result<std::uint64_t> CountNondeterministic(ResultStore& store) {
-  const Result<std::vector<StoredEvent>> events = store.LoadEvents();
-  if (!events) return events.error();
-  return static_cast<std::uint64_t>(
-      std::ranges::count(*events, event::kNondeterministic, &StoredEvent::kind));
+  return CountEvents(store, event::kNondeterministic);
+}
+
+Result<std::uint64_t> CountLoneVerdicts(ResultStore& store) {
+  return CountEvents(store, event::kRunGivenUpAlone);
 }
 
 Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
@@ -177,6 +185,9 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
   if (!nondeterministic) return nondeterministic.error();
   summary.nondeterministic = *nondeterministic;
+  const Result<std::uint64_t> lone_verdicts = CountLoneVerdicts(store);
+  if (!lone_verdicts) return lone_verdicts.error();
+  summary.lone_verdicts = *lone_verdicts;
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
   summary.finished = std::ranges::any_of(

@@ -70,6 +70,7 @@ struct CampaignSummary {
   std::vector<PopulationMember> population;
   std::string state_hash;
   std::uint64_t nondeterministic = 0;  // second results of a spec that differed from the first
+  std::uint64_t lone_verdicts = 0;     // runs that were given up on the word of a single worker
   bool finished = false;
   std::string as_of = "";  // CampaignView::as_of
   // Of a sweep, one for each search, in the order of their numbers; the rest are then totals, and what has no
@@ -79,6 +80,8 @@ struct CampaignSummary {
 
 // Results in the events of all masters that differed from another of the same spec.
 Result<std::uint64_t> CountNondeterministic(ResultStore& store);
+// Runs that were given up on the word of a single worker, because there was no other, under all masters.
+Result<std::uint64_t> CountLoneVerdicts(ResultStore& store);
 
 // Gathers the summary of a search from what is stored. `search` is freshly made for the experiment; it is
 // brought to the newest saved state. Population, fitness figures and state_hash are those of the last

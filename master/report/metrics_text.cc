@@ -52,14 +52,18 @@ class Page {
 };
 
 void AddWorkers(Page& page, const BackendView& backend) {
-  int states[] = {0, 0, 0, 0};
+  int states[] = {0, 0, 0, 0, 0};
   std::size_t leased = 0;
   for (const WorkerView& worker : backend.workers) {
     leased += worker.leases.size();
-    ++states[worker.lost ? 3 : worker.leaving ? 2 : worker.leases.empty() ? 1 : 0];
+    ++states[worker.lost                 ? 4
+             : worker.record.quarantined ? 3
+             : worker.leaving            ? 2
+             : worker.leases.empty()     ? 1
+                                         : 0];
   }
   page.Describe("gauntlet_workers", "gauge", "Workers that the master knows, by what they do.");
-  for (int i = 0; const char* state : {"running", "idle", "leaving", "lost"})
+  for (int i = 0; const char* state : {"running", "idle", "leaving", "quarantined", "lost"})
     page.Sample("gauntlet_workers", fmt::format("{{state=\"{}\"}}", state), states[i++]);
   page.Add("gauntlet_runs_leased", "gauge", "Runs that workers have, those that wait there included.",
            leased);
@@ -121,6 +125,10 @@ std::string MetricsText(const MasterView& master, const CampaignProgress& progre
   page.Add("gauntlet_nondeterministic_results_total", "counter",
            "Second results that differed from the first, since the campaign began.",
            master.nondeterministic_before + workers.nondeterministic);
+  page.Add(
+      "gauntlet_verdicts_of_one_worker_total", "counter",
+      "Runs given up on the word of a single worker, because there was no other, since the campaign began.",
+      master.lone_verdicts_before + workers.lone_verdicts);
   page.Add("gauntlet_rejected_messages_total", "counter", "Messages and connections that were dropped.",
            workers.rejected_messages);
   page.Add("gauntlet_stopping", "gauge", "1 while the master lets the runs that have begun end.",

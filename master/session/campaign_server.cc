@@ -116,7 +116,8 @@ Status CampaignServer::MakeSearches() {
   return Ok{};
 }
 
-// A socket for workers, with keys when others than this machine can reach it.
+// A socket for workers, who have to know the campaign's key: other users of this machine reach every address
+// of it, loopback included.
 Status CampaignServer::Listen() {
   AllowManyConnections();
   proto::Access access;
@@ -124,8 +125,7 @@ Status CampaignServer::Listen() {
   access.epoch = view_.epoch;
   ZmqTransportOptions transport;
   transport.endpoint = options_.bind;
-  const bool local = IsLocalEndpoint(options_.bind);
-  if (!local && !options_.insecure) {
+  if (!options_.insecure) {
     Result<CampaignKeys> keys = LoadOrMakeKeys(campaign_.directory.key_path());
     if (!keys) return keys.error();
     access.curve =
@@ -136,7 +136,7 @@ Status CampaignServer::Listen() {
   if (!bound) return bound.error();
   transport_ = *std::move(bound);
   access.endpoints = ReachableEndpoints(transport_->endpoint());
-  if (!local && options_.insecure) {
+  if (options_.insecure) {
     spdlog::warn("INSECURE: whoever reaches {} can read this campaign and feed it results",
                  access.endpoints.front());
   }
@@ -197,6 +197,9 @@ Status CampaignServer::Announce() {
   const Result<std::uint64_t> nondeterministic = CountNondeterministic(*campaign_.store);
   if (!nondeterministic) return nondeterministic.error();
   view_.nondeterministic_before = *nondeterministic;
+  const Result<std::uint64_t> lone_verdicts = CountLoneVerdicts(*campaign_.store);
+  if (!lone_verdicts) return lone_verdicts.error();
+  view_.lone_verdicts_before = *lone_verdicts;
   snapshots_.emplace(SnapshotOptions{.database = campaign_.directory.database_path(),
                                      .snapshot = campaign_.directory.snapshot_path(),
                                      .commits = [this] { return campaign_.store->Commits(); }});

@@ -229,6 +229,7 @@ class Campaigns final : public CampaignService {
                      {"runs_failed", summary->runs_failed},
                      {"workers", 0},
                      {"nondeterministic", summary->nondeterministic},
+                     {"verdicts_of_one_worker", summary->lone_verdicts},
                      {"why_nothing_runs",
                       summary->finished ? "the search has finished"
                                         : "no master serves the campaign: go on with `gauntlet resume DIR`"},

@@ -30,10 +30,10 @@ struct SessionOptions {
   std::function<std::unique_ptr<WorkerPool>()> make_pool;
   // For a master that is a batch job: a living master is a twin that a lost node has left behind, and is made
   // to stop; and when a signal ends this one, its pool is left to the next.
-  std::string batch_job;  // its id; "" = no such master
-  // Where workers connect. Reachable from other machines: encrypted, for known keys only, unless `insecure`.
-  std::string bind = "tcp://127.0.0.1:*";
-  bool insecure = false;
+  std::string batch_job;                   // its id; "" = no such master
+  std::string bind = "tcp://127.0.0.1:*";  // where workers connect
+  bool insecure =
+      false;  // in plaintext, open to whoever gets there; otherwise encrypted, for known keys only
   double audit_share = 0.0;          // of runs, 0 to 1, that a second worker simulates too, to be compared
   MetricsServer* metrics = nullptr;  // told every second what goes on; nullptr = nobody asks
   std::function<void(const ServingNotice&)> on_serving = [](const ServingNotice&) {};

@@ -18,15 +18,17 @@ inline constexpr const char* kWorkerRefused = "worker-refused";
 inline constexpr const char* kWorkerLost = "worker-lost";
 inline constexpr const char* kWorkerBack = "worker-back";
 inline constexpr const char* kWorkerLeft = "worker-left";
+inline constexpr const char* kWorkerQuarantined = "worker-quarantined";  // gets nothing more to do
 inline constexpr const char* kWorkerDied = "worker-died";
 inline constexpr const char* kWorkerNotStarted = "worker-not-started";
 inline constexpr const char* kSlurm = "slurm";  // what the batch system was asked for, or answered
 inline constexpr const char* kRejectedMessage = "rejected-message";
 
 // Of runs.
-inline constexpr const char* kRunnerFailure = "runner-failure";  // a run failed of itself
-inline constexpr const char* kRunReturned = "run-returned";      // a worker gave it back
-inline constexpr const char* kRunGivenUp = "run-given-up";       // failed in every attempt
+inline constexpr const char* kRunnerFailure = "runner-failure";        // a run failed of itself
+inline constexpr const char* kRunReturned = "run-returned";            // a worker gave it back
+inline constexpr const char* kRunGivenUp = "run-given-up";             // failed in every attempt
+inline constexpr const char* kRunGivenUpAlone = "run-given-up-alone";  // likewise, all on one worker
 inline constexpr const char* kNondeterministic = "nondeterministic";
 
 }  // namespace gauntlet::master::event

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <deque>
+
 #include "proto/protocol.pb.h"
 #include "tests/integration/hostile_sockets.h"
 #include "tests/integration/scripted_worker.h"
@@ -22,16 +24,18 @@ constexpr double kMostGrowth = 64.0;  // MiB
 
 class HostilePeer : public testing::Test {
  protected:
+  enum Transport { kEncrypted, kPlaintext };
+
   void SetUp() override {
     campaign_.generations = 3;
     hash_ = UndisturbedHash(campaign_);
   }
   // A master with one worker that takes its time, so that the campaign lasts.
-  void Begin(const std::vector<std::string>& limits = {},
-             const std::string& endpoint_to_bind = "tcp://127.0.0.1:*") {
+  void Begin(Transport transport, const std::vector<std::string>& limits = {}) {
     std::vector<std::string> argv = limits;
-    const std::vector<std::string> master =
-        GauntletCommand(MasterArguments(campaign_, dir_, endpoint_to_bind));
+    std::vector<std::string> arguments = MasterArguments(campaign_, dir_);
+    if (transport == kPlaintext) arguments = Insecure(std::move(arguments));
+    const std::vector<std::string> master = GauntletCommand(arguments);
     argv.insert(argv.end(), master.begin(), master.end());
     master_ = std::make_unique<Process>(argv);
     worker_ = StartSlowWorker(dir_, 60);
@@ -59,7 +63,7 @@ class HostilePeer : public testing::Test {
 };
 
 TEST_F(HostilePeer, AWorkerThatDiffersIsToldInWhatAndGetsNothing) {
-  Begin();
+  Begin(kEncrypted);
   const auto refusal = [this](const std::function<void(gauntlet::v1::Hello&)>& change) {
     ScriptedWorker peer(dir_, 0x666);
     EXPECT_TRUE(peer.Connect());
@@ -99,7 +103,7 @@ TEST_F(HostilePeer, AWorkerThatDiffersIsToldInWhatAndGetsNothing) {
 TEST_F(HostilePeer, WordsThatNobodyCanReadAreShownToPeopleAndEndNothing) {
   campaign_.generations = 5;
   hash_ = UndisturbedHash(campaign_);
-  Begin();
+  Begin(kEncrypted);
   std::string words = "\x1b";
   for (int i = 0; i < 150; ++i) words += "\u00e9";
   words += "x";
@@ -120,6 +124,21 @@ TEST_F(HostilePeer, WordsThatNobodyCanReadAreShownToPeopleAndEndNothing) {
   EXPECT_THAT(MasterLog(dir_), testing::Not(HasSubstr("\x1b")));
 }
 
+// Over plaintext nobody has proven to know anything, and so learns nothing.
+TEST_F(HostilePeer, AStrangerIsRefusedWithoutAWordOfTheCampaign) {
+  Begin(kPlaintext);
+  ScriptedWorker peer(dir_, 0x666);
+  ASSERT_TRUE(peer.Connect());
+  peer.hello().campaign_id = "guessed";
+  peer.Say(peer.hello());
+  const auto refused = peer.HearA<proto::Refused>();
+  ASSERT_TRUE(refused);
+  EXPECT_THAT(refused->reason, HasSubstr("campaign 'guessed', this master serves another"));
+  EXPECT_THAT(refused->reason, testing::Not(HasSubstr(peer.access().campaign_id)));
+  ExpectTheUndisturbedResult();
+  EXPECT_THAT(MasterLog(dir_), HasSubstr("this master serves campaign '" + peer.access().campaign_id + "'"));
+}
+
 // Each sort of connection that costs its owner nothing: silent, half a greeting, a whole one, a whole
 // handshake, a handshake and garbage.
 TEST_F(HostilePeer, TenThousandConnectionsAndHalfGreetings) {
@@ -130,7 +149,7 @@ TEST_F(HostilePeer, TenThousandConnectionsAndHalfGreetings) {
   ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &files), 0);
   campaign_.generations = 20;
   hash_ = UndisturbedHash(campaign_);
-  Begin();
+  Begin(kEncrypted);
   const std::string handshake = ZmtpHandshake();
   const std::string beginnings[] = {"", handshake.substr(0, 7), handshake.substr(0, 64), handshake,
                                     handshake + std::string("\0\x05hello", 7)};
@@ -161,7 +180,7 @@ TEST_F(HostilePeer, TenThousandConnectionsAndHalfGreetings) {
 TEST_F(HostilePeer, AThousandPeersThatTalkNonsenseForEver) {
   campaign_.generations = 10;
   hash_ = UndisturbedHash(campaign_);
-  Begin();
+  Begin(kPlaintext);
   const std::string nonsense("\0\x05hello", 7);
   std::vector<HostileSocket> sockets;
   for (int i = 0; i < 1000; ++i) {
@@ -188,7 +207,7 @@ TEST_F(HostilePeer, RandomConversationsChangeNothing) {
     SCOPED_TRACE(encrypted ? "CURVE" : "plaintext");
     campaign_.generations = 5;
     hash_ = UndisturbedHash(campaign_);
-    Begin({}, encrypted ? "tcp://0.0.0.0:*" : "tcp://127.0.0.1:*");
+    Begin(encrypted ? kEncrypted : kPlaintext);
     double growth = 0.0;
     const ZmtpFuzzReport report = FuzzPort(port_, encrypted, 1, [&] {
       const bool runs = master_->Running();
@@ -206,14 +225,25 @@ TEST_F(HostilePeer, RandomConversationsChangeNothing) {
 
 // More connections than the master may have files open: it must not lose the files it needs itself.
 TEST_F(HostilePeer, MoreConnectionsThanOpenFilesAreAllowed) {
-  campaign_.generations = 6;
+  campaign_.generations = 16;
   hash_ = UndisturbedHash(campaign_);
-  Begin({"/usr/bin/prlimit", "--nofile=128:128"});
-  std::vector<HostileSocket> sockets;
-  for (int i = 0; i < 400; ++i) {
+  Begin(kEncrypted, {"/usr/bin/prlimit", "--nofile=128:128"});
+  std::deque<HostileSocket> sockets;
+  const auto connect = [&] {
     sockets.emplace_back(port_);
-    sockets.back().Send(ZmtpHandshake());
-  }
+    sockets.back().Send(ZmtpHandshake().substr(0, sockets.size() % 64));  // half a greeting lasts longest
+  };
+  for (int i = 0; i < 400; ++i) connect();
+  // Nor do they keep a worker from being admitted, while ever more of them come.
+  const std::unique_ptr<Process> second = StartSlowWorker(dir_, 60);
+  const std::string joined = fmt::format("(pid {}, slots 1) joined", second->pid());
+  EXPECT_TRUE(Eventually(
+      [&] {
+        connect();
+        if (sockets.size() > 400) sockets.pop_front();
+        return MasterLog(dir_).find(joined) != std::string::npos;
+      },
+      kPatience));
   ExpectTheUndisturbedResult();
 }
 

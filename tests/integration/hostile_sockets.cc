@@ -35,6 +35,18 @@ void HostileSocket::Send(const std::string& bytes) {
   }
 }
 
+std::string HostileSocket::HearOut() {
+  std::string heard;
+  if (!connected_) return heard;
+  timeval patience{.tv_sec = 0, .tv_usec = 50'000};
+  setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  shutdown(fd_, SHUT_WR);
+  char part[512];
+  for (ssize_t size = 0; (size = recv(fd_, part, sizeof part, 0)) > 0;)
+    heard.append(part, static_cast<std::size_t>(size));
+  return heard;
+}
+
 std::string ZmtpHandshake() {
   std::string greeting = "\xff";
   greeting += std::string(8, '\0') + "\x7f";
@@ -45,6 +57,13 @@ std::string ZmtpHandshake() {
   const std::string ready = std::string("\x05READY", 6) + std::string("\x0bSocket-Type", 12) +
                             std::string("\0\0\0\x06", 4) + "DEALER";
   return greeting + "\x04" + static_cast<char>(ready.size()) + ready;
+}
+
+std::string ZmtpMessage(const std::string& body) {
+  std::string bytes(1, '\x02');  // long
+  for (int shift = 56; shift >= 0; shift -= 8)
+    bytes += static_cast<char>(static_cast<std::uint64_t>(body.size()) >> shift);
+  return bytes + body;
 }
 
 }  // namespace gauntlet::testing_support

@@ -15,6 +15,9 @@ class HostileSocket {
   bool connected() const { return connected_; }
   // What can be sent without waiting; the rest is dropped.
   void Send(const std::string& bytes);
+  // Says that nothing more will come, and hears what the other side says until it closes too, or says nothing
+  // for a twentieth of a second.
+  std::string HearOut();
 
  private:
   int fd_ = -1;
@@ -24,5 +27,7 @@ class HostileSocket {
 // A ZMTP 3.0 greeting (64 bytes) with the NULL mechanism, and a READY command: what follows is taken as
 // messages (https://rfc.zeromq.org/spec/23/).
 std::string ZmtpHandshake();
+// A message of one part, as it follows the handshake.
+std::string ZmtpMessage(const std::string& body);
 
 }  // namespace gauntlet::testing_support

@@ -9,7 +9,10 @@
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/crowd_drill.h"
 #include "tests/integration/durability_drill.h"
+#include "tests/integration/lying_workers_drill.h"
+#include "tests/integration/other_user_drill.h"
 #include "tests/integration/service_driver.h"
+#include "tests/integration/stranger.h"
 #include "tests/integration/zmtp_fuzz.h"
 
 namespace gauntlet::testing_support {
@@ -89,7 +92,7 @@ TEST(LongDrill, RandomConversationsOnTheMastersPort) {
     const std::string dir = scratch / "c";
     const auto begun = std::chrono::steady_clock::now();
     const auto master =
-        StartGauntlet(MasterArguments(campaign, dir, encrypted ? "tcp://0.0.0.0:*" : "tcp://127.0.0.1:*"));
+        StartGauntlet(encrypted ? MasterArguments(campaign, dir) : Insecure(MasterArguments(campaign, dir)));
     const auto worker = StartSlowWorker(dir, 60);
     ASSERT_TRUE(RunsDone(dir, 8));
     const double before = ResidentMebibytes(master->pid());
@@ -108,6 +111,38 @@ TEST(LongDrill, RandomConversationsOnTheMastersPort) {
     EXPECT_EQ(StateHash(dir), undisturbed);
     EXPECT_LT(after, before + 64.0);
     EXPECT_EQ(MasterLog(dir).find("worker-lost"), std::string::npos);
+  }
+}
+
+// The numbers to hold: 10,000 forged messages of each kind while an evolution runs.
+TEST(LongDrill, TenThousandMessagesOfEachKindFromAnotherUser) {
+  if (!CanBeAnotherUser()) GTEST_SKIP() << "only root can be another user";
+  const TemporaryDirectory scratch;
+  SmallCampaign campaign;
+  campaign.generations = 1000;
+  EvolveUnderForgery(campaign, scratch / "c", 10'000);
+}
+
+// Each kind of lie alone, twice and thrice, all pairs of kinds, and threes of different kinds.
+TEST(LongDrill, LiarsOfEveryKindInEveryMixWithAsManyHonestOnes) {
+  const std::vector<Lie> kinds = {Lie::kCrash,      Lie::kHang,         Lie::kWrongHash,
+                                  Lie::kUnreadable, Lie::kForeignLease, Lie::kSlow};
+  std::vector<std::vector<Lie>> mixes;
+  for (std::size_t a = 0; a < kinds.size(); ++a) {
+    mixes.push_back({kinds[a]});
+    mixes.push_back({kinds[a], kinds[a], kinds[a]});
+    for (std::size_t b = a; b < kinds.size(); ++b) mixes.push_back({kinds[a], kinds[b]});
+    mixes.push_back({kinds[a], kinds[(a + 1) % kinds.size()], kinds[(a + 3) % kinds.size()]});
+  }
+  SmallCampaign campaign;
+  campaign.generations = 12;
+  for (const std::vector<Lie>& mix : mixes) {
+    std::string name;
+    for (const Lie lie : mix) name += std::string(name.empty() ? "" : ", ") + std::string(NameOf(lie));
+    SCOPED_TRACE(name);
+    fmt::print("--- {}\n", name);
+    const TemporaryDirectory scratch;
+    EvolveWithLiars(campaign, scratch / "c", mix, true);
   }
 }
 

@@ -21,6 +21,11 @@ std::vector<std::string> MasterArguments(const SmallCampaign& campaign, const st
   return arguments;
 }
 
+std::vector<std::string> Insecure(std::vector<std::string> arguments) {
+  arguments.emplace_back("--insecure");
+  return arguments;
+}
+
 std::vector<std::string> ResumeArguments(const std::string& dir, const std::string& endpoint) {
   return {"resume", dir, "--bind", endpoint, "--no-progress"};
 }

@@ -15,6 +15,8 @@ bool Serves(const std::string& dir);
 
 std::vector<std::string> MasterArguments(const SmallCampaign& campaign, const std::string& dir,
                                          const std::string& endpoint = "tcp://127.0.0.1:*");
+// The same in plaintext, open to everybody.
+std::vector<std::string> Insecure(std::vector<std::string> arguments);
 std::vector<std::string> ResumeArguments(const std::string& dir,
                                          const std::string& endpoint = "tcp://127.0.0.1:*");
 

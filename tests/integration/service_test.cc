@@ -79,12 +79,13 @@ TEST(ServiceTest, StatusSaysWhatRunsWhereAndWhyNothingRunsAndStopEndsIt) {
   EXPECT_EQ(Gauntlet({"status", scratch / "none"}).exit_code, 2);
 }
 
-TEST(ServiceTest, OuterAddressesAreEncryptedForKnownKeysAndTellNobody) {
+// On loopback, too: other users of the machine reach it.
+TEST(ServiceTest, EveryAddressIsEncryptedForKnownKeysAndTellsNobody) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;
   campaign.generations = 500;
   const std::string dir = scratch / "c";
-  const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(campaign, dir, "tcp://0.0.0.0:*"));
+  const std::unique_ptr<Process> master = StartGauntlet(MasterArguments(campaign, dir));
   ASSERT_TRUE(StatusBecomes(dir, [](const json& status) { return status.contains("master"); }));
   EXPECT_EQ(StatusOf(dir).at("master").at("encrypted"), true);
   EXPECT_EQ(ModeOf(dir + "/access.json"), 0600u);
@@ -144,7 +145,7 @@ TEST(ServiceTest, OuterAddressesAreEncryptedForKnownKeysAndTellNobody) {
     EXPECT_THAT(master->Err() + master->Out() + worker->Err(), Not(HasSubstr(key)));
   }
   std::filesystem::permissions(dir + "/master.key", std::filesystem::perms(0644));
-  const ProcessResult refused = Gauntlet({"resume", dir, "--bind", "tcp://0.0.0.0:*"});
+  const ProcessResult refused = Gauntlet({"resume", dir});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, AllOf(HasSubstr("master.key"), HasSubstr("others may read it")));
 }
@@ -196,20 +197,35 @@ TEST(ServiceTest, ARefusedAddressLeavesNothingSoThatTheCorrectedCommandWorks) {
   EXPECT_EQ(master->Wait().exit_code, 0) << master->Err();
 }
 
-TEST(ServiceTest, PlaintextOnAnOuterAddressIsAskedForAndSaid) {
+TEST(ServiceTest, PlaintextIsAskedForAndSaidOnEveryAddress) {
+  SmallCampaign campaign;
+  campaign.generations = 2;
+  for (const std::string endpoint : {"tcp://0.0.0.0:*", "tcp://127.0.0.1:*"}) {
+    const TemporaryDirectory scratch;
+    std::vector<std::string> arguments = Insecure(MasterArguments(campaign, scratch / "c", endpoint));
+    arguments.emplace_back("--quiet");
+    const std::unique_ptr<Process> master = StartGauntlet(arguments);
+    const std::unique_ptr<Process> worker = StartWorker(scratch / "c");
+    const ProcessResult result = master->Wait();
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("INSECURE"));
+    EXPECT_THAT(MasterLog(scratch / "c"), HasSubstr("INSECURE: whoever reaches tcp://"));
+    EXPECT_EQ(worker->Wait().exit_code, 0);
+  }
+}
+
+TEST(ServiceTest, AnIpcEndpointIsEncryptedToo) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;
   campaign.generations = 2;
-  std::vector<std::string> arguments = MasterArguments(campaign, scratch / "c", "tcp://0.0.0.0:*");
-  arguments.push_back("--insecure");
-  arguments.push_back("--quiet");
-  const std::unique_ptr<Process> master = StartGauntlet(arguments);
-  const std::unique_ptr<Process> worker = StartWorker(scratch / "c");
-  const ProcessResult result = master->Wait();
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("INSECURE"));
-  EXPECT_THAT(MasterLog(scratch / "c"), HasSubstr("INSECURE: whoever reaches tcp://"));
-  EXPECT_EQ(worker->Wait().exit_code, 0);
+  const std::string dir = scratch / "c";
+  const std::unique_ptr<Process> master =
+      StartGauntlet(MasterArguments(campaign, dir, "ipc://" + scratch / "socket"));
+  ASSERT_TRUE(Serves(dir));
+  EXPECT_TRUE(json::parse(ReadFile(dir + "/access.json")).contains("curve"));
+  const std::unique_ptr<Process> worker = StartWorker(dir);
+  EXPECT_EQ(master->Wait().exit_code, 0) << master->Err();
+  EXPECT_EQ(StateHash(dir), UndisturbedHash(campaign));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -35,8 +36,6 @@ using testing_support::Eventually;
 using testing_support::Process;
 using testing_support::TemporaryDirectory;
 
-constexpr const char* kPlain = "tcp://127.0.0.1:*";
-constexpr const char* kCurve = "tcp://0.0.0.0:*";  // others could reach it, so everything is encrypted
 constexpr int kWorkers = 2;
 // Of a lease of `evolve flocking` and of the result that gauntlet-worker-noop gives for it.
 constexpr std::size_t kLeaseBytes = 1125;
@@ -49,7 +48,7 @@ std::string Program(const std::string& name) {
 }
 
 struct Campaign {
-  std::string endpoint = kPlain;
+  bool plain = false;  // without keys and encryption
   int population = 500;
   int replicates = 20;
   int generations = 5;
@@ -86,17 +85,32 @@ std::optional<Figures> FiguresIn(const std::string& messages) {
 class Service {
  public:
   explicit Service(const Campaign& campaign)
-      : master_({Program("gauntlet"), "master", "flocking", "--bind", campaign.endpoint, "--dir", dir(),
-                 "--no-progress", "--population", std::to_string(campaign.population), "--generations",
-                 std::to_string(campaign.generations), "--set",
-                 fmt::format("search.replicates={}", campaign.replicates)},
-                {"GAUNTLET_WORKER=" + Program("gauntlet-worker-noop")}) {
+      : master_(Command(campaign, dir()), {"GAUNTLET_WORKER=" + Program("gauntlet-worker-noop")}) {
     served_ = Eventually([this] { return std::filesystem::exists(dir() + "/access.json"); }, kPatience);
     for (int i = 0; i < campaign.workers; ++i) {
       workers_.push_back(std::make_unique<Process>(
           std::vector<std::string>{Program("gauntlet-worker-noop"), "--dir", dir(), "--quiet"},
           std::vector<std::string>{fmt::format("GAUNTLET_NOOP_MS={}", campaign.run_milliseconds)}));
     }
+  }
+
+  static std::vector<std::string> Command(const Campaign& campaign, const std::string& dir) {
+    std::vector<std::string> command = {Program("gauntlet"),
+                                        "master",
+                                        "flocking",
+                                        "--bind",
+                                        "tcp://127.0.0.1:*",
+                                        "--dir",
+                                        dir,
+                                        "--no-progress",
+                                        "--population",
+                                        std::to_string(campaign.population),
+                                        "--generations",
+                                        std::to_string(campaign.generations),
+                                        "--set",
+                                        fmt::format("search.replicates={}", campaign.replicates)};
+    if (campaign.plain) command.emplace_back("--insecure");
+    return command;
   }
 
   std::string dir() const { return scratch_ / "campaign"; }
@@ -137,8 +151,7 @@ BareLoop Bare(std::size_t exchanges, bool curve) {
 
 double CrowdSeconds() {
   constexpr int kCrowd = 512;
-  Service service(
-      {.endpoint = kCurve, .population = 2 * kCrowd, .replicates = 1, .generations = 2, .workers = 0});
+  Service service({.population = 2 * kCrowd, .replicates = 1, .generations = 2, .workers = 0});
   if (!service.served()) return -1.0;
   testing_support::WorkerCrowd crowd(service.dir(), kCrowd, kNoopGoldenHashes);
   const sim::RunResult result = NoopResult(1);
@@ -175,6 +188,34 @@ void PrintMemory(std::size_t runs) {
   if (figures) fmt::print("{:.0f} runs: {:.0f}/s\n", figures->runs, figures->per_second);
 }
 
+// Plain and encrypted campaigns in turns: what else the machine does disturbs both alike.
+void ReportService(std::size_t runs, int repeat, const std::function<void(const std::string&)>& say) {
+  std::vector<double> rates[2];
+  std::vector<double> costs[2];
+  std::vector<double> ratios;
+  for (int i = 0; i < repeat; ++i) {
+    for (const bool plain : {true, false}) {
+      Campaign campaign{.plain = plain};
+      campaign.generations = std::max(1, static_cast<int>(runs / 10'000));
+      const auto figures = Service(campaign).Finish();
+      rates[plain ? 0 : 1].push_back(figures ? figures->per_second : 0.0);
+      costs[plain ? 0 : 1].push_back(figures ? figures->master_microseconds : 0.0);
+    }
+    ratios.push_back(rates[1].back() / rates[0].back());
+  }
+  const auto listed = [repeat](const std::vector<double>& figures, const char* format) {
+    std::size_t next = 0;
+    return Repeated(repeat, format, [&] { return figures[next++]; });
+  };
+  for (const int which : {0, 1}) {
+    std::sort(costs[which].begin(), costs[which].end());
+    say(fmt::format("service, {}: runs/s {}; master CPU {:.0f} us per run",
+                    which == 0 ? "plain (--insecure)" : "CURVE (default)", listed(rates[which], "{:.0f}"),
+                    costs[which][costs[which].size() / 2]));
+  }
+  say("service, CURVE's rate as a share of plain's, in pairs: " + listed(ratios, "{:.3f}"));
+}
+
 int Report(std::size_t runs, int repeat, std::size_t memory_runs) {
   const auto say = [](const std::string& line) {
     fmt::print("{}\n", line);
@@ -184,19 +225,7 @@ int Report(std::size_t runs, int repeat, std::size_t memory_runs) {
     say(fmt::format("bare, {}: exchanges/s {}", curve ? "CURVE" : "plain",
                     Repeated(repeat, "{:.0f}", [&] { return RunBareLoop(Bare(runs, curve)); })));
   }
-  for (const char* endpoint : {kPlain, kCurve}) {
-    std::vector<double> costs;
-    const std::string rates = Repeated(repeat, "{:.0f}", [&] {
-      Campaign campaign{.endpoint = endpoint};
-      campaign.generations = std::max(1, static_cast<int>(runs / 10'000));
-      const auto figures = Service(campaign).Finish();
-      costs.push_back(figures ? figures->master_microseconds : 0.0);
-      return figures ? figures->per_second : 0.0;
-    });
-    std::sort(costs.begin(), costs.end());
-    say(fmt::format("service, {}: runs/s {}; master CPU {:.0f} us per run",
-                    endpoint == kPlain ? "plain" : "CURVE", rates, costs[costs.size() / 2]));
-  }
+  ReportService(runs, repeat, say);
   say("service, runs of 50 ms of CPU time, share of ideal: " + Repeated(repeat, "{:.3f}", [] {
         const Campaign campaign{.population = 400, .replicates = 1, .generations = 3, .run_milliseconds = 50};
         const auto figures = Service(campaign).Finish();

@@ -115,7 +115,7 @@ const std::vector<Room>& House() {
        {"zmq", "google/", "sqlite3", "box2d"}},
       {"master/cli",
        {"base", "base/system", "proto", "analysis", "master/experiment", "master/search", "master/cases",
-        "master/dispatch", "master/directory", "master/report", "master/session", "slurm"},
+        "master/directory", "master/report", "master/session", "slurm"},
        kRunData + kSwarmData + kBehaviours,
        {"box2d", "zmq", "sqlite3"}},
       {"master", {"base/system", "master/cli"}, {}, {"box2d"}},

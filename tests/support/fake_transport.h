@@ -30,6 +30,7 @@ class FakeTransport final : public master::Transport {
   std::function<void()> on_wait;
   std::vector<int> ready_fds;  // what the next Wait answers, as far as it was asked for
   master::TransportRejections rejections;
+  bool knows_its_peers = true;
 
   master::SendOutcome Send(const master::PeerId& peer, std::string_view bytes) override {
     if (unreachable_.contains(peer)) return master::SendOutcome::kUnreachable;
@@ -58,6 +59,7 @@ class FakeTransport final : public master::Transport {
   }
   void WakeUp() override { woken_ = true; }
   master::TransportRejections Rejections() const override { return rejections; }
+  bool KnowsItsPeers() const override { return knows_its_peers; }
 
  private:
   FakeClock& clock_;

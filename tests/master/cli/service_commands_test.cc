@@ -29,9 +29,9 @@ TEST_F(CommandLine, MasterStartsNoWorkersAndSaysWhereTheyConnect) {
   EXPECT_THAT(err_.str(), Not(HasSubstr("INSECURE")));
 }
 
-TEST_F(CommandLine, PlaintextToTheOutsideIsSaidEvenWhenQuiet) {
+TEST_F(CommandLine, PlaintextIsSaidEvenWhenQuietAndOnLoopback) {
   campaigns_.during = [](const SessionOptions& options) {
-    options.on_serving({{"tcp://10.0.0.7:5555"}, false});
+    options.on_serving({{"tcp://10.0.0.7:5555"}, !options.insecure});
   };
   EXPECT_EQ(
       Run({"master", "flocking", "--bind", "tcp://0.0.0.0:*", "--insecure", "--quiet", "--dir", Path("c")}),
@@ -40,9 +40,15 @@ TEST_F(CommandLine, PlaintextToTheOutsideIsSaidEvenWhenQuiet) {
   EXPECT_EQ(Run({"master", "flocking", "--bind", "tcp://127.0.0.1:*", "--quiet", "--dir", Path("c")}),
             kExitDone);
   EXPECT_THAT(err_.str(), IsEmpty());
+  EXPECT_EQ(
+      Run({"master", "flocking", "--bind", "tcp://127.0.0.1:*", "--insecure", "--quiet", "--dir", Path("c")}),
+      kExitDone);
+  EXPECT_THAT(err_.str(), HasSubstr("INSECURE"));
+  EXPECT_EQ(Run({"resume", "c", "--insecure", "--quiet"}), kExitDone);
+  EXPECT_THAT(err_.str(), HasSubstr("INSECURE"));
 }
 
-TEST_F(CommandLine, PlaintextToTheOutsideIsSaidInRedOnATerminal) {
+TEST_F(CommandLine, PlaintextIsSaidInRedOnATerminal) {
   campaigns_.during = [](const SessionOptions& options) {
     options.on_serving({{"tcp://10.0.0.7:5555"}, false});
   };

@@ -36,6 +36,7 @@ TEST_F(RemoteBackendTest, EveryKindOfOwnFailureHasItsVerdict) {
       {v1::RunnerFailure::KIND_HUNG, sim::Verdict::kHung, "exceeded its CPU time"},
       {v1::RunnerFailure::KIND_OUT_OF_MEMORY, sim::Verdict::kOutOfMemory, "exceeded its memory"}};
   SayHello("p", HelloOf(kAnna));
+  EarnTrust("p");
   RunId run = 0;
   for (const Expectation& expectation : expectations) {
     backend_->Submit({{++run, "spec"}});
@@ -63,22 +64,63 @@ TEST_F(RemoteBackendTest, ExternalFailuresNeverBecomeAVerdict) {
   EXPECT_EQ(Poll().at(0).attempt, 11U);
 }
 
-TEST_F(RemoteBackendTest, AnUnreadableOrForgedResultIsAFailureOfTheRun) {
+TEST_F(RemoteBackendTest, AnUnreadableOrForgedResultIsItsWorkersFaultAndNeverAVerdict) {
   backend_->Submit({{1, "spec"}});
   SayHello("p", HelloOf(kAnna));
   Poll();
   SendResult("p", LeasesSentTo("p").at(0), "\xff\xff");
   EXPECT_THAT(Poll(), IsEmpty());
-  EXPECT_THAT(EventsOf("runner-failure"), HasSubstr("run 1 gave an unreadable result"));
+  EXPECT_THAT(EventsOf("rejected-message"),
+              HasSubstr("worker 000000000000000a@node7 gave a result of run 1"));
   sim::RunResult forged = SampleResult(0.5);
   forged.fitness = 0.0;
   SendResult("p", LeasesSentTo("p").at(0), proto::EncodeRunResult(forged));
   EXPECT_THAT(Poll(), IsEmpty());
-  EXPECT_THAT(EventsOf("runner-failure"), HasSubstr("its content's hash is"));
   SendResult("p", LeasesSentTo("p").at(0), "");
-  const std::vector<FinishedRun> finished = Poll();
-  ASSERT_THAT(finished, SizeIs(1));
-  EXPECT_EQ(finished[0].result.message, "gave an unreadable result");
+  EXPECT_THAT(Poll(), IsEmpty());
+  EXPECT_THAT(
+      EventsOf("worker-quarantined"),
+      HasSubstr("worker 000000000000000a@node7 is quarantined and gets no more runs: 0 of its 0 failed "
+                "runs were finished by other workers, 3 of its answers"));
+  EXPECT_EQ(backend_->Statistics().quarantined, 1);
+  EXPECT_TRUE(backend_->Describe().workers.at(0).record.quarantined);
+  SayHello("q", HelloOf(kBert));
+  Poll();
+  SendResult("q", LeasesSentTo("q").at(0), result_);
+  EXPECT_THAT(Poll(), SizeIs(1)) << "the run is done by another";
+}
+
+TEST_F(RemoteBackendTest, AVerdictOfOneWorkerSaysSo) {
+  EXPECT_EQ(FailRun1([this](const v1::Lease& lease, int) {
+              SendFailure("p", lease, v1::RunnerFailure::KIND_CRASHED, 11, "");
+            })[0]
+                .result.message,
+            "crashed with signal 11");
+  EXPECT_THAT(
+      EventsOf("run-given-up-alone"),
+      HasSubstr("run 1 crashed with signal 11 in 3 of 3 attempts, all on worker 000000000000000a@node7: "
+                "there was no other to ask"));
+  EXPECT_EQ(backend_->Statistics().lone_verdicts, 1U);
+}
+
+// The processes are the master's own: others will not come.
+TEST_F(RemoteBackendTest, AMasterWhoseOwnWorkersAreAllQuarantinedEndsAndSaysWhy) {
+  FakePool pool;
+  pool.processes = 1;
+  pool.on_this_machine = true;
+  Connect(&pool);
+  backend_->Submit({{1, "spec"}});
+  SayHello("p", HelloOf(kAnna));
+  Poll();
+  for (int i = 0; i < 2; ++i) {
+    SendResult("p", LeasesSentTo("p").at(0), "");
+    Poll();
+  }
+  SendResult("p", LeasesSentTo("p").at(0), "");
+  Result<std::vector<FinishedRun>> polled = backend_->Poll(milliseconds(500));
+  ASSERT_FALSE(polled.ok());
+  EXPECT_THAT(polled.error().message, HasSubstr("all 1 workers on this machine are quarantined"));
+  EXPECT_THAT(polled.error().message, HasSubstr("000000000000000a@node7"));
 }
 
 TEST_F(RemoteBackendTest, GarbageIsDroppedCountedAndReportedOncePerKind) {
@@ -122,9 +164,10 @@ TEST_F(RemoteBackendTest, AnAnswerToSomebodyElsesLeaseIsRejected) {
 // What the bundle of a run shows is what its own last failure printed: neither a worker without its lease nor
 // one that gives the run back replaces it.
 TEST_F(RemoteBackendTest, OnlyAFailureThatCountsLeavesItsOutput) {
-  backend_->Submit({{1, "spec"}});
   SayHello("a", HelloOf(kAnna));
+  EarnTrust("a");
   SayHello("b", HelloOf(kBert));
+  backend_->Submit({{1, "spec"}});
   Poll();
   PeerId holder;
   v1::Lease lease;

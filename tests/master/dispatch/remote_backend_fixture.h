@@ -32,6 +32,7 @@ class FakePool final : public WorkerPool {
   }
   void AppendWaitFds(std::vector<int>& fds) const override { fds.push_back(77); }
   int running() const override { return processes; }
+  bool OnThisMachine() const override { return on_this_machine; }
   void StopReplacing() override { replacing = false; }
   void SignalAll(int signal) override {
     signals.push_back(signal);
@@ -48,6 +49,7 @@ class FakePool final : public WorkerPool {
   std::optional<Error> error;
   std::vector<pid_t> ended;
   int processes = 0;
+  bool on_this_machine = false;
   bool replacing = true;
   int deadly_signal = SIGKILL;
   std::vector<int> signals;
@@ -135,10 +137,19 @@ class RemoteBackendTest : public testing::Test {
     Poll();
     return LeasesSentTo(peer).at(0);
   }
+  // The worker that has said hello through this connection finishes a run: its failures count from now on.
+  void EarnTrust(const PeerId& peer, RunId run = 999) {
+    backend_->Submit({{run, "spec"}});
+    Poll();
+    SendResult(peer, LeasesSentTo(peer).at(0), result_);
+    EXPECT_EQ(Poll().size(), 1U);
+    backend_->Acknowledge({run});
+  }
   // Run 1 fails three times, each attempt as `fail` makes it; what came of it.
   std::vector<FinishedRun> FailRun1(const std::function<void(const v1::Lease&, int attempt)>& fail) {
-    backend_->Submit({{1, "spec"}});
     SayHello("p", HelloOf(kAnna));
+    EarnTrust("p");
+    backend_->Submit({{1, "spec"}});
     std::vector<FinishedRun> finished;
     for (int attempt = 1; attempt <= 3; ++attempt) {
       EXPECT_TRUE(finished.empty()) << attempt;

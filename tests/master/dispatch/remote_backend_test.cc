@@ -59,6 +59,22 @@ TEST_P(RefusalTest, SaysWhatDiffers) {
   EXPECT_EQ(backend_->Statistics().connected, 0);
 }
 
+// Whoever knows no key must not learn from one refusal after the other how to be admitted.
+TEST_P(RefusalTest, TellsAStrangerNothingOfTheCampaign) {
+  transport_.knows_its_peers = false;
+  v1::Hello hello = HelloOf(kAnna);
+  GetParam().change(hello);
+  SayHello("p", hello);
+  Poll();
+  const std::vector<v1::Envelope> sent = Sent("p");
+  ASSERT_THAT(sent, SizeIs(1));
+  const std::string& reason = sent[0].refused().reason();
+  EXPECT_THAT(reason, HasSubstr(GetParam().reason.substr(0, 20))) << "what differs";
+  for (const char* secret : {"campaign-1", "1.2.3", "000000000000f00d", "000000000000feed"})
+    EXPECT_THAT(reason, testing::Not(HasSubstr(secret)));
+  EXPECT_THAT(EventsOf("worker-refused"), HasSubstr(GetParam().reason)) << "we are told all";
+}
+
 INSTANTIATE_TEST_SUITE_P(
     AllReasons, RefusalTest,
     testing::Values(

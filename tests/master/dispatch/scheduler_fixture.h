@@ -27,6 +27,14 @@ class SchedulerTest : public testing::Test {
   void SubmitRuns(RunId first, RunId last) {
     for (RunId run = first; run <= last; ++run) scheduler_.Submit({run, "spec"});
   }
+  // It brings the result of a run that an earlier master had leased to it: from now on it has shown that it
+  // can work.
+  void BringAResult(InstanceId worker) {
+    const RunId run = next_proof_++;
+    scheduler_.Submit({run, "spec"});
+    EXPECT_EQ(scheduler_.Completed(worker, run, run, 1), Answer::kAccepted);
+    scheduler_.Acknowledge(run);
+  }
   // Run 1 is submitted, and leased to this worker.
   Fence LeaseRun1To(InstanceId worker) {
     SubmitRuns(1, 1);
@@ -70,6 +78,7 @@ class SchedulerTest : public testing::Test {
 
   testing_support::FakeClock clock_;
   Scheduler scheduler_{LeaseOptions(), kFirstFence};
+  RunId next_proof_ = 1'000'000;
 };
 
 }  // namespace gauntlet::master

@@ -58,6 +58,7 @@ TEST_F(SchedulerTest, NoWorkerIsGivenMoreShortRunsThanItKeeps) {
   SubmitRuns(1, 9000);
   for (int i = 0; i < 200; ++i) scheduler_.RunTook(0.0);
   Join(10, 64);
+  BringAResult(10);
   EXPECT_THAT(Decide().leases, SizeIs(4096)) << "not 64 * 256";
 }
 
@@ -65,6 +66,7 @@ TEST_F(SchedulerTest, WorkerWithManyShortRunsIsGivenMoreWhenHalfOfThemAreDone) {
   SubmitRuns(1, 2000);
   for (int i = 0; i < 200; ++i) scheduler_.RunTook(0.0005);
   Join(10);
+  BringAResult(10);
   const std::vector<LeaseOrder> leases = Decide().leases;
   ASSERT_THAT(leases, SizeIs(20)) << "10 ms of work";
   for (int i = 0; i < 9; ++i) {
