@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/shell_quoted.h"
 #include "base/system/resource_limits.h"
 #include "master/cli/command_line.h"
 #include "master/cli/standard_output.h"
@@ -19,9 +20,10 @@ namespace {
 
 // How a person who reads a hint can start this program again.
 std::string ProgramName(const char* first_argument) {
-  if (const char* given = std::getenv("GAUNTLET_PROGRAM"); given != nullptr && *given != '\0') return given;
+  if (const char* given = std::getenv("GAUNTLET_PROGRAM"); given != nullptr && *given != '\0')
+    return gauntlet::ShellQuoted(given);
   const std::string_view name = first_argument;
-  return name.find('/') == std::string_view::npos ? "gauntlet" : std::string(name);
+  return name.find('/') == std::string_view::npos ? "gauntlet" : gauntlet::ShellQuoted(name);
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ Result<Access> ReadAccess(const std::string& path) {
     return Error{error == ENOENT || error == ENOTDIR ? ErrorKind::kNotFound : ErrorKind::kIo,
                  fmt::format("{}: {}", path, std::strerror(error))};
   }
-  if (!S_ISREG(status.st_mode)) return InvalidInput(fmt::format("{} is no regular file", path));
+  if (!S_ISREG(status.st_mode)) return Error{ErrorKind::kIo, fmt::format("{} is no regular file", path)};
   if (status.st_uid != geteuid() && status.st_uid != 0) {
     return InvalidInput(fmt::format(
         "{} belongs to user {}, not to the user of this worker ({}), which so would simulate what "

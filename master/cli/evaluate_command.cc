@@ -1,5 +1,6 @@
 // gauntlet evaluate: simulate given test cases.
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -60,6 +61,10 @@ CaseList LoadCases(CommandContext& context, const EvaluateOptions& options, cons
         continue;
       }
     }
+    // `show` knows the case by its file, and by what the file calls it.
+    const std::string file_name = std::filesystem::path(file).filename().string();
+    if (std::string& name = loaded->test_case.name; name != file_name)
+      name = fmt::format("{} ({})", file_name, name);
     list.cases.push_back(std::move(loaded->test_case));
     list.file_of_case.push_back(list.files.size() - 1);
   }

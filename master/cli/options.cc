@@ -21,13 +21,6 @@ namespace {
 
 constexpr int kMostWorkers = 1024;
 
-int AvailableCores() {
-  cpu_set_t cores;
-  CPU_ZERO(&cores);
-  if (sched_getaffinity(0, sizeof(cores), &cores) != 0) return 1;
-  return std::clamp(CPU_COUNT(&cores), 1, kMostWorkers);
-}
-
 // A decimal number below 2^64, or "random", which draws one from the operating system.
 Result<std::uint64_t> ParseSeed(const std::string& text) {
   if (text == "random") {
@@ -110,6 +103,13 @@ void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes) {
 
 void AddDirectory(CLI::App& command, std::string& directory) {
   command.add_option("DIR", directory, "directory of the campaign")->required();
+}
+
+int AvailableCores() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  if (sched_getaffinity(0, sizeof(cores), &cores) != 0) return 1;
+  return std::clamp(CPU_COUNT(&cores), 1, kMostWorkers);
 }
 
 Result<int> ParseWorkers(const std::string& text) {

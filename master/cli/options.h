@@ -74,6 +74,8 @@ void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes);
 // The directory of a campaign that exists.
 void AddDirectory(CLI::App& command, std::string& directory);
 
+// The cores that this process may use.
+int AvailableCores();
 // 1 to 1024; "" gives the cores that this process may use.
 Result<int> ParseWorkers(const std::string& text);
 // A share, 0 to 1; "" gives 0.

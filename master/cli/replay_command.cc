@@ -1,4 +1,6 @@
 // gauntlet replay: one stored run again, checked against its hash, and drawn.
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -11,6 +13,7 @@
 #include "analysis/figures/run_figure.h"
 #include "analysis/figures/trajectory_csv.h"
 #include "base/printable.h"
+#include "base/system/atomic_file.h"
 #include "controllers/registry.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
@@ -33,7 +36,18 @@ struct ReplayOptions {
   bool json = false;
 };
 
+// A regular file has the whole content or what it had before; pipes and devices are written as they are.
 Status WriteFile(const std::string& path, const std::string& content) {
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(path, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) {
+    const mode_t mask = umask(0);
+    umask(mask);
+    const Status written = ReplaceFile(path, content, 0666 & ~mask);
+    if (written) return written;
+    return Error{written.error().kind,
+                 fmt::format("{}: cannot be written: {}", path, written.error().message)};
+  }
   errno = 0;
   std::ofstream stream(path, std::ios::binary | std::ios::trunc);
   stream << content;

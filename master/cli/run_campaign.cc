@@ -81,6 +81,16 @@ void PrintServing(CommandContext& context, const CampaignRun& campaign, const Se
                                     notice.encrypted ? ", encrypted" : "", start));
 }
 
+// Said before anything is started: the person may have meant another number.
+void WarnOfManyWorkers(CommandContext& context, int workers) {
+  constexpr int kManyPerCore = 4;
+  const int cores = AvailableCores();
+  if (workers <= kManyPerCore * cores) return;
+  PrintMessage(context, fmt::format("warning: {} workers on {} core{}: more than {} make nothing faster, and "
+                                    "each takes memory and three processes",
+                                    workers, cores, cores == 1 ? "" : "s", cores));
+}
+
 Result<std::unique_ptr<MetricsServer>> StartMetrics(CommandContext& context, const ServingOptions& options) {
   if (options.metrics_port.empty()) return std::unique_ptr<MetricsServer>();
   const Result<int> port = ParseMetricsPort(options.metrics_port);
@@ -141,6 +151,7 @@ ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
   const Status possible = endpoint.empty() ? Status(Ok{}) : CheckBindEndpoint(endpoint);
   if (!possible) return Fail(context, possible.error());
   if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
+  WarnOfManyWorkers(context, campaign.session.workers);
   const Result<std::unique_ptr<MetricsServer>> metrics = StartMetrics(context, options);
   if (!metrics) return Fail(context, metrics.error());
 

@@ -100,6 +100,7 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
                           {"parents", IdsJson(member.parents)},
                           {"genome", GenomeJson(member.genome)},
                           {"runs", IdsJson(member.runs)}});
+    if (!member.name.empty()) population.back()["name"] = member.name;
   }
 
   Json failure_types = Json::array();

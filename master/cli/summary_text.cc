@@ -119,12 +119,15 @@ std::vector<const PopulationMember*> Toughest(const CampaignSummary& summary) {
 std::string Members(const CampaignSummary& summary) {
   const std::vector<const PopulationMember*> members = Toughest(summary);
   if (members.empty()) return {};
-  Table table({">test case", ">fitness", ">obstacles", ">born in generation", ">runs", ">latest run"});
+  const bool named = std::ranges::any_of(members, [](const auto* one) { return !one->name.empty(); });
+  Table table({">test case", ">fitness", ">obstacles", ">born in generation", ">runs", ">latest run",
+               named ? "file" : ""});
   for (std::size_t i = 0; i < std::min(kMostMembers, members.size()); ++i) {
     const PopulationMember& member = *members[i];
     table.AddRow({fmt::format("{}", member.id), FormatFitness(member.fitness),
                   fmt::format("{}", member.genome.size()), fmt::format("{}", member.birth_generation),
-                  FormatCount(member.runs.size()), fmt::format("{}", member.runs.back())});
+                  FormatCount(member.runs.size()), fmt::format("{}", member.runs.back()),
+                  Printable(member.name)});
   }
   std::string text = members.size() > kMostMembers
                          ? fmt::format("\nThe toughest {} of {} test cases\n", kMostMembers, members.size())

@@ -26,11 +26,22 @@ constexpr std::array<std::string_view, 13> kOwnNames = {
     "searches.json", "origin.json", "snapshot.db"};
 
 // What a master obeys of a campaign, or writes to.
-constexpr std::array<std::string_view, 16> kTrustedNames = {
-    "access.json",         "bundles",    "campaign.db",   "campaign.db-wal", "campaign.db-shm",
-    "campaign.db-journal", "epoch",      "lock",          "experiment.toml", "log",
-    "log/master.log",      "master.key", "searches.json", "origin.json",     "slurm.toml",
-    "status.json"};
+constexpr std::array<std::string_view, 16> kTrustedNames = {"access.json",
+                                                            "bundles",
+                                                            "campaign.db",
+                                                            "campaign.db-wal",
+                                                            "campaign.db-journal",
+                                                            "epoch",
+                                                            "lock",
+                                                            "experiment.toml",
+                                                            "log",
+                                                            "log/master.log",
+                                                            "master.key",
+                                                            "searches.json",
+                                                            "origin.json",
+                                                            "slurm.toml",
+                                                            "snapshot.db",
+                                                            "status.json"};
 
 std::string WithoutSlash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();

@@ -48,14 +48,11 @@ std::map<std::string, fs::path> ShippedFiles() {
 
 std::vector<fs::path> ExperimentDirectories() {
   if (const char* override_directory = std::getenv("GAUNTLET_EXPERIMENTS_DIR")) return {override_directory};
-  std::vector<fs::path> directories;
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    directories.push_back(
-        (program.parent_path() / ".." / "share" / "gauntlet" / "experiments").lexically_normal());
-  }
-  directories.emplace_back(GAUNTLET_EXPERIMENTS_SOURCE_DIR);
+  const fs::path programs = fs::read_symlink("/proc/self/exe", error).parent_path();
+  std::vector<fs::path> directories;
+  for (const char* place : {"../share/gauntlet/experiments", GAUNTLET_EXPERIMENTS_FROM_PROGRAM})
+    directories.push_back((programs / place).lexically_normal());
   return directories;
 }
 

@@ -170,8 +170,8 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.best_fitness = summary.mean_fitness = summary.worst_fitness = kNone;
   for (const Individual& individual : population) {
     summary.population.push_back({individual.id, individual.parents, individual.birth_generation,
-                                  individual.fitness, individual.test_case.obstacles,
-                                  runs_of[individual.id]});
+                                  individual.fitness, individual.test_case.obstacles, runs_of[individual.id],
+                                  individual.test_case.name});
     if (!std::isfinite(individual.fitness)) continue;
     summary.best_fitness = std::fmin(summary.best_fitness, individual.fitness);
     summary.worst_fitness = std::fmax(summary.worst_fitness, individual.fitness);

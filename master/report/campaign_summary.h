@@ -20,6 +20,7 @@ struct PopulationMember {
   double fitness = 0.0;
   sim::Genome genome;
   std::vector<RunId> runs;  // of this individual, in logical order
+  std::string name = "";    // of a given case, that of its file; else ""
 };
 
 struct GenerationSummary {

@@ -11,6 +11,7 @@
 
 #include "master/report/verdict_text.h"
 #include "master/search/search_setup.h"
+#include "master/search/search_table.h"
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
 
@@ -71,7 +72,14 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
 }
 
 Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
-  const std::uint64_t seed = RunSeed(experiment, run.individual, run.evaluation, run.replicate);
+  sim::TestCase test_case;
+  if (RowOf(experiment).given_cases) {
+    if (run.spec.empty()) return Ok{};  // rows alone are looked at
+    Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
+    if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));
+    test_case = std::move(spec->test_case);
+  }
+  const std::uint64_t seed = RunSeed(experiment, run.individual, test_case, run.evaluation, run.replicate);
   if (seed == run.seed) return Ok{};
   return Damaged(fmt::format(
       "run {} has seed {}, but replicate {} of evaluation {} of individual {} has {} (campaign seed {})",

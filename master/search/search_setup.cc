@@ -1,5 +1,7 @@
 #include "master/search/search_setup.h"
 
+#include <span>
+
 #include <fmt/format.h>
 
 #include "base/check.h"
@@ -10,20 +12,22 @@
 namespace gauntlet::master {
 namespace {
 
-std::uint64_t HashOf(const std::vector<sim::TestCase>& cases) {
-  Fnv1a64 hash;
-  for (const sim::TestCase& test_case : cases) {
-    hash.AddUint64(GenomeHash(test_case.obstacles));
-    hash.AddDouble(test_case.side_x);
-    hash.AddDouble(test_case.side_y);
-    hash.AddDouble(test_case.wall_thickness);
-    hash.AddUint64(static_cast<std::uint64_t>(test_case.robots.value_or(-1)));
-    if (!test_case.spawn_area.has_value()) continue;
-    for (const sim::Vec2& corner : {test_case.spawn_area->min, test_case.spawn_area->max}) {
-      hash.AddDouble(corner.x());
-      hash.AddDouble(corner.y());
-    }
+void AddCase(const sim::TestCase& test_case, Fnv1a64& hash) {
+  hash.AddUint64(GenomeHash(test_case.obstacles));
+  hash.AddDouble(test_case.side_x);
+  hash.AddDouble(test_case.side_y);
+  hash.AddDouble(test_case.wall_thickness);
+  hash.AddUint64(static_cast<std::uint64_t>(test_case.robots.value_or(-1)));
+  if (!test_case.spawn_area.has_value()) return;
+  for (const sim::Vec2& corner : {test_case.spawn_area->min, test_case.spawn_area->max}) {
+    hash.AddDouble(corner.x());
+    hash.AddDouble(corner.y());
   }
+}
+
+std::uint64_t HashOf(std::span<const sim::TestCase> cases) {
+  Fnv1a64 hash;
+  for (const sim::TestCase& test_case : cases) AddCase(test_case, hash);
   return hash.value();
 }
 
@@ -46,11 +50,12 @@ std::uint64_t SearchSeed(const SearchSetup& setup) {
                          /*individual=*/0, /*evaluation=*/0, RowOf(setup.experiment).number);
 }
 
-std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, std::uint32_t evaluation,
-                      std::uint32_t replicate) {
+std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
+                      std::uint32_t evaluation, std::uint32_t replicate) {
   constexpr std::uint32_t kSearch = 1;  // every search counts as the first of its campaign
-  return sim::DeriveSeed(experiment.seed, RowOf(experiment).purpose, kSearch, individual, evaluation,
-                         replicate);
+  const SearchRow& row = RowOf(experiment);
+  const std::uint64_t who = row.given_cases ? HashOf({&test_case, 1}) : individual;
+  return sim::DeriveSeed(experiment.seed, row.purpose, kSearch, who, evaluation, replicate);
 }
 
 sim::RandomStream GenomeStream(std::uint64_t search_seed, std::uint64_t id) {

@@ -71,7 +71,8 @@ Status SearchDriver::Ask() {
       run.evaluation = request.evaluation;
       run.replicate = replicate;
       run.generation = request.generation;
-      run.seed = RunSeed(parts_.experiment, request.individual, request.evaluation, replicate);
+      run.seed =
+          RunSeed(parts_.experiment, request.individual, request.test_case, request.evaluation, replicate);
       run.spec = specs.Encode(run.seed);
       run.spec_hash = SpecHash(run.spec);
 

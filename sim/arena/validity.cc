@@ -135,6 +135,17 @@ std::optional<Violation> JudgeGeneNumbers(const ObstacleGene& gene, std::size_t 
   return std::nullopt;
 }
 
+// Whether anything of the obstacle is ever within the outer faces of the walls, judged by the smallest
+// axis-aligned rectangle around it.
+bool ReachesArena(const ObstacleGene& gene, const Vec2& outer) {
+  const OrientedBox box = BoxOf(gene);
+  const Vec2 reach = outer + BoundingHalfExtents(box);
+  const auto reaches = [&reach](const Vec2& center) {
+    return (center.cwiseAbs().array() <= reach.array()).all();
+  };
+  return reaches(box.center) || std::any_of(gene.path.begin(), gene.path.end(), reaches);
+}
+
 // The least distance of the obstacle from `place` on its whole path.
 double LeastDistance(const ObstacleGene& gene, const Vec2& place) {
   constexpr double kStride = 0.01;  // m between the places of the obstacle that are looked at
@@ -180,7 +191,7 @@ std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequire
 std::string_view NameOf(ValidityRule rule) {
   constexpr std::string_view kNames[] = {"finite-numbers", "positive-size", "contained-obstacle",
                                          "start-blocked",  "goal-blocked",  "clearance",
-                                         "no-path",        "limits"};
+                                         "no-path",        "limits",        "outside-arena"};
   return kNames[static_cast<std::size_t>(rule)];
 }
 
@@ -195,6 +206,7 @@ std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaReq
 
 IncrementalValidity::IncrementalValidity(const TestCase& empty_arena, const ArenaRequirements& requirements)
     : requirements_(requirements),
+      outer_(Vec2(empty_arena.side_x, empty_arena.side_y) / 2.0 + Vec2::Constant(empty_arena.wall_thickness)),
       arena_violation_(JudgeArenaNumbers(empty_arena)),
       grid_(EmptyArena(empty_arena), requirements.inflation),
       candidate_(grid_) {
@@ -206,6 +218,11 @@ std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene
   if (arena_violation_) return arena_violation_;
   const std::size_t index = boxes_.size();
   if (std::optional<Violation> violation = JudgeGeneNumbers(gene, index)) return violation;
+  if (!ReachesArena(gene, outer_)) {
+    return BrokenByGene(kOutsideArena, gene, index,
+                        "lies outside the arena, which ends at x = " + NumberText(outer_.x()) +
+                            " m and y = " + NumberText(outer_.y()) + " m with its walls");
+  }
   const OrientedBox box = BoxOf(gene);
   const auto around = std::find_if(boxes_.begin(), boxes_.end(),
                                    [&](const OrientedBox& earlier) { return ContainsBox(earlier, box); });

@@ -20,9 +20,10 @@ enum class ValidityRule {
   kContainedObstacle,  // "contained-obstacle": an obstacle lies wholly inside an earlier one
   kStartBlocked,       // "start-blocked": the start cell is not free
   kGoalBlocked,        // "goal-blocked": the goal cell is not free
-  kClearance,  // "clearance": an obstacle is closer than the scenario's clearance to one of its places
-  kNoPath,     // "no-path": no path from start to goal for a robot's body
-  kLimits,     // "limits": a number beyond what is simulated (constants below)
+  kClearance,     // "clearance": an obstacle is closer than the scenario's clearance to one of its places
+  kNoPath,        // "no-path": no path from start to goal for a robot's body
+  kLimits,        // "limits": a number beyond what is simulated (constants below)
+  kOutsideArena,  // "outside-arena": an obstacle nowhere reaches into the arena, also not on its path
 };
 std::string_view NameOf(ValidityRule rule);
 
@@ -49,9 +50,10 @@ struct ArenaRequirements {
 };
 
 // The first broken rule, or nothing: the arena first, then gene by gene in the order finite-numbers,
-// positive-size, limits, contained-obstacle, clearance, start-blocked, goal-blocked, no-path. Gene ranges are
-// not checked here (they belong to the generator), nor is whether the swarm fits (see Spawn). An obstacle
-// that moves is judged where it begins, its clearance on its whole path. Messages count obstacles from 1.
+// positive-size, limits, outside-arena, contained-obstacle, clearance, start-blocked, goal-blocked, no-path.
+// Gene ranges are not checked here (they belong to the generator), nor is whether the swarm fits (see Spawn).
+// An obstacle that moves is judged where it begins, its clearance on its whole path. Messages count obstacles
+// from 1.
 std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaRequirements& requirements);
 
 // Judges one gene after another, as generation and repair need it: O(cells) per gene instead of a fresh
@@ -73,6 +75,7 @@ class IncrementalValidity {
 
  private:
   ArenaRequirements requirements_;
+  Vec2 outer_;  // half sides to the outer faces of the walls, m
   std::optional<Violation> arena_violation_;
   OccupancyGrid grid_;
   OccupancyGrid candidate_;  // grid_ with the gene under judgement; kept to reuse its memory

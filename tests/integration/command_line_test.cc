@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <sstream>
 
 #include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
@@ -85,26 +87,6 @@ TEST_F(FinishedCampaignTest, ANonEmptyDirectoryIsNotOverwritten) {
   const ProcessResult result = Gauntlet(EvolveArguments(SmallCampaign{}, Dir(), 2));
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("gauntlet resume " + Dir()));
-}
-
-TEST(ReplayTest, AChangedByteInTheStoredSpecIsFound) {
-  const TemporaryDirectory scratch;
-  const std::string dir = scratch / "c";
-  SmallCampaign campaign;
-  campaign.generations = 1;
-  ASSERT_EQ(Gauntlet(EvolveArguments(campaign, dir, 2)).exit_code, 0);
-  // The seed is a fixed64 at the end of the spec.
-  EXPECT_EQ(
-      AlterDatabase(dir,
-                    "UPDATE runs SET spec = CAST(substr(spec, 1, length(spec) - 1) || "
-                    "CASE hex(substr(spec, -1)) WHEN '00' THEN x'01' ELSE x'00' END AS BLOB) WHERE id = 3"),
-      1);
-
-  const ProcessResult intact = Gauntlet({"replay", dir, "2"});
-  EXPECT_EQ(intact.exit_code, 0) << intact.err;
-  const ProcessResult changed = Gauntlet({"replay", dir, "3"});
-  EXPECT_EQ(changed.exit_code, 1) << changed.out << changed.err;
-  EXPECT_THAT(changed.out + changed.err, HasSubstr("differ"));
 }
 
 TEST(CommandLineTest, EvolveWithJsonPrintsOneDocument) {
@@ -278,6 +260,82 @@ TEST(EvaluateTest, RealArgosFilesAreSimulatedOrRefusedByRule) {
   fmt::print("{} of {} files simulated, {} refused\n", simulated, files,
              files - static_cast<std::size_t>(simulated));
   EXPECT_GT(simulated, 0);
+}
+
+// The result hashes of each file's runs, by the file.
+std::map<std::string, std::vector<std::string>> HashesByFile(const std::vector<std::string>& files,
+                                                             const std::string& dir) {
+  std::vector<std::string> arguments = {"evaluate", "flocking", "--replicates", "2", "--json",
+                                        "--dir",    dir,        "--case"};
+  arguments.insert(arguments.end(), files.begin(), files.end());
+  const ProcessResult result = Gauntlet(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  std::map<std::string, std::vector<std::string>> hashes;
+  const json document = json::parse(result.out, nullptr, false);
+  for (const json& one : document["cases"]) {
+    for (const json& run : one["runs"]) hashes[one["file"]].push_back(run["hash"]);
+  }
+  return hashes;
+}
+
+TEST(EvaluateTest, WhatACaseGivesDoesNotDependOnItsPlaceInTheList) {
+  const TemporaryDirectory scratch;
+  std::vector<std::string> files;
+  for (const double x : {-1.0, 0.0, 1.0}) {
+    files.push_back(scratch / fmt::format("wall{}.json", files.size()));
+    WriteFile(files.back(),
+              fmt::format(R"({{"obstacles": [{{"x": {}, "y": 0.5, "length": 1, "width": 0.2}}]}})", x));
+  }
+  const auto together = HashesByFile(files, scratch / "together");
+  EXPECT_EQ(together.size(), 3U);
+  EXPECT_EQ(HashesByFile({files[2], files[0], files[1]}, scratch / "turned"), together);
+  EXPECT_EQ(HashesByFile({files[1]}, scratch / "alone").at(files[1]), together.at(files[1]));
+  EXPECT_NE(together.at(files[0])[0], together.at(files[0])[1]) << "replicates have seeds of their own";
+  EXPECT_THAT(Gauntlet({"show", scratch / "together"}).out,
+              testing::AllOf(HasSubstr("wall0.json"), HasSubstr("wall1.json"), HasSubstr("wall2.json")));
+}
+
+TEST(CommandLineTest, NextCommandsCanBePastedAsTheyStand) {
+  const TemporaryDirectory scratch;
+  const std::string program = scratch / "my tools/gauntlet";
+  std::filesystem::create_directory(scratch / "my tools");
+  std::filesystem::create_symlink(GauntletPath(), program);
+  const std::string dir = scratch / "it's 50% done";
+  SmallCampaign small;
+  small.generations = 1;
+  small.population = 4;
+  std::vector<std::string> arguments = EvolveArguments(small, dir, 1);
+  arguments.insert(arguments.begin(), program);
+  const ProcessResult evolved = RunProcess(arguments);
+  ASSERT_EQ(evolved.exit_code, 0) << evolved.err;
+  std::istringstream lines(evolved.out.substr(evolved.out.find("Next commands to try\n")));
+  int commands = 0;
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    const ProcessResult pasted =
+        RunProcess({"/bin/sh", "-c", fmt::format("cd '{}' && {}", scratch / "my tools", line)});
+    EXPECT_EQ(pasted.exit_code, 0) << line << "\n" << pasted.err;
+    ++commands;
+  }
+  EXPECT_EQ(commands, 2);
+}
+
+TEST(CommandLineTest, ATreeThatWasMovedHasItsOwnExperiments) {
+  namespace fs = std::filesystem;
+  const TemporaryDirectory scratch;
+  const fs::path programs = fs::path(scratch / "1/2/3/4/5/6");
+  const fs::path experiments =
+      (programs / fs::relative(fs::path(GAUNTLET_SOURCE_DIR) / "experiments", GAUNTLET_BINARY_DIR))
+          .lexically_normal();
+  fs::create_directories(programs);
+  fs::create_directories(experiments);
+  fs::copy_file(GauntletPath(), programs / "gauntlet");
+  fs::copy_file(fs::path(GAUNTLET_SOURCE_DIR) / "experiments/flocking.toml", experiments / "mine.toml");
+  const ProcessResult listed =
+      RunProcess({(programs / "gauntlet").string(), "list", "experiments", "--json"});
+  ASSERT_EQ(listed.exit_code, 0) << listed.err;
+  EXPECT_THAT(listed.out, testing::AllOf(HasSubstr("mine"), testing::Not(HasSubstr("foraging"))));
 }
 
 }  // namespace

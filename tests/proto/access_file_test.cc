@@ -116,7 +116,7 @@ TEST(AccessFileTest, WhatIsNoRegularFileCannotBeReadAndKeepsNobodyWaiting) {
   for (const char* name : {"directory", "pipe"}) {
     const Result<Access> access = ReadAccess(scratch / name);
     ASSERT_FALSE(access.ok());
-    EXPECT_EQ(access.error().kind, ErrorKind::kInvalidInput);
+    EXPECT_EQ(access.error().kind, ErrorKind::kIo);
     EXPECT_THAT(access.error().message, HasSubstr("is no regular file"));
   }
 }

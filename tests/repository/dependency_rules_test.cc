@@ -118,7 +118,7 @@ const std::vector<Room>& House() {
         "master/directory", "master/report", "master/session", "slurm"},
        kRunData + kSwarmData + kBehaviours,
        {"box2d", "zmq", "sqlite3"}},
-      {"master", {"base/system", "master/cli"}, {}, {"box2d"}},
+      {"master", {"base", "base/system", "master/cli"}, {}, {"box2d"}},
   };
   return house;
 }

@@ -60,6 +60,7 @@ TEST_F(CommandLine, WorkersMustBeSensible) {
   }
   EXPECT_EQ(Run({"evolve", "flocking", "--workers", "1024", "--dir", Path("c")}), kExitDone);
   EXPECT_EQ(campaigns_.workers, 1024);
+  EXPECT_THAT(err_.str(), HasSubstr("warning: 1024 workers on "));
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), kExitDone);
   EXPECT_GE(campaigns_.workers, 1) << "by default the machine's cores";
 }

@@ -51,6 +51,13 @@ TEST_F(CommandLine, EvaluateRefusesByRuleAndSimulatesTheRest) {
               AllOf(HasSubstr("blocked.json: refused, start-blocked: "), HasSubstr("broken.json:1:")));
 }
 
+TEST_F(CommandLine, CasesAreKnownByTheirFilesAndTheirOwnNames) {
+  const std::string file = Write("bend.json", R"({"name": "a narrow bend", "obstacles": []})");
+  (void)Run({"evaluate", "flocking", "--case", file, "--dir", Path("c")});
+  ASSERT_EQ(campaigns_.cases.size(), 1U);
+  EXPECT_EQ(campaigns_.cases[0].name, "bend.json (a narrow bend)");
+}
+
 TEST_F(CommandLine, NoticesOfManyFilesAreGivenOnce) {
   const std::string argos = R"(<argos-configuration><framework/><arena size="6,6,1"/></argos-configuration>)";
   const std::vector<std::string> files = {Write("a.argos", argos), Write("b.argos", argos),

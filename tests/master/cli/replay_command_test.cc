@@ -1,4 +1,8 @@
+#include <sys/resource.h>
+
+#include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,6 +43,22 @@ TEST_F(Replay, ReproducedRunExitsZeroAndWritesItsFiles) {
   EXPECT_TRUE(svg.load_file(Path("r.svg").c_str()));
   EXPECT_THAT(Read(Path("r.csv")),
               StartsWith("tick,time_s,robot,x,y,heading,speed\n0,0.0,0,0,0,0,0\n1,0.1,0,0.1,"));
+}
+
+TEST_F(Replay, AFileThatCannotBeWrittenWholeKeepsWhatItHeld) {
+  { std::ofstream(Path("r.csv")) << "of an earlier run\n"; }
+  campaigns_.replay.report.replayed.trajectory.resize(5000, {{0, 0, 0, 0}});
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  auto* const handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{4096, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const int code = Run({"replay", "d", "12", "--csv", Path("r.csv")});
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  EXPECT_NE(code, kExitDone);
+  EXPECT_THAT(err_.str(), AllOf(HasSubstr("r.csv: cannot be written"), HasSubstr("File too large")));
+  EXPECT_EQ(Read(Path("r.csv")), "of an earlier run\n");
 }
 
 TEST_F(Replay, NoiseAndFaultsOfTheRunAreNamed) {
@@ -125,7 +145,8 @@ TEST_F(Replay, BadRunIdsAndFilesAreUsageErrors) {
   ExpectUsageError({"replay", "d", "twelve"}, HasSubstr("twelve is no run"));
   ExpectUsageError({"replay", "d", "0"}, HasSubstr("0 is no run"));
   EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("none/r.svg")}), kExitUsage);
-  EXPECT_THAT(err_.str(), HasSubstr("none/r.svg: cannot be written: No such file or directory"));
+  EXPECT_THAT(err_.str(),
+              AllOf(HasSubstr("none/r.svg: cannot be written: "), HasSubstr("No such file or directory")));
 }
 
 }  // namespace

@@ -45,6 +45,14 @@ CampaignSummary Evolved() {
   return summary;
 }
 
+TEST(SummaryText, GivenCasesAreNamedByTheirFiles) {
+  CampaignSummary summary = Evolved();
+  EXPECT_THAT(SummaryText(summary, {"gauntlet", "d"}), testing::Not(testing::HasSubstr("  file\n")));
+  summary.population[0].name = "three-walls.json";
+  EXPECT_THAT(SummaryText(summary, {"gauntlet", "d"}), testing::HasSubstr("three-walls.json\n"));
+  EXPECT_EQ(Json::parse(SummaryJson(summary, "d")).at("population").at(0).at("name"), "three-walls.json");
+}
+
 TEST(SummaryJson, HasTheKeysOfTheContract) {
   const Json json = Json::parse(SummaryJson(Evolved(), "campaigns/x"));
   EXPECT_EQ(json.at("experiment"), "flocking");

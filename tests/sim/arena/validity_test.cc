@@ -44,7 +44,8 @@ TEST(ValidityTest, RuleNamesAreTheCommandLinesContract) {
                                                      {ValidityRule::kGoalBlocked, "goal-blocked"},
                                                      {ValidityRule::kClearance, "clearance"},
                                                      {ValidityRule::kNoPath, "no-path"},
-                                                     {ValidityRule::kLimits, "limits"}};
+                                                     {ValidityRule::kLimits, "limits"},
+                                                     {ValidityRule::kOutsideArena, "outside-arena"}};
   for (const auto& [rule, name] : names) EXPECT_EQ(NameOf(rule), name);
 }
 
@@ -52,6 +53,23 @@ TEST(ValidityTest, AnEmptyArenaAndOneWithAFewObstaclesAreValid) {
   EXPECT_FALSE(CheckValidity(TestCase{}, CornerToCorner()));
   const TestCase test_case = WithObstacles({{0.0, 0.0, 2.0, 0.4, 45.0}, {1.0, -1.0, 1.0, 0.1, 300.0}});
   EXPECT_FALSE(CheckValidity(test_case, CornerToCorner()));
+}
+
+TEST(ValidityTest, AnObstacleMustReachIntoTheArenaAtSomeTime) {
+  const TestCase empty;
+  const double outer = empty.side_x / 2.0 + empty.wall_thickness;
+  const ObstacleGene touching = {outer + 0.5, 0.0, 1.0, 0.4, 0.0};
+  EXPECT_FALSE(CheckValidity(WithObstacles({touching}), CornerToCorner()));
+  for (const ObstacleGene& gene :
+       {ObstacleGene{99.0, 0.0, 1.0, 0.4, 0.0}, ObstacleGene{0.0, -4.0, 1.0, 0.4, 0.0},
+        ObstacleGene{outer + 0.501, 0.0, 1.0, 0.4, 0.0}}) {
+    ExpectViolation(WithObstacles({{0.0, 0.0, 1.0, 0.4, 0.0}, gene}), CornerToCorner(),
+                    ValidityRule::kOutsideArena, 1, "lies outside the arena");
+  }
+  ObstacleGene arriving = {5.0, 0.0, 1.0, 0.4, 0.0};
+  arriving.path = {Vec2(0.0, 0.0)};
+  arriving.speed = 0.02;
+  EXPECT_FALSE(CheckValidity(WithObstacles({arriving}), CornerToCorner()));
 }
 
 TEST(ValidityTest, NumbersThatAreNotFiniteAreRefused) {
@@ -116,7 +134,7 @@ TEST(ValidityTest, TheLimitsThemselvesAreAllowed) {
   large.side_x = 100.0;
   large.side_y = 1.0;
   large.robots = 1000;
-  large.obstacles = {{1000.0, -1000.0, 200.0, 200.0, 7.0}, {0.0, 1.0, 0.001, 0.001, 1e9}};
+  large.obstacles = {{150.0, -105.0, 200.0, 200.0, 7.0}, {0.0, 0.5, 0.001, 0.001, 1e9}};
   ArenaRequirements requirements;
   requirements.start = {-49.0, 0.0};
   requirements.goal = {49.0, 0.0};
