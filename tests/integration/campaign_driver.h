@@ -39,6 +39,10 @@ struct SmallCampaign {
   std::vector<std::string> settings;  // key=value, as given to --set
   std::string case_file = {};         // evaluated instead, when there is one
 };
+
+inline void PrintTo(const SmallCampaign& campaign, std::ostream* os) {
+  *os << campaign.name;
+}
 // Foraging of the same size: the runs are cut short, because 20 robots over 800 s take 0.1 s each; under a
 // sanitizer, where they take seconds, once more.
 SmallCampaign SmallForaging();

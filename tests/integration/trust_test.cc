@@ -21,6 +21,10 @@ struct Mix {
   std::vector<Lie> liars;
 };
 
+void PrintTo(const Mix& mix, std::ostream* os) {
+  *os << mix.name;
+}
+
 class LyingWorkers : public testing::TestWithParam<Mix> {};
 
 TEST_P(LyingWorkers, ChangeNothingAndAreNamed) {

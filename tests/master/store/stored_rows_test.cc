@@ -93,6 +93,10 @@ struct LostTable {
   Checked missed_by;  // the least of Checked that misses its rows
 };
 
+void PrintTo(const LostTable& table, std::ostream* os) {
+  *os << table.name;
+}
+
 class LostTableTest : public StoredRowsTest, public testing::WithParamInterface<LostTable> {};
 
 // What is left of a table whose page was replaced by an empty one.
