@@ -143,13 +143,14 @@ bool Loop::Tick() {
   Enter(Phase::kObserve);
   Observe();
   if (!CheckPoses()) return false;
-  Enter(Phase::kSense);
+  Enter(Phase::kInteract);
   scenario_.Interact({.observer = observer_, .signals = signals_, .grippers = grippers_});
   if (std::optional<std::string> complaint = CheckSurroundings(scenario_, observer_.last_tick()))
       [[unlikely]] {
     invalid_command_ = *std::move(complaint);
     return false;
   }
+  Enter(Phase::kSense);
   sensors_.Sense({.poses = poses_,
                   .signals = signals_,
                   .actuators = actuators_,
@@ -158,7 +159,8 @@ bool Loop::Tick() {
                   .moving_boxes = course_.boxes(),
                   .obstacle_lights = course_.lights(),
                   .disturber = disturber_ ? &*disturber_ : nullptr,
-                  .tick = observer_.last_tick()});
+                  .tick = observer_.last_tick(),
+                  .probe = probe_});
   Enter(Phase::kControl);
   Control();
   if (probe_ != nullptr) probe_->EndTick();
@@ -292,6 +294,7 @@ std::vector<std::vector<RobotState>> TrajectoryOf(const Observer& observer) {
 
 RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajectory,
                    const SimulationOptions& options) {
+  if (options.probe != nullptr) options.probe->Begin(Phase::kStart);
   // Headquarters knows the observer from the beginning; how many robots it observes is known only afterwards.
   Observer observer(0, 0);
   const Headquarters headquarters(observer);
@@ -318,6 +321,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
     if (scenario.Finished(observer)) break;
   }
 
+  if (options.probe != nullptr) options.probe->Begin(Phase::kResult);
   Outcome outcome;
   if (result.verdict == Verdict::kCompleted) outcome = scenario.Evaluate(observer);
   if (std::optional<std::string> complaint = CheckOutcome(outcome, observer.last_tick())) {

@@ -7,17 +7,19 @@
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
 #include "sim/scenario.h"
+#include "sim/sensors/sensor_probe.h"
 
 namespace gauntlet::sim {
 
-// The parts of a tick, in order.
-enum class Phase { kPhysics, kObserve, kSense, kControl };
+// The parts of a run, in order; those between the first and the last make a tick.
+enum class Phase { kStart, kPhysics, kObserve, kInteract, kSense, kControl, kResult };
 
-// Told when a phase begins; for benchmarks (the simulation itself has no clock).
-class PhaseProbe {
+// Told when a phase begins, and within kSense when a device's sensors begin; for benchmarks (the simulation
+// itself has no clock).
+class PhaseProbe : public SensorProbe {
  public:
-  virtual ~PhaseProbe() = default;
   virtual void Begin(Phase phase) = 0;
+  void BeginDevice(Device /*device*/) override {}
   // After the last phase of a tick.
   virtual void EndTick() = 0;
 };

@@ -12,6 +12,7 @@
 #include "sim/robot/surroundings.h"
 #include "sim/sensors/occluders.h"
 #include "sim/sensors/robot_pairs.h"
+#include "sim/sensors/sensor_probe.h"
 
 namespace gauntlet::sim {
 
@@ -26,6 +27,7 @@ struct World {
   std::span<const Light> obstacle_lights = {};
   const Disturber* disturber = nullptr;  // of the run, when something is disturbed
   Tick tick = 0;                         // which errors and faults depend on
+  SensorProbe* probe = nullptr;          // of a benchmark
 };
 
 // With what all sensors work out of it only once.

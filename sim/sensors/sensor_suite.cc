@@ -61,6 +61,7 @@ void SensorSuite::Sense(const World& world) {
   }
   const Scene scene = {world, frames_, positions_, occluders_, pairs_, any_ring_lit};
   for (const auto& [device, sensor, robots] : equipment_) {
+    if (world.probe != nullptr) world.probe->BeginDevice(device);
     sensor->Prepare(scene);
     for (const RobotIndex robot : robots) {
       SensorReadings& readings = readings_[static_cast<std::size_t>(robot)];
