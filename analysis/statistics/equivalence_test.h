@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "analysis/statistics/bootstrap.h"
+#include "analysis/statistics/interval.h"
 
 namespace gauntlet::analysis {
 
@@ -19,8 +19,5 @@ struct EquivalenceTest {
 // each at level `alpha` in (0, 0.5). Equal differences are taken for exact. At least two differences, margin
 // > 0.
 EquivalenceTest TestEquivalence(std::span<const double> differences, double margin, double alpha);
-
-// P(T > t) of Student's t distribution; any degrees of freedom > 0.
-double StudentUpperTail(double t, double degrees_of_freedom);
 
 }  // namespace gauntlet::analysis

@@ -1,7 +1,11 @@
 // The Mann-Whitney U test and Vargha and Delaney's A: is one set of runs worse than another, and by how much?
+// Values are finite, at least one in either set (CheckSample says so of values from outside).
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace gauntlet::analysis {
@@ -12,22 +16,50 @@ std::vector<double> MidRanks(std::span<const double> values);
 struct RankTest {
   double rank_sum1 = 0.0;
   double rank_sum2 = 0.0;
-  double u1 =
-      0.0;  // pairs in which the first value is larger, ties counting half: rank_sum1 - n1 (n1 + 1) / 2
+  // Pairs in which the first value is larger, ties counting half: rank_sum1 - n1 (n1 + 1) / 2, R's W. The
+  // thesis prints the complement: its U of a set is our U of the other one.
+  double u1 = 0.0;
   double u2 = 0.0;
-  double a = 0.5;  // u1 / (n1 n2): chance that a value of the first set exceeds one of the second (Vargha and
-                   // Delaney 2000)
+  double a = 0.5;       // u1 / (n1 n2): chance that a value of the first set exceeds one of the second, ties
+                        // counting half (Vargha and Delaney 2000)
   double p_less = 1.0;  // one-tailed: the first set tends to smaller values
   double p_greater = 1.0;
   double p_two_sided = 1.0;
+  std::string_view method;  // how p was computed, in words
 };
 
-// Mann and Whitney 1947 with the normal approximation, corrected for ties and for continuity (as R's
-// wilcox.test(exact = FALSE)). When all values are equal there is nothing to test: p = 1, a = 0.5. Both sets
-// must hold at least one value, none NaN.
+// Mann and Whitney 1947 with the normal approximation, corrected for ties and for continuity (R's
+// wilcox.test(exact = FALSE)). When all values are equal there is nothing to test: p = 1, a = 0.5, and the
+// method says so.
 RankTest MannWhitney(std::span<const double> first, std::span<const double> second);
 
-// Upper tail of the standard normal distribution.
-double NormalUpperTail(double z);
+// The same from what tables print. Ties, which a table does not tell, are taken for none.
+RankTest MannWhitneyFromRankSum(double rank_sum1, std::size_t n1, std::size_t n2);
+
+struct ExactRankTest {
+  double p_less = 1.0;
+  double p_greater = 1.0;
+  double p_two_sided = 1.0;  // twice the smaller tail, at most 1 (R's convention)
+  std::string_view method;
+};
+
+// Up to this product of the sizes (100 against 100) the exact distribution takes a moment, not minutes.
+inline constexpr std::size_t kMostExactPairs = 10'000;
+
+// From the distribution of U over all ways to deal the observed mid-ranks to two sets of these sizes: exact
+// with ties too, and without them R's wilcox.test(exact = TRUE). Nothing beyond kMostExactPairs.
+std::optional<ExactRankTest> ExactMannWhitney(std::span<const double> first, std::span<const double> second);
+
+// From where on A, or 1 - A when that is larger, is called small, medium and large.
+struct EffectThresholds {
+  double small = 0.0;
+  double medium = 0.0;
+  double large = 0.0;
+};
+inline constexpr EffectThresholds kVarghaDelaney2000{0.56, 0.64, 0.71};  // thesis 3.2.4
+inline constexpr EffectThresholds kSpartan{0.56, 0.66, 0.73};            // manual pages of the R package
+
+// "none", "small", "medium" or "large". `a` in [0, 1].
+std::string_view EffectOf(double a, const EffectThresholds& thresholds = kVarghaDelaney2000);
 
 }  // namespace gauntlet::analysis

@@ -1,0 +1,30 @@
+// Shares: how certain is one that was counted, and do two differ?
+#pragma once
+
+#include <cstdint>
+
+#include "analysis/statistics/interval.h"
+
+namespace gauntlet::analysis {
+
+// Intervals for a probability of which `hits` of `trials` were seen (trials >= 1, hits <= trials), at a
+// confidence in (0, 1).
+// Wilson 1927, without continuity correction: holds its confidence on average.
+Interval WilsonInterval(std::uint32_t hits, std::uint32_t trials, double confidence);
+// Clopper and Pearson 1934: holds at least its confidence whatever the probability, and is wider.
+Interval ClopperPearsonInterval(std::uint32_t hits, std::uint32_t trials, double confidence);
+
+struct FisherTest {
+  double p_less = 1.0;  // one-tailed: the first share is the smaller one
+  double p_greater = 1.0;
+  double p_two_sided = 1.0;  // tables that are at most as probable as the observed one, as in R
+  // Half a count is added to each cell (Haldane 1956, Anscombe 1956), which keeps it finite.
+  double odds_ratio = 1.0;
+};
+
+// Fisher's exact test of hits1 of trials1 against hits2 of trials2: no approximation. At least one trial
+// each, hits at most trials, fewer than 2^32 trials together.
+FisherTest FisherExact(std::uint32_t hits1, std::uint32_t trials1, std::uint32_t hits2,
+                       std::uint32_t trials2);
+
+}  // namespace gauntlet::analysis

@@ -1,0 +1,56 @@
+// A set of measured values: whether statistics can be computed from it, its mean and spread, its quantiles
+// and its box plot.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+
+namespace gauntlet::analysis {
+
+// Every function of this folder takes values that pass this: at least one, all finite. The error names the
+// set and the first value that is wrong, counted from 1.
+Status CheckSample(std::span<const double> values, std::string_view name);
+
+struct Description {
+  std::size_t n = 0;
+  double mean = 0.0;
+  std::optional<double> sd;  // with n - 1; a single value has none
+  double minimum = 0.0;
+  double median = 0.0;
+  double maximum = 0.0;
+};
+Description Describe(std::span<const double> values);
+
+// The number of Hyndman and Fan 1996, which is also R's: 5 is MATLAB's, 6 SPSS's, 7 the default of R and
+// NumPy, 8 nearly unbiased for the median whatever the distribution.
+enum class QuantileType { k5 = 5, k6 = 6, k7 = 7, k8 = 8 };
+
+// `probability` in [0, 1]; the values in any order.
+double Quantile(std::span<const double> values, double probability, QuantileType type = QuantileType::k7);
+
+enum class BoxRule {
+  kTukeyHinges,  // R's boxplot.stats: hinges are the medians of the halves, the median in both when n is odd
+  kQuartiles7,   // quantiles of type 7, as Matplotlib draws them
+};
+// e.g. "Tukey's hinges; whiskers to the last value within 1.5 box lengths".
+std::string_view NameOf(BoxRule rule);
+
+struct BoxPlot {
+  BoxRule rule = BoxRule::kTukeyHinges;
+  double lower_whisker = 0.0;  // the smallest value that is not more than 1.5 box lengths below the box
+  double lower_quartile = 0.0;
+  double median = 0.0;
+  double upper_quartile = 0.0;
+  double upper_whisker = 0.0;
+  double lower_notch = 0.0;  // median -+ 1.58 box lengths / sqrt(n) (McGill, Tukey and Larsen 1978)
+  double upper_notch = 0.0;
+  std::vector<double> outliers;  // what lies beyond the whiskers, ascending
+};
+BoxPlot MakeBoxPlot(std::span<const double> values, BoxRule rule = BoxRule::kTukeyHinges);
+
+}  // namespace gauntlet::analysis
