@@ -8,10 +8,13 @@
 #include <string>
 #include <vector>
 
+#include "analysis/statistics/sample.h"
 #include "tests/integration/study.h"
 
 namespace gauntlet::testing_support {
 namespace {
+
+using analysis::Quantile;
 
 constexpr const char* kStatic = "task-partitioning";
 constexpr const char* kImproved = "task-partitioning-improved";
@@ -48,14 +51,6 @@ TEST(PartitioningStudy, CasesEvolvedForBugS) {
 }
 
 // Figure 6.4: items per 120 s of an hour, all robots starting in the nest.
-double Quantile(std::vector<double> values, double share) {
-  std::sort(values.begin(), values.end());
-  const double place = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
-}
-
 struct Convergence {
   std::vector<double> medians;  // items per window
   double plateau = 0.0;         // items per window, mean over the cases of the last 20 minutes

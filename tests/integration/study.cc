@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "analysis/statistics/bootstrap.h"
+#include "analysis/statistics/sample.h"
 #include "tests/integration/campaign_driver.h"
 
 namespace gauntlet::testing_support {
@@ -31,8 +30,8 @@ std::vector<std::string> WriteCases(const json& population, const std::string& p
   return paths;
 }
 
-std::vector<std::vector<double>> FitnessOf(const StudySample& sample) {
-  std::vector<std::vector<double>> clusters;
+analysis::Clusters FitnessOf(const StudySample& sample) {
+  analysis::Clusters clusters;
   for (const StudyCluster& cluster : sample) {
     std::vector<double>& values = clusters.emplace_back();
     for (const SimulatedCase& one : cluster) values.push_back(one.fitness);
@@ -59,8 +58,7 @@ void MustSucceed(const ProcessResult& result) {
 }  // namespace
 
 double MeanFitness(const StudySample& sample) {
-  const std::vector<double> values = FlatFitness(sample);
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  return analysis::Describe(FlatFitness(sample)).mean;
 }
 
 double ShareOf(const StudySample& sample, const std::function<bool(const SimulatedCase&)>& holds) {
@@ -76,12 +74,9 @@ void PrintSamples(const std::vector<std::pair<std::string, StudySample>>& sample
   fmt::print("\n");
   for (const auto& [name, sample] : samples) {
     const StudyCluster all = Flatten(sample);
-    const auto n = static_cast<double>(all.size());
-    const double mean = MeanFitness(sample);
-    double squares = 0.0;
-    for (const SimulatedCase& one : all) squares += (one.fitness - mean) * (one.fitness - mean);
+    const analysis::Description fitness = analysis::Describe(FlatFitness(sample));
     fmt::print("{:<34} n {:>4}  mean {:.3f}  sd {:.3f}  zeros {:.1f} %  condition 1 {:.1f} %  2 {:.1f} %\n",
-               name, all.size(), mean, std::sqrt(squares / (n - 1.0)),
+               name, fitness.n, fitness.mean, fitness.sd.value_or(0.0),
                100.0 * ShareOf(sample, BroughtNothing), 100.0 * ShareOf(sample, &SimulatedCase::condition_1),
                100.0 * ShareOf(sample, &SimulatedCase::condition_2));
   }

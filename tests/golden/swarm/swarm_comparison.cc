@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include "analysis/statistics/equivalence_test.h"
+#include "analysis/statistics/sample.h"
 #include "controllers/examples/light_flocking_metrics.h"
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/examples/light_flocking_scenario.h"
@@ -58,12 +58,6 @@ std::vector<sim::Vec2> PositionsOf(const std::vector<sim::Pose>& poses) {
   std::vector<sim::Vec2> positions;
   for (const sim::Pose& pose : poses) positions.push_back(pose.position);
   return positions;
-}
-
-double Median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2.0;
 }
 
 Ending EndingOf(const std::map<sim::Tick, std::vector<sim::Pose>>& poses, const sim::Arena& arena,
@@ -155,7 +149,7 @@ CaseComparison Compare(const SwarmCase& swarm_case) {
     for (std::size_t robot = 0; robot < argos_poses.size(); ++robot) {
       distances.push_back((ours[kDeviationTicks[i]][robot].position - argos_poses[robot].position).norm());
     }
-    comparison.deviation[i] = Median(distances);
+    comparison.deviation[i] = analysis::Quantile(distances, 0.5);
   }
   const double link_range = flockers.traits.link_range;
   comparison.argos = EndingOf(swarm_case.argos, scenario.arena(), link_range);
