@@ -111,7 +111,7 @@ Status RemoteBackend::SupervisePool(TimePoint now) {
   for (const pid_t pid : *ended) {
     // Should a worker elsewhere have the same pid, it is taken back at its next heartbeat.
     for (const auto& [id, worker] : workers_.all()) {
-      if (worker.pid == pid) scheduler_.WorkerDied(id);
+      if (worker.pid == pid) ended_.emplace_back(now + kLastWords, id);
     }
   }
   return CheckPoolIsOfUse();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <utility>
 
 #include "tests/master/dispatch/remote_backend_fixture.h"
 
@@ -93,6 +94,28 @@ TEST_F(RemoteBackendTest, ShutdownDrainsAndEndsWithTheLastGoodbye) {
   backend_->Shutdown(seconds(10));
   EXPECT_LT(clock_.Now() - start, seconds(1));
   EXPECT_EQ(backend_->Statistics().connected, 0);
+}
+
+// Its end is seen before its goodbye is read.
+TEST_F(RemoteBackendTest, AWorkerOfThePoolThatSaidGoodbyeAndEndedHasLeftAndIsNotLost) {
+  FakePool pool;
+  pool.processes = 1;
+  Connect(&pool);
+  SayHello("a", HelloOf(kAnna));
+  Poll();
+  transport_.on_wait = [&, said = false]() mutable {
+    if (std::exchange(said, true)) return;
+    v1::Envelope goodbye;
+    goodbye.mutable_goodbye()->set_reason("the master is leaving");
+    transport_.Deliver("a", goodbye.SerializeAsString());
+    pool.ended = {1000 + static_cast<pid_t>(kAnna)};
+    pool.processes = 0;
+  };
+  backend_->Shutdown(seconds(10));
+  std::vector<std::string> kinds;
+  for (const DispatchEvent& event : backend_->TakeEvents()) kinds.push_back(event.kind);
+  EXPECT_THAT(kinds, ElementsAre("worker-joined", "worker-left"));
+  EXPECT_EQ(backend_->Statistics().lost, 0);
 }
 
 TEST_F(RemoteBackendTest, ShutdownGivesNoLeaseToThoseWhoComeLate) {
