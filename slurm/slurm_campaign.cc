@@ -36,7 +36,7 @@ std::string AsJobName(std::string text) {
 
 Result<std::string> Template(const std::string& path, std::string_view shipped, std::string_view key) {
   if (path.empty()) return std::string(shipped);
-  Result<std::string> text = ReadSmallFile(path, kMostTemplateBytes);
+  Result<std::string> text = ReadRegularFile(path, kMostTemplateBytes);
   if (!text) return InvalidInput(fmt::format("slurm.{}: {}", key, text.error().message));
   return text;
 }

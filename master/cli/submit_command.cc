@@ -51,8 +51,11 @@ Result<slurm::SlurmSettings> ReadSettings(const SubmitOptions& options, const Ex
   if (const Status possible = CheckBindEndpoint(settings->bind, where); !possible) return possible.error();
   if (settings->tag.empty()) settings->tag = slurm::DrawTag(experiment.name);
   for (std::string* path : {&settings->worker_template, &settings->master_template}) {
+    if (path->empty()) continue;
+    // Links are followed now, by whoever names the file; what the campaign keeps leads to the file itself.
     std::error_code error;
-    if (!path->empty()) *path = std::filesystem::absolute(*path, error).string();
+    const std::filesystem::path file = std::filesystem::weakly_canonical(*path, error);
+    *path = error ? std::filesystem::absolute(*path, error).string() : file.string();
   }
   return settings;
 }

@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -7,6 +9,7 @@
 
 #include "master/cli/command_line.h"
 #include "master/cli/sweep.h"
+#include "slurm/job_script.h"
 #include "tests/support/fake_campaigns.h"
 #include "tests/support/fake_slurm.h"
 #include "tests/support/local_socket.h"
@@ -114,6 +117,31 @@ TEST_F(Submit, ResumeGivesTheMasterToSlurmAgainUnlessOneIsThere) {
   EXPECT_EQ(Run({"resume", dir()}), kExitUsage);
   EXPECT_THAT(err_.str(), HasSubstr("job 13 (PENDING) is the campaign's master already"));
   EXPECT_THAT(cluster_.submitted, SizeIs(2));
+}
+
+TEST_F(Submit, ATemplateIsARegularFileOrALinkToOne) {
+  const std::string shipped = root_ / "mine.sbatch";
+  std::ofstream(shipped) << slurm::kWorkerTemplate;
+  std::filesystem::create_symlink(shipped, root_ / "link.sbatch");
+  const std::string link = "worker_template=" + (root_ / "link.sbatch").string();
+  EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--slurm", link}), kExitDone) << err_.str();
+  EXPECT_THAT(campaigns_.slurm, HasSubstr("worker_template = \"" + shipped + "\""));
+
+  const std::string pipe = root_ / "pipe.sbatch";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string key : {"worker_template", "master_template"}) {
+    for (const auto& [file, kind] :
+         {std::pair(pipe, "a named pipe"), std::pair(std::string("/dev/zero"), "a device"),
+          std::pair(root_.string(), "a directory")}) {
+      EXPECT_EQ(Run({"submit", "flocking", "--dir", root_ / "other", "--slurm", key + "=" + file}),
+                kExitUsage);
+      EXPECT_THAT(err_.str(), AllOf(HasSubstr("slurm." + key), HasSubstr(file + " is " + kind)));
+      // Of a campaign that exists.
+      std::ofstream(dir() + "/slurm.toml") << "tag = \"x\"\n" << key << " = \"" << file << "\"\n";
+      EXPECT_EQ(Run({"resume", dir()}), kExitUsage);
+      EXPECT_THAT(err_.str(), HasSubstr(file + " is " + kind));
+    }
+  }
 }
 
 TEST_F(Submit, StopCancelsWhatIsLeft) {
