@@ -41,7 +41,6 @@ Individual BreedingSearch::GiveBirth(sim::Genome genome, const Individual& first
   Individual child = MakeIndividual(next_id_++, generator_.WithObstacles(std::move(genome)));
   child.parents = {first.id, second.id};
   child.birth_generation = generation;
-  newborns_.push_back(child);
   return child;
 }
 

@@ -33,7 +33,8 @@ class BreedingSearch : public PopulationSearch {
   // The children of population_[first] and population_[second], not born yet.
   Offspring BreedPair(std::size_t first, std::size_t second, std::uint32_t number,
                       std::uint32_t couple) const;
-  // Gives birth to a child with the next number.
+  // Gives birth to a child with the next number. That it is handed over by TakeNewborns is the caller's
+  // business.
   Individual GiveBirth(sim::Genome genome, const Individual& first, const Individual& second,
                        std::uint32_t generation);
 

@@ -71,6 +71,7 @@ void GeneticAlgorithm::BreedCouple(std::size_t first, std::size_t second, std::u
   Offspring offspring = BreedPair(first, second, generation_, couple);
   for (sim::Genome* genome : {&offspring.first, &offspring.second}) {
     children_.push_back(GiveBirth(std::move(*genome), population_[first], population_[second], generation_));
+    newborns_.push_back(children_.back());
   }
 }
 

@@ -64,9 +64,8 @@ std::uint32_t SteadyStateSearch::GenerationOf(IndividualId id) const {
 }
 
 void SteadyStateSearch::Release() {
-  while (next_id_ <= std::min(Planned(), evaluations_done_ + Lag())) {
+  while (next_id_ <= evaluations_done_ + Lag()) {
     if (next_id_ <= PopulationSize()) {
-      newborns_.push_back(initial_[next_id_ - 1]);
       waiting_.push_back(initial_[next_id_ - 1]);
       ++next_id_;
       continue;
@@ -81,7 +80,8 @@ void SteadyStateSearch::Release() {
 
 std::vector<EvaluationRequest> SteadyStateSearch::Ask() {
   std::vector<EvaluationRequest> requests;
-  for (; asked_ < waiting_.size(); ++asked_) {
+  for (; asked_ < waiting_.size() && waiting_[asked_].id <= Planned(); ++asked_) {
+    newborns_.push_back(waiting_[asked_]);
     requests.push_back(Request(waiting_[asked_], waiting_[asked_].birth_generation));
   }
   return requests;
@@ -112,7 +112,7 @@ void SteadyStateSearch::SaveRest(CanonicalEncoder& encoder) const {
 
 Status SteadyStateSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*history*/) {
   RestoreBirths(decoder);
-  if (next_id_ <= evaluations_done_ || next_id_ > evaluations_done_ + Lag() + 1) {
+  if (next_id_ != evaluations_done_ + Lag() + 1) {
     return Damaged("its numbers contradict each other");
   }
   Result<std::vector<Individual>> population =
@@ -128,8 +128,6 @@ Status SteadyStateSearch::RestoreRest(CanonicalDecoder& decoder, const History& 
       return Damaged(fmt::format("individual {} waits", waiting_[i].id));
     }
   }
-  if (evaluations_done_ == 0) newborns_.assign(waiting_.begin(), waiting_.end());
-  if (decoder.ok()) Release();  // when it was saved at the end of a shorter search
   return Ok{};
 }
 

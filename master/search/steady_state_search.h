@@ -20,8 +20,10 @@ namespace gauntlet::master {
 //   else: the first child of two parents out of the `population` fittest of results 1 .. k-L: the two fittest
 //     (2BestParents-2WorseAway), or two at random (the other schemes).
 //
-// population x generations evaluations in all; "generation" counts populations' worth of them. Population()
-// is those who have been told and are among the fittest, in order of birth; at most search.population.
+// Those who would come next are born at the end of a search too, though nobody asks for them: a longer search
+// goes on with them. population x generations evaluations in all; "generation" counts populations' worth of
+// them. Population() is those who have been told and are among the fittest, in order of birth; at most
+// search.population.
 class SteadyStateSearch : public BreedingSearch {
  public:
   // Error: the ranges leave no room for a valid case.
@@ -42,7 +44,7 @@ class SteadyStateSearch : public BreedingSearch {
   std::uint64_t Lag() const;
   std::uint64_t Planned() const;
   std::uint32_t GenerationOf(IndividualId id) const;
-  // Gives birth to everybody who may be asked for by now.
+  // Gives birth to everybody who may be asked for by now, however long the search is.
   void Release();
 
   std::vector<Individual> initial_;

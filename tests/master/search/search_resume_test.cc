@@ -223,6 +223,51 @@ TEST(SearchRestoreTest, AFinishedSearchMayGoOnForMoreGenerationsButNotEndEarlier
               HasSubstr("has 32 evaluations, but the experiment ends after 24: search.generations = 3"));
 }
 
+// A state says nothing of how long the search was to be: every search goes on from its end as if it had been
+// longer from the start.
+TEST(SearchRestoreTest, ASearchThatGoesOnForLongerEqualsOneThatWasThatLong) {
+  for (const char* algorithm : {"genetic", "steady-state", "random"}) {
+    for (const ParentSelection selection :
+         {ParentSelection::kAllParentBestHalf, ParentSelection::kTwoBestParentsTwoWorseAway,
+          ParentSelection::kTwoRandomParentsTwoWorseAway}) {
+      const auto of_length = [&](int generations) {
+        SearchSetup setup = GeneticSetup(selection);
+        setup.experiment.search.algorithm = algorithm;
+        setup.experiment.search.generations = generations;
+        setup.experiment.search.parameters["cases"] = 100.0 * generations;
+        return std::move(RowOf(setup.experiment).make(setup)).value();
+      };
+      const auto run = [](SearchAlgorithm& search, std::vector<EvaluationOutcome>& told) {
+        std::vector<IndividualId> born;
+        while (!Step(search, told).empty()) continue;
+        for (const Individual& one : search.TakeNewborns()) born.push_back(one.id);
+        EXPECT_TRUE(search.Progress().finished);
+        EXPECT_EQ(search.Progress().evaluations_done, search.Progress().evaluations_planned);
+        return born;
+      };
+      std::vector<EvaluationOutcome> told_whole;
+      const auto whole = of_length(6);
+      const std::vector<IndividualId> born_whole = run(*whole, told_whole);
+      std::vector<EvaluationOutcome> told;
+      std::vector<IndividualId> born;
+      std::unique_ptr<SearchAlgorithm> search;
+      for (const int generations : {1, 2, 6}) {
+        const std::string state = search ? StateOf(*search) : "";
+        search = of_length(generations);
+        if (!state.empty()) {
+          const Status restored = RestoreState(*search, state, told);
+          ASSERT_TRUE(restored.ok()) << restored.error().message;
+        }
+        const std::vector<IndividualId> more = run(*search, told);
+        born.insert(born.end(), more.begin(), more.end());
+      }
+      EXPECT_EQ(StateOf(*search), StateOf(*whole)) << algorithm;
+      EXPECT_EQ(born, born_whole) << algorithm;
+      EXPECT_EQ(told.size(), told_whole.size());
+    }
+  }
+}
+
 TEST(SearchRestoreTest, StateOfANewerFormatIsRefusedAsSuch) {
   const SearchSetup setup = GeneticSetup(ParentSelection::kAllParentBestHalf);
   std::string state = StateAfterOneGeneration(setup);
