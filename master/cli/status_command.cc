@@ -32,7 +32,7 @@ std::string RunsOf(const Json& worker) {
   std::string text;
   for (const Json& run : worker["runs"]) {
     const bool waits = run.value("state", "") == "waiting";  // behind those that run there
-    const int attempt = run.value("attempt", 1);
+    const auto attempt = run.value("attempt", std::uint64_t{1});
     text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", run["run"].get<std::uint64_t>(),
                         waits ? "next" : Seconds(run["seconds"]),
                         attempt > 1 ? fmt::format(", attempt {}", attempt) : "");
@@ -50,7 +50,7 @@ std::string JobsText(const Json& status) {
     const std::string name = allocation.value("role", "");
     table.AddRow({allocation["job"].get<std::string>() + (name.empty() ? "" : " " + name),
                   state + (allocation["cancelled"] == true ? ", cancelled" : ""), allocation["reason"],
-                  allocation["nodes"], fmt::format("{}", allocation["workers"].get<int>())});
+                  allocation["nodes"], fmt::format("{}", allocation["workers"].get<std::uint64_t>())});
   }
   return "\n" + table.ToText();
 }
@@ -64,25 +64,25 @@ std::string WithDirectory(std::string sentence, const std::string& directory) {
 }
 
 std::string StatusText(const Json& status, const std::string& directory) {
-  std::string text = fmt::format("{}: {}", directory, status.value("state", "unknown"));
+  const auto count = [&status](const char* key) { return status.value(key, std::uint64_t{0}); };
+  std::string text = fmt::format("{}: {}", directory, Printable(status.value("state", "unknown")));
   if (const Json& master = status.value("master", Json()); master.is_object()) {
     text += fmt::format(", master {} on {} (start number {}), {}", master["pid"].get<std::int64_t>(),
-                        master["host"].get<std::string>(), master["epoch"].get<std::uint64_t>(),
+                        Printable(master["host"].get<std::string>()), master["epoch"].get<std::uint64_t>(),
                         master["encrypted"] == true ? "encrypted" : "plaintext");
   }
   text += "\n";
   if (status.contains("runs_done")) {
-    text += fmt::format(
-        "generation {}/{}, {} runs done, {} running, {} waiting, {:.1f}/s\n", status.value("generation", 0),
-        status.value("generations", 0), FormatCount(status.value("runs_done", std::uint64_t{0})),
-        status.value("runs_running", 0), status.value("runs_queued", 0) + status.value("runs_ahead", 0),
-        status.value("runs_per_second", 0.0));
+    text +=
+        fmt::format("generation {}/{}, {} runs done, {} running, {} waiting, {:.1f}/s\n", count("generation"),
+                    count("generations"), FormatCount(count("runs_done")), count("runs_running"),
+                    count("runs_queued") + count("runs_ahead"), status.value("runs_per_second", 0.0));
   }
-  if (status.value("nondeterministic", 0) > 0) {
+  if (count("nondeterministic") > 0) {
     text += fmt::format("NONDETERMINISTIC: {} runs ended differently on two workers, see log/master.log\n",
-                        status["nondeterministic"].get<std::uint64_t>());
+                        count("nondeterministic"));
   }
-  if (const auto lone = status.value("verdicts_of_one_worker", std::uint64_t{0}); lone > 0) {
+  if (const std::uint64_t lone = count("verdicts_of_one_worker"); lone > 0) {
     text += fmt::format(
         "{} runs were given up on the word of one worker each: there was no other to ask, see "
         "log/master.log\n",
@@ -101,7 +101,7 @@ std::string StatusText(const Json& status, const std::string& directory) {
   for (const Json& worker : workers) {
     if (const Json& reason = worker.value("quarantined", Json()); reason.is_string())
       text += fmt::format("worker {} is quarantined: {}\n", Printable(worker["worker"].get<std::string>()),
-                          reason.get<std::string>());
+                          Printable(reason.get<std::string>()));
   }
   Table table({"worker", "state", ">heard", "runs"});
   for (std::size_t i = 0; i < std::min(kShownWorkers, workers.size()); ++i) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string_view>
 
 #include "proto/json_text.h"
 
@@ -77,7 +79,133 @@ ordered_json Json(const AllocationView& allocation) {
           {"nodes", allocation.nodes}, {"workers", allocation.workers}, {"cancelled", allocation.cancelled}};
 }
 
+enum class Kind { kText, kTextOrNone, kCount, kNumber, kFlag, kObjectOrNone, kList };
+
+struct Field {
+  const char* name;
+  Kind kind;
+  bool required = false;
+};
+
+constexpr Field kStatusFields[] = {{"state", Kind::kText, true},
+                                   {"master", Kind::kObjectOrNone},
+                                   {"unix_ms", Kind::kCount},
+                                   {"generation", Kind::kCount},
+                                   {"generations", Kind::kCount},
+                                   {"runs_done", Kind::kCount},
+                                   {"runs_running", Kind::kCount},
+                                   {"runs_queued", Kind::kCount},
+                                   {"runs_ahead", Kind::kCount},
+                                   {"runs_per_second", Kind::kNumber},
+                                   {"nondeterministic", Kind::kCount},
+                                   {"verdicts_of_one_worker", Kind::kCount},
+                                   {"why_nothing_runs", Kind::kTextOrNone},
+                                   {"pool_trouble", Kind::kTextOrNone},
+                                   {"allocations", Kind::kList},
+                                   {"worker_list", Kind::kList, true}};
+constexpr Field kMasterFields[] = {{"host", Kind::kText, true},
+                                   {"pid", Kind::kCount, true},
+                                   {"epoch", Kind::kCount, true},
+                                   {"encrypted", Kind::kFlag, true}};
+constexpr Field kAllocationFields[] = {{"job", Kind::kText, true},      {"role", Kind::kText},
+                                       {"state", Kind::kText, true},    {"reason", Kind::kText, true},
+                                       {"nodes", Kind::kText, true},    {"workers", Kind::kCount, true},
+                                       {"cancelled", Kind::kFlag, true}};
+constexpr Field kWorkerFields[] = {{"worker", Kind::kText, true},
+                                   {"state", Kind::kText, true},
+                                   {"silent_seconds", Kind::kNumber, true},
+                                   {"quarantined", Kind::kTextOrNone},
+                                   {"runs", Kind::kList, true}};
+constexpr Field kRunFields[] = {{"run", Kind::kCount, true},
+                                {"state", Kind::kText},
+                                {"attempt", Kind::kCount},
+                                {"seconds", Kind::kNumber, true}};
+
+// Whoever adds two counts must not overflow.
+constexpr std::uint64_t kMostCounted = 1ULL << 62;
+
+bool Is(const ordered_json& value, Kind kind) {
+  switch (kind) {
+    case Kind::kText:
+      return value.is_string();
+    case Kind::kTextOrNone:
+      return value.is_string() || value.is_null();
+    case Kind::kCount:
+      return value.is_number_unsigned() && value.get<std::uint64_t>() <= kMostCounted;
+    case Kind::kNumber:
+      return value.is_number();
+    case Kind::kFlag:
+      return value.is_boolean();
+    case Kind::kObjectOrNone:
+      return value.is_object() || value.is_null();
+    case Kind::kList:
+      return value.is_array();
+  }
+  return false;
+}
+
+std::string_view InWords(Kind kind) {
+  switch (kind) {
+    case Kind::kText:
+      return "a text";
+    case Kind::kTextOrNone:
+      return "a text or null";
+    case Kind::kCount:
+      return "a count";
+    case Kind::kNumber:
+      return "a number";
+    case Kind::kFlag:
+      return "true or false";
+    case Kind::kObjectOrNone:
+      return "an object or null";
+    case Kind::kList:
+      return "a list";
+  }
+  return "";
+}
+
+// `place`: of the object, "" or with the point that separates it from its fields.
+Status CheckFields(const ordered_json& object, std::span<const Field> fields, const std::string& place) {
+  if (!object.is_object())
+    return Error{ErrorKind::kCorrupt, fmt::format("{} is no object", place.substr(0, place.size() - 1))};
+  for (const Field& field : fields) {
+    const auto found = object.find(field.name);
+    if (found == object.end() ? !field.required : Is(*found, field.kind)) continue;
+    return Error{ErrorKind::kCorrupt,
+                 fmt::format("{}{} is {}, where {} belongs", place, field.name,
+                             found == object.end() ? "missing" : found->type_name(), InWords(field.kind))};
+  }
+  return Ok{};
+}
+
 }  // namespace
+
+Status CheckStatus(const ordered_json& status) {
+  if (Status own = CheckFields(status, kStatusFields, ""); !own) return own;
+  if (const auto master = status.find("master"); master != status.end() && master->is_object()) {
+    if (Status own = CheckFields(*master, kMasterFields, "master."); !own) return own;
+  }
+  const auto check_each = [](const ordered_json& object, const char* list, const std::string& place,
+                             const auto& check) -> Status {
+    const auto found = object.find(list);
+    for (std::size_t i = 0; found != object.end() && i < found->size(); ++i) {
+      if (Status right = check((*found)[i], fmt::format("{}{}[{}].", place, list, i)); !right) return right;
+    }
+    return Ok{};
+  };
+  const auto check_allocation = [](const ordered_json& allocation, const std::string& place) {
+    return CheckFields(allocation, kAllocationFields, place);
+  };
+  const auto check_run = [](const ordered_json& run, const std::string& place) {
+    return CheckFields(run, kRunFields, place);
+  };
+  const auto check_worker = [&](const ordered_json& worker, const std::string& place) -> Status {
+    if (Status own = CheckFields(worker, kWorkerFields, place); !own) return own;
+    return check_each(worker, "runs", place, check_run);
+  };
+  if (Status right = check_each(status, "allocations", "", check_allocation); !right) return right;
+  return check_each(status, "worker_list", "", check_worker);
+}
 
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
                            const BackendView& backend) {

@@ -4,10 +4,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/result.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/search/search_algorithm.h"
 
@@ -61,6 +63,10 @@ struct MasterView {
 // The document of status.json, README section "Status".
 std::string StatusJson(const MasterView& master, const CampaignProgress& progress,
                        const BackendView& backend);
+
+// kCorrupt when what `status` and `watch` read of such a document is missing or is of another type: it names
+// the place, "worker_list[2].runs". Anybody may have written what claims to be one.
+Status CheckStatus(const nlohmann::ordered_json& status);
 
 // One sentence why no run is simulated at this moment; "" while some are.
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,

@@ -209,6 +209,10 @@ class Campaigns final : public CampaignService {
       if (!json.is_object()) {
         return Error{ErrorKind::kCorrupt, fmt::format("{} does not parse", directory->status_path())};
       }
+      if (const Status right = CheckStatus(json); !right) {
+        return Error{right.error().kind, fmt::format("{} is none that a master of this version writes: {}",
+                                                     directory->status_path(), right.error().message)};
+      }
       json["status_age_seconds"] =
           static_cast<double>(UnixMilliseconds() - json.value("unix_ms", std::int64_t{0})) / 1000.0;
       return JsonText(json);
