@@ -106,7 +106,8 @@ ExitCode FailCampaign(CommandContext& context, const CampaignRun& campaign, cons
   // What was deleted or replaced under this master says itself what is left.
   if (began && error.kind == ErrorKind::kNotFound) return kExitStopped;
   const bool resumable = error.kind == ErrorKind::kNoSpace ||
-                         (began && (error.kind == ErrorKind::kIo || error.kind == ErrorKind::kInUse));
+                         (began && (error.kind == ErrorKind::kIo || error.kind == ErrorKind::kInUse)) ||
+                         (error.kind == ErrorKind::kInUse && StopSignal::Requested());
   if (!resumable) return code;
   PrintMessage(context, HowToGoOn(context, campaign.directory));
   return kExitStopped;

@@ -159,6 +159,12 @@ Result<std::unique_ptr<CampaignLock>> CampaignLock::Wait(const std::string& path
       }
     }
     if (answer != FlockAnswer::kHeldByOther && !undecided) return lock;
+    if (options.give_up()) {
+      return Error{ErrorKind::kInUse,
+                   fmt::format("campaign {} is held by another process, and this one was told to stop while "
+                               "it waited for it; nothing was changed",
+                               campaign)};
+    }
     if (waited >= options.patience && !undecided) {
       const std::string last =
           owner ? fmt::format(" (its last master: host {}, pid {})", owner->process.host, owner->process.pid)

@@ -26,6 +26,8 @@ struct LockOptions {
   // The last heartbeat of an owner on another machine may lie in our future, because its clock is ahead. A
   // master then waits this long for the next heartbeat; when none comes, the owner counts as dead.
   std::chrono::milliseconds beat_patience{15000};
+  // Asked again and again while it waits: true ends the wait with kInUse.
+  std::function<bool()> give_up = [] { return false; };
   // Whether the campaign's directory was copied, and its lock file with it. The lock file then names the
   // master of the original, which is no reason to keep away from the copy. It is asked only when that master
   // lives on this machine: had it locked this very file and not the original's, flock(2) would say so.

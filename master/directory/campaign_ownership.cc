@@ -118,19 +118,22 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
   return Own(*std::move(directory), *std::move(lock), &meta);
 }
 
-Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other) {
+Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other,
+                                       const std::function<bool()>& give_up) {
   Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
   if (!directory) return directory.error();
   if (Status trusted = directory->CheckTrusted(); !trusted) return trusted.error();
   LockOptions options = OptionsFor(*directory);
   options.patience = kReadersPatience;
+  options.give_up = give_up;
   Result<std::unique_ptr<CampaignLock>> lock =
       CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
   if (!lock && lock.error().kind == ErrorKind::kInUse && other == LivingMaster::kFence) {
     if (Result<std::uint64_t> fence = directory->StartEpoch(); !fence) return fence.error();
     const auto deadline =
         std::chrono::steady_clock::now() + CampaignLock::kStaleAfter + std::chrono::seconds(10);
-    while (!lock && lock.error().kind == ErrorKind::kInUse && std::chrono::steady_clock::now() < deadline) {
+    while (!lock && lock.error().kind == ErrorKind::kInUse && !give_up() &&
+           std::chrono::steady_clock::now() < deadline) {
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
       lock = CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
     }

@@ -48,9 +48,12 @@ enum class LivingMaster {
   kFence,    // its epoch becomes outdated, which makes it stop; waited for until its lock is stale
 };
 
-// Takes an existing campaign. Errors: those of CampaignDirectory::Open and CheckTrusted,
-// CampaignLock::Acquire and SqliteStore::Open.
-Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other = LivingMaster::kRespect);
+// Takes an existing campaign, which may mean waiting for those who read it: `give_up` is asked meanwhile, and
+// true ends the wait. Errors: those of CampaignDirectory::Open and CheckTrusted, CampaignLock::Acquire and
+// SqliteStore::Open.
+Result<CampaignOwnership> TakeCampaign(
+    const std::string& dir, LivingMaster other = LivingMaster::kRespect,
+    const std::function<bool()>& give_up = [] { return false; });
 
 // A campaign to look at. Without a living master: masters wait meanwhile, and no byte of the directory
 // changes, which may be read-only. Beside a master of this machine: what it has committed by now; it does not

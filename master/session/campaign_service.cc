@@ -128,7 +128,8 @@ class Campaigns final : public CampaignService {
 
   Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) override {
     Result<CampaignOwnership> campaign =
-        TakeCampaign(dir, options.batch_job.empty() ? LivingMaster::kRespect : LivingMaster::kFence);
+        TakeCampaign(dir, options.batch_job.empty() ? LivingMaster::kRespect : LivingMaster::kFence,
+                     options.stop_requested);
     if (!campaign) return campaign.error();
     const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
     if (!plans) return plans.error();

@@ -278,6 +278,21 @@ TEST_F(CampaignLockTest, AMasterWaitsForReaders) {
   leaving.join();
 }
 
+TEST_F(CampaignLockTest, AMasterThatIsToldToStopWaitsForNobody) {
+  ASSERT_TRUE(Acquire().ok());
+  const Result<std::unique_ptr<CampaignLock>> reader = Read();
+  ASSERT_TRUE(reader.ok());
+  LockOptions options = Options(1000 * static_cast<int>(testing_support::kPatience.count()));
+  int asked = 0;
+  options.give_up = [&asked] { return ++asked == 3; };
+  const Result<std::unique_ptr<CampaignLock>> master = CampaignLock::Acquire(path_, "camp", options);
+  ASSERT_FALSE(master.ok());
+  EXPECT_EQ(master.error().kind, ErrorKind::kInUse);
+  EXPECT_THAT(master.error().message,
+              HasSubstr("camp is held by another process, and this one was told to stop"));
+  EXPECT_EQ(asked, 3);
+}
+
 TEST_F(CampaignLockTest, ReadingNeedsNoLockFile) {
   EXPECT_TRUE(Read().ok());
   EXPECT_FALSE(std::filesystem::exists(path_));
