@@ -147,25 +147,22 @@ std::vector<ExtraSet> SetsOf(const SizeOptions& options) {
   return sets;
 }
 
-Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const std::vector<ExtraSet>& extra) {
-  const Result<std::uint64_t> seed = options.seed.empty() ? 0 : ParseSeed(options.seed);
-  if (!seed) return seed.error();
-  std::vector<std::string> sets = options.sets;
+Result<std::vector<std::string>> JoinSets(const std::vector<std::string>& sets,
+                                          const std::vector<ExtraSet>& extra) {
+  std::vector<std::string> all = sets;
   for (const auto& [option, key, value] : extra) {
     const std::string one = fmt::format("{}={}", key, value);
-    for (const std::string& set : options.sets) {
+    for (const std::string& set : sets) {
       if (!set.starts_with(key + "=") || set == one) continue;
       return InvalidInput(fmt::format("--set {}: {} already says {}; give one of them", set, option, one));
     }
-    sets.push_back(one);
+    all.push_back(one);
   }
-  Result<Experiment> experiment = LoadExperiment(options.experiment, sets, BuiltInCatalogue());
-  if (experiment) {
-    if (!options.seed.empty()) experiment->seed = *seed;
-    return experiment;
-  }
-  // The person typed --generations 0, not --set search.generations=0.
-  Error error = experiment.error();
+  return all;
+}
+
+// The person typed --generations 0, not --set search.generations=0.
+Error AsTyped(Error error, const std::vector<ExtraSet>& extra) {
   for (const auto& [option, key, value] : extra) {
     const std::string place = fmt::format("--set {}={}:", key, value);
     if (!error.message.starts_with(place)) continue;
@@ -173,6 +170,17 @@ Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const st
     break;
   }
   return error;
+}
+
+Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const std::vector<ExtraSet>& extra) {
+  const Result<std::uint64_t> seed = options.seed.empty() ? 0 : ParseSeed(options.seed);
+  if (!seed) return seed.error();
+  const Result<std::vector<std::string>> sets = JoinSets(options.sets, extra);
+  if (!sets) return sets.error();
+  Result<Experiment> experiment = LoadExperiment(options.experiment, *sets, BuiltInCatalogue());
+  if (!experiment) return AsTyped(experiment.error(), extra);
+  if (!options.seed.empty()) experiment->seed = *seed;
+  return experiment;
 }
 
 std::string DefaultDirectory(const std::string& experiment_name, std::time_t now) {

@@ -93,6 +93,11 @@ struct ExtraSet {
 };
 // Those of --generations and --population that were given.
 std::vector<ExtraSet> SetsOf(const SizeOptions& options);
+// `sets`, and `extra` as "key=value" behind them. Error: one of `extra` contradicts one of `sets`.
+Result<std::vector<std::string>> JoinSets(const std::vector<std::string>& sets,
+                                          const std::vector<ExtraSet>& extra);
+// An error that begins with "--set key=value:" begins with the option instead that stands for it.
+Error AsTyped(Error error, const std::vector<ExtraSet>& extra);
 // The experiment with --set, then `extra`, then --seed applied. Error: also when `extra` contradicts a --set.
 Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const std::vector<ExtraSet>& extra);
 

@@ -7,6 +7,7 @@
 #include "base/shell_quoted.h"
 #include "master/cli/commands.h"
 #include "master/cli/run_campaign.h"
+#include "master/cli/stop_signal.h"
 #include "master/cli/submitted_campaign.h"
 
 namespace gauntlet::master {
@@ -14,10 +15,29 @@ namespace {
 
 struct ResumeOptions {
   std::string directory;
+  std::string generations;
+  std::vector<std::string> sets;
   RunningOptions running;
   BindOptions bind;
   bool as_job = false;
 };
+
+// Makes the campaign longer, if that is wanted.
+Status Extend(CommandContext& context, const ResumeOptions& options) {
+  std::vector<ExtraSet> extra;
+  if (!options.generations.empty())
+    extra.push_back({"--generations", "search.generations", options.generations});
+  const Result<std::vector<std::string>> sets = JoinSets(options.sets, extra);
+  if (!sets) return sets.error();
+  if (sets->empty()) return Ok{};
+  const Result<std::string> change =
+      context.campaigns.Extend(options.directory, *sets, StopSignal::Requested);
+  if (!change) return AsTyped(change.error(), extra);
+  if (options.running.quiet) return Ok{};
+  PrintMessage(context, change->empty() ? fmt::format("{} is that long already", options.directory)
+                                        : fmt::format("{} goes on: {}", options.directory, *change));
+  return Ok{};
+}
 
 // The master's job of a submitted campaign, handed to Slurm again unless it is there.
 ExitCode SubmitAgain(CommandContext& context, const ResumeOptions& options,
@@ -43,21 +63,32 @@ ExitCode SubmitAgain(CommandContext& context, const ResumeOptions& options,
   return kExitDone;
 }
 
+ExitCode ResumeSubmitted(CommandContext& context, const ResumeOptions& options,
+                         const slurm::SlurmCampaign& campaign) {
+  const Status extended = [&] {
+    const StopSignal handlers;
+    return Extend(context, options);
+  }();
+  if (!extended) {
+    const ExitCode code = Fail(context, extended.error());
+    return StopSignal::Requested() ? kExitStopped : code;
+  }
+  const char* job = std::getenv("SLURM_JOB_ID");
+  if (options.as_job)
+    return ServeSubmitted(context, options.running, options.directory, campaign,
+                          job != nullptr ? job : "unknown");
+  if (campaign.settings().master == slurm::MasterPlace::kHere)
+    return ServeSubmitted(context, options.running, options.directory, campaign, "");
+  return SubmitAgain(context, options, campaign);
+}
+
 ExitCode RunResume(CommandContext& context, const ResumeOptions& options) {
   const bool bound = !options.bind.endpoint.empty();
   if (!bound && options.running.workers.empty()) {
     const Result<std::optional<slurm::SlurmCampaign>> submitted =
         slurm::SlurmCampaign::Find(options.directory);
     if (!submitted) return Fail(context, submitted.error());
-    if (submitted->has_value()) {
-      const char* job = std::getenv("SLURM_JOB_ID");
-      if (options.as_job)
-        return ServeSubmitted(context, options.running, options.directory, **submitted,
-                              job != nullptr ? job : "unknown");
-      if ((*submitted)->settings().master == slurm::MasterPlace::kHere)
-        return ServeSubmitted(context, options.running, options.directory, **submitted, "");
-      return SubmitAgain(context, options, **submitted);
-    }
+    if (submitted->has_value()) return ResumeSubmitted(context, options, **submitted);
   }
   if (options.as_job)
     return Fail(context,
@@ -73,7 +104,8 @@ ExitCode RunResume(CommandContext& context, const ResumeOptions& options) {
   campaign.session.workers = *workers;
   campaign.serving = options.running;
   campaign.bind = options.bind;
-  campaign.run = [&](const SessionOptions& session) {
+  campaign.run = [&](const SessionOptions& session) -> Result<SessionReport> {
+    if (Status extended = Extend(context, options); !extended) return extended.error();
     return context.campaigns.Resume(options.directory, session);
   };
   return RunCampaign(context, campaign);
@@ -85,6 +117,10 @@ void AddResume(CommandParser& parser) {
   const auto [command, options] =
       parser.Add("resume", "go on with a campaign that was stopped or killed", RunResume);
   AddDirectory(command, options.directory);
+  AddValue(command, "--generations", "G", options.generations, "short for --set search.generations=G");
+  AddValue(command, "--set", "KEY=VALUE", options.sets,
+           "make the campaign longer: a greater number for the key that says how long its search goes on "
+           "(search.generations, search.cases)");
   AddRunningOptions(command, options.running);
   AddBindOptions(command, options.bind);
   command.add_flag(
@@ -92,13 +128,15 @@ void AddResume(CommandParser& parser) {
       "for the master's job of a submitted campaign: replaces a twin, leaves workers to its successor");
   command.footer(
       R"(Goes on where the campaign was, whatever ended it; no finished run is simulated again, and the result
-is that of an undisturbed campaign. A finished campaign is only summarised.
+is that of an undisturbed campaign. A finished campaign is only summarised, unless --generations or --set make
+it longer: it then ends as one that was that long from the start. All searches of a sweep become that long.
 
 With --bind, workers come from elsewhere, as with 'gauntlet master'. A campaign that was submitted to Slurm
 goes on there, unless --workers or --bind is given; jobs of it that are left are used.
 
 Examples:
   gauntlet resume campaigns/flocking-20260131T120000Z --workers 4
+  gauntlet resume DIR --generations 80
   gauntlet resume DIR --bind 'tcp://0.0.0.0:*')");
 }
 

@@ -14,6 +14,7 @@
 #include "base/system/clock.h"
 #include "base/system/process_identity.h"
 #include "master/directory/opened_files.h"
+#include "master/store/event_kinds.h"
 
 namespace gauntlet::master {
 namespace {
@@ -68,6 +69,11 @@ Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<Campa
   *identity = *std::move(opened);
   Result<CampaignOrigin> origin = ConfirmOrigin(directory, (*store)->meta().campaign_id);
   if (!origin) return origin.error();
+  if (!origin->copied_from.empty()) {
+    (*store)->AddEvent({UnixMilliseconds(), event::kCopied,
+                        fmt::format("this directory is a copy of campaign {}; it is campaign {} from now on",
+                                    origin->copied_from, origin->campaign_id)});
+  }
   return CampaignOwnership{std::move(directory), std::move(lock), *epoch,
                            *std::move(origin),   check,           *std::move(store)};
 }

@@ -29,7 +29,7 @@ struct CampaignOwnership {
   std::unique_ptr<SqliteStore> store;
 };
 
-// Files of a campaign that never change; "" = there is none.
+// Files of a campaign that say what it is to do; "" = there is none.
 struct CampaignTexts {
   std::string experiment;     // experiment.toml
   std::string searches = "";  // searches.json

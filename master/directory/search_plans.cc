@@ -69,8 +69,7 @@ Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store) {
     const Experiment& experiment = plans[i].experiment;
     std::string name = experiment.name;
     if (!plans[i].settings.empty()) name += ": " + plans[i].settings;
-    store.AddSearch(
-        {static_cast<SearchId>(i + 1), name, experiment.search.algorithm, experiment.seed, false});
+    store.AddSearch({static_cast<SearchId>(i + 1), name, experiment.search.algorithm, experiment.seed});
   }
   return Ok{};
 }

@@ -190,14 +190,17 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.lone_verdicts = *lone_verdicts;
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
-  summary.finished = std::ranges::any_of(
-      *searches, [&](const StoredSearch& stored) { return stored.id == search_id && stored.finished; });
+  summary.finished = std::ranges::any_of(*searches, [&](const StoredSearch& stored) {
+    return stored.id == search_id && HasFinished(stored, experiment, search);
+  });
   return summary;
 }
 
 Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, ResultStore& store) {
   const Result<std::vector<SearchTotals>> totals = store.LoadTotals();
   if (!totals) return totals.error();
+  const Result<std::vector<StoredSearch>> stored = store.LoadSearches();
+  if (!stored) return stored.error();
   std::vector<CampaignSummary> searches(plans.size());
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
@@ -214,7 +217,8 @@ Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, Re
     summary.runs_done = mine->runs;
     summary.runs_failed = mine->runs_failed;
     summary.total_failures = mine->total_failures;
-    summary.finished = mine->finished;
+    const auto known = std::ranges::find(*stored, id, &StoredSearch::id);
+    summary.finished = known != stored->end() && HasFinished(*known, plans[i].experiment, **search);
   }
   CampaignSummary all = TotalsOf(searches);
   const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);

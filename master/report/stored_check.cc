@@ -89,11 +89,14 @@ Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
 Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store, Checked what) {
   Result<std::vector<StoredSearch>> searches = store.LoadSearches();
   if (!searches) return searches.error();
-  const bool finished = std::ranges::any_of(
-      *searches, [&](const StoredSearch& stored) { return stored.id == search && stored.finished; });
+  RunId finished_with = 0;
+  for (const StoredSearch& stored : *searches) {
+    if (stored.id == search) finished_with = stored.finished_with;
+  }
   Result<std::optional<SavedState>> state = store.LoadNewestState(search);
   if (!state) return state.error();
-  if (finished && !state->has_value()) return Damaged("the search has finished, but its states are missing");
+  if (finished_with > 0 && !state->has_value())
+    return Damaged("the search has finished, but its states are missing");
   const RunId last_seen = state->has_value() ? (*state)->last_run : 0;
 
   const bool everything = what == Checked::kEverything;
@@ -127,10 +130,10 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
   if (!read) return read;
   if (damage) return *damage;
   if (expected <= last_seen) return missing(expected);
-  if (const RunId last = expected - 1; finished && last > last_seen) {
+  if (finished_with > last_seen) {
     return Damaged(fmt::format(
-        "the search has finished with run {}, but the newest state has seen only the runs up to {}", last,
-        last_seen));
+        "the search has finished with run {}, but the newest state has seen only the runs up to {}",
+        finished_with, last_seen));
   }
   return Ok{};
 }

@@ -23,6 +23,12 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& expe
   return MakeSearch(experiment, kOnlySearch, std::move(cases));
 }
 
+bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const SearchAlgorithm& search) {
+  const auto runs_each = static_cast<std::uint64_t>(experiment.search.replicates);
+  const RunId last = RunIdOf(stored.id, 1) - 1 + search.Progress().evaluations_planned * runs_each;
+  return stored.finished_with > 0 && stored.finished_with >= last;
+}
+
 Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics) {
   RunOutcome outcome{.verdict = static_cast<sim::Verdict>(run.verdict),
                      .fitness = run.fitness,

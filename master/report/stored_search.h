@@ -17,6 +17,10 @@ namespace gauntlet::master {
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, SearchId id,
                                                           ResultStore& store);
 
+// Whether the search has come to the end of the length that its experiment gives it now: one that was made
+// longer since it ended has not. Takes no look at its runs.
+bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const SearchAlgorithm& search);
+
 // What the search is to know of a stored run. kCorrupt when its metrics are wanted and do not read back.
 Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics);
 

@@ -185,13 +185,8 @@ Status CampaignServer::RestoreSearches() {
 
 // Into the campaign's events, and to who has started this master.
 Status CampaignServer::Announce() {
-  if (!campaign_.origin.copied_from.empty()) {
-    const std::string text =
-        fmt::format("this directory is a copy of campaign {}; it is campaign {} from now on",
-                    campaign_.origin.copied_from, view_.campaign_id);
-    spdlog::info("copied: {}", text);
-    NoteEvent(event::kCopied, text);
-  }
+  if (!campaign_.origin.copied_from.empty())
+    spdlog::info("copied: the directory is a copy of campaign {}", campaign_.origin.copied_from);
   NoteEvent(view_.epoch == 1 ? event::kStart : event::kResume,
             fmt::format("master {} with {}", view_.epoch, DescribePool(options_)));
   const Result<std::uint64_t> nondeterministic = CountNondeterministic(*campaign_.store);

@@ -9,12 +9,14 @@
 #include "base/system/clock.h"
 #include "base/system/regular_file.h"
 #include "master/directory/campaign_ownership.h"
+#include "master/directory/search_length.h"
 #include "master/dispatch/worker_program.h"
 #include "master/experiment/experiment_file.h"
 #include "master/report/stored_check.h"
 #include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/campaign_server.h"
+#include "master/store/event_kinds.h"
 #include "master/store/run_numbers.h"
 #include "proto/json_text.h"
 
@@ -78,6 +80,19 @@ Status CheckSearches(const std::vector<SearchPlan>& plans, const std::vector<sim
   return Ok{};
 }
 
+// The files that say what the campaign is to do, but for slurm.toml. `begun_with`: version and golden hashes
+// are those of the campaign's beginning.
+CampaignTexts TextsOf(const std::vector<SearchPlan>& plans, const std::string& version,
+                      const proto::GoldenHashes& begun_with) {
+  const Experiment& experiment = plans.front().experiment;
+  std::vector<std::string> header = {
+      fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {:016x}.", version,
+                  begun_with.at(experiment.controller))};
+  if (plans.size() > 1) header.emplace_back("It is the first of several: searches.json has all.");
+  return {WriteExperiment(experiment, header, BuiltInCatalogue()),
+          plans.size() > 1 ? WriteSearchPlans(plans) : ""};
+}
+
 Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
                            const std::vector<sim::TestCase>& cases, const std::string& slurm) {
   if (Status possible = CheckSearches(plans, cases); !possible) return possible.error();
@@ -86,19 +101,15 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
   CampaignMeta meta;
   meta.software_version = GAUNTLET_VERSION;
   meta.golden_hashes = proto::WriteGoldenHashes(*golden_hashes);
-  const Experiment& experiment = plans.front().experiment;
-  std::vector<std::string> header = {
-      fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {:016x}.",
-                  GAUNTLET_VERSION, golden_hashes->at(experiment.controller))};
-  if (plans.size() > 1) header.emplace_back("It is the first of several: searches.json has all.");
-  const CampaignTexts texts{WriteExperiment(experiment, header, BuiltInCatalogue()),
-                            plans.size() > 1 ? WriteSearchPlans(plans) : "", slurm};
+  CampaignTexts texts = TextsOf(plans, meta.software_version, *golden_hashes);
+  texts.slurm = slurm;
   Result<CampaignOwnership> campaign = CreateCampaign(dir, texts, meta);
   if (!campaign) return campaign.error();
   SqliteStore& store = *campaign->store;
   if (Status added = AddSearches(plans, store); !added) return added.error();
   if (!cases.empty()) {
-    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(experiment, kOnlySearch, cases);
+    const Result<std::unique_ptr<SearchAlgorithm>> search =
+        MakeSearch(plans.front().experiment, kOnlySearch, cases);
     if (!search) return search.error();
     store.AddIndividuals(kOnlySearch, (*search)->Population());
   }
@@ -126,6 +137,38 @@ class Campaigns final : public CampaignService {
     return Ok{};
   }
 
+  Result<std::string> Extend(const std::string& dir, const std::vector<std::string>& sets,
+                             const std::function<bool()>& give_up) override {
+    const Result<CampaignOwnership> campaign = TakeCampaign(dir, LivingMaster::kRespect, give_up);
+    if (!campaign) return campaign.error();
+    const CampaignDirectory& directory = campaign->directory;
+    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(directory);
+    if (!plans) return plans.error();
+    const Result<std::vector<SearchPlan>> longer = WithLength(*plans, sets);
+    if (!longer) return longer.error();
+    std::string change = DescribeLengths(*plans, *longer);
+    if (change.empty()) return change;
+    const CampaignMeta& meta = campaign->store->meta();
+    const Result<proto::GoldenHashes> begun_with = CheckGoldenHashes(meta);
+    if (!begun_with) return begun_with.error();
+    if (const std::string& controller = longer->front().experiment.controller;
+        !begun_with->contains(controller)) {
+      return Error{ErrorKind::kCorrupt,
+                   fmt::format("{} names the controller '{}', with which the campaign has not begun",
+                               directory.experiment_path(), controller)};
+    }
+    const CampaignTexts texts = TextsOf(*longer, meta.software_version, *begun_with);
+    // Of a sweep searches.json decides; experiment.toml is for people there, and follows.
+    for (const auto& [path, text] : {std::pair(directory.searches_path(), texts.searches),
+                                     std::pair(directory.experiment_path(), texts.experiment)}) {
+      if (text.empty()) continue;
+      if (Status written = WriteFileAtomically(path, text, kReadableByAll); !written) return written.error();
+    }
+    campaign->store->AddEvent({UnixMilliseconds(), event::kExtended, change});
+    if (Status flushed = campaign->store->Flush(); !flushed) return flushed.error();
+    return change;
+  }
+
   Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) override {
     Result<CampaignOwnership> campaign =
         TakeCampaign(dir, options.batch_job.empty() ? LivingMaster::kRespect : LivingMaster::kFence,
@@ -136,11 +179,9 @@ class Campaigns final : public CampaignService {
     const Result<proto::GoldenHashes> golden_hashes = CheckGoldenHashes(campaign->store->meta());
     if (!golden_hashes) return golden_hashes.error();
     if (Status whole = CheckStored(*plans, *campaign->store); !whole) return whole.error();
-    const Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
-    if (!searches) return searches.error();
-    const auto finished = std::ranges::count_if(*searches, &StoredSearch::finished);
-    if (static_cast<std::size_t>(finished) < plans->size())
-      return CampaignServer(*campaign, *plans, *golden_hashes, options).Serve();
+    const Result<CampaignSummary> totals = SummariseTotals(*plans, *campaign->store);
+    if (!totals) return totals.error();
+    if (!totals->finished) return CampaignServer(*campaign, *plans, *golden_hashes, options).Serve();
     Result<CampaignSummary> summary = Summarise(*plans, *campaign->store);
     if (!summary) return summary.error();
     return SessionReport{.summary = *std::move(summary)};

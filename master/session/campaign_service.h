@@ -68,6 +68,12 @@ class CampaignService {
   // text of its slurm.toml.
   virtual Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,
                          const std::string& slurm) = 0;
+  // Makes the campaign's searches longer ("key=value", WithLength) without running them: Resume does. Says
+  // what has changed (DescribeLengths), "" when they are that long already. A kill leaves the old length or
+  // the new one. `give_up` ends the wait for those who read the campaign. Errors: those of Resume and
+  // WithLength.
+  virtual Result<std::string> Extend(const std::string& dir, const std::vector<std::string>& sets,
+                                     const std::function<bool()>& give_up) = 0;
   // Goes on where the campaign was; a finished one is only summarised.
   virtual Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) = 0;
 

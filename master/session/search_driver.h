@@ -48,6 +48,9 @@ class SearchDriver {
 
   SearchId id() const { return parts_.search_id; }
   bool finished() const { return pending_.empty() && parts_.search.Progress().finished; }
+  // The last run of the newest evaluation that the search was told; before the first run: one less than its
+  // id.
+  RunId last_told() const { return last_told_; }
   // Evaluations that have been asked for and not been told.
   bool pending() const { return !pending_.empty(); }
   // Runs that have been submitted and not come back.

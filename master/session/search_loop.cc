@@ -22,8 +22,11 @@ Status SearchLoop::Restore() {
   if (!stored) return stored.error();
   for (SearchDriver* search : parts_.searches) {
     if (Status restored = search->Restore(); !restored) return restored;
-    const auto has_ended = [search](const auto& one) { return one.finished && one.id == search->id(); };
-    if (std::ranges::none_of(*stored, has_ended)) waiting_.push_back(search);
+    const bool has_ended =
+        search->finished() && std::ranges::any_of(*stored, [search](const StoredSearch& one) {
+          return one.id == search->id() && one.finished_with == search->last_told();
+        });
+    if (!has_ended) waiting_.push_back(search);
   }
   return Ok{};
 }
@@ -36,7 +39,7 @@ Status SearchLoop::Advance() {
   }
   for (SearchDriver* search : running_) {
     if (Status advanced = search->Advance(); !advanced) return advanced;
-    if (search->finished()) parts_.store.MarkFinished(search->id());
+    if (search->finished()) parts_.store.MarkFinished(search->id(), search->last_told());
   }
   const std::size_t before = running_.size();
   std::erase_if(running_, std::mem_fn(&SearchDriver::finished));

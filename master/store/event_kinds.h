@@ -7,8 +7,9 @@ namespace gauntlet::master::event {
 // Of a session of the master.
 inline constexpr const char* kStart = "start";
 inline constexpr const char* kResume = "resume";
-inline constexpr const char* kCopied = "copied";  // the directory is a copy of another campaign's
-inline constexpr const char* kAudit = "audit";    // how many runs were simulated twice, and compared
+inline constexpr const char* kExtended = "extended";  // its searches go on for longer than they were to
+inline constexpr const char* kCopied = "copied";      // the directory is a copy of another campaign's
+inline constexpr const char* kAudit = "audit";        // how many runs were simulated twice, and compared
 inline constexpr const char* kStop = "stop";
 inline constexpr const char* kFinished = "finished";
 

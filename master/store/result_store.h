@@ -23,7 +23,9 @@ struct StoredSearch {
   std::string name;
   std::string algorithm;
   std::uint64_t seed = 0;
-  bool finished = false;
+  // The last run that it had when it came to its end; 0 = it has not. A search that was made longer since
+  // comes to its end once more, with a later run.
+  RunId finished_with = 0;
 };
 
 struct StoredRun {
@@ -56,7 +58,7 @@ struct SearchTotals {
   std::uint64_t runs_failed = 0;  // verdict other than completed
   std::uint64_t total_failures = 0;
   std::uint64_t individuals = 0;
-  bool finished = false;
+  std::uint64_t finished = 0;  // how often it came to its end, each time longer than before
 };
 
 struct SavedState {
@@ -89,7 +91,8 @@ class ResultStore {
   virtual void AddIndividuals(SearchId search, const std::vector<Individual>& individuals) = 0;
   virtual void AddRun(StoredRun run) = 0;
   virtual void SaveState(const SavedState& state) = 0;
-  virtual void MarkFinished(SearchId search) = 0;
+  // The search has come to its end with this run.
+  virtual void MarkFinished(SearchId search, RunId last_run) = 0;
   virtual void AddEvent(const StoredEvent& event) = 0;
 
   // Runs that became durable since the last call. Error: writing failed (kNoSpace when the disk is full,

@@ -43,8 +43,10 @@ CREATE TABLE searches (
   seed      INTEGER NOT NULL
 ) STRICT;
 CREATE TABLE finished (
-  search INTEGER PRIMARY KEY REFERENCES searches (id)
-) STRICT;
+  search   INTEGER NOT NULL REFERENCES searches (id),
+  last_run INTEGER NOT NULL,
+  PRIMARY KEY (search, last_run)
+) STRICT, WITHOUT ROWID;
 CREATE TABLE individuals (
   search           INTEGER NOT NULL REFERENCES searches (id),
   id               INTEGER NOT NULL,

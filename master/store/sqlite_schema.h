@@ -23,7 +23,7 @@ struct CampaignMeta {
 };
 
 // The database's format. A file of another one is refused, never changed.
-inline constexpr std::int64_t kStoreFormat = 2;
+inline constexpr std::int64_t kStoreFormat = 3;
 // "GNTL": tells a campaign.db from any other SQLite file.
 inline constexpr std::int64_t kStoreApplicationId = 0x474E544C;
 

@@ -70,7 +70,7 @@ class SqliteStore final : public ResultStore {
   }
   void AddRun(StoredRun run) override { Add(std::move(run)); }
   void SaveState(const SavedState& state) override { Add(state); }
-  void MarkFinished(SearchId search) override { Add(Finished{search}); }
+  void MarkFinished(SearchId search, RunId last_run) override { Add(Finished{search, last_run}); }
   void AddEvent(const StoredEvent& event) override { Add(event); }
 
   // After a failure, runs that became durable before it are still reported once; from then on the error.

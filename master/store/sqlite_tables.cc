@@ -158,7 +158,8 @@ Result<SqliteTables> SqliteTables::Open(SqliteConnection& connection) {
        "INSERT INTO states (search, last_run, generation, state, results_digest, checksum) "
        "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"},
       {&tables.insert_event_, "INSERT INTO events (unix_ms, kind, text) VALUES (?, ?, ?)"},
-      {&tables.insert_finished_, "INSERT INTO finished (search) VALUES (?) ON CONFLICT DO NOTHING"},
+      {&tables.insert_finished_,
+       "INSERT INTO finished (search, last_run) VALUES (?, ?) ON CONFLICT DO NOTHING"},
       {&tables.select_individual_,
        "SELECT birth_generation, parents, test_case FROM individuals WHERE search = ? AND id = ?"},
   };
@@ -203,12 +204,12 @@ Status SqliteTables::Insert(const StoredSearch& search) {
   const Status inserted = insert_search_.Run(search.id, search.name, search.algorithm, search.seed);
   if (!inserted) return inserted;
   totals_.Of(search.id).search = search.id;
-  return search.finished ? Insert(Finished{search.id}) : inserted;
+  return search.finished_with > 0 ? Insert(Finished{search.id, search.finished_with}) : inserted;
 }
 
 Status SqliteTables::Insert(const Finished& finished) {
-  const Status inserted = insert_finished_.Run(finished.search);
-  if (inserted && connection_->Changes() > 0) totals_.Of(finished.search).finished = true;
+  const Status inserted = insert_finished_.Run(finished.search, finished.last_run);
+  if (inserted && connection_->Changes() > 0) ++totals_.Of(finished.search).finished;
   return inserted;
 }
 
@@ -294,13 +295,13 @@ Status SqliteTables::Insert(const StoredEvent& event) {
 
 Result<std::vector<StoredSearch>> SqliteTables::LoadSearches() {
   Result<SqliteStatement> query = connection_->Prepare(
-      "SELECT id, name, algorithm, seed, EXISTS (SELECT 1 FROM finished WHERE search = searches.id) "
-      "FROM searches ORDER BY id");
+      "SELECT id, name, algorithm, seed, coalesce((SELECT max(last_run) FROM finished WHERE search = "
+      "searches.id), 0) FROM searches ORDER BY id");
   if (!query) return query.error();
   std::vector<StoredSearch> searches;
   const Status read = query->ForEachRow([&]() -> Status {
     StoredSearch& search = searches.emplace_back();
-    query->Read(search.id, search.name, search.algorithm, search.seed, search.finished);
+    query->Read(search.id, search.name, search.algorithm, search.seed, search.finished_with);
     return Ok{};
   });
   if (!read) return read.error();

@@ -23,6 +23,7 @@ struct Newborns {
 // A search that has come to its end.
 struct Finished {
   SearchId search = 0;
+  RunId last_run = 0;
 };
 
 // Inserting is idempotent where a resumed master repeats itself (individuals, states, finished): the very

@@ -33,7 +33,7 @@ struct CountedTable {
 using Entry = std::pair<const SearchId, Totals>;
 constexpr CountedTable kCounted[] = {
     {"searches", Checked::kTotals, [](const Entry& e) -> std::uint64_t { return e.first > 0 ? 1 : 0; }},
-    {"finished", Checked::kTotals, [](const Entry& e) -> std::uint64_t { return e.second.finished ? 1 : 0; }},
+    {"finished", Checked::kTotals, [](const Entry& e) { return e.second.finished; }},
     {"individuals", Checked::kRows, [](const Entry& e) { return e.second.individuals; }},
     {"runs", Checked::kRows, [](const Entry& e) { return e.second.runs; }},
     {"states", Checked::kRows, [](const Entry& e) { return e.second.states; }},

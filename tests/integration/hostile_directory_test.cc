@@ -1,8 +1,10 @@
 // Directories that somebody else has filled or may write: what stands there is data, never followed, never
 // waited for, and obeyed only when nobody else can have written it.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
@@ -11,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/system/unique_fd.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/service_driver.h"
 
@@ -27,6 +30,14 @@ constexpr std::chrono::seconds kSoon{20};
 
 void WriteTo(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
+}
+
+// Whether the process has a handler of its own for the signal.
+bool Catches(pid_t pid, int signal) {
+  const std::string status = ReadFile(fmt::format("/proc/{}/status", pid));
+  const std::size_t at = status.find("SigCgt:");
+  if (at == std::string::npos) return false;
+  return (std::stoull(status.substr(at + 7), nullptr, 16) >> (signal - 1) & 1U) != 0;
 }
 
 // A copy for each test of one campaign that was stopped half way.
@@ -134,6 +145,25 @@ TEST_F(HostileDirectoryTest, WhatIsNoRegularFileIsNeitherFollowedNorWaitedFor) {
           EXPECT_THAT(result.err, HasSubstr(path + " is ")) << what;
         }
       }
+    }
+  }
+}
+
+// Otherwise it would wait for half a minute.
+TEST_F(HostileDirectoryTest, ASignalEndsTheWaitForThoseWhoRead) {
+  const UniqueFd reader(open((dir_ + "/lock").c_str(), O_RDONLY | O_CLOEXEC));
+  ASSERT_EQ(flock(reader.get(), LOCK_SH), 0);
+  for (const int signal : {SIGTERM, SIGINT}) {
+    const std::vector<std::string> longer = {"--generations", "30"};
+    for (const std::vector<std::string>& options : {std::vector<std::string>(), longer}) {
+      std::vector<std::string> arguments = {"resume", dir_, "--workers", "1"};
+      arguments.insert(arguments.end(), options.begin(), options.end());
+      Process master(GauntletCommand(arguments));
+      ASSERT_TRUE(Eventually([&] { return Catches(master.pid(), signal); }, kPatience));
+      master.Signal(signal);
+      const ProcessResult stopped = master.Wait(kSoon);
+      EXPECT_EQ(stopped.exit_code, 3) << stopped.err;
+      EXPECT_THAT(stopped.err, AllOf(HasSubstr("told to stop while it waited"), HasSubstr("Go on with: ")));
     }
   }
 }

@@ -20,7 +20,8 @@ class FakeCampaigns : public master::CampaignService {
   std::vector<master::StoredRun> stored;
   master::CampaignReplay replay;
   std::string status;
-  int lives = 0;  // how often a master is found alive
+  std::string change = "search.generations from 50 to 80";  // of what is extended
+  int lives = 0;                                            // how often a master is found alive
   std::optional<Error> error;
   // Called while a session runs.
   std::function<void(const master::SessionOptions&)> during;
@@ -28,6 +29,7 @@ class FakeCampaigns : public master::CampaignService {
   // What was asked.
   int starts = 0;
   int resumes = 0;
+  std::vector<std::string> extended;
   std::string directory;  // of the newest session
   master::Experiment experiment;
   std::vector<sim::TestCase> cases;
@@ -52,6 +54,11 @@ class FakeCampaigns : public master::CampaignService {
     std::filesystem::create_directories(dir);
     std::ofstream(dir + "/slurm.toml") << text;
     return Ok{};
+  }
+  Result<std::string> Extend(const std::string& /*dir*/, const std::vector<std::string>& sets,
+                             const std::function<bool()>& /*give_up*/) override {
+    extended = sets;
+    return Answer(change);
   }
   Result<master::SessionReport> Resume(const std::string& dir,
                                        const master::SessionOptions& options) override {

@@ -1,6 +1,7 @@
 // ResultStore in memory: durable are records that a commit has taken up; the rest is lost in a crash.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <optional>
@@ -54,9 +55,10 @@ class MemoryStore final : public master::ResultStore {
   void SaveState(const master::SavedState& state) override {
     waiting_.push_back([this, state] { states[state.search].push_back(state); });
   }
-  void MarkFinished(master::SearchId search) override {
-    waiting_.push_back([this, search] {
-      for (master::StoredSearch& one : searches) one.finished = one.finished || one.id == search;
+  void MarkFinished(master::SearchId search, master::RunId last_run) override {
+    waiting_.push_back([this, search, last_run] {
+      for (master::StoredSearch& one : searches)
+        if (one.id == search) one.finished_with = std::max(one.finished_with, last_run);
     });
   }
   void AddEvent(const master::StoredEvent& event) override {
@@ -83,7 +85,7 @@ class MemoryStore final : public master::ResultStore {
     for (const master::StoredSearch& search : searches) {
       master::SearchTotals& totals = all.emplace_back();
       totals.search = search.id;
-      totals.finished = search.finished;
+      totals.finished = search.finished_with > 0 ? 1 : 0;
       totals.individuals = individuals[search.id].size();
       for (const auto& [id, run] : runs) {
         if (run.search != search.id) continue;

@@ -119,6 +119,20 @@ TEST_F(Submit, ResumeGivesTheMasterToSlurmAgainUnlessOneIsThere) {
   EXPECT_THAT(cluster_.submitted, SizeIs(2));
 }
 
+TEST_F(Submit, ResumeMakesItLongerBeforeItsMasterIsSubmitted) {
+  ASSERT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitDone);
+  cluster_.Set("12", "COMPLETED");
+  EXPECT_EQ(Run({"resume", dir(), "--generations", "80"}), kExitDone) << err_.str();
+  EXPECT_THAT(campaigns_.extended, ElementsAre("search.generations=80"));
+  EXPECT_THAT(err_.str(), HasSubstr("goes on: search.generations from 50 to 80"));
+  EXPECT_THAT(cluster_.submitted, SizeIs(2));
+  cluster_.Set("13", "COMPLETED");
+  campaigns_.error = InvalidInput("--set search.generations=1: shorter");
+  EXPECT_EQ(Run({"resume", dir(), "--generations", "1"}), kExitUsage);
+  EXPECT_EQ(err_.str(), "gauntlet: --generations 1: shorter\n");
+  EXPECT_THAT(cluster_.submitted, SizeIs(2));
+}
+
 TEST_F(Submit, ATemplateIsARegularFileOrALinkToOne) {
   const std::string shipped = root_ / "mine.sbatch";
   std::ofstream(shipped) << slurm::kWorkerTemplate;

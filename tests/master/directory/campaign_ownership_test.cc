@@ -167,7 +167,7 @@ TEST_F(CampaignOwnershipTest, ANewerFormatIsLeftAsItIs) {
   ASSERT_TRUE(Create().ok());
   sqlite3* db = nullptr;
   ASSERT_EQ(sqlite3_open((dir_ + "/campaign.db").c_str(), &db), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version = 3", nullptr, nullptr, nullptr), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(db, "PRAGMA user_version = 4", nullptr, nullptr, nullptr), SQLITE_OK);
   sqlite3_close(db);
   const std::string before = ReadFile(dir_ + "/campaign.db");
   const Result<CampaignOwnership> taken = TakeCampaign(dir_);

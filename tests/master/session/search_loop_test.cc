@@ -54,7 +54,7 @@ TEST(SearchLoopTest, EveryRunIsStoredWithWhatItWasMadeOf) {
     EXPECT_EQ(run.total_failure, result->failure.total);
     EXPECT_EQ(run.worker, "fake");
   }
-  EXPECT_TRUE(store.searches.at(0).finished);
+  EXPECT_EQ(store.searches.at(0).finished_with, store.runs.rbegin()->first);
   std::set<IndividualId> born;
   for (const Individual& individual : store.individuals.at(kOnlySearch)) born.insert(individual.id);
   for (const auto& [id, run] : store.runs) EXPECT_TRUE(born.contains(run.individual)) << run.individual;
@@ -133,7 +133,7 @@ TEST(SearchLoopTest, GoesOnFromWhereverItDied) {
 TEST(SearchLoopTest, AStoredRunOfAnotherSpecIsRefused) {
   MemoryStore store = FinishedToyCampaign({ToyExperiment()});
   store.states.clear();
-  store.searches[0].finished = false;
+  store.searches[0].finished_with = 0;
   StoredRun& run = store.runs.at(3);
   Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
   ASSERT_TRUE(spec.ok());
@@ -210,7 +210,8 @@ TEST(SearchLoopTest, AFinishedSearchWaitsForAudits) {
   session.backend.statistics.audits_open = 1;
   int after_the_end = 0;
   const Result<CampaignEnd> end = session.Run([&] {
-    if (store.searches.at(0).finished && ++after_the_end == 3) session.backend.statistics.audits_open = 0;
+    if (store.searches.at(0).finished_with > 0 && ++after_the_end == 3)
+      session.backend.statistics.audits_open = 0;
     return StopWish::kNone;
   });
   ASSERT_TRUE(end.ok());
@@ -231,7 +232,7 @@ TEST(SearchLoopTest, SearchesOfASweepEndAsTheyWouldAlone) {
     const Experiment& experiment = experiments[search - 1];
     EXPECT_EQ(EndOf(store, experiment, search), EndOf(alone, experiment)) << search;
     runs += alone.runs.size();
-    EXPECT_TRUE(store.searches.at(search - 1).finished);
+    EXPECT_GT(store.searches.at(search - 1).finished_with, 0U);
   }
   EXPECT_EQ(store.runs.size(), runs);
   ASSERT_FALSE(session.progress.empty());
@@ -258,7 +259,7 @@ TEST(SearchLoopTest, NoMoreSearchesThanNeededHoldTheirRunsAtOnce) {
   });
   ASSERT_TRUE(end.ok());
   EXPECT_EQ(first.size(), 64U);
-  EXPECT_TRUE(std::ranges::all_of(store.searches, &StoredSearch::finished));
+  EXPECT_EQ(std::ranges::count(store.searches, 0U, &StoredSearch::finished_with), 0);
 }
 
 TEST(SearchLoopTest, RunsWithoutAResultAreCountedAndDoNotStopIt) {

@@ -67,8 +67,7 @@ class ToySession {
     SearchLoop::Parts parts{{}, backend, store, clock};
     for (std::size_t i = 0; i < experiments_.size(); ++i) {
       const auto id = static_cast<SearchId>(i + 1);
-      if (store.searches.size() < id)
-        store.searches.push_back({id, "toy", "genetic", experiments_[i].seed, false});
+      if (store.searches.size() < id) store.searches.push_back({id, "toy", "genetic", experiments_[i].seed});
       searches_.push_back(make_search(experiments_[i]));
       drivers.emplace_back(SearchDriver::Parts{.experiment = experiments_[i],
                                                .search_id = id,

@@ -70,12 +70,12 @@ TEST_P(StoreOpenTest, AMissingFileIsNotFoundAndNotMade) {
 
 TEST_P(StoreOpenTest, ANewerFormatIsRefusedNamingBothVersions) {
   Execute(path_, "PRAGMA user_version = 999");
-  ExpectRefusal(ErrorKind::kVersion, {"format 999", "newer gauntlet", "reads format 2"});
+  ExpectRefusal(ErrorKind::kVersion, {"format 999", "newer gauntlet", "reads format 3"});
 }
 
 TEST_P(StoreOpenTest, AnOlderFormatIsRefusedNamingBothVersions) {
-  Execute(path_, "PRAGMA user_version = 1");
-  ExpectRefusal(ErrorKind::kVersion, {"format 1", "older gauntlet", "reads format 2"});
+  Execute(path_, "PRAGMA user_version = 2");
+  ExpectRefusal(ErrorKind::kVersion, {"format 2", "older gauntlet", "reads format 3"});
 }
 
 TEST_P(StoreOpenTest, AnotherProgramsDatabaseIsRefused) {

@@ -98,15 +98,16 @@ TEST_F(SqliteStoreTest, RunsAreVisitedInIdOrderWhateverOrderTheyCameIn) {
 
 TEST_F(SqliteStoreTest, SearchesAreFinishedByARowOfTheirOwn) {
   store_->AddSearch(MakeSearch(2));
-  store_->MarkFinished(2);
-  store_->MarkFinished(2);
+  const RunId first_end = RunIdOf(2, 7);
+  const RunId second_end = RunIdOf(2, 9);  // it was made longer
+  for (const RunId end : {first_end, first_end, second_end}) store_->MarkFinished(2, end);
   Flush();
   Reopen();
   Result<std::vector<StoredSearch>> searches = store_->LoadSearches();
   ASSERT_TRUE(searches.ok());
   ASSERT_EQ(searches->size(), 2u);
-  EXPECT_FALSE((*searches)[0].finished);
-  EXPECT_TRUE((*searches)[1].finished);
+  EXPECT_EQ((*searches)[0].finished_with, 0U);
+  EXPECT_EQ((*searches)[1].finished_with, second_end);
   EXPECT_EQ((*searches)[1].id, 2u);
   EXPECT_EQ((*searches)[1].name, "evolve");
   EXPECT_EQ((*searches)[1].algorithm, "genetic");
@@ -221,7 +222,7 @@ TEST_P(InsertOnlyTest, RowsCanNeitherBeChangedNorDeleted) {
   store_->AddRun(MakeRun(1));
   store_->AddIndividuals(1, {MakeIndividual(1)});
   store_->SaveState(MakeState(1, 1));
-  store_->MarkFinished(1);
+  store_->MarkFinished(1, 1);
   store_->AddEvent({1, "start", ""});
   Flush();
   store_.reset();

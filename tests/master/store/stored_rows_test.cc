@@ -25,7 +25,7 @@ class StoredRowsTest : public testing::Test {
     (*store)->AddIndividuals(1, {MakeIndividual(1), MakeIndividual(2)});
     (*store)->AddIndividuals(1, {MakeIndividual(2), MakeIndividual(3)});  // told twice
     for (int time = 0; time < 2; ++time) (*store)->SaveState(MakeState(1, 20));
-    for (int time = 0; time < 2; ++time) (*store)->MarkFinished(1);
+    for (int time = 0; time < 2; ++time) (*store)->MarkFinished(1, 50);
     (*store)->AddEvent({1, "start", ""});
     ASSERT_TRUE((*store)->Flush().ok());
   }
@@ -69,9 +69,9 @@ TEST_F(StoredRowsTest, TotalsAreThoseOfWhatIsStored) {
   EXPECT_EQ(first.runs_failed, failed);
   EXPECT_EQ(first.total_failures, 25U);
   EXPECT_EQ(first.individuals, 3U);
-  EXPECT_TRUE(first.finished);
+  EXPECT_EQ(first.finished, 1U);
   EXPECT_EQ(totals->back().runs, 0U);
-  EXPECT_FALSE(totals->back().finished);
+  EXPECT_EQ(totals->back().finished, 0U);
 }
 
 TEST_F(StoredRowsTest, WithoutRecordsRunsAreTheSame) {
