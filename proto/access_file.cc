@@ -74,6 +74,13 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
     }
     access.endpoints.push_back(endpoint.get<std::string>());
   }
+  if (const auto controllers = json.find("controllers"); controllers != json.end()) {
+    if (!controllers->is_array()) return wrong("\"controllers\" must be a list of names");
+    for (const nlohmann::json& controller : *controllers) {
+      if (!controller.is_string()) return wrong("\"controllers\" must be a list of names");
+      access.controllers.push_back(controller.get<std::string>());
+    }
+  }
   if (const auto curve = json.find("curve"); curve != json.end()) {
     CurveKeys keys;
     for (const auto& [name, key] :
@@ -131,6 +138,7 @@ Status WriteAccess(const std::string& path, const Access& access) {
                                  {"campaign", access.campaign_id},
                                  {"epoch", access.epoch},
                                  {"endpoints", access.endpoints}};
+  if (!access.controllers.empty()) json["controllers"] = access.controllers;
   if (access.curve) {
     json["curve"] = {{"server_public", access.curve->server_public},
                      {"worker_public", access.curve->worker_public},

@@ -28,6 +28,7 @@ struct Access {
   std::uint64_t epoch = 0;                        // number of the master's start
   std::vector<std::string> endpoints;             // "tcp://host:port" or "ipc://path", at least one
   std::optional<CurveKeys> curve = std::nullopt;  // none: plaintext
+  std::vector<std::string> controllers = {};      // whose golden hashes the master asks for; empty: all
   bool operator==(const Access&) const = default;
 };
 

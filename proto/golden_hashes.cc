@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <ranges>
 #include <sstream>
 
 namespace gauntlet::proto {
@@ -31,6 +32,11 @@ Result<GoldenHashes> ReadGoldenHashes(const std::string& text) {
   }
   if (hashes.empty()) return Error{ErrorKind::kCorrupt, "there is no golden hash"};
   return hashes;
+}
+
+std::vector<std::string> ControllersOf(const GoldenHashes& hashes) {
+  const auto names = std::views::keys(hashes);
+  return {names.begin(), names.end()};
 }
 
 std::optional<GoldenDifference> FirstDifference(const GoldenHashes& needed, const GoldenHashes& offered) {

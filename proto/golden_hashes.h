@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 
@@ -17,6 +18,9 @@ using GoldenHashes = std::map<std::string, std::uint64_t>;  // by the controller
 std::string WriteGoldenHashes(const GoldenHashes& hashes);
 // Error (kCorrupt): a line of another form, or none.
 Result<GoldenHashes> ReadGoldenHashes(const std::string& text);
+
+// The controllers, in the order of their names.
+std::vector<std::string> ControllersOf(const GoldenHashes& hashes);
 
 // A controller of which one side has another hash, or none.
 struct GoldenDifference {

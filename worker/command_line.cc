@@ -62,7 +62,7 @@ struct CommandLine {
   WorkerOptions worker;
   SpecOptions spec;
   std::string directory;
-  bool golden = false;
+  std::vector<std::string> golden;  // controllers
 };
 
 // Options of a worker that serves a master.
@@ -99,10 +99,13 @@ void AddOptions(CLI::App& app, CommandLine& line) {
              "End at once when the process PID, which started this one, ends (its thread, to be exact)")
           ->type_name("PID")
           ->check(CLI::Range(1, 1 << 22));  // Linux' largest
-  auto* golden = app.add_flag("--golden", line.golden,
-                              "Print the golden hash of each controller, a line each: equal where its runs "
-                              "are computed equally")
-                     ->excludes(die);
+  auto* golden =
+      app.add_option("--golden", line.golden,
+                     "Print the golden hash of each of these controllers (none: of all), a line each; "
+                     "equal where its runs are computed equally, left out when it is not built in")
+          ->type_name("[CONTROLLER...]")
+          ->expected(0, -1)
+          ->excludes(die);
   auto* spec =
       app.add_option(
              "--run-spec", line.spec.spec_file,
@@ -140,7 +143,8 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
-  if (line.golden) return PrintGoldenHashes(functions.golden_hashes());
+  std::erase(line.golden, "");  // what CLI11 puts there when no name follows
+  if (app.count("--golden") > 0) return PrintGoldenHashes(functions.golden_hashes(line.golden));
   if (app.count("--run-spec") > 0) {
     line.spec.parent = line.worker.parent;
     return RunOneSpec(line.spec, functions.run);

@@ -1,5 +1,6 @@
 #include "worker/golden_hash.h"
 
+#include <algorithm>
 #include <vector>
 
 #include "base/hash.h"
@@ -62,11 +63,13 @@ void AddArithmetic(Fnv1a64& hash) {
 
 }  // namespace
 
-proto::GoldenHashes GoldenHashes() {
+proto::GoldenHashes GoldenHashes(const std::vector<std::string>& controllers) {
   Fnv1a64 arithmetic;
   AddArithmetic(arithmetic);
   proto::GoldenHashes hashes;
   for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
+    if (!controllers.empty() && std::ranges::find(controllers, controller.name) == controllers.end())
+      continue;
     Fnv1a64 hash = arithmetic;
     hash.AddBytes(controller.name);  // two controllers may do the same in runs as short as these
     AddRuns(controller, hash);

@@ -233,7 +233,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
                             .slots = static_cast<std::uint32_t>(options.slots),
                             .process = Identity(),
                             .allocation = options.allocation,
-                            .golden_hashes = options.golden_hashes()};
+                            .golden_hashes = options.golden_hashes((*access)->controllers)};
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
   return Supervise(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());

@@ -8,12 +8,16 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "proto/golden_hashes.h"
 #include "worker/runner.h"
 
 namespace gauntlet::worker {
+
+// Of those of these controllers that a run function can simulate; of all when none is named.
+using GoldenHashFunction = std::function<proto::GoldenHashes(const std::vector<std::string>& controllers)>;
 
 struct WorkerOptions {
   std::string access_path;  // access.json; waited for up to orphan_timeout_seconds
@@ -24,7 +28,7 @@ struct WorkerOptions {
   bool quiet = false;      // warnings and errors only
   std::string allocation;  // told to the master, which may keep a pool of batch jobs
   std::string software_version;
-  std::function<proto::GoldenHashes()> golden_hashes;  // of the controllers that `run` can simulate
+  GoldenHashFunction golden_hashes;
 };
 
 // Serves until the master lets it go; the exit code (worker_state.h). To be called from main(), before any

@@ -46,9 +46,12 @@ Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec) {
   return proto::DecodeRunResult(*output);
 }
 
-Result<proto::GoldenHashes> GoldenHashesOfThisMachine() {
-  const Result<std::string> output = RunWorkerProgram({"--golden"}, {});
+Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers) {
+  std::vector<std::string> arguments = {"--golden"};
+  arguments.insert(arguments.end(), controllers.begin(), controllers.end());
+  const Result<std::string> output = RunWorkerProgram(std::move(arguments), {});
   if (!output) return output.error();
+  if (output->empty()) return proto::GoldenHashes();
   Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(*output);
   if (hashes) return hashes;
   return Error{ErrorKind::kInternal, "gauntlet-worker --golden: " + hashes.error().message};

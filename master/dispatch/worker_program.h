@@ -2,6 +2,9 @@
 // this machine.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "base/result.h"
 #include "proto/golden_hashes.h"
 #include "sim/run_result.h"
@@ -13,7 +16,7 @@ namespace gauntlet::master {
 // anything).
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec);
 
-// Of the controllers that gauntlet-worker was built with.
-Result<proto::GoldenHashes> GoldenHashesOfThisMachine();
+// Of those of these controllers that gauntlet-worker was built with.
+Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers);
 
 }  // namespace gauntlet::master

@@ -123,6 +123,7 @@ Status CampaignServer::Listen() {
   proto::Access access;
   access.campaign_id = view_.campaign_id;
   access.epoch = view_.epoch;
+  access.controllers = proto::ControllersOf(identity_.golden_hashes);
   ZmqTransportOptions transport;
   transport.endpoint = options_.bind;
   if (!options_.insecure) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
@@ -30,7 +31,7 @@ using nlohmann::ordered_json;
 Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
   Result<proto::GoldenHashes> begun_with = proto::ReadGoldenHashes(meta.golden_hashes);
   if (!begun_with) return begun_with;
-  const Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine();
+  const Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine(proto::ControllersOf(*begun_with));
   if (!ours) return ours;
   const auto difference = proto::FirstDifference(*begun_with, *ours);
   if (!difference) return begun_with;
@@ -50,18 +51,16 @@ Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
 
 // Of the controllers that the searches use.
 Result<proto::GoldenHashes> GoldenHashesFor(const std::vector<SearchPlan>& plans) {
-  const Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine();
+  std::set<std::string> used;
+  for (const SearchPlan& plan : plans) used.insert(plan.experiment.controller);
+  Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine({used.begin(), used.end()});
   if (!ours) return ours;
-  proto::GoldenHashes used;
-  for (const SearchPlan& plan : plans) {
-    const auto hash = ours->find(plan.experiment.controller);
-    if (hash == ours->end()) {
-      return Error{ErrorKind::kVersion, fmt::format("gauntlet-worker was built without the controller '{}'",
-                                                    plan.experiment.controller)};
-    }
-    used.insert(*hash);
+  for (const std::string& controller : used) {
+    if (ours->contains(controller)) continue;
+    return Error{ErrorKind::kVersion,
+                 fmt::format("gauntlet-worker was built without the controller '{}'", controller)};
   }
-  return used;
+  return ours;
 }
 
 struct NewCampaign {

@@ -120,6 +120,18 @@ TEST(CommandLineTest, ListNamesEveryParameterWithItsUnitAndDefault) {
   EXPECT_THAT(result.out, HasSubstr("flocking-improved"));
 }
 
+TEST(CommandLineTest, AProcessorWithoutTheInstructionsGetsASentence) {
+  const std::string old = "exec qemu-x86_64 -cpu core2duo \"$0\" --version";
+  if (RunProcess({"/bin/sh", "-c", "command -v qemu-x86_64"}).exit_code != 0) {
+    GTEST_SKIP() << "there is no qemu-x86_64 (Debian: qemu-user) to be an old processor";
+  }
+  for (const std::string& program : {testing_support::GauntletPath(), testing_support::WorkerPath()}) {
+    const ProcessResult result = RunProcess({"/bin/sh", "-c", old, program});
+    EXPECT_EQ(result.exit_code, 2) << program;
+    EXPECT_THAT(result.err, HasSubstr("this processor lacks instructions"));
+  }
+}
+
 struct Refusal {
   std::string name;
   std::vector<std::string> arguments;

@@ -24,7 +24,7 @@ class GoldenHashes : public testing::Test {
     const std::string program = scratch_ / "worker";
     std::ofstream(program) << "#!/bin/sh\n"
                            << "[ \"$1\" != --golden ] || { '" << testing_support::WorkerPath()
-                           << "' --golden | sed '" << sed << "'; exit; }\n"
+                           << "' \"$@\" | sed '" << sed << "'; exit; }\n"
                            << "exec '" << testing_support::WorkerPath() << "' \"$@\"\n";
     std::filesystem::permissions(program, std::filesystem::perms::owner_all);
     return testing_support::StartGauntlet(arguments, {"GAUNTLET_WORKER=" + program})->Wait();

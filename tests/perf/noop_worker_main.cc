@@ -32,6 +32,7 @@ sim::RunResult DoNothing(const sim::RunSpec& spec) {
 }  // namespace gauntlet::worker
 
 int main(int argc, char** argv) {
-  return gauntlet::worker::RunWorkerCommandLine(
-      argc, argv, {gauntlet::worker::DoNothing, [] { return gauntlet::perf::kNoopGoldenHashes; }});
+  return gauntlet::worker::RunWorkerCommandLine(argc, argv, {gauntlet::worker::DoNothing, [](const auto&) {
+                                                               return gauntlet::perf::kNoopGoldenHashes;
+                                                             }});
 }

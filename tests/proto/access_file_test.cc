@@ -73,6 +73,10 @@ INSTANTIATE_TEST_SUITE_P(
                     BadAccess{"NegativeEpoch", R"({"format": 1, "campaign": "a", "epoch": -1})", "\"epoch\""},
                     BadAccess{"NoEndpoints", R"({"format": 1, "campaign": "a", "epoch": 1, "endpoints": []})",
                               "\"endpoints\""},
+                    BadAccess{"WrongControllers",
+                              R"({"format": 1, "campaign": "a", "epoch": 1, "endpoints": ["tcp://h:1"],
+                                  "controllers": ["a", 2]})",
+                              "\"controllers\" must be a list of names"},
                     BadAccess{"WrongEndpoint",
                               R"({"format": 1, "campaign": "a", "epoch": 1, "endpoints": ["udp://x"]})",
                               "udp://x"}),
@@ -145,6 +149,7 @@ TEST(AccessFileTest, HoldsWhatAWorkerNeedsForItsOwnerAlone) {
 
   Access with_keys = kAccess;
   with_keys.curve = CurveKeys{std::string(40, 'a'), std::string(40, 'b'), std::string(40, 'c')};
+  with_keys.controllers = {"flocking", "foraging"};
   ASSERT_TRUE(WriteAccess(path, with_keys).ok());
   EXPECT_EQ(*ReadAccess(path), with_keys);
 }

@@ -25,6 +25,10 @@ TEST(CommandLineTest, VersionIsOneLineAndGoldenHashesAreOneForEachController) {
   EXPECT_EQ(golden.exit_code, 0);
   EXPECT_THAT(golden.out, MatchesRegex("([a-z-]+ [0-9a-f]{16}\n)+"));
   EXPECT_EQ(RunProcess({kWorker, "--golden"}).out, golden.out);
+  const ProcessResult one = RunProcess({kWorker, "--golden", "flocking", "unheard-of"});
+  EXPECT_EQ(one.exit_code, 0);
+  EXPECT_THAT(one.out, MatchesRegex("flocking [0-9a-f]{16}\n"));
+  EXPECT_THAT(golden.out, HasSubstr(one.out));
 }
 
 struct BadLine {

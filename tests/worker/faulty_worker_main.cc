@@ -95,7 +95,7 @@ int Main(const std::vector<std::string>& arguments) {
                     .allocation = "",
                     .software_version = "test",
                     .golden_hashes =
-                        [] {
+                        [](const std::vector<std::string>&) {
                           return proto::GoldenHashes{{"faulty", 42}};
                         }},
                    FaultyRunFunction);
