@@ -132,7 +132,9 @@ TEST_P(BrokenRunTest, CostsItselfAloneAndIsReportedAsWhatItIs) {
   if (broken.exit_code != 0) {
     EXPECT_EQ(failed->failure().exit_code(), broken.exit_code);
   }
-  if (!by_the_clock) EXPECT_THAT(failed->failure().stderr_tail(), HasSubstr(broken.tail));
+  if (!by_the_clock) {
+    EXPECT_THAT(failed->failure().stderr_tail(), HasSubstr(broken.tail));
+  }
   EXPECT_TRUE(failed->result().empty());
 
   const auto next = master.AwaitResult(peer, 6);
