@@ -10,6 +10,16 @@ namespace gauntlet::controllers {
 
 using sim::Device;
 
+namespace {
+
+// Of what was seen or heard.
+template <typename Seen>
+SeenBody BodyOf(const Seen& seen) {
+  return {seen.range, seen.Bearing()};
+}
+
+}  // namespace
+
 ForagingController::ForagingController(const ForagerSettings& settings, const ControllerContext& context)
     : settings_(settings),
       pickup_distance_(context.pickup_distance),
@@ -39,31 +49,25 @@ void ForagingController::Step(const sim::ControlStep& step) {
 ForagingController::View ForagingController::Look(const sim::SensorReadings& readings) const {
   View view;
   for (const sim::Blob& blob : readings.blobs) {
-    if (blob.color == kFoodColor && (!view.food || blob.range < view.food->range)) {
-      view.food = SeenBody{blob.range, blob.Bearing()};
-    }
+    if (blob.color == kFoodColor && (!view.food || blob.range < view.food->range)) view.food = &blob;
   }
   for (const sim::Message& message : readings.range_and_bearing) {
     if (ComesFromForager(message.payload)) continue;
     const RadioMessage said = Decode(message.payload);
     if (said.sender == RadioMessage::Sender::kNest) {
-      view.nest = SeenBody{message.range, message.Bearing()};
+      view.nest = &message;
       ++view.beacons;
     } else if (ComesFromBeacon(message.payload)) {
       ++view.beacons;
-      if (!view.nest_beacon || said.first < view.nest_beacon->staleness) {
-        view.nest_beacon = Target{message.range, message.Bearing(), said.first};
-      }
-      if (!view.food_beacon || said.second < view.food_beacon->staleness) {
-        view.food_beacon = Target{message.range, message.Bearing(), said.second};
-      }
+      view.nest_beacon.Prefer(message, said.first);
+      view.food_beacon.Prefer(message, said.second);
     }
   }
   if (settings_.beacons) {
-    if (view.nest_beacon && view.nest_beacon->staleness >= settings_.beacons->home_staleness) {
+    if (view.nest_beacon && view.nest_beacon.staleness >= settings_.beacons->home_staleness) {
       view.nest_beacon.reset();
     }
-    if (view.food_beacon && view.food_beacon->staleness >= settings_.beacons->follow_staleness) {
+    if (view.food_beacon && view.food_beacon.staleness >= settings_.beacons->follow_staleness) {
       view.food_beacon.reset();
     }
   } else {
@@ -119,7 +123,7 @@ void ForagingController::TakeHome() {
 void ForagingController::ChangeState(const View& view, sim::RandomStream& random) {
   using enum ForagingState;
   const auto reached = [&](const Target& beacon) {
-    return beacon.range < settings_.beacons->reached_distance;
+    return beacon.range() < settings_.beacons->reached_distance;
   };
   switch (state_) {
     case kWandering:
@@ -138,7 +142,7 @@ void ForagingController::ChangeState(const View& view, sim::RandomStream& random
         BecomeBeacon();
       } else if (!view.food_beacon) {
         state_ = kWandering;
-      } else if (reached(*view.food_beacon)) {
+      } else if (reached(view.food_beacon)) {
         state_ = kWandering;
         follow_barred_ = settings_.beacons->bar_ticks;
       }
@@ -162,7 +166,7 @@ void ForagingController::ChangeState(const View& view, sim::RandomStream& random
         state_ = kDropping;
       } else if (!view.nest && !view.nest_beacon) {
         state_ = kHoming;
-      } else if (!view.nest && reached(*view.nest_beacon)) {
+      } else if (!view.nest && reached(view.nest_beacon)) {
         state_ = kHoming;
         home_barred_ = settings_.beacons->bar_ticks;
       }
@@ -198,15 +202,15 @@ DriveCommand ForagingController::Move(const View& view, const sim::ControlStep& 
         turn_aside_.Reset();
         return {};
       }
-      return view.food ? DriveTo(*view.food, false, step) : Walk(step);
+      return view.food ? DriveTo(BodyOf(*view.food), false, step) : Walk(step);
     case ForagingState::kFollowing:
-      return DriveTo({view.food_beacon->range, view.food_beacon->bearing}, true, step);
+      return DriveTo(BodyOf(*view.food_beacon.message), true, step);
     case ForagingState::kFollowingHome:
-      if (view.nest) return DriveTo(*view.nest, false, step);
-      return DriveTo({view.nest_beacon->range, view.nest_beacon->bearing}, true, step);
+      if (view.nest) return DriveTo(BodyOf(*view.nest), false, step);
+      return DriveTo(BodyOf(*view.nest_beacon.message), true, step);
     case ForagingState::kHoming:
       // The basic algorithm has no F-Homing; it "moves towards the location of the nest" (thesis 2.4.2.1).
-      if (view.nest && !settings_.beacons) return DriveTo(*view.nest, false, step);
+      if (view.nest && !settings_.beacons) return DriveTo(BodyOf(*view.nest), false, step);
       break;
     case ForagingState::kWandering:
       break;

@@ -55,18 +55,25 @@ class ForagingController : public sim::Controller {
   double food_staleness() const { return to_food_.staleness(); }
 
  private:
-  // A beacon (or the nest) in range.
+  // A beacon in range.
   struct Target {
-    double range = 0.0;
-    double bearing = 0.0;
+    const sim::Message* message = nullptr;  // none: there is no such beacon
     double staleness = kNoPheromone;
+
+    explicit operator bool() const { return message != nullptr; }
+    void reset() { message = nullptr; }
+    // Whether this one says a larger level than the one before.
+    void Prefer(const sim::Message& other, double others_staleness) {
+      if (message == nullptr || others_staleness < staleness) *this = {&other, others_staleness};
+    }
+    double range() const { return message->range; }
   };
   // What the readings of one tick mean.
   struct View {
-    std::optional<SeenBody> food;
-    std::optional<SeenBody> nest;
-    std::optional<Target> food_beacon;  // the beacon with the largest level towards the food
-    std::optional<Target> nest_beacon;
+    const sim::Blob* food = nullptr;     // none: it is not seen
+    const sim::Message* nest = nullptr;  // none: it is not heard
+    Target food_beacon;                  // the beacon with the largest level towards the food
+    Target nest_beacon;
     int beacons = 0;  // in range, the nest counts as one
     bool in_nest = false;
     bool carrying = false;

@@ -2,21 +2,23 @@
 
 #include <bit>
 #include <cstddef>
+#include <cstring>
 
 namespace gauntlet::controllers {
 namespace {
 
 constexpr std::uint8_t kNestCode = 255;
 
+static_assert(std::endian::native == std::endian::little, "numbers are sent as they are in memory");
+
 void Put(float value, sim::Payload& payload, std::size_t at) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  for (std::size_t i = 0; i < 4; ++i) payload[at + i] = static_cast<std::uint8_t>(bits >> (8 * i));
+  std::memcpy(payload.data() + at, &value, sizeof value);
 }
 
 float Get(const sim::Payload& payload, std::size_t at) {
-  std::uint32_t bits = 0;
-  for (std::size_t i = 0; i < 4; ++i) bits |= static_cast<std::uint32_t>(payload[at + i]) << (8 * i);
-  return std::bit_cast<float>(bits);
+  float value = 0.0F;
+  std::memcpy(&value, payload.data() + at, sizeof value);
+  return value;
 }
 
 }  // namespace

@@ -65,6 +65,43 @@ inline bool SegmentTouches(const OrientedBox& box, const Vec2& a, const Vec2& b)
          std::fabs(Cross(middle, extent)) <= hx * ey + hy * ex;
 }
 
+// At most the distance (m) from the segment a-b to the box; positive unless SegmentTouches, but for rounding.
+inline double SegmentGap(const OrientedBox& box, const Vec2& a, const Vec2& b) {
+  // The widest gap along one of the separating axes.
+  const Vec2 a_local = ToLocal(box, a);
+  const Vec2 b_local = ToLocal(box, b);
+  const Vec2 middle = a_local + b_local;
+  const Vec2 extent = b_local - a_local;
+  const double ex = std::fabs(extent.x());
+  const double ey = std::fabs(extent.y());
+  const double hx = 2.0 * box.half_extents.x();
+  const double hy = 2.0 * box.half_extents.y();
+  const double along_axes = std::fmax(std::fabs(middle.x()) - (hx + ex), std::fabs(middle.y()) - (hy + ey));
+  const double length = std::sqrt(extent.squaredNorm());
+  const double aside = std::fabs(Cross(middle, extent)) - (hx * ey + hy * ex);
+  const double twice = length > 0.0 ? std::fmax(along_axes, aside / length) : along_axes;
+  return twice > 0.0 ? 0.5 * twice : 0.0;
+}
+
+// How deep in the box (m from its edge) some point of the segment a-b lies; 0 when none does.
+inline double SegmentDepth(const OrientedBox& box, const Vec2& a, const Vec2& b) {
+  // The middle of the part inside, which has its ends on the box's edge or at the segment's ends.
+  const Vec2 from = ToLocal(box, a);
+  const Vec2 way = ToLocal(box, b) - from;
+  double enter = 0.0;
+  double leave = 1.0;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (way[axis] == 0.0) continue;
+    const double half = std::copysign(box.half_extents[axis], way[axis]);
+    enter = std::fmax(enter, (-half - from[axis]) / way[axis]);
+    leave = std::fmin(leave, (half - from[axis]) / way[axis]);
+  }
+  const Vec2 middle = from + 0.5 * (enter + leave) * way;
+  const double depth =
+      std::fmin(box.half_extents.x() - std::fabs(middle.x()), box.half_extents.y() - std::fabs(middle.y()));
+  return enter <= leave && depth > 0.0 ? depth : 0.0;
+}
+
 inline bool SegmentTouches(const Vec2& disc_center, double disc_radius, const Vec2& a, const Vec2& b) {
   const Vec2 segment = b - a;
   const Vec2 from_a = disc_center - a;

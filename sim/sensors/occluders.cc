@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "sim/geometry/ray_cast.h"
@@ -23,6 +24,12 @@ bool CutBelow(double height, const Point3& a, const Point3& b, Vec2& from, Vec2&
   return true;
 }
 
+// A distance that decides, less what rounding may have added to it.
+double Lasting(double distance) {
+  constexpr double kRounding = 1e-9;  // m: coordinates up to 1000 m lose far less
+  return std::max(0.0, distance - kRounding);
+}
+
 }  // namespace
 
 Occluders::Occluders(const Arena& arena) {
@@ -40,6 +47,7 @@ Occluders::Box Occluders::Bounded(const OrientedBox& box, double height) {
 }
 
 void Occluders::AddBox(const OrientedBox& box, double height) {
+  all_.push_back(boxes_.size());
   boxes_.push_back(Bounded(box, height));
   all_high_ = all_high_ && height >= kHighestDevice;
 }
@@ -49,53 +57,57 @@ void Occluders::SetMoving(std::span<const OrientedBox> boxes) {
   for (const OrientedBox& box : boxes) moving_.push_back(Bounded(box, kBoxHeight));
 }
 
-void Occluders::FindHighBoxes(std::span<const Vec2> places, std::vector<std::size_t>& found) const {
-  found.clear();
-  if (places.empty()) return;
-  Vec2 min = places[0];
-  Vec2 max = min;
-  for (const Vec2& place : places) {
-    min = min.cwiseMin(place);
-    max = max.cwiseMax(place);
-  }
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    const Box& box = boxes_[i];
-    if (box.height < kHighestDevice) continue;
-    if ((box.min.array() <= max.array()).all() && (box.max.array() >= min.array()).all()) found.push_back(i);
-  }
-}
-
-inline bool Occluders::HighBoxBetween(const Box& box, const Vec2& a, const Vec2& b, const Vec2& min,
-                                      const Vec2& max) {
-  if (box.height < kHighestDevice) return false;
+inline bool Occluders::Touches(const Box& box, const Vec2& a, const Vec2& b, const Vec2& min,
+                               const Vec2& max) {
   if (box.min.x() > max.x() || box.max.x() < min.x() || box.min.y() > max.y() || box.max.y() < min.y()) {
     return false;
   }
   return SegmentTouches(box.box, a, b);
 }
 
-bool Occluders::BoxBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const {
+Sight Occluders::SightBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const {
   const Vec2 min = a.cwiseMin(b);
   const Vec2 max = a.cwiseMax(b);
-  const auto between = [&](const Box& box) { return HighBoxBetween(box, a, b, min, max); };
-  return std::ranges::any_of(boxes, [&](std::size_t index) { return between(boxes_[index]); }) ||
-         std::ranges::any_of(moving_, between);
+  double room = kLongest;
+  for (const std::size_t index : boxes) {
+    const Box& box = boxes_[index];
+    if (box.height < kHighestDevice) continue;
+    const double apart = std::max(std::max(box.min.x() - max.x(), min.x() - box.max.x()),
+                                  std::max(box.min.y() - max.y(), min.y() - box.max.y()));
+    if (apart >= room) continue;
+    if (apart <= 0.0 && SegmentTouches(box.box, a, b)) return {false, Lasting(SegmentDepth(box.box, a, b))};
+    room = std::min(room, std::max(apart, SegmentGap(box.box, a, b)));
+  }
+  return {true, Lasting(room)};
+}
+
+bool Occluders::MovingBoxBetween(const Vec2& a, const Vec2& b) const {
+  if (moving_.empty()) return false;
+  const Vec2 min = a.cwiseMin(b);
+  const Vec2 max = a.cwiseMax(b);
+  return std::ranges::any_of(moving_, [&](const Box& box) { return Touches(box, a, b, min, max); });
 }
 
 inline bool Occluders::LowBoxBetween(const Box& box, const Point3& a, const Point3& b) {
   Vec2 from;
   Vec2 to;
   if (!CutBelow(box.height, a, b, from, to)) return false;
-  if (box.min.x() > std::max(from.x(), to.x()) || box.max.x() < std::min(from.x(), to.x()) ||
-      box.min.y() > std::max(from.y(), to.y()) || box.max.y() < std::min(from.y(), to.y())) {
-    return false;
-  }
-  return SegmentTouches(box.box, from, to);
+  return Touches(box, from, to, from.cwiseMin(to), from.cwiseMax(to));
 }
 
 bool Occluders::BoxBetween(const Point3& a, const Point3& b) const {
   const auto between = [&](const Box& box) { return LowBoxBetween(box, a, b); };
   return std::ranges::any_of(boxes_, between) || std::ranges::any_of(moving_, between);
+}
+
+bool Occluders::BoxBetween(const Point3& a, const Point3& b, SightMemory& memory) const {
+  // A higher lamp may shine over boxes.
+  if (!all_high_ || std::max(a.height, b.height) > kHighestDevice) return BoxBetween(a, b);
+  const double& holds = memory.sight.holds;
+  if ((a.position - memory.from).squaredNorm() >= holds * holds || b.position != memory.to) {
+    memory = {SightBetween(all_, a.position, b.position), a.position, b.position};
+  }
+  return !memory.sight.clear || MovingBoxBetween(a.position, b.position);
 }
 
 bool BodyBetween(std::span<const BodyFrame> robots, const Point3& a, const Point3& b, RobotIndex self,

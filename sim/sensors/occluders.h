@@ -28,7 +28,9 @@ struct BodyFrame {
             position.y() + direction.y() * point.x() + direction.x() * point.y()};
   }
   // A way given in the world's frame, in the robot's.
-  Vec2 FromWorld(const Vec2& way) const { return {direction.dot(way), Cross(direction, way)}; }
+  Vec2 FromWorld(const Vec2& way) const {
+    return {direction.x() * way.x() + direction.y() * way.y(), Cross(direction, way)};
+  }
 };
 
 // A point above the floor.
@@ -39,6 +41,36 @@ struct Point3 {
 
 // Walls and obstacles of an arena are this high, m: robots neither see nor hear over them.
 inline constexpr double kBoxHeight = 1.0;
+
+// What is known of a line between two places.
+struct Sight {
+  bool clear = false;
+  double holds = 0.0;  // m, how far each of its ends may move before that may change
+};
+
+// What somebody knows of the line from where it was to a place that does not move.
+struct SightMemory {
+  Sight sight;
+  Vec2 from = Vec2::Zero();
+  Vec2 to = Vec2::Zero();
+};
+
+// What robots know of the lines to some places.
+class SightMemories {
+ public:
+  // Allocates when there are more places than before.
+  void SetPlaces(std::size_t robots, std::size_t places) {
+    if (memories_.size() != robots * places) memories_.assign(robots * places, SightMemory{});
+    places_ = places;
+  }
+  std::span<SightMemory> Of(std::size_t robot) {
+    return std::span(memories_).subspan(robot * places_, places_);
+  }
+
+ private:
+  std::vector<SightMemory> memories_;  // [robot][place]
+  std::size_t places_ = 0;
+};
 
 class Occluders {
  public:
@@ -51,18 +83,22 @@ class Occluders {
   void SetMoving(std::span<const OrientedBox> boxes);
   // Every box is higher than any device or lamp, so heights need not be asked for.
   bool all_high() const { return all_high_; }
+  bool any_move() const { return !moving_.empty(); }
 
-  // The numbers, in the order they were added, of the boxes that may stand between two of these places and
-  // are higher than any device.
-  void FindHighBoxes(std::span<const Vec2> places, std::vector<std::size_t>& found) const;
-  // Whether one of these boxes that is higher than any device, or one that moves, stands on the line. The
-  // answer is the same in both directions. Boundary counts.
-  bool BoxBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const;
+  // Whether one of these boxes (numbered in the order they were added) that is higher than any device stands
+  // on the line. The answer is the same in both directions. Boundary counts. Boxes that move are not asked.
+  // Looks at boxes up to kLongest from the line, and no answer holds longer.
+  static constexpr double kLongest = 0.3;  // m
+  Sight SightBetween(std::span<const std::size_t> boxes, const Vec2& a, const Vec2& b) const;
+  // The same of the boxes that move.
+  bool MovingBoxBetween(const Vec2& a, const Vec2& b) const;
   // Of the fixed boxes.
   std::size_t size() const { return boxes_.size(); }
   const OrientedBox& box(std::size_t index) const { return boxes_[index].box; }
   // Whether the straight line from a to b meets a box, at or below the box's height.
   bool BoxBetween(const Point3& a, const Point3& b) const;
+  // The same, for somebody at a who asks for the same b tick by tick: `memory` saves looking at fixed boxes.
+  bool BoxBetween(const Point3& a, const Point3& b, SightMemory& memory) const;
 
  private:
   struct Box {
@@ -73,10 +109,11 @@ class Occluders {
   };
 
   static Box Bounded(const OrientedBox& box, double height);
-  static bool HighBoxBetween(const Box& box, const Vec2& a, const Vec2& b, const Vec2& min, const Vec2& max);
+  static bool Touches(const Box& box, const Vec2& a, const Vec2& b, const Vec2& min, const Vec2& max);
   static bool LowBoxBetween(const Box& box, const Point3& a, const Point3& b);
 
   std::vector<Box> boxes_;
+  std::vector<std::size_t> all_;  // their numbers
   std::vector<Box> moving_;
   bool all_high_ = true;
 };

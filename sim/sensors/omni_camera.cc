@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/sensors/seen_lists.h"
 #include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
 namespace {
 
-constexpr std::size_t kManyBlobs = 64 * (1 + foot_bot::kRingLeds);
+constexpr std::size_t kBlobsOfRobot = 1 + foot_bot::kRingLeds;
+constexpr std::size_t kManyBlobs = 64 * kBlobsOfRobot;
 constexpr double kHighestLight = 2.0 * foot_bot::kCameraHeight;
 
 // Of a robot with heading 0, from its centre.
@@ -29,17 +31,16 @@ double Side(const Vec2& offset) {
 }
 
 bool HiddenByLowBox(const Scene& scene, const BodyFrame& viewer, const RobotPairs::Neighbour& other) {
-  return !scene.occluders.all_high() &&
-         scene.occluders.BoxBetween({viewer.position, foot_bot::kCameraHeight},
+  return scene.occluders.BoxBetween({viewer.position, foot_bot::kCameraHeight},
                                     {viewer.position + other.offset, foot_bot::kBeaconHeight});
 }
 
 // Allocates nothing unless a robot sees more than 64 robots.
 class OmniCameras final : public Sensor {
  public:
-  explicit OmniCameras(std::span<const RobotSensors> robots) : first_(robots.size() + 1) {
+  explicit OmniCameras(std::span<const RobotSensors> robots)
+      : blobs_(robots.size(), robots.size() * std::min(kManyBlobs, (robots.size() + 1) * kBlobsOfRobot)) {
     for (const RobotSensors& robot : robots) ranges_.push_back(robot.CameraReach());
-    blobs_.reserve(robots.size() * std::min(kManyBlobs, robots.size() * (1 + foot_bot::kRingLeds)));
   }
 
   void Prepare(const Scene& scene) override;
@@ -53,45 +54,70 @@ class OmniCameras final : public Sensor {
   }
 
  private:
-  std::span<Blob> BlobsOf(RobotIndex robot) {
-    const auto index = static_cast<std::size_t>(robot);
-    return std::span(blobs_).subspan(first_[index], first_[index + 1] - first_[index]);
-  }
-  void AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other);
-  void AddLights(const Scene& scene, std::span<const Light> lights, RobotIndex viewer);
-  void Add(const BodyFrame& viewer, const Vec2& offset, double range, Color color) {
-    blobs_.push_back({.position = viewer.FromWorld(offset), .range = range, .color = color});
+  std::span<Blob> BlobsOf(RobotIndex robot) { return blobs_.Of(static_cast<std::size_t>(robot)); }
+  // Add blobs at `next`, which they move on.
+  void AddRobots(const Scene& scene, std::span<const RobotPairs::Neighbour> others, RobotIndex viewer,
+                 Blob*& next);
+  void AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other, Blob*& next);
+  void AddLights(const Scene& scene, std::span<const Light> lights, RobotIndex viewer,
+                 std::span<SightMemory> lines, Blob*& next);
+  static void Add(const BodyFrame& viewer, const Vec2& offset, double range, Color color, Blob*& next) {
+    next->position = viewer.FromWorld(offset);
+    next->range = range;
+    next->color = color;
+    ++next;
   }
 
   std::vector<double> ranges_;  // half side (m) of the world-aligned square that a camera sees, 0 = no camera
-  std::vector<Blob> blobs_;
-  std::vector<std::size_t> first_;  // where the blobs of a robot begin
+  SeenLists<Blob> blobs_;
+  SightMemories lines_;  // to the lights that surround the robots
+  SightMemories lines_to_obstacles_;
 };
 
 void OmniCameras::Prepare(const Scene& scene) {
-  blobs_.clear();
+  blobs_.Clear();
   const std::span<const Light> lights = scene.surroundings.lights();
+  lines_.SetPlaces(ranges_.size(), lights.size());
+  lines_to_obstacles_.SetPlaces(ranges_.size(), scene.obstacle_lights.size());
+  const bool anybody_lit =
+      scene.any_ring_lit || std::ranges::any_of(scene.signals, [](const Signals& signals) {
+        return signals.beacon != Color::kBlack;
+      });
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
-    const RobotIndex viewer = static_cast<RobotIndex>(i);
-    const BodyFrame& self = scene.robots[i];
-    const double range = ranges_[i];
-    first_[i] = blobs_.size();
-    if (range <= 0.0) continue;
-    for (const RobotPairs::Neighbour& other : scene.pairs.NeighboursOf(viewer)) {
-      const Color beacon = scene.signals[static_cast<std::size_t>(other.robot)].beacon;
-      if (beacon != Color::kBlack && other.clear && Side(other.offset) < range &&
-          !HiddenByLowBox(scene, self, other)) {
-        Add(self, other.offset, other.distance, beacon);
+    using Neighbours = std::span<const RobotPairs::Neighbour>;
+    const Neighbours others =
+        anybody_lit ? scene.pairs.NeighboursOf(static_cast<RobotIndex>(i)) : Neighbours();
+    Blob* next = blobs_.Begin(i, others.size() * (scene.any_ring_lit ? kBlobsOfRobot : 1) + lights.size() +
+                                     scene.obstacle_lights.size());
+    if (ranges_[i] > 0.0) {
+      AddRobots(scene, others, static_cast<RobotIndex>(i), next);
+      if (!lights.empty()) AddLights(scene, lights, static_cast<RobotIndex>(i), lines_.Of(i), next);
+      if (!scene.obstacle_lights.empty()) {
+        AddLights(scene, scene.obstacle_lights, static_cast<RobotIndex>(i), lines_to_obstacles_.Of(i), next);
       }
-      if (scene.any_ring_lit) AddRing(scene, viewer, other.robot);
     }
-    if (!lights.empty()) AddLights(scene, lights, viewer);
-    if (!scene.obstacle_lights.empty()) AddLights(scene, scene.obstacle_lights, viewer);
+    blobs_.End(i, next);
   }
-  first_.back() = blobs_.size();
 }
 
-void OmniCameras::AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other) {
+void OmniCameras::AddRobots(const Scene& scene, std::span<const RobotPairs::Neighbour> others,
+                            RobotIndex viewer, Blob*& next) {
+  const BodyFrame self = scene.robots[static_cast<std::size_t>(viewer)];
+  const double range = ranges_[static_cast<std::size_t>(viewer)];
+  const bool all_high = scene.occluders.all_high();
+  Blob* blob = next;
+  for (const RobotPairs::Neighbour& other : others) {
+    const Color beacon = scene.signals[static_cast<std::size_t>(other.robot)].beacon;
+    if (beacon != Color::kBlack && other.clear && Side(other.offset) < range &&
+        (all_high || !HiddenByLowBox(scene, self, other))) {
+      Add(self, other.offset, other.distance, beacon, blob);
+    }
+    if (scene.any_ring_lit) AddRing(scene, viewer, other.robot, blob);
+  }
+  next = blob;
+}
+
+void OmniCameras::AddRing(const Scene& scene, RobotIndex viewer, RobotIndex other, Blob*& next) {
   const BodyFrame& self = scene.robots[static_cast<std::size_t>(viewer)];
   const BodyFrame& carrier = scene.robots[static_cast<std::size_t>(other)];
   const Signals& signals = scene.signals[static_cast<std::size_t>(other)];
@@ -107,23 +133,25 @@ void OmniCameras::AddRing(const Scene& scene, RobotIndex viewer, RobotIndex othe
     if (BodyBetween(std::span(&carrier, 1), camera, lamp, -1, -1)) continue;
     if (scene.occluders.BoxBetween(camera, lamp)) continue;
     if (BodyBetween(scene.robots, camera, lamp, viewer, other)) continue;
-    Add(self, offset, std::sqrt(offset.squaredNorm()), signals.ring[led]);
+    Add(self, offset, std::sqrt(offset.squaredNorm()), signals.ring[led], next);
   }
 }
 
-void OmniCameras::AddLights(const Scene& scene, std::span<const Light> lights, RobotIndex viewer) {
+void OmniCameras::AddLights(const Scene& scene, std::span<const Light> lights, RobotIndex viewer,
+                            std::span<SightMemory> lines, Blob*& next) {
   const BodyFrame& self = scene.robots[static_cast<std::size_t>(viewer)];
   const Point3 camera = {self.position, foot_bot::kCameraHeight};
-  for (const Light& light : lights) {
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const Light& light = lights[i];
     if (light.color == Color::kBlack || light.height >= kHighestLight) continue;
     const Vec2 offset = light.position - self.position;
     if (!(Side(offset) < ranges_[static_cast<std::size_t>(viewer)])) continue;
     if (light.occludable) {
       const Point3 lamp = {light.position, light.height};
-      if (scene.occluders.BoxBetween(camera, lamp)) continue;
+      if (scene.occluders.BoxBetween(camera, lamp, lines[i])) continue;
       if (BodyBetween(scene.robots, camera, lamp, viewer, -1)) continue;
     }
-    Add(self, offset, std::sqrt(offset.squaredNorm()), light.color);
+    Add(self, offset, std::sqrt(offset.squaredNorm()), light.color, next);
   }
 }
 

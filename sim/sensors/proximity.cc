@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t kSensors = foot_bot::kProximitySensors;
 constexpr double kReach = foot_bot::kRadius + foot_bot::kProximityRange;  // m from the centre
 constexpr double kNothing = 2.0 * kReach;
+constexpr double kTouching = 1e-6;  // m from a box: its direction is no guide
 
 // Rays of a robot with heading 0. Thrice around, so that nobody who looks to both sides of the second turn
 // meets the seam.
@@ -40,6 +41,19 @@ double SensorAngle(const Vec2& v) {
   const double quarter = y / (x + y);
   const double upper = v.x() >= 0.0 ? quarter : 2.0 - quarter;
   return (v.y() >= 0.0 ? upper : 4.0 - upper) * (kSensors / 4) - 0.5;
+}
+
+// Asks the sensors that may see what lies towards `v`, which less than half a turn of the ring sees: those
+// that do are side by side. When the middle one does not, only one of its neighbours may: the middle is at
+// most 0.28 + 0.5 sensors beside v. `sees` is given sensors of the second turn of RestRays().
+template <typename Sees>
+void LookAround(const Vec2& v, const Sees& sees) {
+  const int middle = static_cast<int>(SensorAngle(v) + 0.5 + kSensors);
+  int left = middle + 1;
+  int right = middle - 1;
+  while (sees(left)) ++left;
+  if (!sees(middle) && left > middle + 1) return;
+  while (sees(right)) --right;
 }
 
 // Where a ray from the box's frame enters it: distance from `origin`, or kNothing.
@@ -138,19 +152,34 @@ void ProximityRing::See(const OrientedBox& box) {
   if (gap_squared >= kReach * kReach) return;
   const Vec2 forward(box.axis.dot(self_.direction), Cross(box.axis, self_.direction));
   const auto& rays = RestRays();
-  for (std::size_t i = 0; i < kSensors; ++i) {
-    const Vec2 ray = Turned(rays[i], forward);
+  const auto sees = [&](int sensor) {
     // The box lies behind the line through its closest point, across the gap: rays that do not get there
     // within their reach miss it.
-    if (ray.dot(gap) * kReach < gap_squared) continue;
-    Hit(i, EnterBox(box.half_extents, origin, ray) - foot_bot::kRadius);
+    const Vec2 ray = Turned(rays[static_cast<std::size_t>(sensor)], forward);
+    if (ray.dot(gap) * kReach < gap_squared) return false;
+    Hit(static_cast<std::size_t>(sensor) % kSensors,
+        EnterBox(box.half_extents, origin, ray) - foot_bot::kRadius);
+    return true;
+  };
+  if (gap_squared < kTouching * kTouching) {
+    for (int sensor = 0; sensor < static_cast<int>(kSensors); ++sensor) sees(sensor);
+  } else {
+    LookAround({forward.dot(gap), Cross(forward, gap)}, sees);
   }
 }
 
 void ProximityRing::SeeBody(const BodyFrame& robot, const Vec2& offset) {
   const Vec2 body = self_.FromWorld(offset);
   SeeDisc(body, foot_bot::kRadius, 0.1);
-  SeeDisc(body + foot_bot::kRadius * self_.FromWorld(robot.direction), foot_bot::kGripperRadius, 0.02);
+  // Turned away by this much, the gripper is behind the body for every ray: the body's shadow is at least
+  // R + 0.2 R^2 / d - 0.98 R sqrt(1 - R^2 / d^2) > 1.01 kGripperRadius away from the gripper's centre on both
+  // sides for d up to kBodyReach, and from d = sqrt(2) R on no ray begins in the body.
+  const Vec2 facing = self_.FromWorld(robot.direction);
+  const double away = facing.dot(body);
+  const double distance_squared = body.squaredNorm();
+  const bool hidden = away > 0.0 && away * away >= 0.2 * 0.2 * distance_squared &&
+                      distance_squared >= 2.0 * foot_bot::kRadius * foot_bot::kRadius;
+  if (!hidden) SeeDisc(body + foot_bot::kRadius * facing, foot_bot::kGripperRadius, 0.02);
 }
 
 // `center` in the frame of this robot. From the distance `apart` on, less than half a turn of the ring sees
@@ -168,8 +197,9 @@ void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
   const double power = distance_squared - radius * radius;  // square of the tangents' length
   const double least_along =
       power > kReach * kReach ? (power + kReach * kReach) / (2.0 * kReach) : std::sqrt(power);
-  const auto sees = [&](int sensor) {
-    const double along = RestRays()[static_cast<std::size_t>(sensor)].dot(center);
+  const auto& rays = RestRays();
+  LookAround(center, [&](int sensor) {
+    const double along = rays[static_cast<std::size_t>(sensor)].dot(center);
     if (along <= least_along) return false;
     const double half_chord = std::sqrt(along * along - power);
     // Else it ends before the ray begins.
@@ -177,15 +207,7 @@ void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
       Hit(static_cast<std::size_t>(sensor) % kSensors, along - half_chord - foot_bot::kRadius);
     }
     return true;
-  };
-  // Those that see it are side by side. When the middle one does not, only one of its neighbours may: the
-  // middle is at most 0.28 + 0.5 sensors beside the disc's centre.
-  const int middle = static_cast<int>(SensorAngle(center) + 0.5 + kSensors);
-  int left = middle + 1;
-  int right = middle - 1;
-  while (sees(left)) ++left;
-  if (!sees(middle) && left > middle + 1) return;
-  while (sees(right)) --right;
+  });
 }
 
 // A disc so near, or overlapped, that any sensor may see it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/sensors/seen_lists.h"
 #include "sim/sensors/sensor.h"
 
 namespace gauntlet::sim {
@@ -18,8 +19,9 @@ Point3 AntennaAt(const Vec2& position) {
 class Radios final : public Sensor {
  public:
   explicit Radios(std::span<const RobotSensors> robots)
-      : radios_(robots.begin(), robots.end()), first_(robots.size() + 1) {
-    messages_.reserve(robots.size() * std::min(robots.size() + 1, kManyMessages));
+      : radios_(robots.begin(), robots.end()),
+        messages_(robots.size(), robots.size() * std::min(robots.size() + 1, kManyMessages)) {
+    for (const RobotSensors& robot : robots) reaches_.push_back(robot.RadioReach());
   }
 
   void Prepare(const Scene& scene) override;
@@ -33,67 +35,76 @@ class Radios final : public Sensor {
   }
 
  private:
-  std::span<Message> MessagesOf(RobotIndex robot) {
-    const auto index = static_cast<std::size_t>(robot);
-    return std::span(messages_).subspan(first_[index], first_[index + 1] - first_[index]);
-  }
-  void HearRobots(const Scene& scene, std::size_t listener);
-  void HearBeacons(const Scene& scene, std::size_t listener);
+  std::span<Message> MessagesOf(RobotIndex robot) { return messages_.Of(static_cast<std::size_t>(robot)); }
+  // Write from `next` on and return where they end.
+  Message* HearRobots(const Scene& scene, std::size_t listener, Message* next);
+  Message* HearBeacons(const Scene& scene, std::size_t listener, Message* next);
 
   std::vector<RobotSensors> radios_;
-  std::vector<Message> messages_;
-  std::vector<std::size_t> first_;  // where the messages of a robot begin
+  std::vector<double> reaches_;  // m, how far each is heard, 0 = no radio
+  SeenLists<Message> messages_;
+  SightMemories lines_to_beacons_;
 };
 
 void Radios::Prepare(const Scene& scene) {
-  messages_.clear();
+  messages_.Clear();
+  const std::size_t beacons = scene.surroundings.radio_beacons().size();
+  lines_to_beacons_.SetPlaces(radios_.size(), beacons);
   for (std::size_t i = 0; i < radios_.size(); ++i) {
-    first_[i] = messages_.size();
-    if (radios_[i].RadioReach() <= 0.0) continue;
-    HearRobots(scene, i);
-    HearBeacons(scene, i);
+    const std::size_t robots = scene.pairs.NeighboursOf(static_cast<RobotIndex>(i)).size();
+    Message* next = messages_.Begin(i, robots + beacons);
+    if (reaches_[i] > 0.0) next = HearBeacons(scene, i, HearRobots(scene, i, next));
+    messages_.End(i, next);
   }
-  first_.back() = messages_.size();
 }
 
-void Radios::HearRobots(const Scene& scene, std::size_t listener) {
+Message* Radios::HearRobots(const Scene& scene, std::size_t listener, Message* next) {
   const BodyFrame& self = scene.robots[listener];
   const RobotIndex robot = static_cast<RobotIndex>(listener);
+  const bool all_high = scene.occluders.all_high();
+  const bool bodies_block = radios_[listener].bodies_block_radio;
   for (const RobotPairs::Neighbour& other : scene.pairs.NeighboursOf(robot)) {
     const std::size_t sender = static_cast<std::size_t>(other.robot);
-    if (!other.clear || !(other.distance < radios_[sender].RadioReach()) || scene.signals[sender].silent)
-      continue;
-    if (!scene.occluders.all_high() &&
+    if (!other.clear || !(other.distance < reaches_[sender])) continue;
+    const Signals& signals = scene.signals[sender];
+    if (signals.silent) continue;
+    if (!all_high &&
         scene.occluders.BoxBetween(AntennaAt(self.position), AntennaAt(scene.robots[sender].position))) {
       continue;
     }
-    if (radios_[listener].bodies_block_radio &&
-        BodyBetween(scene.robots, AntennaAt(self.position), AntennaAt(scene.robots[sender].position), robot,
-                    other.robot)) {
+    if (bodies_block && BodyBetween(scene.robots, AntennaAt(self.position),
+                                    AntennaAt(scene.robots[sender].position), robot, other.robot)) {
       continue;
     }
-    messages_.push_back({.position = self.FromWorld(other.offset),
-                         .range = other.distance,
-                         .payload = scene.signals[sender].message});
+    next->position = self.FromWorld(other.offset);
+    next->range = other.distance;
+    next->payload = signals.message;
+    ++next;
   }
+  return next;
 }
 
-void Radios::HearBeacons(const Scene& scene, std::size_t listener) {
+Message* Radios::HearBeacons(const Scene& scene, std::size_t listener, Message* next) {
   const BodyFrame& self = scene.robots[listener];
   const Point3 antenna = AntennaAt(self.position);
-  for (const RadioBeacon& beacon : scene.surroundings.radio_beacons()) {
+  const std::span<const RadioBeacon> beacons = scene.surroundings.radio_beacons();
+  const std::span<SightMemory> lines = lines_to_beacons_.Of(listener);
+  for (std::size_t i = 0; i < beacons.size(); ++i) {
+    const RadioBeacon& beacon = beacons[i];
     const Vec2 offset = beacon.position - self.position;
     if (!(offset.squaredNorm() < beacon.range * beacon.range)) continue;
     const Point3 source = AntennaAt(beacon.position);
-    if (scene.occluders.BoxBetween(antenna, source)) continue;
+    if (scene.occluders.BoxBetween(antenna, source, lines[i])) continue;
     if (radios_[listener].bodies_block_radio &&
         BodyBetween(scene.robots, antenna, source, static_cast<RobotIndex>(listener), -1)) {
       continue;
     }
-    messages_.push_back({.position = self.FromWorld(offset),
-                         .range = std::sqrt(offset.squaredNorm()),
-                         .payload = beacon.payload});
+    next->position = self.FromWorld(offset);
+    next->range = std::sqrt(offset.squaredNorm());
+    next->payload = beacon.payload;
+    ++next;
   }
+  return next;
 }
 
 }  // namespace

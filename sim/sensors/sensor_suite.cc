@@ -57,7 +57,7 @@ void SensorSuite::Sense(const World& world) {
                             std::any_of(world.signals.begin(), world.signals.end(),
                                         [](const Signals& signals) { return signals.RingLit(); });
   if (camera || anybodys_devices_.Has(Device::kRangeAndBearing)) {
-    pairs_.Update(positions_, occluders_, any_ring_lit);
+    pairs_.Update(positions_, world.signals, occluders_, any_ring_lit);
   }
   const Scene scene = {world, frames_, positions_, occluders_, pairs_, any_ring_lit};
   for (const auto& [device, sensor, robots] : equipment_) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -132,9 +133,16 @@ RC_GTEST_PROP(Box2dOracle, LinesOfSightAreThoseOfBox2d, (std::uint64_t seed)) {
   const bool theirs = std::any_of(boxes.begin(), boxes.end(), [&](const OrientedBox& box) {
     return CastBox(box, a, direction, distance) != kNoHit;
   });
-  std::vector<std::size_t> high_boxes;
-  occluders.FindHighBoxes(std::vector<Vec2>{a, b}, high_boxes);
-  const bool ours = occluders.BoxBetween(high_boxes, a, b);
+  std::vector<std::size_t> all(boxes.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const Sight sight = occluders.SightBetween(all, a, b);
+  const bool ours = !sight.clear;
+  // Wherever its ends go within what it holds for, the answer stays.
+  for (int i = 0; i < 10; ++i) {
+    const auto shift = [&] { return 0.999 * sight.holds * UnitVector(random.Uniform(-kPi, kPi)); };
+    const Vec2 near_a = a + shift();
+    RC_ASSERT(occluders.SightBetween(all, near_a, b + shift()).clear == sight.clear);
+  }
   RC_CLASSIFY(ours, "hidden");
   RC_ASSERT(occluders.BoxBetween({a, 0.1}, {b, 0.3}) == ours);
   if (ours == theirs) return;

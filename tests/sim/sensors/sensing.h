@@ -42,7 +42,7 @@ struct SensingPlace final : Surroundings {
     bool any_ring_lit = false;
     for (const Signals& one : signals) any_ring_lit = any_ring_lit || one.RingLit();
     RobotPairs pairs(sensors, boxes);
-    pairs.Update(positions, occluders, any_ring_lit);
+    pairs.Update(positions, signals, occluders, any_ring_lit);
     const std::vector<Actuators> actuators(robots.size());
     const Grippers grippers(std::vector<bool>(robots.size(), false));
     const World world = {
