@@ -67,6 +67,7 @@ class Loop {
   std::vector<double> headings_;  // rad, of the moving obstacles
   Grippers grippers_;
   std::vector<DeviceSet> devices_;
+  std::vector<DeviceSet> attention_;  // in this tick
   std::vector<Actuators> actuators_;  // as the controllers left them
   std::vector<WheelSpeeds> wheels_;   // in action
   std::vector<Signals> signals_;      // in action
@@ -77,13 +78,16 @@ class Loop {
   std::string invalid_command_;
 };
 
-std::vector<RobotSensors> SensorsOf(const std::vector<RobotSetup>& swarm) {
+std::vector<RobotSensors> SensorsOf(const std::vector<RobotSetup>& swarm, const Disturbances& disturbances) {
+  // Noise may move senders nearer.
+  const bool noisy = disturbances.noise.contains(Device::kRangeAndBearing);
   std::vector<RobotSensors> sensors;
   for (const RobotSetup& robot : swarm) {
     sensors.push_back({.devices = robot.controller->Devices(),
                        .camera_range = robot.camera_range,
                        .radio_range = robot.radio_range,
                        .bodies_block_radio = robot.bodies_block_radio});
+    if (!noisy) sensors.back().listening_range = robot.controller->ListeningRange();
   }
   return sensors;
 }
@@ -102,9 +106,10 @@ Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed
       observer_(observer),
       probe_(options.probe),
       physics_(options.physics == PhysicsKind::kRelaxation ? MakeRelaxationEngine() : MakeBox2dEngine()),
-      sensors_(scenario.arena(), SensorsOf(swarm_)),
+      sensors_(scenario.arena(), SensorsOf(swarm_, options.disturbances)),
       course_(scenario.arena()),
       grippers_(Equipped(swarm_, Device::kGripper)),
+      attention_(swarm_.size()),
       actuators_(swarm_.size()),
       wheels_(swarm_.size()),
       poses_(swarm_.size()),
@@ -151,6 +156,9 @@ bool Loop::Tick() {
     return false;
   }
   Enter(Phase::kSense);
+  for (std::size_t i = 0; i < swarm_.size(); ++i) {
+    attention_[i] = swarm_[i].controller->Attention(grippers_.Holds(static_cast<RobotIndex>(i)));
+  }
   sensors_.Sense({.poses = poses_,
                   .signals = signals_,
                   .actuators = actuators_,
@@ -160,6 +168,7 @@ bool Loop::Tick() {
                   .obstacle_lights = course_.lights(),
                   .disturber = disturber_ ? &*disturber_ : nullptr,
                   .tick = observer_.last_tick(),
+                  .attention = attention_,
                   .probe = probe_});
   Enter(Phase::kControl);
   Control();

@@ -1,5 +1,6 @@
 #include "controllers/partitioning/partitioning_controller.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "controllers/common/nest_and_food.h"
@@ -49,10 +50,19 @@ PartitioningController::PartitioningController(const PartitionerSettings& settin
 }
 
 sim::DeviceSet PartitioningController::Devices() const {
-  const sim::DeviceSet devices = Device::kWheels | Device::kLeds | Device::kProximity |
-                                 Device::kOmnidirectionalCamera | Device::kRangeAndBearing | Device::kLight |
-                                 Device::kMotorGround | Device::kGripper;
+  return Attention(true);
+}
+
+sim::DeviceSet PartitioningController::Attention(bool holding_item) const {
+  sim::DeviceSet devices = Device::kWheels | Device::kLeds | Device::kProximity |
+                           Device::kOmnidirectionalCamera | Device::kRangeAndBearing | Device::kMotorGround |
+                           Device::kGripper;
+  if (holding_item) devices = devices | Device::kLight;
   return settings_.bug ? devices | Device::kDistanceScanner : devices;
+}
+
+double PartitioningController::ListeningRange() const {
+  return std::max(settings_.handover.keep_reach, settings_.bug ? kSeenByScanner : 0.0);
 }
 
 void PartitioningController::Step(const sim::ControlStep& step) {

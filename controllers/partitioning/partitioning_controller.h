@@ -50,6 +50,9 @@ class PartitioningController : public sim::Controller {
 
   sim::DeviceSet Devices() const override;
   void Step(const sim::ControlStep& step) override;
+  // The lamp shows the way to the nest, with an item.
+  sim::DeviceSet Attention(bool holding_item) const override;
+  double ListeningRange() const override;
 
   PartitioningState state() const { return state_; }
   double partition_length() const { return length_.value(); }

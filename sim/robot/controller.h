@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "sim/arena/color.h"
@@ -117,6 +118,13 @@ class Controller {
   virtual ~Controller() = default;
   virtual DeviceSet Devices() const = 0;
   virtual void Step(const ControlStep& step) = 0;
+
+  // What it does not use need not be computed; both change nothing but the readings that they leave out.
+  // Those of its devices whose readings the next Step uses, when its gripper then holds an item or does not.
+  // The others read as if they were not there.
+  virtual DeviceSet Attention(bool /*holding_item*/) const { return Devices(); }
+  // m between centres: it uses no message from farther off. Without noise of range-and-bearing it gets none.
+  virtual double ListeningRange() const { return std::numeric_limits<double>::infinity(); }
 };
 
 // Bearing of proximity sensor i, rad in (-pi, pi].

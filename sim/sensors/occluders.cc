@@ -126,4 +126,19 @@ bool BodyBetween(std::span<const BodyFrame> robots, const Point3& a, const Point
   return false;
 }
 
+double BodyRoom(std::span<const Vec2> robots, const Vec2& a, const Vec2& b, RobotIndex self,
+                RobotIndex other) {
+  const Vec2 way = b - a;
+  const double length_squared = way.squaredNorm();
+  const double per_length_squared = length_squared > 0.0 ? 1.0 / length_squared : 0.0;
+  double nearest = std::numeric_limits<double>::infinity();  // squared, of a centre from the line
+  for (std::size_t i = 0; i < robots.size(); ++i) {
+    if (std::cmp_equal(i, self) || std::cmp_equal(i, other)) continue;
+    const Vec2 from_a = robots[i] - a;
+    const double share = std::clamp(from_a.dot(way) * per_length_squared, 0.0, 1.0);
+    nearest = std::min(nearest, (from_a - share * way).squaredNorm());
+  }
+  return std::abs(std::sqrt(nearest) - foot_bot::kRadius);
+}
+
 }  // namespace gauntlet::sim

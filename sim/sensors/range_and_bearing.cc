@@ -10,6 +10,9 @@ namespace gauntlet::sim {
 namespace {
 
 constexpr std::size_t kManyMessages = 64;
+// Up to this many robots, what is known of bodies between them is kept.
+constexpr std::size_t kFewRobots = 100;
+constexpr double kRounding = 1e-6;  // m, more than sums of a run's ways lose
 
 Point3 AntennaAt(const Vec2& position) {
   return {position, foot_bot::kRangeAndBearingHeight};
@@ -22,6 +25,7 @@ class Radios final : public Sensor {
       : radios_(robots.begin(), robots.end()),
         messages_(robots.size(), robots.size() * std::min(robots.size() + 1, kManyMessages)) {
     for (const RobotSensors& robot : robots) reaches_.push_back(robot.RadioReach());
+    if (robots.size() <= kFewRobots) lines_.resize(robots.size() * robots.size());
   }
 
   void Prepare(const Scene& scene) override;
@@ -36,6 +40,8 @@ class Radios final : public Sensor {
 
  private:
   std::span<Message> MessagesOf(RobotIndex robot) { return messages_.Of(static_cast<std::size_t>(robot)); }
+  // Whether a third robot stands between.
+  bool BodyHides(const Scene& scene, std::size_t listener, std::size_t sender);
   // Write from `next` on and return where they end.
   Message* HearRobots(const Scene& scene, std::size_t listener, Message* next);
   Message* HearBeacons(const Scene& scene, std::size_t listener, Message* next);
@@ -43,6 +49,12 @@ class Radios final : public Sensor {
   std::vector<RobotSensors> radios_;
   std::vector<double> reaches_;  // m, how far each is heard, 0 = no radio
   SeenLists<Message> messages_;
+  // What a robot knows of bodies on the line to another, until the swarm has driven so far.
+  struct Line {
+    double until = 0.0;  // m
+    bool hidden = false;
+  };
+  std::vector<Line> lines_;  // [listener][sender]; none in large swarms
   SightMemories lines_to_beacons_;
 };
 
@@ -63,19 +75,17 @@ Message* Radios::HearRobots(const Scene& scene, std::size_t listener, Message* n
   const RobotIndex robot = static_cast<RobotIndex>(listener);
   const bool all_high = scene.occluders.all_high();
   const bool bodies_block = radios_[listener].bodies_block_radio;
+  const double listens = radios_[listener].listening_range;
   for (const RobotPairs::Neighbour& other : scene.pairs.NeighboursOf(robot)) {
     const std::size_t sender = static_cast<std::size_t>(other.robot);
-    if (!other.clear || !(other.distance < reaches_[sender])) continue;
+    if (!other.clear || !(other.distance < reaches_[sender]) || other.distance > listens) continue;
     const Signals& signals = scene.signals[sender];
     if (signals.silent) continue;
     if (!all_high &&
         scene.occluders.BoxBetween(AntennaAt(self.position), AntennaAt(scene.robots[sender].position))) {
       continue;
     }
-    if (bodies_block && BodyBetween(scene.robots, AntennaAt(self.position),
-                                    AntennaAt(scene.robots[sender].position), robot, other.robot)) {
-      continue;
-    }
+    if (bodies_block && BodyHides(scene, listener, sender)) continue;
     next->position = self.FromWorld(other.offset);
     next->range = other.distance;
     next->payload = signals.message;
@@ -84,15 +94,34 @@ Message* Radios::HearRobots(const Scene& scene, std::size_t listener, Message* n
   return next;
 }
 
+bool Radios::BodyHides(const Scene& scene, std::size_t listener, std::size_t sender) {
+  const Point3 from = AntennaAt(scene.robots[listener].position);
+  const Point3 to = AntennaAt(scene.robots[sender].position);
+  const auto self = static_cast<RobotIndex>(listener);
+  const auto other = static_cast<RobotIndex>(sender);
+  if (lines_.empty()) return BodyBetween(scene.robots, from, to, self, other);
+  Line& line = lines_[listener * radios_.size() + sender];
+  const double driven = scene.pairs.driven();
+  if (driven >= line.until) {
+    line.hidden = BodyBetween(scene.robots, from, to, self, other);
+    // The line moves as far as its ends at most, and a body may come as far towards it.
+    line.until =
+        driven + 0.5 * BodyRoom(scene.positions, from.position, to.position, self, other) - kRounding;
+  }
+  return line.hidden;
+}
+
 Message* Radios::HearBeacons(const Scene& scene, std::size_t listener, Message* next) {
   const BodyFrame& self = scene.robots[listener];
   const Point3 antenna = AntennaAt(self.position);
+  const double listens = radios_[listener].listening_range;
   const std::span<const RadioBeacon> beacons = scene.surroundings.radio_beacons();
   const std::span<SightMemory> lines = lines_to_beacons_.Of(listener);
   for (std::size_t i = 0; i < beacons.size(); ++i) {
     const RadioBeacon& beacon = beacons[i];
     const Vec2 offset = beacon.position - self.position;
-    if (!(offset.squaredNorm() < beacon.range * beacon.range)) continue;
+    const double squared = offset.squaredNorm();
+    if (!(squared < beacon.range * beacon.range) || squared > listens * listens) continue;
     const Point3 source = AntennaAt(beacon.position);
     if (scene.occluders.BoxBetween(antenna, source, lines[i])) continue;
     if (radios_[listener].bodies_block_radio &&

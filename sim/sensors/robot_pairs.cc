@@ -40,7 +40,8 @@ RobotPairs::RobotPairs(std::span<const RobotSensors> robots, std::span<const Ori
       was_lit_(robots.size()),
       first_(robots.size()),
       count_(robots.size()) {
-  for (const RobotSensors& robot : robots) reaches_.push_back({robot.CameraReach(), robot.RadioReach()});
+  for (const RobotSensors& robot : robots)
+    reaches_.push_back({robot.CameraReach(), robot.RadioReach(), robot.EarReach()});
   neighbours_.reserve(robots.size() * std::min(robots.size(), kManyNeighbours));
   pairs_.reserve(neighbours_.capacity() / 2);
   for (const OrientedBox& box : fixed_boxes) boxes_.AddBox(box);
@@ -49,10 +50,14 @@ RobotPairs::RobotPairs(std::span<const RobotSensors> robots, std::span<const Ori
 
 void RobotPairs::Drive(std::span<const Vec2> positions) {
   if (positions_.empty()) positions_.assign(positions.begin(), positions.end());
+  double farthest = 0.0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    driven_[i] += std::sqrt((positions[i] - positions_[i]).squaredNorm());
+    const double way = std::sqrt((positions[i] - positions_[i]).squaredNorm());
+    driven_[i] += way;
+    farthest = std::max(farthest, way);
     positions_[i] = positions[i];
   }
+  most_driven_ += farthest;
 }
 
 bool RobotPairs::SeeNewLights(std::span<const Signals> signals) {
@@ -84,11 +89,12 @@ void RobotPairs::ListPairs() {
 }
 
 double RobotPairs::ReachOf(const Pair& pair) const {
-  const auto& [camera_a, radio_a] = reaches_[pair.a];
-  const auto& [camera_b, radio_b] = reaches_[pair.b];
+  const auto& [camera_a, radio_a, ear_a] = reaches_[pair.a];
+  const auto& [camera_b, radio_b, ear_b] = reaches_[pair.b];
   const double camera =
       std::max(was_lit_[pair.b] != 0 ? camera_a : 0.0, was_lit_[pair.a] != 0 ? camera_b : 0.0);
-  return std::max({camera > 0.0 ? Diagonal(camera) : 0.0, radio_a, radio_b});
+  return std::max(
+      {camera > 0.0 ? Diagonal(camera) : 0.0, std::min(radio_a, ear_b), std::min(radio_b, ear_a)});
 }
 
 void RobotPairs::Judge(Pair& pair, std::span<const Vec2> positions, const Occluders& occluders) {

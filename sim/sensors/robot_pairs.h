@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,10 +22,13 @@ struct RobotSensors {
   double camera_range = 0.0;                             // m, half side of a world-aligned square
   double radio_range = foot_bot::kRangeAndBearingRange;  // m, how far it is heard
   bool bodies_block_radio = true;                        // it does not hear through other robots
+  // m, how far away it hears others at most
+  double listening_range = std::numeric_limits<double>::infinity();
 
   // 0 for a robot that has none.
   double CameraReach() const { return devices.Has(Device::kOmnidirectionalCamera) ? camera_range : 0.0; }
   double RadioReach() const { return devices.Has(Device::kRangeAndBearing) ? radio_range : 0.0; }
+  double EarReach() const { return devices.Has(Device::kRangeAndBearing) ? listening_range : 0.0; }
 };
 
 class RobotPairs {
@@ -45,6 +49,8 @@ class RobotPairs {
   // boxes are left out. Allocates nothing while every robot has at most 64 others in reach or nearly so.
   void Update(std::span<const Vec2> positions, std::span<const Signals> signals, const Occluders& occluders,
               bool ring_seen);
+  // m; no robot has driven farther since the beginning. It grows as they drive.
+  double driven() const { return most_driven_; }
   // Of the last Update, in robot order.
   std::span<const Neighbour> NeighboursOf(RobotIndex robot) const {
     const std::size_t index = static_cast<std::size_t>(robot);
@@ -54,7 +60,8 @@ class RobotPairs {
  private:
   struct Reach {
     double camera;  // m
-    double radio;   // m
+    double radio;   // m, how far it is heard
+    double ear;     // m, how far it hears
   };
   enum class Standing : std::uint32_t { kOutOfReach, kHidden, kClear };
   // What is known of two robots until one of them has driven so far.
@@ -80,6 +87,7 @@ class RobotPairs {
   std::vector<Pair> pairs_;
   std::vector<Vec2> positions_;  // of the last Update
   std::vector<double> driven_;   // m, by each robot since the beginning
+  double most_driven_ = 0.0;     // m, sum of the longest way of every tick
   std::vector<char> was_lit_;    // per robot: since the beginning
   std::vector<std::size_t>
       first_;  // where the neighbours of a robot begin, with room for all that are listed

@@ -25,9 +25,10 @@ struct World {
   const Grippers& grippers;
   std::span<const OrientedBox> moving_boxes = {};  // as many as the arena has moving obstacles
   std::span<const Light> obstacle_lights = {};
-  const Disturber* disturber = nullptr;  // of the run, when something is disturbed
-  Tick tick = 0;                         // which errors and faults depend on
-  SensorProbe* probe = nullptr;          // of a benchmark
+  const Disturber* disturber = nullptr;       // of the run, when something is disturbed
+  Tick tick = 0;                              // which errors and faults depend on
+  std::span<const DeviceSet> attention = {};  // of each robot: what is read; empty: everything
+  SensorProbe* probe = nullptr;               // of a benchmark
 };
 
 // With what all sensors work out of it only once.

@@ -65,6 +65,10 @@ void SensorSuite::Sense(const World& world) {
     sensor->Prepare(scene);
     for (const RobotIndex robot : robots) {
       SensorReadings& readings = readings_[static_cast<std::size_t>(robot)];
+      if (!world.attention.empty() && !world.attention[static_cast<std::size_t>(robot)].Has(device)) {
+        sensor->Blank(robot, readings);
+        continue;
+      }
       sensor->Read(scene, robot, readings);
       if (world.disturber == nullptr) continue;
       if (world.disturber->Dead(robot, device, world.tick)) {
