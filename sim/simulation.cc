@@ -156,8 +156,10 @@ bool Loop::Tick() {
     return false;
   }
   Enter(Phase::kSense);
+  bool all_ears = true;  // everybody uses everything
   for (std::size_t i = 0; i < swarm_.size(); ++i) {
     attention_[i] = swarm_[i].controller->Attention(grippers_.Holds(static_cast<RobotIndex>(i)));
+    all_ears = all_ears && attention_[i] == devices_[i];
   }
   sensors_.Sense({.poses = poses_,
                   .signals = signals_,
@@ -168,7 +170,7 @@ bool Loop::Tick() {
                   .obstacle_lights = course_.lights(),
                   .disturber = disturber_ ? &*disturber_ : nullptr,
                   .tick = observer_.last_tick(),
-                  .attention = attention_,
+                  .attention = all_ears ? std::span<const DeviceSet>() : attention_,
                   .probe = probe_});
   Enter(Phase::kControl);
   Control();

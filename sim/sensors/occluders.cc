@@ -138,7 +138,7 @@ double BodyRoom(std::span<const Vec2> robots, const Vec2& a, const Vec2& b, Robo
     const double share = std::clamp(from_a.dot(way) * per_length_squared, 0.0, 1.0);
     nearest = std::min(nearest, (from_a - share * way).squaredNorm());
   }
-  return std::abs(std::sqrt(nearest) - foot_bot::kRadius);
+  return std::sqrt(nearest) - foot_bot::kRadius;
 }
 
 }  // namespace gauntlet::sim

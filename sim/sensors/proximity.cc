@@ -17,16 +17,13 @@ constexpr double kTouching = 1e-6;  // m from a box: its direction is no guide
 
 // Rays of a robot with heading 0. Thrice around, so that nobody who looks to both sides of the second turn
 // meets the seam.
-const std::array<Vec2, 3 * kSensors>& RestRays() {
-  static const std::array<Vec2, 3 * kSensors> rays = [] {
-    std::array<Vec2, 3 * kSensors> result;
-    for (std::size_t i = 0; i < result.size(); ++i) {
-      result[i] = UnitVector(ProximityBearing(static_cast<int>(i % kSensors)));
-    }
-    return result;
-  }();
+const std::array<Vec2, 3 * kSensors> kRestRays = [] {
+  std::array<Vec2, 3 * kSensors> rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i] = UnitVector(ProximityBearing(static_cast<int>(i % kSensors)));
+  }
   return rays;
-}
+}();
 
 // `v` turned by the angle of the unit vector `by`.
 Vec2 Turned(const Vec2& v, const Vec2& by) {
@@ -45,7 +42,7 @@ double SensorAngle(const Vec2& v) {
 
 // Asks the sensors that may see what lies towards `v`, which less than half a turn of the ring sees: those
 // that do are side by side. When the middle one does not, only one of its neighbours may: the middle is at
-// most 0.28 + 0.5 sensors beside v. `sees` is given sensors of the second turn of RestRays().
+// most 0.28 + 0.5 sensors beside v. `sees` is given sensors of the second turn of kRestRays.
 template <typename Sees>
 void LookAround(const Vec2& v, const Sees& sees) {
   const int middle = static_cast<int>(SensorAngle(v) + 0.5 + kSensors);
@@ -151,11 +148,10 @@ void ProximityRing::See(const OrientedBox& box) {
   const double gap_squared = gap.squaredNorm();
   if (gap_squared >= kReach * kReach) return;
   const Vec2 forward(box.axis.dot(self_.direction), Cross(box.axis, self_.direction));
-  const auto& rays = RestRays();
   const auto sees = [&](int sensor) {
     // The box lies behind the line through its closest point, across the gap: rays that do not get there
     // within their reach miss it.
-    const Vec2 ray = Turned(rays[static_cast<std::size_t>(sensor)], forward);
+    const Vec2 ray = Turned(kRestRays[static_cast<std::size_t>(sensor)], forward);
     if (ray.dot(gap) * kReach < gap_squared) return false;
     Hit(static_cast<std::size_t>(sensor) % kSensors,
         EnterBox(box.half_extents, origin, ray) - foot_bot::kRadius);
@@ -197,9 +193,8 @@ void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
   const double power = distance_squared - radius * radius;  // square of the tangents' length
   const double least_along =
       power > kReach * kReach ? (power + kReach * kReach) / (2.0 * kReach) : std::sqrt(power);
-  const auto& rays = RestRays();
   LookAround(center, [&](int sensor) {
-    const double along = rays[static_cast<std::size_t>(sensor)].dot(center);
+    const double along = kRestRays[static_cast<std::size_t>(sensor)].dot(center);
     if (along <= least_along) return false;
     const double half_chord = std::sqrt(along * along - power);
     // Else it ends before the ray begins.
@@ -212,12 +207,11 @@ void ProximityRing::SeeDisc(const Vec2& center, double radius, double apart) {
 
 // A disc so near, or overlapped, that any sensor may see it.
 void ProximityRing::SeeNearDisc(const Vec2& center, double radius) {
-  const auto& rays = RestRays();
   for (std::size_t sensor = 0; sensor < kSensors; ++sensor) {
-    const double across = Cross(rays[sensor], center);
+    const double across = Cross(kRestRays[sensor], center);
     const double half_chord_squared = radius * radius - across * across;
     if (half_chord_squared <= 0.0) continue;
-    const double along = rays[sensor].dot(center);
+    const double along = kRestRays[sensor].dot(center);
     const double half_chord = std::sqrt(half_chord_squared);
     if (along + half_chord < foot_bot::kRadius) continue;  // ends before the ray begins
     Hit(sensor, along - half_chord - foot_bot::kRadius);

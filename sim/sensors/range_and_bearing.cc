@@ -95,20 +95,21 @@ Message* Radios::HearRobots(const Scene& scene, std::size_t listener, Message* n
 }
 
 bool Radios::BodyHides(const Scene& scene, std::size_t listener, std::size_t sender) {
-  const Point3 from = AntennaAt(scene.robots[listener].position);
-  const Point3 to = AntennaAt(scene.robots[sender].position);
   const auto self = static_cast<RobotIndex>(listener);
   const auto other = static_cast<RobotIndex>(sender);
-  if (lines_.empty()) return BodyBetween(scene.robots, from, to, self, other);
-  Line& line = lines_[listener * radios_.size() + sender];
-  const double driven = scene.pairs.driven();
-  if (driven >= line.until) {
-    line.hidden = BodyBetween(scene.robots, from, to, self, other);
+  const Vec2& from = scene.robots[listener].position;
+  const Vec2& to = scene.robots[sender].position;
+  if (!lines_.empty()) {
+    Line& line = lines_[std::min(listener, sender) * radios_.size() + std::max(listener, sender)];
+    const double driven = scene.pairs.driven();
+    if (driven < line.until) return line.hidden;
+    const double room = BodyRoom(scene.positions, from, to, self, other);
+    line.hidden = room < 0.0;
     // The line moves as far as its ends at most, and a body may come as far towards it.
-    line.until =
-        driven + 0.5 * BodyRoom(scene.positions, from.position, to.position, self, other) - kRounding;
+    line.until = driven + 0.5 * std::abs(room) - kRounding;
+    if (driven < line.until) return line.hidden;
   }
-  return line.hidden;
+  return BodyBetween(scene.robots, AntennaAt(from), AntennaAt(to), self, other);
 }
 
 Message* Radios::HearBeacons(const Scene& scene, std::size_t listener, Message* next) {

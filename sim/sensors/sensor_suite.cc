@@ -1,6 +1,8 @@
 #include "sim/sensors/sensor_suite.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 
 namespace gauntlet::sim {
 namespace {
@@ -15,6 +17,10 @@ class GripperSensor final : public Sensor {
 
 std::unique_ptr<Sensor> MakeGripperSensor(const Arena& /*arena*/, std::span<const RobotSensors> /*robots*/) {
   return std::make_unique<GripperSensor>();
+}
+
+bool SameBits(double a, double b) {
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 struct SensorKind {
@@ -48,7 +54,12 @@ SensorSuite::SensorSuite(const Arena& arena, std::span<const RobotSensors> robot
 
 void SensorSuite::Sense(const World& world) {
   for (std::size_t i = 0; i < frames_.size(); ++i) {
-    frames_[i] = BodyFrame(world.poses[i]);
+    // Most drive straight on or stand.
+    if (SameBits(world.poses[i].heading, frames_[i].heading)) {
+      frames_[i].position = world.poses[i].position;
+    } else {
+      frames_[i] = BodyFrame(world.poses[i]);
+    }
     positions_[i] = world.poses[i].position;
   }
   if (!world.moving_boxes.empty()) occluders_.SetMoving(world.moving_boxes);
