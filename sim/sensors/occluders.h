@@ -122,8 +122,8 @@ class Occluders {
 bool BodyBetween(std::span<const BodyFrame> robots, const Point3& a, const Point3& b, RobotIndex self,
                  RobotIndex other);
 
-// How far, in m, the nearest edge of such a body is from a line that is lower than robots. While its ends and
-// all bodies move less than half of that, BodyBetween says the same.
+// How far, in m, the nearest such body is from a line that is lower than robots; negative: how far the line
+// goes into it. While the line's ends and all bodies move less than half of that, BodyBetween says the same.
 double BodyRoom(std::span<const Vec2> robots, const Vec2& a, const Vec2& b, RobotIndex self,
                 RobotIndex other);
 

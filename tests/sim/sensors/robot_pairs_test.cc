@@ -19,6 +19,7 @@ TEST(RobotPairs, FindEveryNeighbourInOrder) {
       const DeviceSet camera = i % 3 == 0 ? DeviceSet() : Device::kOmnidirectionalCamera;
       const DeviceSet radio = i % 4 == 0 ? Device::kRangeAndBearing : DeviceSet();
       sensors.push_back({.devices = camera | radio, .camera_range = 0.8, .radio_range = 1.5});
+      if (i % 8 == 0) sensors.back().listening_range = 0.5;
     }
     const OrientedBox box = MakeBox({0.0, 0.0}, 2.0, 0.2, 0.5);
     RobotPairs pairs(sensors, {&box, 1});
@@ -47,7 +48,8 @@ TEST(RobotPairs, FindEveryNeighbourInOrder) {
           const Vec2 offset = places[j] - places[i];
           const double camera = std::max(was_lit[j] ? sensors[i].CameraReach() : 0.0,
                                          was_lit[i] ? sensors[j].CameraReach() : 0.0);
-          const double radio = std::max(sensors[i].RadioReach(), sensors[j].RadioReach());
+          const double radio = std::max(std::min(sensors[i].RadioReach(), sensors[j].EarReach()),
+                                        std::min(sensors[j].RadioReach(), sensors[i].EarReach()));
           const bool clear = !occluders.BoxBetween({places[i], 0.1}, {places[j], 0.1});
           const bool counts = i != j && (clear || ring_seen) &&
                               (offset.cwiseAbs().maxCoeff() < camera || offset.norm() < radio);
