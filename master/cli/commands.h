@@ -44,6 +44,7 @@ void AddEvaluate(CommandParser& parser);
 void AddResume(CommandParser& parser);
 void AddShow(CommandParser& parser);
 void AddReplay(CommandParser& parser);
+void AddCompare(CommandParser& parser);
 void AddSubmit(CommandParser& parser);
 void AddMaster(CommandParser& parser);
 void AddStatus(CommandParser& parser);
@@ -52,8 +53,8 @@ void AddStop(CommandParser& parser);
 void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
-inline constexpr void (*kCommands[])(CommandParser&) = {AddEvolve, AddRandom, AddEvaluate, AddResume,
-                                                        AddShow,   AddReplay, AddSubmit,   AddMaster,
-                                                        AddStatus, AddWatch,  AddStop,     AddList};
+inline constexpr void (*kCommands[])(CommandParser&) = {
+    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow, AddReplay, AddCompare,
+    AddSubmit, AddMaster, AddStatus,   AddWatch,  AddStop, AddList};
 
 }  // namespace gauntlet::master

@@ -1,10 +1,5 @@
 // gauntlet replay: one stored run again, checked against its hash, and drawn.
-#include <sys/stat.h>
-
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -13,10 +8,10 @@
 #include "analysis/figures/run_figure.h"
 #include "analysis/figures/trajectory_csv.h"
 #include "base/printable.h"
-#include "base/system/atomic_file.h"
 #include "controllers/registry.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
+#include "master/cli/output_file.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/summary.h"
 #include "master/cli/table.h"
@@ -35,26 +30,6 @@ struct ReplayOptions {
   std::string csv;
   bool json = false;
 };
-
-// A regular file has the whole content or what it had before; pipes and devices are written as they are.
-Status WriteFile(const std::string& path, const std::string& content) {
-  std::error_code error;
-  const auto status = std::filesystem::symlink_status(path, error);
-  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) {
-    const mode_t mask = umask(0);
-    umask(mask);
-    const Status written = ReplaceFile(path, content, 0666 & ~mask);
-    if (written) return written;
-    return Error{written.error().kind,
-                 fmt::format("{}: cannot be written: {}", path, written.error().message)};
-  }
-  errno = 0;
-  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
-  stream << content;
-  stream.close();
-  if (stream) return Ok{};
-  return Error{ErrorKind::kIo, fmt::format("{}: cannot be written: {}", path, std::strerror(errno))};
-}
 
 bool SameFile(const std::string& a, const std::string& b) {
   namespace fs = std::filesystem;
@@ -162,7 +137,8 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
       {options.csv, [&] { return analysis::WriteTrajectoryCsv(figure.result.trajectory); }}};
   for (const auto& [path, content] : outputs) {
     if (path.empty()) continue;
-    if (const Status written = WriteFile(path, content()); !written) return Fail(context, written.error());
+    if (const Status written = WriteOutputFile(path, content()); !written)
+      return Fail(context, written.error());
     PrintMessage(context, fmt::format("wrote {}", path));
   }
   context.out << (options.json ? ReplayJson(replay->report) : Text(*replay, figure)) << std::flush;

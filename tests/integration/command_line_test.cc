@@ -57,6 +57,30 @@ TEST_F(FinishedCampaignTest, ShowAccountsForEveryRun) {
   EXPECT_EQ(shown["best_fitness"].get<double>(), best);
 }
 
+TEST_F(FinishedCampaignTest, CompareReadsSubsetsOfCampaigns) {
+  const ProcessResult result =
+      Gauntlet({"compare", Dir(), Dir() + ":all", "--metric", "birds_left", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json comparison = json::parse(result.out);
+  EXPECT_EQ(comparison["n1"], 8);
+  EXPECT_EQ(comparison["n2"], 8 * 4);
+  EXPECT_EQ(comparison["sets"][0]["unit"], "evolution");
+  EXPECT_EQ(comparison["notes"], json::array());
+
+  const std::string other = *scratch_ / "other";
+  ASSERT_EQ(Gauntlet({"random", "foraging", "--cases", "2", "--set", "scenario_parameters.time_limit=10",
+                      "--dir", other, "--quiet"})
+                .exit_code,
+            0);
+  const ProcessResult refused = Gauntlet({"compare", Dir(), other});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_THAT(refused.err, HasSubstr("has flocking, " + other + " has foraging: not like for like"));
+  const ProcessResult mixed = Gauntlet({"compare", Dir(), other, "--mixed", "--json"});
+  ASSERT_EQ(mixed.exit_code, 0) << mixed.err;
+  EXPECT_THAT(json::parse(mixed.out)["notes"].dump(), HasSubstr("not like for like: scenario"));
+}
+
 TEST_F(FinishedCampaignTest, EveryStoredRunReproducesItsHash) {
   for (int run = 1; run <= 32; run += 5) {
     const ProcessResult replayed = Gauntlet({"replay", Dir(), std::to_string(run)});

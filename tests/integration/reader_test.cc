@@ -50,6 +50,15 @@ TEST_F(ReaderTest, ShowReplayAndTheShellOfSqliteWorkBesideTheMaster) {
   EXPECT_TRUE(RunsDone(dir_, summary.at("runs_done").get<int>() + 1)) << "the master goes on";
 }
 
+TEST_F(ReaderTest, CompareSaysThatTheCampaignIsBeingWritten) {
+  const ProcessResult compare = Gauntlet({"compare", dir_ + ":all", dir_ + ":all", "--json"});
+  ASSERT_EQ(compare.exit_code, 0) << compare.err;
+  const json comparison = json::parse(compare.out);
+  EXPECT_GE(comparison.at("n1"), 8);
+  EXPECT_THAT(comparison.at("notes").dump(), HasSubstr(dir_ + " is being written"));
+  EXPECT_THAT(comparison.at("notes").dump(), HasSubstr(dir_ + " is half-finished"));
+}
+
 TEST_F(ReaderTest, AnotherMachineSeesASnapshotAndIsToldOfWhen) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can make a process that takes the master for a stranger";
   // In a namespace of its own a pid means another process: the master may be anywhere.

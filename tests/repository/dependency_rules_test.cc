@@ -100,7 +100,7 @@ const std::vector<Room>& House() {
        {},
        {"box2d", "zmq", "sqlite3"}},
       {"master/report",
-       {"base", "base/system", "proto", "master/experiment", "master/search", "master/store",
+       {"base", "base/system", "proto", "analysis", "master/experiment", "master/search", "master/store",
         "master/dispatch", "master/directory"},
        kRunData + kSwarmData + kBehaviours,
        {"box2d", "zmq", "sqlite3"}},

@@ -24,8 +24,8 @@ TEST_F(CommandLine, VersionAndHelpAreResults) {
   EXPECT_EQ(Run({"--version"}), kExitDone);
   EXPECT_THAT(out_.str(), MatchesRegex("gauntlet [0-9]+\\.[0-9]+\\.[0-9]+\n"));
   EXPECT_EQ(Run({"--help"}), kExitDone);
-  for (const char* command : {"evolve", "random", "evaluate", "resume", "show", "replay", "list", "master",
-                              "status", "watch", "stop", "submit"}) {
+  for (const char* command : {"evolve", "random", "evaluate", "resume", "show", "replay", "compare", "list",
+                              "master", "status", "watch", "stop", "submit"}) {
     EXPECT_THAT(out_.str(), HasSubstr(command));
     CommandLine::Run({command, "--help"});
     EXPECT_THAT(out_.str(), HasSubstr("gauntlet " + std::string(command))) << "an example";

@@ -1,0 +1,60 @@
+// Sets of runs as `compare` names them: out of campaigns, or a column of a CSV file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "analysis/statistics/comparison.h"
+#include "base/result.h"
+#include "master/directory/search_plans.h"
+#include "proto/golden_hashes.h"
+
+namespace gauntlet::master {
+
+// Where runs of a set come from: one for each search. What decides whether they may be compared.
+struct RunOrigin {
+  std::string place;  // the campaign's directory, with the search's number where it has several
+  Experiment experiment;
+  std::string software_version;
+  proto::GoldenHashes golden_hashes;  // by controller
+};
+
+struct RunSet {
+  analysis::ComparedSet values;    // named as it was given
+  std::string unit;                // of its clusters: "evolution", "case", "row"
+  std::vector<RunOrigin> origins;  // none of a CSV file
+  std::vector<std::string> notes;  // what a reader has to know, a sentence each
+};
+
+// Which runs of a campaign.
+struct Subset {
+  enum class Kind {
+    kFinal,  // the newest evaluation of each member of the population (of `random` and `evaluate`: all cases)
+    kAll,    // every run
+    kRandom,  // `count` of all, drawn without replacement; the same ones every time
+  };
+  Kind kind = Kind::kFinal;
+  std::uint64_t count = 0;
+  std::uint32_t search = 0;  // its number in a sweep; 0 = all searches
+};
+
+// "final", "all", "random:100"; before it "search:2" for one of a sweep; "" stands for final. `place` is for
+// messages.
+Result<Subset> ParseSubset(const std::string& text, const std::string& place);
+
+// Adds the subset's runs to the set, one value each: `metric` is "fitness" or a metric of the scenario. Runs
+// without a result, and such in which there was nothing to measure, are left out and noted. Error: no such
+// metric, search or number of runs.
+Status AddRuns(const std::vector<SearchPlan>& plans, ResultStore& store, const RunOrigin& campaign,
+               const Subset& subset, const std::string& metric, RunSet& set);
+
+// DIR[:SUBSET] or FILE[:COLUMN], several with commas in between. A column that is not given is called as the
+// metric. Errors: those of ViewCampaign, CheckStored, ReadCsvColumn and above.
+Result<RunSet> ReadRunSet(const std::string& text, const std::string& metric);
+
+// Why the runs of the two, or of one of them among each other, are no like for like: another scenario, other
+// parameters of it, another version, another simulation. Controllers may differ: that is what is compared.
+std::vector<std::string> WhatDiffers(const RunSet& first, const RunSet& second);
+
+}  // namespace gauntlet::master

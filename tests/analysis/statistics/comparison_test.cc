@@ -1,0 +1,108 @@
+#include "analysis/statistics/comparison.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "sim/random/random_stream.h"
+
+namespace gauntlet::analysis {
+namespace {
+
+using ::testing::HasSubstr;
+
+ComparedSet Alone(const std::string& name, const std::vector<double>& values) {
+  ComparedSet set{name, {}};
+  for (const double value : values) set.clusters.push_back({value});
+  return set;
+}
+
+std::vector<double> Uniform(int count, double shift, std::uint64_t seed) {
+  sim::RandomStream random(seed, sim::StreamPurpose::kTest);
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(shift + random.Uniform());
+  return values;
+}
+
+TEST(CompareTest, GivesTheSameNumbersEveryTimeAndNamesItsMethods) {
+  const ComparedSet a = Alone("A", Uniform(100, 0.2, 1));
+  const ComparedSet b = Alone("B", Uniform(100, 0.0, 2));
+  const auto comparison = Compare(a, b);
+  ASSERT_TRUE(comparison.ok());
+  EXPECT_EQ(comparison->first.n, 100U);
+  EXPECT_EQ(comparison->test.a, MannWhitney(Uniform(100, 0.2, 1), Uniform(100, 0.0, 2)).a);
+  ASSERT_TRUE(comparison->interval.has_value());
+  EXPECT_LT(comparison->interval->low, comparison->test.a);
+  EXPECT_GT(comparison->interval->high, comparison->test.a);
+  EXPECT_EQ(comparison->interval->low, Compare(a, b)->interval->low);
+  EXPECT_THAT(comparison->method, HasSubstr("normal approximation"));
+  EXPECT_THAT(comparison->method, HasSubstr("exact"));
+  EXPECT_THAT(comparison->interval_method, HasSubstr("bootstrap"));
+  EXPECT_EQ(comparison->cluster_interval, std::nullopt);
+  EXPECT_EQ(comparison->cluster_method, "none: every value stands alone");
+}
+
+TEST(CompareTest, LargeSetsAreNotDrawnAgain) {
+  const auto comparison = Compare(Alone("A", Uniform(15'000, 0.2, 1)), Alone("B", Uniform(15'000, 0.0, 2)));
+  ASSERT_TRUE(comparison.ok());
+  EXPECT_FALSE(comparison->exact.has_value());
+  EXPECT_THAT(comparison->interval_method, HasSubstr("DeLong"));
+}
+
+TEST(CompareTest, RelativesHaveAnIntervalOfTheirOwnAndAReason) {
+  ComparedSet families{"families", {}};
+  for (const double founder : Uniform(12, 0.0, 3)) families.clusters.emplace_back(20, founder);
+  const auto comparison = Compare(families, Alone("B", Uniform(100, 0.0, 4)));
+  ASSERT_TRUE(comparison.ok());
+  ASSERT_TRUE(comparison->cluster_interval.has_value());
+  EXPECT_GT(comparison->cluster_interval->high - comparison->cluster_interval->low,
+            1.5 * (comparison->interval->high - comparison->interval->low));
+  EXPECT_THAT(comparison->cluster_method, HasSubstr("12 against 100"));
+  EXPECT_THAT(InWords(*comparison, "X", "Y"), HasSubstr("relatives"));
+
+  families.clusters.resize(3);
+  EXPECT_THAT(Compare(families, Alone("B", {1, 2}))->cluster_method, HasSubstr("so few units"));
+  families.clusters.resize(1);
+  const auto alone = Compare(families, Alone("B", {1, 2}));
+  EXPECT_EQ(alone->cluster_interval, std::nullopt);
+  EXPECT_THAT(alone->cluster_method, HasSubstr("all values of families are of one unit"));
+}
+
+TEST(CompareTest, OneValueAndEqualValuesAreSaidToBeSo) {
+  const auto one = Compare(Alone("A", {1}), Alone("B", {2, 3}));
+  ASSERT_TRUE(one.ok());
+  EXPECT_EQ(one->interval, std::nullopt);
+  EXPECT_THAT(one->interval_method, HasSubstr("a single value"));
+  EXPECT_FALSE(one->first.sd.has_value());
+
+  const auto equal = Compare(Alone("A", {0.5, 0.5}), Alone("B", {0.5, 0.5, 0.5}));
+  ASSERT_TRUE(equal.ok());
+  EXPECT_EQ(equal->test.a, 0.5);
+  EXPECT_EQ(equal->test.p_two_sided, 1.0);
+  EXPECT_EQ(equal->effect, "none");
+  EXPECT_THAT(equal->method, HasSubstr("all values are equal"));
+  EXPECT_EQ(InWords(*equal, "X", "Y"), "All values are equal: nothing tells X from Y.");
+}
+
+TEST(CompareTest, RefusesEmptySetsAndWhatIsNoNumber) {
+  EXPECT_THAT(Compare(Alone("A", {}), Alone("B", {1})).error().message, HasSubstr("A is empty"));
+  EXPECT_THAT(
+      Compare(Alone("A", {1}), Alone("B", {1, std::numeric_limits<double>::quiet_NaN()})).error().message,
+      HasSubstr("B: value 2 is not a number"));
+}
+
+TEST(CompareTest, WordsTellDirectionAndSize) {
+  const auto comparison = Compare(Alone("A", {1, 2, 3, 4, 5, 6, 7}), Alone("B", {11, 12, 13, 14, 15, 16}));
+  ASSERT_TRUE(comparison.ok());
+  const std::string words = InWords(*comparison, "X", "Y");
+  EXPECT_THAT(words, HasSubstr("A = 0.000"));
+  EXPECT_THAT(words, HasSubstr("a large effect: X tends to be smaller"));
+  EXPECT_THAT(words, HasSubstr("not a matter of chance"));
+  EXPECT_THAT(comparison->interval_method, HasSubstr("without overlap"));
+  EXPECT_THAT(InWords(*Compare(Alone("A", {1, 2}), Alone("B", {1, 3})), "X", "Y"),
+              HasSubstr("it may be a matter of chance"));
+}
+
+}  // namespace
+}  // namespace gauntlet::analysis
