@@ -2,6 +2,7 @@
 // the items, and what is recorded of the robots. Foraging and task partitioning are two.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -105,6 +106,9 @@ class NestAndFoodScenario : public sim::Scenario {
   const sim::Arena& arena() const override { return arena_; }
   sim::Tick tick_limit() const override { return site_.tick_limit; }
   double FloorGrey(const sim::Vec2& point) const override { return InNest(point) ? 0.0 : 1.0; }
+  double FloorHolds(const sim::Vec2& point) const override {
+    return std::abs(std::sqrt((point - nest_).squaredNorm()) - site_.nest_radius);
+  }
   bool Finished(const sim::Observer& observer) override { return observer.last_tick() >= site_.tick_limit; }
 
  protected:

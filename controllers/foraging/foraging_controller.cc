@@ -53,14 +53,13 @@ ForagingController::View ForagingController::Look(const sim::SensorReadings& rea
   }
   for (const sim::Message& message : readings.range_and_bearing) {
     if (ComesFromForager(message.payload)) continue;
-    const RadioMessage said = Decode(message.payload);
-    if (said.sender == RadioMessage::Sender::kNest) {
+    if (ComesFromNest(message.payload)) {
       view.nest = &message;
       ++view.beacons;
     } else if (ComesFromBeacon(message.payload)) {
       ++view.beacons;
-      view.nest_beacon.Prefer(message, said.first);
-      view.food_beacon.Prefer(message, said.second);
+      view.nest_beacon.Prefer(message, FirstIn(message.payload));
+      view.food_beacon.Prefer(message, SecondIn(message.payload));
     }
   }
   if (settings_.beacons) {
@@ -93,9 +92,8 @@ void ForagingController::KeepPheromone(const View& view, std::span<const sim::Me
   to_food_.Evaporate(rules.pheromone);
   for (const sim::Message& message : messages) {
     if (!ComesFromForager(message.payload)) continue;
-    const RadioMessage said = Decode(message.payload);
-    Pheromone& level = said.carrying ? to_food_ : to_nest_;
-    level.Lay(LaidStaleness(said.first, message.range, rules.pheromone));
+    Pheromone& level = CarriesIn(message.payload) ? to_food_ : to_nest_;
+    level.Lay(LaidStaleness(FirstIn(message.payload), message.range, rules.pheromone));
   }
   if (view.nest) to_nest_.Set(NestStaleness(view.nest->range, communication_range_));
 }

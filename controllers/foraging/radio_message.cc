@@ -1,24 +1,13 @@
 #include "controllers/foraging/radio_message.h"
 
-#include <bit>
 #include <cstddef>
 #include <cstring>
 
 namespace gauntlet::controllers {
 namespace {
 
-constexpr std::uint8_t kNestCode = 255;
-
-static_assert(std::endian::native == std::endian::little, "numbers are sent as they are in memory");
-
 void Put(float value, sim::Payload& payload, std::size_t at) {
   std::memcpy(payload.data() + at, &value, sizeof value);
-}
-
-float Get(const sim::Payload& payload, std::size_t at) {
-  float value = 0.0F;
-  std::memcpy(&value, payload.data() + at, sizeof value);
-  return value;
 }
 
 }  // namespace
@@ -37,7 +26,7 @@ sim::Payload Encode(const RadioMessage& message) {
 
 RadioMessage Decode(const sim::Payload& payload) {
   RadioMessage message;
-  if (payload[0] == kNestCode) {
+  if (ComesFromNest(payload)) {
     message.sender = RadioMessage::Sender::kNest;
   } else if (payload[0] >= 1 && payload[0] <= kForagingStates) {
     message.sender = RadioMessage::Sender::kRobot;
@@ -45,9 +34,9 @@ RadioMessage Decode(const sim::Payload& payload) {
   } else {
     return message;
   }
-  message.carrying = payload[1] == 1;
-  message.first = Get(payload, 2);
-  message.second = Get(payload, 6);
+  message.carrying = CarriesIn(payload);
+  message.first = FirstIn(payload);
+  message.second = SecondIn(payload);
   return message;
 }
 

@@ -9,7 +9,9 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 #include "sim/robot/controller.h"
@@ -31,6 +33,8 @@ inline constexpr std::array<std::string_view, 7> kForagingStateNames = {
     "wandering", "following", "gathering", "homing", "f-homing", "dropping", "beacon"};
 inline constexpr int kForagingStates = kForagingStateNames.size();
 
+static_assert(std::endian::native == std::endian::little, "numbers are sent as they are in memory");
+
 struct RadioMessage {
   enum class Sender : std::uint8_t { kNobody, kRobot, kNest };
 
@@ -43,12 +47,30 @@ struct RadioMessage {
   bool operator==(const RadioMessage&) const = default;
 };
 
-// Whether Decode would say so, for a fraction of the work: robots hear hundreds of messages per second.
+// What Decode would say, for a fraction of the work: robots hear hundreds of messages per second.
+inline constexpr std::uint8_t kNestCode = 255;
+inline bool ComesFromNest(const sim::Payload& payload) {
+  return payload[0] == kNestCode;
+}
 inline bool ComesFromBeacon(const sim::Payload& payload) {
   return payload[0] == 1 + static_cast<int>(ForagingState::kBeacon);
 }
 inline bool ComesFromForager(const sim::Payload& payload) {
   return payload[0] >= 1 && payload[0] <= static_cast<int>(ForagingState::kBeacon);
+}
+// Of a robot.
+inline bool CarriesIn(const sim::Payload& payload) {
+  return payload[1] == 1;
+}
+inline float FirstIn(const sim::Payload& payload) {
+  float value = 0.0F;
+  std::memcpy(&value, payload.data() + 2, sizeof value);
+  return value;
+}
+inline float SecondIn(const sim::Payload& payload) {
+  float value = 0.0F;
+  std::memcpy(&value, payload.data() + 6, sizeof value);
+  return value;
 }
 // The sender's state; of anything but a robot's message: wandering.
 inline ForagingState StateIn(const sim::Payload& payload) {

@@ -62,10 +62,11 @@ std::span<const std::size_t> NearbyBoxes::Near(std::size_t visitor, const Vec2& 
   const std::span<std::size_t> entries = std::span(entries_).subspan(visitor * boxes_.size(), boxes_.size());
   if (!list.valid || (position - list.anchor).squaredNorm() > kSlack * kSlack) {
     list = {.anchor = position, .valid = true, .size = 0};
+    const double farthest = reach_ + kSlack;
     const std::size_t cell =
         static_cast<std::size_t>(Cell(position.y(), 1) * cells_[0] + Cell(position.x(), 0));
     for (const std::size_t i : in_reach_[cell]) {
-      if (Distance(boxes_[i], position) <= reach_ + kSlack) entries[list.size++] = i;
+      if (SquaredDistance(boxes_[i], position) <= farthest * farthest) entries[list.size++] = i;
     }
   }
   return entries.first(list.size);

@@ -34,6 +34,9 @@ class Surroundings {
   virtual std::span<const RadioBeacon> radio_beacons() const { return {}; }
   // Grey of the floor at a point, 0 = black, 1 = white.
   virtual double FloorGrey(const Vec2& /*point*/) const { return 1.0; }
+  // How far around a point the floor is as grey as there, m, now and to the end of the run: at most. 0 says
+  // nothing.
+  virtual double FloorHolds(const Vec2& /*point*/) const { return 0.0; }
 };
 
 }  // namespace gauntlet::sim

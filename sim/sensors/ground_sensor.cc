@@ -1,19 +1,46 @@
 #include "sim/sensors/ground_sensor.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace gauntlet::sim {
 namespace {
 
+constexpr double kFarthestPlace = 0.07;  // m from the robot's centre; more than of any motor ground sensor
+
 class MotorGroundSensors final : public Sensor {
  public:
+  explicit MotorGroundSensors(std::size_t robots) : floors_(robots) {}
+
   void Read(const Scene& scene, RobotIndex robot, SensorReadings& readings) override {
-    readings.motor_ground =
-        SenseGround(scene.robots[static_cast<std::size_t>(robot)], kMotorGroundPlaces, scene.surroundings);
+    const BodyFrame& self = scene.robots[static_cast<std::size_t>(robot)];
+    Floor& floor = floors_[static_cast<std::size_t>(robot)];
+    if ((self.position - floor.from).squaredNorm() >= floor.holds * floor.holds) {
+      floor = {.from = self.position,
+               .holds = std::max(0.0, scene.surroundings.FloorHolds(self.position) - kFarthestPlace),
+               .grey = scene.surroundings.FloorGrey(self.position)};
+      if (floor.holds == 0.0) {
+        readings.motor_ground = SenseGround(self, kMotorGroundPlaces, scene.surroundings);
+        return;
+      }
+    }
+    readings.motor_ground.fill(floor.grey);
   }
   void Blank(RobotIndex /*robot*/, SensorReadings& readings) override { readings.motor_ground.fill(0.0); }
   void Disturb(const Scene& /*scene*/, RobotIndex /*robot*/, DeviceErrors& errors,
                SensorReadings& readings) override {
     errors.AddTo(readings.motor_ground);
   }
+
+ private:
+  // What a robot stands on until it has moved so far.
+  struct Floor {
+    Vec2 from = Vec2::Zero();
+    double holds = 0.0;  // m
+    double grey = 0.0;
+  };
+
+  std::vector<Floor> floors_;
 };
 
 class BaseGroundSensors final : public Sensor {
@@ -39,9 +66,8 @@ class BaseGroundSensors final : public Sensor {
 
 }  // namespace
 
-std::unique_ptr<Sensor> MakeMotorGroundSensors(const Arena& /*arena*/,
-                                               std::span<const RobotSensors> /*robots*/) {
-  return std::make_unique<MotorGroundSensors>();
+std::unique_ptr<Sensor> MakeMotorGroundSensors(const Arena& /*arena*/, std::span<const RobotSensors> robots) {
+  return std::make_unique<MotorGroundSensors>(robots.size());
 }
 
 std::unique_ptr<Sensor> MakeBaseGroundSensors(const Arena& /*arena*/,

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "sim/sensors/ground_sensor.h"
 #include "tests/support/toy_scenario.h"
 
 namespace gauntlet::sim {
@@ -62,11 +65,16 @@ struct Lit final : Surroundings {
   std::vector<RadioBeacon> beacons = {{.position = {-1.0, 0.0}, .range = 2.0, .payload = {}}};
   std::span<const Light> lights() const override { return lamps; }
   std::span<const RadioBeacon> radio_beacons() const override { return beacons; }
+  // A black disc with a radius of 1 m.
+  double FloorGrey(const Vec2& point) const override { return point.norm() <= 1.0 ? 0.0 : 1.0; }
+  double FloorHolds(const Vec2& point) const override { return std::abs(point.norm() - 1.0); }
 };
 
 void ExpectSame(const SensorReadings& one, const SensorReadings& other) {
   EXPECT_EQ(one.proximity, other.proximity);
   EXPECT_EQ(one.light, other.light);
+  EXPECT_EQ(one.motor_ground, other.motor_ground);
+  EXPECT_EQ(one.base_ground, other.base_ground);
   ASSERT_EQ(one.blobs.size(), other.blobs.size());
   for (std::size_t i = 0; i < one.blobs.size(); ++i) {
     EXPECT_EQ(one.blobs[i].position, other.blobs[i].position);
@@ -117,6 +125,8 @@ TEST(SensorSuite, ReadsWhatOneWithoutAPastReads) {
       SCOPED_TRACE(testing::Message() << "tick " << tick << ", robot " << i);
       const auto robot = static_cast<RobotIndex>(i);
       ExpectSame(old.ReadingsOf(robot), fresh.ReadingsOf(robot));
+      EXPECT_EQ(old.ReadingsOf(robot).motor_ground,
+                SenseGround(BodyFrame(poses[i]), kMotorGroundPlaces, surroundings));
     }
     if (testing::Test::HasFailure()) return;
   }
