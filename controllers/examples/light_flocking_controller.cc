@@ -46,7 +46,8 @@ Vec2 FlockingVelocity(std::span<const sim::Blob> blobs, const LightFlockingSetti
 
 Vec2 LightVelocity(std::span<const double> readings, const LightFlockingSettings& settings) {
   Vec2 sum = Vec2::Zero();
-  for (std::size_t i = 0; i < readings.size(); ++i) sum += readings[i] * ProximityDirections()[i];
+  const auto& directions = ProximityDirections();
+  for (std::size_t i = 0; i < readings.size(); ++i) sum += readings[i] * directions[i];
   const double length = std::sqrt(sum.squaredNorm());
   if (length <= 0.0) return Vec2::Zero();
   return sum * (settings.light_share * settings.max_speed / length);
