@@ -105,6 +105,7 @@ void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
   message.set_seed(spec.seed);
   message.set_record_trajectory(spec.record_trajectory);
   if (spec.physics == sim::PhysicsKind::kRelaxation) message.set_physics(v1::PHYSICS_RELAXATION);
+  if (spec.physics == sim::PhysicsKind::kImpulse) message.set_physics(v1::PHYSICS_IMPULSE);
   ToProto(spec.disturbances, message);
 }
 
@@ -237,6 +238,12 @@ sim::Parameters ReadParameters(const List& wire, const char* owner, SpecReader& 
     }
   }
   return parameters;
+}
+
+sim::PhysicsKind PhysicsOf(v1::Physics wire) {
+  if (wire == v1::PHYSICS_RELAXATION) return sim::PhysicsKind::kRelaxation;
+  if (wire == v1::PHYSICS_IMPULSE) return sim::PhysicsKind::kImpulse;
+  return sim::PhysicsKind::kBox2d;
 }
 
 sim::Disturbances ReadDisturbances(const v1::RunSpec& wire, SpecReader& reader) {
@@ -434,7 +441,7 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   spec.record_trajectory = wire.record_trajectory();
   reader.Require(v1::Physics_IsValid(wire.physics()),
                  fmt::format("physics {} is none that this version knows", static_cast<int>(wire.physics())));
-  if (wire.physics() == v1::PHYSICS_RELAXATION) spec.physics = sim::PhysicsKind::kRelaxation;
+  spec.physics = PhysicsOf(wire.physics());
   spec.disturbances = ReadDisturbances(wire, reader);
   if (!reader.ok()) return Corrupt(reader.error());
   return spec;

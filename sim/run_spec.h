@@ -16,7 +16,7 @@ namespace gauntlet::sim {
 using Parameters = std::map<std::string, double>;
 
 // Which physics simulates a run; see sim/physics/physics_engine.h.
-enum class PhysicsKind { kBox2d, kRelaxation };
+enum class PhysicsKind { kBox2d, kRelaxation, kImpulse };
 
 struct RunSpec {
   TestCase test_case;

@@ -78,6 +78,18 @@ class Loop {
   std::string invalid_command_;
 };
 
+std::unique_ptr<PhysicsEngine> MakePhysics(PhysicsKind kind) {
+  switch (kind) {
+    case PhysicsKind::kBox2d:
+      return MakeBox2dEngine();
+    case PhysicsKind::kRelaxation:
+      return MakeRelaxationEngine();
+    case PhysicsKind::kImpulse:
+      return MakeImpulseEngine();
+  }
+  GAUNTLET_CHECK(false, "a kind of physics without an engine");
+}
+
 std::vector<RobotSensors> SensorsOf(const std::vector<RobotSetup>& swarm, const Disturbances& disturbances) {
   // Noise may move senders nearer.
   const bool noisy = disturbances.noise.contains(Device::kRangeAndBearing);
@@ -105,7 +117,7 @@ Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed
       seed_(seed),
       observer_(observer),
       probe_(options.probe),
-      physics_(options.physics == PhysicsKind::kRelaxation ? MakeRelaxationEngine() : MakeBox2dEngine()),
+      physics_(MakePhysics(options.physics)),
       sensors_(scenario.arena(), SensorsOf(swarm_, options.disturbances)),
       course_(scenario.arena()),
       grippers_(Equipped(swarm_, Device::kGripper)),

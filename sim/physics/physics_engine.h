@@ -50,11 +50,13 @@ class PhysicsEngine {
   virtual const OrientedBox& BoxAt(BoxIndex box) const = 0;
 };
 
-// Box2D 2.4 with the drive model of ARGoS' dynamics2d.
+// Hand-written: contacts and drives as in ARGoS' dynamics2d, for robots among boxes that they cannot push;
+// AddMovableBox is a broken invariant.
+std::unique_ptr<PhysicsEngine> MakeImpulseEngine();
+// Box2D 2.4 with the drive model of ARGoS' dynamics2d. Has boxes that robots push.
 std::unique_ptr<PhysicsEngine> MakeBox2dEngine();
-// Hand-written: the same drive, contacts by relaxation of positions, without friction. Several times faster
-// in crowds; pushed boxes neither turn nor meet other boxes. An oracle in tests, and `--set
-// physics=relaxation`.
+// Hand-written: the same drive, contacts by relaxation of positions, without friction; pushed boxes
+// neither turn nor meet other boxes. An oracle in tests, and `--set physics=relaxation`.
 std::unique_ptr<PhysicsEngine> MakeRelaxationEngine();
 
 }  // namespace gauntlet::sim

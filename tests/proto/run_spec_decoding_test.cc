@@ -80,10 +80,11 @@ SpecPair ArbitrarySpec() {
   Write(pair.spec.controller_parameters = ArbitraryParameters(), pair.wire.mutable_controller_parameters());
   pair.wire.set_seed(pair.spec.seed = *rc::gen::arbitrary<std::uint64_t>());
   pair.wire.set_record_trajectory(pair.spec.record_trajectory = *rc::gen::arbitrary<bool>());
-  if (*rc::gen::arbitrary<bool>()) {
-    pair.wire.set_physics(v1::PHYSICS_RELAXATION);
-    pair.spec.physics = sim::PhysicsKind::kRelaxation;
-  }
+  const auto physics = *rc::gen::element(std::pair{v1::PHYSICS_UNSPECIFIED, sim::PhysicsKind::kBox2d},
+                                         std::pair{v1::PHYSICS_RELAXATION, sim::PhysicsKind::kRelaxation},
+                                         std::pair{v1::PHYSICS_IMPULSE, sim::PhysicsKind::kImpulse});
+  pair.wire.set_physics(physics.first);
+  pair.spec.physics = physics.second;
   return pair;
 }
 

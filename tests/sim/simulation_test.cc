@@ -208,7 +208,7 @@ TEST(Simulation, SurvivesObstaclesOfAnySize) {
                          {.x = 1.0, .y = 0.0, .length = 0.0, .width = 0.0, .orientation_deg = 0.0},
                          {.x = 0.0, .y = 0.6, .length = 2.0, .width = 1e-6, .orientation_deg = 0.0},
                          {.x = 0.0, .y = -1e6, .length = 1e6, .width = 1e5, .orientation_deg = 0.0}};
-  for (const PhysicsKind physics : {PhysicsKind::kBox2d, PhysicsKind::kRelaxation}) {
+  for (const PhysicsKind physics : {PhysicsKind::kImpulse, PhysicsKind::kBox2d, PhysicsKind::kRelaxation}) {
     ToyScenario scenario(test_case, {RobotAt(0, 0, DriveStraight(0.1)), RobotAt(0, 0.3, RandomWalk(0.1))},
                          300);
     const RunResult result = Simulate(scenario, 1, false, {.physics = physics});
@@ -229,7 +229,7 @@ TEST(Simulation, SurvivesOrNamesEverythingOverlapping) {
   }
   std::vector<ToyRobot> robots;
   for (int i = 0; i < 20; ++i) robots.push_back(RobotAt(0.004 * i - 0.04, 0.002 * i - 0.02, Huddle(0.1)));
-  for (const PhysicsKind physics : {PhysicsKind::kBox2d, PhysicsKind::kRelaxation}) {
+  for (const PhysicsKind physics : {PhysicsKind::kImpulse, PhysicsKind::kBox2d, PhysicsKind::kRelaxation}) {
     ToyScenario scenario(test_case, robots, 300);
     const RunResult result = Simulate(scenario, 1, true, {.physics = physics});
     const bool named = result.verdict == Verdict::kInvalidCommand;

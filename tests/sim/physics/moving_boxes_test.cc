@@ -11,8 +11,12 @@
 namespace gauntlet::sim {
 namespace {
 
-TEST(MovingBoxes, AKinematicBoxGoesExactlyWhereItIsSent) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
+class KinematicBoxes : public testing::TestWithParam<std::unique_ptr<PhysicsEngine> (*)()> {};
+
+INSTANTIATE_TEST_SUITE_P(Engines, KinematicBoxes, testing::Values(MakeBox2dEngine, MakeImpulseEngine));
+
+TEST_P(KinematicBoxes, AKinematicBoxGoesExactlyWhereItIsSent) {
+  const std::unique_ptr<PhysicsEngine> engine = GetParam()();
   const BoxIndex box = engine->AddKinematicBox(MakeBox({0.0, 0.0}, 0.4, 0.2, 0.0));
   engine->AddRobot({{3.0, 0.0}, 0.0});
   const std::vector<WheelSpeeds> rest(1);
@@ -26,8 +30,8 @@ TEST(MovingBoxes, AKinematicBoxGoesExactlyWhereItIsSent) {
   EXPECT_LT((engine->BoxAt(box).center - Vec2(1.0, -0.5)).norm(), 1e-12);
 }
 
-TEST(MovingBoxes, AKinematicBoxPushesAStandingRobotAhead) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
+TEST_P(KinematicBoxes, AKinematicBoxPushesAStandingRobotAhead) {
+  const std::unique_ptr<PhysicsEngine> engine = GetParam()();
   const BoxIndex box = engine->AddKinematicBox(MakeBox({0.0, 0.0}, 0.2, 1.0, 0.0));
   engine->AddRobot({{0.3, 0.0}, 1.0});
   const std::vector<WheelSpeeds> rest(1);
@@ -41,8 +45,8 @@ TEST(MovingBoxes, AKinematicBoxPushesAStandingRobotAhead) {
   EXPECT_NEAR(engine->PoseOf(0).heading, 1.0, 1e-12);
 }
 
-TEST(MovingBoxes, ARobotAgainstAKinematicBoxThatComesTowardsItIsCarriedBack) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
+TEST_P(KinematicBoxes, ARobotAgainstAKinematicBoxThatComesTowardsItIsCarriedBack) {
+  const std::unique_ptr<PhysicsEngine> engine = GetParam()();
   const BoxIndex box = engine->AddKinematicBox(MakeBox({1.0, 0.0}, 0.2, 1.0, 0.0));
   engine->AddRobot({{0.0, 0.0}, 0.0});
   const std::vector<WheelSpeeds> ahead = {{0.1, 0.1}};

@@ -1,6 +1,10 @@
+// What holds of both engines that model contacts.
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "sim/geometry/trigonometry.h"
@@ -23,8 +27,20 @@ Pose DriveFree(Pose pose, const WheelSpeeds& command, int ticks) {
   return pose;
 }
 
-TEST(Box2dEngine, DoesNotDisturbRobotsThatPassCloselyWithoutTouching) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
+struct Engine {
+  const char* name;
+  std::unique_ptr<PhysicsEngine> (*make)();
+};
+
+class ContactEngine : public testing::TestWithParam<Engine> {};
+
+INSTANTIATE_TEST_SUITE_P(All, ContactEngine,
+                         testing::Values(Engine{"Box2d", MakeBox2dEngine},
+                                         Engine{"Impulse", MakeImpulseEngine}),
+                         [](const auto& engine) { return std::string(engine.param.name); });
+
+TEST_P(ContactEngine, DoesNotDisturbRobotsThatPassCloselyWithoutTouching) {
+  const std::unique_ptr<PhysicsEngine> engine = GetParam().make();
   // 1 mm beside a wall and 1 mm beside another robot that keeps up: in the solver all the time.
   const double wall = foot_bot::kRadius + 0.001;
   engine->AddBox(MakeBox({0.0, -0.1}, 6.0, 0.2, 0.0));
@@ -38,8 +54,8 @@ TEST(Box2dEngine, DoesNotDisturbRobotsThatPassCloselyWithoutTouching) {
   EXPECT_LT((engine->PoseOf(1).position - DriveFree(second, commands[1], 400).position).norm(), 1e-12);
 }
 
-TEST(Box2dEngine, WrapsHeadings) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
+TEST_P(ContactEngine, WrapsHeadings) {
+  const std::unique_ptr<PhysicsEngine> engine = GetParam().make();
   engine->AddRobot({{0.0, 0.0}, 3.0});
   const std::vector<WheelSpeeds> commands = {{-0.1, 0.1}};
   for (int tick = 0; tick < 1000; ++tick) {
@@ -51,8 +67,8 @@ TEST(Box2dEngine, WrapsHeadings) {
   EXPECT_NEAR(WrapAngle(engine->PoseOf(0).heading - expected), 0.0, 1e-9);
 }
 
-TEST(Box2dEngine, StartsAfreshAfterAContact) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
+TEST_P(ContactEngine, StartsAfreshAfterAContact) {
+  const std::unique_ptr<PhysicsEngine> engine = GetParam().make();
   engine->AddBox(MakeBox({0.3, 0.0}, 0.2, 2.0, 0.0));
   engine->AddRobot({{0.0, 0.0}, 0.0});
   for (int tick = 0; tick < 50; ++tick) engine->Step(std::vector<WheelSpeeds>{{0.1, 0.1}});
@@ -66,8 +82,8 @@ TEST(Box2dEngine, StartsAfreshAfterAContact) {
 }
 
 // A crowd that pushes to one point from all sides stays apart.
-TEST(Box2dEngine, RobotsInACrowdHardlyOverlap) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
+TEST_P(ContactEngine, RobotsInACrowdHardlyOverlap) {
+  const std::unique_ptr<PhysicsEngine> engine = GetParam().make();
   constexpr int kRobots = 20;
   for (int i = 0; i < kRobots; ++i) {
     const double angle = WrapAngle(2.4 * i);
