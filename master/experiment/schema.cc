@@ -283,7 +283,7 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
                                         "the algorithm under test; default: the scenario's own"),
       ChoiceKey<&Experiment::physics>(
           "physics", {"box2d", "relaxation", "impulse"},
-          "impulse = contacts as in ARGoS; the others for comparison, relaxation without friction"),
+          "impulse = contacts as in ARGoS; relaxation = without friction, for comparison"),
       FaultsKey(),
   };
   for (std::vector<Key>& more : std::array{GenomeKeys(), SearchKeys(catalogue), NoiseKeys()}) {
