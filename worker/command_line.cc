@@ -87,12 +87,12 @@ std::vector<CLI::Option*> AddServing(CLI::App& app, CommandLine& line) {
   auto* allocation = app.add_option("--allocation", worker.allocation,
                                     "Batch job that holds this worker, told to the master: JOB:RESTARTS:NODE")
                          ->type_name("TEXT");
-  auto* quiet = app.add_flag("--quiet", worker.quiet, "Log warnings and errors only");
-  return {dir, access, slots, orphan, log, allocation, quiet};
+  return {dir, access, slots, orphan, log, allocation};
 }
 
 void AddOptions(CLI::App& app, CommandLine& line) {
   const std::vector<CLI::Option*> serving = AddServing(app, line);
+  auto* quiet = app.add_flag("--quiet", line.worker.quiet, "Log warnings and errors only");
   auto* die =
       app.add_option(
              "--die-with-parent", line.worker.parent,
@@ -122,6 +122,7 @@ void AddOptions(CLI::App& app, CommandLine& line) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber)
       ->needs(spec);
+  quiet->excludes(golden);
   for (CLI::Option* option : serving) option->excludes(golden)->excludes(spec);
 }
 
@@ -147,6 +148,7 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
   if (app.count("--golden") > 0) return PrintGoldenHashes(functions.golden_hashes(line.golden));
   if (app.count("--run-spec") > 0) {
     line.spec.parent = line.worker.parent;
+    line.spec.quiet = line.worker.quiet;
     return RunOneSpec(line.spec, functions.run);
   }
   const bool by_directory = app.count("--dir") > 0;

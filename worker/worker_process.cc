@@ -252,7 +252,8 @@ int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
   std::string result;
   if (const auto* given = std::get_if<EncodedResult>(&outcome)) {
     result = *given;
-    fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeEnd(DecodeRunResult(result)));
+    if (!options.quiet)
+      fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeEnd(DecodeRunResult(result)));
   } else {
     const RunnerFailure& failure = std::get<RunnerFailure>(outcome);
     const bool whole_lines = failure.stderr_tail.empty() || failure.stderr_tail.ends_with('\n');

@@ -47,6 +47,7 @@ Status StartLogging(const std::string& file, bool quiet, const LogLimits& limits
 
 struct SpecOptions {
   std::string spec_file = "-";  // a serialized RunSpec; "-": stdin
+  bool quiet = false;           // nothing is said of a run that gave a result
   double cpu_limit_seconds = 600.0;
   std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;
   pid_t parent = 0;  // > 0: end with this process, which started us

@@ -13,6 +13,7 @@
 #include "controllers/registry.h"
 #include "master/cases/case_file.h"
 #include "master/cli/commands.h"
+#include "master/cli/dry_run.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/summary.h"
 #include "master/report/verdict_text.h"
@@ -134,7 +135,8 @@ ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
   if (!options.replicates.empty()) extra.push_back({"--replicates", "search.replicates", options.replicates});
   const Result<Experiment> experiment = LoadExperimentWith(options.experiment, extra);
   if (!experiment) return Fail(context, experiment.error());
-  Result<CampaignRun> campaign = LocalRun(*experiment, options);
+  const std::vector<SearchPlan> searches = {{"", *experiment}};
+  Result<CampaignRun> campaign = LocalRun(searches, options);
   if (!campaign) return Fail(context, campaign.error());
   const std::string& directory = campaign->directory;
 
@@ -143,8 +145,9 @@ ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
     Print(context, options, list, nullptr, directory);
     return kExitUsage;
   }
+  if (options.dry_run) return PrintDryRun(context, *campaign, searches, list.cases);
   campaign->run = [&](const SessionOptions& session) {
-    return context.campaigns.Start(directory, *experiment, list.cases, session);
+    return context.campaigns.Start(directory, searches, list.cases, session);
   };
   campaign->report = [&](const SessionReport& report) -> Status {
     if (Status added = AddRuns(context, directory, list); !added) return added;
@@ -174,6 +177,7 @@ Of .argos files the arena, the boxes, the number of foot-bots and their start ar
 
 Examples:
   gauntlet evaluate flocking --case one-wall.json --replicates 20
+  gauntlet evaluate flocking --case cases/*.json --replicates 100 --dry-run
   gauntlet evaluate flocking-improved --case cases/*.argos --json > improved.json)");
 }
 

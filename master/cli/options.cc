@@ -93,10 +93,21 @@ void AddSizeOptions(CLI::App& command, SizeOptions& options) {
   AddValue(command, "--population", "P", options.population, "short for --set search.population=P");
 }
 
+void AddSweepOptions(CLI::App& command, SweepOptions& options) {
+  AddValue(
+      command, "--sweep", "KEY=A,B,...", options.sweeps,
+      "one search for each value, e.g. --sweep search.population=10,20,40; repeatable: all combinations");
+  AddValue(command, "--seeds", "1..20|1,5,9", options.seeds,
+           "one search for each seed (and each combination of --sweep)");
+}
+
 void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes) {
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);
   AddRunningOptions(command, options.running);
+  command.add_flag("--dry-run", options.dry_run,
+                   "simulate only a few runs, make nothing, and say how many runs there would be, about how "
+                   "long they take here, and how much disk");
   if (sizes) return;
   for (const char* option : {"--generations", "--population"}) command.get_option(option)->group("");
 }
@@ -150,11 +161,15 @@ std::vector<ExtraSet> SetsOf(const SizeOptions& options) {
 Result<std::vector<std::string>> JoinSets(const std::vector<std::string>& sets,
                                           const std::vector<ExtraSet>& extra) {
   std::vector<std::string> all = sets;
-  for (const auto& [option, key, value] : extra) {
+  for (std::size_t i = 0; i < extra.size(); ++i) {
+    const auto& [option, key, value] = extra[i];
     const std::string one = fmt::format("{}={}", key, value);
-    for (const std::string& set : sets) {
-      if (!set.starts_with(key + "=") || set == one) continue;
-      return InvalidInput(fmt::format("--set {}: {} already says {}; give one of them", set, option, one));
+    for (std::size_t j = 0; j < all.size(); ++j) {
+      if (!all[j].starts_with(key + "=") || all[j] == one) continue;
+      const std::string other =
+          j < sets.size() ? fmt::format("--set {}", all[j])
+                          : fmt::format("{} {}", extra[j - sets.size()].option, extra[j - sets.size()].value);
+      return InvalidInput(fmt::format("{}: {} already says {}; give one of them", other, option, one));
     }
     all.push_back(one);
   }

@@ -50,11 +50,17 @@ struct SizeOptions {
   std::string generations;
   std::string population;
 };
+// Several searches in one campaign.
+struct SweepOptions {
+  std::vector<std::string> sweeps;  // "key=a,b,c"
+  std::string seeds;                // "1..20" or "1,5,9"
+};
 // Of a new campaign with workers on this machine.
 struct LocalOptions {
   ExperimentOptions experiment;
   SizeOptions size;
   RunningOptions running;
+  bool dry_run = false;
 };
 
 // An option with a value, which the help calls `type`. One with a list is repeated for each value.
@@ -68,6 +74,7 @@ void AddRunningOptions(CLI::App& command, RunningOptions& options);
 void AddBindOptions(CLI::App& command, BindOptions& options);
 void AddExperimentOptions(CLI::App& command, ExperimentOptions& options);
 void AddSizeOptions(CLI::App& command, SizeOptions& options);
+void AddSweepOptions(CLI::App& command, SweepOptions& options);
 // `sizes`: else those of size are not in the command's help, and are read so that it can say why it refuses
 // them.
 void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes);
@@ -93,7 +100,7 @@ struct ExtraSet {
 };
 // Those of --generations and --population that were given.
 std::vector<ExtraSet> SetsOf(const SizeOptions& options);
-// `sets`, and `extra` as "key=value" behind them. Error: one of `extra` contradicts one of `sets`.
+// `sets`, and `extra` as "key=value" behind them. Error: one of `extra` contradicts another or one of `sets`.
 Result<std::vector<std::string>> JoinSets(const std::vector<std::string>& sets,
                                           const std::vector<ExtraSet>& extra);
 // An error that begins with "--set key=value:" begins with the option instead that stands for it.

@@ -202,7 +202,8 @@ void PrintFinished(CommandContext& context, const CampaignSummary& summary, cons
   PrintSummary(context, summary, directory, options.json);
 }
 
-Result<CampaignRun> LocalRun(const Experiment& experiment, const LocalOptions& options) {
+Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const LocalOptions& options) {
+  const Experiment& experiment = searches.front().experiment;
   const Result<int> workers = ParseWorkers(options.running.workers);
   if (!workers) return workers.error();
   const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
@@ -210,9 +211,13 @@ Result<CampaignRun> LocalRun(const Experiment& experiment, const LocalOptions& o
   const SearchRow& search = RowOf(experiment);
   CampaignRun campaign;
   campaign.directory = *directory;
-  campaign.announcement =
-      fmt::format("{}: {}, {}, seed {}, {} worker{}, in {}", experiment.name, search.title,
-                  search.plan(experiment), experiment.seed, *workers, *workers == 1 ? "" : "s", *directory);
+  const std::string what =
+      searches.size() == 1
+          ? fmt::format("{}, {}, seed {}", search.title, search.plan(experiment), experiment.seed)
+          : fmt::format("{} searches ({}; ...; {})", searches.size(), searches.front().settings,
+                        searches.back().settings);
+  campaign.announcement = fmt::format("{}: {}, {} worker{}, in {}", experiment.name, what, *workers,
+                                      *workers == 1 ? "" : "s", *directory);
   campaign.serving = options.running;
   campaign.session.workers = *workers;
   return campaign;

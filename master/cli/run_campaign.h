@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "master/cli/command_line.h"
 #include "master/cli/options.h"
@@ -34,6 +35,6 @@ void PrintFinished(CommandContext& context, const CampaignSummary& summary, cons
                    const MessageOptions& options);
 
 // A new campaign with workers on this machine, but for what it is to run.
-Result<CampaignRun> LocalRun(const Experiment& experiment, const LocalOptions& options);
+Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const LocalOptions& options);
 
 }  // namespace gauntlet::master

@@ -13,7 +13,6 @@
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/sweep.h"
 #include "master/experiment/experiment_file.h"
-#include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "proto/json_text.h"
 
@@ -24,10 +23,9 @@ struct SubmitOptions {
   ExperimentOptions experiment;
   SizeOptions size;
   MessageOptions messages;
-  std::string master;               // "job" or "here"; "" = as the settings say
-  std::vector<std::string> slurm;   // "key=value"
-  std::vector<std::string> sweeps;  // "key=a,b,c"
-  std::string seeds;                // "1..20" or "1,5,9"
+  SweepOptions sweep;
+  std::string master;              // "job" or "here"; "" = as the settings say
+  std::vector<std::string> slurm;  // "key=value"
   bool dry_run = false;
 };
 
@@ -103,13 +101,9 @@ ExitCode SubmitAndReturn(CommandContext& context, const SubmitOptions& options, 
 
 ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
   const Result<std::vector<SearchPlan>> searches =
-      PlanSearches(options.experiment, options.size, options.sweeps, options.seeds);
+      PlanSearches(options.experiment, SetsOf(options.size), options.sweep);
   if (!searches) return Fail(context, searches.error());
   const Experiment& experiment = searches->front().experiment;
-  for (const SearchPlan& search : *searches) {
-    if (RowOf(search.experiment).given_cases)
-      return Fail(context, InvalidInput("search.algorithm = cases needs a list of cases: use 'evaluate'"));
-  }
   const Result<slurm::SlurmSettings> settings = ReadSettings(options, experiment);
   if (!settings) return Fail(context, settings.error());
   const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
@@ -149,11 +143,7 @@ void AddSubmit(CommandParser& parser) {
       ->check(CLI::IsMember({"job", "here"}));
   AddValue(command, "--slurm", "KEY=VALUE", options.slurm,
            "one setting of the jobs or the pool, e.g. --slurm partition=short; repeatable");
-  AddValue(
-      command, "--sweep", "KEY=A,B,...", options.sweeps,
-      "one search for each value, e.g. --sweep search.population=10,20,40; repeatable: all combinations");
-  AddValue(command, "--seeds", "1..20|1,5,9", options.seeds,
-           "one search for each seed (and each combination of --sweep)");
+  AddSweepOptions(command, options.sweep);
   command.add_flag("--dry-run", options.dry_run,
                    "submit nothing: print the scripts and what sbatch --test-only says of them");
   std::string settings;

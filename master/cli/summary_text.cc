@@ -135,13 +135,13 @@ std::string Members(const CampaignSummary& summary) {
   return text + table.ToText();
 }
 
-// What to type next; `replay`: of a run that is worth it, or an empty row.
-std::string Hints(const HintContext& context, bool finished, const std::vector<std::string>& replay) {
+// What to type next; `first`: a row with what is most worth it, or an empty one.
+std::string Hints(const HintContext& context, bool finished, const std::vector<std::string>& first) {
   const std::string directory = ShellQuoted(context.directory);
   Table table({"", ""});
   if (!finished)
     table.AddRow({fmt::format("{} resume {}", context.program, directory), "# go on where it stopped"});
-  table.AddRow(replay);
+  table.AddRow(first);
   table.AddRow({fmt::format("{} show {} --json", context.program, directory), "# everything, for scripts"});
   return "\nNext commands to try\n" + table.ToText();
 }
@@ -184,7 +184,12 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
                   FormatFitness(one.mean_fitness), FormatCount(one.total_failures),
                   one.state_hash.substr(0, kShownDigits)});
   }
-  return text + table.ToText() + Hints(context, summary.finished, {});
+  const std::string directory = ShellQuoted(context.directory);
+  return text + table.ToText() +
+         Hints(context, summary.finished,
+               {fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,
+                            summary.searches.size()),
+                "# is one search's population tougher than another's?"});
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
-// The searches that --sweep and --seeds ask for.
+// The searches of a new campaign: one, or those that --sweep and --seeds ask for.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "base/result.h"
@@ -10,11 +9,11 @@
 
 namespace gauntlet::master {
 
-// The experiment of `options` and `size`, once for each combination of the values of `sweeps` ("key=a,b,c",
-// the last varies fastest) and each of `seeds` ("1..20" or "1,5,9"; "" = the experiment's own); all of them
-// valid. A single one has no settings. Errors name the option and what would be right.
-Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options, const SizeOptions& size,
-                                             const std::vector<std::string>& sweeps,
-                                             const std::string& seeds);
+// The experiment of `options` and `extra`, once for each combination of the values of the sweeps
+// ("key=a,b,c", the last varies fastest) and each of the seeds ("1..20" or "1,5,9"; "" = the experiment's
+// own); all of them valid and different. A single one has no settings. Errors name the option and what would
+// be right; refused are also a search of given cases, and settings that none of the searches reads.
+Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
+                                             const std::vector<ExtraSet>& extra, const SweepOptions& sweep);
 
 }  // namespace gauntlet::master

@@ -41,7 +41,7 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec) {
   const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters));
   Result<std::string> output =
-      RunWorkerProgram({"--run-spec", "-", "--cpu-limit", cpu_limit}, proto::EncodeRunSpec(spec));
+      RunWorkerProgram({"--run-spec", "-", "--cpu-limit", cpu_limit, "--quiet"}, proto::EncodeRunSpec(spec));
   if (!output) return output.error();
   return proto::DecodeRunResult(*output);
 }

@@ -38,6 +38,7 @@ inline void Add(const SearchProgress& one, SearchProgress& sum) {
   sum.generations += one.generations;
   sum.evaluations_done += one.evaluations_done;
   sum.evaluations_planned += one.evaluations_planned;
+  sum.individuals_planned += one.individuals_planned;
   sum.finished = sum.finished && one.finished;
 }
 

@@ -31,6 +31,7 @@ SearchProgress CaseListSearch::Progress() const {
           .generations = 1,
           .evaluations_done = evaluations_done_,
           .evaluations_planned = population_.size(),
+          .individuals_planned = population_.size(),
           .finished = evaluations_done_ >= population_.size()};
 }
 

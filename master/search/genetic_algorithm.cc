@@ -100,6 +100,7 @@ SearchProgress GeneticAlgorithm::Progress() const {
           .generations = static_cast<std::uint32_t>(generations),
           .evaluations_done = evaluations_done_,
           .evaluations_planned = size + (generations - 1) * (parents + children),
+          .individuals_planned = size + (generations - 1) * children,
           .finished = generation_ >= generations && AtBoundary()};
 }
 

@@ -62,6 +62,7 @@ SearchProgress RandomSearch::Progress() const {
           .generations = 1,
           .evaluations_done = evaluations_done_,
           .evaluations_planned = Planned(),
+          .individuals_planned = Planned(),
           .finished = evaluations_done_ >= Planned()};
 }
 

@@ -66,6 +66,7 @@ struct SearchProgress {
   std::uint32_t generations = 0;  // planned; 1 for searches without generations
   std::uint64_t evaluations_done = 0;
   std::uint64_t evaluations_planned = 0;
+  std::uint64_t individuals_planned = 0;  // that will have been born; of those bred some may be equal
   bool finished = false;
 };
 

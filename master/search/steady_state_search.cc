@@ -101,6 +101,7 @@ SearchProgress SteadyStateSearch::Progress() const {
           .generations = static_cast<std::uint32_t>(spec().generations),
           .evaluations_done = evaluations_done_,
           .evaluations_planned = Planned(),
+          .individuals_planned = Planned(),
           .finished = evaluations_done_ >= Planned()};
 }
 

@@ -118,15 +118,14 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
 
 class Campaigns final : public CampaignService {
  public:
-  Result<SessionReport> Start(const std::string& dir, const Experiment& experiment,
+  Result<SessionReport> Start(const std::string& dir, const std::vector<SearchPlan>& searches,
                               const std::vector<sim::TestCase>& cases,
                               const SessionOptions& options) override {
-    const std::vector<SearchPlan> plans = {{"", experiment}};
     // Before anything is made: the corrected command is to find the directory as this one did.
     if (Status possible = TryToListen(options.bind); !possible) return possible.error();
-    Result<NewCampaign> created = Create(dir, plans, cases, "");
+    Result<NewCampaign> created = Create(dir, searches, cases, "");
     if (!created) return created.error();
-    return CampaignServer(created->ownership, plans, created->golden_hashes, options).Serve();
+    return CampaignServer(created->ownership, searches, created->golden_hashes, options).Serve();
   }
 
   Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,

@@ -58,14 +58,13 @@ class CampaignService {
  public:
   virtual ~CampaignService() = default;
 
-  // Creates the campaign in `dir` (which must not exist or be empty) and runs it. `cases`: what `evaluate`
-  // simulates, in order (a search through given cases); empty otherwise. Errors: kInvalidInput, kInUse;
-  // kNoSpace and kIo when the campaign stopped and can be resumed.
-  virtual Result<SessionReport> Start(const std::string& dir, const Experiment& experiment,
+  // Creates the campaign in `dir` (which must not exist or be empty) and runs it. `searches`: one, or those
+  // of a sweep; `cases`: what `evaluate` simulates, in order (a single search through given cases); empty
+  // otherwise. Errors: kInvalidInput, kInUse; kNoSpace and kIo when the campaign stopped and can be resumed.
+  virtual Result<SessionReport> Start(const std::string& dir, const std::vector<SearchPlan>& searches,
                                       const std::vector<sim::TestCase>& cases,
                                       const SessionOptions& options) = 0;
-  // Creates the campaign without running it: Resume does. `searches`: one, or those of a sweep; `slurm`: the
-  // text of its slurm.toml.
+  // Creates the campaign without running it: Resume does. `slurm`: the text of its slurm.toml.
   virtual Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,
                          const std::string& slurm) = 0;
   // Makes the campaign's searches longer ("key=value", WithLength) without running them: Resume does. Says

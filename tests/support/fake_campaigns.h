@@ -31,7 +31,8 @@ class FakeCampaigns : public master::CampaignService {
   int resumes = 0;
   std::vector<std::string> extended;
   std::string directory;  // of the newest session
-  master::Experiment experiment;
+  std::vector<master::SearchPlan> searches;
+  master::Experiment experiment;  // of the first of them
   std::vector<sim::TestCase> cases;
   int workers = 0;
   std::vector<master::SearchPlan> prepared;
@@ -39,17 +40,18 @@ class FakeCampaigns : public master::CampaignService {
   std::string stopped;
   master::RunId replayed_run = 0;
 
-  Result<master::SessionReport> Start(const std::string& dir, const master::Experiment& wanted,
+  Result<master::SessionReport> Start(const std::string& dir, const std::vector<master::SearchPlan>& wanted,
                                       const std::vector<sim::TestCase>& given,
                                       const master::SessionOptions& options) override {
     ++starts;
-    experiment = wanted;
+    searches = wanted;
+    experiment = wanted.front().experiment;
     cases = given;
     return Serve(dir, options);
   }
-  Status Prepare(const std::string& dir, const std::vector<master::SearchPlan>& searches,
+  Status Prepare(const std::string& dir, const std::vector<master::SearchPlan>& wanted,
                  const std::string& text) override {
-    prepared = searches;
+    prepared = wanted;
     slurm = text;
     std::filesystem::create_directories(dir);
     std::ofstream(dir + "/slurm.toml") << text;

@@ -1,0 +1,16 @@
+// --dry-run of the commands that begin a campaign on this machine.
+#pragma once
+
+#include <vector>
+
+#include "master/cli/command_line.h"
+#include "master/cli/run_campaign.h"
+
+namespace gauntlet::master {
+
+// Says what the campaign would ask for and cost here, as text or JSON, after a few measured runs; makes no
+// file. `cases`: of a single search through given ones.
+ExitCode PrintDryRun(CommandContext& context, const CampaignRun& campaign,
+                     const std::vector<SearchPlan>& searches, const std::vector<sim::TestCase>& cases);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,36 @@
+// What a campaign will cost, told before it exists.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "base/result.h"
+#include "master/directory/search_plans.h"
+#include "master/dispatch/worker_program.h"
+#include "sim/arena/test_case.h"
+
+namespace gauntlet::master {
+
+struct Forecast {
+  std::uint64_t runs = 0;   // of all searches
+  std::uint64_t cases = 0;  // different ones, at most
+  // Whether there will be exactly that many: children may equal their parents, and searches with the same
+  // seed share cases.
+  bool cases_exact = false;
+  std::uint64_t measured_runs = 0;
+  double seconds_per_run = 0.0;  // CPU time on this machine, mean of the measured runs
+  double bytes = 0.0;            // of the campaign's directory at its end
+
+  // With so many workers, each on a core of its own.
+  double Seconds(int workers) const { return static_cast<double>(runs) * seconds_per_run / workers; }
+};
+
+// Simulates a few of the first runs, at most twelve and for a few seconds, spread over the searches. Later
+// generations' may take longer or shorter. Makes no file. `cases`: of a single search through given ones.
+// Errors: those of MakeSearch and of `simulate`.
+Result<Forecast> MakeForecast(
+    const std::vector<SearchPlan>& plans, const std::vector<sim::TestCase>& cases,
+    const std::function<Result<sim::RunResult>(const sim::RunSpec&)>& simulate = SimulateInRunner);
+
+}  // namespace gauntlet::master
