@@ -25,7 +25,7 @@ struct RunSpec {
   std::string controller;  // registry name of the controller under test
   Parameters controller_parameters;
   std::uint64_t seed = 0;
-  PhysicsKind physics = PhysicsKind::kBox2d;
+  PhysicsKind physics = PhysicsKind::kImpulse;
   Disturbances disturbances;
   bool record_trajectory = false;  // return every pose of every tick; no influence on the hash
 };

@@ -26,7 +26,7 @@ class PhaseProbe : public SensorProbe {
 
 // How a run is simulated, beside its scenario and seed.
 struct SimulationOptions {
-  PhysicsKind physics = PhysicsKind::kBox2d;
+  PhysicsKind physics = PhysicsKind::kImpulse;
   Disturbances disturbances = {};
   PhaseProbe* probe = nullptr;  // told of every phase
 };

@@ -74,7 +74,7 @@ struct Experiment {
   GenomeSpec genome;
   SearchSpec search;
   std::uint64_t seed = 1;
-  sim::PhysicsKind physics = sim::PhysicsKind::kBox2d;
+  sim::PhysicsKind physics = sim::PhysicsKind::kImpulse;
   sim::Disturbances disturbances;
   StoreSpec store;
 };

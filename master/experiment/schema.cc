@@ -281,9 +281,9 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
       FieldKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
       FieldKey<&Experiment::controller>("controller",
                                         "the algorithm under test; default: the scenario's own"),
-      ChoiceKey<&Experiment::physics>(
-          "physics", {"box2d", "relaxation", "impulse"},
-          "impulse = contacts as in ARGoS; relaxation = without friction, for comparison"),
+      ChoiceKey<&Experiment::physics>("physics", {"box2d", "relaxation", "impulse"},
+                                      "impulse = contacts as in ARGoS; box2d = Box2D's contacts; relaxation "
+                                      "= without friction, for comparison"),
       FaultsKey(),
   };
   for (std::vector<Key>& more : std::array{GenomeKeys(), SearchKeys(catalogue), NoiseKeys()}) {

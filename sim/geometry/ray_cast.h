@@ -49,36 +49,46 @@ inline double RayHit(const Vec2& disc_center, double disc_radius, const Vec2& or
   return distance > 0.0 ? distance : 0.0;
 }
 
+// A segment and a box on the axes that can separate them (Gottschalk et al. 1996): the box's two axes and
+// the segment's normal. Everything is doubled instead of halving the segment. On an axis the two are apart
+// where the distance of their middles exceeds the sum of their extents.
+struct SeparatingAxes {
+  SeparatingAxes(const OrientedBox& box, const Vec2& a, const Vec2& b) {
+    const Vec2 a_local = ToLocal(box, a);
+    const Vec2 b_local = ToLocal(box, b);
+    const Vec2 middle = a_local + b_local;
+    extent = b_local - a_local;
+    const double ex = std::fabs(extent.x());
+    const double ey = std::fabs(extent.y());
+    const double hx = 2.0 * box.half_extents.x();
+    const double hy = 2.0 * box.half_extents.y();
+    distance_x = std::fabs(middle.x());
+    distance_y = std::fabs(middle.y());
+    distance_aside = std::fabs(Cross(middle, extent));
+    extent_x = hx + ex;
+    extent_y = hy + ey;
+    extent_aside = hx * ey + hy * ex;
+  }
+
+  Vec2 extent;                                        // m, of the segment in the box's frame
+  double distance_x, distance_y, extent_x, extent_y;  // m, doubled
+  double distance_aside, extent_aside;                // m^2: doubled m, times the segment's length
+};
+
 // Whether the segment a-b touches the shape (boundary counts). The answer for b-a is the same.
 inline bool SegmentTouches(const OrientedBox& box, const Vec2& a, const Vec2& b) {
-  // Separating axes (Gottschalk et al. 1996): the box's two axes and the segment's normal. Everything is
-  // doubled instead of halving the segment.
-  const Vec2 a_local = ToLocal(box, a);
-  const Vec2 b_local = ToLocal(box, b);
-  const Vec2 middle = a_local + b_local;
-  const Vec2 extent = b_local - a_local;
-  const double ex = std::fabs(extent.x());
-  const double ey = std::fabs(extent.y());
-  const double hx = 2.0 * box.half_extents.x();
-  const double hy = 2.0 * box.half_extents.y();
-  return std::fabs(middle.x()) <= hx + ex && std::fabs(middle.y()) <= hy + ey &&
-         std::fabs(Cross(middle, extent)) <= hx * ey + hy * ex;
+  const SeparatingAxes axes(box, a, b);
+  return axes.distance_x <= axes.extent_x && axes.distance_y <= axes.extent_y &&
+         axes.distance_aside <= axes.extent_aside;
 }
 
 // At most the distance (m) from the segment a-b to the box; positive unless SegmentTouches, but for rounding.
 inline double SegmentGap(const OrientedBox& box, const Vec2& a, const Vec2& b) {
   // The widest gap along one of the separating axes.
-  const Vec2 a_local = ToLocal(box, a);
-  const Vec2 b_local = ToLocal(box, b);
-  const Vec2 middle = a_local + b_local;
-  const Vec2 extent = b_local - a_local;
-  const double ex = std::fabs(extent.x());
-  const double ey = std::fabs(extent.y());
-  const double hx = 2.0 * box.half_extents.x();
-  const double hy = 2.0 * box.half_extents.y();
-  const double along_axes = std::fmax(std::fabs(middle.x()) - (hx + ex), std::fabs(middle.y()) - (hy + ey));
-  const double length = std::sqrt(extent.squaredNorm());
-  const double aside = std::fabs(Cross(middle, extent)) - (hx * ey + hy * ex);
+  const SeparatingAxes axes(box, a, b);
+  const double along_axes = std::fmax(axes.distance_x - axes.extent_x, axes.distance_y - axes.extent_y);
+  const double length = std::sqrt(axes.extent.squaredNorm());
+  const double aside = axes.distance_aside - axes.extent_aside;
   const double twice = length > 0.0 ? std::fmax(along_axes, aside / length) : along_axes;
   return twice > 0.0 ? 0.5 * twice : 0.0;
 }

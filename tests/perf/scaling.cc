@@ -38,26 +38,26 @@ double RunCost(int robots, sim::Tick ticks, PhysicsKind physics) {
 
 struct Point {
   int robots;
-  double box2d;  // ns per robot-tick
+  double impulse;  // ns per robot-tick
   double relaxation;
 };
 
 std::vector<Point> Measure() {
   std::vector<Point> points;
-  std::printf("robots  box2d  relaxation  ratio   (user CPU, ns per robot-tick, medians)\n");
+  std::printf("robots  impulse  relaxation  ratio   (user CPU, ns per robot-tick, medians)\n");
   for (const int robots : kSwarms) {
     const sim::Tick ticks = std::max(100, 20000 / robots);
-    std::vector<double> box2d;
+    std::vector<double> impulse;
     std::vector<double> relaxation;
     std::vector<double> ratios;
     for (int repeat = 0; repeat < 7; ++repeat) {
-      box2d.push_back(RunCost(robots, ticks, PhysicsKind::kBox2d));
+      impulse.push_back(RunCost(robots, ticks, PhysicsKind::kImpulse));
       relaxation.push_back(RunCost(robots, ticks, PhysicsKind::kRelaxation));
-      ratios.push_back(box2d.back() / relaxation.back());
+      ratios.push_back(impulse.back() / relaxation.back());
     }
     const double unit = 1e9 / (static_cast<double>(robots) * ticks);
-    points.push_back({robots, unit * Median(box2d), unit * Median(relaxation)});
-    std::printf("%6d  %5.0f  %10.0f  %5.2f\n", robots, points.back().box2d, points.back().relaxation,
+    points.push_back({robots, unit * Median(impulse), unit * Median(relaxation)});
+    std::printf("%6d  %5.0f  %10.0f  %5.2f\n", robots, points.back().impulse, points.back().relaxation,
                 Median(ratios));
   }
   return points;
@@ -65,23 +65,23 @@ std::vector<Point> Measure() {
 
 void WriteSvg(const std::vector<Point>& points, const std::string& file) {
   double top = 0.0;
-  for (const Point& point : points) top = std::max({top, point.box2d, point.relaxation});
+  for (const Point& point : points) top = std::max({top, point.impulse, point.relaxation});
   const auto place = [top](int robots, double cost) -> analysis::Pixel {
     return {60.0 + 420.0 * std::log(robots / 6.0) / std::log(500.0 / 6.0), 260.0 - 200.0 * cost / top};
   };
   analysis::SvgCanvas canvas(520.0, 310.0, "User CPU per robot-tick", "text { font: 12px sans-serif }");
-  canvas.Text({60.0, 20.0}, "user CPU per robot-tick, ns (box2d solid, relaxation dashed)", "");
+  canvas.Text({60.0, 20.0}, "user CPU per robot-tick, ns (impulse solid, relaxation dashed)", "");
   canvas.Polyline({{60.0, 40.0}, {60.0, 260.0}, {480.0, 260.0}}, "fill=\"none\" stroke=\"black\"");
-  std::vector<analysis::Pixel> box2d;
+  std::vector<analysis::Pixel> impulse;
   std::vector<analysis::Pixel> relaxation;
   for (const Point& point : points) {
-    box2d.push_back(place(point.robots, point.box2d));
+    impulse.push_back(place(point.robots, point.impulse));
     relaxation.push_back(place(point.robots, point.relaxation));
-    const analysis::Pixel label = {box2d.back().x, box2d.back().y - 6.0};
-    canvas.Text(label, std::to_string(std::lround(point.box2d)), "text-anchor=\"middle\"");
+    const analysis::Pixel label = {impulse.back().x, impulse.back().y - 6.0};
+    canvas.Text(label, std::to_string(std::lround(point.impulse)), "text-anchor=\"middle\"");
     canvas.Text({label.x, 276.0}, std::to_string(point.robots), "text-anchor=\"middle\"");
   }
-  canvas.Polyline(box2d, "fill=\"none\" stroke=\"#1f5f99\" stroke-width=\"2\"");
+  canvas.Polyline(impulse, "fill=\"none\" stroke=\"#1f5f99\" stroke-width=\"2\"");
   canvas.Polyline(relaxation, "fill=\"none\" stroke=\"#1f5f99\" stroke-width=\"2\" stroke-dasharray=\"5 4\"");
   canvas.Text({270.0, 298.0}, "robots, in proportionally larger arenas", "text-anchor=\"middle\"");
   std::ofstream(file) << canvas.Take();

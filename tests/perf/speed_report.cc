@@ -53,7 +53,7 @@ struct Sample {
 };
 
 // Every run of the load once, each between two kernels.
-Sample Measure(const Load& load, sim::PhysicsKind physics = sim::PhysicsKind::kBox2d) {
+Sample Measure(const Load& load, sim::PhysicsKind physics = sim::RunSpec{}.physics) {
   Sample sample;
   double kernels = CalibrationCost();
   for (std::uint64_t seed = 1; seed <= load.runs; ++seed) {
@@ -118,18 +118,23 @@ void ReportStages(const std::vector<Load>& loads) {
 }
 
 void ReportEngines(const std::vector<Load>& loads) {
-  fmt::print("{:<66}{:>8}{:>11}{:>7}\n", "crowd", "box2d", "relaxation", "ratio");
+  fmt::print("{:<66}{:>9}{:>7}{:>9}{:>9}\n", "crowd, relative to relaxation on the same scene", "impulse",
+             "box2d", "ms", "kernels");
   for (const Load& load : loads) {
+    std::vector<double> impulse;
     std::vector<double> box2d;
-    std::vector<double> relaxation;
-    std::vector<double> ratios;
+    std::vector<double> milliseconds;
+    std::vector<double> kernels;
     for (int repeat = 0; repeat < kRepeats; ++repeat) {
-      box2d.push_back(Measure(load, sim::PhysicsKind::kBox2d).seconds);
-      relaxation.push_back(Measure(load, sim::PhysicsKind::kRelaxation).seconds);
-      ratios.push_back(box2d.back() / relaxation.back());
+      const Sample sample = Measure(load, sim::PhysicsKind::kImpulse);
+      const double relaxation = Measure(load, sim::PhysicsKind::kRelaxation).seconds;
+      impulse.push_back(sample.seconds / relaxation);
+      box2d.push_back(Measure(load, sim::PhysicsKind::kBox2d).seconds / relaxation);
+      milliseconds.push_back(1e3 * sample.seconds);
+      kernels.push_back(sample.kernels);
     }
-    fmt::print("{:<66}{:>8.2f}{:>11.2f}{:>7.2f}\n", load.what, 1e3 * Median(box2d), 1e3 * Median(relaxation),
-               Median(ratios));
+    fmt::print("{:<66}{:>9.2f}{:>7.2f}{:>9.2f}{:>9.2f}\n", load.what, Median(impulse), Median(box2d),
+               Median(milliseconds), Median(kernels));
   }
   fmt::print("\n");
 }

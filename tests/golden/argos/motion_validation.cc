@@ -16,6 +16,11 @@ constexpr double kStanding = 2e-4;           // m/s; a robot that stands in ARGo
 constexpr double kContactGap = 1e-4;         // m
 constexpr std::size_t kLastTicks = 20;
 
+sim::Trajectory Simulate(const sim::ArgosScene& scene, sim::PhysicsKind physics) {
+  const bool box2d = physics == sim::PhysicsKind::kBox2d || !scene.movable.empty();
+  return sim::SimulateScene(scene, box2d ? *sim::MakeBox2dEngine() : *sim::MakeImpulseEngine());
+}
+
 }  // namespace
 
 std::vector<std::string> MotionScenes() {
@@ -24,12 +29,12 @@ std::vector<std::string> MotionScenes() {
   return names;
 }
 
-std::vector<ValidationRow> ValidateMotion(const std::string& scene_name) {
+std::vector<ValidationRow> ValidateMotion(const std::string& scene_name, sim::PhysicsKind physics) {
   const std::string file = "motion/" + scene_name + ".csv";
   if (!std::filesystem::exists(GAUNTLET_SOURCE_DIR "/tests/golden/argos/" + file)) return {};
   const sim::ArgosScene& scene = sim::FindArgosScene(scene_name);
   const sim::Trajectory argos = sim::ArgosTrajectory(scene);
-  const sim::Trajectory ours = sim::SimulateScene(scene, *sim::MakeBox2dEngine());
+  const sim::Trajectory ours = Simulate(scene, physics);
   const std::size_t free = scene.free ? argos.size() : sim::TicksBeforeContact(scene, argos, kContactGap);
   const int all = static_cast<int>(argos.size());
   std::vector<ValidationRow> rows;

@@ -16,13 +16,20 @@ namespace {
 
 class MotionScene : public testing::TestWithParam<std::string> {};
 
-TEST_P(MotionScene, AgreesWithArgos) {
-  const std::vector<ValidationRow> rows = ValidateMotion(GetParam());
-  EXPECT_FALSE(rows.empty()) << GetParam() << " is missing";
+void ExpectAgreement(const std::vector<ValidationRow>& rows) {
+  EXPECT_FALSE(rows.empty()) << "the file is missing";
   for (const ValidationRow& row : rows) {
     EXPECT_TRUE(row.ok()) << row.quantity << ": error " << row.error << " of " << row.values
                           << " values, tolerance " << row.tolerance;
   }
+}
+
+TEST_P(MotionScene, AgreesWithArgos) {
+  ExpectAgreement(ValidateMotion(GetParam()));
+}
+
+TEST_P(MotionScene, AgreesWithArgosInBox2d) {
+  ExpectAgreement(ValidateMotion(GetParam(), sim::PhysicsKind::kBox2d));
 }
 
 INSTANTIATE_TEST_SUITE_P(Argos, MotionScene, testing::ValuesIn(MotionScenes()),
