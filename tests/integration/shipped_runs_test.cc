@@ -18,6 +18,13 @@ struct RecordedRuns {
   std::vector<std::string> runs;  // "12 2784cf76d5400fa7"
 };
 
+// As the list has them.
+std::string Lines(const RecordedRuns& recorded) {
+  std::string lines = recorded.command + "\n";
+  for (const std::string& run : recorded.runs) lines += "  " + run + "\n";
+  return lines;
+}
+
 void PrintTo(const RecordedRuns& recorded, std::ostream* os) {
   *os << recorded.command;
 }
@@ -50,7 +57,8 @@ TEST_P(ShippedRunsTest, GiveTheRecordedResults) {
   arguments.insert(arguments.end(), {"--dir", dir, "--workers", "2", "--quiet"});
   const ProcessResult result = Gauntlet(arguments);
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(StoredRuns(dir), testing::ElementsAreArray(GetParam().runs));
+  const RecordedRuns found = {GetParam().command, StoredRuns(dir)};
+  EXPECT_EQ(found.runs, GetParam().runs) << "found, as the list has it:\n" << Lines(found);
 }
 
 INSTANTIATE_TEST_SUITE_P(ShippedRuns, ShippedRunsTest, testing::ValuesIn(Recorded()));
