@@ -207,7 +207,8 @@ void AddCompare(CommandParser& parser) {
       ->required();
   command.add_option("B", options.second, "the other one")->required();
   AddValue(command, "--metric", "NAME", options.metric,
-           "what is compared: fitness (the default) or a metric of the scenario ('gauntlet list')");
+           "what is compared: fitness (the default), total_failure, failure_type or a metric of the scenario "
+           "('gauntlet list')");
   AddValue(command, "--svg", "F", options.svg, "write a picture: box plots of both");
   command.add_flag("--mixed", options.mixed,
                    "compare runs of different scenarios, parameters of them or versions too, and say so");
@@ -219,6 +220,7 @@ void AddCompare(CommandParser& parser) {
               chosen cases again with fresh seeds ('gauntlet evaluate').
   all         every run
   random:N    N of all, drawn at random, the same ones every time
+  worst:N     the N of lowest fitness, of equal ones the earlier
   search:K    in front of one of these: search K of a sweep only
 
 Mann-Whitney's U with the normal approximation (ties and continuity corrected), the exact test up to

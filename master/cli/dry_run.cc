@@ -61,8 +61,8 @@ std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>
 }  // namespace
 
 ExitCode PrintDryRun(CommandContext& context, const CampaignRun& campaign,
-                     const std::vector<SearchPlan>& searches, const std::vector<sim::TestCase>& cases) {
-  const Result<Forecast> forecast = MakeForecast(searches, cases);
+                     const std::vector<SearchPlan>& searches) {
+  const Result<Forecast> forecast = MakeForecast(searches);
   if (!forecast) return Fail(context, forecast.error());
   const int workers = campaign.session.workers;
   context.out << (campaign.serving.json ? ForecastJson(*forecast, searches, workers)

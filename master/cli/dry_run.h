@@ -9,8 +9,8 @@
 namespace gauntlet::master {
 
 // Says what the campaign would ask for and cost here, as text or JSON, after a few measured runs; makes no
-// file. `cases`: of a single search through given ones.
+// file.
 ExitCode PrintDryRun(CommandContext& context, const CampaignRun& campaign,
-                     const std::vector<SearchPlan>& searches, const std::vector<sim::TestCase>& cases);
+                     const std::vector<SearchPlan>& searches);
 
 }  // namespace gauntlet::master

@@ -36,7 +36,7 @@ ExitCode RunMaster(CommandContext& context, const MasterOptions& options) {
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) {
     return goes_on ? context.campaigns.Resume(*directory, session)
-                   : context.campaigns.Start(*directory, {{"", *experiment}}, {}, session);
+                   : context.campaigns.Start(*directory, {{"", *experiment}}, session);
   };
   return RunCampaign(context, campaign);
 }

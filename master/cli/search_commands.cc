@@ -26,9 +26,9 @@ ExitCode RunSearches(CommandContext& context, const SearchOptions& options,
   if (!searches) return Fail(context, searches.error());
   Result<CampaignRun> campaign = LocalRun(*searches, options);
   if (!campaign) return Fail(context, campaign.error());
-  if (options.dry_run) return PrintDryRun(context, *campaign, *searches, {});
+  if (options.dry_run) return PrintDryRun(context, *campaign, *searches);
   campaign->run = [&](const SessionOptions& session) {
-    return context.campaigns.Start(campaign->directory, *searches, {}, session);
+    return context.campaigns.Start(campaign->directory, *searches, session);
   };
   return RunCampaign(context, *campaign);
 }

@@ -15,6 +15,8 @@ struct SearchPlan {
   // What tells it from the others, "search.population=20, seed 3"; "" for an only search.
   std::string settings;
   Experiment experiment;
+  // Of a new search through given cases, what it goes through; afterwards the store holds them.
+  std::vector<sim::TestCase> cases = {};
 };
 
 // The text of searches.json, in the order of the searches' numbers.

@@ -82,7 +82,7 @@ bool AllCasesDiffer(const std::vector<SearchPlan>& plans) {
 
 }  // namespace
 
-Result<Forecast> MakeForecast(const std::vector<SearchPlan>& plans, const std::vector<sim::TestCase>& cases,
+Result<Forecast> MakeForecast(const std::vector<SearchPlan>& plans,
                               const std::function<Result<sim::RunResult>(const sim::RunSpec&)>& simulate) {
   Forecast forecast;
   forecast.cases_exact = AllCasesDiffer(plans);
@@ -92,7 +92,8 @@ Result<Forecast> MakeForecast(const std::vector<SearchPlan>& plans, const std::v
   std::vector<std::vector<sim::RunSpec>> first_runs;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const Experiment& experiment = plans[i].experiment;
-    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(experiment, kOnlySearch, cases);
+    const Result<std::unique_ptr<SearchAlgorithm>> search =
+        MakeSearch(experiment, kOnlySearch, plans[i].cases);
     if (!search) return search.error();
     const SearchProgress planned = (*search)->Progress();
     forecast.runs += planned.evaluations_planned * static_cast<std::uint64_t>(experiment.search.replicates);

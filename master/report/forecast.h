@@ -8,7 +8,6 @@
 #include "base/result.h"
 #include "master/directory/search_plans.h"
 #include "master/dispatch/worker_program.h"
-#include "sim/arena/test_case.h"
 
 namespace gauntlet::master {
 
@@ -27,10 +26,9 @@ struct Forecast {
 };
 
 // Simulates a few of the first runs, at most twelve and for a few seconds, spread over the searches. Later
-// generations' may take longer or shorter. Makes no file. `cases`: of a single search through given ones.
-// Errors: those of MakeSearch and of `simulate`.
+// generations' may take longer or shorter. Makes no file. Errors: those of MakeSearch and of `simulate`.
 Result<Forecast> MakeForecast(
-    const std::vector<SearchPlan>& plans, const std::vector<sim::TestCase>& cases,
+    const std::vector<SearchPlan>& plans,
     const std::function<Result<sim::RunResult>(const sim::RunSpec&)>& simulate = SimulateInRunner);
 
 }  // namespace gauntlet::master

@@ -8,6 +8,7 @@
 #include "analysis/statistics/comparison.h"
 #include "base/result.h"
 #include "master/directory/search_plans.h"
+#include "master/report/subset.h"
 #include "proto/golden_hashes.h"
 
 namespace gauntlet::master {
@@ -27,23 +28,7 @@ struct RunSet {
   std::vector<std::string> notes;  // what a reader has to know, a sentence each
 };
 
-// Which runs of a campaign.
-struct Subset {
-  enum class Kind {
-    kFinal,  // the newest evaluation of each member of the population (of `random` and `evaluate`: all cases)
-    kAll,    // every run
-    kRandom,  // `count` of all, drawn without replacement; the same ones every time
-  };
-  Kind kind = Kind::kFinal;
-  std::uint64_t count = 0;
-  std::uint32_t search = 0;  // its number in a sweep; 0 = all searches
-};
-
-// "final", "all", "random:100"; before it "search:2" for one of a sweep; "" stands for final. `place` is for
-// messages.
-Result<Subset> ParseSubset(const std::string& text, const std::string& place);
-
-// Adds the subset's runs to the set, one value each: `metric` is "fitness" or a metric of the scenario. Runs
+// Adds the subset's runs to the set, one value each: `metric` as SelectRuns takes it. Runs
 // without a result, and such in which there was nothing to measure, are left out and noted. Error: no such
 // metric, search or number of runs.
 Status AddRuns(const std::vector<SearchPlan>& plans, ResultStore& store, const RunOrigin& campaign,

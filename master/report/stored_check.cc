@@ -73,7 +73,7 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
 
 Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
   sim::TestCase test_case;
-  if (RowOf(experiment).given_cases) {
+  if (RowOf(experiment).seeds_of_cases) {
     if (run.spec.empty()) return Ok{};  // rows alone are looked at
     Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
     if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));

@@ -50,6 +50,20 @@ SearchRow CaseListRow() {
           .plan = [](const Experiment& e) { return fmt::format("{} runs each", e.search.replicates); },
           .make = Make<CaseListSearch>,
           .purpose = sim::SeedPurpose::kEvaluate,
+          .given_cases = true,
+          .seeds_of_cases = true};
+}
+
+SearchRow ResimulationRow() {
+  return {.info = {.name = "resimulation",
+                   .description = "members of an evolution's population once more: gauntlet evaluate --from",
+                   .keys = {"search.replicates"}},
+          .number = 3,
+          .title = "a population simulated again",
+          .members = "population",
+          .plan = [](const Experiment& e) { return fmt::format("{} runs each", e.search.replicates); },
+          .make = Make<CaseListSearch>,
+          .purpose = sim::SeedPurpose::kFinalResimulation,
           .given_cases = true};
 }
 

@@ -27,5 +27,8 @@ class CaseListSearch : public PopulationSearch {
 };
 
 SearchRow CaseListRow();
+// The same for relatives, the members of one evolution's population: each has seeds of its own, so that
+// clones are simulated independently, and all of them count as one unit where sets are compared.
+SearchRow ResimulationRow();
 
 }  // namespace gauntlet::master

@@ -54,7 +54,7 @@ std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, con
                       std::uint32_t evaluation, std::uint32_t replicate) {
   constexpr std::uint32_t kSearch = 1;  // every search counts as the first of its campaign
   const SearchRow& row = RowOf(experiment);
-  const std::uint64_t who = row.given_cases ? HashOf({&test_case, 1}) : individual;
+  const std::uint64_t who = row.seeds_of_cases ? HashOf({&test_case, 1}) : individual;
   return sim::DeriveSeed(experiment.seed, row.purpose, kSearch, who, evaluation, replicate);
 }
 

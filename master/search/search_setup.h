@@ -32,8 +32,9 @@ std::uint64_t SearchSeed(const SearchSetup& setup);
 
 // The seed of replicate 0, 1, ... of an evaluation of an individual. It depends on these numbers and the
 // experiment's seed alone, so a search of a sweep has the seeds that it would have in a campaign of its own.
-// Of given cases the arena, robots and obstacles count instead of the individual's number, so that a case has
-// the same seeds at any place of the list (and the same case given twice, whatever its name, the same runs).
+// Where seeds are those of cases (SearchRow::seeds_of_cases) the arena, robots and obstacles count instead of
+// the individual's number, so that a case has the same seeds at any place of the list (and the same case
+// given twice, whatever its name, the same runs).
 std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
                       std::uint32_t evaluation, std::uint32_t replicate);
 

@@ -17,7 +17,8 @@
 namespace gauntlet::master {
 
 std::span<const SearchRow> Searches() {
-  static const std::array rows = {GeneticRow(), SteadyStateRow(), RandomRow(), CaseListRow()};
+  static const std::array rows = {GeneticRow(), SteadyStateRow(), RandomRow(), CaseListRow(),
+                                  ResimulationRow()};
   return rows;
 }
 

@@ -31,6 +31,9 @@ struct SearchRow {
   Result<std::unique_ptr<SearchAlgorithm>> (*make)(const SearchSetup& setup) = nullptr;
   sim::SeedPurpose purpose = sim::SeedPurpose::kSearch;  // of the seeds of its runs
   bool given_cases = false;  // goes through SearchSetup::cases; made by `evaluate` alone
+  // The seeds of a run follow from its case, not from its individual's number: a case has the same ones at
+  // any place of a list, and so have clones.
+  bool seeds_of_cases = false;
 };
 
 std::span<const SearchRow> Searches();
@@ -48,7 +51,7 @@ const Catalogue& BuiltInCatalogue();
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case);
 
 // The search that experiment.search describes; `search_id` is its number within the campaign and part of all
-// its random keys; `cases` are for the search through given cases (SearchRow::given_cases), which needs them.
+// its random keys; `cases` are for a search through given cases (SearchRow::given_cases), which needs them.
 // Error: there is no such scenario, no run could begin, or the ranges of genes leave no room for a valid
 // case.
 Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment, std::uint32_t search_id,

@@ -69,9 +69,10 @@ struct NewCampaign {
 };
 
 // Whether every search can begin, asked before anything is written.
-Status CheckSearches(const std::vector<SearchPlan>& plans, const std::vector<sim::TestCase>& cases) {
+Status CheckSearches(const std::vector<SearchPlan>& plans) {
   for (const SearchPlan& plan : plans) {
-    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(plan.experiment, kOnlySearch, cases);
+    const Result<std::unique_ptr<SearchAlgorithm>> search =
+        MakeSearch(plan.experiment, kOnlySearch, plan.cases);
     if (search) continue;
     if (plan.settings.empty()) return search.error();
     return Error{search.error().kind, fmt::format("{}: {}", plan.settings, search.error().message)};
@@ -93,8 +94,8 @@ CampaignTexts TextsOf(const std::vector<SearchPlan>& plans, const std::string& v
 }
 
 Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
-                           const std::vector<sim::TestCase>& cases, const std::string& slurm) {
-  if (Status possible = CheckSearches(plans, cases); !possible) return possible.error();
+                           const std::string& slurm) {
+  if (Status possible = CheckSearches(plans); !possible) return possible.error();
   Result<proto::GoldenHashes> golden_hashes = GoldenHashesFor(plans);
   if (!golden_hashes) return golden_hashes.error();
   CampaignMeta meta;
@@ -106,11 +107,12 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
   if (!campaign) return campaign.error();
   SqliteStore& store = *campaign->store;
   if (Status added = AddSearches(plans, store); !added) return added.error();
-  if (!cases.empty()) {
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    if (plans[i].cases.empty()) continue;
     const Result<std::unique_ptr<SearchAlgorithm>> search =
-        MakeSearch(plans.front().experiment, kOnlySearch, cases);
+        MakeSearch(plans[i].experiment, kOnlySearch, plans[i].cases);
     if (!search) return search.error();
-    store.AddIndividuals(kOnlySearch, (*search)->Population());
+    store.AddIndividuals(static_cast<SearchId>(i + 1), (*search)->Population());
   }
   if (Status flushed = store.Flush(); !flushed) return flushed.error();
   return NewCampaign{*std::move(campaign), *std::move(golden_hashes)};
@@ -119,18 +121,17 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
 class Campaigns final : public CampaignService {
  public:
   Result<SessionReport> Start(const std::string& dir, const std::vector<SearchPlan>& searches,
-                              const std::vector<sim::TestCase>& cases,
                               const SessionOptions& options) override {
     // Before anything is made: the corrected command is to find the directory as this one did.
     if (Status possible = TryToListen(options.bind); !possible) return possible.error();
-    Result<NewCampaign> created = Create(dir, searches, cases, "");
+    Result<NewCampaign> created = Create(dir, searches, "");
     if (!created) return created.error();
     return CampaignServer(created->ownership, searches, created->golden_hashes, options).Serve();
   }
 
   Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,
                  const std::string& slurm) override {
-    const Result<NewCampaign> created = Create(dir, searches, {}, slurm);
+    const Result<NewCampaign> created = Create(dir, searches, slurm);
     if (!created) return created.error();
     return Ok{};
   }
@@ -198,7 +199,13 @@ class Campaigns final : public CampaignService {
 
   Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) override {
     const Result<CampaignView> campaign = ViewCampaign(dir);
-    return campaign ? campaign->store->ForEachRun(kOnlySearch, 0, visit) : campaign.error();
+    if (!campaign) return campaign.error();
+    const Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
+    if (!searches) return searches.error();
+    for (const StoredSearch& search : *searches) {
+      if (Status read = campaign->store->ForEachRun(search.id, 0, visit); !read) return read;
+    }
+    return Ok{};
   }
 
   Result<CampaignReplay> Replay(const std::string& dir, RunId run) override {

@@ -59,10 +59,8 @@ class CampaignService {
   virtual ~CampaignService() = default;
 
   // Creates the campaign in `dir` (which must not exist or be empty) and runs it. `searches`: one, or those
-  // of a sweep; `cases`: what `evaluate` simulates, in order (a single search through given cases); empty
-  // otherwise. Errors: kInvalidInput, kInUse; kNoSpace and kIo when the campaign stopped and can be resumed.
+  // of a sweep. Errors: kInvalidInput, kInUse; kNoSpace and kIo when the campaign stopped and can be resumed.
   virtual Result<SessionReport> Start(const std::string& dir, const std::vector<SearchPlan>& searches,
-                                      const std::vector<sim::TestCase>& cases,
                                       const SessionOptions& options) = 0;
   // Creates the campaign without running it: Resume does. `slurm`: the text of its slurm.toml.
   virtual Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,
@@ -78,7 +76,7 @@ class CampaignService {
 
   // Checks and summarises what is stored, but for specs and results in full (Resume checks them too).
   virtual Result<CampaignSummary> Read(const std::string& dir) = 0;
-  // The runs of a campaign of one search in logical order.
+  // The runs of a campaign in logical order, search by search.
   virtual Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) = 0;
   virtual Result<CampaignReplay> Replay(const std::string& dir, RunId run) = 0;
 

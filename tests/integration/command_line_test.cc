@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "tests/integration/campaign_database.h"
@@ -55,6 +56,42 @@ TEST_F(FinishedCampaignTest, ShowAccountsForEveryRun) {
   }
   EXPECT_NEAR(shown["mean_fitness"].get<double>(), sum / 8, 1e-12);
   EXPECT_EQ(shown["best_fitness"].get<double>(), best);
+}
+
+// F/F and I/F of the thesis: a population against two controllers.
+TEST_F(FinishedCampaignTest, EvaluateSimulatesAPopulationAgainWithFreshSeedsAndCompareReadsIt) {
+  const std::string original = *scratch_ / "f-f";
+  const std::string improved = *scratch_ / "i-f";
+  const ProcessResult first = Gauntlet({"evaluate", "flocking", "--from", Dir() + "," + Dir() + ":final",
+                                        "--dir", original, "--json", "--quiet"});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const json cases = json::parse(first.out)["cases"];
+  ASSERT_EQ(cases.size(), 2 * 8U);
+  std::set<std::string> seeds;
+  for (const json& one : cases) seeds.insert(one["runs"][0]["seed"].get<std::string>());
+  EXPECT_EQ(seeds.size(), cases.size()) << "also of cases that are the same";
+  for (const std::string& seed : Query(Dir(), "SELECT seed FROM runs")) EXPECT_FALSE(seeds.contains(seed));
+  ASSERT_EQ(Gauntlet({"evaluate", "flocking", "--from", Dir(), "--set", "controller=flocking-improved",
+                      "--dir", improved, "--quiet"})
+                .exit_code,
+            0);
+  const ProcessResult compared = Gauntlet({"compare", original, improved, "--json"});
+  ASSERT_EQ(compared.exit_code, 0) << compared.err;
+  const json comparison = json::parse(compared.out);
+  EXPECT_EQ(comparison["n1"], 16);
+  EXPECT_EQ(comparison["n2"], 8);
+  EXPECT_EQ(comparison["sets"][0]["unit"], "evolution");
+  EXPECT_EQ(comparison["sets"][0]["units"], 2);
+  EXPECT_EQ(Gauntlet({"replay", improved, "1"}).exit_code, 0);
+  EXPECT_THAT(Gauntlet({"resume", original}).err, HasSubstr("nothing was left to do"));
+
+  const ProcessResult other = Gauntlet({"evaluate", "foraging", "--from", Dir()});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("its cases are of the scenario 'flocking', the experiment foraging"));
+  EXPECT_THAT(Gauntlet({"evaluate", "flocking", "--from", Dir() + ":best"}).err,
+              HasSubstr("no subset 'best'; known: final"));
+  EXPECT_THAT(Gauntlet({"evaluate", "flocking", "--from", Dir(), "--case", "a.json"}).err,
+              HasSubstr("Either --case FILE... or --from DIR"));
 }
 
 TEST_F(FinishedCampaignTest, CompareReadsSubsetsOfCampaigns) {

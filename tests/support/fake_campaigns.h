@@ -30,10 +30,10 @@ class FakeCampaigns : public master::CampaignService {
   int starts = 0;
   int resumes = 0;
   std::vector<std::string> extended;
-  std::string directory;  // of the newest session
-  std::vector<master::SearchPlan> searches;
-  master::Experiment experiment;  // of the first of them
-  std::vector<sim::TestCase> cases;
+  std::string directory;                     // of the newest session
+  std::vector<master::SearchPlan> searches;  // the searches of the newest campaign that was started
+  master::Experiment experiment;             // of the first of them
+  std::vector<sim::TestCase> cases;          // and its cases
   int workers = 0;
   std::vector<master::SearchPlan> prepared;
   std::string slurm;
@@ -41,12 +41,11 @@ class FakeCampaigns : public master::CampaignService {
   master::RunId replayed_run = 0;
 
   Result<master::SessionReport> Start(const std::string& dir, const std::vector<master::SearchPlan>& wanted,
-                                      const std::vector<sim::TestCase>& given,
                                       const master::SessionOptions& options) override {
     ++starts;
     searches = wanted;
     experiment = wanted.front().experiment;
-    cases = given;
+    cases = wanted.front().cases;
     return Serve(dir, options);
   }
   Status Prepare(const std::string& dir, const std::vector<master::SearchPlan>& wanted,

@@ -26,6 +26,7 @@ TEST_F(CommandLine, EvaluateRefusesByRuleAndSimulatesTheRest) {
   campaigns_.stored.resize(2);
   for (std::size_t i = 0; i < 2; ++i) {
     campaigns_.stored[i].id = i + 1;
+    campaigns_.stored[i].search = 1;
     campaigns_.stored[i].individual = 1;
     campaigns_.stored[i].seed = 40 + i;
     campaigns_.stored[i].result = proto::EncodeRunResult(result);

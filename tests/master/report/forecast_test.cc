@@ -21,8 +21,8 @@ struct Simulator {
   double seconds = 0.25;
   std::vector<sim::RunSpec> asked;
 
-  Result<Forecast> Of(const std::vector<SearchPlan>& plans, const std::vector<sim::TestCase>& cases = {}) {
-    return MakeForecast(plans, cases, [this](const sim::RunSpec& spec) -> Result<sim::RunResult> {
+  Result<Forecast> Of(const std::vector<SearchPlan>& plans) {
+    return MakeForecast(plans, [this](const sim::RunSpec& spec) -> Result<sim::RunResult> {
       asked.push_back(spec);
       sim::RunResult result;
       result.cpu_seconds = seconds;
@@ -80,7 +80,7 @@ TEST(Forecast, StopsMeasuringLongRuns) {
 TEST(Forecast, OneGivenCaseIsMeasuredOnceForEachReplicate) {
   const Experiment experiment = Flocking({"search.algorithm=cases", "search.replicates=3"});
   Simulator simulator;
-  const auto forecast = simulator.Of({{"", experiment}}, {EmptyArena(experiment.arena)});
+  const auto forecast = simulator.Of({{"", experiment, {EmptyArena(experiment.arena)}}});
   ASSERT_TRUE(forecast.ok()) << forecast.error().message;
   EXPECT_EQ(forecast->runs, 3U);
   EXPECT_EQ(forecast->cases, 1U);

@@ -8,6 +8,8 @@
 #include <fstream>
 
 #include "master/experiment/experiment_file.h"
+#include "master/report/case_set.h"
+#include "master/report/stored_search.h"
 #include "tests/master/session/toy_campaign.h"
 #include "tests/support/process.h"
 
@@ -67,8 +69,8 @@ TEST(ParseSubsetTest, KnowsEverySubsetAndRefusesOthers) {
   EXPECT_EQ(ParseSubset("random:100", "c")->count, 100U);
   EXPECT_EQ(ParseSubset("search:3", "c")->search, 3U);
   EXPECT_EQ(ParseSubset("search:3:random:5", "c")->count, 5U);
-  for (const char* wrong : {"some", "random", "random:0", "random:x", "random:-1", "search", "search:0",
-                            "search:x:all", "all:final", "random:1:2", ":"}) {
+  for (const char* wrong : {"some", "random", "random:0", "random:x", "random:-1", "worst", "worst:0",
+                            "search", "search:0", "search:x:all", "all:final", "random:1:2", ":"}) {
     const auto subset = ParseSubset(wrong, "c");
     ASSERT_FALSE(subset.ok()) << wrong;
     EXPECT_THAT(subset.error().message, HasSubstr("c: no subset '" + std::string(wrong) + "'; known: final"));
@@ -123,7 +125,44 @@ TEST(AddRunsTest, RandomRunsAreDrawnOnceEachAndTheSameEveryTime) {
   RunSet set;
   const Status added = AddRuns({{"", experiments[0]}}, store, {"c", {}, "1", {}},
                                *ParseSubset("random:41", "c"), "fitness", set);
-  EXPECT_THAT(added.error().message, HasSubstr("c: 41 runs cannot be drawn from "));
+  EXPECT_THAT(added.error().message, HasSubstr("c: 41 runs cannot be taken from "));
+}
+
+TEST(AddRunsTest, TheWorstAreThoseOfLowestFitnessWhateverIsCompared) {
+  const std::vector<Experiment> experiments = {
+      SmallExperiment({"search.algorithm=random", "search.cases=40"})};
+  MemoryStore store = Campaign(experiments);
+  std::vector<double> all = Flat(SetOf(experiments, store, "all"));
+  std::ranges::sort(all);
+  all.resize(5);
+  std::vector<double> worst = Flat(SetOf(experiments, store, "worst:5"));
+  std::vector<double> birds;
+  for (const double value : worst) birds.push_back(std::floor(10.0 * value));
+  EXPECT_EQ(Flat(SetOf(experiments, store, "worst:5", "birds_left")), birds);
+  std::ranges::sort(worst);
+  EXPECT_EQ(worst, all);
+}
+
+TEST(AddRunsTest, FailuresAndTheirTypesAreMetricsOfEveryScenario) {
+  const std::vector<Experiment> experiments = {
+      SmallExperiment({"search.algorithm=random", "search.cases=40"})};
+  MemoryStore store = Campaign(experiments);
+  int number = 0;
+  for (auto& [id, run] : store.runs) {
+    run.total_failure = ++number % 2 == 0;
+    run.failure_type = number % 4 == 0 ? 7 : -1;
+  }
+  double failures = 0.0;
+  for (const double value : Flat(SetOf(experiments, store, "all", "total_failure"))) failures += value;
+  EXPECT_EQ(failures, std::ranges::count_if(store.runs, [](const auto& one) {
+              return one.second.total_failure &&
+                     one.second.verdict == static_cast<int>(sim::Verdict::kCompleted);
+            }));
+  EXPECT_GT(failures, 10.0);
+  const std::vector<double> types = Flat(SetOf(experiments, store, "all", "failure_type"));
+  EXPECT_GT(types.size(), 5U);
+  EXPECT_LT(types.size(), failures);
+  EXPECT_THAT(types, testing::Each(7.0));
 }
 
 TEST(AddRunsTest, SearchesOfASweepAreUnitsAndCanBeTakenAlone) {
@@ -168,6 +207,43 @@ TEST(AddRunsTest, HalfACampaignIsNamedAsSuch) {
   MemoryStore store = Campaign(experiments);
   store.searches[0].finished_with = 0;
   EXPECT_THAT(SetOf(experiments, store, "").notes, testing::Contains(HasSubstr("c is half-finished")));
+}
+
+std::vector<CaseSet> CasesIn(const std::vector<Experiment>& experiments, MemoryStore& store,
+                             const std::string& subset) {
+  std::vector<SearchPlan> plans;
+  for (const Experiment& experiment : experiments) plans.push_back({"", experiment});
+  const auto sets = CasesOf(plans, store, "c", *ParseSubset(subset, "c"));
+  EXPECT_TRUE(sets.ok()) << (sets.ok() ? "" : sets.error().message);
+  return sets.ok() ? *sets : std::vector<CaseSet>();
+}
+
+TEST(CasesOfTest, EveryMemberOfThePopulationOnceClonesIncluded) {
+  const std::vector<Experiment> experiments = {SmallExperiment({"search.replicates=2"}),
+                                               SmallExperiment({"seed=2"})};
+  MemoryStore store = Campaign(experiments);
+  const std::vector<CaseSet> sets = CasesIn(experiments, store, "final");
+  ASSERT_EQ(sets.size(), 2U);
+  EXPECT_EQ(sets[0].place, "c:search:1");
+  EXPECT_EQ(sets[1].place, "c:search:2");
+  const auto search = MakeStoredSearch(experiments[0], 1, store);
+  ASSERT_TRUE(search.ok());
+  ASSERT_TRUE(RestoreSearch(1, store, **search).ok());
+  std::vector<IndividualId> population;
+  for (const Individual& one : (*search)->Population()) population.push_back(one.id);
+  std::ranges::sort(population);
+  std::vector<IndividualId> taken;
+  for (const Individual& one : sets[0].members) taken.push_back(one.id);
+  EXPECT_EQ(taken, population);
+  for (const Individual& one : sets[0].members) EXPECT_EQ(one.test_case.obstacles.size(), 8U);
+  EXPECT_GT(CasesIn(experiments, store, "search:1:all")[0].members.size(), population.size());
+}
+
+TEST(CasesOfTest, HalfACampaignIsNamedAsSuch) {
+  const std::vector<Experiment> experiments = {SmallExperiment({})};
+  MemoryStore store = Campaign(experiments);
+  store.searches[0].finished_with = 0;
+  EXPECT_THAT(CasesIn(experiments, store, "")[0].notes, ElementsAre(HasSubstr("c is half-finished")));
 }
 
 RunSet From(const Experiment& experiment, const std::string& version, std::uint64_t hash) {
