@@ -10,9 +10,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "base/system/resource_limits.h"
-#include "base/system/unique_fd.h"
 
 namespace gauntlet {
 namespace {
@@ -36,20 +36,10 @@ std::string DirectoryOf(const std::string& path) {
 }
 
 Status Replace(const std::string& path, std::string_view bytes, mode_t mode, bool durable) {
-  const std::string directory = DirectoryOf(path);
-  std::string temporary = path + ".XXXXXX";
-  const int fd = mkostemp(temporary.data(), O_CLOEXEC);
-  if (fd < 0) return SystemError(fmt::format("cannot create a file in {}", directory), errno);
-  int error = WriteAll(fd, bytes);
-  if (error == 0 && fchmod(fd, mode) != 0) error = errno;
-  if (error == 0 && durable && fsync(fd) != 0) error = errno;
-  if (close(fd) != 0 && error == 0) error = errno;
-  if (error == 0 && std::rename(temporary.c_str(), path.c_str()) != 0) error = errno;
-  if (error != 0) {
-    unlink(temporary.c_str());
-    return SystemError(fmt::format("cannot write {}", path), error);
-  }
-  return durable ? SyncDirectory(directory) : Ok{};
+  Result<FileReplacement> file = FileReplacement::Begin(path, mode);
+  if (!file) return file.error();
+  if (Status written = file->Write(bytes); !written) return written;
+  return file->Finish(durable);
 }
 
 }  // namespace
@@ -70,6 +60,43 @@ Error SystemError(const std::string& what, int error_number) {
   if (error_number == EMFILE || error_number == ENFILE || error_number == EAGAIN || error_number == ENOMEM)
     kind = ErrorKind::kNoSpace;
   return {kind, fmt::format("{}{}: {}", hint, what, ErrnoText(error_number))};
+}
+
+Result<FileReplacement> FileReplacement::Begin(const std::string& path, mode_t mode) {
+  std::string temporary = path + ".XXXXXX";
+  const int fd = mkostemp(temporary.data(), O_CLOEXEC);
+  if (fd < 0) return SystemError(fmt::format("cannot create a file in {}", DirectoryOf(path)), errno);
+  FileReplacement file(path, std::move(temporary), fd);
+  if (fchmod(fd, mode) != 0) return SystemError(fmt::format("cannot write {}", path), errno);
+  return file;
+}
+
+FileReplacement::FileReplacement(std::string path, std::string temporary, int fd)
+    : path_(std::move(path)), temporary_(std::move(temporary)), fd_(fd) {}
+
+FileReplacement::FileReplacement(FileReplacement&& other) noexcept
+    : path_(std::move(other.path_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      fd_(std::move(other.fd_)) {}
+
+FileReplacement::~FileReplacement() {
+  if (!temporary_.empty()) unlink(temporary_.c_str());
+}
+
+Status FileReplacement::Write(std::string_view bytes) {
+  const int error = WriteAll(fd_.get(), bytes);
+  if (error != 0) return SystemError(fmt::format("cannot write {}", path_), error);
+  return Ok{};
+}
+
+Status FileReplacement::Finish(bool durable) {
+  int error = 0;
+  if (durable && fsync(fd_.get()) != 0) error = errno;
+  if (close(fd_.Release()) != 0 && error == 0) error = errno;
+  if (error == 0 && std::rename(temporary_.c_str(), path_.c_str()) != 0) error = errno;
+  if (error != 0) return SystemError(fmt::format("cannot write {}", path_), error);
+  temporary_.clear();
+  return durable ? SyncDirectory(DirectoryOf(path_)) : Ok{};
 }
 
 Status SyncDirectory(const std::string& directory) {

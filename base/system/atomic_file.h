@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "base/system/unique_fd.h"
 
 namespace gauntlet {
 
@@ -22,6 +23,26 @@ Status WriteFileAtomically(const std::string& path, std::string_view bytes, mode
 // The same without fsync, for what is worthless after a loss of power: readers see the old or the new
 // content.
 Status ReplaceFile(const std::string& path, std::string_view bytes, mode_t mode);
+
+// ReplaceFile for what is written piece by piece: readers see the old content until Finish.
+class FileReplacement {
+ public:
+  static Result<FileReplacement> Begin(const std::string& path, mode_t mode);
+  FileReplacement(FileReplacement&& other) noexcept;
+  FileReplacement& operator=(FileReplacement&&) = delete;
+  ~FileReplacement();  // the old content stands, unless Finish was called
+
+  Status Write(std::string_view bytes);
+  // Nothing but the destructor may be called afterwards, nor after an error.
+  Status Finish(bool durable = false);
+
+ private:
+  FileReplacement(std::string path, std::string temporary, int fd);
+
+  std::string path_;
+  std::string temporary_;  // "" when nothing is left to remove
+  UniqueFd fd_;
+};
 
 // The names in a directory survive a loss of power from now on.
 Status SyncDirectory(const std::string& directory);

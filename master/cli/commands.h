@@ -45,6 +45,7 @@ void AddResume(CommandParser& parser);
 void AddShow(CommandParser& parser);
 void AddReplay(CommandParser& parser);
 void AddCompare(CommandParser& parser);
+void AddExport(CommandParser& parser);
 void AddSubmit(CommandParser& parser);
 void AddMaster(CommandParser& parser);
 void AddStatus(CommandParser& parser);
@@ -54,7 +55,7 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow, AddReplay, AddCompare,
-    AddSubmit, AddMaster, AddStatus,   AddWatch,  AddStop, AddList};
+    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,  AddReplay, AddCompare,
+    AddExport, AddSubmit, AddMaster,   AddStatus, AddWatch, AddStop,   AddList};
 
 }  // namespace gauntlet::master

@@ -3,6 +3,8 @@
 
 #include "master/cli/commands.h"
 #include "master/cli/run_campaign.h"
+#include "master/cli/summary.h"
+#include "master/report/exported_tables.h"
 
 namespace gauntlet::master {
 namespace {
@@ -10,9 +12,33 @@ namespace {
 struct ShowOptions {
   std::string directory;
   bool json = false;
+  bool runs = false;
 };
 
+// The summary's JSON, continued by all runs, of one and the same moment.
+ExitCode ShowWithRuns(CommandContext& context, const ShowOptions& options) {
+  const Result<StoredCampaign> campaign = OpenStoredCampaign(options.directory);
+  if (!campaign) return Fail(context, campaign.error());
+  const Result<CampaignSummary> summary = Summarise(campaign->plans, *campaign->view.store);
+  if (!summary) return Fail(context, summary.error());
+  std::string text;
+  const Result<ExportReport> written =
+      WriteTable(*campaign, {.what = Exported::kRuns, .format = TableFormat::kJson},
+                 SummaryJson(*summary, options.directory), [&](std::string_view bytes) -> Status {
+                   text += bytes;
+                   return Ok{};
+                 });
+  if (!written) return Fail(context, written.error());
+  PrintAsOf(context, options.directory, campaign->view.as_of);
+  context.out << text << std::flush;
+  return kExitDone;
+}
+
 ExitCode RunShow(CommandContext& context, const ShowOptions& options) {
+  if (options.runs && !options.json)
+    return Fail(context,
+                InvalidInput("--runs lists every run: it needs --json, or use 'export --format csv'"));
+  if (options.runs) return ShowWithRuns(context, options);
   const Result<CampaignSummary> summary = context.campaigns.Read(options.directory);
   if (!summary) return Fail(context, summary.error());
   PrintAsOf(context, options.directory, summary->as_of);
@@ -26,13 +52,16 @@ void AddShow(CommandParser& parser) {
   const auto [command, options] = parser.Add("show", "what came out of a campaign", RunShow);
   AddDirectory(command, options.directory);
   command.add_flag("--json", options.json, "everything as one JSON document");
+  command.add_flag("--runs", options.runs,
+                   "with --json: every run too, with the names of 'export' (see its --help)");
   command.footer(
       R"(Sums up what is stored: runs, fitness by generation, total failures, the toughest cases with a run to
 replay, and the state hash, which is equal for equal outcomes.
 
 Examples:
   gauntlet show campaigns/flocking-20260131T120000Z
-  gauntlet show DIR --json | jq '.population[0].genome')");
+  gauntlet show DIR --json | jq '.population[0].genome'
+  gauntlet show DIR --json --runs | jq '.runs[] | select(.total_failure) | .id')");
 }
 
 }  // namespace gauntlet::master

@@ -10,7 +10,7 @@
 #include "base/nearest_name.h"
 #include "base/parse_number.h"
 #include "controllers/registry.h"
-#include "master/report/stored_check.h"
+#include "master/report/stored_campaign.h"
 #include "master/report/stored_search.h"
 #include "master/search/search_table.h"
 #include "proto/run_codec.h"
@@ -69,9 +69,7 @@ std::optional<double> ColumnOf(const StoredRun& run, const std::string& metric) 
 std::optional<double> MetricOf(const sim::RunResult& result, const controllers::MetricInfo* info,
                                const std::string& metric) {
   const auto found = std::ranges::find(result.metrics, metric, &std::pair<std::string, double>::first);
-  if (found == result.metrics.end() || !std::isfinite(found->second)) return std::nullopt;
-  if (info != nullptr && info->may_be_none && found->second == -1.0) return std::nullopt;
-  return found->second;
+  return found == result.metrics.end() ? std::nullopt : MeasuredValue(info, found->second);
 }
 
 // One value for each stored run of a search, in logical order.
@@ -171,6 +169,11 @@ Result<SetPart> SplitPart(const std::string& text) {
 
 }  // namespace
 
+std::optional<double> MeasuredValue(const controllers::MetricInfo* info, double value) {
+  if (!std::isfinite(value) || (info != nullptr && info->may_be_none && value == -1.0)) return std::nullopt;
+  return value;
+}
+
 Result<Subset> ParseSubset(const std::string& text, const std::string& place) {
   const Error wrong = InvalidInput(
       fmt::format("{}: no subset '{}'; known: final, all, random:N, worst:N, and search:N in front of them",
@@ -213,17 +216,10 @@ Result<std::vector<SetPart>> SplitSet(const std::string& text) {
 Result<OpenedSubset> OpenSubset(const SetPart& part) {
   const Result<Subset> subset = ParseSubset(part.rest, part.path);
   if (!subset) return subset.error();
-  Result<CampaignView> view = ViewCampaign(part.path, Checked::kRows);
-  if (!view) return view.error();
-  Result<std::vector<SearchPlan>> plans = ReadSearchPlans(view->directory);
-  if (!plans) return plans.error();
-  if (Status whole = CheckStored(*plans, *view->store, Checked::kRows); !whole) return whole.error();
-  std::string note;
-  if (view->lock == nullptr) {
-    note = fmt::format("{} is being written: its runs {}", part.path,
-                       view->as_of.empty() ? "as they were stored just now" : view->as_of);
-  }
-  return OpenedSubset{*std::move(view), *std::move(plans), *subset, std::move(note)};
+  Result<StoredCampaign> stored = OpenStoredCampaign(part.path);
+  if (!stored) return stored.error();
+  return OpenedSubset{std::move(stored->view), std::move(stored->plans), *subset,
+                      std::move(stored->being_written)};
 }
 
 Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, const std::string& place,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "controllers/behaviour.h"
 #include "master/directory/campaign_ownership.h"
 #include "master/directory/search_plans.h"
 
@@ -57,6 +58,9 @@ struct SubsetSearch {
 // Visits them in the order of their numbers, until one of the visits fails. Error: there is no such search.
 Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, const std::string& place,
                      const Subset& subset, const std::function<Status(const SubsetSearch&)>& visit);
+
+// A metric's value; none when there was nothing to measure. `info`: nullptr = nobody knows the metric.
+std::optional<double> MeasuredValue(const controllers::MetricInfo* info, double value);
 
 struct SelectedRun {
   RunId run = 0;

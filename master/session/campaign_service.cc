@@ -13,6 +13,7 @@
 #include "master/directory/search_length.h"
 #include "master/dispatch/worker_program.h"
 #include "master/experiment/experiment_file.h"
+#include "master/report/stored_campaign.h"
 #include "master/report/stored_check.h"
 #include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
@@ -187,13 +188,10 @@ class Campaigns final : public CampaignService {
   }
 
   Result<CampaignSummary> Read(const std::string& dir) override {
-    const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
+    const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
     if (!campaign) return campaign.error();
-    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-    if (!plans) return plans.error();
-    if (Status whole = CheckStored(*plans, *campaign->store, Checked::kRows); !whole) return whole.error();
-    Result<CampaignSummary> summary = Summarise(*plans, *campaign->store);
-    if (summary) summary->as_of = campaign->as_of;
+    Result<CampaignSummary> summary = Summarise(campaign->plans, *campaign->view.store);
+    if (summary) summary->as_of = campaign->view.as_of;
     return summary;
   }
 

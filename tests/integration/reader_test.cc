@@ -59,6 +59,18 @@ TEST_F(ReaderTest, CompareSaysThatTheCampaignIsBeingWritten) {
   EXPECT_THAT(comparison.at("notes").dump(), HasSubstr(dir_ + " is half-finished"));
 }
 
+TEST_F(ReaderTest, ExportSaysThatTheCampaignIsBeingWritten) {
+  const ProcessResult ended = Gauntlet({"export", dir_, "--format", "json", "--out", scratch_ / "runs.json"});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr(dir_ + " is being written"));
+  EXPECT_THAT(ended.err, HasSubstr(dir_ + " is half-finished"));
+  const json exported = json::parse(ReadFile(scratch_ / "runs.json"));
+  EXPECT_GE(exported.at("runs").size(), 8U);
+  EXPECT_EQ(exported.at("finished"), false);
+  EXPECT_EQ(exported.at("notes").size(), 2U);
+  EXPECT_TRUE(RunsDone(dir_, static_cast<int>(exported.at("runs").size()) + 1)) << "the master goes on";
+}
+
 TEST_F(ReaderTest, AnotherMachineSeesASnapshotAndIsToldOfWhen) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can make a process that takes the master for a stranger";
   // In a namespace of its own a pid means another process: the master may be anywhere.

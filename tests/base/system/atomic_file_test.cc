@@ -68,6 +68,27 @@ TEST(AtomicFileTest, AReaderNeverSeesHalfAFile) {
   writer.join();
 }
 
+TEST(FileReplacementTest, TheOldContentStandsUntilTheEnd) {
+  const ScratchDirectory scratch;
+  WriteFile(scratch / "file", "old");
+  {
+    Result<FileReplacement> given_up = FileReplacement::Begin(scratch / "file", 0600);
+    ASSERT_TRUE(given_up.ok());
+    EXPECT_TRUE(given_up->Write("half of it").ok());
+  }
+  EXPECT_EQ(ReadFile(scratch / "file"), "old");
+  Result<FileReplacement> file = FileReplacement::Begin(scratch / "file", 0640);
+  ASSERT_TRUE(file.ok());
+  FileReplacement moved = *std::move(file);
+  EXPECT_TRUE(moved.Write("one, ").ok());
+  EXPECT_TRUE(moved.Write("two").ok());
+  EXPECT_EQ(ReadFile(scratch / "file"), "old");
+  EXPECT_TRUE(moved.Finish().ok());
+  EXPECT_EQ(ReadFile(scratch / "file"), "one, two");
+  EXPECT_EQ(ModeOf(scratch / "file"), 0640u);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.path()), {}), 1);
+}
+
 TEST(AtomicFileTest, AFullDiskIsNamedSo) {
   EXPECT_EQ(SystemError("cannot write x", ENOSPC).kind, ErrorKind::kNoSpace);
   EXPECT_THAT(SystemError("cannot write x", ENOSPC).message, HasSubstr("disk is full"));
