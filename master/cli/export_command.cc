@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/number_text.h"
+#include "master/cases/argos_export.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 
 struct ExportCommandOptions {
   std::string directory;
-  std::string what = "runs";
+  std::string what;
   std::string format;
   std::string out;
   std::vector<std::string> runs;
@@ -39,17 +40,33 @@ Result<Exported> WhatOf(const std::string& name) {
   return InvalidInput(fmt::format("--what {}: give runs, cases, trajectories or events", name));
 }
 
+// Runs when nothing was said, but for a format that has cases only.
+Result<Exported> ChosenOf(const ExportCommandOptions& options) {
+  const bool argos = options.format == "argos";
+  if (options.what.empty()) return argos ? Exported::kCases : Exported::kRuns;
+  const Result<Exported> what = WhatOf(options.what);
+  if (what && argos && *what != Exported::kCases)
+    return InvalidInput(fmt::format("--what {}: .argos files hold cases; give csv or json", options.what));
+  return what;
+}
+
+// A file for each case rather than a table.
+bool WantsCaseFiles(const ExportCommandOptions& options, Exported what) {
+  return what == Exported::kCases && options.format != "csv";
+}
+
 Result<ExportOptions> Judge(const ExportCommandOptions& options) {
   ExportOptions judged;
-  const Result<Exported> what = WhatOf(options.what);
+  const Result<Exported> what = ChosenOf(options);
   if (!what) return what.error();
   judged.what = *what;
-  if (options.format != "csv" && options.format != "json")
-    return InvalidInput(fmt::format("--format {}: give csv or json", options.format));
+  if (options.format != "csv" && options.format != "json" && options.format != "argos")
+    return InvalidInput(fmt::format("--format {}: give csv, json or argos", options.format));
   judged.format = options.format == "csv" ? TableFormat::kCsv : TableFormat::kJson;
   for (const std::string& run : options.runs) {
     if (judged.what == Exported::kCases || judged.what == Exported::kEvents)
-      return InvalidInput(fmt::format("--run {}: {} belong to no single run", run, options.what));
+      return InvalidInput(fmt::format("--run {}: {} belong to no single run", run,
+                                      judged.what == Exported::kCases ? "cases" : "events"));
     const Result<std::uint64_t> id = ParseRunId(run);
     if (!id) return InvalidInput(fmt::format("--run {}", id.error().message));
     judged.runs.insert(*id);
@@ -86,8 +103,9 @@ std::string HeadJson(const StoredCampaign& campaign, const std::string& director
                    {"notes", condition.notes}});
 }
 
-// A file for each test case, as `evaluate --case` takes it.
-Result<std::uint64_t> WriteCaseFiles(const StoredCampaign& campaign, const fs::path& directory) {
+// A file for each test case, as `evaluate --case` takes it. `format`: "json" or "argos".
+Result<std::uint64_t> WriteCaseFiles(const StoredCampaign& campaign, const std::string& format,
+                                     const fs::path& directory) {
   std::uint64_t files = 0;
   for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
     const Result<std::vector<Individual>> individuals = campaign.view.store->LoadIndividuals(search);
@@ -96,8 +114,12 @@ Result<std::uint64_t> WriteCaseFiles(const StoredCampaign& campaign, const fs::p
     // As many digits for all, so that files sort by number.
     const std::size_t digits = individuals->empty() ? 1 : fmt::formatted_size("{}", individuals->back().id);
     for (const Individual& individual : *individuals) {
-      const std::string name = fmt::format("{}case-{:0{}}.json", of_search, individual.id, digits);
-      const Status written = WriteOutputFile(directory / name, proto::WriteCaseJson(individual.test_case));
+      const std::string name = fmt::format("{}case-{:0{}}.{}", of_search, individual.id, digits, format);
+      const Result<std::string> text = format == "json"
+                                           ? Result<std::string>(proto::WriteCaseJson(individual.test_case))
+                                           : WriteArgos(individual.test_case);
+      if (!text) return Error{text.error().kind, fmt::format("{}: {}", name, text.error().message)};
+      const Status written = WriteOutputFile(directory / name, *text);
       if (!written) return written.error();
       ++files;
     }
@@ -125,10 +147,10 @@ ExitCode RunExport(CommandContext& context, const ExportCommandOptions& options)
   if (!condition) return Fail(context, condition.error());
   for (const std::string& note : condition->notes) PrintMessage(context, note);
 
-  if (judged->what == Exported::kCases && judged->format == TableFormat::kJson) {
+  if (WantsCaseFiles(options, judged->what)) {
     const Result<std::uint64_t> files = WriteOutputDirectory(
         "--out", options.out,
-        [&](const std::string& directory) { return WriteCaseFiles(*campaign, directory); });
+        [&](const std::string& directory) { return WriteCaseFiles(*campaign, options.format, directory); });
     if (!files) return Fail(context, files.error());
     PrintMessage(context, fmt::format("wrote {} case files into {}", FormatCount(*files), options.out));
     return kExitDone;
@@ -163,16 +185,16 @@ void AddExport(CommandParser& parser) {
   const auto [command, options] =
       parser.Add("export", "a campaign's data for R, pandas and others", RunExport);
   AddDirectory(command, options.directory);
-  AddValue(command, "--format", "csv|json", options.format, "of the output")->required();
+  AddValue(command, "--format", "csv|json|argos", options.format, "of the output")->required();
   AddValue(command, "--out", "OUT", options.out, "where to write: a file; for case files a new directory")
       ->required();
   AddValue(command, "--what", "WHAT", options.what,
-           "runs (the default), cases, trajectories or events: see below");
+           "runs (the default; of argos: cases), cases, trajectories or events: see below");
   AddValue(command, "--run", "ID", options.runs, "of runs and trajectories: only this run's; repeatable");
   command.footer(
       R"(runs          a row for each run
-cases         csv: a row for each obstacle of each test case; json: a directory with a case file for each
-              test case, as 'evaluate --case' takes them
+cases         csv: a row for each obstacle of each test case; json, argos: a directory with a case file for
+              each test case, as 'evaluate --case' takes them
 trajectories  a row for each robot every 5 s; where the campaign has not kept them (store.trajectories),
               each run is simulated again and must end as it did. Every pose of a run: 'replay --csv'
 events        a row for everything that happened to the campaign: starts, workers lost, ...
@@ -191,6 +213,7 @@ In pandas: runs = pandas.read_csv("runs.csv", dtype={"seed": str, "hash": str})
 Examples:
   gauntlet export campaigns/sweep --format csv --out runs.csv
   gauntlet export DIR --format json --what cases --out cases && gauntlet evaluate flocking --case cases/*.json
+  gauntlet export DIR --format argos --out environments
   gauntlet export DIR --format csv --what trajectories --run 812 --out ways.csv)");
 }
 

@@ -100,10 +100,21 @@ TEST_F(ExportTest, CaseFilesAreWhatEvaluateTakes) {
                 *scratch_ / "evaluated", "--json", "--quiet", "--case", cases + "/case-1.json",
                 cases + "/case-2.json", cases + "/case-3.json"});
   ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  const std::string argos = *scratch_ / "argos";
+  ASSERT_EQ(Gauntlet({"export", random, "--format", "argos", "--out", argos}).exit_code, 0);
+  const ProcessResult from_argos =
+      Gauntlet({"evaluate", "flocking", "--set", "scenario_parameters.time_limit=20", "--dir",
+                *scratch_ / "evaluated-argos", "--quiet", "--case", argos + "/case-1.argos",
+                argos + "/case-2.argos", argos + "/case-3.argos"});
+  ASSERT_EQ(from_argos.exit_code, 0) << from_argos.err;
   const json population = Show(random).at("population");
   const json again = Show(*scratch_ / "evaluated").at("population");
   ASSERT_EQ(again.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(again[i].at("genome"), population[i].at("genome"));
+  const json third_time = Show(*scratch_ / "evaluated-argos").at("population");
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(again[i].at("genome"), population[i].at("genome"));
+    EXPECT_EQ(third_time[i].at("genome"), population[i].at("genome"));
+  }
 }
 
 TEST_F(ExportTest, CasesAsATableHaveARowForEachObstacle) {

@@ -17,10 +17,11 @@ TEST_F(CommandLine, ExportRefusesWhatItDoesNotKnow) {
     EXPECT_FALSE(std::filesystem::exists(Path("out")));
   };
   expect({}, "--format is required");
-  expect({"--format", "xml"}, "--format xml: give csv or json");
+  expect({"--format", "xml"}, "--format xml: give csv, json or argos");
   expect({"--format", "csv", "--what", "robots"}, "--what robots: give runs, cases, trajectories or events");
   expect({"--format", "csv", "--run", "x"}, "--run x is no run");
   expect({"--format", "csv", "--what", "events", "--run", "3"}, "events belong to no single run");
+  expect({"--format", "argos", "--what", "runs"}, "--what runs: .argos files hold cases");
   expect({"--format", "csv"}, Path("c"));
 }
 
