@@ -21,4 +21,19 @@ UnseenTypes EstimateUnseenTypes(std::span<const std::uint64_t> failures_per_type
   return estimate;
 }
 
+double RarefiedTypes(std::span<const std::uint64_t> failures_per_type, std::uint64_t failures) {
+  std::uint64_t all = 0;
+  for (const std::uint64_t count : failures_per_type) all += count;
+  double types = 0.0;
+  for (const std::uint64_t count : failures_per_type) {
+    if (count == 0) continue;
+    double missed = 1.0;  // the chance that none of them is drawn
+    for (std::uint64_t i = 0; i < failures && missed > 0.0; ++i) {
+      missed *= count + i >= all ? 0.0 : static_cast<double>(all - count - i) / static_cast<double>(all - i);
+    }
+    types += 1.0 - missed;
+  }
+  return types;
+}
+
 }  // namespace gauntlet::analysis

@@ -22,4 +22,8 @@ struct UnseenTypes {
 // twice.
 UnseenTypes EstimateUnseenTypes(std::span<const std::uint64_t> failures_per_type);
 
+// Types expected in a sample of `failures` of them, drawn without replacement (rarefaction, Hurlbert 1971):
+// so that sets with different numbers of failures can be compared. `failures` at most their number.
+double RarefiedTypes(std::span<const std::uint64_t> failures_per_type, std::uint64_t failures);
+
 }  // namespace gauntlet::analysis

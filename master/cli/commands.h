@@ -46,6 +46,7 @@ void AddShow(CommandParser& parser);
 void AddReplay(CommandParser& parser);
 void AddCompare(CommandParser& parser);
 void AddExport(CommandParser& parser);
+void AddStudy(CommandParser& parser);
 void AddSubmit(CommandParser& parser);
 void AddMaster(CommandParser& parser);
 void AddStatus(CommandParser& parser);
@@ -55,7 +56,7 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,  AddReplay, AddCompare,
+    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,  AddReplay, AddCompare, AddStudy,
     AddExport, AddSubmit, AddMaster,   AddStatus, AddWatch, AddStop,   AddList};
 
 }  // namespace gauntlet::master

@@ -8,7 +8,9 @@
 #include "master/cli/commands.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/stop_signal.h"
+#include "master/cli/study_run.h"
 #include "master/cli/submitted_campaign.h"
+#include "master/study/study_campaigns.h"
 
 namespace gauntlet::master {
 namespace {
@@ -82,7 +84,22 @@ ExitCode ResumeSubmitted(CommandContext& context, const ResumeOptions& options,
   return SubmitAgain(context, options, campaign);
 }
 
+// A study's directory holds campaigns, of a length that its file says.
+ExitCode ResumeStudy(CommandContext& context, const ResumeOptions& options) {
+  const bool longer = !options.generations.empty() || !options.sets.empty();
+  if (longer || !options.bind.endpoint.empty() || options.as_job) {
+    return Fail(context,
+                InvalidInput(fmt::format("{} holds a study: its file says how long its searches are, and "
+                                         "its workers are of this machine",
+                                         options.directory)));
+  }
+  const Result<Study> study = OpenStudy(options.directory);
+  if (!study) return Fail(context, study.error());
+  return RunStudyIn(context, *study, {options.directory, options.running, ""});
+}
+
 ExitCode RunResume(CommandContext& context, const ResumeOptions& options) {
+  if (IsStudy(options.directory)) return ResumeStudy(context, options);
   const bool bound = !options.bind.endpoint.empty();
   if (!bound && options.running.workers.empty()) {
     const Result<std::optional<slurm::SlurmCampaign>> submitted =

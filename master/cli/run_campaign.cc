@@ -17,19 +17,19 @@
 namespace gauntlet::master {
 namespace {
 
-std::string ResumeHint(const CommandContext& context, const std::string& directory) {
+std::string ResumeHint(const CommandContext& context, const CampaignRun& campaign) {
+  const std::string& directory = campaign.resumed_by.empty() ? campaign.directory : campaign.resumed_by;
   return fmt::format("{} resume {}", context.program, ShellQuoted(directory));
 }
 
 // Whether there is anything to resume decides how to go on after an error.
-std::string HowToGoOn(const CommandContext& context, const std::string& directory) {
+std::string HowToGoOn(const CommandContext& context, const CampaignRun& campaign) {
   std::error_code ignored;
-  if (std::filesystem::exists(directory + "/campaign.db", ignored)) {
-    return fmt::format("stopped; what was finished is stored. Go on with: {}",
-                       ResumeHint(context, directory));
+  if (std::filesystem::exists(campaign.directory + "/campaign.db", ignored)) {
+    return fmt::format("stopped; what was finished is stored. Go on with: {}", ResumeHint(context, campaign));
   }
   return fmt::format("nothing was simulated. When there is room, the same command with --dir {} starts anew",
-                     ShellQuoted(directory));
+                     ShellQuoted(campaign.directory));
 }
 
 std::string Timing(const SessionReport& report) {
@@ -109,7 +109,7 @@ ExitCode FailCampaign(CommandContext& context, const CampaignRun& campaign, cons
                          (began && (error.kind == ErrorKind::kIo || error.kind == ErrorKind::kInUse)) ||
                          (error.kind == ErrorKind::kInUse && StopSignal::Requested());
   if (!resumable) return code;
-  PrintMessage(context, HowToGoOn(context, campaign.directory));
+  PrintMessage(context, HowToGoOn(context, campaign));
   return kExitStopped;
 }
 
@@ -124,9 +124,8 @@ ExitCode Conclude(CommandContext& context, const CampaignRun& campaign, const Se
     PrintSummary(context, summary, campaign.directory, campaign.serving.json);
   }
   if (report.end == CampaignEnd::kStopped) {
-    PrintMessage(context,
-                 fmt::format("stopped after {} runs, all of them stored. Go on with: {}",
-                             FormatCount(summary.runs_done), ResumeHint(context, campaign.directory)));
+    PrintMessage(context, fmt::format("stopped after {} runs, all of them stored. Go on with: {}",
+                                      FormatCount(summary.runs_done), ResumeHint(context, campaign)));
     return kExitStopped;
   }
   // `evaluate` judges its cases itself.

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "base/parse_number.h"
 #include "master/experiment/schema.h"
+#include "master/experiment/seed_list.h"
 #include "master/search/search_table.h"
 
 namespace gauntlet::master {
@@ -68,30 +68,10 @@ Result<std::vector<Sweep>> ParseSweeps(const std::vector<std::string>& texts) {
   return sweeps;
 }
 
-// "1..20" or "1,5,9".
-std::optional<std::vector<std::uint64_t>> SeedsOf(const std::string& text) {
-  std::vector<std::uint64_t> seeds;
-  if (const std::size_t dots = text.find(".."); dots != std::string::npos) {
-    const auto first = ParseNumber<std::uint64_t>(text.substr(0, dots));
-    const auto last = ParseNumber<std::uint64_t>(text.substr(dots + 2));
-    if (!first || !last || *first > *last || *last - *first >= kMostSearches) return std::nullopt;
-    for (std::uint64_t i = 0; i <= *last - *first; ++i) seeds.push_back(*first + i);
-    return seeds;
-  }
-  const auto items = SplitList(text);
-  if (!items || items->size() > kMostSearches) return std::nullopt;
-  for (const std::string& item : *items) {
-    const auto seed = ParseNumber<std::uint64_t>(item);
-    if (!seed) return std::nullopt;
-    seeds.push_back(*seed);
-  }
-  return seeds;
-}
-
 // None when `text` is "".
 Result<std::vector<std::uint64_t>> ParseSeeds(const std::string& text) {
   if (text.empty()) return std::vector<std::uint64_t>();
-  const auto seeds = SeedsOf(text);
+  const auto seeds = ParseSeedList(text, kMostSearches);
   if (!seeds)
     return InvalidInput(
         fmt::format("--seeds {}: give a range (1..20) or a list (1,5,9) of at most {} whole numbers", text,

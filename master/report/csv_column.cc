@@ -38,42 +38,63 @@ struct Column {
   std::string name;
 };
 
+struct Line {
+  std::size_t number = 0;
+  std::vector<std::string> cells;
+};
+
+// The first line names the columns; every other has as many cells.
+Result<std::vector<Line>> LinesOf(std::string_view text, const std::string& path) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  std::vector<Line> lines;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    std::string_view line = text.substr(0, text.find('\n'));
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (line.empty()) continue;
+    lines.push_back({number, CellsOf(line)});
+    const std::size_t columns = lines.front().cells.size();
+    if (lines.back().cells.size() == columns) continue;
+    return InvalidInput(fmt::format("{}:{}: {} cells, but {} columns have a name", path, number,
+                                    lines.back().cells.size(), columns));
+  }
+  if (lines.empty()) return InvalidInput(path + " is empty: its first line has to name the columns");
+  return lines;
+}
+
 }  // namespace
+
+Result<std::vector<std::vector<std::string>>> ReadCsvCells(std::string_view text, const std::string& path) {
+  Result<std::vector<Line>> lines = LinesOf(text, path);
+  if (!lines) return lines.error();
+  std::vector<std::vector<std::string>> rows;
+  for (Line& line : *lines) rows.push_back(std::move(line.cells));
+  return rows;
+}
 
 Result<std::vector<double>> ReadCsvColumn(const std::string& path, const std::string& column) {
   const Result<std::string> text = ReadRegularFile(path, kLargestFile);
   if (!text) return text.error();
-  std::string_view rest = *text;
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
-
-  std::vector<double> values;
+  const Result<std::vector<Line>> lines = LinesOf(*text, path);
+  if (!lines) return lines.error();
   std::vector<Column> columns;
-  std::size_t wanted = 0;
-  for (std::size_t number = 1; !rest.empty(); ++number) {
-    std::string_view line = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (line.empty()) continue;
-    const std::vector<std::string> cells = CellsOf(line);
-    if (columns.empty()) {
-      for (const std::string& cell : cells) columns.push_back({Printable(cell)});
-      while (wanted < cells.size() && cells[wanted] != column) ++wanted;
-      if (wanted < cells.size()) continue;
-      return InvalidInput(fmt::format("{}: {}", path, UnknownName("column", Printable(column), columns)));
-    }
-    if (cells.size() != columns.size()) {
-      return InvalidInput(fmt::format("{}:{}: {} cells, but {} columns have a name", path, number,
-                                      cells.size(), columns.size()));
-    }
-    const auto value = ParseNumber<double>(cells[wanted]);
+  for (const std::string& cell : lines->front().cells) columns.push_back({Printable(cell)});
+  const auto found = std::ranges::find(lines->front().cells, column);
+  if (found == lines->front().cells.end()) {
+    return InvalidInput(fmt::format("{}: {}", path, UnknownName("column", Printable(column), columns)));
+  }
+  const auto wanted = static_cast<std::size_t>(found - lines->front().cells.begin());
+  std::vector<double> values;
+  for (std::size_t i = 1; i < lines->size(); ++i) {
+    const Line& line = (*lines)[i];
+    const auto value = ParseNumber<double>(line.cells[wanted]);
     if (!value || !std::isfinite(*value)) {
-      return InvalidInput(fmt::format("{}:{}: {} is '{}', not a finite number", path, number, column,
-                                      Printable(cells[wanted])));
+      return InvalidInput(fmt::format("{}:{}: {} is '{}', not a finite number", path, line.number, column,
+                                      Printable(line.cells[wanted])));
     }
     values.push_back(*value);
   }
-  if (columns.empty()) return InvalidInput(path + " is empty: its first line has to name the columns");
   return values;
 }
 

@@ -1,7 +1,8 @@
-// A column of numbers out of a CSV file.
+// CSV files: a column of numbers, or everything.
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -12,5 +13,8 @@ namespace gauntlet::master {
 // has no such column, a line has another number of cells, or a cell that is wanted is no finite number; named
 // with its line.
 Result<std::vector<double>> ReadCsvColumn(const std::string& path, const std::string& column);
+
+// All cells, line by line, of a text that stands in the file `path`. Error: as above, but for numbers.
+Result<std::vector<std::vector<std::string>>> ReadCsvCells(std::string_view text, const std::string& path);
 
 }  // namespace gauntlet::master

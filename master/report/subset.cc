@@ -46,16 +46,6 @@ struct MetricName {
   std::string_view name;
 };
 
-Status CheckMetric(const Experiment& experiment, const std::string& metric) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
-  if (IsColumn(metric) || scenario == nullptr || controllers::FindMetric(*scenario, metric) != nullptr) {
-    return Ok{};
-  }
-  std::vector<MetricName> known = {{kFitness}, {kTotalFailure}, {kFailureType}};
-  for (const controllers::MetricInfo& info : scenario->metrics) known.push_back({info.name});
-  return InvalidInput(fmt::format("--metric: {}", UnknownName("metric", metric, known)));
-}
-
 // What the row of a run with a result says of it.
 std::optional<double> ColumnOf(const StoredRun& run, const std::string& metric) {
   if (metric == kTotalFailure) return run.total_failure ? 1.0 : 0.0;
@@ -242,6 +232,16 @@ Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, c
     if (Status visited = visit({id, plans[i].experiment, name, finished}); !visited) return visited;
   }
   return Ok{};
+}
+
+Status CheckMetric(const Experiment& experiment, const std::string& metric) {
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
+  if (IsColumn(metric) || scenario == nullptr || controllers::FindMetric(*scenario, metric) != nullptr) {
+    return Ok{};
+  }
+  std::vector<MetricName> known = {{kFitness}, {kTotalFailure}, {kFailureType}};
+  for (const controllers::MetricInfo& info : scenario->metrics) known.push_back({info.name});
+  return InvalidInput(UnknownName("metric", metric, known));
 }
 
 Result<std::vector<SelectedRun>> SelectRuns(const SubsetSearch& search, ResultStore& store,

@@ -62,6 +62,10 @@ Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, c
 // A metric's value; none when there was nothing to measure. `info`: nullptr = nobody knows the metric.
 std::optional<double> MeasuredValue(const controllers::MetricInfo* info, double value);
 
+// Whether `metric` is "fitness", "total_failure" (1 or 0), "failure_type" (none: no total failure, or of no
+// type) or a metric of the experiment's scenario. Error: names the nearest.
+Status CheckMetric(const Experiment& experiment, const std::string& metric);
+
 struct SelectedRun {
   RunId run = 0;
   IndividualId individual = 0;
@@ -69,9 +73,8 @@ struct SelectedRun {
   std::uint32_t generation = 0;
   std::optional<double> value;  // none: without a result, or nothing to measure
 };
-// The subset's runs of a search in logical order. `metric` is "fitness", "total_failure" (1 or 0),
-// "failure_type" (none: no total failure, or of no type) or a metric of the scenario. Error: no such metric,
-// or fewer runs than asked for.
+// The subset's runs of a search in logical order. Error: no such metric (CheckMetric), or fewer runs than
+// asked for.
 Result<std::vector<SelectedRun>> SelectRuns(const SubsetSearch& search, ResultStore& store,
                                             const Subset& subset, const std::string& metric);
 

@@ -29,5 +29,14 @@ TEST(UnseenTypesTest, WithoutFailuresTheNextOneIsNew) {
   EXPECT_EQ(types.chance_of_new, 1.0);
 }
 
+TEST(RarefiedTypesTest, ExpectsWhatDrawingGives) {
+  const std::vector<std::uint64_t> counts = {2, 0, 1, 1};
+  EXPECT_DOUBLE_EQ(RarefiedTypes(counts, 1), 1.0);
+  // Of the six pairs of failures one is of a single type.
+  EXPECT_NEAR(RarefiedTypes(counts, 2), 11.0 / 6.0, 1e-15);
+  EXPECT_DOUBLE_EQ(RarefiedTypes(counts, 4), 3.0);
+  EXPECT_DOUBLE_EQ(RarefiedTypes(counts, 0), 0.0);
+}
+
 }  // namespace
 }  // namespace gauntlet::analysis

@@ -1,0 +1,247 @@
+#include "master/cli/study_output.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "master/cli/table.h"
+#include "proto/json_text.h"
+
+namespace gauntlet::master {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kWidth = 110;
+
+struct Tally {
+  int agree = 0;
+  int differ = 0;
+  int not_judged = 0;
+  int not_computed = 0;
+};
+
+void Count(const std::vector<JudgedRow>& rows, Tally& tally) {
+  for (const JudgedRow& row : rows) {
+    if (row.verdict == "agrees") ++tally.agree;
+    if (row.verdict == "differs") ++tally.differ;
+    if (row.verdict == "not judged") ++tally.not_judged;
+    if (row.verdict == "not computed") ++tally.not_computed;
+  }
+}
+
+Tally TallyOf(const StudyReport& report) {
+  Tally tally;
+  for (const StudySection& section : report.sections) Count(section.published, tally);
+  Count(report.elsewhere, tally);
+  return tally;
+}
+
+std::string TallyInWords(const StudyReport& report) {
+  const Tally tally = TallyOf(report);
+  return fmt::format(
+      "Of {} published figures {} agree with ours, {} differ, {} stand beside ours without being judged, and "
+      "{} "
+      "have no counterpart here.",
+      tally.agree + tally.differ + tally.not_judged + tally.not_computed, tally.agree, tally.differ,
+      tally.not_judged, tally.not_computed);
+}
+
+std::string TimeInWords(const StudyReport& report) {
+  return fmt::format("The searches took {}, the re-simulations {}, by the clock.",
+                     FormatDuration(report.search_seconds), FormatDuration(report.evaluation_seconds));
+}
+
+StudyTable ClaimTable(const StudyReport& report) {
+  StudyTable table{{"claim", "verdict", "figures"}, {}};
+  for (const StudySection& section : report.sections) {
+    if (!section.claim) continue;
+    table.rows.push_back({section.claim->text, section.claim->holds ? "holds" : "DOES NOT HOLD",
+                          section.sentences.empty() ? "" : section.sentences.front()});
+  }
+  return table;
+}
+
+StudyTable PartTable(const StudyReport& report) {
+  StudyTable table{{"part", ">searches", ">runs", ">distinct cases"}, {}};
+  for (const PartCost& part : report.parts) {
+    table.rows.push_back(
+        {part.part, FormatCount(part.searches), FormatCount(part.runs), FormatCount(part.distinct_cases)});
+  }
+  return table;
+}
+
+// The notes of the rows, numbered in the order in which they are met.
+class Notes {
+ public:
+  std::string Mark(const std::string& note) {
+    if (note.empty()) return "";
+    const auto found = std::ranges::find(notes_, note);
+    const auto number = found - notes_.begin() + 1;
+    if (found == notes_.end()) notes_.push_back(note);
+    return fmt::format("{}", number);
+  }
+  const std::vector<std::string>& all() const { return notes_; }
+
+ private:
+  std::vector<std::string> notes_;
+};
+
+StudyTable PublishedTable(const std::vector<JudgedRow>& rows, Notes& notes) {
+  StudyTable table{{"published in", "what", "of", ">published", ">ours", "verdict", ">note"}, {}};
+  for (const JudgedRow& row : rows) {
+    table.rows.push_back({row.row.section, row.row.quantity, row.row.condition, row.row.value,
+                          row.ours.empty() ? "-" : row.ours, row.verdict, notes.Mark(row.note)});
+  }
+  return table;
+}
+
+std::string TextOf(const StudyTable& table) {
+  Table text(table.headers);
+  for (const auto& row : table.rows) text.AddRow(row);
+  return text.ToText();
+}
+
+std::string Escaped(const std::string& cell) {
+  std::string text;
+  for (const char c : cell) {
+    if (c == '|') text += '\\';
+    text += c;
+  }
+  return text;
+}
+
+std::string MarkdownOf(const StudyTable& table) {
+  std::string names;
+  std::string line;
+  for (const std::string& header : table.headers) {
+    const bool right = header.starts_with('>');
+    names += fmt::format("| {} ", right ? header.substr(1) : header);
+    line += right ? "|---:" : "|---";
+  }
+  std::string text = names + "|\n" + line + "|\n";
+  for (const auto& row : table.rows) {
+    for (const std::string& cell : row) text += fmt::format("| {} ", Escaped(cell));
+    text += "|\n";
+  }
+  return text + "\n";
+}
+
+std::string NotesText(const Notes& notes, std::size_t indent) {
+  std::string text;
+  for (std::size_t i = 0; i < notes.all().size(); ++i) {
+    text += fmt::format("{}{}. {}\n", std::string(indent, ' '), i + 1,
+                        indent > 0 ? Wrapped(notes.all()[i], kWidth, indent + 3) : notes.all()[i]);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string StudyText(const StudyReport& report) {
+  std::string text = fmt::format("{}: {}\n\n", report.name, report.description);
+  for (const StudySection& section : report.sections) {
+    text += fmt::format("{} ({})\n\n", section.title, section.name);
+    for (const StudyTable& table : section.tables) text += TextOf(table) + "\n";
+    for (const std::string& sentence : section.sentences) {
+      text += fmt::format("  {}\n", Wrapped(sentence, kWidth, 2));
+    }
+    if (section.claim) {
+      text +=
+          fmt::format("  {}: {}\n", section.claim->text, section.claim->holds ? "holds" : "DOES NOT HOLD");
+    }
+    text += "\n";
+    if (section.published.empty()) continue;
+    Notes notes;
+    text += TextOf(PublishedTable(section.published, notes)) + NotesText(notes, 2) + "\n";
+  }
+  if (!report.elsewhere.empty()) {
+    Notes notes;
+    text += "Published figures that have no counterpart here\n\n" +
+            TextOf(PublishedTable(report.elsewhere, notes)) + NotesText(notes, 2) + "\n";
+  }
+  text += "What it has cost\n\n" + TextOf(PartTable(report)) + "\n  " + TimeInWords(report) + "\n\n";
+  StudyTable claims = ClaimTable(report);
+  for (auto& row : claims.rows) row.pop_back();
+  claims.headers.pop_back();
+  if (!claims.rows.empty()) text += "Claims\n\n" + TextOf(claims) + "\n";
+  if (!report.sections.empty()) text += "  " + TallyInWords(report) + "\n";
+  return text;
+}
+
+std::string StudyMarkdown(const StudyReport& report) {
+  std::string text = fmt::format(
+      "# {}\n\n{}\n\nWritten by `gauntlet study {} --markdown FILE` (version {}).\n\n## Claims\n\n",
+      report.name, report.description, report.name, report.version);
+  text += MarkdownOf(ClaimTable(report)) + TallyInWords(report) + "\n\n";
+  text += "How a figure is judged:\n\n";
+  for (const std::string& rule : RulesInWords()) text += fmt::format("- {}\n", rule);
+  text += fmt::format("\n## Cost\n\n{}{}\n\n", MarkdownOf(PartTable(report)), TimeInWords(report));
+  for (const StudySection& section : report.sections) {
+    text += fmt::format("## {}\n\n", section.title);
+    for (const StudyTable& table : section.tables) text += MarkdownOf(table);
+    for (const std::string& sentence : section.sentences) text += sentence + "\n";
+    if (section.claim) {
+      text += fmt::format("\n**{}: {}.**\n", section.claim->text,
+                          section.claim->holds ? "holds" : "does not hold");
+    }
+    text += "\n";
+    if (section.published.empty()) continue;
+    Notes notes;
+    text += MarkdownOf(PublishedTable(section.published, notes));
+    if (!notes.all().empty()) text += NotesText(notes, 0) + "\n";
+  }
+  if (report.elsewhere.empty()) return text;
+  Notes notes;
+  text += "## Published figures that have no counterpart here\n\n" +
+          MarkdownOf(PublishedTable(report.elsewhere, notes));
+  return text + NotesText(notes, 0);
+}
+
+std::string StudyJson(const StudyReport& report, const std::string& directory) {
+  Json claims = Json::array();
+  Json results = Json::array();
+  const auto add = [&](const std::string& analysis, const std::vector<JudgedRow>& rows) {
+    for (const JudgedRow& row : rows) {
+      results.push_back({{"section", row.row.section},
+                         {"quantity", row.row.quantity},
+                         {"condition", row.row.condition},
+                         {"published", row.row.value},
+                         {"ours", row.ours.empty() ? Json() : Json(row.ours)},
+                         {"verdict", row.verdict},
+                         {"note", row.note.empty() ? Json() : Json(row.note)},
+                         {"analysis", analysis.empty() ? Json() : Json(analysis)}});
+    }
+  };
+  for (const StudySection& section : report.sections) {
+    if (section.claim)
+      claims.push_back(
+          {{"analysis", section.name}, {"claim", section.claim->text}, {"holds", section.claim->holds}});
+    add(section.name, section.published);
+  }
+  add("", report.elsewhere);
+  Json figures = Json::object();
+  for (const auto& [name, figure] : report.figures) {
+    figures[name] = figure.number ? Json(*figure.number) : Json(figure.text);
+  }
+  Json parts = Json::array();
+  for (const PartCost& part : report.parts) {
+    parts.push_back({{"part", part.part},
+                     {"searches", part.searches},
+                     {"runs", part.runs},
+                     {"distinct_cases", part.distinct_cases}});
+  }
+  return JsonText({{"study", report.name},
+                   {"directory", directory},
+                   {"version", report.version},
+                   {"claims", std::move(claims)},
+                   {"results", std::move(results)},
+                   {"figures", std::move(figures)},
+                   {"parts", std::move(parts)},
+                   {"search_seconds", report.search_seconds},
+                   {"evaluation_seconds", report.evaluation_seconds}});
+}
+
+}  // namespace gauntlet::master

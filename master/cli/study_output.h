@@ -1,0 +1,17 @@
+// What a study has found, as text, Markdown and JSON.
+#pragma once
+
+#include <string>
+
+#include "master/study/study_report.h"
+
+namespace gauntlet::master {
+
+std::string StudyText(const StudyReport& report);
+// A page: the claims first, then every analysis with the published rows beside ours.
+std::string StudyMarkdown(const StudyReport& report);
+// {study, claims: [{analysis, claim, holds}], results: [{section, quantity, condition, published, ours,
+// verdict, note, analysis}], figures: {NAME: number or text}, parts: [...]}.
+std::string StudyJson(const StudyReport& report, const std::string& directory);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,93 @@
+// What a study is: campaigns of searches and re-simulations, what is computed from them, and the published
+// figures to hold against that. Read from TOML files; nothing of a particular study is in code.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.h"
+#include "master/experiment/experiment.h"
+
+namespace gauntlet::master {
+
+// Searches of one kind, which differ in nothing but their seeds.
+struct StudyPart {
+  enum class Kind {
+    kEvolve,    // the experiment's search, once for each seed
+    kRandom,    // random cases
+    kEmpty,     // the arena without obstacles
+    kEvaluate,  // cases of another part once more, with fresh seeds
+  };
+  std::string name;
+  Kind kind = Kind::kEvolve;
+  std::string where;  // "FILE:LINE:COLUMN", for messages
+  Experiment experiment;
+  std::vector<std::uint64_t> seeds;
+  std::string from;    // of kEvaluate: the part that the cases come from,
+  std::string subset;  // and which of them, as ParseSubset takes it
+};
+
+// Something that is computed from the runs of parts. Which keys there are depends on the kind; all that are
+// needed are there.
+struct StudyAnalysis {
+  std::string kind;  // "compare", "count", "types", "peak", "windows"
+  std::string name;
+  std::string where;
+  std::map<std::string, std::string> keys;
+
+  // "" when it was not given.
+  std::string Key(const std::string& key) const {
+    const auto found = keys.find(key);
+    return found == keys.end() ? "" : found->second;
+  }
+};
+
+// A remark to a published figure.
+struct PublishedNote {
+  std::string text;     // "" = none
+  bool always = false;  // else only where ours differs
+};
+
+// A figure that was published, and how ours is judged against it.
+struct PublishedRow {
+  std::string section;
+  std::string quantity;
+  std::string condition;
+  std::string value;
+  std::string figure;  // ours, "ANALYSIS.FIGURE"; "" = we compute none
+  std::string rule;    // as Judge takes it; "" = not judged
+  PublishedNote note;
+};
+
+struct Study {
+  std::string name;
+  std::string description;
+  std::vector<StudyPart> parts;
+  std::vector<StudyAnalysis> analyses;
+  std::vector<PublishedRow> published;
+  // Every file that it was read from, by its name without folders; two studies with the same texts are one.
+  std::map<std::string, std::string> texts;
+  std::string main_file;
+};
+
+// A shipped study by its name, or a file by its path (with a '/' or ending in ".toml"). Files that it
+// includes or takes published figures from stand beside it. Errors begin with the place and name what would
+// be right.
+Result<Study> LoadStudy(const std::string& name_or_path);
+// The same of texts that were read before.
+Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file);
+
+// One of the sets that an analysis names, "PART:SUBSET".
+struct StudySet {
+  std::string part;
+  std::string subset;
+};
+// "PART[:SUBSET]", several with commas in between.
+std::vector<StudySet> SplitStudySets(const std::string& text);
+
+// The names of shipped studies.
+std::vector<std::string> ShippedStudies();
+
+}  // namespace gauntlet::master

@@ -1,0 +1,82 @@
+// What a study has found: its own figures, the published ones beside them, and whether they agree. Plain
+// structs, so that terminal, Markdown and JSON say the same.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "master/study/study_campaigns.h"
+
+namespace gauntlet::master {
+
+struct StudyFigure {
+  std::optional<double> number;  // none of a word, "never"
+  std::string text;              // as it is printed
+};
+// By "ANALYSIS.FIGURE", "severity.first.mean".
+using StudyFigures = std::map<std::string, StudyFigure>;
+
+struct StudyTable {
+  std::vector<std::string> headers;  // '>' in front: numbers
+  std::vector<std::vector<std::string>> rows;
+};
+
+// What a study set out to show.
+struct StudyClaim {
+  std::string text;
+  bool holds = false;
+};
+
+struct JudgedRow {
+  PublishedRow row;
+  std::string ours;     // "" = not computed
+  std::string note;     // "" = none
+  std::string verdict;  // "agrees", "differs", "not judged", "not computed"
+};
+
+struct StudySection {
+  std::string name;
+  std::string title;
+  std::vector<StudyTable> tables;
+  std::vector<std::string> sentences;
+  std::optional<StudyClaim> claim;
+  std::vector<JudgedRow> published;
+};
+
+struct StudyReport {
+  std::string name;
+  std::string description;
+  std::string version;
+  std::vector<PartCost> parts;
+  double search_seconds = 0.0;  // of the campaign of all searches, by the clock
+  double evaluation_seconds = 0.0;
+  std::vector<StudySection> sections;
+  std::vector<JudgedRow> elsewhere;  // published rows that we have no figure for
+  StudyFigures figures;
+};
+
+// Computes everything of a study whose campaigns have finished. Error: they cannot be read, or an analysis
+// asks for what the runs do not have.
+Result<StudyReport> MakeStudyReport(const Study& study, const std::string& dir);
+
+// One analysis; its figures are added to `figures`.
+Result<StudySection> Analyse(const StudyAnalysis& analysis, StudyRuns& runs, StudyFigures& figures);
+
+// Our figure beside a published one. Rules:
+//   mean SD N     Welch's t-test from means, standard deviations and numbers: differs when p < 0.01
+//   sd            differs when one is more than 1.5 times the other
+//   effect A      of the same size (none, small, medium, large) and on the same side as A = P(first > second)
+//   p             both below 0.01, or both not
+//   count N       Fisher's exact test of k of N against ours: differs when p < 0.01
+//   percent N     the same of a share of N, in percent
+//   between L H   ours lies between
+//   same          the same text
+// Error: no such rule, or a figure that it needs is missing.
+Result<JudgedRow> Judge(const PublishedRow& row, const StudyFigures& figures);
+// The rules in words, one each.
+std::vector<std::string> RulesInWords();
+
+}  // namespace gauntlet::master
