@@ -1,10 +1,12 @@
 // gauntlet show: what came out of a campaign.
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "master/cli/commands.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/summary.h"
 #include "master/report/exported_tables.h"
+#include "master/study/study_campaigns.h"
 
 namespace gauntlet::master {
 namespace {
@@ -35,6 +37,12 @@ ExitCode ShowWithRuns(CommandContext& context, const ShowOptions& options) {
 }
 
 ExitCode RunShow(CommandContext& context, const ShowOptions& options) {
+  if (IsStudy(options.directory)) {
+    return Fail(context,
+                InvalidInput(fmt::format("{0} holds a study: its campaigns are {0}/searches and "
+                                         "{0}/evaluations, its report is given by 'gauntlet resume {0}'",
+                                         options.directory)));
+  }
   if (options.runs && !options.json)
     return Fail(context,
                 InvalidInput("--runs lists every run: it needs --json, or use 'export --format csv'"));

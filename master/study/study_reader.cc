@@ -430,6 +430,11 @@ Result<fs::path> PathOf(const std::string& name_or_path) {
     if (fs::exists(path, error)) return path;
   }
   const std::vector<std::string> shipped = ShippedStudies();
+  if (shipped.empty()) {
+    return Error{
+        ErrorKind::kNotFound,
+        fmt::format("there is no study '{}': no studies are installed beside this program", name_or_path)};
+  }
   std::vector<KeyName> names;
   for (const std::string& name : shipped) names.push_back({name});
   return Error{ErrorKind::kNotFound, fmt::format("{} (a file is named by a path ending in .toml)",

@@ -167,6 +167,7 @@ TEST_F(StudyTest, KeepsToItsDirectory) {
               HasSubstr("searches was begun with other parts"));
   EXPECT_THAT(refused("worst:10", "worst:11"), HasSubstr("evaluations was begun with other parts"));
   EXPECT_THAT(refused("name = \"small\"", "name = \"other\""), HasSubstr("holds the study 'small'"));
+  EXPECT_THAT(Gauntlet({"show", scratch_ / "s"}).err, HasSubstr("/s/searches and "));
   std::filesystem::create_directories(scratch_ / "full/of-things");
   const ProcessResult full = Gauntlet(Command("full"));
   EXPECT_EQ(full.exit_code, 2);
