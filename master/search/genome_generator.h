@@ -40,12 +40,16 @@ class GenomeGenerator {
 
  private:
   void SetInMotion(sim::RandomStream& random, sim::ObstacleGene& gene) const;
-  // Nothing when a gene found no place in tries_per_gene draws.
+  // Nothing when a gene found no place in tries_per_gene draws. `append` puts it into the arena, or says why
+  // not.
+  template <typename Append>
+  std::optional<sim::Genome> TryGenome(const Append& append, sim::RandomStream& random) const;
   std::optional<sim::Genome> TryGenome(sim::RandomStream& random) const;
 
   GenomeSpec spec_;
   sim::TestCase arena_;
   sim::ArenaRequirements requirements_;
+  sim::IncrementalValidity empty_;  // no obstacle yet
 };
 
 }  // namespace gauntlet::master

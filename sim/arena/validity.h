@@ -65,6 +65,11 @@ class IncrementalValidity {
   // Appends the gene when it breaks no rule; otherwise changes nothing and returns the violation. An arena
   // that breaks a rule by itself takes no gene.
   std::optional<Violation> TryAppend(const ObstacleGene& gene);
+  // The same without the dearest rule, that a path is left. Obstacles only ever take paths away: when one
+  // is left in the end, each gene would have left one.
+  std::optional<Violation> TryAppendWhateverPathIsLeft(const ObstacleGene& gene);
+  // Whether the start is connected with the goal.
+  bool LeavesPath() const;
 
   // The rule that the arena breaks without any obstacle.
   const std::optional<Violation>& arena_violation() const { return arena_violation_; }
@@ -74,6 +79,10 @@ class IncrementalValidity {
   const OccupancyGrid& grid() const { return grid_; }
 
  private:
+  // The rules but that a path is left. Nothing: candidate_ is the grid with the gene.
+  std::optional<Violation> JudgeGene(const ObstacleGene& gene);
+  void Take(const ObstacleGene& gene);
+
   ArenaRequirements requirements_;
   Vec2 outer_;  // half sides to the outer faces of the walls, m
   std::optional<Violation> arena_violation_;
