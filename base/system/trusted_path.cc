@@ -18,13 +18,13 @@ Status Check(const std::string& path, const std::string& directory, const struct
     return InvalidInput(fmt::format(
         "{} belongs to user {}, not to you (user {}), who so would decide what this command does in your "
         "name. Look at what the directory holds, then work on a copy of your own: `cp -r {} COPY`",
-        path, status.st_uid, us, ShellQuoted(directory)));
+        path, status.st_uid, us, PastedPath(directory)));
   }
   if (!S_ISLNK(status.st_mode) && (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
     return InvalidInput(fmt::format(
         "{} has mode {:03o}: other users may write it, who so would decide what this command does in your "
         "name. If it holds what you left there: `chmod go-w {}`",
-        path, status.st_mode & 0777, ShellQuoted(path)));
+        path, status.st_mode & 0777, PastedPath(path)));
   }
   return Ok{};
 }

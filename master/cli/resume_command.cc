@@ -57,7 +57,7 @@ ExitCode SubmitAgain(CommandContext& context, const ResumeOptions& options,
     if (job.name != campaign.master_job_name()) continue;
     return Fail(context, Error{ErrorKind::kInUse,
                                fmt::format("job {} ({}) is the campaign's master already; see: {} status {}",
-                                           job.id, job.state, context.program, ShellQuoted(directory))});
+                                           job.id, job.state, context.program, PastedPath(directory))});
   }
   const Result<std::string> job = SubmitMasterJob(context, directory, campaign);
   if (!job) return Fail(context, job.error());

@@ -19,7 +19,7 @@ namespace {
 
 std::string ResumeHint(const CommandContext& context, const CampaignRun& campaign) {
   const std::string& directory = campaign.resumed_by.empty() ? campaign.directory : campaign.resumed_by;
-  return fmt::format("{} resume {}", context.program, ShellQuoted(directory));
+  return fmt::format("{} resume {}", context.program, PastedPath(directory));
 }
 
 // Whether there is anything to resume decides how to go on after an error.
@@ -29,7 +29,7 @@ std::string HowToGoOn(const CommandContext& context, const CampaignRun& campaign
     return fmt::format("stopped; what was finished is stored. Go on with: {}", ResumeHint(context, campaign));
   }
   return fmt::format("nothing was simulated. When there is room, the same command with --dir {} starts anew",
-                     ShellQuoted(campaign.directory));
+                     PastedPath(campaign.directory));
 }
 
 std::string Timing(const SessionReport& report) {
@@ -76,7 +76,7 @@ void PrintServing(CommandContext& context, const CampaignRun& campaign, const Se
   const std::string start = campaign.session.make_pool
                                 ? ""
                                 : fmt::format("; start them with: {}-worker --dir {}", context.program,
-                                              ShellQuoted(campaign.directory));
+                                              PastedPath(campaign.directory));
   PrintMessage(context, fmt::format("workers connect to {}{}{}", endpoint,
                                     notice.encrypted ? ", encrypted" : "", start));
 }

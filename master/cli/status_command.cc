@@ -59,7 +59,7 @@ std::string JobsText(const Json& status) {
 std::string WithDirectory(std::string sentence, const std::string& directory) {
   constexpr std::string_view kPlaceholder = " DIR`";
   if (const std::size_t at = sentence.find(kPlaceholder); at != std::string::npos)
-    sentence.replace(at, kPlaceholder.size(), " " + ShellQuoted(directory) + "`");
+    sentence.replace(at, kPlaceholder.size(), " " + PastedPath(directory) + "`");
   return sentence;
 }
 

@@ -93,7 +93,7 @@ ExitCode SubmitAndReturn(CommandContext& context, const SubmitOptions& options, 
   } else {
     context.out << fmt::format(
         "{0}: job {1} is the master; its workers will be {2}w*\n\n  {3} status {4}\n  {3} stop {4}\n",
-        directory, *job, campaign.job_prefix(), context.program, ShellQuoted(directory));
+        directory, *job, campaign.job_prefix(), context.program, PastedPath(directory));
   }
   context.out << std::flush;
   return kExitDone;
@@ -127,7 +127,7 @@ ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
   if (as_job) return SubmitAndReturn(context, options, *directory, *campaign);
   if (!options.messages.quiet)
     PrintMessage(context, fmt::format("{}: workers come from Slurm as {}w*; see: {} status {}", *directory,
-                                      campaign->job_prefix(), context.program, ShellQuoted(*directory)));
+                                      campaign->job_prefix(), context.program, PastedPath(*directory)));
   return ServeSubmitted(context, {options.messages, "", ""}, *directory, *campaign, "");
 }
 

@@ -40,7 +40,7 @@ Result<std::string> SubmitMasterJob(CommandContext& context, const std::string& 
     const std::string& words = job.error().message;
     return Error{job.error().kind,
                  fmt::format("{}{}. The campaign is made; try again with: {} resume {}", words,
-                             slurm::NextStep(words), context.program, ShellQuoted(directory))};
+                             slurm::NextStep(words), context.program, PastedPath(directory))};
   }
   return job;
 }

@@ -84,7 +84,7 @@ std::string RunsWithoutAResult(const CampaignSummary& summary, const std::string
     if (LeavesBundle(groups[i].verdict))
       text += fmt::format(
           "    to see {} again: {}\n", groups[i].runs == 1 ? "it" : "the first",
-          ShellQuoted(fmt::format("{}/{}/README.txt", directory, BundleName(groups[i].first_run))));
+          PastedPath(fmt::format("{}/{}/README.txt", directory, BundleName(groups[i].first_run))));
   }
   if (groups.size() > kMostGroups)
     text += fmt::format("  and {} more reasons; see show --json\n", groups.size() - kMostGroups);
@@ -137,7 +137,7 @@ std::string Members(const CampaignSummary& summary) {
 
 // What to type next; `first`: a row with what is most worth it, or an empty one.
 std::string Hints(const HintContext& context, bool finished, const std::vector<std::string>& first) {
-  const std::string directory = ShellQuoted(context.directory);
+  const std::string directory = PastedPath(context.directory);
   Table table({"", ""});
   if (!finished)
     table.AddRow({fmt::format("{} resume {}", context.program, directory), "# go on where it stopped"});
@@ -148,7 +148,7 @@ std::string Hints(const HintContext& context, bool finished, const std::vector<s
 
 // "gauntlet replay DIR 812 --svg case-7.svg"
 std::string ReplayHint(const HintContext& context, RunId run, std::string_view what, std::uint64_t number) {
-  return fmt::format("{} replay {} {} --svg {}-{}.svg", context.program, ShellQuoted(context.directory), run,
+  return fmt::format("{} replay {} {} --svg {}-{}.svg", context.program, PastedPath(context.directory), run,
                      what, number);
 }
 
@@ -184,7 +184,7 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
                   FormatFitness(one.mean_fitness), FormatCount(one.total_failures),
                   one.state_hash.substr(0, kShownDigits)});
   }
-  const std::string directory = ShellQuoted(context.directory);
+  const std::string directory = PastedPath(context.directory);
   return text + table.ToText() +
          Hints(context, summary.finished,
                {fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,

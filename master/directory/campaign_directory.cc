@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/parse_number.h"
+#include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "base/system/trusted_path.h"
 
@@ -76,6 +77,7 @@ Status MakeDirectories(const std::string& path) {
 bool IsUnfinished(const fs::path& dir) {
   std::error_code error;
   if (!fs::exists(dir / "lock", error)) return false;
+  if (fs::exists(dir / "origin.json", error)) return false;  // made once the database is there
   for (fs::directory_iterator entry(dir, error), end; !error && entry != end; entry.increment(error)) {
     if (!IsOwnName(entry->path().filename().string())) return false;
   }
@@ -123,17 +125,17 @@ Status CampaignDirectory::CheckCreatable(const std::string& dir) {
   if (Status trusted = directory.CheckTrusted(); !trusted) return trusted;
   if (fs::exists(directory.database_path(), error)) {
     return InvalidInput(
-        fmt::format("{0} holds a campaign already; go on with it by `gauntlet resume {0}`, or choose another "
+        fmt::format("{} holds a campaign already; go on with it by `gauntlet resume {}`, or choose another "
                     "directory",
-                    directory.path_));
+                    directory.path_, PastedPath(directory.path_)));
   }
   const bool empty = fs::is_empty(directory.path_, error);
   if (error) return SystemError(fmt::format("cannot read {}", directory.path_), error.value());
   if (!empty && !IsUnfinished(directory.path_)) {
-    return InvalidInput(fmt::format(
-        "{0} is not empty, and what it holds is no campaign that `gauntlet resume {0}` could go on "
-        "with; choose a directory that is empty or does not exist",
-        directory.path_));
+    return InvalidInput(
+        fmt::format("{} is not empty, and what it holds is no campaign that `gauntlet resume {}` could go on "
+                    "with; choose a directory that is empty or does not exist",
+                    directory.path_, PastedPath(directory.path_)));
   }
   return Ok{};
 }
@@ -159,9 +161,16 @@ Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
       return Error{
           ErrorKind::kNotFound,
           fmt::format(
-              "{0} is no campaign yet: its master was killed, or its disk was full, before it had made "
-              "campaign.db, and nothing was simulated. The same command with --dir {0} starts anew there",
-              directory.path_)};
+              "{} is no campaign yet: its master was killed, or its disk was full, before it had made "
+              "campaign.db, and nothing was simulated. The same command with --dir {} starts anew there",
+              directory.path_, PastedPath(directory.path_))};
+    }
+    if (fs::exists(directory.origin_path(), error)) {
+      return Error{
+          ErrorKind::kNotFound,
+          fmt::format("{} was a campaign, but its campaign.db is gone, deleted or moved away, and the "
+                      "runs with it; put it back, or choose another directory",
+                      directory.path_)};
     }
     return Error{ErrorKind::kNotFound,
                  fmt::format("{} is not a campaign: it holds no campaign.db", directory.path_)};

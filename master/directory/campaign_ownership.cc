@@ -9,10 +9,12 @@
 #include <optional>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
 #include "base/system/process_identity.h"
+#include "master/directory/kept_files.h"
 #include "master/directory/opened_files.h"
 #include "master/store/event_kinds.h"
 
@@ -33,11 +35,12 @@ LockOptions OptionsFor(const CampaignDirectory& directory) {
 }
 
 Status CheckOwned(const CampaignDirectory& directory, const std::optional<OpenedFiles>& identity,
-                  CampaignLock& lock, std::uint64_t epoch) {
+                  KeptFiles& kept, CampaignLock& lock, std::uint64_t epoch) {
   if (Status held = lock.Check(); !held) return held;
   if (identity) {
     if (Status same = identity->Check(); !same) return same;
   }
+  if (Status restored = kept.Restore(); !restored) return restored;
   Status newest = directory.CheckEpoch(epoch);
   if (newest || newest.error().kind != ErrorKind::kNotFound) return newest;
   // Somebody has deleted it. The lock file is the one that we hold and still names us, so no other master can
@@ -57,8 +60,10 @@ Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<Campa
   }
   // Of the files as they are once the store has them open.
   const auto identity = std::make_shared<std::optional<OpenedFiles>>();
-  const auto check = [directory, identity, lock = lock.get(), epoch = *epoch] {
-    return CheckOwned(directory, *identity, *lock, epoch);
+  const auto kept = std::make_shared<KeptFiles>(
+      std::vector{directory.experiment_path(), directory.searches_path(), directory.slurm_path()});
+  const auto check = [directory, identity, kept, lock = lock.get(), epoch = *epoch] {
+    return CheckOwned(directory, *identity, *kept, *lock, epoch);
   };
   SqliteStore::Options options;
   options.guard = check;

@@ -22,8 +22,8 @@ struct CampaignOwnership {
   std::uint64_t epoch = 0;
   CampaignOrigin origin;
   // Whether the campaign is still this master's: kInUse once a newer master has started or the lock is lost,
-  // kNotFound once the directory or a file that must not change was deleted or replaced. An epoch that was
-  // deleted is written again. Thread-safe.
+  // kNotFound once the directory or a file that must not change was deleted or replaced. An epoch or a
+  // description of the campaign that was deleted is written again. Thread-safe.
   std::function<Status()> check;
   // Commits nothing any more once `check` fails.
   std::unique_ptr<SqliteStore> store;

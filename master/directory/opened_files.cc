@@ -23,7 +23,7 @@ std::string Resolved(const std::string& path) {
 
 Result<OpenedFiles> OpenedFiles::Of(const CampaignDirectory& directory) {
   const std::string& database = directory.database_path();
-  const std::string go_on = fmt::format("go on with `gauntlet resume {}`", ShellQuoted(directory.path()));
+  const std::string go_on = fmt::format("go on with `gauntlet resume {}`", PastedPath(directory.path()));
   OpenedFiles opened;
   for (File& file : std::vector<File>{
            {Resolved(directory.path()), "the directory " + directory.path(),

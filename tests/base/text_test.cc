@@ -47,6 +47,14 @@ RC_GTEST_PROP(PrintableProperty, TheResultIsUtf8WithoutControlCharactersAndStays
   RC_ASSERT(Printable(shown) == shown);
 }
 
+TEST(PastedPath, IsTheSamePathForBashAndNeverAnOption) {
+  EXPECT_EQ(PastedPath("campaigns/flocking-1"), "campaigns/flocking-1");
+  EXPECT_EQ(PastedPath("-rf"), "./-rf");
+  EXPECT_EQ(PastedPath("a$(touch X)`id`"), "'a$(touch X)`id`'");
+  EXPECT_EQ(PastedPath("a\tb"), "$'a\\011b'");
+  EXPECT_EQ(PastedPath("it's\n\xff"), "$'it\\'s\\012\\377'");
+}
+
 TEST(ShellQuoted, QuotesOnlyWhatAShellWouldChange) {
   EXPECT_EQ(ShellQuoted("campaigns/flocking-1"), "campaigns/flocking-1");
   EXPECT_EQ(ShellQuoted("my runs"), "'my runs'");

@@ -318,18 +318,36 @@ INSTANTIATE_TEST_SUITE_P(
                     Loss{"Lock", "lock", false, "Another master may have begun"}),
     [](const auto& test) { return test.param.name; });
 
-TEST(DeletedEpochTest, IsWrittenAgainByTheMasterThatHoldsTheLock) {
+class DeletedDescriptionTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(DeletedDescriptionTest, IsWrittenAgainByTheMasterThatHoldsTheLock) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   SmallCampaign campaign;
   campaign.generations = 500;
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 1));
   ASSERT_TRUE(RunsDone(dir, 4)) << master->Err();
-  fs::remove(dir + "/epoch");
-  EXPECT_TRUE(Eventually([&] { return ReadFile(dir + "/epoch") == "1\n"; }, kPatience));
+  const std::string path = dir + "/" + GetParam();
+  const std::string text = ReadFile(path);
+  fs::remove(path);
+  EXPECT_TRUE(Eventually([&] { return fs::exists(path) && ReadFile(path) == text; }, kPatience));
   master->Signal(SIGTERM);
   EXPECT_EQ(master->Wait().exit_code, 3);
   EXPECT_EQ(Gauntlet({"show", dir}).exit_code, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, DeletedDescriptionTest, testing::Values("epoch", "experiment.toml"));
+
+TEST(DeletedDatabaseTest, IsToldOnceItsMasterIsGone) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  ASSERT_EQ(Gauntlet(EvolveArguments(SmallCampaign(), dir, 1)).exit_code, 0);
+  for (const char* name : {"campaign.db", "campaign.db-wal", "campaign.db-shm"}) fs::remove(dir + "/" + name);
+  for (const char* command : {"show", "resume"}) {
+    const ProcessResult refused = Gauntlet({command, dir});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, testing::HasSubstr("its campaign.db is gone")) << command;
+  }
 }
 
 }  // namespace

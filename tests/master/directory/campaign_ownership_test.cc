@@ -139,9 +139,10 @@ TEST_F(CampaignOwnershipTest, AMasterKilledWhileItMakesTheCampaignIsNoObstacle) 
     Result<CampaignOwnership> owner = Create();
     new CampaignOwnership(*std::move(owner));
   });
-  // As if it had been killed a moment before the database got its name.
+  // As if it had been killed a moment before the database got its name; origin.json comes after it.
   std::filesystem::rename(dir_ + "/campaign.db", dir_ + "/campaign.db.new");
-  for (const char* name : {"/campaign.db-wal", "/campaign.db-shm"}) std::filesystem::remove(dir_ + name);
+  for (const char* name : {"/campaign.db-wal", "/campaign.db-shm", "/origin.json"})
+    std::filesystem::remove(dir_ + name);
   Result<CampaignOwnership> owner = Create();
   ASSERT_TRUE(owner.ok()) << owner.error().message;
 }
