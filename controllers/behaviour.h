@@ -98,6 +98,9 @@ struct ScenarioInfo {
   std::span<const MetricInfo> metrics;
   std::span<const FailureType> failure_types = {};
   std::string_view untyped_failure = "without a type";  // a total failure whose type is -1
+  // What is 1 after a run in which a test case broke the swarm, when cases are confirmed and made smaller:
+  // "total_failure" or a yes/no metric.
+  std::string_view failing = "total_failure";
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   std::function<sim::ArenaRequirements(const sim::Parameters& parameters, const sim::TestCase& test_case)>
       requirements = nullptr;

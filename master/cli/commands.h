@@ -44,6 +44,7 @@ void AddEvaluate(CommandParser& parser);
 void AddResume(CommandParser& parser);
 void AddShow(CommandParser& parser);
 void AddReplay(CommandParser& parser);
+void AddConfirm(CommandParser& parser);
 void AddCompare(CommandParser& parser);
 void AddExport(CommandParser& parser);
 void AddStudy(CommandParser& parser);
@@ -56,7 +57,7 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,  AddReplay, AddCompare, AddStudy,
-    AddExport, AddSubmit, AddMaster,   AddStatus, AddWatch, AddStop,   AddList};
+    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,   AddReplay, AddConfirm, AddCompare,
+    AddStudy,  AddExport, AddSubmit,   AddMaster, AddStatus, AddWatch,  AddStop,    AddList};
 
 }  // namespace gauntlet::master

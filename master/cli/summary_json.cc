@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "master/cli/confirmation_table.h"
 #include "master/cli/summary.h"
 #include "master/report/verdict_text.h"
 #include "master/session/reproduction_bundle.h"
@@ -146,26 +147,31 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
           {"finished", summary.finished}};
 }
 
-}  // namespace
-
-std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
-  if (summary.searches.empty()) return JsonText(OneSearch(summary, directory));
+Json Sweep(const CampaignSummary& summary, const std::string& directory) {
   Json searches = Json::array();
   for (std::size_t i = 0; i < summary.searches.size(); ++i) {
     Json search = {{"number", i + 1}, {"settings", summary.searches[i].settings}};
     search.update(OneSearch(summary.searches[i], directory));
     searches.push_back(std::move(search));
   }
-  return JsonText({{"experiment", summary.experiment},
-                   {"directory", directory},
-                   {"search", summary.search},
-                   {"runs_done", summary.runs_done},
-                   {"runs_failed", summary.runs_failed},
-                   {"total_failures", summary.total_failures},
-                   {"nondeterministic", summary.nondeterministic > 0},
-                   {"verdicts_of_one_worker", summary.lone_verdicts},
-                   {"finished", summary.finished},
-                   {"searches", std::move(searches)}});
+  return {{"experiment", summary.experiment},
+          {"directory", directory},
+          {"search", summary.search},
+          {"runs_done", summary.runs_done},
+          {"runs_failed", summary.runs_failed},
+          {"total_failures", summary.total_failures},
+          {"nondeterministic", summary.nondeterministic > 0},
+          {"verdicts_of_one_worker", summary.lone_verdicts},
+          {"finished", summary.finished},
+          {"searches", std::move(searches)}};
+}
+
+}  // namespace
+
+std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
+  Json json = summary.searches.empty() ? OneSearch(summary, directory) : Sweep(summary, directory);
+  json["confirmed"] = ConfirmationsJson(summary.confirmations);
+  return JsonText(json);
 }
 
 std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const CampaignSummary* summary,

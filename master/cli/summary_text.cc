@@ -6,6 +6,7 @@
 
 #include "base/printable.h"
 #include "base/shell_quoted.h"
+#include "master/cli/confirmation_table.h"
 #include "master/cli/summary.h"
 #include "master/cli/table.h"
 #include "master/report/verdict_text.h"
@@ -135,6 +136,13 @@ std::string Members(const CampaignSummary& summary) {
   return text + table.ToText();
 }
 
+// Cases that were simulated with fresh seeds.
+std::string Confirmed(const CampaignSummary& summary) {
+  if (summary.confirmations.empty()) return {};
+  return "\nCases simulated again with fresh seeds\n" +
+         ConfirmationsText(summary.confirmations, kMostMembers);
+}
+
 // What to type next; `first`: a row with what is most worth it, or an empty one.
 std::string Hints(const HintContext& context, bool finished, const std::vector<std::string>& first) {
   const std::string directory = PastedPath(context.directory);
@@ -185,7 +193,7 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
                   one.state_hash.substr(0, kShownDigits)});
   }
   const std::string directory = PastedPath(context.directory);
-  return text + table.ToText() +
+  return text + table.ToText() + Confirmed(summary) +
          Hints(context, summary.finished,
                {fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,
                             summary.searches.size()),
@@ -207,7 +215,7 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
                         FormatCount(summary.runs_done));
   }
   text += Overview(summary) + FailuresByType(summary) + RunsWithoutAResult(summary, context.directory) +
-          Generations(summary) + Members(summary);
+          Generations(summary) + Members(summary) + Confirmed(summary);
 
   std::vector<std::string> replay;
   if (const auto members = Toughest(summary); !members.empty()) {

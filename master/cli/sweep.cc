@@ -162,7 +162,8 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
     const Result<Experiment> experiment = LoadExperimentWith(options, all);
     if (!experiment) return experiment.error();
     if (RowOf(*experiment).given_cases)
-      return InvalidInput("search.algorithm = cases needs a list of cases: use 'evaluate'");
+      return InvalidInput(fmt::format("search.algorithm = {} needs a list of cases: use '{}'",
+                                      experiment->search.algorithm, RowOf(*experiment).command));
     plan.experiment = *experiment;
     // A seed that was drawn (--seed random) is that of them all.
     if (!plans.empty() && seeds->empty()) plan.experiment.seed = plans.front().experiment.seed;

@@ -104,8 +104,9 @@ Result<sim::TestCase> PopulationSearch::DrawCase(IndividualId id) const {
   return generator_.RandomTestCase(random);
 }
 
-EvaluationRequest PopulationSearch::Request(const Individual& individual, std::uint32_t generation) {
-  const std::uint32_t evaluation = individual.evaluations + individual.failed_evaluations;
+EvaluationRequest PopulationSearch::Request(const Individual& individual, std::uint32_t generation,
+                                            std::uint32_t ahead) {
+  const std::uint32_t evaluation = individual.evaluations + individual.failed_evaluations + ahead;
   pending_.push_back({individual.id, evaluation});
   return {.individual = individual.id,
           .evaluation = evaluation,

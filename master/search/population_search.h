@@ -45,8 +45,9 @@ class PopulationSearch : public SearchAlgorithm {
   static Individual MakeIndividual(IndividualId id, sim::TestCase test_case);
   // The random case that individual `id` starts life with. Error: the ranges leave no room for a valid case.
   Result<sim::TestCase> DrawCase(IndividualId id) const;
-  // The individual's next evaluation, whose outcome is waited for from now on.
-  EvaluationRequest Request(const Individual& individual, std::uint32_t generation);
+  // The individual's next evaluation, whose outcome is waited for from now on; `ahead`: how many of it have
+  // been asked for and not been told.
+  EvaluationRequest Request(const Individual& individual, std::uint32_t generation, std::uint32_t ahead = 0);
   // Adds the outcome to the individual's account and aggregates its fitness anew. An evaluation that was not
   // completed, or whose fitness is not finite (a controller under test may return anything), is counted as
   // failed and left out of the aggregate.

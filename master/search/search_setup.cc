@@ -33,6 +33,10 @@ std::uint64_t HashOf(std::span<const sim::TestCase> cases) {
 
 }  // namespace
 
+std::uint64_t CaseHash(const sim::TestCase& test_case) {
+  return HashOf({&test_case, 1});
+}
+
 sim::TestCase EmptyArena(const ArenaSpec& arena) {
   sim::TestCase test_case;
   test_case.side_x = arena.side;
@@ -54,7 +58,7 @@ std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, con
                       std::uint32_t evaluation, std::uint32_t replicate) {
   constexpr std::uint32_t kSearch = 1;  // every search counts as the first of its campaign
   const SearchRow& row = RowOf(experiment);
-  const std::uint64_t who = row.seeds_of_cases ? HashOf({&test_case, 1}) : individual;
+  const std::uint64_t who = row.seeds_of_cases ? CaseHash(test_case) : individual;
   return sim::DeriveSeed(experiment.seed, row.purpose, kSearch, who, evaluation, replicate);
 }
 

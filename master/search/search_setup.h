@@ -20,6 +20,9 @@ struct SearchSetup {
   std::vector<sim::TestCase> cases;     // of a search through given cases
 };
 
+// Of the arena, its robots and obstacles: equal for the same case under another name.
+std::uint64_t CaseHash(const sim::TestCase& test_case);
+
 // The experiment's arena without obstacles.
 sim::TestCase EmptyArena(const ArenaSpec& arena);
 

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "controllers/registry.h"
 #include "master/search/case_list_search.h"
+#include "master/search/confirmation_search.h"
 #include "master/search/genetic_algorithm.h"
 #include "master/search/random_search.h"
 #include "master/search/steady_state_search.h"
@@ -17,8 +18,8 @@
 namespace gauntlet::master {
 
 std::span<const SearchRow> Searches() {
-  static const std::array rows = {GeneticRow(), SteadyStateRow(), RandomRow(), CaseListRow(),
-                                  ResimulationRow()};
+  static const std::array rows = {GeneticRow(),  SteadyStateRow(),  RandomRow(),
+                                  CaseListRow(), ResimulationRow(), ConfirmationRow()};
   return rows;
 }
 
@@ -57,8 +58,8 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment
   const SearchRow& row = RowOf(experiment);
   if (row.given_cases) {
     if (!cases.empty()) return row.make({experiment, {}, search_id, std::move(cases)});
-    return InvalidInput(fmt::format(
-        "search.algorithm = \"{}\" needs a list of test cases: use `gauntlet evaluate`", row.info.name));
+    return InvalidInput(fmt::format("search.algorithm = \"{}\" needs a list of test cases: use `gauntlet {}`",
+                                    row.info.name, row.command));
   }
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
   if (scenario == nullptr) {

@@ -30,7 +30,8 @@ struct SearchRow {
   // Error: the ranges of genes leave no room for a valid case, or there is nothing to search.
   Result<std::unique_ptr<SearchAlgorithm>> (*make)(const SearchSetup& setup) = nullptr;
   sim::SeedPurpose purpose = sim::SeedPurpose::kSearch;  // of the seeds of its runs
-  bool given_cases = false;  // goes through SearchSetup::cases; made by `evaluate` alone
+  bool given_cases = false;  // goes through SearchSetup::cases; made by `command` alone
+  std::string_view command = "evaluate";
   // The seeds of a run follow from its case, not from its individual's number: a case has the same ones at
   // any place of a list, and so have clones.
   bool seeds_of_cases = false;

@@ -191,7 +191,11 @@ class Campaigns final : public CampaignService {
     const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
     if (!campaign) return campaign.error();
     Result<CampaignSummary> summary = Summarise(campaign->plans, *campaign->view.store);
-    if (summary) summary->as_of = campaign->view.as_of;
+    if (!summary) return summary;
+    summary->as_of = campaign->view.as_of;
+    Result<std::vector<Confirmation>> confirmations = ReadConfirmations(dir);
+    if (!confirmations) return confirmations.error();
+    summary->confirmations = *std::move(confirmations);
     return summary;
   }
 

@@ -1,0 +1,152 @@
+// gauntlet confirm: do cases fail again, with seeds that took no part in finding them?
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/parse_number.h"
+#include "base/shell_quoted.h"
+#include "master/cases/case_file.h"
+#include "master/cli/commands.h"
+#include "master/cli/confirmation_table.h"
+#include "master/cli/run_campaign.h"
+#include "proto/json_text.h"
+
+namespace gauntlet::master {
+namespace {
+
+struct ConfirmOptions : RunningOptions {
+  std::string directory;
+  std::vector<std::string> cases;
+  bool all_failing = false;
+  std::string replicates;
+};
+
+// The cases that are asked about: runs by their numbers, and files.
+Result<QuestionedCampaign> CasesOf(const ConfirmOptions& options) {
+  if (options.cases.empty() != options.all_failing) {
+    return InvalidInput("which cases? Either RUN_ID or FILE..., or --all-failing");
+  }
+  if (options.all_failing) {
+    Result<QuestionedCampaign> failing = FailingCases(options.directory);
+    if (failing && failing->cases.empty())
+      return InvalidInput(
+          fmt::format("{}: no run has failed, so there is no case to confirm", options.directory));
+    return failing;
+  }
+  std::vector<RunId> runs;
+  std::vector<CaseInQuestion> files;
+  for (const std::string& text : options.cases) {
+    if (std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) {
+      const Result<std::uint64_t> run = ParseRunId(text);
+      if (!run) return run.error();
+      runs.push_back(*run);
+      continue;
+    }
+    Result<LoadedCase> loaded = LoadCase(text);
+    if (!loaded) return loaded.error();
+    files.push_back({std::filesystem::path(text).filename().string(), 0, std::move(loaded->test_case)});
+  }
+  Result<QuestionedCampaign> questioned = CasesOfRuns(options.directory, runs);
+  if (!questioned) return questioned;
+  if (!files.empty() && questioned->plans.size() > 1) {
+    return InvalidInput(fmt::format(
+        "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
+        options.directory, questioned->plans.size(), files.front().name));
+  }
+  std::ranges::move(files, std::back_inserter(questioned->cases));
+  return questioned;
+}
+
+Result<int> ParseReplicates(const std::string& text) {
+  if (text.empty()) return 0;
+  const auto number = ParseNumber<int>(text);
+  if (number && *number >= 1 && *number <= 100000) return *number;
+  return InvalidInput(fmt::format("--replicates {}: a whole number from 1 to 100000 is needed", text));
+}
+
+// What is known by now of the cases that were asked about.
+Status Print(CommandContext& context, const ConfirmOptions& options, const QuestionedCampaign& questioned) {
+  Result<std::vector<Confirmation>> known = ReadConfirmations(options.directory);
+  if (!known) return known.error();
+  std::vector<std::uint64_t> wanted;
+  for (const CaseInQuestion& one : questioned.cases) {
+    wanted.push_back(ConfirmationKey(questioned.plans[one.search].experiment, one.test_case));
+  }
+  std::vector<Confirmation> shown;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto found = std::ranges::find(*known, wanted[i], &Confirmation::key);
+    if (found == known->end()) continue;
+    shown.push_back(*found);
+    shown.back().name = questioned.cases[i].name;
+  }
+  context.out << (options.json ? JsonText({{"cases", ConfirmationsJson(shown)}}) : ConfirmationsText(shown))
+              << std::flush;
+  return Ok{};
+}
+
+ExitCode RunConfirm(CommandContext& context, const ConfirmOptions& options) {
+  const Result<int> replicates = ParseReplicates(options.replicates);
+  if (!replicates) return Fail(context, replicates.error());
+  const Result<int> workers = ParseWorkers(options.workers);
+  if (!workers) return Fail(context, workers.error());
+  const Result<QuestionedCampaign> questioned = CasesOf(options);
+  if (!questioned) return Fail(context, questioned.error());
+  const Result<std::vector<Confirmation>> known = ReadConfirmations(options.directory);
+  if (!known) return Fail(context, known.error());
+  const ConfirmationPlan plan = PlanConfirmation(options.directory, *questioned, *known, *replicates);
+  if (plan.searches.empty()) {
+    const Status printed = Print(context, options, *questioned);
+    return printed ? kExitDone : Fail(context, printed.error());
+  }
+
+  CampaignRun campaign;
+  campaign.directory = plan.directory;
+  campaign.announcement =
+      fmt::format("{} cases with fresh seeds, {} worker{}, in {}", questioned->cases.size(), *workers,
+                  *workers == 1 ? "" : "s", plan.directory);
+  campaign.serving = options;
+  campaign.session.workers = *workers;
+  campaign.run = [&](const SessionOptions& session) {
+    std::error_code none;
+    return std::filesystem::exists(plan.directory + "/campaign.db", none)
+               ? context.campaigns.Resume(plan.directory, session)
+               : context.campaigns.Start(plan.directory, plan.searches, session);
+  };
+  campaign.report = [&](const SessionReport&) { return Print(context, options, *questioned); };
+  return RunCampaign(context, campaign);
+}
+
+}  // namespace
+
+void AddConfirm(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("confirm", "do cases fail again with fresh seeds, and how often?", RunConfirm);
+  AddDirectory(command, options.directory);
+  command.add_option("CASE", options.cases, "runs of the campaign whose cases are meant, or case files");
+  command.add_flag("--all-failing", options.all_failing, "every case of the campaign that has failed once");
+  AddValue(command, "--replicates", "N", options.replicates,
+           "exactly N runs per case, for a narrower interval");
+  AddRunningOptions(command, options);
+  command.footer(
+      R"(A search keeps what failed once, and some of that was luck. Here every case is simulated with seeds that
+took no part in choosing it, until it has failed 5 times or not failed 6 times (at most 10 runs). What counts
+as failing is the scenario's: a total failure; of foraging, that no item reached the nest.
+
+Verdicts: fail (confirmed: in at least half of the runs), flaky (less often), pass (never), error (a run ended
+without a result). All is kept in DIR/confirm, is shown by 'show', and leaves the campaign as it was; a case
+that is known already is not simulated again. After Ctrl-C the same command goes on.
+
+Examples:
+  gauntlet confirm DIR 812
+  gauntlet confirm DIR --all-failing --json
+  gauntlet confirm DIR 812 817 --replicates 100
+  gauntlet confirm DIR my-case.json)");
+}
+
+}  // namespace gauntlet::master

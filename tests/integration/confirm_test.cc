@@ -1,0 +1,108 @@
+// gauntlet confirm with real processes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+using testing::HasSubstr;
+
+nlohmann::json Json(const std::vector<std::string>& arguments) {
+  const ProcessResult result = Gauntlet(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return nlohmann::json::parse(result.out);
+}
+
+std::vector<std::string> ConfirmAll(const std::string& dir, int workers) {
+  return {"confirm", dir, "--all-failing", "--workers", std::to_string(workers), "--json", "--quiet"};
+}
+
+// Some of its cases fail.
+void MakeCampaign(const std::string& dir) {
+  ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "60", "--dir", dir, "--quiet"}).exit_code, 0);
+}
+
+TEST(ConfirmTest, TheSameForAnyNumberOfWorkersAndTheCampaignStaysAsItWas) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "a");
+  std::filesystem::copy(scratch / "a", scratch / "b", std::filesystem::copy_options::recursive);
+  const nlohmann::json before = Json({"show", scratch / "a", "--json"});
+  EXPECT_TRUE(before["confirmed"].empty());
+  const nlohmann::json one = Json(ConfirmAll(scratch / "a", 1));
+  EXPECT_EQ(one, Json(ConfirmAll(scratch / "b", 3)));
+  ASSERT_FALSE(one["cases"].empty());
+  for (const nlohmann::json& each : one["cases"]) {
+    const int k = each["k"];
+    const int n = each["n"];
+    EXPECT_EQ(each["verdict"], 2 * k >= n ? "fail" : k > 0 ? "flaky" : "pass");
+    EXPECT_TRUE(k == 5 || n - k == 6) << each;
+    EXPECT_LE(each["interval"][0].get<double>() * n, k);
+    EXPECT_GE(each["interval"][1].get<double>() * n, k);
+  }
+  const nlohmann::json after = Json({"show", scratch / "a", "--json"});
+  EXPECT_EQ(after["state_hash"], before["state_hash"]);
+  EXPECT_EQ(after["runs_done"], before["runs_done"]);
+  EXPECT_EQ(after["confirmed"], one["cases"]);
+}
+
+TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  const nlohmann::json all = Json(ConfirmAll(scratch / "c", 2));
+  const std::string run = all["cases"][0]["run"].dump();
+  const ProcessResult again = Gauntlet({"confirm", scratch / "c", run, "--json"});
+  EXPECT_EQ(nlohmann::json::parse(again.out)["cases"][0], all["cases"][0]);
+  EXPECT_EQ(again.err, "");
+  const nlohmann::json more =
+      Json({"confirm", scratch / "c", run, "--replicates", "20", "--json", "--quiet"});
+  EXPECT_EQ(more["cases"][0]["n"], 20);
+  EXPECT_EQ(Json({"show", scratch / "c", "--json"})["confirmed"][0]["n"], 20);
+}
+
+TEST(ConfirmTest, EndsAsUndisturbedWhenItIsKilled) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "whole");
+  std::filesystem::copy(scratch / "whole", scratch / "killed", std::filesystem::copy_options::recursive);
+  const nlohmann::json whole = Json(ConfirmAll(scratch / "whole", 2));
+  for (const auto& [entry, wanted] : {std::pair("status.json", 1), std::pair("campaign.db-wal", 2)}) {
+    const std::unique_ptr<Process> master = StartGauntlet(ConfirmAll(scratch / "killed", wanted));
+    const auto begun = [&] {
+      std::error_code none;
+      for (const auto& call : std::filesystem::directory_iterator(scratch / "killed/confirm", none)) {
+        if (std::filesystem::exists(call.path() / entry, none)) return true;
+      }
+      return false;
+    };
+    EXPECT_TRUE(Eventually(begun, kPatience));
+    Json({"show", scratch / "killed", "--json"});  // works meanwhile
+    master->Signal(SIGKILL);
+    master->Wait();
+  }
+  EXPECT_EQ(Json(ConfirmAll(scratch / "killed", 2)), whole);
+}
+
+TEST(ConfirmTest, SaysWhatIsWrong) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  const auto refused = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"confirm", scratch / "c"});
+    const ProcessResult result = Gauntlet(arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(refused({}), HasSubstr("--all-failing"));
+  EXPECT_THAT(refused({"1", "--all-failing"}), HasSubstr("which cases?"));
+  EXPECT_THAT(refused({"999999"}), HasSubstr("there is no run 999999"));
+  EXPECT_THAT(refused({"1", "--replicates", "0"}), HasSubstr("--replicates 0"));
+  EXPECT_THAT(refused({"no-such.json"}), HasSubstr("no-such.json"));
+}
+
+}  // namespace
+}  // namespace gauntlet::testing_support
