@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -73,11 +74,16 @@ ControllerInfo ControllerRow(std::string_view name, std::string_view scenario, s
           [&table, make](const sim::Parameters& resolved) { return make(table.Read(resolved)); }};
 }
 
+// Values that say that there was nothing to measure: of what is never negative, and of a coordinate, which no
+// arena has (sim::kMaxArenaSide).
+inline constexpr double kNotMeasured = -1.0;
+inline constexpr double kNowhere = -1000.0;
+
 // One of the values that a scenario reports of a run.
 struct MetricInfo {
-  std::string_view name;     // "food_window_*" stands for a family, food_window_1, food_window_2...
-  std::string_view unit;     // "m", "s", "rad", "yes/no" for 0/1, "" for counts and ratios
-  bool may_be_none = false;  // -1 then says that there was nothing to measure
+  std::string_view name;       // "food_window_*" stands for a family, food_window_1, food_window_2...
+  std::string_view unit;       // "m", "s", "rad", "yes/no" for 0/1, "" for counts and ratios
+  std::optional<double> none;  // the value that says that there was nothing to measure
   std::string_view description;
   bool descriptor = false;  // tells how a swarm behaved, so a search may steer by it
 };
@@ -86,6 +92,13 @@ struct MetricInfo {
 struct FailureType {
   int type = 0;  // SwarmFailure::type: stored, so do not renumber
   std::string name;
+};
+
+// Where a failed run failed, so that two failures can be told to be the same one.
+struct FailurePlace {
+  std::string_view x;  // metrics, m from the arena's centre
+  std::string_view y;
+  double same_within = 0.0;  // m: failures that are no farther apart are the same one
 };
 
 struct ScenarioInfo {
@@ -101,6 +114,7 @@ struct ScenarioInfo {
   // What is 1 after a run in which a test case broke the swarm, when cases are confirmed and made smaller:
   // "total_failure" or a yes/no metric.
   std::string_view failing = "total_failure";
+  std::optional<FailurePlace> failure_place = {};  // nothing: its failures have no place that repeats
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   std::function<sim::ArenaRequirements(const sim::Parameters& parameters, const sim::TestCase& test_case)>
       requirements = nullptr;

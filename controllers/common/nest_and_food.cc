@@ -1,6 +1,8 @@
 #include "controllers/common/nest_and_food.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "base/number_text.h"
@@ -15,6 +17,21 @@ constexpr int kMaxRobots = 100;  // also the largest value of the parameter `rob
 NestAndFood WithRobots(NestAndFood site, std::optional<int> robots) {
   site.robots = robots.value_or(site.robots);
   return site;
+}
+
+double UpperMedian(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double StandardDeviation(const std::vector<double>& values) {
+  const auto count = static_cast<double>(values.size());
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - sum / count) * (value - sum / count);
+  return std::sqrt(squares / count);
 }
 
 }  // namespace
@@ -190,6 +207,21 @@ sim::Outcome NestAndFoodScenario::Judge(const sim::Observer& observer) const {
 
 NestAndFoodScenario::Metrics NestAndFoodScenario::ItemMetrics() const {
   return items_.Metrics(static_cast<int>(std::count(carrying_.begin(), carrying_.end(), 1)));
+}
+
+void NestAndFoodScenario::AddWhereabouts(const sim::Observer& observer, Metrics& metrics) {
+  std::array<std::vector<double>, 2> places;  // x, y
+  for (sim::Tick tick = 0; tick <= observer.last_tick(); tick += sim::kTicksPerSecond) {
+    for (const sim::RobotState& robot : observer.At(tick)) {
+      places[0].push_back(robot.x);
+      places[1].push_back(robot.y);
+    }
+  }
+  const std::array spreads = {StandardDeviation(places[0]), StandardDeviation(places[1])};
+  metrics.insert(metrics.end(), {{"median_x", UpperMedian(places[0])},
+                                 {"median_y", UpperMedian(places[1])},
+                                 {"spread_x", spreads[0]},
+                                 {"spread_y", spreads[1]}});
 }
 
 std::vector<sim::Annotation> NestAndFoodScenario::Places() const {

@@ -137,6 +137,8 @@ class NestAndFoodScenario : public sim::Scenario {
   // Fitness, lost robots and a total failure when there is no item in the nest.
   sim::Outcome Judge(const sim::Observer& observer) const;
   Metrics ItemMetrics() const;
+  // median_x, median_y, spread_x and spread_y: median and standard deviation, m, over robots and seconds.
+  static void AddWhereabouts(const sim::Observer& observer, Metrics& metrics);
   // Nest and food.
   std::vector<sim::Annotation> Places() const;
   // A trapped robot, which kept to its place from `since` on.

@@ -11,9 +11,9 @@ using sim::kDegree;
 using sim::kPi;
 
 constexpr std::array kMetrics = std::to_array<MetricInfo>({
-    {"light_distance", "m", false, "mean distance of the robots to the light at the end"},
-    {"stopped", "", false, "share of the robots that moved less than 2 cm in the last 30 s", true},
-    {"clusters", "", false, "groups of robots that are linked by line of sight at the end", true},
+    {"light_distance", "m", {}, "mean distance of the robots to the light at the end"},
+    {"stopped", "", {}, "share of the robots that moved less than 2 cm in the last 30 s", true},
+    {"clusters", "", {}, "groups of robots that are linked by line of sight at the end", true},
 });
 
 constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({

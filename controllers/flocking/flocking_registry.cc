@@ -12,17 +12,19 @@ using sim::kDegree;
 using sim::kPi;
 
 constexpr std::array kMetrics = std::to_array<MetricInfo>({
-    {"angular_order", "", false, "agreement of the headings of the birds left, 0 to 1 (thesis 4.5.1)"},
-    {"birds_left", "", false, "birds in the prey's cluster at the end"},
-    {"proportion_left", "", false, "the same as a share of the birds"},
-    {"arrival_time", "s", false, "end of the run: the prey's arrival, or the time limit"},
-    {"timeout", "yes/no", false, "whether the prey never arrived"},
-    {"prey_path_length", "m", false, "of the planned path"},
-    {"splits", "", false, "times birds left the prey's cluster for good"},
-    {"split_time", "s", true, "of the last split", true},
-    {"split_angle", "rad", true, "between the headings of both clusters around the last split, 0 to pi",
-     true},
-    {"split_speed_ratio", "", true, "slower cluster over faster one around the last split"},
+    {"angular_order", "", {}, "agreement of the headings of the birds left, 0 to 1 (thesis 4.5.1)"},
+    {"birds_left", "", {}, "birds in the prey's cluster at the end"},
+    {"proportion_left", "", {}, "the same as a share of the birds"},
+    {"arrival_time", "s", {}, "end of the run: the prey's arrival, or the time limit"},
+    {"timeout", "yes/no", {}, "whether the prey never arrived"},
+    {"prey_path_length", "m", {}, "of the planned path"},
+    {"splits", "", {}, "times birds left the prey's cluster for good"},
+    {"split_time", "s", kNotMeasured, "of the last split", true},
+    {"split_angle", "rad", kNotMeasured,
+     "between the headings of both clusters around the last split, 0 to pi", true},
+    {"split_speed_ratio", "", kNotMeasured, "slower cluster over faster one around the last split"},
+    {"split_x", "m", kNowhere, "where the last split happened: mean of those who left", true},
+    {"split_y", "m", kNowhere, "where the last split happened: mean of those who left", true},
 });
 
 constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
@@ -138,6 +140,7 @@ const ScenarioInfo& FlockingScenarioInfo() {
           .metrics = kMetrics,
           .failure_types = FailureTypes(),
           .untyped_failure = "without a split",
+          .failure_place = FailurePlace{"split_x", "split_y", 1.2},  // chosen: a fifth of the arena's side
       });
   return info;
 }

@@ -103,9 +103,10 @@ sim::Outcome FlockingScenario::Evaluate(const sim::Observer& observer) {
       {"disc", "goal", {goal_}, settings_.goal_radius, -1, {}},
   };
 
-  double split_time = -1.0;
-  double split_angle = -1.0;
-  double split_speed_ratio = -1.0;
+  double split_time = kNotMeasured;
+  double split_angle = kNotMeasured;
+  double split_speed_ratio = kNotMeasured;
+  sim::Vec2 split_place(kNowhere, kNowhere);
   if (const SplitEvent* split = LastSplit(history.events)) {
     const RelativeMotion motion = CompareMotion(observer, *split, settings_.split.half_window);
     const int type = FailureTypeOf(motion);
@@ -113,8 +114,9 @@ sim::Outcome FlockingScenario::Evaluate(const sim::Observer& observer) {
       outcome.failure.type = type;
       outcome.failure.label = FailureLabel(type);
     }
-    const sim::Vec2 place = MeanPosition(observer, split->birds, split->tick);
-    outcome.annotations.push_back({"split", FailureLabel(type), {place}, 0.0, split->tick, split->birds});
+    split_place = MeanPosition(observer, split->birds, split->tick);
+    outcome.annotations.push_back(
+        {"split", FailureLabel(type), {split_place}, 0.0, split->tick, split->birds});
     split_time = split->tick * sim::kTickSeconds;
     split_angle = motion.angle;
     split_speed_ratio = motion.speed_ratio;
@@ -131,6 +133,8 @@ sim::Outcome FlockingScenario::Evaluate(const sim::Observer& observer) {
       {"split_time", split_time},
       {"split_angle", split_angle},
       {"split_speed_ratio", split_speed_ratio},
+      {"split_x", split_place.x()},
+      {"split_y", split_place.y()},
   };
   return outcome;
 }

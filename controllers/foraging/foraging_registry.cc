@@ -13,17 +13,24 @@ using sim::kDegree;
 using sim::kPi;
 
 constexpr std::array kMetrics = std::to_array<MetricInfo>({
-    {"food_taken", "", false, "items taken from the food"},
-    {"food_carried", "", false, "items in the robots' hands at the end"},
-    {"food_lost", "", false, "items that a robot lost on its way"},
-    {"first_item_time", "s", true, "when the first item was dropped at the nest"},
-    {"first_path_time", "s", true, "when beacons first joined nest and food", true},
-    {"condition_1", "yes/no", false, "no path of beacons ever (thesis 5.4.2)"},
-    {"condition_2", "yes/no", false, "no item dropped at the nest (thesis 5.4.2)"},
-    {"trapped_robots", "", false, "robots that stayed within a small place for the last 120 s, beacons aside",
+    {"food_taken", "", {}, "items taken from the food", true},
+    {"food_carried", "", {}, "items in the robots' hands at the end"},
+    {"food_lost", "", {}, "items that a robot lost on its way"},
+    {"first_item_time", "s", kNotMeasured, "when the first item was dropped at the nest"},
+    {"first_path_time", "s", kNotMeasured, "when beacons first joined nest and food", true},
+    {"condition_1", "yes/no", {}, "no path of beacons ever (thesis 5.4.2)"},
+    {"condition_2", "yes/no", {}, "no item dropped at the nest (thesis 5.4.2)"},
+    {"trapped_robots",
+     "",
+     {},
+     "robots that stayed within a small place for the last 120 s, beacons aside",
      true},
-    {"food_window_*", "", false, "items dropped in each 120 s"},
-    {"mean_robots_*", "", false, "robots in that state, mean over the run"},
+    {"median_x", "m", {}, "of the robots' places in every second of the run", true},
+    {"median_y", "m", {}, "of the robots' places in every second of the run", true},
+    {"spread_x", "m", {}, "standard deviation of the robots' places over the run", true},
+    {"spread_y", "m", {}, "standard deviation of the robots' places over the run", true},
+    {"food_window_*", "", {}, "items dropped in each 120 s"},
+    {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
 });
 
 constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({

@@ -100,6 +100,7 @@ sim::Outcome ForagingScenario::Evaluate(const sim::Observer& observer) {
                           {"condition_1", NoPath() ? 1.0 : 0.0},
                           {"condition_2", no_food ? 1.0 : 0.0},
                           {"trapped_robots", trapped}});
+  AddWhereabouts(observer, outcome.metrics);
   items_.AddWindows(outcome.metrics);
   states_.AddMeans(outcome.metrics);
   outcome.annotations = Annotate(observer, outcome.lost);

@@ -15,22 +15,28 @@ using sim::kPi;
 constexpr double kPickupMargin = 0.025;  // m: an item is handed out 0.36 m from the source's centre
 
 constexpr std::array kMetrics = std::to_array<MetricInfo>({
-    {"food_taken", "", false, "items taken from the source"},
-    {"food_carried", "", false, "items in the robots' hands at the end"},
-    {"food_lost", "", false, "items that a robot lost on its way"},
-    {"first_item_time", "s", true, "when the first item was dropped in the nest"},
-    {"transfers", "", false, "items handed over from robot to robot", true},
-    {"broken_transfers", "", false, "hand-overs that were begun and not finished"},
-    {"waits", "", false, "how often a robot stopped to offer an item"},
-    {"wait_timeouts", "", false, "how often it carried on because nobody came"},
-    {"mean_waiting_time", "s", true, "from stopping to the beginning of a hand-over or carrying on"},
-    {"transfer_time", "s", false, "spent in hand-overs, sum over the givers"},
-    {"trapped_robots", "", false, "robots that stayed within a small place for the last 120 s", true},
-    {"partition_length", "m", false, "mean of the robots at the end"},
-    {"food_window_*", "", false, "items dropped in each 120 s"},
-    {"partition_length_window_*", "m", false,
+    {"food_taken", "", {}, "items taken from the source", true},
+    {"food_carried", "", {}, "items in the robots' hands at the end"},
+    {"food_lost", "", {}, "items that a robot lost on its way"},
+    {"first_item_time", "s", kNotMeasured, "when the first item was dropped in the nest"},
+    {"transfers", "", {}, "items handed over from robot to robot", true},
+    {"broken_transfers", "", {}, "hand-overs that were begun and not finished"},
+    {"waits", "", {}, "how often a robot stopped to offer an item", true},
+    {"wait_timeouts", "", {}, "how often it carried on because nobody came"},
+    {"mean_waiting_time", "s", kNotMeasured, "from stopping to the beginning of a hand-over or carrying on"},
+    {"transfer_time", "s", {}, "spent in hand-overs, sum over the givers"},
+    {"trapped_robots", "", {}, "robots that stayed within a small place for the last 120 s", true},
+    {"partition_length", "m", {}, "mean of the robots at the end"},
+    {"median_x", "m", {}, "of the robots' places in every second of the run", true},
+    {"median_y", "m", {}, "of the robots' places in every second of the run", true},
+    {"spread_x", "m", {}, "standard deviation of the robots' places over the run", true},
+    {"spread_y", "m", {}, "standard deviation of the robots' places over the run", true},
+    {"food_window_*", "", {}, "items dropped in each 120 s"},
+    {"partition_length_window_*",
+     "m",
+     {},
      "mean of the robots at the end of each 120 s, of the dynamic strategy"},
-    {"mean_robots_*", "", false, "robots in that state, mean over the run"},
+    {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
 });
 
 constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
@@ -264,6 +270,7 @@ const ScenarioInfo& PartitioningScenarioInfo() {
           .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
           .metrics = kMetrics,
           .failure_types = PartitioningFailureTypes(),
+          .failure_place = FailurePlace{"median_x", "median_y", 0.6},  // chosen: a tenth of the arena
       });
   return info;
 }

@@ -175,6 +175,7 @@ sim::Outcome PartitioningScenario::Evaluate(const sim::Observer& observer) {
   const auto trapped = static_cast<int>(std::count(outcome.lost.begin(), outcome.lost.end(), true));
   outcome.metrics = ItemMetrics();
   record_.AddMetrics(trapped, outcome.metrics);
+  AddWhereabouts(observer, outcome.metrics);
   items_.AddWindows(outcome.metrics);
   if (controller_.traits.learns_partition_length) record_.AddWindows(outcome.metrics);
   states_.AddMeans(outcome.metrics);

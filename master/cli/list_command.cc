@@ -90,9 +90,10 @@ std::string KeyTable(const std::vector<Key>& keys, std::size_t indent) {
 std::string MetricTable(std::span<const controllers::MetricInfo> metrics) {
   Table table({"metric", "unit", ""});
   for (const controllers::MetricInfo& info : metrics) {
-    table.AddRow({std::string(info.name), std::string(info.unit),
-                  fmt::format("{}{}{}", info.description, info.may_be_none ? "; -1 = none" : "",
-                              info.descriptor ? "; describes behaviour" : "")});
+    table.AddRow(
+        {std::string(info.name), std::string(info.unit),
+         fmt::format("{}{}{}", info.description, info.none ? fmt::format("; {} = none", *info.none) : "",
+                     info.descriptor ? "; describes behaviour" : "")});
   }
   return table.ToText(4);
 }
@@ -173,7 +174,7 @@ Json ParameterJson(const controllers::ParameterInfo& info) {
 Json MetricJson(const controllers::MetricInfo& info) {
   return {{"name", info.name},
           {"unit", info.unit},
-          {"may_be_none", info.may_be_none},
+          {"none", info.none ? Json(*info.none) : Json()},
           {"descriptor", info.descriptor},
           {"description", info.description}};
 }

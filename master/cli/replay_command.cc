@@ -56,7 +56,7 @@ Status CheckOwnFiles(const ReplayOptions& options) {
 // Angles are shown in degrees; a metric that the scenario does not describe is shown as its bare number.
 std::string MetricText(const controllers::MetricInfo* info, double value) {
   if (info == nullptr) return fmt::format("{:.6g}", value);
-  if (info->may_be_none && value == -1.0) return "none";
+  if (info->none == value) return "none";
   if (info->unit == "yes/no") return value == 0.0 ? "no" : "yes";
   if (info->unit == "rad") return fmt::format("{:.4g} deg", value / sim::kDegree);
   if (info->unit.empty()) return fmt::format("{:.6g}", value);

@@ -160,7 +160,7 @@ Result<SetPart> SplitPart(const std::string& text) {
 }  // namespace
 
 std::optional<double> MeasuredValue(const controllers::MetricInfo* info, double value) {
-  if (!std::isfinite(value) || (info != nullptr && info->may_be_none && value == -1.0)) return std::nullopt;
+  if (!std::isfinite(value) || (info != nullptr && info->none == value)) return std::nullopt;
   return value;
 }
 

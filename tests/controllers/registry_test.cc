@@ -193,6 +193,20 @@ TEST(Registry, EveryScenarioHasMetricsThatDescribeBehaviour) {
   }
 }
 
+TEST(Registry, ThePlaceOfAFailureIsMeasuredInMetres) {
+  for (const ScenarioInfo& scenario : Scenarios()) {
+    if (!scenario.failure_place) continue;
+    EXPECT_GT(scenario.failure_place->same_within, 0.0) << scenario.name;
+    for (const std::string_view name : {scenario.failure_place->x, scenario.failure_place->y}) {
+      const MetricInfo* metric = FindMetric(scenario, name);
+      ASSERT_NE(metric, nullptr) << scenario.name << " " << name;
+      EXPECT_EQ(metric->unit, "m") << name;
+      EXPECT_TRUE(metric->descriptor) << name;
+    }
+  }
+  EXPECT_TRUE(FindScenario("flocking")->failure_place.has_value());
+}
+
 TEST(Registry, EveryMetricAScenarioReportsIsDescribed) {
   for (const ScenarioInfo& info : Scenarios()) {
     sim::RunSpec spec;

@@ -129,6 +129,8 @@ TEST(FlockingScenario, ExplainsATotalFailureByItsLastSplit) {
     EXPECT_LE(split->tick, result.ticks);
     EXPECT_FALSE(split->robots.empty());
     EXPECT_NEAR(Metric(result, "split_time"), split->tick * 0.1, 1e-9);
+    EXPECT_EQ(Metric(result, "split_x"), split->points.front().x());
+    EXPECT_EQ(Metric(result, "split_y"), split->points.front().y());
     EXPECT_GE(Metric(result, "splits"), 1.0);
   }
   EXPECT_GE(total_failures, 1) << "the trap catches nobody";

@@ -197,6 +197,15 @@ TEST(PartitioningTraps, TheTrappedRobotIsMarkedFromTheMomentItWas) {
   EXPECT_LT(mark->tick, 1000) << "from when it drove into the trap, not only the last 120 s";
 }
 
+TEST(PartitioningTraps, TheMiddleOfTheSwarmIsTheTrapThatHoldsIt) {
+  const sim::RunResult result = worker::Run(BehindAU("task-partitioning", 0.15, 0.8, 1));
+  const sim::Vec2 end = result.robots.front().waypoints.back();
+  EXPECT_NEAR(Metric(result, "median_x"), end.x(), 0.1);
+  EXPECT_NEAR(Metric(result, "median_y"), end.y(), 0.1);
+  EXPECT_LT(Metric(result, "spread_x"), Metric(result, "spread_y")) << "it came down the y axis";
+  EXPECT_LT(Metric(result, "spread_y"), 0.5);
+}
+
 // --- Bad input ---
 
 std::string MessageOfRefusal(const sim::RunSpec& spec) {
