@@ -36,7 +36,11 @@ class CaseReader {
  public:
   const std::optional<std::string>& complaint() const { return complaint_; }
 
-  void Read(const json& document, sim::TestCase& test_case) { Into(test_case)(document, ""); }
+  void Read(const json& document, CaseDocument& into) {
+    std::vector<Key> keys = KeysOf(into.test_case);
+    keys.push_back({"lineage", Into(into.lineage)});
+    Object(keys)(document, "");
+  }
 
  private:
   // Reads a value that stands at this path of the document.
@@ -138,6 +142,13 @@ class CaseReader {
     };
   }
 
+  Reader Into(std::array<double, 2>& pair) {
+    return [this, &pair](const json& value, const std::string& path) {
+      if (!value.is_array() || value.size() != 2) return Want("a list of two numbers", value, path);
+      for (std::size_t i = 0; i < 2; ++i) Into(pair[i])(value[i], fmt::format("{}[{}]", path, i));
+    };
+  }
+
   Reader Into(sim::Vec2& point) {
     point.setZero();
     return Object({{"x", Into(point.x())}, {"y", Into(point.y())}});
@@ -160,14 +171,29 @@ class CaseReader {
                    {"light", Into(gene.light)}});
   }
 
-  Reader Into(sim::TestCase& test_case) {
-    return Object({{"name", Into(test_case.name)},
-                   {"side_x", Into(test_case.side_x)},
-                   {"side_y", Into(test_case.side_y)},
-                   {"wall_thickness", Into(test_case.wall_thickness)},
-                   {"obstacles", Into(test_case.obstacles)},
-                   {"spawn_area", Into(test_case.spawn_area)},
-                   {"robots", Into(test_case.robots)}});
+  std::vector<Key> KeysOf(sim::TestCase& test_case) {
+    return {{"name", Into(test_case.name)},           {"side_x", Into(test_case.side_x)},
+            {"side_y", Into(test_case.side_y)},       {"wall_thickness", Into(test_case.wall_thickness)},
+            {"obstacles", Into(test_case.obstacles)}, {"spawn_area", Into(test_case.spawn_area)},
+            {"robots", Into(test_case.robots)}};
+  }
+  Reader Into(sim::TestCase& test_case) { return Object(KeysOf(test_case)); }
+
+  Reader Into(CaseFailures& found) {
+    return Object({{"k", Into(found.failures)}, {"n", Into(found.runs)}, {"interval", Into(found.interval)}});
+  }
+
+  Reader Into(CaseStep& step) {
+    return Object(
+        {{"change", Into(step.change)}, {"obstacles", Into(step.obstacles)}, {"found", Into(step.found)}});
+  }
+
+  Reader Into(CaseLineage& lineage) {
+    return Object({{"made_by", Into(lineage.made_by)},
+                   {"failing", Into(lineage.failing)},
+                   {"parent", Into(lineage.parent)},
+                   {"steps", Into(lineage.steps)},
+                   {"verified", Into(lineage.verified)}});
   }
 
   std::optional<std::string> complaint_;
@@ -192,19 +218,7 @@ nlohmann::ordered_json JsonOf(const sim::ObstacleGene& gene) {
   return written;
 }
 
-}  // namespace
-
-Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& file_name) {
-  const Result<json> document = ParseJson(text, file_name);
-  if (!document) return document.error();
-  sim::TestCase test_case;
-  CaseReader reader;
-  reader.Read(*document, test_case);
-  if (reader.complaint()) return InvalidInput(Printable(file_name + ": " + *reader.complaint()));
-  return test_case;
-}
-
-std::string WriteCaseJson(const sim::TestCase& test_case) {
+nlohmann::ordered_json JsonOf(const sim::TestCase& test_case) {
   nlohmann::ordered_json written = {{"name", test_case.name},
                                     {"side_x", test_case.side_x},
                                     {"side_y", test_case.side_y},
@@ -218,7 +232,51 @@ std::string WriteCaseJson(const sim::TestCase& test_case) {
                              {"max_y", area->max.y()}};
   }
   if (test_case.robots) written["robots"] = *test_case.robots;
+  return written;
+}
+
+nlohmann::ordered_json JsonOf(const CaseFailures& found) {
+  return {{"k", found.failures}, {"n", found.runs}, {"interval", found.interval}};
+}
+
+nlohmann::ordered_json JsonOf(const CaseLineage& lineage) {
+  nlohmann::ordered_json steps = nlohmann::ordered_json::array();
+  for (const CaseStep& step : lineage.steps) {
+    steps.push_back({{"change", step.change}, {"obstacles", step.obstacles}, {"found", JsonOf(step.found)}});
+  }
+  return {{"made_by", lineage.made_by},
+          {"failing", lineage.failing},
+          {"verified", JsonOf(lineage.verified)},
+          {"steps", std::move(steps)},
+          {"parent", JsonOf(lineage.parent)}};
+}
+
+}  // namespace
+
+Result<CaseDocument> ParseCaseDocument(const std::string& text, const std::string& file_name) {
+  const Result<json> json = ParseJson(text, file_name);
+  if (!json) return json.error();
+  CaseDocument document;
+  CaseReader reader;
+  reader.Read(*json, document);
+  if (reader.complaint()) return InvalidInput(Printable(file_name + ": " + *reader.complaint()));
+  return document;
+}
+
+std::string WriteCaseDocument(const CaseDocument& document) {
+  nlohmann::ordered_json written = JsonOf(document.test_case);
+  if (document.lineage) written["lineage"] = JsonOf(*document.lineage);
   return JsonText(written);
+}
+
+Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& file_name) {
+  Result<CaseDocument> document = ParseCaseDocument(text, file_name);
+  if (!document) return document.error();
+  return std::move(document->test_case);
+}
+
+std::string WriteCaseJson(const sim::TestCase& test_case) {
+  return WriteCaseDocument({test_case});
 }
 
 }  // namespace gauntlet::proto

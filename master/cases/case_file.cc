@@ -52,9 +52,10 @@ Result<LoadedCase> LoadCase(const std::filesystem::path& path) {
     loaded = std::move(*imported);
     loaded.test_case.name = path.filename().string();
   } else {
-    Result<sim::TestCase> parsed = proto::ParseCaseJson(*text, path.string());
+    Result<proto::CaseDocument> parsed = proto::ParseCaseDocument(*text, path.string());
     if (!parsed) return parsed.error();
-    loaded.test_case = std::move(*parsed);
+    loaded.test_case = std::move(parsed->test_case);
+    loaded.lineage = std::move(parsed->lineage);
     if (loaded.test_case.name.empty()) loaded.test_case.name = path.filename().string();
   }
   return loaded;

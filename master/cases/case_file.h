@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "base/result.h"
+#include "proto/case_json.h"
 #include "sim/arena/test_case.h"
 
 namespace gauntlet::master {
@@ -13,6 +15,7 @@ namespace gauntlet::master {
 struct LoadedCase {
   sim::TestCase test_case;
   std::string notice;  // one line, without the file's name: what was changed and ignored; "" when nothing
+  std::optional<proto::CaseLineage> lineage = {};  // of a case that a command made out of another one
 };
 
 // Reads a case file: .json (proto/README.md) or .argos by its extension, any other by its content. A case

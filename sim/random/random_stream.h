@@ -55,6 +55,8 @@ enum class SeedPurpose : std::uint32_t {
   kConfirm = 3,
   kStudy = 4,
   kEvaluate = 5,
+  kMinimise = 6,
+  kBlame = 7,
 };
 
 // The seed of one run. Seeds are derived, never drawn in order, so any run can be repeated alone.

@@ -47,6 +47,31 @@ TEST(CaseJsonTest, ACaseSurvivesTheRoundTrip) {
   EXPECT_THAT(text, HasSubstr("\"orientation_deg\""));
 }
 
+TEST(CaseJsonTest, ALineageSurvivesTheRoundTrip) {
+  CaseDocument document{SampleSpec().test_case, CaseLineage{}};
+  CaseLineage& lineage = *document.lineage;
+  lineage.made_by = "minimise";
+  lineage.failing = "total_failure";
+  lineage.parent = document.test_case;
+  lineage.parent.name = "run 812";
+  lineage.steps = {{"as it is", {1, 2}, {5, 5, {0.57, 1.0}}},
+                   {"without obstacle 1", {2}, {10, 10, {0.72, 1.0}}}};
+  lineage.verified = {29, 30, {0.83, 0.99}};
+  const std::string text = WriteCaseDocument(document);
+  const Result<CaseDocument> read = ParseCaseDocument(text, "case.json");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_TRUE(read->lineage.has_value());
+  EXPECT_EQ(read->lineage->parent.name, "run 812");
+  EXPECT_EQ(read->lineage->steps[1].obstacles, std::vector<int>{2});
+  EXPECT_EQ(read->lineage->verified.failures, 29);
+  EXPECT_EQ(WriteCaseDocument(*read), text);
+  EXPECT_EQ(ParseCaseJson(text, "case.json")->obstacles, document.test_case.obstacles);
+  EXPECT_THAT(CaseError(R"({"lineage": {"parent": {"lineage": {}}}})"),
+              HasSubstr("case.json: lineage.parent: unknown key 'lineage'"));
+  EXPECT_THAT(CaseError(R"({"lineage": {"verified": {"interval": [1]}}})"),
+              HasSubstr("lineage.verified.interval must be a list of two numbers"));
+}
+
 RC_GTEST_PROP(CaseJsonProperty, EveryGeneComesBackBitForBit,
               (double x, double y, double length, double width)) {
   sim::TestCase test_case;
@@ -99,7 +124,7 @@ TEST(CaseJsonTest, AnUnknownKeyIsRefusedWithTheNearestKnownOne) {
             "case.json: obstacles[1]: unknown key 'lenght'; did you mean 'length'?");
   EXPECT_EQ(CaseError("{\"quux\": 1}"),
             "case.json: unknown key 'quux'; known: name, side_x, side_y, wall_thickness, obstacles, "
-            "spawn_area, robots");
+            "spawn_area, robots, lineage");
 }
 
 TEST(CaseJsonTest, AWrongTypeIsRefusedWhereItStands) {
