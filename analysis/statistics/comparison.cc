@@ -82,6 +82,8 @@ Result<Comparison> Compare(const ComparedSet& first, const ComparedSet& second) 
   comparison.exact = ExactMannWhitney(values1, values2);
   comparison.method = comparison.test.method;
   if (comparison.exact) comparison.method += fmt::format("; beside it {}", comparison.exact->method);
+  comparison.p_two_sided = comparison.exact ? comparison.exact->p_two_sided : comparison.test.p_two_sided;
+  comparison.p_by = comparison.exact ? "exact" : "normal approximation";
   comparison.effect = EffectOf(comparison.test.a);
   AddInterval(values1, values2, comparison);
   AddClusterInterval(first, second, comparison);
@@ -99,10 +101,9 @@ std::string InWords(const Comparison& comparison, const std::string& first, cons
   words += comparison.effect == "none" ? std::string("which is no effect worth a name")
                                        : fmt::format("a {} effect: {} tends to be {}", comparison.effect,
                                                      first, test.a > 0.5 ? "larger" : "smaller");
-  const double p = comparison.exact ? comparison.exact->p_two_sided : test.p_two_sided;
+  const double p = comparison.p_two_sided;
   words += fmt::format("; {} of chance at the level 0.01 (two-sided p = {:.3g}, {}).",
-                       p < 0.01 ? "not a matter" : "it may be a matter", p,
-                       comparison.exact ? "exact" : "normal approximation");
+                       p < 0.01 ? "not a matter" : "it may be a matter", p, comparison.p_by);
   if (!comparison.cluster_interval) return words;
   return words +
          fmt::format(

@@ -23,7 +23,10 @@ struct Comparison {
   RankTest test;
   std::optional<ExactRankTest> exact;  // where it can be computed
   std::string method;                  // of `test`, and of `exact` where there is one
-  std::string_view effect;             // EffectOf(test.a)
+  // The p that words and pictures name: of `exact` where there is one, else of `test`.
+  double p_two_sided = 1.0;
+  std::string_view p_by;    // "exact" or "normal approximation"
+  std::string_view effect;  // EffectOf(test.a)
   // Of A at 95 %, every value on its own: by the bootstrap up to kMostResampled values, by the variance of
   // the placements beyond. None of a set of a single value.
   std::optional<Interval> interval;

@@ -151,18 +151,6 @@ TEST(EffectTest, AIsNamedByTheThresholdsAsked) {
   EXPECT_EQ(EffectOf(0.5), "none");
 }
 
-// Spartan's robustness analysis: the baseline against each changed parameter.
-TEST(EffectTest, RobustnessAnalysisAgreesWithSpartan) {
-  std::map<std::pair<std::string, std::string>, std::vector<double>> samples;
-  for (const ReferenceRow& row : ReadReference("robustness_samples.csv")) {
-    samples[{row.Text("speed"), row.Text("gain")}].push_back(row.Number("Food"));
-  }
-  for (const ReferenceRow& row : ReadReference("robustness_atests.csv")) {
-    const std::pair key(row.Text("speed"), row.Text("gain"));
-    EXPECT_NEAR(MannWhitney(samples.at({"10", "1000"}), samples.at(key)).a, row.Number("ATestFood"), 1e-12);
-  }
-}
-
 std::vector<double> SomeValues() {
   const auto value = rc::gen::map(rc::gen::inRange(0, 6), [](int i) { return static_cast<double>(i); });
   const auto size = *rc::gen::inRange<std::size_t>(1, 8);

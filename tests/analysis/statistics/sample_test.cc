@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "analysis/statistics/rank_test.h"
 #include "tests/analysis/statistics/reference_data.h"
 
 namespace gauntlet::analysis {
@@ -93,34 +92,6 @@ TEST(BoxPlotTest, AgreesWithRAndNamesItsRule) {
     EXPECT_NEAR(other.upper_whisker, row.Number("whisker_hi_type7"), 1e-12) << name;
   }
   EXPECT_THAT(std::string(NameOf(BoxRule::kTukeyHinges)), testing::HasSubstr("Tukey"));
-}
-
-// Spartan's consistency analysis: the first of the sets of one size against the others.
-TEST(ConsistencyAnalysis, AgreesWithSpartan) {
-  std::map<std::string, std::map<std::string, SamplePair>> sets;  // by size and set; x food, y split
-  for (const ReferenceRow& row : ReadReference("consistency_samples.csv")) {
-    SamplePair& set = sets[row.Text("SampleSize")][row.Text("Set")];
-    set.x.push_back(row.Number("Food"));
-    set.y.push_back(row.Number("Split"));
-  }
-  std::map<std::string, SamplePair> effects;
-  const auto size_of = [](double a) { return std::max(a, 1.0 - a); };
-  for (const ReferenceRow& row : ReadReference("consistency_atests.csv")) {
-    const auto& of_size = sets.at(row.Text("SampleSize"));
-    const double food = MannWhitney(of_size.at("1").x, of_size.at(row.Text("Sample")).x).a;
-    const double split = MannWhitney(of_size.at("1").y, of_size.at(row.Text("Sample")).y).a;
-    EXPECT_NEAR(food, row.Number("ATestFood"), 1e-12);
-    EXPECT_NEAR(split, row.Number("ATestSplit"), 1e-12);
-    effects[row.Text("SampleSize")].x.push_back(size_of(food));
-    effects[row.Text("SampleSize")].y.push_back(size_of(split));
-  }
-  for (const ReferenceRow& row : ReadReference("consistency_summary.csv")) {
-    const SamplePair& of_size = effects.at(row.Text("samplesize"));
-    EXPECT_NEAR(Describe(of_size.x).maximum, row.Number("FoodMaxA"), 1e-12);
-    EXPECT_NEAR(Describe(of_size.x).median, row.Number("FoodMedianA"), 1e-12);
-    EXPECT_NEAR(Describe(of_size.y).maximum, row.Number("SplitMaxA"), 1e-12);
-    EXPECT_NEAR(Describe(of_size.y).median, row.Number("SplitMedianA"), 1e-12);
-  }
 }
 
 RC_GTEST_PROP(QuantileProperty, LiesInsideTheValuesAndRisesWithTheProbability, (std::vector<int> whole)) {
