@@ -48,6 +48,7 @@ void AddConfirm(CommandParser& parser);
 void AddCompare(CommandParser& parser);
 void AddExport(CommandParser& parser);
 void AddStudy(CommandParser& parser);
+void AddTune(CommandParser& parser);
 void AddSubmit(CommandParser& parser);
 void AddMaster(CommandParser& parser);
 void AddStatus(CommandParser& parser);
@@ -58,6 +59,6 @@ void AddList(CommandParser& parser);
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
     AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,   AddReplay, AddConfirm, AddCompare,
-    AddStudy,  AddExport, AddSubmit,   AddMaster, AddStatus, AddWatch,  AddStop,    AddList};
+    AddStudy, AddTune, AddExport, AddSubmit,   AddMaster, AddStatus, AddWatch,  AddStop,    AddList};
 
 }  // namespace gauntlet::master

@@ -14,6 +14,7 @@
 #include "master/cli/study_output.h"
 #include "master/cli/study_run.h"
 #include "master/cli/table.h"
+#include "master/cli/tuning_output.h"
 #include "master/report/forecast.h"
 #include "master/study/study_report.h"
 #include "proto/json_text.h"
@@ -121,14 +122,30 @@ ExitCode PrintForecast(CommandContext& context, const Study& study, const Runnin
 ExitCode RunStudy(CommandContext& context, const StudyOptions& options) {
   const Result<Study> study = LoadStudy(options.study);
   if (!study) return Fail(context, study.error());
-  if (options.dry_run) return PrintForecast(context, *study, options.running);
-  const std::string directory =
-      options.directory.empty() ? DefaultDirectory(study->name, std::time(nullptr)) : options.directory;
-  if (Status begun = BeginStudy(directory, *study); !begun) return Fail(context, begun.error());
-  return RunStudyIn(context, *study, {directory, options.running, options.markdown});
+  return StartStudy(context, *study, {options.directory, options.running, options.markdown}, options.dry_run);
+}
+
+// Of each tuning two pictures, beside the study's campaigns.
+Status WritePictures(CommandContext& context, const StudyReport& report, const StudyRun& run) {
+  for (const StudySection& section : report.sections) {
+    if (!section.tuning) continue;
+    for (const auto& [name, picture] : TuningPictures(section)) {
+      const std::string file = fmt::format("{}/{}.svg", run.directory, name);
+      if (Status written = WriteOutputFile(file, picture); !written) return written;
+      if (!run.running.quiet) PrintMessage(context, fmt::format("wrote {}", file));
+    }
+  }
+  return Ok{};
 }
 
 }  // namespace
+
+ExitCode StartStudy(CommandContext& context, const Study& study, StudyRun run, bool dry_run) {
+  if (dry_run) return PrintForecast(context, study, run.running);
+  if (run.directory.empty()) run.directory = DefaultDirectory(study.name, std::time(nullptr));
+  if (Status begun = BeginStudy(run.directory, study); !begun) return Fail(context, begun.error());
+  return RunStudyIn(context, study, run);
+}
 
 ExitCode RunStudyIn(CommandContext& context, const Study& study, const StudyRun& run) {
   const Result<int> workers = ParseWorkers(run.running.workers);
@@ -140,6 +157,7 @@ ExitCode RunStudyIn(CommandContext& context, const Study& study, const StudyRun&
   }
   const Result<StudyReport> report = MakeStudyReport(study, run.directory);
   if (!report) return Fail(context, report.error());
+  if (Status drawn = WritePictures(context, *report, run); !drawn) return Fail(context, drawn.error());
   if (!run.markdown.empty()) {
     if (Status written = WriteOutputFile(run.markdown, StudyMarkdown(*report)); !written)
       return Fail(context, written.error());

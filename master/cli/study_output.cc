@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "master/cli/table.h"
+#include "master/cli/tuning_output.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -39,14 +40,15 @@ Tally TallyOf(const StudyReport& report) {
   return tally;
 }
 
+// "" where nothing was published.
 std::string TallyInWords(const StudyReport& report) {
   const Tally tally = TallyOf(report);
+  const int all = tally.agree + tally.differ + tally.not_judged + tally.not_computed;
+  if (all == 0) return "";
   return fmt::format(
       "Of {} published figures {} agree with ours, {} differ, {} stand beside ours without being judged, and "
-      "{} "
-      "have no counterpart here.",
-      tally.agree + tally.differ + tally.not_judged + tally.not_computed, tally.agree, tally.differ,
-      tally.not_judged, tally.not_computed);
+      "{} have no counterpart here.",
+      all, tally.agree, tally.differ, tally.not_judged, tally.not_computed);
 }
 
 std::string TimeInWords(const StudyReport& report) {
@@ -167,27 +169,30 @@ std::string StudyText(const StudyReport& report) {
   for (auto& row : claims.rows) row.pop_back();
   claims.headers.pop_back();
   if (!claims.rows.empty()) text += "Claims\n\n" + TextOf(claims) + "\n";
-  if (!report.sections.empty()) text += "  " + TallyInWords(report) + "\n";
+  if (const std::string tally = TallyInWords(report); !tally.empty()) text += fmt::format("  {}\n", tally);
   return text;
 }
 
 std::string StudyMarkdown(const StudyReport& report) {
-  std::string text = fmt::format(
-      "# {}\n\n{}\n\nWritten by `gauntlet study {} --markdown FILE` (version {}).\n\n## Claims\n\n",
-      report.name, report.description, report.name, report.version);
-  text += MarkdownOf(ClaimTable(report)) + TallyInWords(report) + "\n\n";
-  text += "How a figure is judged:\n\n";
-  for (const std::string& rule : RulesInWords()) text += fmt::format("- {}\n", rule);
-  text += fmt::format("\n## Cost\n\n{}{}\n\n", MarkdownOf(PartTable(report)), TimeInWords(report));
+  std::string text = fmt::format("# {}\n\n{}\n\nWritten by `gauntlet {} --markdown FILE` (version {}).\n\n",
+                                 report.name, report.description, report.command, report.version);
+  if (const StudyTable claims = ClaimTable(report); !claims.rows.empty())
+    text += "## Claims\n\n" + MarkdownOf(claims);
+  if (const std::string tally = TallyInWords(report); !tally.empty()) {
+    text += tally + "\n\nHow a figure is judged:\n\n";
+    for (const std::string& rule : RulesInWords()) text += fmt::format("- {}\n", rule);
+    text += "\n";
+  }
+  text += fmt::format("## Cost\n\n{}{}\n\n", MarkdownOf(PartTable(report)), TimeInWords(report));
   for (const StudySection& section : report.sections) {
     text += fmt::format("## {}\n\n", section.title);
     for (const StudyTable& table : section.tables) text += MarkdownOf(table);
-    for (const std::string& sentence : section.sentences) text += sentence + "\n";
+    for (const std::string& sentence : section.sentences) text += sentence + "\n\n";
     if (section.claim) {
-      text += fmt::format("\n**{}: {}.**\n", section.claim->text,
-                          section.claim->holds ? "holds" : "does not hold");
+      text +=
+          fmt::format("**{}: {}.**\n", section.claim->text, section.claim->holds ? "holds" : "does not hold");
+      text += "\n";
     }
-    text += "\n";
     if (section.published.empty()) continue;
     Notes notes;
     text += MarkdownOf(PublishedTable(section.published, notes));
@@ -222,6 +227,10 @@ std::string StudyJson(const StudyReport& report, const std::string& directory) {
     add(section.name, section.published);
   }
   add("", report.elsewhere);
+  Json tunings = Json::array();
+  for (const StudySection& section : report.sections) {
+    if (section.tuning) tunings.push_back(TuningJson(section));
+  }
   Json figures = Json::object();
   for (const auto& [name, figure] : report.figures) {
     figures[name] = figure.number ? Json(*figure.number) : Json(figure.text);
@@ -239,6 +248,7 @@ std::string StudyJson(const StudyReport& report, const std::string& directory) {
                    {"claims", std::move(claims)},
                    {"results", std::move(results)},
                    {"figures", std::move(figures)},
+                   {"tunings", std::move(tunings)},
                    {"parts", std::move(parts)},
                    {"search_seconds", report.search_seconds},
                    {"evaluation_seconds", report.evaluation_seconds}});

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,15 +28,46 @@ struct StudyPart {
   std::vector<std::uint64_t> seeds;
   std::string from;    // of kEvaluate: the part that the cases come from,
   std::string subset;  // and which of them, as ParseSubset takes it
+  std::string group;   // parts of a tuning, which are many, are told together; "" = alone
+};
+
+// A parameter of a search, which is changed while all others keep their values.
+struct TunedValue {
+  std::string value;  // as --set takes it
+  std::string part;   // its evolutions
+};
+struct TunedParameter {
+  std::string key;  // "search.population"
+  std::string baseline;
+  std::vector<TunedValue> values;  // with the baseline's
+};
+struct Tuning {
+  std::string experiment;
+  int repeats = 0;                 // evolutions of each value
+  std::vector<std::size_t> sizes;  // of the sets of the consistency analysis, ascending
+  std::string baseline_part;
+  std::vector<TunedParameter> parameters;
+};
+// The part in which the final populations of a tuning's part are simulated again.
+std::string AgainPart(const std::string& part);
+
+// What of a tuning is other than its file says; "" and empty: nothing.
+struct TuningChanges {
+  std::string experiment;
+  std::string repeats;            // as it was typed
+  std::vector<std::string> sets;  // "key=value"
+
+  bool operator==(const TuningChanges&) const = default;
 };
 
 // Something that is computed from the runs of parts. Which keys there are depends on the kind; all that are
 // needed are there.
 struct StudyAnalysis {
-  std::string kind;  // "compare", "count", "types", "peak", "windows"
+  std::string kind;  // "compare", "count", "types", "peak", "windows", "tune"
   std::string name;
   std::string where;
   std::map<std::string, std::string> keys;
+  std::optional<Tuning> tuning;  // of the kind "tune"
 
   // "" when it was not given.
   std::string Key(const std::string& key) const {
@@ -70,14 +102,17 @@ struct Study {
   // Every file that it was read from, by its name without folders; two studies with the same texts are one.
   std::map<std::string, std::string> texts;
   std::string main_file;
+  TuningChanges changes;
 };
 
 // A shipped study by its name, or a file by its path (with a '/' or ending in ".toml"). Files that it
 // includes or takes published figures from stand beside it. Errors begin with the place and name what would
-// be right.
-Result<Study> LoadStudy(const std::string& name_or_path);
+// be right. Published figures of a tuning are left out when experiment or settings are changed: they are of
+// another one.
+Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes = {});
 // The same of texts that were read before.
-Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file);
+Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file,
+                        const TuningChanges& changes = {});
 
 // One of the sets that an analysis names, "PART:SUBSET".
 struct StudySet {

@@ -410,6 +410,7 @@ constexpr AnalysisKind kKinds[] = {
 }  // namespace
 
 Result<StudySection> Analyse(const StudyAnalysis& analysis, StudyRuns& runs, StudyFigures& figures) {
+  if (analysis.tuning) return AnalyseTuning(analysis, runs, figures);
   StudySection section;
   section.name = analysis.name;
   section.title = analysis.Key("title");

@@ -74,8 +74,11 @@ Result<OpenedSubset> OpenStage(const std::string& dir, StudyStage stage) {
 }
 
 Status WriteStudy(const std::string& dir, const Study& study) {
-  const nlohmann::ordered_json json = {
-      {"format", kFormat}, {"main", study.main_file}, {"files", study.texts}};
+  nlohmann::ordered_json json = {{"format", kFormat}, {"main", study.main_file}, {"files", study.texts}};
+  if (const TuningChanges& changes = study.changes; changes != TuningChanges{}) {
+    json["changes"] = {
+        {"experiment", changes.experiment}, {"repeats", changes.repeats}, {"sets", changes.sets}};
+  }
   return WriteFileAtomically(StudyFile(dir), JsonText(json), kReadableByAll);
 }
 
@@ -114,7 +117,8 @@ Status BeginStudy(const std::string& dir, const Study& study) {
       if (const Result<StageState> fits = LookAtStage(study, dir, stage); !fits) return fits.error();
     }
     // What is computed from the same runs may change.
-    return there->texts == study.texts ? Status(Ok{}) : WriteStudy(dir, study);
+    const bool same = there->texts == study.texts && there->changes == study.changes;
+    return same ? Status(Ok{}) : WriteStudy(dir, study);
   }
   if (fs::exists(dir, error)) {
     if (!fs::is_directory(dir, error)) return InvalidInput(dir + " is no directory");
@@ -148,7 +152,18 @@ Result<Study> OpenStudy(const std::string& dir) {
     if (!content.is_string()) return damaged;
     texts[name] = content.get<std::string>();
   }
-  return ReadStudy(texts, TextAt(json, "main"));
+  TuningChanges changes;
+  if (json.contains("changes")) {
+    const nlohmann::json& changed = json["changes"];
+    if (!changed.is_object()) return damaged;
+    changes.experiment = TextAt(changed, "experiment");
+    changes.repeats = TextAt(changed, "repeats");
+    for (const nlohmann::json& set : changed.value("sets", nlohmann::json::array())) {
+      if (!set.is_string()) return damaged;
+      changes.sets.push_back(set.get<std::string>());
+    }
+  }
+  return ReadStudy(texts, TextAt(json, "main"), changes);
 }
 
 Result<std::vector<SearchPlan>> PlanSearchStage(const Study& study) {
@@ -333,6 +348,14 @@ std::vector<std::string> StudyRuns::FailureTypes(const std::string& set) const {
 
 std::string StudyRuns::SourceOf(const std::string& part) const {
   return IsFirst(Part(part)) ? part : Part(part).from;
+}
+
+PartCost& PartCost::operator+=(const PartCost& other) {
+  searches += other.searches;
+  runs += other.runs;
+  cases += other.cases;
+  distinct_cases += other.distinct_cases;
+  return *this;
 }
 
 Result<PartCost> StudyRuns::CostOf(const std::string& name) {

@@ -52,6 +52,8 @@ struct PartCost {
   std::uint64_t runs = 0;            // simulations
   std::uint64_t cases = 0;           // members of the final populations, or all cases
   std::uint64_t distinct_cases = 0;  // that were ever simulated
+
+  PartCost& operator+=(const PartCost& other);  // keeps its name
 };
 
 // Reads the runs of a study whose stages have finished.

@@ -4,25 +4,23 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
-#include <optional>
 #include <set>
-#include <span>
 #include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/nearest_name.h"
-#include "base/number_text.h"
 #include "base/parse_number.h"
 #include "base/system/atomic_file.h"
 #include "master/experiment/experiment_file.h"
 #include "master/experiment/seed_list.h"
-#include "master/experiment/toml_text.h"
 #include "master/report/csv_column.h"
 #include "master/report/subset.h"
 #include "master/search/search_setup.h"
 #include "master/search/search_table.h"
+#include "master/study/study_file.h"
+#include "master/study/tuning.h"
 
 namespace gauntlet::master {
 namespace {
@@ -32,152 +30,11 @@ using ReadText = std::function<Result<std::string>(const std::string& file)>;
 
 constexpr std::size_t kMostSearches = 1000;
 
-// A kind of table in a study file, "[part.NAME]".
-struct TableKind {
-  std::string_view name;
-  std::vector<std::string_view> needed;
-  std::vector<std::string_view> optional;
-};
-
-const std::vector<TableKind>& TableKinds() {
-  static const std::vector<TableKind> kinds = {
-      {"part", {"kind"}, {"experiment", "seeds", "cases", "replicates", "from", "set"}},
-      {"compare", {"title", "first", "second"}, {"metric", "expect", "effect", "claim"}},
-      {"count",
-       {"title", "first", "what"},
-       {"second", "metric", "at_least", "at_most", "above", "below", "expect", "claim"}},
-      {"types", {"title", "first", "second"}, {"expect", "claim"}},
-      {"peak", {"title", "part"}, {}},
-      {"windows", {"title", "first", "prefix", "seconds"}, {}},
-      {"note", {"text"}, {"always"}}};
-  return kinds;
-}
-
-struct KeyName {
-  std::string_view name;
-};
-
-std::string UnknownKey(const std::string& where, const std::string& key,
-                       std::span<const std::string_view> known) {
-  std::vector<KeyName> names;
-  for (const std::string_view one : known) names.push_back({one});
-  return fmt::format("{}: {}", where, UnknownName("key", key, names));
-}
-
-std::string TextOf(const TomlValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
-  if (const auto* number = std::get_if<double>(&value)) return NumberText(*number);
-  return std::get<bool>(value) ? "true" : "false";
-}
-
-// A table of the file; "set.KEY" are keys of it.
-struct FileTable {
-  const TableKind* kind = nullptr;
-  std::string name;
-  std::string where;
-  std::map<std::string, std::string> keys;
-  std::map<std::string, std::string> places;
-
-  std::string Key(const std::string& key) const {
-    const auto found = keys.find(key);
-    return found == keys.end() ? "" : found->second;
-  }
-  std::string PlaceOf(const std::string& key) const {
-    const auto found = places.find(key);
-    return found == places.end() ? where : found->second;
-  }
-};
-
-struct FileContent {
-  std::map<std::string, std::string> top;
-  std::vector<FileTable> tables;
-};
-
-Status AddToTable(const Assignment& assignment, const std::vector<std::string>& path, FileContent& content) {
-  std::vector<std::string_view> kinds;
-  for (const TableKind& kind : TableKinds()) kinds.push_back(kind.name);
-  const TableKind* kind = FindByName(TableKinds(), path[0]);
-  if (kind == nullptr) {
-    std::vector<std::string_view> known = {"name", "description", "include", "published"};
-    known.insert(known.end(), kinds.begin(), kinds.end());
-    return InvalidInput(UnknownKey(assignment.where, path[0], known));
-  }
-  if (path.size() < 3) {
-    return InvalidInput(
-        fmt::format("{}: {} is a table of tables, [{}.NAME]", assignment.where, path[0], path[0]));
-  }
-  std::vector<std::string_view> known = kind->needed;
-  known.insert(known.end(), kind->optional.begin(), kind->optional.end());
-  if (std::ranges::count(known, path[2]) == 0 || (path.size() > 3) != (path[2] == "set")) {
-    return InvalidInput(UnknownKey(assignment.where, path[2], known));
-  }
-  auto table = std::ranges::find_if(
-      content.tables, [&](const FileTable& one) { return one.kind == kind && one.name == path[1]; });
-  if (table == content.tables.end()) {
-    content.tables.push_back({kind, path[1], assignment.where, {}, {}});
-    table = std::prev(content.tables.end());
-  }
-  std::string key = path[2];
-  for (std::size_t i = 3; i < path.size(); ++i) key += "." + path[i];
-  table->keys[key] = TextOf(assignment.value);
-  table->places[key] = assignment.where;
-  return Ok{};
-}
-
-Result<FileContent> ReadContent(const std::string& text, const std::string& file) {
-  const Result<std::vector<Assignment>> assignments = ReadToml(text, file);
-  if (!assignments) return assignments.error();
-  FileContent content;
-  for (const Assignment& assignment : *assignments) {
-    if (const auto* other = std::get_if<OtherToml>(&assignment.value)) {
-      return InvalidInput(fmt::format("{}: {} is {}, expected a text or a number", assignment.where,
-                                      assignment.path, other->kind));
-    }
-    std::vector<std::string> path(1);
-    for (const char c : assignment.path) {
-      if (c == '.') {
-        path.emplace_back();
-      } else {
-        path.back() += c;
-      }
-    }
-    const bool top =
-        std::ranges::count(std::vector<std::string>{"name", "description", "include", "published"},
-                           assignment.path) > 0;
-    if (top) {
-      content.top[assignment.path] = TextOf(assignment.value);
-    } else if (Status added = AddToTable(assignment, path, content); !added) {
-      return added.error();
-    }
-  }
-  for (const FileTable& table : content.tables) {
-    for (const std::string_view key : table.kind->needed) {
-      if (table.keys.contains(std::string(key))) continue;
-      return InvalidInput(
-          fmt::format("{}: [{}.{}] needs the key {}", table.where, table.kind->name, table.name, key));
-    }
-  }
-  return content;
-}
-
-// "a, b"
-std::vector<std::string> Names(const std::string& text) {
-  std::vector<std::string> names(1);
-  for (const char c : text) {
-    if (c == ',') {
-      names.emplace_back();
-    } else if (c != ' ') {
-      names.back() += c;
-    }
-  }
-  std::erase(names, "");
-  return names;
-}
-
 class Reader {
  public:
-  explicit Reader(ReadText read) : read_(std::move(read)) {}
+  Reader(ReadText read, TuningChanges changes) : read_(std::move(read)) {
+    study_.changes = std::move(changes);
+  }
 
   Result<Study> Read(const std::string& main_file) {
     study_.main_file = main_file;
@@ -185,6 +42,11 @@ class Reader {
     if (study_.name.empty()) return InvalidInput(main_file + ": the study has no name");
     if (study_.parts.empty()) return InvalidInput(main_file + ": the study has no parts");
     if (Status whole = CheckAnalyses(); !whole) return whole.error();
+    if (!study_.changes.experiment.empty()) {
+      const std::string& experiment = study_.parts.front().experiment.name;
+      study_.name = "tune-" + experiment;
+      study_.description = "which values of the search's parameters find tougher cases for " + experiment;
+    }
     return std::move(study_);
   }
 
@@ -194,17 +56,17 @@ class Reader {
     Result<std::string> text = read_(file);
     if (!text) return text.error();
     study_.texts[file] = *text;
-    Result<FileContent> content = ReadContent(*text, file);
+    Result<StudyFileContent> content = ReadStudyFile(*text, file);
     if (!content) return content.error();
     if (main) {
       study_.name = content->top["name"];
       study_.description = content->top["description"];
     }
-    for (const std::string& name : Names(content->top["include"])) {
+    for (const std::string& name : ListItems(content->top["include"])) {
       if (Status included = ReadFile(name + ".toml", /*main=*/false); !included) return included;
     }
     std::map<std::string, PublishedNote> notes;
-    for (const FileTable& table : content->tables) {
+    for (const StudyFileTable& table : content->tables) {
       if (table.kind->name == "note") {
         notes[table.name] = {table.Key("text"), table.Key("always") == "true"};
       } else if (table.kind->name == "part") {
@@ -213,7 +75,8 @@ class Reader {
         return added;
       }
     }
-    for (const std::string& published : Names(content->top["published"])) {
+    if (!study_.changes.experiment.empty() || !study_.changes.sets.empty()) return Ok{};
+    for (const std::string& published : ListItems(content->top["published"])) {
       if (Status added = AddPublished(published, notes); !added) return added;
     }
     return Ok{};
@@ -224,7 +87,7 @@ class Reader {
     return found == study_.parts.end() ? nullptr : &*found;
   }
 
-  Status AddPart(const FileTable& table) {
+  Status AddPart(const StudyFileTable& table) {
     const auto place = [&](const std::string& key) { return table.PlaceOf(key); };
     if (FindPart(table.name) != nullptr) {
       return InvalidInput(fmt::format("{}: there is a part '{}' already", table.where, table.name));
@@ -246,11 +109,11 @@ class Reader {
     const bool evaluates = part.kind == StudyPart::Kind::kEvaluate;
     for (const auto& [key, wanted] : {std::pair<std::string, bool>{"from", evaluates},
                                       {"cases", part.kind == StudyPart::Kind::kRandom}}) {
-      if (table.keys.contains(key) == wanted) continue;
+      if (table.Has(key) == wanted) continue;
       return InvalidInput(fmt::format("{}: a part of the kind {} {} the key {}", place(key),
                                       table.Key("kind"), wanted ? "needs" : "does not take", key));
     }
-    const std::string seeds = table.keys.contains("seeds") ? table.Key("seeds") : "1";
+    const std::string seeds = table.Has("seeds") ? table.Key("seeds") : "1";
     const auto numbers = ParseSeedList(seeds, kMostSearches);
     if (!numbers) {
       return InvalidInput(fmt::format("{}: seeds are '{}', expected a range (1..20) or a list (1,5,9)",
@@ -272,7 +135,7 @@ class Reader {
   }
 
   // Parts stand behind those that they take cases from, so nothing can lead round in a circle.
-  Status SetSource(const FileTable& table, StudyPart& part) {
+  Status SetSource(const StudyFileTable& table, StudyPart& part) {
     const std::vector<StudySet> sources = SplitStudySets(table.Key("from"));
     const std::string where = table.PlaceOf("from");
     if (sources.size() != 1) {
@@ -300,8 +163,8 @@ class Reader {
   }
 
   // An evaluation has the settings of the part that its cases come from, unless it names an experiment.
-  Status SetExperiment(const FileTable& table, StudyPart& part) {
-    const bool inherits = !table.keys.contains("experiment");
+  Status SetExperiment(const StudyFileTable& table, StudyPart& part) {
+    const bool inherits = !table.Has("experiment");
     std::string name = table.Key("experiment");
     std::vector<std::string> sets;
     if (inherits) {
@@ -309,11 +172,9 @@ class Reader {
         return InvalidInput(fmt::format("{}: [part.{}] needs the key experiment", table.where, part.name));
       std::tie(name, sets) = sources_.at(part.from);
     }
-    for (const auto& [key, value] : table.keys) {
-      if (key.starts_with("set.")) sets.push_back(fmt::format("{}={}", key.substr(4), value));
-    }
+    for (const auto& [key, value] : table.Nested("set")) sets.push_back(fmt::format("{}={}", key, value));
     sources_[part.name] = {name, sets};
-    if (table.keys.contains("replicates")) sets.push_back("search.replicates=" + table.Key("replicates"));
+    if (table.Has("replicates")) sets.push_back("search.replicates=" + table.Key("replicates"));
     if (part.kind == StudyPart::Kind::kRandom) {
       sets.emplace_back("search.algorithm=random");
       sets.push_back("search.cases=" + table.Key("cases"));
@@ -339,11 +200,20 @@ class Reader {
     return Ok{};
   }
 
-  Status AddAnalysis(const FileTable& table) {
+  Status AddAnalysis(const StudyFileTable& table) {
     if (std::ranges::count(study_.analyses, table.name, &StudyAnalysis::name) > 0) {
       return InvalidInput(fmt::format("{}: there is an analysis '{}' already", table.where, table.name));
     }
-    study_.analyses.push_back({std::string(table.kind->name), table.name, table.where, table.keys});
+    StudyAnalysis& analysis = study_.analyses.emplace_back();
+    analysis.kind = table.kind->name;
+    analysis.name = table.name;
+    analysis.where = table.where;
+    analysis.keys.insert(table.keys.begin(), table.keys.end());
+    if (analysis.kind != "tune") return Ok{};
+    Result<ExpandedTuning> expanded = ExpandTuning(table, study_.changes);
+    if (!expanded) return expanded.error();
+    analysis.tuning = std::move(expanded->tuning);
+    std::ranges::move(expanded->parts, std::back_inserter(study_.parts));
     return Ok{};
   }
 
@@ -435,7 +305,10 @@ Result<fs::path> PathOf(const std::string& name_or_path) {
         ErrorKind::kNotFound,
         fmt::format("there is no study '{}': no studies are installed beside this program", name_or_path)};
   }
-  std::vector<KeyName> names;
+  struct Named {
+    std::string_view name;
+  };
+  std::vector<Named> names;
   for (const std::string& name : shipped) names.push_back({name});
   return Error{ErrorKind::kNotFound, fmt::format("{} (a file is named by a path ending in .toml)",
                                                  UnknownName("study", name_or_path, names))};
@@ -445,7 +318,7 @@ Result<fs::path> PathOf(const std::string& name_or_path) {
 
 std::vector<StudySet> SplitStudySets(const std::string& text) {
   std::vector<StudySet> sets;
-  for (const std::string& one : Names(text)) {
+  for (const std::string& one : ListItems(text)) {
     const std::size_t colon = one.find(':');
     sets.push_back({one.substr(0, colon), colon == std::string::npos ? "" : one.substr(colon + 1)});
   }
@@ -463,7 +336,7 @@ std::vector<std::string> ShippedStudies() {
   return {names.begin(), names.end()};
 }
 
-Result<Study> LoadStudy(const std::string& name_or_path) {
+Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes) {
   const Result<fs::path> path = PathOf(name_or_path);
   if (!path) return path.error();
   const auto read = [&](const std::string& file) -> Result<std::string> {
@@ -472,16 +345,17 @@ Result<Study> LoadStudy(const std::string& name_or_path) {
     return Error{ErrorKind::kNotFound,
                  fmt::format("there is no study file '{}'", (path->parent_path() / file).string())};
   };
-  return Reader(read).Read(path->filename().string());
+  return Reader(read, changes).Read(path->filename().string());
 }
 
-Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file) {
+Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file,
+                        const TuningChanges& changes) {
   const auto read = [&](const std::string& file) -> Result<std::string> {
     const auto found = texts.find(file);
     if (found != texts.end()) return found->second;
     return Error{ErrorKind::kCorrupt, fmt::format("the study's file '{}' is missing", file)};
   };
-  return Reader(read).Read(main_file);
+  return Reader(read, changes).Read(main_file);
 }
 
 }  // namespace gauntlet::master

@@ -1,8 +1,26 @@
 #include "master/study/study_report.h"
 
 #include <algorithm>
+#include <filesystem>
 
 namespace gauntlet::master {
+namespace {
+
+std::string CommandOf(const Study& study) {
+  const TuningChanges& changes = study.changes;
+  if (changes == TuningChanges{}) return "study " + study.name;
+  std::string command = "tune";
+  for (const StudyAnalysis& one : study.analyses) {
+    if (!one.tuning) continue;
+    command += " " + std::filesystem::path(one.tuning->experiment).filename().string();
+    break;
+  }
+  if (!changes.repeats.empty()) command += " --repeats " + changes.repeats;
+  for (const std::string& set : changes.sets) command += " --set " + set;
+  return command;
+}
+
+}  // namespace
 
 Result<StudyReport> MakeStudyReport(const Study& study, const std::string& dir) {
   Result<StudyRuns> runs = StudyRuns::Open(study, dir);
@@ -10,11 +28,18 @@ Result<StudyReport> MakeStudyReport(const Study& study, const std::string& dir) 
   StudyReport report;
   report.name = study.name;
   report.description = study.description;
+  report.command = CommandOf(study);
   report.version = GAUNTLET_VERSION;
   for (const StudyPart& part : study.parts) {
-    const Result<PartCost> cost = runs->CostOf(part.name);
+    Result<PartCost> cost = runs->CostOf(part.name);
     if (!cost) return cost.error();
-    report.parts.push_back(*cost);
+    if (!part.group.empty()) cost->part = part.group;
+    const auto group = std::ranges::find(report.parts, cost->part, &PartCost::part);
+    if (group == report.parts.end()) {
+      report.parts.push_back(*cost);
+    } else {
+      *group += *cost;
+    }
   }
   for (const auto& [stage, seconds] : {std::pair(StudyStage::kSearches, &report.search_seconds),
                                        std::pair(StudyStage::kEvaluations, &report.evaluation_seconds)}) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "analysis/statistics/interval.h"
+#include "analysis/statistics/parameter_analysis.h"
 #include "base/result.h"
 #include "master/study/study_campaigns.h"
 
@@ -37,6 +39,38 @@ struct JudgedRow {
   std::string verdict;  // "agrees", "differs", "not judged", "not computed"
 };
 
+// What came of one value of a parameter.
+struct TriedValue {
+  std::string value;
+  bool is_baseline = false;
+  std::size_t evolutions = 0;     // that gave a result
+  std::uint64_t simulations = 0;  // of one evolution
+  double mean = 0.0;              // of the evolutions' fitness, as TuningResult says
+  double median = 0.0;
+  double a = 0.5;  // probability that the baseline's fitness exceeds this one's: above 0.5 this is tougher
+  std::optional<analysis::Interval> interval;
+  std::string effect = "none";
+  bool exceeds = false;  // A is large, in either direction
+  double p = 1.0;        // two-sided, by itself
+  double p_holm = 1.0;   // adjusted for all values of all parameters
+};
+struct TriedParameter {
+  std::string key;
+  std::string baseline;
+  std::vector<TriedValue> values;
+  std::string recommended;
+  std::string evidence;
+};
+// Spartan's robustness and consistency analysis. Every evolution counts once, by the mean fitness of its
+// final population, simulated again with fresh seeds.
+struct TuningResult {
+  std::vector<TriedParameter> parameters;
+  std::vector<analysis::Consistency> consistency;  // by size; none of too few evolutions
+  std::optional<std::size_t> enough;               // repeats
+  std::string enough_in_words;
+  std::string p_by;
+};
+
 struct StudySection {
   std::string name;
   std::string title;
@@ -44,11 +78,13 @@ struct StudySection {
   std::vector<std::string> sentences;
   std::optional<StudyClaim> claim;
   std::vector<JudgedRow> published;
+  std::optional<TuningResult> tuning;  // of the kind "tune"
 };
 
 struct StudyReport {
   std::string name;
   std::string description;
+  std::string command;  // that makes it, "study thesis"
   std::string version;
   std::vector<PartCost> parts;
   double search_seconds = 0.0;  // of the campaign of all searches, by the clock
@@ -64,6 +100,8 @@ Result<StudyReport> MakeStudyReport(const Study& study, const std::string& dir);
 
 // One analysis; its figures are added to `figures`.
 Result<StudySection> Analyse(const StudyAnalysis& analysis, StudyRuns& runs, StudyFigures& figures);
+// The same of the kind "tune".
+Result<StudySection> AnalyseTuning(const StudyAnalysis& analysis, StudyRuns& runs, StudyFigures& figures);
 
 // Our figure beside a published one. Rules:
 //   mean SD N     Welch's t-test from means, standard deviations and numbers: differs when p < 0.01

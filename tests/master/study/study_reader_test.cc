@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+
 #include "master/study/study.h"
 
 namespace gauntlet::master {
@@ -96,14 +99,111 @@ TEST(StudyReader, PublishedFiguresBelongToAnalysesAndTheirNotesExist) {
 }
 
 TEST(StudyReader, EveryShippedStudyCanBeRead) {
-  EXPECT_THAT(ShippedStudies(),
-              ElementsAre("thesis", "thesis-flocking", "thesis-foraging", "thesis-partitioning"));
+  EXPECT_THAT(ShippedStudies(), ElementsAre("thesis", "thesis-flocking", "thesis-foraging",
+                                            "thesis-partitioning", "tune-flocking", "tune-foraging"));
   for (const std::string& name : ShippedStudies()) {
     const auto study = LoadStudy(name);
     ASSERT_TRUE(study.ok()) << study.error().message;
     EXPECT_EQ(study->name, name);
-    EXPECT_GT(study->published.size(), 50U);
+    EXPECT_GE(study->published.size(), 8U);
     EXPECT_EQ(ReadStudy(study->texts, study->main_file)->parts.size(), study->parts.size());
+  }
+}
+
+constexpr const char* kTuning =
+    "name = \"t\"\n[tune.flock]\ntitle = \"t\"\nexperiment = \"flocking\"\nrepeats = 3\n"
+    "set.genome.genes = 4\n"
+    "candidates.search.population = \"10, 20, 30\"\ncandidates.genome.genes = \"6\"\n";
+
+Result<Study> ReadTuning(const std::string& rest, const TuningChanges& changes = {}) {
+  return ReadStudy({{"t.toml", kTuning + rest}}, "t.toml", changes);
+}
+
+std::string TuningError(const std::string& rest, const TuningChanges& changes = {}) {
+  const Result<Study> study = ReadTuning(rest, changes);
+  return study ? "" : study.error().message;
+}
+
+TEST(StudyReader, ATuningIsABaselineAndAPartForEveryOtherValueWithSeedsOfItsOwn) {
+  const auto study = ReadTuning("");
+  ASSERT_TRUE(study.ok()) << study.error().message;
+  std::vector<std::string> names;
+  std::set<std::uint64_t> seeds;
+  for (const StudyPart& part : study->parts) {
+    names.push_back(part.name);
+    seeds.insert(part.seeds.begin(), part.seeds.end());
+  }
+  EXPECT_THAT(names, ElementsAre("flock.baseline", "flock.baseline-again", "flock.search.population=10",
+                                 "flock.search.population=10-again", "flock.search.population=30",
+                                 "flock.search.population=30-again", "flock.genome.genes=6",
+                                 "flock.genome.genes=6-again"));
+  EXPECT_EQ(seeds.size(), 4U * 3U + 4U);
+  EXPECT_EQ(study->parts[0].experiment.genome.genes, 4);
+  EXPECT_EQ(study->parts[2].experiment.search.population, 10);
+  EXPECT_EQ(study->parts[2].experiment.genome.genes, 4);
+  EXPECT_EQ(study->parts[3].from, "flock.search.population=10");
+  EXPECT_EQ(study->parts[6].experiment.search.population, 20);
+  EXPECT_EQ(study->parts[7].experiment.search.algorithm, "cases");
+  ASSERT_TRUE(study->analyses.front().tuning.has_value());
+  const Tuning& tuning = *study->analyses.front().tuning;
+  EXPECT_EQ(tuning.repeats, 3);
+  ASSERT_THAT(tuning.parameters, SizeIs(2));
+  EXPECT_EQ(tuning.parameters[0].key, "search.population");
+  EXPECT_EQ(tuning.parameters[0].values[1].part, "flock.baseline");
+  EXPECT_THAT(tuning.parameters[1].values, SizeIs(2)) << "the baseline's value is added";
+  EXPECT_EQ(tuning.parameters[1].values[0].value, "4");
+}
+
+TEST(StudyReader, ATuningTakesAnotherExperimentRepeatsAndSettings) {
+  const auto study = ReadTuning("", {"foraging", "2", {"search.population=30"}});
+  ASSERT_TRUE(study.ok()) << study.error().message;
+  EXPECT_EQ(study->name, "tune-foraging");
+  EXPECT_THAT(study->parts.front().seeds, SizeIs(2));
+  EXPECT_EQ(study->parts.front().experiment.scenario, "foraging");
+  EXPECT_EQ(study->analyses.front().tuning->parameters.front().baseline, "30");
+}
+
+TEST(StudyReader, SaysWhatIsWrongWithATuning) {
+  EXPECT_THAT(
+      TuningError("candidates.search.crossover = \"singlepoint\"\n"),
+      HasSubstr("t.toml:9:19: --set search.crossover=singlepoint: search.crossover = \"singlepoint\" is "
+                "unknown, allowed single-point"));
+  EXPECT_THAT(TuningError("candidates.search.popluation = \"4\"\n"),
+              HasSubstr("did you mean 'search.population'?"));
+  EXPECT_THAT(TuningError("candidates.search.cases = \"4\"\n"),
+              HasSubstr("the search 'genetic' does not read search.cases"));
+  EXPECT_THAT(TuningError("candidates.search.crossover = \"uniform, uniform\"\n"),
+              HasSubstr("uniform is given twice"));
+  EXPECT_THAT(TuningError("candidates.search.crossover = \"single-point\"\n"),
+              HasSubstr("has no candidate besides its baseline value single-point"));
+  EXPECT_THAT(TuningError("candidates.seed = \"4\"\n"), HasSubstr("seed is no parameter of a search"));
+  EXPECT_THAT(TuningError("sizes = \"5, 1\"\n"), HasSubstr("expected ascending whole numbers"));
+  EXPECT_THAT(TuningError("set.search.algorithm = \"random\"\n"), HasSubstr("has no population"));
+  EXPECT_THAT(TuningError("", {"", "101", {}}),
+              HasSubstr("--repeats 101: give a whole number from 1 to 100"));
+  EXPECT_THAT(TuningError("", {"", "", {"search.generations=0"}}), HasSubstr("out of range"));
+}
+
+TEST(StudyReader, TheShippedTuningsHoldTheCandidatesOfTheThesis) {
+  for (const auto& [name, generations] :
+       {std::pair("tune-flocking", "50"), std::pair("tune-foraging", "30")}) {
+    const auto study = LoadStudy(name);
+    ASSERT_TRUE(study.ok()) << study.error().message;
+    const Tuning& tuning = *study->analyses.front().tuning;
+    EXPECT_EQ(tuning.repeats, 20);
+    std::map<std::string, std::size_t> candidates;
+    for (const TunedParameter& parameter : tuning.parameters)
+      candidates[parameter.key] = parameter.values.size();
+    const std::map<std::string, std::size_t> expected = {{"genome.genes", 4},
+                                                         {"search.population", 5},
+                                                         {"search.parent_selection", 3},
+                                                         {"search.crossover", 3},
+                                                         {"search.crossover_probability", 3},
+                                                         {"search.mutation_probability", 4},
+                                                         {"search.generations", 4}};
+    EXPECT_EQ(candidates, expected) << "and none besides for the baseline";
+    EXPECT_EQ(tuning.parameters.back().baseline, generations);
+    EXPECT_THAT(study->published, SizeIs(8));
   }
 }
 
