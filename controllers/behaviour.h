@@ -92,6 +92,14 @@ struct MetricInfo {
 struct FailureType {
   int type = 0;  // SwarmFailure::type: stored, so do not renumber
   std::string name;
+  std::string column = "";  // where it stands in a map of the types, in words; "" = they have no such order
+  std::string row = "";
+};
+
+// What the columns and rows of a map of failure types are.
+struct FailureAxes {
+  std::string_view columns = "";
+  std::string_view rows = "";
 };
 
 // Where a failed run failed, so that two failures can be told to be the same one.
@@ -110,6 +118,7 @@ struct ScenarioInfo {
   std::string_view time_limit = "time_limit";  // the parameter, in s, after which a run ends at the latest
   std::span<const MetricInfo> metrics;
   std::span<const FailureType> failure_types = {};
+  FailureAxes failure_axes = {};
   std::string_view untyped_failure = "without a type";  // a total failure whose type is -1
   // What is 1 after a run in which a test case broke the swarm, when cases are confirmed and made smaller:
   // "total_failure" or a yes/no metric.

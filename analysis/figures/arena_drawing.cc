@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/figures/value_axis.h"
+
 namespace gauntlet::analysis {
 namespace {
 
@@ -16,7 +18,7 @@ void DrawBox(SvgCanvas& canvas, const FigureFrame& frame, const sim::Vec2& min, 
 
 // Between the lines of the grid, m.
 double GridStep(const FigureFrame& frame) {
-  return NiceStep(2 * std::max(frame.half_x(), frame.half_y()), 12);
+  return RoundStep(2 * std::max(frame.half_x(), frame.half_y()), 12);
 }
 
 void DrawWalls(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
@@ -127,7 +129,7 @@ void DrawAxes(SvgCanvas& canvas, const FigureFrame& frame) {
               fmt::format("class=\"axis\" text-anchor=\"middle\" transform=\"rotate(-90 24 {})\"",
                           SvgNumber(middle_y)));
 
-  const double bar = NiceStep(frame.half_x(), 4);
+  const double bar = RoundStep(frame.half_x(), 4);
   const double y = frame.bottom() + 44;
   const double right = frame.right();
   const double left = right - bar * frame.scale();

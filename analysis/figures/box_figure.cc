@@ -7,6 +7,7 @@
 
 #include "analysis/figures/figure_frame.h"
 #include "analysis/figures/svg_canvas.h"
+#include "analysis/figures/value_axis.h"
 #include "base/number_text.h"
 
 namespace gauntlet::analysis {
@@ -71,17 +72,7 @@ class BoxDrawing {
   void DrawAxis() {
     const double right = kLeft + kColumn * static_cast<double>(figure_.boxes.size());
     canvas_.Text({kLeft - 80, kTop - 10}, figure_.axis_name, "class=\"axis\"");
-    constexpr int kMostTicks = 8;
-    const double step = std::pow(10.0, std::floor(std::log10((high_ - low_) / kMostTicks)));
-    const double factor = (high_ - low_) / step > 5 * kMostTicks   ? 10.0
-                          : (high_ - low_) / step > 2 * kMostTicks ? 5.0
-                          : (high_ - low_) / step > kMostTicks     ? 2.0
-                                                                   : 1.0;
-    const double nice = step * factor;
-    const double first = std::ceil(low_ / nice);
-    const auto ticks = static_cast<int>(std::floor(high_ / nice) - first);
-    for (int i = 0; i <= ticks; ++i) {
-      const double value = (first + i) * nice;
+    for (const double value : RoundValues(low_, high_, 8)) {
       canvas_.Line({kLeft, Y(value)}, {right, Y(value)}, "class=\"rule\"");
       canvas_.Text({kLeft - 8, Y(value) + 4}, fmt::format("{:.6g}", value), "class=\"value\"");
     }

@@ -50,13 +50,6 @@ class FigureFrame {
   double scale_;
 };
 
-// A step of 1, 2 or 5 times a power of ten that divides `extent` into at most `most` parts.
-inline double NiceStep(double extent, double most) {
-  double step = 0.1;
-  for (int i = 0; step * most < extent && i < 60; ++i) step *= i % 3 == 1 ? 2.5 : 2.0;
-  return step;
-}
-
 // Blue for those who stayed, vermilion for the lost, green for the guide: told apart by colour-blind readers
 // (Okabe and Ito 2008).
 inline constexpr std::string_view kInk = "#22272e";

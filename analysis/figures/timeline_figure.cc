@@ -9,6 +9,7 @@
 #include "analysis/figures/run_figure.h"
 #include "analysis/figures/run_panel.h"
 #include "analysis/figures/svg_canvas.h"
+#include "analysis/figures/value_axis.h"
 
 namespace gauntlet::analysis {
 namespace {
@@ -144,7 +145,7 @@ class Timeline {
   }
 
   void DrawTimeAxis() {
-    const double step = NiceStep(seconds_, 10.0);
+    const double step = RoundStep(seconds_, 10);
     for (double second = 0.0; second <= seconds_; second += step) {
       const double x = X(second);
       canvas_.Line({x, kTop}, {x, rows_bottom_}, "class=\"guide\"");

@@ -167,12 +167,18 @@ int FailureTypeOf(const RelativeMotion& motion) {
 }
 
 std::string FailureLabel(int type) {
+  return FailureDegrees(type) + " degrees apart, " + FailureSpeeds(type);
+}
+
+std::string FailureDegrees(int type) {
   GAUNTLET_CHECK(type >= 0 && type < kFailureTypes, "no failure type " + std::to_string(type));
   const int bin = type % 10;
-  const std::string angle =
-      bin == 9 ? "over 90 degrees apart"
-               : std::to_string(10 * bin) + "-" + std::to_string(10 * bin + 10) + " degrees apart";
-  return angle + (type < 10 ? ", similar speeds" : ", one cluster slower than half the other");
+  return bin == 9 ? "over 90" : std::to_string(10 * bin) + "-" + std::to_string(10 * bin + 10);
+}
+
+std::string FailureSpeeds(int type) {
+  GAUNTLET_CHECK(type >= 0 && type < kFailureTypes, "no failure type " + std::to_string(type));
+  return type < 10 ? "similar speeds" : "one cluster slower than half the other";
 }
 
 }  // namespace gauntlet::controllers

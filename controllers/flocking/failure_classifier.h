@@ -54,5 +54,8 @@ inline constexpr int kFailureTypes = 20;
 int FailureTypeOf(const RelativeMotion& motion);
 // In words: "10-20 degrees apart, one cluster slower than half the other".
 std::string FailureLabel(int type);
+// Its parts: "10-20", and "one cluster slower than half the other".
+std::string FailureDegrees(int type);
+std::string FailureSpeeds(int type);
 
 }  // namespace gauntlet::controllers

@@ -37,7 +37,8 @@ constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
 const std::vector<FailureType>& FailureTypes() {
   static const std::vector<FailureType> types = [] {
     std::vector<FailureType> all;
-    for (int type = 0; type < kFailureTypes; ++type) all.push_back({type, FailureLabel(type)});
+    for (int type = 0; type < kFailureTypes; ++type)
+      all.push_back({type, FailureLabel(type), FailureDegrees(type), FailureSpeeds(type)});
     return all;
   }();
   return types;
@@ -139,6 +140,8 @@ const ScenarioInfo& FlockingScenarioInfo() {
           .style = {.member = "bird", .guide = "prey", .annotations = kAnnotations},
           .metrics = kMetrics,
           .failure_types = FailureTypes(),
+          .failure_axes = {.columns = "degrees between the headings of the two groups at the last split",
+                           .rows = "their speeds"},
           .untyped_failure = "without a split",
           .failure_place = FailurePlace{"split_x", "split_y", 1.2},  // chosen: a fifth of the arena's side
       });

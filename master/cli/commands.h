@@ -46,6 +46,7 @@ void AddShow(CommandParser& parser);
 void AddReplay(CommandParser& parser);
 void AddConfirm(CommandParser& parser);
 void AddCompare(CommandParser& parser);
+void AddFigure(CommandParser& parser);
 void AddExport(CommandParser& parser);
 void AddStudy(CommandParser& parser);
 void AddTune(CommandParser& parser);
@@ -58,7 +59,7 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,   AddReplay, AddConfirm, AddCompare,
-    AddStudy, AddTune, AddExport, AddSubmit,   AddMaster, AddStatus, AddWatch,  AddStop,    AddList};
+    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,   AddReplay, AddConfirm, AddCompare, AddStudy,
+    AddTune,   AddFigure, AddExport,   AddSubmit, AddMaster, AddStatus, AddWatch,   AddStop,    AddList};
 
 }  // namespace gauntlet::master

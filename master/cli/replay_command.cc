@@ -8,15 +8,14 @@
 #include "analysis/figures/run_figure.h"
 #include "analysis/figures/trajectory_csv.h"
 #include "base/printable.h"
-#include "controllers/registry.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/summary.h"
 #include "master/cli/table.h"
+#include "master/report/replayed_figure.h"
 #include "master/report/verdict_text.h"
-#include "sim/geometry/trigonometry.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet::master {
@@ -51,31 +50,6 @@ Status CheckOwnFiles(const ReplayOptions& options) {
     }
   }
   return Ok{};
-}
-
-// Angles are shown in degrees; a metric that the scenario does not describe is shown as its bare number.
-std::string MetricText(const controllers::MetricInfo* info, double value) {
-  if (info == nullptr) return fmt::format("{:.6g}", value);
-  if (info->none == value) return "none";
-  if (info->unit == "yes/no") return value == 0.0 ? "no" : "yes";
-  if (info->unit == "rad") return fmt::format("{:.4g} deg", value / sim::kDegree);
-  if (info->unit.empty()) return fmt::format("{:.6g}", value);
-  return fmt::format("{:.6g} {}", value, info->unit);
-}
-
-analysis::RunFigure FigureOf(const CampaignReplay& replay) {
-  analysis::RunFigure figure;
-  figure.experiment = replay.experiment.name;
-  figure.run = fmt::format("run {}", replay.report.stored.id);
-  figure.spec = replay.report.spec;
-  figure.result = replay.report.replayed;
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(figure.spec.scenario);
-  if (scenario != nullptr) figure.style = scenario->style;
-  for (const auto& [name, value] : figure.result.metrics) {
-    const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, name);
-    figure.metrics.emplace_back(name, MetricText(info, value));
-  }
-  return figure;
 }
 
 std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure) {
@@ -125,7 +99,7 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
     PrintMessage(context, replay->report.damage);
     return kExitNegative;
   }
-  const analysis::RunFigure figure = FigureOf(*replay);
+  const analysis::RunFigure figure = FigureOf(replay->experiment.name, replay->report);
   if (!options.timeline.empty() && !analysis::HasTimeline(figure)) {
     return Fail(context,
                 InvalidInput(fmt::format("--timeline: runs of {} do not say what their robots did when",

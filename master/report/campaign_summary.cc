@@ -134,7 +134,8 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.search = experiment.search.algorithm;
   summary.seed = experiment.seed;
   if (const auto* scenario = controllers::FindScenario(experiment.scenario)) {
-    for (const auto& [type, name] : scenario->failure_types) summary.failure_types.push_back({type, name});
+    for (const controllers::FailureType& one : scenario->failure_types)
+      summary.failure_types.push_back({one.type, one.name});
     summary.untyped = scenario->untyped_failure;
   }
 

@@ -47,8 +47,13 @@ Result<ReplayReport> ReplayRun(ResultStore& store, RunId run) {
   if (!loaded) return loaded.error();
   if (!loaded->has_value())
     return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", run)};
+  return ReplayRun(std::move(**loaded));
+}
+
+Result<ReplayReport> ReplayRun(StoredRun stored) {
   ReplayReport report;
-  report.stored = std::move(**loaded);
+  report.stored = std::move(stored);
+  const RunId run = report.stored.id;
   Result<sim::RunSpec> spec = proto::DecodeRunSpec(report.stored.spec);
   if (!spec) {
     report.damage = fmt::format("the stored spec of run {} is damaged: {}", run, spec.error().message);

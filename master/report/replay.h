@@ -31,5 +31,7 @@ struct CampaignReplay {
 
 // Error: the run is not there (kNotFound), or its row contradicts the result stored in it (kCorrupt).
 Result<ReplayReport> ReplayRun(ResultStore& store, RunId run);
+// The same of a run that was read. Thread-safe.
+Result<ReplayReport> ReplayRun(StoredRun stored);
 
 }  // namespace gauntlet::master
