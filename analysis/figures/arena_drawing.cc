@@ -71,6 +71,18 @@ void DrawLamps(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& ar
 
 }  // namespace
 
+std::string_view ArenaStyleSheet() {
+  return R"(.floor { fill: #fdfcf9; }
+.grid { stroke: #ebe7dd; stroke-width: 1; }
+.wall { fill: #3a424c; }
+.obstacle { fill: #cbc4b6; stroke: #857c6c; stroke-width: 1.2; stroke-linejoin: round; }
+.obstacle-end { fill: none; stroke: #857c6c; stroke-width: 1.2; stroke-dasharray: 3 3; }
+.obstacle-path { fill: none; stroke: #857c6c; stroke-width: 1.6; stroke-dasharray: 1 4; stroke-linecap: round; }
+.lamp { stroke: #ffffff; stroke-width: 1; }
+.obstacle-number { font-size: 13px; font-weight: bold; fill: #4d463a; text-anchor: middle; stroke: #efebe3; stroke-width: 3; paint-order: stroke; }
+)";
+}
+
 void DrawFloor(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
   const double step = GridStep(frame);
   const sim::Vec2& min = arena.interior_min();
@@ -91,7 +103,8 @@ void DrawObstacles(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena
   DrawWalls(canvas, frame, arena);
 }
 
-std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
+std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena,
+                                       const std::vector<std::size_t>& kept) {
   std::vector<Pixel> places;
   for (std::size_t i = 0; i < arena.obstacles().size(); ++i) {
     const sim::Polygon corners = arena.VisiblePart(i);
@@ -99,7 +112,8 @@ std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& fra
     sim::Vec2 sum = sim::Vec2::Zero();
     for (const sim::Vec2& corner : corners) sum += corner;
     const Pixel p = places.emplace_back(frame.At(sum / static_cast<double>(corners.size())));
-    canvas.Text({p.x, p.y + 4.5}, fmt::format("{}", i + 1), "class=\"obstacle-number\"");
+    canvas.Text({p.x, p.y + 4.5}, fmt::format("{}", (kept.empty() ? i : kept[i]) + 1),
+                "class=\"obstacle-number\"");
   }
   return places;
 }

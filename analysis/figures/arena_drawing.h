@@ -7,11 +7,15 @@
 
 namespace gauntlet::analysis {
 
+// Of what the functions below draw.
+std::string_view ArenaStyleSheet();
+
 void DrawFloor(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
 // With the ways of those that move, the lamps of those that are lit, and the walls.
 void DrawObstacles(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
-// Returns where they stand.
-std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
+// Returns where they stand. `kept`: which of a larger arena's obstacles these are, from 0; empty = all.
+std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena,
+                                       const std::vector<std::size_t>& kept = {});
 // Ticks in m along the walls, and a scale.
 void DrawAxes(SvgCanvas& canvas, const FigureFrame& frame);
 

@@ -24,15 +24,7 @@ std::string StyleSheet() {
   return fmt::format(
       R"(.name {{ font-size: 12px; fill: {soft}; }}
 .value {{ font-size: 12px; text-anchor: end; }}
-.floor {{ fill: #fdfcf9; }}
-.grid {{ stroke: #ebe7dd; stroke-width: 1; }}
-.wall {{ fill: #3a424c; }}
-.obstacle {{ fill: #cbc4b6; stroke: #857c6c; stroke-width: 1.2; stroke-linejoin: round; }}
-.obstacle-end {{ fill: none; stroke: #857c6c; stroke-width: 1.2; stroke-dasharray: 3 3; }}
-.obstacle-path {{ fill: none; stroke: #857c6c; stroke-width: 1.6; stroke-dasharray: 1 4; stroke-linecap: round; }}
-.lamp {{ stroke: #ffffff; stroke-width: 1; }}
-.obstacle-number {{ font-size: 13px; font-weight: bold; fill: #4d463a; text-anchor: middle; stroke: #efebe3; stroke-width: 3; paint-order: stroke; }}
-.spawn {{ fill: {kept}; fill-opacity: 0.08; stroke: {kept}; stroke-opacity: 0.55; stroke-width: 1.2; stroke-dasharray: 2 3; }}
+{arena}.spawn {{ fill: {kept}; fill-opacity: 0.08; stroke: {kept}; stroke-opacity: 0.55; stroke-width: 1.2; stroke-dasharray: 2 3; }}
 .goal {{ fill: {goal}; fill-opacity: 0.35; stroke: {goal}; stroke-width: 2.4; }}
 .nest {{ fill: #8a94a0; fill-opacity: 0.4; stroke: {soft}; stroke-width: 2; }}
 .food {{ fill: {guide}; fill-opacity: 0.3; stroke: {guide}; stroke-width: 2.4; }}
@@ -55,9 +47,9 @@ std::string StyleSheet() {
 .callout-line {{ stroke: {split}; stroke-width: 1.4; }}
 .callout-text {{ font-size: 12.5px; font-weight: bold; fill: {split}; }}
 )",
-      fmt::arg("soft", kSoftInk), fmt::arg("kept", kKeptColor), fmt::arg("goal", kGoalColor),
-      fmt::arg("plan", kPlanColor), fmt::arg("split", kSplitColor), fmt::arg("guide", kGuideColor),
-      fmt::arg("beacon", kBeaconColor));
+      fmt::arg("arena", ArenaStyleSheet()), fmt::arg("soft", kSoftInk), fmt::arg("kept", kKeptColor),
+      fmt::arg("goal", kGoalColor), fmt::arg("plan", kPlanColor), fmt::arg("split", kSplitColor),
+      fmt::arg("guide", kGuideColor), fmt::arg("beacon", kBeaconColor));
 }
 
 void DrawPlaces(SvgCanvas& canvas, const RunFigure& figure, const FigureFrame& frame) {

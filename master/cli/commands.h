@@ -45,6 +45,7 @@ void AddResume(CommandParser& parser);
 void AddShow(CommandParser& parser);
 void AddReplay(CommandParser& parser);
 void AddConfirm(CommandParser& parser);
+void AddMinimise(CommandParser& parser);
 void AddCompare(CommandParser& parser);
 void AddFigure(CommandParser& parser);
 void AddExport(CommandParser& parser);
@@ -59,7 +60,8 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom, AddEvaluate, AddResume, AddShow,   AddReplay, AddConfirm, AddCompare, AddStudy,
-    AddTune,   AddFigure, AddExport,   AddSubmit, AddMaster, AddStatus, AddWatch,   AddStop,    AddList};
+    AddEvolve,   AddRandom,  AddEvaluate, AddResume, AddShow,   AddReplay, AddConfirm,
+    AddMinimise, AddCompare, AddStudy,    AddTune,   AddFigure, AddExport, AddSubmit,
+    AddMaster,   AddStatus,  AddWatch,    AddStop,   AddList};
 
 }  // namespace gauntlet::master

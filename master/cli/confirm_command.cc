@@ -1,6 +1,5 @@
 // gauntlet confirm: do cases fail again, with seeds that took no part in finding them?
 #include <algorithm>
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,11 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/parse_number.h"
-#include "base/shell_quoted.h"
-#include "master/cases/case_file.h"
 #include "master/cli/commands.h"
 #include "master/cli/confirmation_table.h"
-#include "master/cli/run_campaign.h"
+#include "master/cli/given_cases.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -39,28 +36,7 @@ Result<QuestionedCampaign> CasesOf(const ConfirmOptions& options) {
           fmt::format("{}: no run has failed, so there is no case to confirm", options.directory));
     return failing;
   }
-  std::vector<RunId> runs;
-  std::vector<CaseInQuestion> files;
-  for (const std::string& text : options.cases) {
-    if (std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) {
-      const Result<std::uint64_t> run = ParseRunId(text);
-      if (!run) return run.error();
-      runs.push_back(*run);
-      continue;
-    }
-    Result<LoadedCase> loaded = LoadCase(text);
-    if (!loaded) return loaded.error();
-    files.push_back({std::filesystem::path(text).filename().string(), 0, std::move(loaded->test_case)});
-  }
-  Result<QuestionedCampaign> questioned = CasesOfRuns(options.directory, runs);
-  if (!questioned) return questioned;
-  if (!files.empty() && questioned->plans.size() > 1) {
-    return InvalidInput(fmt::format(
-        "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
-        options.directory, questioned->plans.size(), files.front().name));
-  }
-  std::ranges::move(files, std::back_inserter(questioned->cases));
-  return questioned;
+  return GivenCases(options.directory, options.cases);
 }
 
 Result<int> ParseReplicates(const std::string& text) {
@@ -99,25 +75,13 @@ ExitCode RunConfirm(CommandContext& context, const ConfirmOptions& options) {
   if (!questioned) return Fail(context, questioned.error());
   const Result<std::vector<Confirmation>> known = ReadConfirmations(options.directory);
   if (!known) return Fail(context, known.error());
-  const ConfirmationPlan plan = PlanConfirmation(options.directory, *questioned, *known, *replicates);
+  const CallPlan plan = PlanConfirmation(options.directory, *questioned, *known, *replicates);
   if (plan.searches.empty()) {
     const Status printed = Print(context, options, *questioned);
     return printed ? kExitDone : Fail(context, printed.error());
   }
 
-  CampaignRun campaign;
-  campaign.directory = plan.directory;
-  campaign.announcement =
-      fmt::format("{} cases with fresh seeds, {} worker{}, in {}", questioned->cases.size(), *workers,
-                  *workers == 1 ? "" : "s", plan.directory);
-  campaign.serving = options;
-  campaign.session.workers = *workers;
-  campaign.run = [&](const SessionOptions& session) {
-    std::error_code none;
-    return std::filesystem::exists(plan.directory + "/campaign.db", none)
-               ? context.campaigns.Resume(plan.directory, session)
-               : context.campaigns.Start(plan.directory, plan.searches, session);
-  };
+  CampaignRun campaign = RunOfCall(context, plan, *workers, options);
   campaign.report = [&](const SessionReport&) { return Print(context, options, *questioned); };
   return RunCampaign(context, campaign);
 }

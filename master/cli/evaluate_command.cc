@@ -10,17 +10,16 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include "controllers/registry.h"
 #include "master/cases/case_file.h"
 #include "master/cli/commands.h"
 #include "master/cli/dry_run.h"
+#include "master/cli/given_cases.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/summary.h"
 #include "master/report/case_set.h"
 #include "master/report/verdict_text.h"
 #include "master/search/search_table.h"
 #include "proto/run_codec.h"
-#include "sim/arena/validity.h"
 
 namespace gauntlet::master {
 namespace {
@@ -41,20 +40,11 @@ struct CaseList {
 
 // Whether the experiment's swarm can be put into the case; what speaks against it is noted.
 bool CanBeSimulated(const Experiment& experiment, const sim::TestCase& test_case, EvaluatedCase& evaluated) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
-  if (scenario == nullptr) return true;
-  const auto requirements = scenario->requirements(experiment.scenario_parameters, test_case);
-  if (const auto violation = sim::CheckValidity(test_case, requirements)) {
-    evaluated.refused_rule = sim::NameOf(violation->rule);
-    evaluated.error = violation->message;
-    return false;
-  }
-  if (const Status fits = CheckSwarmFits(experiment, test_case); !fits) {
-    evaluated.refused_rule = RuleOf(fits.error().message);
-    evaluated.error = fits.error().message;
-    return false;
-  }
-  return true;
+  const std::optional<Refusal> refusal = RefusalOf(experiment, test_case);
+  if (!refusal) return true;
+  evaluated.refused_rule = refusal->rule;
+  evaluated.error = refusal->message;
+  return false;
 }
 
 // Adds the case to the newest search.

@@ -1,6 +1,4 @@
-// How often cases of a campaign fail with fresh seeds: what `gauntlet confirm` has found out. Each of its
-// calls is a campaign of its own, in the folder `confirm` of the one that the cases come from, so that it
-// survives a kill, resumes and is replayed like any other and changes nothing of the first.
+// How often cases of a campaign fail with fresh seeds: what `gauntlet confirm` has found out.
 #pragma once
 
 #include <cstdint>
@@ -9,28 +7,10 @@
 
 #include "analysis/statistics/interval.h"
 #include "base/result.h"
-#include "master/directory/search_plans.h"
+#include "master/report/questioned_cases.h"
 #include "master/search/failure_tally.h"
 
 namespace gauntlet::master {
-
-// A case that somebody asks about.
-struct CaseInQuestion {
-  std::string name;        // "run 17", or what its file is called
-  std::size_t search = 0;  // of the campaign's, from 0: whose experiment it belongs to
-  sim::TestCase test_case;
-};
-
-// The searches of a campaign and cases that its runs were simulated with.
-struct QuestionedCampaign {
-  std::vector<SearchPlan> plans;
-  std::vector<CaseInQuestion> cases;
-};
-// The cases of these runs, in their order. Errors: those of ViewCampaign; kNotFound for a run that is not
-// there.
-Result<QuestionedCampaign> CasesOfRuns(const std::string& dir, const std::vector<RunId>& runs);
-// Every different case with a run that failed (controllers::ScenarioInfo::failing), named by the first.
-Result<QuestionedCampaign> FailingCases(const std::string& dir);
 
 struct Confirmation {
   std::string name;       // of the case, as in CaseInQuestion
@@ -47,13 +27,9 @@ std::uint64_t ConfirmationKey(const Experiment& experiment, const sim::TestCase&
 // out. Of a case that was confirmed twice, what stands on more runs.
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir);
 
-// A campaign that finds out how often cases fail.
-struct ConfirmationPlan {
-  std::string directory;             // empty, or what an earlier call with the same cases has left
-  std::vector<SearchPlan> searches;  // empty when everything is known
-};
-// `known` with fewer runs than `replicates` are simulated anew; 0 = until there is a verdict.
-ConfirmationPlan PlanConfirmation(const std::string& dir, const QuestionedCampaign& questioned,
-                                  const std::vector<Confirmation>& known, int replicates);
+// A campaign that finds out how often cases fail. `known` with fewer runs than `replicates` are simulated
+// anew; 0 = until there is a verdict.
+CallPlan PlanConfirmation(const std::string& dir, const QuestionedCampaign& questioned,
+                          const std::vector<Confirmation>& known, int replicates);
 
 }  // namespace gauntlet::master

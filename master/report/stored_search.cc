@@ -19,7 +19,10 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& expe
                  "the campaign was stopped before its cases were stored: evaluate them anew"};
   }
   std::vector<sim::TestCase> cases;
-  for (Individual& individual : *individuals) cases.push_back(std::move(individual.test_case));
+  for (Individual& individual : *individuals) {
+    if (individual.parents.empty())
+      cases.push_back(std::move(individual.test_case));  // others were born later
+  }
   return MakeSearch(experiment, kOnlySearch, std::move(cases));
 }
 
@@ -29,16 +32,16 @@ bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const
   return stored.finished_with > 0 && stored.finished_with >= last;
 }
 
-Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics) {
+Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics, bool with_ways) {
   RunOutcome outcome{.verdict = static_cast<sim::Verdict>(run.verdict),
                      .fitness = run.fitness,
                      .total_failure = run.total_failure,
-                     .failure_type = run.failure_type,
-                     .metrics = {}};
-  if (!with_metrics) return outcome;
+                     .failure_type = run.failure_type};
+  if (!with_metrics && !with_ways) return outcome;
   Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
   if (!result) return result.error();
-  outcome.metrics = std::move(result->metrics);
+  if (with_metrics) outcome.metrics = std::move(result->metrics);
+  if (with_ways) outcome.robots = std::move(result->robots);
   return outcome;
 }
 
@@ -62,19 +65,21 @@ Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgor
       visit(OutcomeOfRuns(next.individual, next.evaluation, std::exchange(next.runs, {})));
     };
     const bool with_metrics = search.WantsMetrics();  // they stand in the results
+    const bool with_ways = search.WantsWays();
     const auto take = [&](const StoredRun& run) {
       if (damage || run.id > saved.last_run) return;
       if (run.individual != next.individual || run.evaluation != next.evaluation) tell();
       next.individual = run.individual;
       next.evaluation = run.evaluation;
-      Result<RunOutcome> outcome = OutcomeOf(run, with_metrics);
+      Result<RunOutcome> outcome = OutcomeOf(run, with_metrics, with_ways);
       if (!outcome) {
         damage = outcome.error();
       } else {
         next.runs.push_back(*std::move(outcome));
       }
     };
-    const Status read = with_metrics ? store.ForEachRun(id, 0, take) : store.ForEachRow(id, 0, take);
+    const Status read =
+        with_metrics || with_ways ? store.ForEachRun(id, 0, take) : store.ForEachRow(id, 0, take);
     if (!read) return read;
     if (damage) return *damage;
     tell();

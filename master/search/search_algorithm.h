@@ -35,7 +35,8 @@ struct RunOutcome {
   bool total_failure = false;
   int failure_type = -1;  // of the scenario; -1 = none or not classified
   // By name, in the scenario's order. Only for a search that WantsMetrics.
-  std::vector<std::pair<std::string, double>> metrics;
+  std::vector<std::pair<std::string, double>> metrics = {};
+  std::vector<sim::RobotSummary> robots = {};  // only for a search that WantsWays
 };
 
 // What came of an EvaluationRequest.
@@ -84,6 +85,8 @@ class SearchAlgorithm {
   virtual void Tell(const EvaluationOutcome& outcome) = 0;
   // Whether outcomes are to carry the metrics of their runs; constant. They have to be decoded for it.
   virtual bool WantsMetrics() const { return false; }
+  // Whether also their ways; constant. Its campaign has to keep them (store.trajectories).
+  virtual bool WantsWays() const { return false; }
   virtual SearchProgress Progress() const = 0;
   // The current population, in a fixed order (all cases told so far for searches without survivors).
   virtual const std::vector<Individual>& Population() const = 0;

@@ -11,6 +11,7 @@
 #include "master/search/case_list_search.h"
 #include "master/search/confirmation_search.h"
 #include "master/search/genetic_algorithm.h"
+#include "master/search/minimisation_search.h"
 #include "master/search/random_search.h"
 #include "master/search/steady_state_search.h"
 #include "sim/robot/disturbances.h"
@@ -18,8 +19,8 @@
 namespace gauntlet::master {
 
 std::span<const SearchRow> Searches() {
-  static const std::array rows = {GeneticRow(),  SteadyStateRow(),  RandomRow(),
-                                  CaseListRow(), ResimulationRow(), ConfirmationRow()};
+  static const std::array rows = {GeneticRow(),      SteadyStateRow(),  RandomRow(),      CaseListRow(),
+                                  ResimulationRow(), ConfirmationRow(), MinimisationRow()};
   return rows;
 }
 

@@ -89,7 +89,8 @@ Status SearchDriver::Ask() {
                   "another version, or its files were changed",
                   run.id)};
         }
-        Result<RunOutcome> outcome = OutcomeOf(stored->second, parts_.search.WantsMetrics());
+        Result<RunOutcome> outcome =
+            OutcomeOf(stored->second, parts_.search.WantsMetrics(), parts_.search.WantsWays());
         if (!outcome) return outcome.error();
         stored->second.spec.clear();
         stored->second.result.clear();
@@ -142,6 +143,7 @@ void SearchDriver::Store(FinishedRun finished) {
   run.failure_type = finished.result.failure.type;
   pending->outcome = *OutcomeOf(run, /*with_metrics=*/false);
   if (parts_.search.WantsMetrics()) pending->outcome.metrics = std::move(finished.result.metrics);
+  if (parts_.search.WantsWays()) pending->outcome.robots = std::move(finished.result.robots);
   parts_.store.AddRun(run);
   run.spec.clear();
   run.result.clear();

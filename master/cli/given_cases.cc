@@ -1,0 +1,76 @@
+#include "master/cli/given_cases.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "controllers/registry.h"
+#include "master/cases/case_file.h"
+#include "master/report/verdict_text.h"
+#include "master/search/search_table.h"
+#include "sim/arena/validity.h"
+
+namespace gauntlet::master {
+std::optional<Refusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case) {
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
+  if (scenario == nullptr) return std::nullopt;
+  const auto requirements = scenario->requirements(experiment.scenario_parameters, test_case);
+  if (const auto violation = sim::CheckValidity(test_case, requirements))
+    return Refusal{std::string(sim::NameOf(violation->rule)), violation->message};
+  if (const Status fits = CheckSwarmFits(experiment, test_case); !fits)
+    return Refusal{RuleOf(fits.error().message), fits.error().message};
+  return std::nullopt;
+}
+
+Result<QuestionedCampaign> GivenCases(const std::string& directory, const std::vector<std::string>& cases) {
+  std::vector<RunId> runs;
+  std::vector<CaseInQuestion> files;
+  for (const std::string& text : cases) {
+    if (std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) {
+      const Result<std::uint64_t> run = ParseRunId(text);
+      if (!run) return run.error();
+      runs.push_back(*run);
+      continue;
+    }
+    Result<LoadedCase> loaded = LoadCase(text);
+    if (!loaded) return loaded.error();
+    files.push_back({std::filesystem::path(text).filename().string(), 0, std::move(loaded->test_case)});
+  }
+  Result<QuestionedCampaign> questioned = CasesOfRuns(directory, runs);
+  if (!questioned) return questioned;
+  if (!files.empty() && questioned->plans.size() > 1) {
+    return InvalidInput(fmt::format(
+        "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
+        directory, questioned->plans.size(), files.front().name));
+  }
+  for (CaseInQuestion& file : files) {
+    if (const auto refusal = RefusalOf(questioned->plans.front().experiment, file.test_case))
+      return InvalidInput(fmt::format("{}: {}", file.name, refusal->message));
+    questioned->cases.push_back(std::move(file));
+  }
+  return questioned;
+}
+
+CampaignRun RunOfCall(CommandContext& context, const CallPlan& plan, int workers,
+                      const ServingOptions& serving) {
+  std::size_t cases = 0;
+  for (const SearchPlan& search : plan.searches) cases += search.cases.size();
+  CampaignRun campaign;
+  campaign.directory = plan.directory;
+  campaign.announcement =
+      fmt::format("{} case{} with fresh seeds, {} worker{}, in {}", cases, cases == 1 ? "" : "s", workers,
+                  workers == 1 ? "" : "s", plan.directory);
+  campaign.serving = serving;
+  campaign.session.workers = workers;
+  campaign.run = [&context, plan](const SessionOptions& session) {
+    std::error_code none;
+    return std::filesystem::exists(plan.directory + "/campaign.db", none)
+               ? context.campaigns.Resume(plan.directory, session)
+               : context.campaigns.Start(plan.directory, plan.searches, session);
+  };
+  return campaign;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,32 @@
+// The searches of a call that has come to its end (PlanCall), as they ended.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "analysis/statistics/interval.h"
+#include "base/result.h"
+#include "master/experiment/experiment.h"
+#include "master/search/failure_tally.h"
+#include "master/search/search_algorithm.h"
+#include "master/store/result_store.h"
+
+namespace gauntlet::master {
+
+struct AnsweredSearch {
+  SearchId id = 0;
+  const Experiment& experiment;
+  const SearchAlgorithm& search;
+  ResultStore& store;
+  // What the individual's first run without a result says; "" when all have one.
+  std::function<std::string(IndividualId individual)> first_message;
+};
+// Visits those that have come to their end, in the order of their numbers, until one of the visits fails.
+// Errors: those of ViewCampaign and RestoreSearch.
+Status ForEachAnswer(const std::string& directory,
+                     const std::function<Status(const AnsweredSearch& answered)>& visit);
+
+// Of the probability to fail (Wilson, 95 %); 0 to 1 without a run.
+analysis::Interval FailureInterval(const FailureTally& tally);
+
+}  // namespace gauntlet::master

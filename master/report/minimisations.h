@@ -1,0 +1,42 @@
+// The smallest parts of a campaign's cases that still fail: what `gauntlet minimise` finds.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/statistics/interval.h"
+#include "base/result.h"
+#include "master/report/questioned_cases.h"
+#include "master/search/case_minimiser.h"
+#include "proto/case_json.h"
+
+namespace gauntlet::master {
+
+struct Minimisation {
+  std::string name;  // of the case, as in CaseInQuestion
+  RunId run = 0;     // that it is the case of; 0 when it came from a file
+  sim::TestCase original;
+  MinimisedTo outcome = MinimisedTo::kOpen;
+  FailureTally found;                 // of the case as it is
+  FailureTally empty;                 // of the empty arena
+  std::vector<MinimisingStep> steps;  // to what is left (CaseMinimiser::steps)
+  LayoutRuns verified;                // of what is left
+  analysis::Interval interval;        // of the probability that it fails (Wilson, 95 %)
+  bool same_way = false;              // it fails where the case fails
+  bool has_place = false;             // the scenario's failures have a place
+  std::uint64_t runs = 0;             // simulated for this case
+  std::string message;                // of the first run that ended without a result; "" = none did
+  proto::CaseDocument smallest;       // what is left, with its lineage; the case itself when refused
+
+  bool Smaller() const { return outcome == MinimisedTo::kLayout && steps.size() > 1; }
+};
+
+// The step in words: "without obstacle 3".
+std::string DescribeStep(const MinimisingStep& step);
+
+// A campaign that minimises cases; `shorten`: also the lengths of their obstacles.
+CallPlan PlanMinimisation(const std::string& dir, const QuestionedCampaign& questioned, bool shorten);
+// What the call in `directory` has found, when it has come to its end, in the order of its cases.
+Result<std::vector<Minimisation>> ReadMinimisations(const std::string& directory);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,181 @@
+// gauntlet minimise with real processes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/campaign_driver.h"
+#include "tests/support/paths.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+using testing::HasSubstr;
+
+// Some of its cases fail.
+void MakeCampaign(const std::string& dir) {
+  ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "60", "--dir", dir, "--quiet"}).exit_code, 0);
+}
+
+// The numbers of runs that failed, or that did not.
+std::vector<std::string> Runs(const std::string& dir, bool failed, std::size_t most) {
+  const nlohmann::json shown = nlohmann::json::parse(Gauntlet({"show", dir, "--json", "--runs"}).out);
+  std::vector<std::string> ids;
+  for (const nlohmann::json& run : shown["runs"]) {
+    if (run["total_failure"].get<bool>() == failed && ids.size() < most) ids.push_back(run["id"].dump());
+  }
+  return ids;
+}
+
+std::vector<std::string> Minimise(const std::string& dir, std::vector<std::string> cases, int workers) {
+  cases.insert(cases.begin(), {"minimise", dir});
+  cases.insert(cases.end(), {"--workers", std::to_string(workers), "--json", "--quiet"});
+  return cases;
+}
+
+// What it says, without the paths of files.
+nlohmann::json Found(const std::vector<std::string>& arguments) {
+  const ProcessResult result = Gauntlet(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  nlohmann::json found = nlohmann::json::parse(result.out);
+  for (nlohmann::json& one : found["cases"]) {
+    if (one["minimised"].is_object()) one["minimised"].erase("files");
+  }
+  return found;
+}
+
+std::string CallOf(const std::string& dir) {
+  return std::filesystem::directory_iterator(dir + "/minimise")->path().string();
+}
+
+std::string StateHash(const std::string& dir) {
+  return nlohmann::json::parse(Gauntlet({"show", dir, "--json"}).out)["state_hash"];
+}
+
+std::string Write(const std::string& path, const nlohmann::json& document) {
+  std::ofstream(path) << document;
+  return path;
+}
+
+TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  const std::string before = StateHash(scratch / "c");
+  const std::vector<std::string> failing = Runs(scratch / "c", true, 4);
+  const nlohmann::json found = Found(Minimise(scratch / "c", failing, 2));
+  ASSERT_EQ(found["cases"].size(), failing.size());
+  EXPECT_EQ(StateHash(scratch / "c"), before);
+  int smaller = 0;
+  for (const nlohmann::json& one : found["cases"]) {
+    const nlohmann::json& left = one["minimised"];
+    if (left.is_null() || left["obstacles"] == 8) continue;
+    ++smaller;
+    EXPECT_EQ(left["n"], 30);
+    EXPECT_GE(left["k"], 24);
+    EXPECT_EQ(one["kept_same_way"], true);
+    const nlohmann::json& lineage = left["case"]["lineage"];
+    EXPECT_EQ(lineage["parent"]["obstacles"].size(), 8U);
+    EXPECT_EQ(lineage["verified"]["k"], left["k"]);
+    EXPECT_EQ(lineage["steps"].back()["obstacles"].size(), left["obstacles"]);
+    // It is a case file like any other.
+    const std::string file = Write(scratch / "left.json", left["case"]);
+    const ProcessResult evaluated =
+        Gauntlet({"evaluate", "flocking", "--case", file, "--replicates", "10", "--dir",
+                  scratch / ("e" + std::to_string(smaller)), "--json", "--quiet"});
+    ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+    int failures = 0;
+    const nlohmann::json runs = nlohmann::json::parse(evaluated.out)["cases"][0]["runs"];
+    for (const nlohmann::json& run : runs) failures += run["failure"]["total"].get<bool>() ? 1 : 0;
+    EXPECT_GE(failures, 5);
+  }
+  EXPECT_GE(smaller, 2);
+  const auto entries = std::filesystem::directory_iterator(CallOf(scratch / "c"));
+  EXPECT_EQ(
+      std::ranges::count_if(entries, [](const auto& entry) { return entry.path().extension() == ".svg"; }),
+      smaller);
+}
+
+TEST(MinimiseTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "one");
+  const std::vector<std::string> failing = Runs(scratch / "one", true, 3);
+  for (const char* copy : {"three", "killed"})
+    std::filesystem::copy(scratch / "one", scratch / copy, std::filesystem::copy_options::recursive);
+  const nlohmann::json one = Found(Minimise(scratch / "one", failing, 1));
+  EXPECT_EQ(Found(Minimise(scratch / "three", failing, 3)), one);
+  for (const char* sign : {"status.json", "campaign.db-wal"}) {
+    const std::unique_ptr<Process> master = StartGauntlet(Minimise(scratch / "killed", failing, 2));
+    const auto begun = [&] {
+      std::error_code none;
+      for (const auto& call : std::filesystem::directory_iterator(scratch / "killed/minimise", none)) {
+        if (std::filesystem::exists(call.path() / sign, none)) return true;
+      }
+      return false;
+    };
+    EXPECT_TRUE(Eventually(begun, kPatience));
+    master->Signal(SIGKILL);
+    master->Wait();
+  }
+  EXPECT_EQ(Found(Minimise(scratch / "killed", failing, 2)), one);
+  EXPECT_EQ(StateHash(CallOf(scratch / "killed")), StateHash(CallOf(scratch / "one")));
+  EXPECT_EQ(StateHash(CallOf(scratch / "three")), StateHash(CallOf(scratch / "one")));
+  // Once it is known, nothing is simulated again.
+  const ProcessResult again = Gauntlet({"minimise", scratch / "one", failing[0], failing[1], failing[2]});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_THAT(again.err, testing::Not(HasSubstr(" runs in ")));
+}
+
+// Walls 2, 5 and 7 are a trap together: without any of them the flock passes. The others are out of the way.
+TEST(MinimiseTest, FindsAPlantedTrap) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  const nlohmann::json found =
+      Found(Minimise(scratch / "c", {GAUNTLET_SOURCE_DIR "/tests/integration/cases/trap.json"}, 2));
+  const nlohmann::json& one = found["cases"][0];
+  std::vector<int> kept = one["minimised"]["case"]["lineage"]["steps"].back()["obstacles"];
+  EXPECT_EQ(kept, (std::vector<int>{2, 5, 7})) << one;
+}
+
+TEST(MinimiseTest, RefusesWhatDoesNotFailAndWhatFailsWithoutObstacles) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  const std::string harmless = Write(scratch / "harmless.json", {{"name", "nothing in the way"}});
+  const ProcessResult passes = Gauntlet({"minimise", scratch / "c", harmless, "--quiet"});
+  EXPECT_EQ(passes.exit_code, 2);
+  EXPECT_THAT(passes.out, HasSubstr("harmless.json  0 of 6"));
+  EXPECT_THAT(passes.out, HasSubstr("not minimised: it does not fail often enough"));
+  // Birds that stand still lose the prey anywhere.
+  ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "3", "--set", "controller_parameters.bird_speed=0.005",
+                      "--dir", scratch / "slow", "--quiet"})
+                .exit_code,
+            0);
+  const ProcessResult empty = Gauntlet({"minimise", scratch / "slow", "1", "--quiet"});
+  EXPECT_EQ(empty.exit_code, 2);
+  EXPECT_THAT(empty.out, HasSubstr("the EMPTY ARENA FAILS TOO, in 4 of 4 runs"));
+}
+
+TEST(MinimiseTest, SaysWhatIsWrong) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  const auto refused = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"minimise", scratch / "c"});
+    const ProcessResult result = Gauntlet(arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(refused({}), HasSubstr("CASE is required"));
+  EXPECT_THAT(refused({"999999"}), HasSubstr("there is no run 999999"));
+  EXPECT_THAT(refused({"no-such.json"}), HasSubstr("no-such.json"));
+  const std::string blocked =
+      Write(scratch / "blocked.json", {{"obstacles",
+                                        {{{"x", 2.5}, {"y", 2.5}, {"length", 1.0}, {"width", 1.0}},
+                                         {{"x", -2.5}, {"y", -2.5}, {"length", 1.0}, {"width", 1.0}}}}});
+  EXPECT_THAT(refused({blocked}), HasSubstr("blocked.json: "));
+}
+
+}  // namespace
+}  // namespace gauntlet::testing_support
