@@ -50,8 +50,8 @@ TriedValue Describe(const std::string& value, const Evolutions& evolutions) {
   return tried;
 }
 
-void AddConsistency(const std::vector<double>& baseline, const std::vector<std::size_t>& sizes,
-                    TuningResult& result) {
+void AddConsistency(const std::vector<double>& baseline, const Tuning& tuning, TuningResult& result) {
+  const std::vector<std::size_t>& sizes = tuning.sizes;
   if (baseline.size() < kFewestEvolutions) {
     result.enough_in_words = fmt::format(
         "Consistency analysis needs at least {} evolutions of the baseline; "
@@ -248,7 +248,7 @@ Result<StudySection> AnalyseTuning(const StudyAnalysis& analysis, StudyRuns& run
     Recommend(parameter);
     figures[fmt::format("{}.{}", analysis.name, parameter.key)] = {std::nullopt, parameter.recommended};
   }
-  AddConsistency(baseline->values, tuning.sizes, result);
+  AddConsistency(baseline->values, tuning, result);
   if (result.enough) {
     figures[analysis.name + ".enough"] = {static_cast<double>(*result.enough),
                                           fmt::format("{}", *result.enough)};
