@@ -101,6 +101,14 @@ void AddSweepOptions(CLI::App& command, SweepOptions& options) {
            "one search for each seed (and each combination of --sweep)");
 }
 
+void AddSlurmOptions(CLI::App& command, SlurmOptions& options) {
+  AddValue(command, "--master", "job|here", options.master,
+           "job (default): the master is a job too; here: it runs in this process")
+      ->check(CLI::IsMember({"job", "here"}));
+  AddValue(command, "--slurm", "KEY=VALUE", options.settings,
+           "one setting of the jobs or the pool, e.g. --slurm partition=short; repeatable");
+}
+
 void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes) {
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);

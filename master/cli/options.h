@@ -55,6 +55,11 @@ struct SweepOptions {
   std::vector<std::string> sweeps;  // "key=a,b,c"
   std::string seeds;                // "1..20" or "1,5,9"
 };
+// How a cluster is used.
+struct SlurmOptions {
+  std::string master;                 // "job" or "here"; "" = as the settings say
+  std::vector<std::string> settings;  // "key=value"
+};
 // Of a new campaign with workers on this machine.
 struct LocalOptions {
   ExperimentOptions experiment;
@@ -75,6 +80,7 @@ void AddBindOptions(CLI::App& command, BindOptions& options);
 void AddExperimentOptions(CLI::App& command, ExperimentOptions& options);
 void AddSizeOptions(CLI::App& command, SizeOptions& options);
 void AddSweepOptions(CLI::App& command, SweepOptions& options);
+void AddSlurmOptions(CLI::App& command, SlurmOptions& options);
 // `sizes`: else those of size are not in the command's help, and are read so that it can say why it refuses
 // them.
 void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes);

@@ -1,4 +1,5 @@
 // gauntlet resume: go on with a campaign.
+#include <algorithm>
 #include <cstdlib>
 
 #include <fmt/format.h>
@@ -41,6 +42,24 @@ Status Extend(CommandContext& context, const ResumeOptions& options) {
   return Ok{};
 }
 
+Status CheckNoMasterJob(CommandContext& context, const std::string& directory,
+                        const slurm::SlurmCampaign& campaign) {
+  const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*context.slurm());
+  if (!jobs) return jobs.error();
+  for (const slurm::JobStatus& job : *jobs) {
+    if (job.name != campaign.master_job_name()) continue;
+    return Error{ErrorKind::kInUse,
+                 fmt::format("job {} ({}) is the campaign's master already; see: {} status {}", job.id,
+                             job.state, context.program, PastedPath(directory))};
+  }
+  return Ok{};
+}
+
+std::string JobOfThisProcess() {
+  const char* job = std::getenv("SLURM_JOB_ID");
+  return job != nullptr ? job : "unknown";
+}
+
 // The master's job of a submitted campaign, handed to Slurm again unless it is there.
 ExitCode SubmitAgain(CommandContext& context, const ResumeOptions& options,
                      const slurm::SlurmCampaign& campaign) {
@@ -51,14 +70,7 @@ ExitCode SubmitAgain(CommandContext& context, const ResumeOptions& options,
     PrintFinished(context, *summary, directory, options.running);
     return kExitDone;
   }
-  const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*context.slurm());
-  if (!jobs) return Fail(context, jobs.error());
-  for (const slurm::JobStatus& job : *jobs) {
-    if (job.name != campaign.master_job_name()) continue;
-    return Fail(context, Error{ErrorKind::kInUse,
-                               fmt::format("job {} ({}) is the campaign's master already; see: {} status {}",
-                                           job.id, job.state, context.program, PastedPath(directory))});
-  }
+  if (Status free = CheckNoMasterJob(context, directory, campaign); !free) return Fail(context, free.error());
   const Result<std::string> job = SubmitMasterJob(context, directory, campaign);
   if (!job) return Fail(context, job.error());
   context.out << fmt::format("{} goes on as job {}\n", directory, *job) << std::flush;
@@ -75,27 +87,53 @@ ExitCode ResumeSubmitted(CommandContext& context, const ResumeOptions& options,
     const ExitCode code = Fail(context, extended.error());
     return StopSignal::Requested() ? kExitStopped : code;
   }
-  const char* job = std::getenv("SLURM_JOB_ID");
   if (options.as_job)
-    return ServeSubmitted(context, options.running, options.directory, campaign,
-                          job != nullptr ? job : "unknown");
+    return ServeSubmitted(context, options.running, options.directory, campaign, JobOfThisProcess());
   if (campaign.settings().master == slurm::MasterPlace::kHere)
     return ServeSubmitted(context, options.running, options.directory, campaign, "");
   return SubmitAgain(context, options, campaign);
 }
 
+// Whether nothing is left to be simulated.
+Result<bool> IsSimulated(const Study& study, const std::string& directory) {
+  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+    if (std::ranges::count(study.parts, stage, &StageOf) == 0) continue;
+    const Result<StageState> state = LookAtStage(study, directory, stage);
+    if (!state) return state.error();
+    if (!state->finished) return false;
+  }
+  return true;
+}
+
 // A study's directory holds campaigns, of a length that its file says.
 ExitCode ResumeStudy(CommandContext& context, const ResumeOptions& options) {
-  const bool longer = !options.generations.empty() || !options.sets.empty();
-  if (longer || !options.bind.endpoint.empty() || options.as_job) {
+  const std::string& directory = options.directory;
+  if (!options.generations.empty() || !options.sets.empty() || !options.bind.endpoint.empty()) {
     return Fail(context,
                 InvalidInput(fmt::format("{} holds a study: its file says how long its searches are, and "
-                                         "its workers are of this machine",
-                                         options.directory)));
+                                         "its workers are of this machine or of Slurm",
+                                         directory)));
   }
-  const Result<Study> study = OpenStudy(options.directory);
+  const Result<Study> study = OpenStudy(directory);
   if (!study) return Fail(context, study.error());
-  return RunStudyIn(context, *study, {options.directory, options.running, ""});
+  const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
+  if (!submitted) return Fail(context, submitted.error());
+  if (!submitted->has_value() && options.as_job)
+    return Fail(context, InvalidInput(fmt::format("--as-job: {} was not submitted to Slurm", directory)));
+  const Result<bool> simulated = IsSimulated(*study, directory);
+  if (!simulated) return Fail(context, simulated.error());
+  StudyRun run{directory, options.running, "", nullptr, ""};
+  if (!submitted->has_value() || !options.running.workers.empty() || *simulated)
+    return RunStudyIn(context, *study, run);
+  run.submitted = &**submitted;
+  if (options.as_job) {
+    run.batch_job = JobOfThisProcess();
+    return RunStudyIn(context, *study, run);
+  }
+  if ((*submitted)->settings().master == slurm::MasterPlace::kHere) return RunStudyIn(context, *study, run);
+  if (Status free = CheckNoMasterJob(context, directory, **submitted); !free)
+    return Fail(context, free.error());
+  return SubmitStudyJob(context, directory, **submitted, options.running.json);
 }
 
 ExitCode RunResume(CommandContext& context, const ResumeOptions& options) {

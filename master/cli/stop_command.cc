@@ -1,10 +1,13 @@
 // gauntlet stop: ends a campaign's master, its workers and its jobs.
+#include <filesystem>
+
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/stop_signal.h"
+#include "master/study/study_campaigns.h"
 #include "slurm/slurm_campaign.h"
 
 namespace gauntlet::master {
@@ -32,8 +35,24 @@ bool CancelLeftovers(CommandContext& context, const std::string& directory) {
   return true;
 }
 
+// Of a study the campaign that has a master, if any; else the directory itself.
+Result<std::string> ServedIn(CommandContext& context, const std::string& directory) {
+  if (!IsStudy(directory)) return directory;
+  std::string last = directory;
+  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+    const std::string campaign = CampaignOf(directory, stage);
+    std::error_code error;
+    if (!std::filesystem::exists(campaign, error)) continue;
+    const Result<bool> lives = context.campaigns.MasterLives(campaign);
+    if (!lives) return lives.error();
+    if (*lives) return campaign;
+    last = campaign;
+  }
+  return last;
+}
+
 // Returns when the master is gone.
-ExitCode RunStop(CommandContext& context, const StopOptions& options) {
+ExitCode StopCampaign(CommandContext& context, const StopOptions& options) {
   constexpr int kPollMilliseconds = 100;
   Result<bool> lives = context.campaigns.MasterLives(options.directory);
   if (!lives) return Fail(context, lives.error());
@@ -53,6 +72,15 @@ ExitCode RunStop(CommandContext& context, const StopOptions& options) {
   const bool clean = CancelLeftovers(context, options.directory);
   PrintMessage(context, "stopped");
   return clean ? kExitDone : kExitUsage;
+}
+
+ExitCode RunStop(CommandContext& context, const StopOptions& options) {
+  const Result<std::string> served = ServedIn(context, options.directory);
+  if (!served) return Fail(context, served.error());
+  if (*served == options.directory) return StopCampaign(context, options);
+  const ExitCode code = StopCampaign(context, {*served});
+  // The master's job of a study belongs to the study.
+  return CancelLeftovers(context, options.directory) ? code : kExitUsage;
 }
 
 }  // namespace

@@ -52,8 +52,14 @@ std::string TallyInWords(const StudyReport& report) {
 }
 
 std::string TimeInWords(const StudyReport& report) {
-  return fmt::format("The searches took {}, the re-simulations {}, by the clock.",
-                     FormatDuration(report.search_seconds), FormatDuration(report.evaluation_seconds));
+  const auto words = [](const ClockTime& time) {
+    return (time.at_least ? "at least " : "") + FormatDuration(time.seconds);
+  };
+  const bool killed = report.searching.at_least || report.evaluating.at_least;
+  return fmt::format(
+      "By the clock the searches took {}, the re-simulations {}{}. All parts share the workers.",
+      words(report.searching), words(report.evaluating),
+      killed ? " (a master was killed; how long it had lived is not known)" : "");
 }
 
 StudyTable ClaimTable(const StudyReport& report) {
@@ -67,11 +73,15 @@ StudyTable ClaimTable(const StudyReport& report) {
 }
 
 StudyTable PartTable(const StudyReport& report) {
-  StudyTable table{{"part", ">searches", ">runs", ">distinct cases"}, {}};
-  for (const PartCost& part : report.parts) {
-    table.rows.push_back(
-        {part.part, FormatCount(part.searches), FormatCount(part.runs), FormatCount(part.distinct_cases)});
-  }
+  StudyTable table{{"part", ">searches", ">runs", ">distinct cases", ">CPU time of its runs"}, {}};
+  PartCost all{"all"};
+  for (const PartCost& part : report.parts) all += part;
+  const auto add = [&](const PartCost& part) {
+    table.rows.push_back({part.part, FormatCount(part.searches), FormatCount(part.runs),
+                          FormatCount(part.distinct_cases), FormatDuration(part.cpu_seconds)});
+  };
+  for (const PartCost& part : report.parts) add(part);
+  if (report.parts.size() > 1) add(all);
   return table;
 }
 
@@ -240,7 +250,8 @@ std::string StudyJson(const StudyReport& report, const std::string& directory) {
     parts.push_back({{"part", part.part},
                      {"searches", part.searches},
                      {"runs", part.runs},
-                     {"distinct_cases", part.distinct_cases}});
+                     {"distinct_cases", part.distinct_cases},
+                     {"cpu_seconds", part.cpu_seconds}});
   }
   return JsonText({{"study", report.name},
                    {"directory", directory},
@@ -250,8 +261,8 @@ std::string StudyJson(const StudyReport& report, const std::string& directory) {
                    {"figures", std::move(figures)},
                    {"tunings", std::move(tunings)},
                    {"parts", std::move(parts)},
-                   {"search_seconds", report.search_seconds},
-                   {"evaluation_seconds", report.evaluation_seconds}});
+                   {"search_seconds", report.searching.seconds},
+                   {"evaluation_seconds", report.evaluating.seconds}});
 }
 
 }  // namespace gauntlet::master

@@ -1,4 +1,4 @@
-// A study is run and told.
+// A study is run and told, by the workers of this machine or by a cluster's.
 #pragma once
 
 #include <string>
@@ -6,20 +6,37 @@
 #include "master/cli/command_line.h"
 #include "master/cli/options.h"
 #include "master/study/study.h"
+#include "slurm/slurm_campaign.h"
 
 namespace gauntlet::master {
 
 struct StudyRun {
   std::string directory;
   RunningOptions running;
-  std::string markdown;  // a file for the whole report; "" = none
+  std::string markdown;                             // a file for the whole report; "" = none
+  const slurm::SlurmCampaign* submitted = nullptr;  // the study's, whose workers are jobs
+  std::string batch_job;                            // that holds this process, as its master; "" = none
 };
 
-// Begins the study in its directory or goes on with it there, and prints what came out. Exit codes as
-// RunCampaign's.
+// Goes on with the study in its directory, and prints what came out. Exit codes as RunCampaign's.
 ExitCode RunStudyIn(CommandContext& context, const Study& study, const StudyRun& run);
-// The same in `run.directory`, "" for a default one, which is made when it is not there; with `dry_run` says
-// what that would cost instead.
-ExitCode StartStudy(CommandContext& context, const Study& study, StudyRun run, bool dry_run);
+
+// Hands the master's job of a submitted study to Slurm and says how to follow it.
+ExitCode SubmitStudyJob(CommandContext& context, const std::string& directory,
+                        const slurm::SlurmCampaign& campaign, bool json);
+
+// What commands that start a study have in common.
+struct StudyStartOptions {
+  std::string directory;
+  std::string markdown;
+  bool dry_run = false;
+  bool submit = false;
+  SlurmOptions slurm;
+  RunningOptions running;
+};
+void AddStudyStartOptions(CLI::App& command, StudyStartOptions& options);
+
+// Begins the study in its directory, or goes on with it there.
+ExitCode StartStudy(CommandContext& context, const Study& study, const StudyStartOptions& options);
 
 }  // namespace gauntlet::master

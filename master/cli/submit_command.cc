@@ -1,13 +1,10 @@
 // gauntlet submit: a campaign whose master and workers are jobs of a Slurm cluster.
 
-#include <filesystem>
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include "base/shell_quoted.h"
-#include "base/system/atomic_file.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/submitted_campaign.h"
@@ -24,64 +21,9 @@ struct SubmitOptions {
   SizeOptions size;
   MessageOptions messages;
   SweepOptions sweep;
-  std::string master;              // "job" or "here"; "" = as the settings say
-  std::vector<std::string> slurm;  // "key=value"
+  SlurmOptions slurm;
   bool dry_run = false;
 };
-
-// The user's file, the experiment's [slurm] table, then the command line.
-Result<slurm::SlurmSettings> ReadSettings(const SubmitOptions& options, const Experiment& experiment) {
-  std::vector<slurm::SlurmSource> sources;
-  if (const std::string file = slurm::UserSlurmFile(); !file.empty()) {
-    const Result<std::string> text = ReadSmallFile(file);
-    if (text) sources.push_back({*text, file, true});
-    if (!text && text.error().kind != ErrorKind::kNotFound) return text.error();
-  }
-  const Result<ExperimentText> source = ReadExperimentText(options.experiment.experiment);
-  if (!source) return source.error();
-  sources.push_back({source->text, source->file_name, false});
-  std::vector<std::string> sets = options.slurm;
-  if (!options.master.empty()) sets.push_back("master=" + options.master);
-  Result<slurm::SlurmSettings> settings = slurm::ReadSlurmSettings(sources, sets);
-  if (!settings) return settings;
-  const ListenOn where =
-      settings->master == slurm::MasterPlace::kHere ? ListenOn::kThisMachine : ListenOn::kAnotherMachine;
-  if (const Status possible = CheckBindEndpoint(settings->bind, where); !possible) return possible.error();
-  if (settings->tag.empty()) settings->tag = slurm::DrawTag(experiment.name);
-  for (std::string* path : {&settings->worker_template, &settings->master_template}) {
-    if (path->empty()) continue;
-    // Links are followed now, by whoever names the file; what the campaign keeps leads to the file itself.
-    std::error_code error;
-    const std::filesystem::path file = std::filesystem::weakly_canonical(*path, error);
-    *path = error ? std::filesystem::absolute(*path, error).string() : file.string();
-  }
-  return settings;
-}
-
-struct PlannedJob {
-  std::string what;
-  std::string script;
-};
-
-// Asks Slurm of each job whether it could ever start; with --dry-run prints scripts and answers. Error: the
-// first that could not.
-Status Test(CommandContext& context, slurm::SlurmClient& client, const std::vector<PlannedJob>& jobs,
-            bool print) {
-  Status outcome = Ok{};
-  for (const PlannedJob& job : jobs) {
-    if (!outcome && !print) break;
-    const Result<std::string> answer = client.TestOnly(job.script, {});
-    const std::string words = answer ? *answer : answer.error().message;
-    if (print)
-      context.out << fmt::format("# {}\n{}\n# sbatch --test-only: {}\n\n", job.what, job.script, words);
-    if (!answer && outcome) {
-      outcome = Error{answer.error().kind,
-                      fmt::format("{} could not start: {}{}", job.what, words, slurm::NextStep(words))};
-    }
-  }
-  context.out << std::flush;
-  return outcome;
-}
 
 // Hands the master's job to Slurm and says how to follow it.
 ExitCode SubmitAndReturn(CommandContext& context, const SubmitOptions& options, const std::string& directory,
@@ -104,20 +46,20 @@ ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
       PlanSearches(options.experiment, SetsOf(options.size), options.sweep);
   if (!searches) return Fail(context, searches.error());
   const Experiment& experiment = searches->front().experiment;
-  const Result<slurm::SlurmSettings> settings = ReadSettings(options, experiment);
+  const Result<ExperimentText> text = ReadExperimentText(options.experiment.experiment);
+  if (!text) return Fail(context, text.error());
+  const Result<slurm::SlurmSettings> settings = ReadSlurmOptions(
+      options.slurm, slurm::SlurmSource{text->text, text->file_name, false}, experiment.name);
   if (!settings) return Fail(context, settings.error());
   const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
   if (!directory) return Fail(context, directory.error());
   const Result<slurm::SlurmCampaign> campaign = slurm::SlurmCampaign::Make(*settings, *directory);
   if (!campaign) return Fail(context, campaign.error());
 
-  const bool as_job = settings->master == slurm::MasterPlace::kJob;
-  std::vector<PlannedJob> jobs = {{"a job of workers", campaign->worker_script()}};
-  if (as_job) jobs.insert(jobs.begin(), {"the master's job", campaign->master_script()});
-  const Status possible = Test(context, *context.slurm(), jobs, options.dry_run);
-  if (!possible) return Fail(context, possible.error());
+  if (Status possible = TestJobs(context, *campaign, options.dry_run); !possible)
+    return Fail(context, possible.error());
   if (options.dry_run) return kExitDone;
-
+  const bool as_job = settings->master == slurm::MasterPlace::kJob;
   if (!as_job) {
     if (const Status free = TryToListen(settings->bind); !free) return Fail(context, free.error());
   }
@@ -138,11 +80,7 @@ void AddSubmit(CommandParser& parser) {
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);
   AddMessageOptions(command, options.messages);
-  AddValue(command, "--master", "job|here", options.master,
-           "job (default): the master is a job too; here: it runs in this process")
-      ->check(CLI::IsMember({"job", "here"}));
-  AddValue(command, "--slurm", "KEY=VALUE", options.slurm,
-           "one setting of the jobs or the pool, e.g. --slurm partition=short; repeatable");
+  AddSlurmOptions(command, options.slurm);
   AddSweepOptions(command, options.sweep);
   command.add_flag("--dry-run", options.dry_run,
                    "submit nothing: print the scripts and what sbatch --test-only says of them");

@@ -16,10 +16,7 @@ struct TuneOptions {
   std::string candidates;
   std::string repeats;
   std::vector<std::string> sets;
-  std::string directory;
-  std::string markdown;
-  bool dry_run = false;
-  RunningOptions running;
+  StudyStartOptions start;
 };
 
 constexpr const char* kCandidates = "tune-flocking";  // of experiments without a list of their own
@@ -50,7 +47,7 @@ Result<Study> LoadTuning(const TuneOptions& options) {
 ExitCode RunTune(CommandContext& context, const TuneOptions& options) {
   const Result<Study> study = LoadTuning(options);
   if (!study) return Fail(context, study.error());
-  return StartStudy(context, *study, {options.directory, options.running, options.markdown}, options.dry_run);
+  return StartStudy(context, *study, options.start);
 }
 
 }  // namespace
@@ -66,13 +63,7 @@ void AddTune(CommandParser& parser) {
   AddValue(command, "--repeats", "N", options.repeats,
            "evolutions of every value, 1 to 100 (default: as the study says, 20 in the shipped ones)");
   AddValue(command, "--set", "KEY=VALUE", options.sets, "change the baseline, as for 'evolve'; repeatable");
-  AddValue(command, "--dir", "DIR", options.directory,
-           "directory of the study: new, empty, or the study's own, in which case it goes on (default: "
-           "campaigns/tune-EXPERIMENT-<UTC time>)");
-  AddValue(command, "--markdown", "F", options.markdown, "write the whole report as a Markdown page too");
-  command.add_flag("--dry-run", options.dry_run,
-                   "make nothing: say how many searches, runs and cases it will be, and what they cost here");
-  AddRunningOptions(command, options.running);
+  AddStudyStartOptions(command, options.start);
   command.footer(
       R"(Changes one parameter at a time while all others keep the experiment's values, and compares each value with
 the baseline by Vargha and Delaney's A (Spartan's robustness analysis). An evolution counts once: by the mean

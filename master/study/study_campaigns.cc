@@ -355,6 +355,7 @@ PartCost& PartCost::operator+=(const PartCost& other) {
   runs += other.runs;
   cases += other.cases;
   distinct_cases += other.distinct_cases;
+  cpu_seconds += other.cpu_seconds;
   return *this;
 }
 
@@ -380,23 +381,49 @@ Result<PartCost> StudyRuns::CostOf(const std::string& name) {
   return cost;
 }
 
-Result<double> StudyRuns::SecondsOf(StudyStage stage) {
+Result<double> StudyRuns::CpuSecondsOf(const std::string& part) {
+  const Range range = RangeOf(part);
+  ResultStore& store = *CampaignOf(range).opened.campaign.store;
+  double seconds = 0.0;
+  Status damage = Ok{};
+  for (SearchId id = range.first; id < range.end; ++id) {
+    const Status read = store.ForEachRun(id, 0, [&](const StoredRun& run) {
+      const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
+      if (result) {
+        seconds += result->cpu_seconds;
+      } else {
+        damage = result.error();
+      }
+    });
+    if (!read) return read.error();
+    if (!damage) return damage.error();
+  }
+  return seconds;
+}
+
+Result<ClockTime> StudyRuns::TimeOf(StudyStage stage) {
+  ClockTime time;
   const std::size_t index = stage == StudyStage::kSearches ? 0 : 1;
-  if (index >= campaigns_.size()) return 0.0;
+  if (index >= campaigns_.size()) return time;
   const Result<std::vector<StoredEvent>> events = campaigns_[index].opened.campaign.store->LoadEvents();
   if (!events) return events.error();
-  // From each start of a master to its last event, or that of a kill.
+  // From each start of a master to its end, or to its last event where it was killed.
   std::int64_t total = 0;
   std::int64_t started = 0;
   std::int64_t last = 0;
+  bool ended = true;
   for (const StoredEvent& one : *events) {
     if (one.kind == event::kStart || one.kind == event::kResume) {
       total += last - started;
       started = one.unix_ms;
+      time.at_least = time.at_least || !ended;
+      ended = false;
     }
+    ended = ended || one.kind == event::kStop || one.kind == event::kFinished;
     last = one.unix_ms;
   }
-  return static_cast<double>(total + last - started) / 1000.0;
+  time.seconds = static_cast<double>(total + last - started) / 1000.0;
+  return time;
 }
 
 }  // namespace gauntlet::master

@@ -52,8 +52,14 @@ struct PartCost {
   std::uint64_t runs = 0;            // simulations
   std::uint64_t cases = 0;           // members of the final populations, or all cases
   std::uint64_t distinct_cases = 0;  // that were ever simulated
+  double cpu_seconds = 0.0;          // of its simulations, where that was asked for
 
   PartCost& operator+=(const PartCost& other);  // keeps its name
+};
+
+struct ClockTime {
+  double seconds = 0.0;
+  bool at_least = false;  // a master was killed: how long it had lived is not known
 };
 
 // Reads the runs of a study whose stages have finished.
@@ -72,8 +78,10 @@ class StudyRuns {
   // The part that a part's cases come from: itself unless it evaluates another's.
   std::string SourceOf(const std::string& part) const;
   Result<PartCost> CostOf(const std::string& part);
-  // Time between start and end of all masters, by stage.
-  Result<double> SecondsOf(StudyStage stage);
+  // CPU time of the part's simulations, s.
+  Result<double> CpuSecondsOf(const std::string& part);
+  // From start to end of all masters.
+  Result<ClockTime> TimeOf(StudyStage stage);
 
  private:
   struct Campaign {

@@ -33,6 +33,9 @@ Result<StudyReport> MakeStudyReport(const Study& study, const std::string& dir) 
   for (const StudyPart& part : study.parts) {
     Result<PartCost> cost = runs->CostOf(part.name);
     if (!cost) return cost.error();
+    const Result<double> seconds = runs->CpuSecondsOf(part.name);
+    if (!seconds) return seconds.error();
+    cost->cpu_seconds = *seconds;
     if (!part.group.empty()) cost->part = part.group;
     const auto group = std::ranges::find(report.parts, cost->part, &PartCost::part);
     if (group == report.parts.end()) {
@@ -41,11 +44,11 @@ Result<StudyReport> MakeStudyReport(const Study& study, const std::string& dir) 
       *group += *cost;
     }
   }
-  for (const auto& [stage, seconds] : {std::pair(StudyStage::kSearches, &report.search_seconds),
-                                       std::pair(StudyStage::kEvaluations, &report.evaluation_seconds)}) {
-    const Result<double> measured = runs->SecondsOf(stage);
+  for (const auto& [stage, time] : {std::pair(StudyStage::kSearches, &report.searching),
+                                    std::pair(StudyStage::kEvaluations, &report.evaluating)}) {
+    const Result<ClockTime> measured = runs->TimeOf(stage);
     if (!measured) return measured.error();
-    *seconds = *measured;
+    *time = *measured;
   }
   for (const StudyAnalysis& analysis : study.analyses) {
     Result<StudySection> section = Analyse(analysis, *runs, report.figures);

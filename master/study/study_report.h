@@ -87,8 +87,8 @@ struct StudyReport {
   std::string command;  // that makes it, "study thesis"
   std::string version;
   std::vector<PartCost> parts;
-  double search_seconds = 0.0;  // of the campaign of all searches, by the clock
-  double evaluation_seconds = 0.0;
+  ClockTime searching;  // the campaign of all searches
+  ClockTime evaluating;
   std::vector<StudySection> sections;
   std::vector<JudgedRow> elsewhere;  // published rows that we have no figure for
   StudyFigures figures;

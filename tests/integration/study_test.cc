@@ -92,6 +92,10 @@ class StudyTest : public testing::Test {
   static json Timeless(const std::string& text) {
     json report = json::parse(text, nullptr, false);
     for (const char* key : {"search_seconds", "evaluation_seconds", "directory"}) report.erase(key);
+    for (json& part : report["parts"]) {
+      EXPECT_GT(part["cpu_seconds"].get<double>(), 0.0);
+      part.erase("cpu_seconds");
+    }
     return report;
   }
   TemporaryDirectory scratch_;
@@ -167,6 +171,12 @@ TEST_F(StudyTest, KeepsToItsDirectory) {
               HasSubstr("searches was begun with other parts"));
   EXPECT_THAT(refused("worst:10", "worst:11"), HasSubstr("evaluations was begun with other parts"));
   EXPECT_THAT(refused("name = \"small\"", "name = \"other\""), HasSubstr("holds the study 'small'"));
+  const ProcessResult stop = Gauntlet({"stop", scratch_ / "s"});
+  EXPECT_EQ(stop.exit_code, 0);
+  EXPECT_THAT(stop.err, HasSubstr("/s/evaluations: there is nothing to stop"));
+  const ProcessResult unsubmitted = Gauntlet({"study", scratch_ / "small.toml", "--slurm", "partition=x"});
+  EXPECT_EQ(unsubmitted.exit_code, 2);
+  EXPECT_THAT(unsubmitted.err, HasSubstr("--master and --slurm are for --submit"));
   EXPECT_THAT(Gauntlet({"show", scratch_ / "s"}).err, HasSubstr("/s/searches and "));
   std::filesystem::create_directories(scratch_ / "full/of-things");
   const ProcessResult full = Gauntlet(Command("full"));

@@ -67,5 +67,57 @@ TEST_F(SlurmTest, ASubmittedSearchEndsLikeALocalOneAndLeavesNothing) {
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "two\nlines"));
 }
 
+constexpr const char* kStudy = R"(
+name = "small"
+[part.evolved]
+kind = "evolve"
+experiment = "flocking"
+seeds = "1..2"
+set.search.population = 6
+set.search.generations = 3
+[part.again]
+kind = "evaluate"
+from = "evolved"
+[compare.severity]
+title = "evolved, as found and again"
+first = "again"
+second = "evolved"
+)";
+
+TEST_F(SlurmTest, ASubmittedStudyEndsLikeALocalOneAndLeavesNothing) {
+  StartCluster({"--nodes", "2", "--cpus", "4"});
+  const std::string file = scratch_ / "small.toml";
+  std::ofstream(file) << kStudy;
+  const auto study = [&](const std::string& dir, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"study", file, "--dir", dir, "--json", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Gauntlet(arguments);
+  };
+  const auto figures = [](const ProcessResult& result) {
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false)["figures"];
+  };
+  const nlohmann::json local = figures(study(scratch_ / "local", {}));
+  const std::vector<std::string> submit = {"--submit", "--slurm", "bind=tcp://127.0.0.1:*"};
+  const auto with = [&](const std::string& master) {
+    std::vector<std::string> arguments = submit;
+    arguments.insert(arguments.end(), {"--master", master});
+    return arguments;
+  };
+  EXPECT_EQ(figures(study(scratch_ / "here", with("here"))), local);
+  EXPECT_TRUE(QueueEmpties());
+
+  const std::string dir = scratch_ / "job";
+  const ProcessResult submitted = study(dir, with("job"));
+  ASSERT_EQ(submitted.exit_code, 0) << submitted.err;
+  EXPECT_THAT(submitted.out, HasSubstr("\"job\""));
+  const ProcessResult twice = Gauntlet({"resume", dir});
+  EXPECT_EQ(twice.exit_code, 2);
+  EXPECT_THAT(twice.err, HasSubstr("is the campaign's master already"));
+  EXPECT_TRUE(Eventually([] { return QueueLines().empty(); }, std::chrono::seconds(120)));
+  EXPECT_EQ(figures(Gauntlet({"resume", dir, "--json", "--quiet"})), local);
+  EXPECT_THAT(study(dir, submit).err, HasSubstr("was submitted before; go on with"));
+}
+
 }  // namespace
 }  // namespace gauntlet::testing_support
