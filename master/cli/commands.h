@@ -47,6 +47,7 @@ void AddReplay(CommandParser& parser);
 void AddConfirm(CommandParser& parser);
 void AddMinimise(CommandParser& parser);
 void AddCompare(CommandParser& parser);
+void AddReport(CommandParser& parser);
 void AddFigure(CommandParser& parser);
 void AddExport(CommandParser& parser);
 void AddStudy(CommandParser& parser);
@@ -61,7 +62,7 @@ void AddList(CommandParser& parser);
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
     AddEvolve,   AddRandom,  AddEvaluate, AddResume, AddShow,   AddReplay, AddConfirm,
-    AddMinimise, AddCompare, AddStudy,    AddTune,   AddFigure, AddExport, AddSubmit,
-    AddMaster,   AddStatus,  AddWatch,    AddStop,   AddList};
+    AddMinimise, AddCompare, AddStudy,    AddTune,   AddReport, AddFigure, AddExport,
+    AddSubmit,   AddMaster,  AddStatus,   AddWatch,  AddStop,   AddList};
 
 }  // namespace gauntlet::master

@@ -1,0 +1,42 @@
+// What a report's pages show of one campaign.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "master/pages/campaign_facts.h"
+#include "master/pages/run_map.h"
+#include "master/pages/search_course.h"
+#include "master/pages/set_comparison.h"
+#include "master/pages/shown_run.h"
+
+namespace gauntlet::master {
+
+struct CampaignPages {
+  CampaignFacts facts;
+  std::vector<SearchCourse> courses;
+  std::vector<RunMap> maps;
+  std::vector<ShownRun> shown;
+};
+
+// Error: those of ReadFacts and ShowRuns.
+Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown);
+
+// The parts of the pages; `number`: of the campaign in the report, from 0, which all ids within the page
+// have. Everything is HTML.
+
+// What was tested, and what came of it, in two or three sentences; a text.
+std::string VerdictOf(const CampaignPages& pages);
+std::string OverviewHtml(const CampaignPages& pages);
+std::string FailuresHtml(const CampaignPages& pages, std::size_t number);
+// A page for each run that is shown.
+std::string CasesHtml(const CampaignPages& pages, std::size_t number);
+std::string ComparisonHtml(const std::vector<SetComparison>& comparisons,
+                           const std::vector<std::string>& notes);
+
+// The id of a run's page.
+std::string IdOfRun(std::size_t number, RunId run);
+
+}  // namespace gauntlet::master

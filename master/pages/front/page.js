@@ -1,0 +1,134 @@
+// The pages of a report: which one is shown, tables that sort and filter, buttons that copy. Everything that
+// must be readable without this file stands in the document already.
+'use strict';
+
+const data = JSON.parse(document.getElementById('data').textContent);
+document.documentElement.classList.add('js');
+
+// An element with attributes and children; texts are texts, whatever they hold.
+function make(name, attributes = {}, ...children) {
+  const element = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.append(...children);
+  return element;
+}
+
+// --- which page is shown: the one that the address names, or that holds what it names
+
+const pages = [...document.querySelectorAll('.page')];
+
+function show() {
+  const wanted = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  const page = (wanted && wanted.closest('.page')) || pages[0];
+  for (const one of pages) one.classList.toggle('shown', one === page);
+  for (const link of document.querySelectorAll('nav a')) {
+    const here = link.hash === '#' + page.id || (link.dataset.page === 'case' && page.classList.contains('case'));
+    if (here) link.setAttribute('aria-current', 'page'); else link.removeAttribute('aria-current');
+  }
+  if (page.classList.contains('case')) showReplay(page);
+  stopReplaysBut(page);
+  if (wanted && wanted !== page) wanted.scrollIntoView(); else scrollTo(0, 0);
+}
+addEventListener('hashchange', show);
+
+// --- buttons that copy
+
+for (const command of document.querySelectorAll('.command')) {
+  const button = make('button', {type: 'button'}, 'Copy');
+  button.addEventListener('click', async () => {
+    const text = command.querySelector('code').textContent;
+    try {
+      await navigator.clipboard.writeText(text);
+    } catch (refused) {  // from a file, some browsers allow only the old way
+      const area = make('textarea');
+      area.value = text;
+      document.body.append(area);
+      area.select();
+      document.execCommand('copy');
+      area.remove();
+    }
+    button.textContent = 'Copied';
+    setTimeout(() => { button.textContent = 'Copy'; }, 1500);
+  });
+  command.append(button);
+}
+
+// --- the table of all cases
+
+const kRowsAtATime = 100;
+
+function caseTable(place) {
+  const campaign = data.campaigns[Number(place.dataset.campaign)];
+  const columns = campaign.case_columns;
+  const at = Object.fromEntries(columns.map((column, i) => [column.key, i]));
+  let shown = kRowsAtATime;
+  let sorted = null;  // by the report: the toughest first
+  let falling = false;
+
+  const text = make('input', {type: 'search', 'aria-label': 'Filter cases', placeholder: 'number, name, ...'});
+  const kind = make('select', {'aria-label': 'Which cases'}, make('option', {value: ''}, 'all cases'),
+                    make('option', {value: 'failing'}, 'with a total failure'),
+                    make('option', {value: 'shown'}, 'with a replay here'));
+  campaign.failure_types.forEach((type) => kind.append(make('option', {value: 'type ' + type}, type)));
+  const count = make('output', {});
+  const more = make('button', {type: 'button'}, 'Show more');
+  const head = make('tr');
+  const body = make('tbody');
+  columns.forEach((column, i) => {
+    const button = make('button', {type: 'button'}, column.title);
+    button.addEventListener('click', () => {
+      falling = sorted === i ? !falling : false;
+      sorted = i;
+      fill();
+    });
+    head.append(make('th', {scope: 'col', class: column.number ? 'number' : ''}, button));
+  });
+
+  function wanted(row) {
+    if (kind.value === 'failing' && row[at.failures] === 0) return false;
+    if (kind.value === 'shown' && !row[at.run]) return false;
+    if (kind.value.startsWith('type ') && row[at.type] !== kind.value.slice(5)) return false;
+    const word = text.value.trim().toLowerCase();
+    return word === '' || row.some((cell) => cell !== null && String(cell).toLowerCase().includes(word));
+  }
+  function fill() {
+    const rows = campaign.cases.filter(wanted);
+    if (sorted !== null) {
+      rows.sort((a, b) => {
+        const x = a[sorted], y = b[sorted];
+        if (x === null || y === null) return (x === null) - (y === null);  // what is missing comes last
+        const order = typeof x === 'number' ? x - y : String(x).localeCompare(String(y));
+        return falling ? -order : order;
+      });
+    }
+    [...head.children].forEach((cell, i) => {
+      if (i === sorted) cell.setAttribute('aria-sort', falling ? 'descending' : 'ascending');
+      else cell.removeAttribute('aria-sort');
+    });
+    body.replaceChildren(...rows.slice(0, shown).map((row) => {
+      const line = make('tr');
+      columns.forEach((column, i) => {
+        const cell = make('td', {class: column.number ? 'number' : ''});
+        if (row[i] !== null) cell.append(linked(column, row[i]));
+        line.append(cell);
+      });
+      return line;
+    }));
+    count.textContent = rows.length + ' of ' + campaign.cases.length + ' cases';
+    more.hidden = rows.length <= shown;
+  }
+  function linked(column, value) {
+    const id = 'run-' + place.dataset.campaign + '-' + value;
+    if (column.key !== 'run' || !document.getElementById(id)) return String(value);
+    return make('a', {href: '#' + id}, String(value));
+  }
+  at.type = at.type ?? -1;
+  text.addEventListener('input', () => { shown = kRowsAtATime; fill(); });
+  kind.addEventListener('change', () => { shown = kRowsAtATime; fill(); });
+  more.addEventListener('click', () => { shown += kRowsAtATime; fill(); });
+  fill();
+  place.replaceChildren(make('div', {class: 'controls'}, text, kind, count),
+                        make('div', {class: 'scroll'}, make('table', {}, make('thead', {}, head), body)),
+                        more);
+}
+document.querySelectorAll('.all-cases').forEach(caseTable);

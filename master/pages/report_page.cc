@@ -1,0 +1,99 @@
+#include "master/pages/report_page.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "master/pages/front_end.h"
+#include "master/pages/html_text.h"
+#include "master/pages/report_document.h"
+
+namespace gauntlet::master {
+namespace {
+
+std::string TitleOf(const Report& report) {
+  std::string title = report.campaigns.front().facts.summary.experiment;
+  if (report.campaigns.size() > 1) title += fmt::format(" and {} more", report.campaigns.size() - 1);
+  return title;
+}
+
+std::string HeadHtml(const std::string& title) {
+  return fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
+      "'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{}: Gauntlet report</title>\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<style>\n{}</style>\n</head>\n",
+      Html(title), kPageStyle);
+}
+
+// The first run that has a page; "" when there is none.
+std::string FirstCase(const Report& report) {
+  for (std::size_t i = 0; i < report.campaigns.size(); ++i) {
+    const auto& shown = report.campaigns[i].shown;
+    if (!shown.empty()) return IdOfRun(i, shown.front().report.stored.id);
+  }
+  return "";
+}
+
+std::string NavigationHtml(const Report& report) {
+  std::string html =
+      "<nav aria-label=\"Pages\">\n<a href=\"#overview\">Overview</a>\n<a href=\"#failures\">Failures</a>\n";
+  if (const std::string first = FirstCase(report); !first.empty())
+    html += fmt::format("<a href=\"#{}\" data-page=\"case\">Runs</a>\n", first);
+  if (!report.comparisons.comparisons.empty()) html += "<a href=\"#comparison\">Comparison</a>\n";
+  return html + "</nav>\n";
+}
+
+std::string SectionHtml(const char* id, const std::string& html) {
+  return fmt::format("<section class=\"page\" id=\"{}\">\n{}</section>\n", id, html);
+}
+
+// Of several campaigns, the figures that count beside one another.
+std::string CampaignsTable(const Report& report) {
+  if (report.campaigns.size() < 2) return "";
+  std::vector<std::vector<std::string>> rows;
+  for (const CampaignPages& one : report.campaigns) {
+    const CampaignSummary& summary = one.facts.summary;
+    rows.push_back({Html(one.facts.directory), Html(one.facts.plans.front().experiment.scenario),
+                    Html(one.facts.plans.front().experiment.controller), fmt::format("{}", summary.runs_done),
+                    fmt::format("{}", summary.total_failures), summary.finished ? "yes" : "no"});
+  }
+  return "<h2>The campaigns</h2>\n" +
+         TableHtml({"campaign", "scenario", "controller", ">runs", ">total failures", "finished"}, rows);
+}
+
+}  // namespace
+
+std::string ReportPage(const Report& report) {
+  std::string overview = CampaignsTable(report);
+  std::string failures;
+  std::string cases;
+  for (std::size_t i = 0; i < report.campaigns.size(); ++i) {
+    overview += OverviewHtml(report.campaigns[i]);
+    failures += FailuresHtml(report.campaigns[i], i);
+    cases += CasesHtml(report.campaigns[i], i);
+  }
+  const SetComparisons& comparisons = report.comparisons;
+  if (comparisons.comparisons.empty()) overview += ComparisonHtml({}, comparisons.notes);
+  return HeadHtml(TitleOf(report)) +
+         fmt::format(
+             "<body>\n<a class=\"skip\" href=\"#overview\">To the overview</a>\n<header><h1>Gauntlet "
+             "report</h1>\n"
+             "<p class=\"soft\">Where does the swarm's controller break? Gauntlet simulates a swarm of "
+             "robots in obstacle courses (test cases), searches for courses in which it fails, and "
+             "tells where, how often and how. A run is one simulation; its fitness says how well the "
+             "swarm did, lower means a tougher course.</p></header>\n<main>\n{}",
+             NavigationHtml(report)) +
+         SectionHtml("overview", overview) + SectionHtml("failures", failures) + cases +
+         (comparisons.comparisons.empty()
+              ? ""
+              : SectionHtml("comparison", ComparisonHtml(comparisons.comparisons, comparisons.notes))) +
+         fmt::format(
+             "</main>\n<footer>Made by Gauntlet. This file needs no network and no other file.</footer>\n"
+             "<script type=\"application/json\" id=\"data\">{}</script>\n<script>\n{}</script>\n"
+             "</body>\n</html>\n",
+             JsonInHtml(ReportDocument(report.campaigns)), kPageScript);
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,93 @@
+#include "master/pages/set_comparison.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "analysis/figures/box_figure.h"
+#include "analysis/statistics/multiple_tests.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::size_t kMostInAllPairs = 4;
+
+Result<ComparedPair> Compared(const std::vector<RunSet>& sets, std::size_t first, std::size_t second) {
+  Result<analysis::Comparison> comparison = analysis::Compare(sets[first].values, sets[second].values);
+  if (!comparison) return comparison.error();
+  ComparedPair pair{.first = first,
+                    .second = second,
+                    .comparison = *std::move(comparison),
+                    .p_adjusted = 0.0,
+                    .words = "",
+                    .differences = WhatDiffers(sets[first], sets[second])};
+  pair.words = analysis::InWords(pair.comparison, sets[first].values.name, sets[second].values.name);
+  return pair;
+}
+
+std::string BoxPlotsOf(const std::vector<RunSet>& sets, const std::string& scenario) {
+  analysis::BoxFigure figure{.title = fmt::format("{}: fitness of {} sets of runs", scenario, sets.size()),
+                             .outcome = "lower = tougher test cases",
+                             .axis_name = "fitness",
+                             .boxes = {}};
+  for (const RunSet& set : sets) {
+    std::vector<double> values;
+    for (const auto& cluster : set.values.clusters)
+      values.insert(values.end(), cluster.begin(), cluster.end());
+    figure.boxes.push_back(
+        {set.values.name, analysis::MakeBoxPlot(values), analysis::Describe(values).mean, values.size()});
+  }
+  return analysis::DrawBoxes(figure);
+}
+
+Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunSet> sets) {
+  SetComparison comparison{scenario, std::move(sets), {}, ""};
+  const std::size_t count = comparison.sets.size();
+  for (std::size_t first = 0; first < (count <= kMostInAllPairs ? count : 1); ++first) {
+    for (std::size_t second = first + 1; second < count; ++second) {
+      Result<ComparedPair> pair = Compared(comparison.sets, first, second);
+      if (!pair) return pair.error();
+      comparison.pairs.push_back(*std::move(pair));
+    }
+  }
+  std::vector<double> p;
+  for (const ComparedPair& pair : comparison.pairs) p.push_back(pair.comparison.test.p_two_sided);
+  const std::vector<double> adjusted = analysis::HolmAdjusted(p);
+  for (std::size_t i = 0; i < adjusted.size(); ++i) comparison.pairs[i].p_adjusted = adjusted[i];
+  comparison.box_plots = BoxPlotsOf(comparison.sets, scenario);
+  return comparison;
+}
+
+}  // namespace
+
+Result<SetComparisons> CompareSets(const std::vector<std::string>& names) {
+  SetComparisons all;
+  std::map<std::string, std::vector<RunSet>> by_scenario;
+  for (const std::string& name : names) {
+    Result<RunSet> set = ReadRunSet(name, "fitness");
+    if (!set) return set.error();
+    for (const std::string& note : set->notes) all.notes.push_back(note);
+    if (set->values.clusters.empty()) {
+      all.notes.push_back(fmt::format("{} has no run with a fitness: it is not compared", name));
+      continue;
+    }
+    const std::string scenario = set->origins.empty() ? "" : set->origins.front().experiment.scenario;
+    by_scenario[scenario].push_back(*std::move(set));
+  }
+  for (auto& [scenario, sets] : by_scenario) {
+    if (sets.size() < 2) {
+      if (names.size() > 1) {
+        all.notes.push_back(fmt::format("{} stands alone: no other set is of the scenario {}",
+                                        sets.front().values.name, scenario));
+      }
+      continue;
+    }
+    Result<SetComparison> comparison = ComparisonOf(scenario, std::move(sets));
+    if (!comparison) return comparison.error();
+    all.comparisons.push_back(*std::move(comparison));
+  }
+  return all;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,289 @@
+// gauntlet report and gauntlet figure on real campaigns; the report in a real browser.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/browser.h"
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+
+// One campaign for all tests; some of its cases fail.
+const TemporaryDirectory& Scratch() {
+  static const TemporaryDirectory scratch;
+  return scratch;
+}
+const std::string& Campaign() {
+  static const std::string dir = [] {
+    const std::string path = Scratch() / "campaign";
+    EXPECT_EQ(Gauntlet({"random", "flocking", "--cases", "60", "--dir", path, "--quiet"}).exit_code, 0);
+    return path;
+  }();
+  return dir;
+}
+std::string MakeReport(const std::vector<std::string>& sets, const std::string& name) {
+  const std::string path = Scratch() / name;
+  std::vector<std::string> arguments = {"report"};
+  arguments.insert(arguments.end(), sets.begin(), sets.end());
+  arguments.insert(arguments.end(), {"-o", path, "--runs", "6"});
+  const ProcessResult result = Gauntlet(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, IsEmpty());
+  return path;
+}
+const std::string& OneReport() {
+  static const std::string path = MakeReport({Campaign()}, "report.html");
+  return path;
+}
+
+// Megabytes, which no failure should print.
+bool Says(const std::string& report, const std::string& text) {
+  return ReadFile(report).find(text) != std::string::npos;
+}
+
+TEST(FigureTest, WritesPictureAndDataOfTheSameThing) {
+  const std::string svg = Scratch() / "types.svg";
+  const std::string csv = Scratch() / "types.csv";
+  const ProcessResult result = Gauntlet({"figure", Campaign(), "failure-types", "-o", svg, "--csv", csv});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(ReadFile(svg), HasSubstr("</svg>"));
+  std::istringstream lines(ReadFile(csv));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_THAT(line, HasSubstr("runs,toughest run"));
+  std::uint64_t counted = 0;
+  int rows = 0;
+  while (std::getline(lines, line)) {
+    ++rows;
+    std::istringstream cells(line);
+    std::string cell;
+    for (int i = 0; i < 3; ++i) std::getline(cells, cell, ',');
+    counted += std::stoull(cell);
+  }
+  EXPECT_EQ(rows, 20);
+  std::uint64_t typed = 0;
+  const json shown = Show(Campaign());
+  for (const json& type : shown["failure_types"]) typed += type["runs"].get<std::uint64_t>();
+  EXPECT_GT(typed, 0U);
+  EXPECT_EQ(counted, typed);
+}
+
+TEST(FigureTest, NamesWhatThereIs) {
+  EXPECT_THAT(Gauntlet({"figure", Campaign()}).out, AllOf(HasSubstr("progress"), HasSubstr("behaviour")));
+  const ProcessResult wrong = Gauntlet({"figure", Campaign(), "progres"});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, AllOf(HasSubstr("'progres'"), HasSubstr("progress")));
+  EXPECT_EQ(Gauntlet({"figure", Campaign(), "run-0"}).exit_code, 2);
+  EXPECT_EQ(Gauntlet({"figure", Campaign(), "run-61"}).exit_code, 2);
+  EXPECT_THAT(Gauntlet({"figure", Campaign(), "motion-1"}).out, HasSubstr("</svg>"));
+}
+
+TEST(ReportTest, IsTheSameBytesForTheSameCampaign) {
+  EXPECT_TRUE(ReadFile(OneReport()) == ReadFile(MakeReport({Campaign()}, "again.html")));
+}
+
+TEST(ReportTest, BadInputIsNamedAndLeavesNoFile) {
+  const std::string out = Scratch() / "none.html";
+  const ProcessResult nothing = Gauntlet({"report", Scratch() / "nothing", "-o", out});
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.err, HasSubstr("nothing"));
+  const ProcessResult runs = Gauntlet({"report", Campaign(), "-o", out, "--runs", "many"});
+  EXPECT_EQ(runs.exit_code, 2);
+  EXPECT_THAT(runs.err, AllOf(HasSubstr("many"), HasSubstr("0 to 500")));
+  const std::string damaged = Scratch() / "damaged";
+  fs::copy(Campaign(), damaged, fs::copy_options::recursive);
+  fs::resize_file(damaged + "/campaign.db", 4096 * 3);
+  const ProcessResult broken = Gauntlet({"report", damaged, "-o", out});
+  EXPECT_EQ(broken.exit_code, 2);
+  EXPECT_THAT(broken.err, HasSubstr("damaged"));
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST(ReportTest, ACampaignThatIsBeingWrittenIsToldOfAsFarAsItIs) {
+  const std::string dir = Scratch() / "living";
+  const auto master = StartGauntlet({"random", "flocking", "--cases", "100000", "--dir", dir, "--quiet"});
+  const auto has_runs = [&] {
+    const ProcessResult shown = Gauntlet({"show", dir, "--json"});
+    return shown.exit_code == 0 && json::parse(shown.out)["runs_done"] > 0;
+  };
+  ASSERT_TRUE(Eventually(has_runs, kPatience));
+  EXPECT_TRUE(Says(MakeReport({dir}, "living.html"), "is being written"));
+  master->Signal(SIGTERM);
+  EXPECT_EQ(master->Wait().exit_code, 3);
+  EXPECT_TRUE(Says(MakeReport({dir}, "half.html"), "is half-finished"));
+}
+
+TEST(ReportTest, SetsOfOneScenarioAreComparedAndThoseOfOthersNamed) {
+  const std::string foraging = Scratch() / "foraging";
+  ASSERT_EQ(Gauntlet({"random", "foraging", "--cases", "3", "--set", "scenario_parameters.time_limit=40",
+                      "--dir", foraging, "--quiet"})
+                .exit_code,
+            0);
+  const std::string page = MakeReport({Campaign() + ":all", Campaign() + ":worst:10", foraging}, "two.html");
+  EXPECT_TRUE(Says(page, "id=\"comparison\""));
+  EXPECT_TRUE(Says(page, foraging + " stands alone: no other set is of the scenario foraging"));
+}
+
+class ReportInBrowserTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium)";
+    browser_ = std::make_unique<Browser>();
+  }
+  // Its poses in the replay that is shown: x, y and heading in degrees of every robot.
+  std::vector<std::array<double, 3>> Poses() {
+    const json transforms = browser_->Evaluate(
+        "[...document.querySelectorAll('.page.shown .robot')].map(r => r.getAttribute('transform'))");
+    std::vector<std::array<double, 3>> poses;
+    for (const std::string transform : transforms) {
+      std::array<double, 3>& pose = poses.emplace_back();
+      EXPECT_EQ(
+          std::sscanf(transform.c_str(), "translate(%lf %lf) rotate(%lf)", &pose[0], &pose[1], &pose[2]), 3)
+          << transform;
+    }
+    return poses;
+  }
+  std::unique_ptr<Browser> browser_;
+};
+
+// x, y and heading in degrees of every robot at the run's end, simulated again.
+std::vector<std::array<double, 3>> LastPoses(const std::string& run) {
+  const std::string csv = Scratch() / "run.csv";
+  EXPECT_EQ(Gauntlet({"replay", Campaign(), run, "--csv", csv}).exit_code, 0);
+  std::istringstream lines(ReadFile(csv));
+  std::vector<std::array<double, 3>> poses;
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line)) {
+    int tick = 0;
+    double time = 0;
+    std::size_t robot = 0;
+    std::array<double, 3> pose{};
+    EXPECT_EQ(std::sscanf(line.c_str(), "%d,%lf,%zu,%lf,%lf,%lf", &tick, &time, &robot, &pose[0], &pose[1],
+                          &pose[2]),
+              6);
+    pose[2] *= 180.0 / M_PI;
+    if (robot >= poses.size()) poses.resize(robot + 1);
+    poses[robot] = pose;
+  }
+  return poses;
+}
+
+TEST_F(ReportInBrowserTest, OpensWithoutComplaintAndAsksTheNetworkForNothing) {
+  browser_->Open("file://" + OneReport());
+  for (const json& page :
+       browser_->Evaluate("[...document.querySelectorAll('.page')].map(page => page.id)")) {
+    browser_->Evaluate("location.hash = '#" + page.get<std::string>() + "'");
+    EXPECT_TRUE(
+        browser_->Becomes("document.querySelector('.page.shown').id === '" + page.get<std::string>() + "'"));
+    EXPECT_EQ(browser_->Evaluate("document.documentElement.scrollWidth > innerWidth"), false) << page;
+  }
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+  EXPECT_THAT(browser_->requests(), SizeIs(1)) << "the file itself";
+}
+
+TEST_F(ReportInBrowserTest, FitsAPhone) {
+  browser_->Open("file://" + OneReport());
+  browser_->SetWidth(320);
+  for (const json& page :
+       browser_->Evaluate("[...document.querySelectorAll('.page')].map(page => page.id)")) {
+    browser_->Evaluate("location.hash = '#" + page.get<std::string>() + "'");
+    EXPECT_TRUE(
+        browser_->Becomes("document.querySelector('.page.shown').id === '" + page.get<std::string>() + "'"));
+    EXPECT_LE(browser_->Evaluate("document.documentElement.scrollWidth").get<int>(), 320) << page;
+  }
+}
+
+TEST_F(ReportInBrowserTest, AClickOnAFieldOfTheMapLeadsToItsRunWhichPlaysToItsStoredEnd) {
+  browser_->Open("file://" + OneReport());
+  browser_->Evaluate("document.querySelector('nav a[href=\"#failures\"]').click()");
+  ASSERT_TRUE(browser_->Becomes("document.getElementById('failures').classList.contains('shown')"));
+  const std::string target = browser_->Evaluate(
+      "(() => { const field = document.querySelector('table.map a'); field.click(); return "
+      "field.hash.slice(1); })()");
+  ASSERT_TRUE(browser_->Becomes("document.getElementById('" + target + "').classList.contains('shown')"));
+  const auto expected = LastPoses(target.substr(target.rfind('-') + 1));
+  const auto start = Poses();
+  ASSERT_EQ(start.size(), expected.size());
+  browser_->Evaluate(
+      "(() => { const page = document.querySelector('.page.shown'); "
+      "const [speed] = page.querySelectorAll('.controls select'); speed.value = '64'; "
+      "page.querySelector('.controls button').click(); })()");
+  ASSERT_TRUE(browser_->Becomes(
+      "(() => { const slider = document.querySelector('.page.shown input[type=range]'); "
+      "return slider.value === slider.max && "
+      "document.querySelector('.page.shown .controls button').textContent === 'Play'; })()"));
+  const auto end = Poses();
+  double moved = 0.0;
+  for (std::size_t robot = 0; robot < expected.size(); ++robot) {
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(end[robot][i], expected[robot][i], 1e-9) << robot;
+    moved += std::hypot(end[robot][0] - start[robot][0], end[robot][1] - start[robot][1]);
+  }
+  EXPECT_GT(moved, 1.0) << "nobody moved";
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ReportInBrowserTest, TheTableOfCasesSortsAndFilters) {
+  browser_->Open("file://" + OneReport() + "#failures");
+  const std::string rows = "document.querySelectorAll('.all-cases tbody tr').length";
+  EXPECT_EQ(browser_->Evaluate(rows), 60);
+  browser_->Evaluate(
+      "(() => { const kind = document.querySelector('.all-cases select'); kind.value = 'failing'; "
+      "kind.dispatchEvent(new Event('change')); })()");
+  EXPECT_EQ(browser_->Evaluate(rows), Show(Campaign())["total_failures"]);
+  browser_->Evaluate("document.querySelectorAll('.all-cases th button')[0].click()");
+  EXPECT_EQ(
+      browser_->Evaluate("(() => { const numbers = [...document.querySelectorAll('.all-cases tbody tr')]"
+                         ".map(row => Number(row.cells[0].textContent)); "
+                         "return numbers.every((one, i) => i === 0 || numbers[i - 1] <= one); })()"),
+      true);
+}
+
+TEST_F(ReportInBrowserTest, WithoutJavaScriptEverythingThatMattersIsThere) {
+  browser_->Open("file://" + OneReport(), /*scripts=*/false);
+  const std::string seen = browser_->Evaluate("document.body.innerText");
+  EXPECT_THAT(seen, AllOf(HasSubstr("total failures"), HasSubstr("state hash"), HasSubstr("toughest run")));
+  EXPECT_EQ(
+      browser_->Evaluate("[...document.querySelectorAll('.page')].every(page => page.offsetHeight > 0)"),
+      true);
+  EXPECT_GE(browser_->Evaluate("document.querySelectorAll('.all-cases tbody tr').length").get<int>(), 50);
+  EXPECT_EQ(
+      browser_->Evaluate("[...document.images].every(image => image.complete && (image.naturalWidth > 0 || "
+                         "image.loading === 'lazy'))"),
+      true);
+}
+
+TEST_F(ReportInBrowserTest, NamesWithMarkupAreText) {
+  const std::string evil = "</script><script>document.title='owned'</script><img src=x onerror=alert(1)>\"'&";
+  const std::string file = Scratch() / "evil.json";
+  std::ofstream(file) << json{{"name", evil}, {"obstacles", json::array()}};
+  const std::string dir = Scratch() / "<b>bold & 'quoted'";
+  ASSERT_EQ(Gauntlet({"evaluate", "flocking", "--case", file, "--dir", dir, "--quiet"}).exit_code, 0);
+  browser_->Open("file://" + MakeReport({dir}, "evil.html") + "#failures");
+  EXPECT_EQ(browser_->Evaluate("document.title"), "flocking: Gauntlet report");
+  EXPECT_EQ(browser_->Evaluate("document.scripts.length"), 2);
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('b').length"), 0);
+  EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('img[src=x]').length"), 0);
+  EXPECT_THAT(browser_->Evaluate("document.body.innerText").get<std::string>(),
+              HasSubstr("<b>bold & 'quoted'"));
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace gauntlet::testing_support
