@@ -44,6 +44,16 @@ Interval ClopperPearsonInterval(std::uint32_t hits, std::uint32_t trials, double
           hits == trials ? 1.0 : BetaQuantile(1.0 - tail, k + 1.0, n - k)};
 }
 
+Interval DifferenceInterval(std::uint32_t hits1, std::uint32_t trials1, std::uint32_t hits2,
+                            std::uint32_t trials2, double confidence) {
+  const Interval first = WilsonInterval(hits1, trials1, confidence);
+  const Interval second = WilsonInterval(hits2, trials2, confidence);
+  const double p1 = static_cast<double>(hits1) / trials1;
+  const double p2 = static_cast<double>(hits2) / trials2;
+  return {p1 - p2 - std::hypot(p1 - first.low, second.high - p2),
+          p1 - p2 + std::hypot(first.high - p1, p2 - second.low)};
+}
+
 FisherTest FisherExact(std::uint32_t hits1, std::uint32_t trials1, std::uint32_t hits2,
                        std::uint32_t trials2) {
   CheckCounts(hits1, trials1);

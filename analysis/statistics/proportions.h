@@ -14,6 +14,11 @@ Interval WilsonInterval(std::uint32_t hits, std::uint32_t trials, double confide
 // Clopper and Pearson 1934: holds at least its confidence whatever the probability, and is wider.
 Interval ClopperPearsonInterval(std::uint32_t hits, std::uint32_t trials, double confidence);
 
+// Of the difference between the probabilities of the first and the second (Newcombe 1998, method 10: from
+// both Wilson intervals).
+Interval DifferenceInterval(std::uint32_t hits1, std::uint32_t trials1, std::uint32_t hits2,
+                            std::uint32_t trials2, double confidence);
+
 struct FisherTest {
   double p_less = 1.0;  // one-tailed: the first share is the smaller one
   double p_greater = 1.0;

@@ -46,6 +46,7 @@ void AddShow(CommandParser& parser);
 void AddReplay(CommandParser& parser);
 void AddConfirm(CommandParser& parser);
 void AddMinimise(CommandParser& parser);
+void AddBlame(CommandParser& parser);
 void AddCompare(CommandParser& parser);
 void AddReport(CommandParser& parser);
 void AddFigure(CommandParser& parser);
@@ -61,8 +62,8 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve,   AddRandom,  AddEvaluate, AddResume, AddShow,   AddReplay, AddConfirm,
-    AddMinimise, AddCompare, AddStudy,    AddTune,   AddReport, AddFigure, AddExport,
-    AddSubmit,   AddMaster,  AddStatus,   AddWatch,  AddStop,   AddList};
+    AddEvolve,   AddRandom, AddEvaluate, AddResume, AddShow,  AddReplay, AddConfirm,
+    AddMinimise, AddBlame,  AddCompare,  AddStudy,  AddTune,  AddReport, AddFigure,
+    AddExport,   AddSubmit, AddMaster,   AddStatus, AddWatch, AddStop,   AddList};
 
 }  // namespace gauntlet::master

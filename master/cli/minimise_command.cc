@@ -189,7 +189,7 @@ void AddMinimise(CommandParser& parser) {
       R"(Takes obstacles away for as long as the swarm still fails in the same way. A case has to fail again with
 fresh seeds first ('gauntlet confirm' says how often), and the arena without obstacles must not. Where the
 scenario knows the place of a failure (flocking: the last split), the nearest obstacles are tried first; then
-each is left out in turn. A step is taken when runs prefer a failure probability of .95 to .75; what is left
+each is left out in turn, until none can be spared. A step is taken when runs prefer a failure probability of .95 to .75; what is left
 must fail in 24 of 30 more runs that took no part in choosing it, else a step is taken back.
 
 What is left is kept below DIR/minimise: a case file that says how it came about, and pictures of its way.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
+#include <iterator>
 #include <utility>
 
 #include "base/check.h"
@@ -163,6 +164,7 @@ void CaseMinimiser::Decide(bool fails) {
       return BeginTakingAway();
     case Phase::kWithout:
       if (fails) steps_.push_back(trying_);
+      taken_away_ = taken_away_ || fails;
       return TryWithoutNext();
     case Phase::kVerify:
       return fails ? Verified() : RollBack();
@@ -201,6 +203,7 @@ void CaseMinimiser::TryNearest(std::size_t count) {
 }
 
 void CaseMinimiser::BeginTakingAway() {
+  taken_away_ = false;
   left_.assign(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(nearest_));
   // That the others do not fail without the last one has just been seen.
   if (HasPlaces() && !left_.empty()) left_.pop_back();
@@ -208,6 +211,13 @@ void CaseMinimiser::BeginTakingAway() {
 }
 
 void CaseMinimiser::TryWithoutNext() {
+  // What was needed may be spared once others are gone.
+  if (left_.empty() && taken_away_) {
+    taken_away_ = false;
+    std::ranges::copy_if(order_, std::back_inserter(left_), [this](std::size_t obstacle) {
+      return std::ranges::count(Smallest().kept, obstacle) > 0;
+    });
+  }
   // That the empty arena does not fail is known.
   if (left_.empty() || Smallest().kept.size() <= 1) return Verify();
   const std::size_t obstacle = left_.back();

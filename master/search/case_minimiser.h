@@ -42,8 +42,9 @@ struct MinimisingRules {
 // First the case as it is has to be confirmed (VerdictOf), and the empty arena must not fail mostly. Where
 // failures have a place, the k obstacles that are nearest to it are kept, k = 1, 2, ..., until they fail
 // alone; then each that is left is taken away, the farthest first, and put back if it was needed. Without a
-// place the second part begins with all of them, those that robots visited least first. A step is taken when
-// a sequential probability ratio test (Wald 1945) prefers a failure probability of .95 to .75, both errors 10
+// place the second part begins with all of them, those that robots visited least first. It is repeated until
+// none can be spared. A step is taken when a sequential probability ratio test (Wald 1945) prefers a failure
+// probability of .95 to .75, both errors 10
 // %. Many tests in a row select for luck, so what is left must fail in 24 of 30 more runs, and at least half
 // of these failures be the same ones; if not, the newest step that does is taken, or the search goes on with
 // one obstacle more.
@@ -98,6 +99,7 @@ class CaseMinimiser final : public LayoutQuestion {
   std::vector<std::size_t> order_;       // all obstacles, those that are probably needed first
   std::size_t nearest_ = 0;              // how many of them are being tried
   std::vector<std::size_t> left_;        // that have not been tried to take away, the next one last
+  bool taken_away_ = false;              // something, since all that are left were tried
   std::vector<MinimisingStep> steps_;    // each was found to fail
   LayoutRuns verification_;              // of the newest step that was verified
   std::size_t verified_steps_ = 0;       // steps up to that one; 0 = none yet

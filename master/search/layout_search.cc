@@ -26,21 +26,18 @@ std::optional<sim::Vec2> PlaceOfFailure(const RunOutcome& run, const controllers
   return x && y ? std::optional(sim::Vec2(*x, *y)) : std::nullopt;
 }
 
-std::uint64_t CountVisits(const RunOutcome& run, const sim::ObstacleGene& obstacle) {
-  const sim::OrientedBox box = sim::BoxOf(obstacle);
-  std::uint64_t visits = 0;
-  for (const sim::RobotSummary& robot : run.robots) {
-    for (const sim::Vec2& place : robot.waypoints)
-      visits += sim::SquaredDistance(box, place) <= kAtObstacle * kAtObstacle ? 1 : 0;
-  }
-  return visits;
-}
-
 }  // namespace
 
 const controllers::FailurePlace* FailurePlaceOf(const std::string& scenario) {
   const controllers::ScenarioInfo* info = controllers::FindScenario(scenario);
   return info == nullptr || !info->failure_place ? nullptr : &*info->failure_place;
+}
+
+std::uint64_t CountVisits(const sim::RobotSummary& robot, const sim::ObstacleGene& obstacle) {
+  const sim::OrientedBox box = sim::BoxOf(obstacle);
+  return static_cast<std::uint64_t>(std::ranges::count_if(robot.waypoints, [&](const sim::Vec2& place) {
+    return sim::SquaredDistance(box, place) <= kAtObstacle * kAtObstacle;
+  }));
 }
 
 Experiment LayoutExperiment(const Experiment& experiment, std::string_view algorithm) {
@@ -94,7 +91,10 @@ LayoutRuns LayoutSearch::WhatBecameOf(const RunOutcome& run, const sim::Genome& 
   became.tally.Add(run, failing_);
   const std::optional<sim::Vec2> place = PlaceOfFailure(run, failure_place_);
   if (place && became.tally.failures > 0) became.places.push_back(*place);
-  for (const sim::ObstacleGene& obstacle : obstacles) became.visits.push_back(CountVisits(run, obstacle));
+  for (const sim::ObstacleGene& obstacle : obstacles) {
+    std::uint64_t& visits = became.visits.emplace_back(0);
+    for (const sim::RobotSummary& robot : run.robots) visits += CountVisits(robot, obstacle);
+  }
   return became;
 }
 

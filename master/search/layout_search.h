@@ -16,6 +16,10 @@ namespace gauntlet::master {
 // Where the scenario's failures happen; nullptr: they have no place.
 const controllers::FailurePlace* FailurePlaceOf(const std::string& scenario);
 
+// Waypoints at which the robot was at the obstacle, where it stands at the beginning: its proximity ring saw
+// it.
+std::uint64_t CountVisits(const sim::RobotSummary& robot, const sim::ObstacleGene& obstacle);
+
 // Case i of SearchSetup::cases is individual i + 1; every other layout that is simulated is an individual
 // too, a child of its case. The cases do not wait for each other.
 class LayoutSearch : public PopulationSearch {

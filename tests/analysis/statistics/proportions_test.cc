@@ -24,6 +24,19 @@ TEST(ProportionIntervals, AgreeWithR) {
   }
 }
 
+// Examples of Newcombe 1998, table II, method 10.
+TEST(ProportionIntervals, OfADifferenceAreNewcombes) {
+  const Interval many = DifferenceInterval(56, 70, 48, 80, 0.95);
+  EXPECT_NEAR(many.low, 0.0524, 5e-5);
+  EXPECT_NEAR(many.high, 0.3339, 5e-5);
+  const Interval few = DifferenceInterval(9, 10, 3, 10, 0.95);
+  EXPECT_NEAR(few.low, 0.1705, 5e-5);
+  EXPECT_NEAR(few.high, 0.8090, 5e-5);
+  const Interval clear = DifferenceInterval(10, 10, 0, 10, 0.95);
+  EXPECT_NEAR(clear.low, 0.6075, 5e-5);
+  EXPECT_NEAR(clear.high, 1.0, 5e-5);
+}
+
 // The chance that the interval of whatever count comes out holds the true `probability`.
 double Coverage(const std::vector<Interval>& interval_of_count, double probability) {
   const auto trials = static_cast<double>(interval_of_count.size() - 1);

@@ -1,0 +1,191 @@
+// gauntlet blame: which obstacle of a case breaks the swarm.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/blame_figure.h"
+#include "base/parse_number.h"
+#include "base/shell_quoted.h"
+#include "master/cli/commands.h"
+#include "master/cli/given_cases.h"
+#include "master/cli/output_file.h"
+#include "master/cli/table.h"
+#include "master/report/blames.h"
+#include "proto/json_text.h"
+
+namespace gauntlet::master {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct BlameOptions : RunningOptions {
+  std::string directory;
+  std::string test_case;
+  std::string replicates;
+};
+
+Result<int> ParsePartRuns(const std::string& text) {
+  if (text.empty()) return 30;
+  const auto number = ParseNumber<int>(text);
+  if (number && *number >= 2 && *number <= 10000) return *number;
+  return InvalidInput(fmt::format("--replicates {}: a whole number from 2 to 10000 is needed", text));
+}
+
+std::string OutOf(const FailureTally& tally) {
+  return fmt::format("{} of {}", tally.failures, tally.runs());
+}
+
+std::string NamesOf(const BlamedPart& part) {
+  std::string names;
+  for (const std::size_t obstacle : part.obstacles) {
+    names += fmt::format("{}{}", names.empty() ? "" : " and ", obstacle + 1);
+  }
+  return names;
+}
+
+std::string Touched(const BlamedPart& part, const Blame& blame) {
+  if (blame.failing_robots == 0) return "-";
+  return fmt::format("{:.0f} %",
+                     100.0 * static_cast<double>(part.touched) / static_cast<double>(blame.failing_robots));
+}
+
+// A change of a probability in points of a percentage: "-43", "0", "+7".
+std::string Points(double change) {
+  const auto points = static_cast<int>(std::lround(100.0 * change));
+  return points == 0 ? "0" : fmt::format("{:+d}", points);
+}
+
+std::string Effect(const BlamedPart& part) {
+  return fmt::format("{} ({} to {})", Points(-part.effect), Points(-part.interval.high),
+                     Points(-part.interval.low));
+}
+
+std::string TextOf(const Blame& blame, const std::string& picture) {
+  std::string text = DescribeBlame(blame) + "\n\n";
+  Table table(
+      {"without obstacle", ">fails in", ">change in points (95 %)", "", ">failing robots were at it"});
+  for (const BlamedPart& part : blame.singles) {
+    table.AddRow({NamesOf(part), OutOf(part.without), Effect(part), part.to_blame ? "to blame" : "",
+                  Touched(part, blame)});
+  }
+  for (const BlamedPart& part : blame.pairs) {
+    if (part.to_blame) table.AddRow({NamesOf(part), OutOf(part.without), Effect(part), "to blame", ""});
+  }
+  text += table.ToText();
+  if (!blame.pairs.empty()) text += fmt::format("  and {} pairs were tried\n", blame.pairs.size());
+  return text + fmt::format("\n{} runs. Drawn on the case, with the places where robots got stuck:\n  {}\n",
+                            blame.runs, ShellQuoted(picture));
+}
+
+Json JsonOf(const BlamedPart& part) {
+  return {{"failure_without", {part.without.failures, part.without.runs()}},
+          {"effect", part.effect},
+          {"interval", {part.interval.low, part.interval.high}},
+          {"to_blame", part.to_blame}};
+}
+
+Json JsonOf(const Blame& blame, const std::string& picture) {
+  Json singles = Json::array();
+  for (const BlamedPart& part : blame.singles) {
+    Json one = {{"index", part.obstacles.front()}, {"number", part.obstacles.front() + 1}};
+    one.update(JsonOf(part));
+    one["touched"] = {part.touched, blame.failing_robots};
+    singles.push_back(std::move(one));
+  }
+  Json pairs = Json::array();
+  for (const BlamedPart& part : blame.pairs) {
+    Json one = {{"indices", part.obstacles}};
+    one.update(JsonOf(part));
+    pairs.push_back(std::move(one));
+  }
+  return {{"run", blame.run > 0 ? Json(blame.run) : Json()},
+          {"name", blame.name},
+          {"k", blame.whole.failures},
+          {"n", blame.whole.runs()},
+          {"obstacles", std::move(singles)},
+          {"pairs", std::move(pairs)},
+          {"sentence", DescribeBlame(blame)},
+          {"simulations", blame.runs},
+          {"picture", picture}};
+}
+
+std::string PictureOf(const Blame& blame) {
+  const std::string sentence = DescribeBlame(blame);
+  const std::size_t end = sentence.find(". ");
+  analysis::BlameFigure figure{.title = blame.name,
+                               .sentences = {sentence},
+                               .test_case = blame.test_case,
+                               .effects = {},
+                               .stuck = blame.stuck,
+                               .lines = {}};
+  if (end != std::string::npos) figure.sentences = {sentence.substr(0, end + 1), sentence.substr(end + 2)};
+  figure.lines = {"Without an obstacle the case fails in:"};
+  for (const BlamedPart& part : blame.singles) {
+    figure.effects.push_back(part.effect);
+    figure.lines.push_back(
+        fmt::format("{}:  {}{}", NamesOf(part), OutOf(part.without), part.to_blame ? ", to blame" : ""));
+  }
+  figure.lines.insert(figure.lines.end(),
+                      {"", "Red: by how much less it fails without", "Blue: where robots stayed for 5 s,",
+                       fmt::format("in {} runs of the whole case", blame.whole.runs())});
+  return DrawBlame(figure);
+}
+
+Status Conclude(CommandContext& context, const BlameOptions& options, const std::string& directory) {
+  const Result<std::vector<Blame>> blames = ReadBlames(directory);
+  if (!blames) return blames.error();
+  for (const Blame& blame : *blames) {
+    const std::string picture = directory + "/blame.svg";
+    if (Status written = WriteOutputFile(picture, PictureOf(blame)); !written) return written;
+    context.out << (options.json ? JsonText(JsonOf(blame, picture)) : TextOf(blame, picture)) << std::flush;
+  }
+  return Ok{};
+}
+
+ExitCode RunBlame(CommandContext& context, const BlameOptions& options) {
+  const Result<int> replicates = ParsePartRuns(options.replicates);
+  if (!replicates) return Fail(context, replicates.error());
+  const Result<int> workers = ParseWorkers(options.workers);
+  if (!workers) return Fail(context, workers.error());
+  const Result<QuestionedCampaign> questioned = GivenCases(options.directory, {options.test_case});
+  if (!questioned) return Fail(context, questioned.error());
+  if (questioned->cases.front().test_case.obstacles.empty())
+    return Fail(context, InvalidInput(questioned->cases.front().name + " has no obstacles to blame"));
+  const CallPlan plan = PlanBlame(options.directory, *questioned, *replicates);
+  CampaignRun campaign = RunOfCall(context, plan, *workers, options);
+  campaign.report = [&](const SessionReport& report) -> Status {
+    return report.end == CampaignEnd::kStopped ? Ok{} : Conclude(context, options, plan.directory);
+  };
+  return RunCampaign(context, campaign);
+}
+
+}  // namespace
+
+void AddBlame(CommandParser& parser) {
+  const auto [command, options] = parser.Add("blame", "which obstacle of a case breaks the swarm?", RunBlame);
+  AddDirectory(command, options.directory);
+  command
+      .add_option("CASE", options.test_case, "the run of the campaign whose case is meant, or a case file")
+      ->required();
+  AddValue(command, "--replicates", "N", options.replicates,
+           "runs of the case and of it without each obstacle (default: 30)");
+  AddRunningOptions(command, options);
+  command.footer(
+      R"(Simulates the case with fresh seeds, and then without each of its obstacles. An obstacle is to blame when
+without it the case fails less often by more than three standard errors. When none is, pairs are left out. The
+picture, kept below DIR/blame, shows how much each obstacle does and where robots got stuck.
+
+In --json, "index" counts obstacles from 0, as in a case file, and "number" from 1, as in pictures. "effect" is
+the failure probability of the case less that without the obstacle. "touched" says of how many of the failing
+robots, those that were lost, it was in reach of their proximity sensors.
+
+Examples:
+  gauntlet blame DIR 812
+  gauntlet blame DIR smallest.json --replicates 100 --json)");
+}
+
+}  // namespace gauntlet::master

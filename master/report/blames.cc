@@ -1,0 +1,136 @@
+#include "master/report/blames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/statistics/proportions.h"
+#include "master/report/answered_calls.h"
+#include "master/report/stored_search.h"
+#include "master/search/blame_search.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr double kConfidence = 0.95;
+constexpr double kStays = 0.05;  // m: a robot that drives covers five times as much between two waypoints
+
+BlamedPart PartOf(const CaseBlame::Part& part, const FailureTally& whole) {
+  BlamedPart blamed;
+  blamed.obstacles = part.without;
+  blamed.without = part.runs.tally;
+  if (whole.runs() == 0 || blamed.without.runs() == 0) return blamed;
+  const auto count = [](int value) { return static_cast<std::uint32_t>(value); };
+  blamed.effect = static_cast<double>(whole.failures) / whole.runs() -
+                  static_cast<double>(blamed.without.failures) / blamed.without.runs();
+  blamed.interval =
+      analysis::DifferenceInterval(count(whole.failures), count(whole.runs()), count(blamed.without.failures),
+                                   count(blamed.without.runs()), kConfidence);
+  blamed.to_blame = ClearlyLess(blamed.without, whole);
+  return blamed;
+}
+
+// Where robots were in one run of the case as it is.
+void AddWays(const RunOutcome& run, bool failed, Blame& blame) {
+  const bool any_lost = std::ranges::any_of(run.robots, &sim::RobotSummary::lost);
+  for (const sim::RobotSummary& robot : run.robots) {
+    for (std::size_t i = 1; i < robot.waypoints.size(); ++i) {
+      if ((robot.waypoints[i] - robot.waypoints[i - 1]).norm() < kStays)
+        blame.stuck.push_back(robot.waypoints[i]);
+    }
+    if (!failed || (any_lost && !robot.lost)) continue;
+    ++blame.failing_robots;
+    for (BlamedPart& part : blame.singles) {
+      const sim::ObstacleGene& obstacle = blame.test_case.obstacles[part.obstacles.front()];
+      if (CountVisits(robot, obstacle) > 0) ++part.touched;
+    }
+  }
+}
+
+Status AddWaysOfRuns(const AnsweredSearch& answered, IndividualId individual, Blame& blame) {
+  const std::string_view failing = FailingOf(answered.experiment.scenario);
+  Status all = Ok{};
+  const Status read = answered.store.ForEachRun(answered.id, 0, [&](const StoredRun& stored) {
+    if (stored.individual != individual || !all) return;
+    const Result<RunOutcome> run = OutcomeOf(stored, /*with_metrics=*/true, /*with_ways=*/true);
+    if (!run) {
+      all = run.error();
+      return;
+    }
+    FailureTally tally;
+    tally.Add(*run, failing);
+    AddWays(*run, tally.failures > 0, blame);
+  });
+  return read ? all : read;
+}
+
+std::string Numbers(const std::vector<std::size_t>& obstacles) {
+  std::string text;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const char* between = i == 0 ? "" : i + 1 == obstacles.size() ? " and " : ", ";
+    text += fmt::format("{}{}", between, obstacles[i] + 1);
+  }
+  return text;
+}
+
+std::string OutOf(const FailureTally& tally) {
+  return fmt::format("{} of {}", tally.failures, tally.runs());
+}
+
+}  // namespace
+
+std::string DescribeBlame(const Blame& blame) {
+  if (blame.whole.failures == 0)
+    return fmt::format("{} failed in {} runs: there is nothing to blame.", blame.name, OutOf(blame.whole));
+  const std::string fails = fmt::format("{} fails in {} runs. ", blame.name, OutOf(blame.whole));
+  std::vector<std::size_t> guilty;
+  std::string counts;
+  for (const BlamedPart& part : blame.singles) {
+    if (!part.to_blame) continue;
+    guilty.push_back(part.obstacles.front());
+    counts += fmt::format("{}without {} it fails in {}", counts.empty() ? "" : ", ",
+                          part.obstacles.front() + 1, OutOf(part.without));
+  }
+  if (!guilty.empty()) {
+    return fails + fmt::format("Obstacle{} {} {} it: {}.", guilty.size() > 1 ? "s" : "", Numbers(guilty),
+                               guilty.size() > 1 ? "do" : "does", counts);
+  }
+  const auto pair = std::ranges::max_element(blame.pairs, {}, &BlamedPart::effect);
+  if (pair != blame.pairs.end() && pair->to_blame) {
+    return fails + fmt::format("No single obstacle does it; without both {} it fails in {} only.",
+                               Numbers(pair->obstacles), OutOf(pair->without));
+  }
+  return fails + "No obstacle and no pair of them explains it.";
+}
+
+CallPlan PlanBlame(const std::string& dir, const QuestionedCampaign& questioned, int replicates) {
+  return PlanCall(dir + "/blame", questioned, [replicates](const Experiment& experiment) {
+    return BlameExperiment(experiment, replicates);
+  });
+}
+
+Result<std::vector<Blame>> ReadBlames(const std::string& directory) {
+  std::vector<Blame> all;
+  const auto add = [&](const AnsweredSearch& answered) -> Status {
+    const auto& search = dynamic_cast<const BlameSearch&>(answered.search);
+    for (std::size_t i = 0; i < search.Population().size(); ++i) {
+      const std::vector<CaseBlame::Part>& parts = search.BlameOf(i).parts();
+      Blame& blame = all.emplace_back();
+      blame.test_case = search.Population()[i].test_case;
+      blame.name = blame.test_case.name;
+      blame.run = RunOfName(blame.name);
+      blame.whole = parts.front().runs.tally;
+      blame.runs = search.RunsOf(i);
+      for (const CaseBlame::Part& part : parts) {
+        if (part.without.size() == 1) blame.singles.push_back(PartOf(part, blame.whole));
+        if (part.without.size() == 2) blame.pairs.push_back(PartOf(part, blame.whole));
+      }
+      if (Status added = AddWaysOfRuns(answered, i + 1, blame); !added) return added;
+    }
+    return Ok{};
+  };
+  if (Status read = ForEachAnswer(directory, add); !read) return read.error();
+  return all;
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,96 @@
+// gauntlet blame with real processes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/campaign_driver.h"
+#include "tests/support/paths.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// Walls 2, 5 and 7 are a trap together: without any of them the flock passes. The others are out of the way.
+constexpr const char* kTrap = GAUNTLET_SOURCE_DIR "/tests/integration/cases/trap.json";
+
+void MakeCampaign(const std::string& dir) {
+  ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "2", "--dir", dir, "--quiet"}).exit_code, 0);
+}
+
+std::vector<std::string> BlameTrap(const std::string& dir, int workers) {
+  return {"blame", dir, kTrap, "--workers", std::to_string(workers), "--json", "--quiet"};
+}
+
+nlohmann::json Found(const std::vector<std::string>& arguments) {
+  const ProcessResult result = Gauntlet(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  nlohmann::json found = nlohmann::json::parse(result.out);
+  found.erase("picture");
+  return found;
+}
+
+TEST(BlameTest, NamesTheWallsOfAPlantedTrap) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  const ProcessResult result = Gauntlet(BlameTrap(scratch / "c", 2));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json blame = nlohmann::json::parse(result.out);
+  std::vector<int> guilty;
+  for (const nlohmann::json& obstacle : blame["obstacles"]) {
+    const double effect = obstacle["effect"];
+    EXPECT_LE(obstacle["interval"][0].get<double>(), effect);
+    EXPECT_GE(obstacle["interval"][1].get<double>(), effect);
+    if (obstacle["to_blame"].get<bool>()) guilty.push_back(obstacle["number"]);
+  }
+  EXPECT_THAT(guilty, ElementsAre(2, 5, 7));
+  EXPECT_THAT(blame["sentence"].get<std::string>(),
+              HasSubstr("Obstacles 2, 5 and 7 do it: without 2 it fails in "));
+  EXPECT_EQ(blame["simulations"], 9 * 30);
+  EXPECT_GT(blame["obstacles"][1]["touched"][0], 0);  // the first wall; the first box is in nobody's way
+  EXPECT_EQ(blame["obstacles"][0]["touched"][0], 0);
+  EXPECT_TRUE(std::filesystem::exists(blame["picture"].get<std::string>()));
+}
+
+TEST(BlameTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "one");
+  std::filesystem::copy(scratch / "one", scratch / "killed", std::filesystem::copy_options::recursive);
+  const nlohmann::json one = Found(BlameTrap(scratch / "one", 1));
+  for (const char* sign : {"status.json", "campaign.db-wal"}) {
+    const std::unique_ptr<Process> master = StartGauntlet(BlameTrap(scratch / "killed", 2));
+    const auto begun = [&] {
+      std::error_code none;
+      for (const auto& call : std::filesystem::directory_iterator(scratch / "killed/blame", none)) {
+        if (std::filesystem::exists(call.path() / sign, none)) return true;
+      }
+      return false;
+    };
+    EXPECT_TRUE(Eventually(begun, kPatience));
+    master->Signal(SIGKILL);
+    master->Wait();
+  }
+  EXPECT_EQ(Found(BlameTrap(scratch / "killed", 3)), one);
+}
+
+TEST(BlameTest, SaysWhatIsWrong) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  const auto refused = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"blame", scratch / "c"});
+    const ProcessResult result = Gauntlet(arguments);
+    EXPECT_EQ(result.exit_code, 2) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(refused({}), HasSubstr("CASE is required"));
+  EXPECT_THAT(refused({"999999"}), HasSubstr("there is no run 999999"));
+  EXPECT_THAT(refused({"1", "--replicates", "1"}), HasSubstr("--replicates 1: a whole number from 2"));
+}
+
+}  // namespace
+}  // namespace gauntlet::testing_support
