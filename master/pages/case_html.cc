@@ -56,7 +56,9 @@ std::string CommandsHtml(const CampaignFacts& facts, RunId id) {
   return "<h3>Commands</h3>\n<p>See it again, bit for bit:</p>\n" +
          CommandHtml(fmt::format("gauntlet replay {} {} --svg run-{}.svg", dir, id, id)) +
          "<p>Does it fail with fresh seeds too, and how often?</p>\n" +
-         CommandHtml(fmt::format("gauntlet confirm {} {}", dir, id)) + "<p>Its ways as a table:</p>\n" +
+         CommandHtml(fmt::format("gauntlet confirm {} {}", dir, id)) +
+         "<p>Which of its obstacles does it take?</p>\n" +
+         CommandHtml(fmt::format("gauntlet minimise {} {}", dir, id)) + "<p>Its ways as a table:</p>\n" +
          CommandHtml(fmt::format(
              "gauntlet export {} --format csv --what trajectories --run {} --out run-{}.csv", dir, id, id));
 }

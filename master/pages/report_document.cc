@@ -71,7 +71,8 @@ void AddAnnotations(const analysis::RunFigure& figure, Json& json) {
       const Json place = {{"mark", analysis::ClassOf(style.mark)},
                           {"x", Short(at.x())},
                           {"y", Short(at.y())},
-                          {"r", Short(one.radius)}};
+                          {"r", Short(one.radius)},
+                          {"label", one.label}};
       switch (style.mark) {
         case sim::Mark::kGoal:
         case sim::Mark::kNest:

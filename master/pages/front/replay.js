@@ -77,9 +77,14 @@ class Replay {
     for (const line of run.lines)
       draw(up, 'polyline', {points: pointsOf(line.points), fill: 'none', stroke: kColors[line.mark] ?? kColors.plan,
                             'stroke-width': 0.015, 'stroke-dasharray': '0.08 0.06'});
-    for (const at of run.places)
-      draw(up, 'circle', {cx: at.x, cy: at.y, r: Math.max(at.r, 0.05), fill: kColors[at.mark], 'fill-opacity': 0.35,
+    for (const at of run.places) {
+      const radius = Math.max(at.r, 0.05);
+      draw(up, 'circle', {cx: at.x, cy: at.y, r: radius, fill: kColors[at.mark], 'fill-opacity': 0.35,
                           stroke: kColors[at.mark], 'stroke-width': 0.02});
+      const label = draw(svg, 'text', {x: at.x, y: 0.2 - at.y + radius, 'text-anchor': 'middle', 'font-size': 0.17,
+                                       fill: '#55606d'});
+      label.textContent = at.label;
+    }
     this.moments = run.moments.map((moment) => ({
       time: moment.time,
       mark: draw(up, 'circle', {cx: moment.x, cy: moment.y, r: Math.max(moment.r, 0.12), fill: 'none',
