@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "base/result.h"
 #include "controllers/common/odometer.h"
@@ -109,6 +110,14 @@ struct FailurePlace {
   double same_within = 0.0;  // m: failures that are no farther apart are the same one
 };
 
+// A way in which failed runs differ that repeats when their cases are simulated again. A failed run is of the
+// first of the scenario's kinds whose metric is at most `at_most`.
+struct FailureKind {
+  std::string_view metric;
+  double at_most = 0.0;
+  std::string_view what;  // in words: "no item was taken"
+};
+
 struct ScenarioInfo {
   std::string_view name;
   std::string_view description;
@@ -124,6 +133,12 @@ struct ScenarioInfo {
   // "total_failure" or a yes/no metric.
   std::string_view failing = "total_failure";
   std::optional<FailurePlace> failure_place = {};  // nothing: its failures have no place that repeats
+  // Points that the swarm has to pass in this test case, m. At which of them it fails repeats better than
+  // where exactly. May be empty, and may give none.
+  std::function<std::vector<sim::Vec2>(const sim::Parameters& parameters, const sim::TestCase& test_case)>
+      passages = nullptr;
+  std::span<const FailureKind> failure_kinds = {};
+  std::string_view failure_note = "";  // what was measured about total failures and their types
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   std::function<sim::ArenaRequirements(const sim::Parameters& parameters, const sim::TestCase& test_case)>
       requirements = nullptr;

@@ -144,6 +144,13 @@ const ScenarioInfo& FlockingScenarioInfo() {
                            .rows = "their speeds"},
           .untyped_failure = "without a split",
           .failure_place = FailurePlace{"split_x", "split_y", 1.2},  // chosen: a fifth of the arena's side
+          .passages =
+              [](const sim::Parameters& parameters, const sim::TestCase& test_case) {
+                return FlockingParameters().Read(parameters).Passages(test_case);
+              },
+          .failure_note = "types do not tell failures apart: two failed runs of one case have the same type "
+                          "in 15 % of all "
+                          "pairs, of two cases in 11 %; where they fail does, in 93 % and 10 %",
       });
   return info;
 }

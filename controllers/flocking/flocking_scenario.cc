@@ -29,6 +29,13 @@ sim::Vec2 MeanPosition(const sim::Observer& observer, const std::vector<sim::Rob
 
 }  // namespace
 
+std::vector<sim::Vec2> FlockingSettings::Passages(const sim::TestCase& test_case) const {
+  const sim::Vec2 start = Requirements(test_case).start;
+  std::vector<sim::Vec2> path = PlanPreyPath(sim::Arena(test_case), start, -start, prey.inflation);
+  if (path.size() <= 2) return path;
+  return {path.begin() + 1, path.end() - 1};
+}
+
 FlockingScenario::FlockingScenario(const sim::TestCase& test_case, const FlockingSettings& settings,
                                    ControllerFactory birds, std::uint64_t seed)
     : arena_(test_case),

@@ -22,6 +22,10 @@ struct FlockingSettings : CornerToCorner {
   double goal_radius = 0.0;  // m
   PreySettings prey;
   SplitRule split;
+
+  // Where the prey turns on its way, and with it the flock: the corners of its planned path; its start and
+  // its goal when it goes straight on.
+  std::vector<sim::Vec2> Passages(const sim::TestCase& test_case) const;
 };
 
 // The lights that robots carry: what a bird's camera tells it.

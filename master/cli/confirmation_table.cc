@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/printable.h"
+#include "base/shell_quoted.h"
 #include "master/cli/table.h"
 
 namespace gauntlet::master {
@@ -37,6 +38,45 @@ nlohmann::ordered_json ConfirmationsJson(const std::vector<Confirmation>& confir
                     {"interval", {one.interval.low, one.interval.high}},
                     {"verdict", NameOf(one.verdict)}});
     if (!one.message.empty()) list.back()["message"] = one.message;
+  }
+  return list;
+}
+
+std::string DistinctFailuresText(const std::vector<Confirmation>& confirmations, const std::string& program,
+                                 std::size_t most) {
+  if (confirmations.empty()) return {};
+  const std::vector<DistinctFailure> failures = DistinctFailures(confirmations);
+  const auto confirmed = std::ranges::count(failures, true, &DistinctFailure::confirmed);
+  std::string text =
+      fmt::format("\n{} distinct failure{} ({} confirmed) in {} cases with fresh seeds\n", failures.size(),
+                  failures.size() == 1 ? "" : "s", confirmed, confirmations.size());
+  Table table({">", "toughest", ">fails", ">cases", "what happens", "to see it"});
+  for (std::size_t i = 0; i < std::min(most, failures.size()); ++i) {
+    const Confirmation& toughest = *failures[i].cases.front();
+    table.AddRow({fmt::format("{}", i + 1), Printable(toughest.name),
+                  fmt::format("{} of {}", toughest.tally.failures, toughest.tally.runs()),
+                  fmt::format("{}", failures[i].cases.size()), failures[i].what,
+                  fmt::format("{} replay {} {} --svg failure-{}.svg", program,
+                              PastedPath(toughest.example->campaign), toughest.example->run, i + 1)});
+  }
+  text += table.ToText();
+  if (failures.size() > most) text += fmt::format("  and {} more; see show --json\n", failures.size() - most);
+  return text;
+}
+
+nlohmann::ordered_json DistinctFailuresJson(const std::vector<Confirmation>& confirmations) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const DistinctFailure& failure : DistinctFailures(confirmations)) {
+    nlohmann::ordered_json cases = nlohmann::ordered_json::array();
+    for (const Confirmation* one : failure.cases) cases.push_back(one->name);
+    const Confirmation& toughest = *failure.cases.front();
+    list.push_back({{"what", failure.what},
+                    {"confirmed", failure.confirmed},
+                    {"k", toughest.tally.failures},
+                    {"n", toughest.tally.runs()},
+                    {"interval", {toughest.interval.low, toughest.interval.high}},
+                    {"cases", std::move(cases)},
+                    {"example", {{"campaign", toughest.example->campaign}, {"run", toughest.example->run}}}});
   }
   return list;
 }

@@ -16,4 +16,11 @@ std::string ConfirmationsText(const std::vector<Confirmation>& confirmations, st
 // [{run, case, k, n, interval: [lo, hi], verdict, message}]; run is null for a case from a file.
 nlohmann::ordered_json ConfirmationsJson(const std::vector<Confirmation>& confirmations);
 
+// "8 distinct failures (7 confirmed) ..." and a line for each of the `most` toughest, with a command that
+// shows it. "" when there is nothing to tell.
+std::string DistinctFailuresText(const std::vector<Confirmation>& confirmations, const std::string& program,
+                                 std::size_t most = 20);
+// A list of {what, confirmed, k, n, interval, cases: [...], example: {campaign, run}}, in the same order.
+nlohmann::ordered_json DistinctFailuresJson(const std::vector<Confirmation>& confirmations);
+
 }  // namespace gauntlet::master

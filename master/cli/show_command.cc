@@ -66,6 +66,11 @@ void AddShow(CommandParser& parser) {
       R"(Sums up what is stored: runs, fitness by generation, total failures, the toughest cases with a run to
 replay, and the state hash, which is equal for equal outcomes.
 
+After 'gauntlet confirm DIR --all-failing' it also says how many different failures the cases are, a line for
+each with a command that shows it. Two cases are the same failure when most of their runs with fresh seeds fail
+at the same place (flocking: the corner of the prey's way nearest to the last split; task-partitioning: where
+the robots are), or, in foraging, in the same way (with or without a path of beacons).
+
 Examples:
   gauntlet show campaigns/flocking-20260131T120000Z
   gauntlet show DIR --json | jq '.population[0].genome'

@@ -136,6 +136,7 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
           {"mean_fitness", FitnessJson(summary.mean_fitness)},
           {"worst_fitness", FitnessJson(summary.worst_fitness)},
           {"total_failures", summary.total_failures},
+          {"failing_runs", summary.failing.empty() ? summary.total_failures : summary.failing_runs},
           {"failure_types", std::move(failure_types)},
           {"unclassified_failures", summary.untyped_failures},
           {"statistics", FiguresJson(summary.statistics)},
@@ -171,6 +172,7 @@ Json Sweep(const CampaignSummary& summary, const std::string& directory) {
 std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
   Json json = summary.searches.empty() ? OneSearch(summary, directory) : Sweep(summary, directory);
   json["confirmed"] = ConfirmationsJson(summary.confirmations);
+  json["distinct_failures"] = DistinctFailuresJson(summary.confirmations);
   return JsonText(json);
 }
 

@@ -18,6 +18,14 @@ namespace {
 
 constexpr std::size_t kMostGenerations = 12;  // rows of the table
 constexpr std::size_t kMostMembers = 10;
+constexpr std::size_t kNoteWidth = 100;
+
+// "12 of 60 runs (20.0 %)"
+std::string RunsText(std::uint64_t counted, std::uint64_t runs) {
+  const double share = static_cast<double>(counted) / static_cast<double>(runs);
+  return fmt::format("{} of {} runs ({})", FormatCount(counted), FormatCount(runs),
+                     std::isnan(share) ? "-" : fmt::format("{:.1f} %", 100.0 * share));
+}
 
 std::string Overview(const CampaignSummary& summary) {
   const SearchRow* search = FindSearch(summary.search);
@@ -38,11 +46,11 @@ std::string Overview(const CampaignSummary& summary) {
        fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
                    FormatFitness(summary.best_fitness), FormatFitness(summary.mean_fitness),
                    FormatFitness(summary.worst_fitness), search == nullptr ? "cases" : search->members)});
-  const double share = static_cast<double>(summary.total_failures) / static_cast<double>(summary.runs_done);
-  table.AddRow(
-      {"total failures",
-       fmt::format("{} of {} runs ({})", FormatCount(summary.total_failures), FormatCount(summary.runs_done),
-                   std::isnan(share) ? "-" : fmt::format("{:.1f} %", 100.0 * share))});
+  if (!summary.failing.empty()) {
+    table.AddRow({"failing",
+                  fmt::format("{}: {}", RunsText(summary.failing_runs, summary.runs_done), summary.failing)});
+  }
+  table.AddRow({"total failures", RunsText(summary.total_failures, summary.runs_done)});
   if (summary.total_failures > 0 && !summary.failure_types.empty()) {
     const auto seen =
         std::ranges::count_if(summary.failure_types, [](const auto& one) { return one.runs > 0; });
@@ -70,7 +78,9 @@ std::string FailuresByType(const CampaignSummary& summary) {
   if (summary.untyped_failures > 0) {
     table.AddRow({FormatCount(summary.untyped_failures), "-", summary.untyped});
   }
-  return "\n" + table.ToText();
+  const std::string note =
+      summary.failure_note.empty() ? "" : fmt::format("  {}\n", Wrapped(summary.failure_note, kNoteWidth, 2));
+  return "\n" + table.ToText() + note;
 }
 
 // "6 of 8 refused: no-room-to-spawn: ...", the most frequent first.
@@ -136,20 +146,14 @@ std::string Members(const CampaignSummary& summary) {
   return text + table.ToText();
 }
 
-// Cases that were simulated with fresh seeds.
-std::string Confirmed(const CampaignSummary& summary) {
-  if (summary.confirmations.empty()) return {};
-  return "\nCases simulated again with fresh seeds\n" +
-         ConfirmationsText(summary.confirmations, kMostMembers);
-}
-
-// What to type next; `first`: a row with what is most worth it, or an empty one.
-std::string Hints(const HintContext& context, bool finished, const std::vector<std::string>& first) {
+// What to type next; `first`: rows with what is most worth it.
+std::string Hints(const HintContext& context, bool finished,
+                  const std::vector<std::vector<std::string>>& first) {
   const std::string directory = PastedPath(context.directory);
   Table table({"", ""});
   if (!finished)
     table.AddRow({fmt::format("{} resume {}", context.program, directory), "# go on where it stopped"});
-  table.AddRow(first);
+  for (const std::vector<std::string>& row : first) table.AddRow(row);
   table.AddRow({fmt::format("{} show {} --json", context.program, directory), "# everything, for scripts"});
   return "\nNext commands to try\n" + table.ToText();
 }
@@ -193,11 +197,11 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
                   one.state_hash.substr(0, kShownDigits)});
   }
   const std::string directory = PastedPath(context.directory);
-  return text + table.ToText() + Confirmed(summary) +
+  return text + table.ToText() + DistinctFailuresText(summary.confirmations, context.program) +
          Hints(context, summary.finished,
-               {fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,
-                            summary.searches.size()),
-                "# is one search's population tougher than another's?"});
+               {{fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,
+                             summary.searches.size()),
+                 "# is one search's population tougher than another's?"}});
 }
 
 }  // namespace
@@ -215,15 +219,22 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
                         FormatCount(summary.runs_done));
   }
   text += Overview(summary) + FailuresByType(summary) + RunsWithoutAResult(summary, context.directory) +
-          Generations(summary) + Members(summary) + Confirmed(summary);
+          Generations(summary) + Members(summary) +
+          DistinctFailuresText(summary.confirmations, context.program);
 
-  std::vector<std::string> replay;
+  std::vector<std::vector<std::string>> first;
   if (const auto members = Toughest(summary); !members.empty()) {
     const PopulationMember& best = *members.front();
-    replay = {ReplayHint(context, best.runs.back(), "case", best.id),
-              "# see what happened in the toughest case"};
+    first.push_back(
+        {ReplayHint(context, best.runs.back(), "case", best.id), "# see what happened in the toughest case"});
   }
-  return text + Hints(context, summary.finished, replay);
+  const std::uint64_t failing = summary.failing.empty() ? summary.total_failures : summary.failing_runs;
+  if (failing > 0 && summary.confirmations.empty()) {
+    first.push_back(
+        {fmt::format("{} confirm {} --all-failing", context.program, PastedPath(context.directory)),
+         "# how many different failures are these?"});
+  }
+  return text + Hints(context, summary.finished, first);
 }
 
 std::optional<double> MeanFitness(const EvaluatedCase& evaluated) {
@@ -269,9 +280,9 @@ std::string EvaluationText(const std::vector<EvaluatedCase>& cases, const HintCo
                   FormatCount(failures), fmt::format("{}", evaluated.runs.front().id), remark});
   }
   if (toughest == nullptr) return table.ToText();
-  return table.ToText() +
-         Hints(context, /*finished=*/true,
-               {ReplayHint(context, toughest->id, "run", toughest->id), "# see the toughest of these runs"});
+  return table.ToText() + Hints(context, /*finished=*/true,
+                                {{ReplayHint(context, toughest->id, "run", toughest->id),
+                                  "# see the toughest of these runs"}});
 }
 
 }  // namespace gauntlet::master

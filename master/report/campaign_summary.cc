@@ -5,12 +5,14 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "controllers/registry.h"
 #include "master/report/campaign_status.h"
 #include "master/report/state_digest.h"
 #include "master/report/stored_search.h"
 #include "master/report/verdict_text.h"
+#include "master/search/failure_tally.h"
 #include "master/search/population_search.h"
 #include "master/store/event_kinds.h"
 #include "sim/arena/genome.h"
@@ -20,6 +22,18 @@ namespace gauntlet::master {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// What its scenario declares of failures.
+void TakeFromScenario(const std::string& name, CampaignSummary& summary) {
+  if (const auto* scenario = controllers::FindScenario(name)) {
+    for (const controllers::FailureType& one : scenario->failure_types)
+      summary.failure_types.push_back({one.type, one.name});
+    summary.untyped = scenario->untyped_failure;
+    summary.failure_note = scenario->failure_note;
+    if (FailingNeedsMetrics(scenario->failing))
+      summary.failing = controllers::FindMetric(*scenario, scenario->failing)->description;
+  }
+}
 
 void AddToGeneration(const StoredRun& run, std::map<std::uint32_t, GenerationSummary>& generations) {
   GenerationSummary& generation = generations[run.generation];
@@ -40,6 +54,14 @@ void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
   ++summary.total_failures;
   const auto counted = std::ranges::find(summary.failure_types, run.failure_type, &FailureCount::type);
   ++(counted != summary.failure_types.end() ? counted->runs : summary.untyped_failures);
+}
+
+Result<bool> IsFailing(const StoredRun& run, const Experiment& experiment) {
+  const Result<RunOutcome> outcome = OutcomeOf(run, /*with_metrics=*/true);
+  if (!outcome) return outcome.error();
+  FailureTally tally;
+  tally.Add(*outcome, FailingOf(experiment.scenario));
+  return tally.failures > 0;
 }
 
 void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
@@ -133,11 +155,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.experiment = experiment.name;
   summary.search = experiment.search.algorithm;
   summary.seed = experiment.seed;
-  if (const auto* scenario = controllers::FindScenario(experiment.scenario)) {
-    for (const controllers::FailureType& one : scenario->failure_types)
-      summary.failure_types.push_back({one.type, one.name});
-    summary.untyped = scenario->untyped_failure;
-  }
+  TakeFromScenario(experiment.scenario, summary);
 
   const Result<SavedProgress> saved = RestoreSearch(search_id, store, search);
   if (!saved) return saved.error();
@@ -149,14 +167,24 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
 
   std::map<IndividualId, std::vector<RunId>> runs_of;
   std::map<std::uint32_t, GenerationSummary> generations;
-  Status read = store.ForEachRow(search_id, 0, [&](const StoredRun& run) {
+  std::optional<Error> damage;
+  const auto take = [&](const StoredRun& run) {
     ++summary.runs_done;
     runs_of[run.individual].push_back(run.id);
     AddToFailures(run, summary);
     AddToRunsWithoutResult(run, summary.runs_without_result);
     AddToGeneration(run, generations);
-  });
+    if (summary.failing.empty()) return;
+    const Result<bool> failing = IsFailing(run, experiment);
+    if (!failing)
+      damage = failing.error();
+    else if (*failing)
+      ++summary.failing_runs;
+  };
+  const Status read =
+      summary.failing.empty() ? store.ForEachRow(search_id, 0, take) : store.ForEachRun(search_id, 0, take);
   if (!read) return read.error();
+  if (damage) return *damage;
   std::ranges::stable_sort(summary.runs_without_result, std::greater(), &RunsWithoutResult::runs);
   for (const auto& [number, generation] : generations) summary.generations.push_back(generation);
 

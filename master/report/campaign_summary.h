@@ -64,6 +64,11 @@ struct CampaignSummary {
   double mean_fitness = 0.0;
   double worst_fitness = 0.0;
   std::uint64_t total_failures = 0;
+  // Where a case breaks the swarm by another condition than a total failure (ScenarioInfo::failing): which,
+  // in words, and how many runs hold it. "" = by a total failure.
+  std::string failing;
+  std::uint64_t failing_runs = 0;
+  std::string failure_note;                                // ScenarioInfo::failure_note
   std::vector<FailureCount> failure_types;                 // every one that the scenario declares
   std::uint64_t untyped_failures = 0;                      // total failures of none of these types
   std::string untyped;                                     // what they are, in words: "without a split"

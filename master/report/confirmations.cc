@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "controllers/registry.h"
 #include "master/directory/campaign_ownership.h"
 #include "master/report/answered_calls.h"
 #include "master/report/stored_check.h"
@@ -19,40 +21,79 @@ namespace fs = std::filesystem;
 
 constexpr const char* kFolder = "/confirm";
 
+// What the runs of one case tell.
+class CaseRuns {
+ public:
+  CaseRuns(const Experiment& experiment, const sim::TestCase& test_case)
+      : failing_(FailingOf(experiment.scenario)) {
+    if (const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario))
+      ways_of_.emplace(*scenario, experiment.scenario_parameters, test_case);
+  }
+
+  // Error: the run does not read back.
+  Status Add(const StoredRun& run) {
+    const Result<RunOutcome> outcome = OutcomeOf(run, /*with_metrics=*/true);
+    if (!outcome) return outcome.error();
+    const int failures = tally_.failures;
+    tally_.Add(*outcome, failing_);
+    if (message_.empty()) message_ = run.message;
+    if (tally_.failures == failures || !ways_of_) return Ok{};
+    ways_.push_back(ways_of_->Of(outcome->metrics));
+    failed_.push_back(run.id);
+    return Ok{};
+  }
+
+  Confirmation Conclude(const Experiment& experiment, const sim::TestCase& test_case,
+                        const std::string& campaign) const {
+    Confirmation one{.name = test_case.name,
+                     .run = RunOfName(test_case.name),
+                     .key = ConfirmationKey(experiment, test_case),
+                     .tally = tally_,
+                     .verdict = VerdictOf(tally_, ConfirmationReplicates(experiment)),
+                     .interval = FailureInterval(tally_),
+                     .message = message_,
+                     .example = {}};
+    if (!ways_.empty()) {
+      const std::size_t typical = TypicalWay(ways_);
+      one.example = {experiment.scenario, ways_[typical], campaign, failed_[typical]};
+    }
+    return one;
+  }
+
+ private:
+  const std::string_view failing_;
+  std::optional<FailureWays> ways_of_;
+  FailureTally tally_;
+  std::string message_;
+  std::vector<FailureWay> ways_;  // of the failed runs
+  std::vector<RunId> failed_;
+};
+
 // The confirmations of one search. Error: what is stored does not read back.
-Status AddConfirmations(const Experiment& experiment, SearchId search, ResultStore& store,
-                        std::map<std::uint64_t, Confirmation>& known) {
+Status AddConfirmations(const Experiment& experiment, SearchId search, const std::string& campaign,
+                        ResultStore& store, std::map<std::uint64_t, Confirmation>& known) {
   const Result<std::vector<Individual>> cases = store.LoadIndividuals(search);
   if (!cases) return cases.error();
-  std::vector<Confirmation> found(cases->size());
-  const std::string_view failing = FailingOf(experiment.scenario);
-  const bool with_metrics = FailingNeedsMetrics(failing);
-  std::optional<Error> damage;
-  const auto take = [&](const StoredRun& run) {
-    const Result<RunOutcome> outcome = OutcomeOf(run, with_metrics);
-    if (damage || !outcome || run.individual < 1 || run.individual > found.size()) {
-      if (!outcome) damage = outcome.error();
-      return;
-    }
-    Confirmation& one = found[run.individual - 1];
-    one.tally.Add(*outcome, failing);
-    if (one.message.empty()) one.message = run.message;
-  };
-  Status read = with_metrics ? store.ForEachRun(search, 0, take) : store.ForEachRow(search, 0, take);
+  std::vector<CaseRuns> runs_of;
+  for (const Individual& one : *cases) runs_of.emplace_back(experiment, one.test_case);
+  Status whole = Ok{};
+  Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
+    if (whole && run.individual >= 1 && run.individual <= runs_of.size())
+      whole = runs_of[run.individual - 1].Add(run);
+  });
   if (!read) return read;
-  if (damage) return *damage;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    Confirmation& one = found[i];
-    one.verdict = VerdictOf(one.tally, ConfirmationReplicates(experiment));
+  if (!whole) return whole;
+  for (std::size_t i = 0; i < runs_of.size(); ++i) {
+    Confirmation one = runs_of[i].Conclude(experiment, (*cases)[i].test_case, campaign);
     if (one.verdict == FailureVerdict::kOpen) continue;
-    one.name = (*cases)[i].test_case.name;
-    one.run = RunOfName(one.name);
-    one.key = ConfirmationKey(experiment, (*cases)[i].test_case);
-    one.interval = FailureInterval(one.tally);
     Confirmation& best = known[one.key];
     if (best.key == 0 || one.tally.runs() > best.tally.runs()) best = std::move(one);
   }
   return Ok{};
+}
+
+double ShareOfFailures(const Confirmation& one) {
+  return static_cast<double>(one.tally.failures) / static_cast<double>(one.tally.runs());
 }
 
 Status AddConfirmationsOf(const std::string& dir, std::map<std::uint64_t, Confirmation>& known) {
@@ -67,7 +108,7 @@ Status AddConfirmationsOf(const std::string& dir, std::map<std::uint64_t, Confir
   if (Status whole = CheckStored(*plans, *campaign->store, Checked::kRows); !whole) return whole;
   for (std::size_t i = 0; i < plans->size(); ++i) {
     Status added =
-        AddConfirmations((*plans)[i].experiment, static_cast<SearchId>(i + 1), *campaign->store, known);
+        AddConfirmations((*plans)[i].experiment, static_cast<SearchId>(i + 1), dir, *campaign->store, known);
     if (!added) return added;
   }
   return Ok{};
@@ -96,6 +137,33 @@ Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
     return std::pair(a.run, a.name) < std::pair(b.run, b.name);
   });
   return confirmations;
+}
+
+std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations) {
+  std::map<std::string, std::vector<const Confirmation*>> failed;  // by scenario
+  for (const Confirmation& one : confirmations) {
+    if (one.example) failed[one.example->scenario].push_back(&one);
+  }
+  std::vector<DistinctFailure> distinct;
+  for (auto& [name, cases] : failed) {
+    const controllers::ScenarioInfo* scenario = controllers::FindScenario(name);
+    if (scenario == nullptr) continue;
+    std::ranges::stable_sort(cases, std::greater(), [](const auto* one) { return ShareOfFailures(*one); });
+    std::vector<FailureWay> ways;
+    for (const Confirmation* one : cases) ways.push_back(one->example->way);
+    const std::vector<std::size_t> groups = GroupWays(*scenario, ways);
+    const std::size_t first = distinct.size();
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      if (first + groups[i] == distinct.size()) distinct.push_back({{}, DescribeWay(*scenario, ways[i])});
+      DistinctFailure& failure = distinct[first + groups[i]];
+      failure.cases.push_back(cases[i]);
+      failure.confirmed = failure.confirmed || cases[i]->verdict == FailureVerdict::kFail;
+    }
+  }
+  std::ranges::stable_sort(distinct, std::greater(), [](const DistinctFailure& one) {
+    return std::pair(ShareOfFailures(*one.cases.front()), one.cases.size());
+  });
+  return distinct;
 }
 
 CallPlan PlanConfirmation(const std::string& dir, const QuestionedCampaign& questioned,

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/statistics/interval.h"
 #include "base/result.h"
+#include "master/report/failure_groups.h"
 #include "master/report/questioned_cases.h"
 #include "master/search/failure_tally.h"
 
@@ -20,12 +22,29 @@ struct Confirmation {
   FailureVerdict verdict = FailureVerdict::kOpen;
   analysis::Interval interval;  // of the probability to fail (Wilson, 95 %)
   std::string message;          // of the first run that ended without a result; "" = none did
+  // How most of its failed runs failed, and the one that shows it best. Nothing when none failed.
+  struct Example {
+    std::string scenario;
+    FailureWay way;
+    std::string campaign;  // its directory
+    RunId run = 0;
+  };
+  std::optional<Example> example;
 };
 // The same for the same case under the same experiment, whatever it is called.
 std::uint64_t ConfirmationKey(const Experiment& experiment, const sim::TestCase& test_case);
 // What the campaign in `dir` knows, each case once, also while it is being found out; open ones are left
 // out. Of a case that was confirmed twice, what stands on more runs.
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir);
+
+// Cases that failed with fresh seeds and are one and the same failure.
+struct DistinctFailure {
+  std::vector<const Confirmation*> cases;  // the toughest first: by the share of runs that failed
+  std::string what;                        // of the toughest one, in words
+  bool confirmed = false;                  // at least one of the cases
+};
+// The toughest first, of equally tough ones that with most cases. `confirmations` must outlive them.
+std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations);
 
 // A campaign that finds out how often cases fail. `known` with fewer runs than `replicates` are simulated
 // anew; 0 = until there is a verdict.

@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,24 @@ TEST(ConfirmTest, TheSameForAnyNumberOfWorkersAndTheCampaignStaysAsItWas) {
   EXPECT_EQ(after["state_hash"], before["state_hash"]);
   EXPECT_EQ(after["runs_done"], before["runs_done"]);
   EXPECT_EQ(after["confirmed"], one["cases"]);
+
+  std::size_t failed_again = 0;
+  for (const nlohmann::json& each : one["cases"]) failed_again += each["k"] > 0 ? 1 : 0;
+  std::set<std::string> grouped;
+  double toughest = 1.0;
+  for (const nlohmann::json& failure : after["distinct_failures"]) {
+    for (const nlohmann::json& name : failure["cases"]) grouped.insert(name);
+    const double share = failure["k"].get<double>() / failure["n"].get<double>();
+    EXPECT_LE(share, toughest) << "toughest first";
+    toughest = share;
+    EXPECT_THAT(failure["what"].get<std::string>(), HasSubstr("near ("));
+    const nlohmann::json replay =
+        Json({"replay", failure["example"]["campaign"], failure["example"]["run"].dump(), "--json"});
+    EXPECT_EQ(replay["total_failure"], true);
+  }
+  EXPECT_EQ(grouped.size(), failed_again) << "each case that failed again is of one group";
+  EXPECT_THAT(Gauntlet({"show", scratch / "a"}).out,
+              HasSubstr(std::to_string(after["distinct_failures"].size()) + " distinct failure"));
 }
 
 TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
