@@ -50,6 +50,32 @@ TEST(KaplanMeierTest, AgreesWithRsExample) {
   EXPECT_EQ(other.steps.back().survival, 0.0);
 }
 
+// Ties of both kinds, in full: survfit of the R package survival 3.5-3, R 4.2.2.
+TEST(KaplanMeierTest, AgreesWithRToTheLastDigitsWithTies) {
+  const std::vector<Duration> runs = {
+      {12}, {30}, {30},           {45, kCutOff},  {60},           {60},          {60, kCutOff},
+      {75}, {90}, {120, kCutOff}, {120, kCutOff}, {120, kCutOff}, {120, kCutOff}};
+  const std::vector<SurvivalStep> expected = {
+      {12, 13, 1, 0.92307692307692313, {0.78901857586524304, 1.0}},
+      {30, 12, 2, 0.76923076923076927, {0.57114956567098019, 1.0}},
+      {60, 9, 2, 0.59829059829059839, {0.37810226281637677, 0.94670589204264921}},
+      {75, 6, 1, 0.49857549857549865, {0.27861187385558550, 0.89220004998298685}},
+      {90, 5, 1, 0.39886039886039892, {0.19250170250516352, 0.82643226376041656}}};
+  const SurvivalCurve curve = KaplanMeier(runs, 0.95);
+  ASSERT_EQ(curve.steps.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(curve.steps[i].time, expected[i].time);
+    EXPECT_EQ(curve.steps[i].at_risk, expected[i].at_risk);
+    EXPECT_EQ(curve.steps[i].happened, expected[i].happened);
+    EXPECT_NEAR(curve.steps[i].survival, expected[i].survival, 1e-12);
+    EXPECT_NEAR(curve.steps[i].interval.low, expected[i].interval.low, 1e-12);
+    EXPECT_NEAR(curve.steps[i].interval.high, expected[i].interval.high, 1e-12);
+  }
+  EXPECT_EQ(curve.median, 75);
+  EXPECT_EQ(curve.median_low, 60);
+  EXPECT_EQ(curve.median_high, std::nullopt);
+}
+
 TEST(KaplanMeierTest, WithoutCutTimesTheMedianIsThatOfTheValues) {
   EXPECT_EQ(KaplanMeier(std::vector<Duration>{{3}, {1}, {2}}, 0.95).median, 2);
   EXPECT_EQ(KaplanMeier(std::vector<Duration>{{3}, {1}, {2}, {6}}, 0.95).median, 2.5);
