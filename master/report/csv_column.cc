@@ -73,7 +73,7 @@ Result<std::vector<std::vector<std::string>>> ReadCsvCells(std::string_view text
   return rows;
 }
 
-Result<std::vector<double>> ReadCsvColumn(const std::string& path, const std::string& column) {
+Result<CsvColumn> ReadCsvColumn(const std::string& path, const std::string& column) {
   const Result<std::string> text = ReadRegularFile(path, kLargestFile);
   if (!text) return text.error();
   const Result<std::vector<Line>> lines = LinesOf(*text, path);
@@ -85,17 +85,21 @@ Result<std::vector<double>> ReadCsvColumn(const std::string& path, const std::st
     return InvalidInput(fmt::format("{}: {}", path, UnknownName("column", Printable(column), columns)));
   }
   const auto wanted = static_cast<std::size_t>(found - lines->front().cells.begin());
-  std::vector<double> values;
+  CsvColumn read;
   for (std::size_t i = 1; i < lines->size(); ++i) {
     const Line& line = (*lines)[i];
+    if (line.cells[wanted].empty()) {
+      ++read.empty_cells;
+      continue;
+    }
     const auto value = ParseNumber<double>(line.cells[wanted]);
     if (!value || !std::isfinite(*value)) {
       return InvalidInput(fmt::format("{}:{}: {} is '{}', not a finite number", path, line.number, column,
                                       Printable(line.cells[wanted])));
     }
-    values.push_back(*value);
+    read.values.push_back(*value);
   }
-  return values;
+  return read;
 }
 
 }  // namespace gauntlet::master

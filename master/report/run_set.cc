@@ -50,9 +50,14 @@ Status AddCampaign(const SetPart& part, const std::string& metric, RunSet& set) 
 }
 
 Status AddCsv(const SetPart& part, const std::string& metric, RunSet& set) {
-  const Result<std::vector<double>> values = ReadCsvColumn(part.path, part.rest.empty() ? metric : part.rest);
-  if (!values) return values.error();
-  for (const double value : *values) set.values.clusters.push_back({value});
+  const std::string& name = part.rest.empty() ? metric : part.rest;
+  const Result<CsvColumn> column = ReadCsvColumn(part.path, name);
+  if (!column) return column.error();
+  if (column->empty_cells > 0) {
+    set.notes.push_back(fmt::format("{}: {} of {} rows are left out: their cell of {} is empty", part.path,
+                                    column->empty_cells, column->empty_cells + column->values.size(), name));
+  }
+  for (const double value : column->values) set.values.clusters.push_back({value});
   set.unit = set.unit.empty() || set.unit == "row" ? "row" : set.unit + " or row";
   return Ok{};
 }

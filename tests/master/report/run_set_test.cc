@@ -275,6 +275,13 @@ TEST(ReadRunSetTest, CsvColumnsAreSetsAndPathsMayHoldColonsAndCommas) {
   ASSERT_TRUE(set.ok()) << set.error().message;
   EXPECT_THAT(Flat(*set), ElementsAre(1, 3));
   EXPECT_EQ(set->unit, "row");
+  EXPECT_THAT(set->notes, testing::IsEmpty());
+  const std::string gaps = scratch / "gaps.csv";
+  std::ofstream(gaps) << "run,fitness\n1,7\n2,\n3,8\n";
+  const auto with_gaps = ReadRunSet(gaps, "fitness");
+  EXPECT_THAT(Flat(*with_gaps), ElementsAre(7, 8));
+  EXPECT_THAT(with_gaps->notes,
+              ElementsAre(gaps + ": 1 of 3 rows are left out: their cell of fitness is empty"));
   const std::string plain = scratch / "plain.csv";
   std::ofstream(plain) << "fitness\n5\n";
   EXPECT_THAT(Flat(*ReadRunSet(plain + "," + plain + ":fitness", "fitness")), ElementsAre(5, 5));
