@@ -176,8 +176,8 @@ std::string Drawing(const Outcome& outcome, const std::string& metric) {
   const analysis::Comparison& c = outcome.comparison;
   return analysis::DrawBoxes(
       {.title = fmt::format("{}: set 1 against set 2", metric),
-       .outcome =
-           fmt::format("A = {:.3f} ({}), two-sided p = {:.3g}", c.test.a, c.effect, c.test.p_two_sided),
+       .outcome = fmt::format("A = {:.3f} ({}), two-sided p = {:.3g} ({})", c.test.a, c.effect, c.p_two_sided,
+                              c.p_by),
        .axis_name = AxisName(outcome, metric),
        .boxes = {{"1: " + outcome.first.values.name, c.first_box, c.first.mean, c.first.n},
                  {"2: " + outcome.second.values.name, c.second_box, c.second.mean, c.second.n}}});
