@@ -175,8 +175,7 @@ Result<std::vector<std::string>> JoinSets(const std::vector<std::string>& sets,
     for (std::size_t j = 0; j < all.size(); ++j) {
       if (!all[j].starts_with(key + "=") || all[j] == one) continue;
       const std::string other =
-          j < sets.size() ? fmt::format("--set {}", all[j])
-                          : fmt::format("{} {}", extra[j - sets.size()].option, extra[j - sets.size()].value);
+          j < sets.size() ? fmt::format("--set {}", all[j]) : extra[j - sets.size()].AsTyped();
       return InvalidInput(fmt::format("{}: {} already says {}; give one of them", other, option, one));
     }
     all.push_back(one);
@@ -184,12 +183,16 @@ Result<std::vector<std::string>> JoinSets(const std::vector<std::string>& sets,
   return all;
 }
 
+std::string ExtraSet::AsTyped() const {
+  return option + (option.ends_with('=') ? "" : " ") + value;
+}
+
 // The person typed --generations 0, not --set search.generations=0.
 Error AsTyped(Error error, const std::vector<ExtraSet>& extra) {
-  for (const auto& [option, key, value] : extra) {
-    const std::string place = fmt::format("--set {}={}:", key, value);
+  for (const ExtraSet& set : extra) {
+    const std::string place = fmt::format("--set {}={}:", set.key, set.value);
     if (!error.message.starts_with(place)) continue;
-    error.message.replace(0, place.size(), fmt::format("{} {}:", option, value));
+    error.message.replace(0, place.size(), set.AsTyped() + ":");
     break;
   }
   return error;

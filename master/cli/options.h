@@ -100,9 +100,11 @@ Result<std::uint64_t> ParseRunId(const std::string& text);
 
 // A setting of the experiment that an option stands for.
 struct ExtraSet {
-  std::string option;  // "--cases", for messages
+  std::string option;  // "--cases", for messages; "--sweep KEY=" where the value stands right behind it
   std::string key;     // "search.cases"
   std::string value;
+
+  std::string AsTyped() const;  // "--cases 100"
 };
 // Those of --generations and --population that were given.
 std::vector<ExtraSet> SetsOf(const SizeOptions& options);

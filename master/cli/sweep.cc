@@ -99,7 +99,7 @@ std::vector<std::vector<ExtraSet>> Combinations(const std::vector<Sweep>& sweeps
     for (const std::vector<ExtraSet>& combination : combinations) {
       for (const std::string& value : sweep.values) {
         longer.push_back(combination);
-        longer.back().push_back({"--sweep " + sweep.key, sweep.key, value});
+        longer.back().push_back({fmt::format("--sweep {}=", sweep.key), sweep.key, value});
       }
     }
     combinations = std::move(longer);
