@@ -49,14 +49,28 @@ Status CheckOwned(const CampaignDirectory& directory, const std::optional<Opened
   return directory.RestoreEpoch(epoch);
 }
 
+struct Birth {
+  CampaignMeta meta;
+  std::function<Status(ResultStore&)> fill;  // nullptr: the store begins empty
+};
+
+Status FillDraft(const std::string& draft, const std::function<Status(ResultStore&)>& fill) {
+  const Result<std::unique_ptr<SqliteStore>> store = SqliteStore::Open(draft, {});
+  if (!store) return store.error();
+  if (Status filled = fill(**store); !filled) return filled;
+  return (*store)->Flush();
+}
+
 // Counts the epoch, makes the database of a campaign that begins (`born` says what it is), and opens it: in
 // this order, for from the epoch on no former master commits anything that we might not have read.
 Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<CampaignLock> lock,
-                              const CampaignMeta* born) {
+                              const Birth* born) {
   const Result<std::uint64_t> epoch = directory.StartEpoch();
   if (!epoch) return epoch.error();
   if (born != nullptr) {
-    if (Status made = CreateDatabase(directory.database_path(), *born); !made) return made.error();
+    std::function<Status(const std::string&)> fill;
+    if (born->fill) fill = [born](const std::string& draft) { return FillDraft(draft, born->fill); };
+    if (Status made = CreateDatabase(directory.database_path(), born->meta, fill); !made) return made.error();
   }
   // Of the files as they are once the store has them open.
   const auto identity = std::make_shared<std::optional<OpenedFiles>>();
@@ -108,7 +122,7 @@ Result<CampaignView> ViewSnapshot(const CampaignDirectory& directory, Checked wh
 }  // namespace
 
 Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignTexts& texts,
-                                         CampaignMeta meta) {
+                                         CampaignMeta meta, const std::function<Status(ResultStore&)>& fill) {
   Result<CampaignDirectory> directory = CampaignDirectory::Create(dir);
   if (!directory) return directory.error();
   Result<std::unique_ptr<CampaignLock>> lock =
@@ -126,7 +140,8 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
     if (text.empty()) continue;
     if (Status written = WriteFileAtomically(path, text, kReadableByAll); !written) return written.error();
   }
-  return Own(*std::move(directory), *std::move(lock), &meta);
+  const Birth birth{std::move(meta), fill};
+  return Own(*std::move(directory), *std::move(lock), &birth);
 }
 
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other,

@@ -37,11 +37,12 @@ struct CampaignTexts {
 };
 
 // Makes a campaign in `dir` and takes it. `meta.campaign_id` and
-// `meta.created_unix_ms` are filled in. A master that is killed in here leaves nothing that keeps the next
-// one from doing the same again. Errors: those of CampaignDirectory::Create and CampaignLock::Acquire;
-// kNoSpace, kIo.
+// `meta.created_unix_ms` are filled in. `fill` says what the store begins with: it is there as soon as the
+// campaign is. A master that is killed in here leaves nothing that keeps the next one from doing the same
+// again. Errors: those of CampaignDirectory::Create and CampaignLock::Acquire; kNoSpace, kIo.
 Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignTexts& texts,
-                                         CampaignMeta meta);
+                                         CampaignMeta meta,
+                                         const std::function<Status(ResultStore&)>& fill = nullptr);
 
 enum class LivingMaster {
   kRespect,  // kInUse

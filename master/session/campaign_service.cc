@@ -94,6 +94,19 @@ CampaignTexts TextsOf(const std::vector<SearchPlan>& plans, const std::string& v
           plans.size() > 1 ? WriteSearchPlans(plans) : ""};
 }
 
+// The searches, and the cases of those that are given some.
+Status AddPlans(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  if (Status added = AddSearches(plans, store); !added) return added;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    if (plans[i].cases.empty()) continue;
+    const Result<std::unique_ptr<SearchAlgorithm>> search =
+        MakeSearch(plans[i].experiment, kOnlySearch, plans[i].cases);
+    if (!search) return search.error();
+    store.AddIndividuals(static_cast<SearchId>(i + 1), (*search)->Population());
+  }
+  return Ok{};
+}
+
 Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
                            const std::string& slurm) {
   if (Status possible = CheckSearches(plans); !possible) return possible.error();
@@ -104,18 +117,9 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
   meta.golden_hashes = proto::WriteGoldenHashes(*golden_hashes);
   CampaignTexts texts = TextsOf(plans, meta.software_version, *golden_hashes);
   texts.slurm = slurm;
-  Result<CampaignOwnership> campaign = CreateCampaign(dir, texts, meta);
+  Result<CampaignOwnership> campaign =
+      CreateCampaign(dir, texts, meta, [&](ResultStore& store) { return AddPlans(plans, store); });
   if (!campaign) return campaign.error();
-  SqliteStore& store = *campaign->store;
-  if (Status added = AddSearches(plans, store); !added) return added.error();
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    if (plans[i].cases.empty()) continue;
-    const Result<std::unique_ptr<SearchAlgorithm>> search =
-        MakeSearch(plans[i].experiment, kOnlySearch, plans[i].cases);
-    if (!search) return search.error();
-    store.AddIndividuals(static_cast<SearchId>(i + 1), (*search)->Population());
-  }
-  if (Status flushed = store.Flush(); !flushed) return flushed.error();
   return NewCampaign{*std::move(campaign), *std::move(golden_hashes)};
 }
 

@@ -260,12 +260,19 @@ void RemoveDatabase(const std::string& path) {
 
 }  // namespace
 
-Status CreateDatabase(const std::string& path, const CampaignMeta& meta) {
+Status CreateDatabase(const std::string& path, const CampaignMeta& meta,
+                      const std::function<Status(const std::string& draft)>& fill) {
   if (access(path.c_str(), F_OK) == 0)
     return Error{ErrorKind::kInUse, fmt::format("{} exists already", path)};
   const std::string draft = path + ".new";
   RemoveDatabase(draft);  // of a master that was killed here
-  if (Status filled = FillDatabase(draft, meta); !filled) {
+  Status filled = FillDatabase(draft, meta);
+  if (filled && fill) filled = fill(draft);
+  // What is still in the log would be left behind.
+  struct stat log {};
+  if (filled && stat((draft + "-wal").c_str(), &log) == 0 && log.st_size > 0)
+    filled = Error{ErrorKind::kIo, fmt::format("{} could not be written as a whole", draft)};
+  if (!filled) {
     RemoveDatabase(draft);
     return filled;
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "base/result.h"
@@ -30,9 +31,10 @@ inline constexpr std::int64_t kStoreApplicationId = 0x474E544C;
 // Pages in the write-ahead log before they are moved into the database: 16 MB.
 inline constexpr int kCheckpointPages = 2048;
 
-// Makes a database with empty tables. It appears under its name at once and whole, or not at all. kInUse when
-// the file exists.
-Status CreateDatabase(const std::string& path, const CampaignMeta& meta);
+// Makes a database with empty tables, or with what `fill` puts into the one that it is handed the path of. It
+// appears under its name at once and whole, or not at all. kInUse when the file exists.
+Status CreateDatabase(const std::string& path, const CampaignMeta& meta,
+                      const std::function<Status(const std::string& draft)>& fill = nullptr);
 
 // Opens a database for reading and checks it: kNotFound, kVersion (both formats are named) or kCorrupt.
 // Neither the check nor the connection changes a byte of the campaign's directory. A write-ahead log left by

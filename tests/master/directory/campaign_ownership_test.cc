@@ -49,6 +49,41 @@ class CampaignOwnershipTest : public testing::Test {
   std::string dir_ = scratch_ / "campaign";
 };
 
+// What a campaign begins with, such as the cases of `evaluate`, is there when the campaign is, or neither is.
+TEST_F(CampaignOwnershipTest, AMasterKilledWhileItFillsTheStoreLeavesNoCampaign) {
+  const auto fill = [](ResultStore& store) -> Status {
+    store.AddEvent({1, "start", "filled"});
+    return Ok{};
+  };
+  const auto create = [&](const std::function<Status(ResultStore&)>& with) {
+    return CreateCampaign(dir_, {"seed = 1\n"}, {"", "0.1.0", "cafe", 0}, with);
+  };
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    (void)create([&](ResultStore& store) -> Status {
+      if (fill(store) && store.Flush()) kill(getpid(), SIGKILL);
+      return Ok{};
+    });
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_FALSE(std::filesystem::exists(dir_ + "/campaign.db"));
+  EXPECT_FALSE(TakeCampaign(dir_).ok());
+  {
+    const Result<CampaignOwnership> made = create(fill);
+    ASSERT_TRUE(made.ok()) << made.error().message;
+  }
+  const Result<CampaignView> view = ViewCampaign(dir_);
+  ASSERT_TRUE(view.ok()) << view.error().message;
+  const auto events = view->store->LoadEvents();
+  ASSERT_TRUE(events.ok());
+  ASSERT_EQ(events->size(), 1U);
+  EXPECT_EQ(events->front().text, "filled");
+}
+
 TEST_F(CampaignOwnershipTest, ACampaignIsMadeTakenAndViewed) {
   std::string id;
   {
