@@ -118,6 +118,15 @@ struct FailureKind {
   std::string_view what;  // in words: "no item was taken"
 };
 
+// The range of a metric, cut into equal parts; what lies outside belongs to the outermost ones. Several axes
+// make a grid whose cells tell failures apart.
+struct DescriptorAxis {
+  std::string_view metric;
+  double min = 0.0;
+  double max = 0.0;
+  int parts = 1;
+};
+
 struct ScenarioInfo {
   std::string_view name;
   std::string_view description;
@@ -139,6 +148,8 @@ struct ScenarioInfo {
       passages = nullptr;
   std::span<const FailureKind> failure_kinds = {};
   std::string_view failure_note = "";  // what was measured about total failures and their types
+  // Along which failures differ in a way that repeats when a case is simulated again.
+  std::span<const DescriptorAxis> axes = {};
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   std::function<sim::ArenaRequirements(const sim::Parameters& parameters, const sim::TestCase& test_case)>
       requirements = nullptr;

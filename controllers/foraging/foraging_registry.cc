@@ -38,6 +38,11 @@ constexpr std::array kFailureKinds = std::to_array<FailureKind>({
     {"condition_1", 1.0, "never a path of beacons"},
 });
 
+constexpr std::array kAxes = std::to_array<DescriptorAxis>({
+    {"mean_robots_beacon", 0.0, 10.0, 5},
+    {"spread_x", 0.5, 2.0, 5},
+});
+
 constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
     {"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
     {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
@@ -210,6 +215,7 @@ const ScenarioInfo& ForagingScenarioInfo() {
           .failure_note =
               "condition 1 alone says little: it holds in 30 % of runs in an empty arena, condition 2 in "
               "none of 200",
+          .axes = kAxes,
       });
   return info;
 }

@@ -39,6 +39,11 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
 });
 
+constexpr std::array kAxes = std::to_array<DescriptorAxis>({
+    {"median_x", -1.5, 1.5, 5},
+    {"median_y", -2.5, 2.5, 5},
+});
+
 constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
     {"transfer", "", sim::Mark::kTransfer, "transfer"},
     {"disc", "nest", sim::Mark::kNest, ""},
@@ -271,6 +276,7 @@ const ScenarioInfo& PartitioningScenarioInfo() {
           .metrics = kMetrics,
           .failure_types = PartitioningFailureTypes(),
           .failure_place = FailurePlace{"median_x", "median_y", 0.6},  // chosen: a tenth of the arena
+          .axes = kAxes,
       });
   return info;
 }

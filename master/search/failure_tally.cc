@@ -11,12 +11,6 @@ constexpr std::string_view kTotalFailure = "total_failure";
 constexpr int kEnoughFailures = 5;
 constexpr int kEnoughPasses = 6;
 
-bool Fails(const RunOutcome& run, std::string_view failing) {
-  if (!FailingNeedsMetrics(failing)) return run.total_failure;
-  const auto metric = std::ranges::find(run.metrics, failing, &std::pair<std::string, double>::first);
-  return metric != run.metrics.end() && metric->second == 1.0;
-}
-
 }  // namespace
 
 std::string_view FailingOf(const std::string& scenario) {
@@ -26,6 +20,13 @@ std::string_view FailingOf(const std::string& scenario) {
 
 bool FailingNeedsMetrics(std::string_view failing) {
   return failing != kTotalFailure;
+}
+
+bool Fails(const RunOutcome& run, std::string_view failing) {
+  if (run.verdict != sim::Verdict::kCompleted) return false;
+  if (!FailingNeedsMetrics(failing)) return run.total_failure;
+  const auto metric = std::ranges::find(run.metrics, failing, &std::pair<std::string, double>::first);
+  return metric != run.metrics.end() && metric->second == 1.0;
 }
 
 void FailureTally::Add(const RunOutcome& run, std::string_view failing) {

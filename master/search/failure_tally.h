@@ -12,6 +12,9 @@ std::string_view FailingOf(const std::string& scenario);
 // Whether deciding it needs the metrics of runs (RunOutcome::metrics).
 bool FailingNeedsMetrics(std::string_view failing);
 
+// Whether the run broke the swarm. `failing` as FailingOf gives it.
+bool Fails(const RunOutcome& run, std::string_view failing);
+
 // Runs of a case with fresh seeds.
 struct FailureTally {
   int failures = 0;

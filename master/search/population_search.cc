@@ -206,8 +206,7 @@ Result<std::vector<Individual>> PopulationSearch::RestoreIndividuals(std::uint64
   for (std::uint64_t i = 0; i < count && decoder.ok(); ++i) {
     Individual& individual = individuals.emplace_back(DecodeIndividual(decoder));
     sim::Genome& genome = individual.test_case.obstacles;
-    if (std::ssize(genome) != setup_.experiment.genome.genes || individual.id == 0 ||
-        individual.id >= below) {
+    if (std::ssize(genome) > setup_.experiment.genome.genes || individual.id == 0 || individual.id >= below) {
       return Damaged(fmt::format("individual {} does not fit", individual.id));
     }
     individual.test_case = generator_.WithObstacles(std::move(genome));

@@ -59,7 +59,7 @@ class PopulationSearch : public SearchAlgorithm {
   // Everything but the arena, which is the experiment's.
   static void SaveIndividuals(const std::vector<Individual>& individuals, CanonicalEncoder& encoder);
   // Error: they are not as many as `count`, or one of them does not fit: its number is not below `below`, or
-  // it has another number of genes than the experiment.
+  // it has more genes than the experiment.
   Result<std::vector<Individual>> RestoreIndividuals(std::uint64_t count, IndividualId below,
                                                      CanonicalDecoder& decoder) const;
   // "the saved search state is damaged: ..."

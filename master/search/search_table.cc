@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "controllers/registry.h"
+#include "master/search/archive_search.h"
 #include "master/search/blame_search.h"
 #include "master/search/case_list_search.h"
 #include "master/search/confirmation_search.h"
@@ -20,8 +21,9 @@
 namespace gauntlet::master {
 
 std::span<const SearchRow> Searches() {
-  static const std::array rows = {GeneticRow(),      SteadyStateRow(),  RandomRow(),       CaseListRow(),
-                                  ResimulationRow(), ConfirmationRow(), MinimisationRow(), BlameRow()};
+  static const std::array rows = {GeneticRow(),  SteadyStateRow(),  RandomRow(),       ArchiveRow(),
+                                  CaseListRow(), ResimulationRow(), ConfirmationRow(), MinimisationRow(),
+                                  BlameRow()};
   return rows;
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "master/search/archive_search.h"
 #include "master/search/case_list_search.h"
 #include "master/search/genetic_algorithm.h"
 #include "master/search/random_search.h"
@@ -152,6 +153,14 @@ INSTANTIATE_TEST_SUITE_P(
                       Kind{"SteadyStateTwoBest", SteadyState(ParentSelection::kTwoBestParentsTwoWorseAway)},
                       Kind{"Random",
                            [] { return std::move(RandomSearch::Create(RandomSetup(230))).value(); }},
+                      Kind{"Archive",
+                           [] {
+                             SearchSetup setup = ToySetup();
+                             setup.experiment.scenario = "flocking";
+                             setup.experiment.search.algorithm = "archive";
+                             setup.experiment.search.parameters = {{"runs", 300.0}, {"slots", 20.0}};
+                             return std::move(ArchiveSearch::Create(setup)).value();
+                           }},
                       Kind{"CaseList",
                            [] {
                              std::vector<sim::TestCase> cases(9);

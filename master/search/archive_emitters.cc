@@ -1,0 +1,126 @@
+#include "master/search/archive_emitters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "sim/geometry/trigonometry.h"
+
+namespace gauntlet::master {
+namespace {
+
+// Standard deviations, chosen.
+constexpr double kPlaceNoise = 0.15;   // m
+constexpr double kTurnNoise = 20.0;    // degrees
+constexpr double kPlaceJitter = 0.3;   // m
+constexpr double kLengthJitter = 0.2;  // m
+
+double OnGrid(double value, double low, double high, double step) {
+  value = std::clamp(value, low, high);
+  if (step == 0.0) return value;
+  const double divisions = std::round(1.0 / step);
+  return std::round(value * divisions) / divisions;
+}
+
+// Whole degrees in [0, 360).
+double WholeTurn(double degrees) {
+  const double whole = std::round(degrees);
+  return whole - 360.0 * std::floor(whole / 360.0);
+}
+
+double Turned(double degrees, sim::RandomStream& random) {
+  return WholeTurn(degrees + kTurnNoise * random.Gaussian());
+}
+
+}  // namespace
+
+std::vector<std::size_t> ByDistance(const sim::Genome& obstacles, const sim::Vec2& place) {
+  std::vector<std::size_t> order(obstacles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return Distance(BoxOf(obstacles[i]), place); });
+  return order;
+}
+
+std::vector<std::size_t> ByDistanceToWay(const sim::Genome& obstacles, const Way& way) {
+  constexpr int kPoints = 50;  // of the way that are looked at
+  std::vector<double> distances;
+  for (const sim::ObstacleGene& gene : obstacles) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= kPoints; ++i) {
+      const sim::Vec2 point = way.start + (way.goal - way.start) * (static_cast<double>(i) / kPoints);
+      nearest = std::min(nearest, Distance(BoxOf(gene), point));
+    }
+    distances.push_back(nearest);
+  }
+  std::vector<std::size_t> order(obstacles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return distances[i]; });
+  return order;
+}
+
+sim::Vec2 Mirrored(const sim::Vec2& point, const Way& way) {
+  const sim::Vec2 along = (way.goal - way.start).normalized();
+  const sim::Vec2 offset = point - way.start;
+  return way.start + 2.0 * along.dot(offset) * along - offset;
+}
+
+std::optional<sim::Genome> Mirrored(const sim::Genome& obstacles, const Way& way, const GenomeSpec& spec,
+                                    const GenomeGenerator& generator) {
+  const double axis = sim::AngleOf(way.goal - way.start) / sim::kDegree;
+  sim::Genome mirrored = obstacles;
+  for (sim::ObstacleGene& gene : mirrored) {
+    const sim::Vec2 center = Mirrored({gene.x, gene.y}, way);
+    gene.x = OnGrid(center.x(), spec.position_min, spec.position_max, spec.step);
+    gene.y = OnGrid(center.y(), spec.position_min, spec.position_max, spec.step);
+    gene.orientation_deg = WholeTurn(2.0 * axis - gene.orientation_deg);
+    for (sim::Vec2& point : gene.path) point = Mirrored(point, way);
+  }
+  if (!generator.Valid(mirrored)) return std::nullopt;
+  return mirrored;
+}
+
+sim::Genome Keep(const sim::Genome& obstacles, std::vector<std::size_t> indices) {
+  std::ranges::sort(indices);
+  sim::Genome kept;
+  for (const std::size_t index : indices) kept.push_back(obstacles[index]);
+  return kept;
+}
+
+sim::Genome Without(const sim::Genome& obstacles, std::size_t index) {
+  sim::Genome rest = obstacles;
+  rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(index));
+  return rest;
+}
+
+std::optional<sim::Genome> Alone(const sim::Vec2& place, const GenomeSpec& spec,
+                                 const GenomeGenerator& generator, sim::RandomStream& random) {
+  sim::ObstacleGene gene = generator.RandomGene(random);
+  gene.x =
+      OnGrid(place.x() + kPlaceNoise * random.Gaussian(), spec.position_min, spec.position_max, spec.step);
+  gene.y =
+      OnGrid(place.y() + kPlaceNoise * random.Gaussian(), spec.position_min, spec.position_max, spec.step);
+  const double half = (spec.length_min + spec.length_max) / 2.0;
+  gene.length = OnGrid(random.Uniform(half, spec.length_max), spec.length_min, spec.length_max, spec.step);
+  sim::Genome alone = {std::move(gene)};
+  if (!generator.Valid(alone)) return std::nullopt;
+  return alone;
+}
+
+std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeSpec& spec,
+                                    const GenomeGenerator& generator, sim::RandomStream& random) {
+  sim::Genome jittered = obstacles;
+  for (sim::ObstacleGene& gene : jittered) {
+    gene.x =
+        OnGrid(gene.x + kPlaceJitter * random.Gaussian(), spec.position_min, spec.position_max, spec.step);
+    gene.y =
+        OnGrid(gene.y + kPlaceJitter * random.Gaussian(), spec.position_min, spec.position_max, spec.step);
+    gene.length =
+        OnGrid(gene.length + kLengthJitter * random.Gaussian(), spec.length_min, spec.length_max, spec.step);
+    gene.orientation_deg = Turned(gene.orientation_deg, random);
+  }
+  if (!generator.Valid(jittered)) return std::nullopt;
+  return jittered;
+}
+
+}  // namespace gauntlet::master

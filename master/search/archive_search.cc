@@ -1,0 +1,545 @@
+#include "master/search/archive_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+#include <set>
+
+#include "base/check.h"
+#include "base/number_text.h"
+#include "master/search/archive_emitters.h"
+#include "sim/arena/arena.h"
+#include "sim/arena/genome.h"
+#include "sim/arena/path_planner.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr std::array kParameters = std::to_array<controllers::ParameterInfo>({
+    {"runs", "", 1000, 1, 1e8, true, "archive only: simulations in all"},
+    {"slots", "", 32, 1, 10000, true, "archive only: layouts under test at a time; workers it can keep busy"},
+    {"keep_out", "m", 0, 0, 10, false,
+     "archive only: no obstacle nearer than this to where the swarm starts and arrives"},
+    {"alone_share", "", 0.06, 0, 1, false,
+     "of the lines that begin: with one obstacle on the way to the goal"},
+    {"jittered_share", "", 0.10, 0, 1, false,
+     "of the lines that begin: with an elite that is changed a little"},
+    {"recheck_share", "", 0.04, 0, 1, false,
+     "of the lines that begin: one more run of an elite; the rest begin with random cases"},
+});
+enum Parameter : std::size_t { kRuns, kSlots, kKeepOut, kAloneShare, kJitteredShare, kRecheckShare };
+
+double Get(const Experiment& experiment, Parameter parameter) {
+  return ValueOf(kParameters[parameter], experiment.search.parameters);
+}
+
+// Obstacles of a random case that are tried alone: so many nearest to the failure and so many in the way.
+constexpr std::array<std::pair<std::ptrdiff_t, std::size_t>, 6> kFirstTried = {
+    {{1, 0}, {2, 0}, {2, 1}, {3, 0}, {3, 1}, {4, 1}}};
+constexpr int kMaxRuns = 8;                   // of an elite; then it is known well enough
+constexpr double kReliable = 0.6;             // of its runs an elite has to fail
+constexpr std::ptrdiff_t kMostElsewhere = 1;  // failures of a layout outside its cell, when it is admitted
+constexpr std::ptrdiff_t kEnoughWithOneElsewhere = 5;
+constexpr int kTries = 20;         // to make a layout that is valid
+constexpr int kDraws = 4;          // random cases of which the most promising one is simulated
+constexpr double kPathStep = 0.2;  // m, between the points of a path that are looked at
+
+Race Judge(const FailureTally& tally) {
+  const int passes = tally.passes + tally.errors;
+  if (tally.failures == 0 || passes >= 2) return Race::kDrop;
+  if ((tally.failures >= 3 && passes == 0) || tally.failures >= 4) return Race::kAdmit;
+  return Race::kOpen;
+}
+
+// Of what is no emitter: the last one, which the caller's checks of the rest make harmless.
+Emitter RestoreEmitter(CanonicalDecoder& decoder) {
+  return static_cast<Emitter>(std::min<std::uint64_t>(decoder.Uint(), kEmitters - 1));
+}
+
+double FailureShare(const FailureTally& tally) {
+  return static_cast<double>(tally.failures) / (tally.runs() + tally.errors);
+}
+
+}  // namespace
+
+std::string_view NameOf(Emitter emitter) {
+  constexpr std::array<std::string_view, kEmitters> names = {"random", "nearest",  "without", "mirrored",
+                                                             "alone",  "jittered", "recheck"};
+  return names[static_cast<std::size_t>(emitter)];
+}
+
+ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario)
+    : PopulationSearch(setup),
+      failing_(scenario.failing),
+      requirements_(setup.requirements),
+      way_{setup.requirements.start, setup.requirements.goal},
+      archive_(scenario.axes),
+      slots_(static_cast<std::size_t>(Get(setup.experiment, kSlots))) {
+  places_ = scenario.failure_place && scenario.axes.size() == 2 &&
+            scenario.axes[0].metric == scenario.failure_place->x &&
+            scenario.axes[1].metric == scenario.failure_place->y;
+  for (std::size_t i = 0; i < slots_.size(); ++i) {
+    BeginAnew(slots_[i]);
+    waiting_.push_back(i);
+  }
+}
+
+Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& setup) {
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(setup.experiment.scenario);
+  GAUNTLET_CHECK(scenario != nullptr, setup.experiment.scenario);
+  if (scenario->axes.empty()) {
+    return InvalidInput(
+        fmt::format("scenario {} does not say along which metrics its failures differ, which "
+                    "search.algorithm = \"archive\" needs",
+                    scenario->name));
+  }
+  SearchSetup kept_out = setup;
+  double& clearance = kept_out.requirements.clearance;
+  clearance = std::max(clearance, Get(setup.experiment, kKeepOut));
+  sim::RandomStream random = GenomeStream(SearchSeed(setup), 1);
+  if (const auto trial = MakeGenerator(kept_out).RandomTestCase(random); !trial.ok()) return trial.error();
+  return std::unique_ptr<ArchiveSearch>(new ArchiveSearch(kept_out, *scenario));
+}
+
+std::uint64_t ArchiveSearch::Planned() const {
+  const auto replicates = static_cast<std::uint64_t>(spec().replicates);
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(Get(setup_.experiment, kRuns)) / replicates);
+}
+
+std::vector<EvaluationRequest> ArchiveSearch::Ask() {
+  std::vector<EvaluationRequest> requests;
+  for (; asked_ < waiting_.size() && evaluations_done_ + asked_ < Planned(); ++asked_) {
+    const Slot& slot = slots_[waiting_[asked_]];
+    const Individual& individual = slot.finding.individual;
+    requests.push_back(Request(individual, 1));
+    if (requests.back().evaluation == 0) newborns_.push_back(individual);
+  }
+  return requests;
+}
+
+SearchProgress ArchiveSearch::Progress() const {
+  return {.generation = 1,
+          .generations = 1,
+          .evaluations_done = evaluations_done_,
+          .evaluations_planned = Planned(),
+          .individuals_planned = next_id_ - 1,
+          .finished = evaluations_done_ >= Planned()};
+}
+
+bool ArchiveSearch::AtBoundary() const {
+  return evaluations_done_ % kSaveInterval == 0 || evaluations_done_ == Planned();
+}
+
+std::vector<std::pair<std::string, double>> ArchiveSearch::Statistics() const {
+  std::vector<std::pair<std::string, double>> statistics = {
+      {"cells_filled", static_cast<double>(archive_.shelves().size())}};
+  for (std::size_t most = 3; most >= 1; --most) {
+    const auto small = std::ranges::count_if(
+        population_, [&](const Individual& elite) { return elite.test_case.obstacles.size() <= most; });
+    statistics.emplace_back(fmt::format("cells_with_up_to_{}", most), static_cast<double>(small));
+  }
+  for (std::size_t i = 0; i < kEmitters; ++i) {
+    const std::string_view name = NameOf(static_cast<Emitter>(i));
+    statistics.emplace_back(fmt::format("{}_runs", name), static_cast<double>(accounts_[i].runs));
+    statistics.emplace_back(fmt::format("{}_layouts", name), static_cast<double>(accounts_[i].layouts));
+    statistics.emplace_back(fmt::format("{}_elites", name), static_cast<double>(accounts_[i].elites));
+  }
+  return statistics;
+}
+
+void ArchiveSearch::Count(const EvaluationOutcome& outcome, Finding& finding) const {
+  Record(outcome, finding.individual);
+  for (const RunOutcome& run : outcome.runs) {
+    finding.tally.Add(run, failing_);
+    if (!Fails(run, failing_)) continue;
+    if (std::optional<Descriptor> descriptor = archive_.grid().Describe(run)) {
+      finding.failures.push_back(*std::move(descriptor));
+    }
+  }
+}
+
+void ArchiveSearch::Told(const EvaluationOutcome& outcome) {
+  const std::size_t index = waiting_.front();
+  waiting_.pop_front();
+  --asked_;
+  Slot& slot = slots_[index];
+  Count(outcome, slot.finding);
+  ++accounts_[static_cast<std::size_t>(slot.emitter)].runs;
+  Continue(slot);
+  waiting_.push_back(index);
+}
+
+void ArchiveSearch::Continue(Slot& slot) {
+  Finding& finding = slot.finding;
+  if (slot.emitter == Emitter::kRecheck) {
+    Rechecked(slot);
+    return BeginAnew(slot);
+  }
+  const bool first_run = finding.tally.runs() + finding.tally.errors == spec().replicates;
+  Race race = Judge(finding.tally);
+  if (finding.failures.empty()) race = Race::kDrop;  // nothing to say in which cell it belongs
+  if (race != Race::kDrop && slot.emitter == Emitter::kRandom && first_run) {
+    PlanNearest(slot);
+    if (BeginPlanned(slot)) return;
+    return BeginAnew(slot);
+  }
+  if (race != Race::kDrop && !archive_.WouldWin(archive_.grid().CellOf(finding.Middle()), finding.size())) {
+    race = Race::kDrop;
+  }
+  if (race == Race::kAdmit) race = JudgePlace(finding);
+  if (race == Race::kOpen) return;
+  if (race == Race::kAdmit) {
+    slot.plan.clear();
+    slot.root.reset();
+    PlanWithout(slot, finding);
+    if (archive_.Add(std::move(finding))) ++accounts_[static_cast<std::size_t>(slot.emitter)].elites;
+    UpdatePopulation();
+  }
+  if (!BeginPlanned(slot)) BeginAnew(slot);
+}
+
+Race ArchiveSearch::JudgePlace(const Finding& finding) const {
+  const std::size_t cell = archive_.grid().CellOf(finding.Middle());
+  const auto elsewhere = std::ranges::count_if(
+      finding.failures, [&](const Descriptor& failure) { return archive_.grid().CellOf(failure) != cell; });
+  if (elsewhere == 0) return Race::kAdmit;
+  if (elsewhere > kMostElsewhere) return Race::kDrop;
+  return std::ssize(finding.failures) >= kEnoughWithOneElsewhere ? Race::kAdmit : Race::kOpen;
+}
+
+void ArchiveSearch::Rechecked(Slot& slot) {
+  if (FailureShare(slot.finding.tally) >= kReliable) archive_.Add(std::move(slot.finding));
+  UpdatePopulation();
+}
+
+void ArchiveSearch::Begin(Slot& slot, Emitter emitter, sim::Genome obstacles, IndividualId parent) {
+  slot.emitter = emitter;
+  slot.finding = {};
+  slot.finding.individual = MakeIndividual(next_id_++, generator_.WithObstacles(std::move(obstacles)));
+  if (parent != 0) slot.finding.individual.parents = {parent};
+  ++accounts_[static_cast<std::size_t>(emitter)].layouts;
+}
+
+bool ArchiveSearch::BeginPlanned(Slot& slot) {
+  while (!slot.plan.empty()) {
+    Step step = std::move(slot.plan.front());
+    slot.plan.pop_front();
+    if (!archive_.WouldWin(slot.cell, SizeOf(step.obstacles))) continue;
+    Begin(slot, step.emitter, std::move(step.obstacles), slot.parent);
+    return true;
+  }
+  if (!slot.root || !archive_.WouldWin(slot.cell, slot.root->size())) return false;
+  slot.finding = *std::move(slot.root);
+  slot.emitter = Emitter::kRandom;
+  slot.root.reset();
+  return true;
+}
+
+void ArchiveSearch::BeginAnew(Slot& slot) {
+  slot.plan.clear();
+  slot.root.reset();
+  if (places_ && BeginMirrored(slot)) return;
+  sim::RandomStream random(search_seed_, sim::StreamPurpose::kVariation,
+                           static_cast<std::uint32_t>(evaluations_done_),
+                           static_cast<std::uint32_t>(&slot - slots_.data()));
+  const double draw = random.Uniform();
+  const Experiment& e = setup_.experiment;
+  const double alone = places_ ? Get(e, kAloneShare) : 0.0;
+  const double jittered = alone + Get(e, kJitteredShare);
+  const double recheck = jittered + Get(e, kRecheckShare);
+  if (draw < alone && BeginAlone(slot, random)) return;
+  if (!archive_.shelves().empty()) {
+    if (draw >= alone && draw < jittered && BeginJittered(slot, random)) return;
+    if (draw >= jittered && draw < recheck && BeginRecheck(slot)) return;
+  }
+  BeginRandom(slot, random);
+}
+
+void ArchiveSearch::BeginRandom(Slot& slot, sim::RandomStream& random) {
+  std::optional<sim::TestCase> best;
+  double most = -1.0;
+  const int draws = places_ ? kDraws : 1;
+  for (int drawn = 0; drawn < draws;) {
+    Result<sim::TestCase> test_case = generator_.RandomTestCase(random);
+    if (!test_case.ok()) continue;  // Create has found that there are some
+    ++drawn;
+    const double promise = draws == 1 ? 0.0 : Promise(*test_case);
+    if (promise <= most) continue;
+    most = promise;
+    best = *std::move(test_case);
+  }
+  Begin(slot, Emitter::kRandom, std::move(best->obstacles), 0);
+}
+
+double ArchiveSearch::Promise(const sim::TestCase& test_case) const {
+  const sim::OccupancyGrid grid(sim::Arena(test_case), requirements_.inflation);
+  std::set<std::size_t> cells;
+  const std::vector<sim::Vec2> path = sim::PlanPath(grid, way_.start, way_.goal);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const double length = (path[i] - path[i - 1]).norm();
+    const int points = 1 + static_cast<int>(length / kPathStep);
+    for (int k = 0; k <= points; ++k) {
+      const sim::Vec2 point = path[i - 1] + (path[i] - path[i - 1]) * (static_cast<double>(k) / points);
+      cells.insert(archive_.grid().CellOf({point.x(), point.y()}));
+    }
+  }
+  double promise = 0.0;
+  for (const std::size_t cell : cells) {
+    const Finding* elite = archive_.EliteOf(cell);
+    const std::size_t obstacles = elite == nullptr
+                                      ? 2 * static_cast<std::size_t>(setup_.experiment.genome.genes)
+                                      : elite->size().obstacles;
+    promise += static_cast<double>(obstacles - 1);
+  }
+  return promise;
+}
+
+const Finding& ArchiveSearch::DrawElite(sim::RandomStream& random) const {
+  const auto index = random.Below(static_cast<std::uint32_t>(archive_.shelves().size()));
+  return std::next(archive_.shelves().begin(), index)->second.front();
+}
+
+bool ArchiveSearch::BeginMirrored(Slot& slot) {
+  for (const auto& [cell, shelf] : archive_.shelves()) {
+    const Finding& elite = shelf.front();
+    if (elite.mirrored) continue;
+    const Descriptor middle = elite.Middle();
+    const sim::Vec2 target = Mirrored({middle[0], middle[1]}, way_);
+    const std::size_t target_cell = archive_.grid().CellOf({target.x(), target.y()});
+    if (!archive_.WouldWin(target_cell, elite.size())) continue;
+    archive_.SetMirrored(cell);
+    std::optional<sim::Genome> mirrored =
+        Mirrored(elite.individual.test_case.obstacles, way_, setup_.experiment.genome, generator_);
+    if (!mirrored) continue;
+    slot.cell = target_cell;
+    Begin(slot, Emitter::kMirrored, *std::move(mirrored), elite.individual.id);
+    return true;
+  }
+  return false;
+}
+
+bool ArchiveSearch::BeginAlone(Slot& slot, sim::RandomStream& random) {
+  for (int i = 0; i < kTries; ++i) {
+    const sim::Vec2 place = way_.start + (way_.goal - way_.start) * random.Uniform();
+    const std::size_t cell = archive_.grid().CellOf({place.x(), place.y()});
+    const Finding* elite = archive_.EliteOf(cell);
+    if (elite != nullptr && elite->size().obstacles == 1) continue;
+    std::optional<sim::Genome> alone = Alone(place, setup_.experiment.genome, generator_, random);
+    if (!alone) continue;
+    slot.cell = cell;
+    Begin(slot, Emitter::kAlone, *std::move(alone), 0);
+    return true;
+  }
+  return false;
+}
+
+bool ArchiveSearch::BeginJittered(Slot& slot, sim::RandomStream& random) {
+  for (int i = 0; i < kTries; ++i) {
+    const Finding& elite = DrawElite(random);
+    sim::Genome obstacles = elite.individual.test_case.obstacles;
+    if (obstacles.size() < 2) continue;
+    obstacles = Without(obstacles, random.Below(static_cast<std::uint32_t>(obstacles.size())));
+    std::optional<sim::Genome> jittered = Jittered(obstacles, setup_.experiment.genome, generator_, random);
+    if (!jittered) continue;
+    slot.cell = archive_.grid().CellOf(elite.Middle());
+    Begin(slot, Emitter::kJittered, *std::move(jittered), elite.individual.id);
+    return true;
+  }
+  return false;
+}
+
+bool ArchiveSearch::BeginRecheck(Slot& slot) {
+  const Finding* least = nullptr;
+  for (const std::vector<Finding>& shelf : std::views::values(archive_.shelves())) {
+    const Finding& elite = shelf.front();
+    if (elite.tally.runs() < kMaxRuns && (least == nullptr || elite.tally.runs() < least->tally.runs())) {
+      least = &elite;
+    }
+  }
+  if (least == nullptr) return false;
+  slot.finding = archive_.Take(least->individual.id);
+  slot.emitter = Emitter::kRecheck;
+  ++accounts_[static_cast<std::size_t>(Emitter::kRecheck)].layouts;
+  return true;
+}
+
+std::vector<std::size_t> ArchiveSearch::Order(const sim::Genome& obstacles, const Descriptor& failure) const {
+  if (places_) return ByDistance(obstacles, {failure[0], failure[1]});
+  return ByDistanceToWay(obstacles, way_);
+}
+
+void ArchiveSearch::PlanNearest(Slot& slot) {
+  const sim::Genome& obstacles = slot.finding.individual.test_case.obstacles;
+  const Descriptor& failure = slot.finding.failures.front();
+  slot.cell = archive_.grid().CellOf(failure);
+  slot.parent = slot.finding.individual.id;
+  const std::vector<std::size_t> nearest = Order(obstacles, failure);
+  const std::vector<std::size_t> in_the_way = ByDistanceToWay(obstacles, way_);
+  for (const auto& [near, on_way] : kFirstTried) {
+    std::vector<std::size_t> kept(nearest.begin(), nearest.begin() + std::min(near, std::ssize(nearest)));
+    std::size_t missing = on_way;
+    for (const std::size_t index : in_the_way) {
+      if (missing == 0 || std::ranges::find(kept, index) != kept.end()) continue;
+      kept.push_back(index);
+      --missing;
+    }
+    if (kept.size() >= obstacles.size()) break;
+    slot.plan.push_back({Emitter::kNearest, Keep(obstacles, std::move(kept))});
+  }
+  slot.root = std::move(slot.finding);
+}
+
+void ArchiveSearch::PlanWithout(Slot& slot, const Finding& found) {
+  const sim::Genome& obstacles = found.individual.test_case.obstacles;
+  slot.cell = archive_.grid().CellOf(found.Middle());
+  slot.parent = found.individual.id;
+  if (obstacles.size() < 2 || slot.emitter == Emitter::kMirrored) return;
+  std::vector<std::size_t> order = Order(obstacles, found.Middle());
+  std::ranges::reverse(order);
+  for (const std::size_t index : order) {
+    slot.plan.push_back({Emitter::kWithout, Without(obstacles, index)});
+  }
+}
+
+void ArchiveSearch::UpdatePopulation() {
+  population_.clear();
+  for (const std::vector<Finding>& shelf : std::views::values(archive_.shelves())) {
+    population_.push_back(shelf.front().individual);
+  }
+}
+
+void ArchiveSearch::SaveFinding(const Finding& finding, CanonicalEncoder& encoder) {
+  SaveIndividuals({finding.individual}, encoder);
+  encoder.Int(finding.tally.failures);
+  encoder.Int(finding.tally.passes);
+  encoder.Int(finding.tally.errors);
+  encoder.Bool(finding.mirrored);
+  encoder.Uint(finding.failures.size());
+  for (const Descriptor& failure : finding.failures) {
+    for (const double value : failure) encoder.Double(value);
+  }
+}
+
+Result<Finding> ArchiveSearch::RestoreFinding(CanonicalDecoder& decoder) const {
+  Result<std::vector<Individual>> individual = RestoreIndividuals(1, next_id_, decoder);
+  if (!individual.ok()) return individual.error();
+  Finding finding;
+  finding.individual = std::move(individual->front());
+  finding.tally.failures = static_cast<int>(decoder.Int());
+  finding.tally.passes = static_cast<int>(decoder.Int());
+  finding.tally.errors = static_cast<int>(decoder.Int());
+  finding.mirrored = decoder.Bool();
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    Descriptor& failure = finding.failures.emplace_back(archive_.grid().axes().size());
+    for (double& value : failure) value = decoder.Double();
+  }
+  return finding;
+}
+
+void ArchiveSearch::SaveSlot(const Slot& slot, CanonicalEncoder& encoder) {
+  encoder.Uint(static_cast<std::uint64_t>(slot.emitter));
+  encoder.Uint(slot.cell);
+  encoder.Uint(slot.parent);
+  SaveFinding(slot.finding, encoder);
+  encoder.Bool(slot.root.has_value());
+  if (slot.root) SaveFinding(*slot.root, encoder);
+  encoder.Uint(slot.plan.size());
+  for (const Step& step : slot.plan) {
+    encoder.Uint(static_cast<std::uint64_t>(step.emitter));
+    sim::EncodeGenome(step.obstacles, encoder);
+  }
+}
+
+Status ArchiveSearch::RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const {
+  slot.plan.clear();
+  slot.root.reset();
+  slot.emitter = RestoreEmitter(decoder);
+  slot.cell = decoder.Uint();
+  slot.parent = decoder.Uint();
+  Result<Finding> finding = RestoreFinding(decoder);
+  if (!finding.ok()) return finding.error();
+  slot.finding = *std::move(finding);
+  if (decoder.Bool()) {
+    Result<Finding> root = RestoreFinding(decoder);
+    if (!root.ok()) return root.error();
+    slot.root = *std::move(root);
+  }
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    const Emitter emitter = RestoreEmitter(decoder);
+    slot.plan.push_back({emitter, sim::DecodeGenome(decoder)});
+  }
+  return Ok{};
+}
+
+void ArchiveSearch::SaveRest(CanonicalEncoder& encoder) const {
+  encoder.Uint(next_id_);
+  for (const EmitterAccount& account : accounts_) {
+    encoder.Uint(account.runs);
+    encoder.Uint(account.layouts);
+    encoder.Uint(account.elites);
+  }
+  encoder.Uint(archive_.shelves().size());
+  for (const auto& [cell, shelf] : archive_.shelves()) {
+    encoder.Uint(cell);
+    encoder.Uint(shelf.size());
+    for (const Finding& finding : shelf) SaveFinding(finding, encoder);
+  }
+  for (const Slot& slot : slots_) SaveSlot(slot, encoder);
+  for (const std::size_t slot : waiting_) encoder.Uint(slot);
+}
+
+Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*history*/) {
+  next_id_ = decoder.Uint();
+  for (EmitterAccount& account : accounts_) {
+    account.runs = decoder.Uint();
+    account.layouts = decoder.Uint();
+    account.elites = decoder.Uint();
+  }
+  FailureArchive::Shelves shelves;
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    std::vector<Finding>& shelf = shelves[decoder.Uint()];
+    for (std::uint64_t findings = decoder.Uint(); findings > 0 && decoder.ok(); --findings) {
+      Result<Finding> finding = RestoreFinding(decoder);
+      if (!finding.ok()) return finding.error();
+      shelf.push_back(*std::move(finding));
+    }
+    if (shelf.empty()) return Damaged("a cell of its archive is empty");
+  }
+  if (!shelves.empty() && shelves.rbegin()->first >= archive_.grid().cells()) {
+    return Damaged("its archive has a cell that is none");
+  }
+  archive_.Restore(std::move(shelves));
+  for (Slot& slot : slots_) {
+    if (const Status restored = RestoreSlot(decoder, slot); !restored.ok()) return restored;
+  }
+  for (std::size_t& slot : waiting_) {
+    slot = decoder.Uint();
+    if (slot >= slots_.size()) return Damaged(fmt::format("slot {} waits", slot));
+  }
+  if (std::set<std::size_t>(waiting_.begin(), waiting_.end()).size() != slots_.size()) {
+    return Damaged("a slot does not wait");
+  }
+  asked_ = 0;
+  UpdatePopulation();
+  return Ok{};
+}
+
+SearchRow ArchiveRow() {
+  return {.info = {.name = "archive",
+                   .description = "many different failures, each with as few obstacles as possible",
+                   .keys = {"search.replicates", "genome."},
+                   .parameters = kParameters,
+                   .length = "search.runs"},
+          .number = 8,
+          .title = "archive search",
+          .members = "elites",
+          .plan =
+              [](const Experiment& e) {
+                return FormatCount(static_cast<std::uint64_t>(Get(e, kRuns))) + " runs";
+              },
+          .make = Make<ArchiveSearch>};
+}
+
+}  // namespace gauntlet::master

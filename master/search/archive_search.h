@@ -1,0 +1,122 @@
+// A search for many different failures, each as small as possible: an archive over how swarms fail, in each
+// cell of which the smallest reliable failure stays. After the elites of MAP-Elites (Mouret and Clune 2015),
+// with reliability as a constraint and the size of a layout as its quality.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "master/search/archive_emitters.h"
+#include "master/search/failure_archive.h"
+#include "master/search/population_search.h"
+#include "master/search/search_table.h"
+
+namespace gauntlet::master {
+
+// Where a layout came from. Saved states depend on the order.
+enum class Emitter : std::uint8_t { kRandom, kNearest, kWithout, kMirrored, kAlone, kJittered, kRecheck };
+inline constexpr std::size_t kEmitters = 7;
+std::string_view NameOf(Emitter emitter);
+
+// What an emitter has cost and given.
+struct EmitterAccount {
+  std::uint64_t runs = 0;
+  std::uint64_t layouts = 0;
+  std::uint64_t elites = 0;  // layouts that became the smallest of their cell
+};
+
+enum class Race { kOpen, kAdmit, kDrop };
+
+// search.slots layouts are under test at a time, each with one run outstanding, so what is asked depends on
+// exactly the results 1 .. k - slots, for any number of workers. A layout is dropped when its first run
+// passes or shows that it cannot become the smallest of its cell, or when a second run passes; it is admitted
+// when 3 of 3 or 4 of 5 runs fail. A layout that was admitted is followed by those with one obstacle less; a
+// random case that fails, by its obstacles nearest to where it failed: 1, 2, 3, 4 of them, and then itself.
+// When nothing follows, a slot goes on with a random case, an elite moved to another cell, a changed elite,
+// or one more run of an elite, which leaves the archive when less than 60 % of its runs fail.
+//
+// Population() is the smallest of each cell, in the order of the cells.
+class ArchiveSearch : public PopulationSearch {
+ public:
+  // Error: the scenario has no axes, or the ranges leave no room for a valid case.
+  static Result<std::unique_ptr<ArchiveSearch>> Create(const SearchSetup& setup);
+
+  std::vector<EvaluationRequest> Ask() override;
+  bool WantsMetrics() const override { return true; }
+  SearchProgress Progress() const override;
+  std::vector<std::pair<std::string, double>> Statistics() const override;
+  // After every kSaveInterval outcomes, and at the end. What was asked and not told is part of the state.
+  bool AtBoundary() const override;
+
+  static constexpr std::uint64_t kSaveInterval = 100;
+
+ private:
+  struct Step {
+    Emitter emitter = Emitter::kRandom;
+    sim::Genome obstacles;
+  };
+  // A line of layouts, each of which follows from what came of the one before.
+  struct Slot {
+    Emitter emitter = Emitter::kRandom;
+    Finding finding;              // under test
+    std::deque<Step> plan;        // what follows
+    std::size_t cell = 0;         // that they are to become the smallest of
+    std::optional<Finding> root;  // the random case, under test after everything that is smaller
+    IndividualId parent = 0;      // of what follows; 0 = none
+  };
+
+  ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario);
+
+  void Told(const EvaluationOutcome& outcome) override;
+  void SaveRest(CanonicalEncoder& encoder) const override;
+  Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
+
+  std::uint64_t Planned() const;
+  // What the outcome says of the finding.
+  void Count(const EvaluationOutcome& outcome, Finding& finding) const;
+  // Makes the slot's next layout, when what it has is decided.
+  void Continue(Slot& slot);
+  void Begin(Slot& slot, Emitter emitter, sim::Genome obstacles, IndividualId parent);
+  bool BeginPlanned(Slot& slot);
+  void BeginAnew(Slot& slot);
+  void BeginRandom(Slot& slot, sim::RandomStream& random);
+  // What could be won along the shortest way through the arena.
+  double Promise(const sim::TestCase& test_case) const;
+  bool BeginMirrored(Slot& slot);
+  bool BeginAlone(Slot& slot, sim::RandomStream& random);
+  bool BeginJittered(Slot& slot, sim::RandomStream& random);
+  bool BeginRecheck(Slot& slot);
+  void PlanNearest(Slot& slot);
+  void PlanWithout(Slot& slot, const Finding& found);
+  // Whether a layout that fails often enough does so in one cell.
+  Race JudgePlace(const Finding& finding) const;
+  void Rechecked(Slot& slot);
+  // The obstacles in the order in which they are probably needed.
+  std::vector<std::size_t> Order(const sim::Genome& obstacles, const Descriptor& failure) const;
+  const Finding& DrawElite(sim::RandomStream& random) const;
+  void UpdatePopulation();
+  static void SaveFinding(const Finding& finding, CanonicalEncoder& encoder);
+  Result<Finding> RestoreFinding(CanonicalDecoder& decoder) const;
+  static void SaveSlot(const Slot& slot, CanonicalEncoder& encoder);
+  Status RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const;
+
+  const std::string_view failing_;
+  const sim::ArenaRequirements requirements_;
+  const Way way_;
+  bool places_ = false;  // the axes are the coordinates of a place
+  FailureArchive archive_;
+  std::vector<Slot> slots_;
+  std::deque<std::size_t> waiting_;  // slots whose run is asked for or about to be, in order
+  std::size_t asked_ = 0;            // of waiting_, from its front
+  IndividualId next_id_ = 1;
+  std::array<EmitterAccount, kEmitters> accounts_;
+};
+
+SearchRow ArchiveRow();
+
+}  // namespace gauntlet::master

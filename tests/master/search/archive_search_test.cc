@@ -1,0 +1,161 @@
+#include "master/search/archive_search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <map>
+
+#include "tests/master/search/toy_search.h"
+
+namespace gauntlet::master {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr int kSlots = 20;
+
+SearchSetup ArchiveSetup(int runs) {
+  SearchSetup setup = ToySetup();
+  setup.experiment.scenario = "flocking";
+  setup.experiment.search.algorithm = "archive";
+  setup.experiment.search.parameters["runs"] = runs;
+  setup.experiment.search.parameters["slots"] = kSlots;
+  return setup;
+}
+
+std::unique_ptr<ArchiveSearch> MakeArchive(const SearchSetup& setup) {
+  return std::move(ArchiveSearch::Create(setup)).value();
+}
+
+// A swarm that breaks at the first obstacle within 0.3 m of the line from start to goal.
+const sim::ObstacleGene* TrapOf(const sim::TestCase& test_case) {
+  for (const sim::ObstacleGene& gene : test_case.obstacles) {
+    if (std::abs(gene.x - gene.y) < 0.42) return &gene;
+  }
+  return nullptr;
+}
+
+EvaluationOutcome Outcome(const EvaluationRequest& request, bool fails) {
+  const sim::ObstacleGene* trap = TrapOf(request.test_case);
+  RunOutcome run;
+  run.total_failure = fails;
+  run.fitness = fails ? 0.0 : 1.0;
+  run.metrics = {{"split_x", trap == nullptr ? 0.0 : trap->x}, {"split_y", trap == nullptr ? 0.0 : trap->y}};
+  return OutcomeOfRuns(request.individual, request.evaluation, {run});
+}
+
+using ToyFailure = std::function<bool(const EvaluationRequest&)>;
+
+bool BreaksAtTraps(const EvaluationRequest& request) {
+  return TrapOf(request.test_case) != nullptr;
+}
+
+// Tells at most `at_once` outcomes between two calls of Ask; returns what was asked, in order.
+std::vector<EvaluationRequest> Drive(ArchiveSearch& search, std::size_t at_once, const ToyFailure& fails) {
+  std::vector<EvaluationRequest> all;
+  std::size_t told = 0;
+  while (!search.Progress().finished) {
+    std::ranges::move(search.Ask(), std::back_inserter(all));
+    EXPECT_LE(all.size() - told, static_cast<std::size_t>(kSlots));
+    if (told == all.size()) break;
+    for (std::size_t i = 0; i < at_once && told < all.size(); ++i, ++told) {
+      search.Tell(Outcome(all[told], fails(all[told])));
+    }
+  }
+  return all;
+}
+
+TEST(ArchiveSearchTest, FindsOneObstacleForEachPlaceWhereOneIsEnough) {
+  const auto search = MakeArchive(ArchiveSetup(1000));
+  EXPECT_EQ(Drive(*search, 1, BreaksAtTraps).size(), 1000U) << "the budget, to the run";
+  // The line crosses the five cells of the diagonal, and its traps may lie a little beside it.
+  EXPECT_GE(search->Population().size(), 5U);
+  for (const Individual& elite : search->Population()) {
+    EXPECT_EQ(elite.test_case.obstacles.size(), 1U) << elite.id;
+    EXPECT_NE(TrapOf(elite.test_case), nullptr);
+  }
+  EXPECT_EQ(StatisticOf(*search, "cells_with_up_to_1"), StatisticOf(*search, "cells_filled"));
+}
+
+TEST(ArchiveSearchTest, TheMomentOfAskingChangesNothing) {
+  const auto one_by_one = MakeArchive(ArchiveSetup(400));
+  const auto in_batches = MakeArchive(ArchiveSetup(400));
+  EXPECT_TRUE(SameRequests(Drive(*one_by_one, 1, BreaksAtTraps), Drive(*in_batches, 100, BreaksAtTraps)));
+  EXPECT_EQ(StateOf(*one_by_one), StateOf(*in_batches));
+}
+
+TEST(ArchiveSearchTest, ALongerSearchBeginsLikeAShorterOne) {
+  const auto shorter = MakeArchive(ArchiveSetup(250));
+  const auto longer = MakeArchive(ArchiveSetup(500));
+  const std::vector<EvaluationRequest> asked = Drive(*shorter, 7, BreaksAtTraps);
+  std::vector<EvaluationRequest> beginning = Drive(*longer, 7, BreaksAtTraps);
+  beginning.resize(asked.size());
+  EXPECT_TRUE(SameRequests(asked, beginning));
+
+  const auto extended = MakeArchive(ArchiveSetup(500));
+  ASSERT_TRUE(RestoreState(*extended, StateOf(*shorter)).ok());
+  Drive(*extended, 7, BreaksAtTraps);
+  EXPECT_EQ(StateOf(*extended), StateOf(*longer));
+}
+
+TEST(ArchiveSearchTest, WhatFailsEveryOtherTimeIsNotAdmitted) {
+  const auto search = MakeArchive(ArchiveSetup(600));
+  Drive(*search, 1, [](const EvaluationRequest& request) { return request.evaluation % 2 == 0; });
+  EXPECT_TRUE(search->Population().empty());
+}
+
+TEST(ArchiveSearchTest, AnEliteThatStopsFailingLeaves) {
+  const auto search = MakeArchive(ArchiveSetup(1000));
+  Drive(*search, 1, [](const EvaluationRequest& request) {
+    return BreaksAtTraps(request) && request.evaluation < 3;  // as lucky as those who are chosen
+  });
+  for (const Individual& elite : search->Population()) EXPECT_LE(elite.evaluations, 5U);
+  EXPECT_GT(StatisticOf(*search, "recheck_runs"), 0.0);
+}
+
+TEST(ArchiveSearchTest, AControllerThatNeverFailsLeavesAnEmptyArchive) {
+  const auto search = MakeArchive(ArchiveSetup(300));
+  EXPECT_EQ(Drive(*search, 9, [](const EvaluationRequest&) { return false; }).size(), 300U);
+  EXPECT_TRUE(search->Progress().finished);
+  EXPECT_TRUE(search->Population().empty());
+}
+
+TEST(ArchiveSearchTest, KeepsStartAndGoalFree) {
+  SearchSetup setup = ArchiveSetup(200);
+  setup.experiment.search.parameters["keep_out"] = 1.0;
+  const auto search = MakeArchive(setup);
+  for (const EvaluationRequest& request : Drive(*search, 5, BreaksAtTraps)) {
+    for (const sim::ObstacleGene& gene : request.test_case.obstacles) {
+      EXPECT_GE(Distance(BoxOf(gene), setup.requirements.start), 1.0);
+      EXPECT_GE(Distance(BoxOf(gene), setup.requirements.goal), 1.0);
+    }
+  }
+}
+
+TEST(ArchiveSearchTest, ARunThatEndsWithoutAResultIsNoFailure) {
+  const auto search = MakeArchive(ArchiveSetup(200));
+  std::deque<EvaluationRequest> outstanding;
+  while (!search->Progress().finished) {
+    std::ranges::move(search->Ask(), std::back_inserter(outstanding));
+    RunOutcome crashed;
+    crashed.verdict = sim::Verdict::kCrashed;
+    crashed.total_failure = true;
+    const EvaluationRequest& request = outstanding.front();
+    search->Tell(OutcomeOfRuns(request.individual, request.evaluation, {crashed}));
+    outstanding.pop_front();
+  }
+  EXPECT_TRUE(search->Population().empty());
+}
+
+TEST(ArchiveSearchTest, AScenarioWithoutAxesIsRefused) {
+  SearchSetup setup = ArchiveSetup(200);
+  setup.experiment.scenario = "light-flocking";
+  const auto search = ArchiveSearch::Create(setup);
+  ASSERT_FALSE(search.ok());
+  EXPECT_THAT(search.error().message, HasSubstr("light-flocking"));
+}
+
+}  // namespace
+}  // namespace gauntlet::master
