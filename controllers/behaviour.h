@@ -149,7 +149,7 @@ struct ScenarioInfo {
   std::span<const FailureKind> failure_kinds = {};
   std::string_view failure_note = "";  // what was measured about total failures and their types
   // Along which failures differ in a way that repeats when a case is simulated again.
-  std::span<const DescriptorAxis> axes = {};
+  std::span<const DescriptorAxis> descriptor_axes = {};
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   std::function<sim::ArenaRequirements(const sim::Parameters& parameters, const sim::TestCase& test_case)>
       requirements = nullptr;

@@ -27,7 +27,7 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"split_y", "m", kNowhere, "where the last split happened: mean of those who left", true},
 });
 
-constexpr std::array kAxes = std::to_array<DescriptorAxis>({
+constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
     {"split_x", -3.0, 3.0, 5},
     {"split_y", -3.0, 3.0, 5},
 });
@@ -156,7 +156,7 @@ const ScenarioInfo& FlockingScenarioInfo() {
           .failure_note = "types do not tell failures apart: two failed runs of one case have the same type "
                           "in 15 % of all "
                           "pairs, of two cases in 11 %; where they fail does, in 93 % and 10 %",
-          .axes = kAxes,
+          .descriptor_axes = kDescriptorAxes,
       });
   return info;
 }

@@ -38,7 +38,7 @@ constexpr std::array kFailureKinds = std::to_array<FailureKind>({
     {"condition_1", 1.0, "never a path of beacons"},
 });
 
-constexpr std::array kAxes = std::to_array<DescriptorAxis>({
+constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
     {"mean_robots_beacon", 0.0, 10.0, 5},
     {"spread_x", 0.5, 2.0, 5},
 });
@@ -215,7 +215,7 @@ const ScenarioInfo& ForagingScenarioInfo() {
           .failure_note =
               "condition 1 alone says little: it holds in 30 % of runs in an empty arena, condition 2 in "
               "none of 200",
-          .axes = kAxes,
+          .descriptor_axes = kDescriptorAxes,
       });
   return info;
 }

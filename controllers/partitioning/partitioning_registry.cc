@@ -39,7 +39,7 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
 });
 
-constexpr std::array kAxes = std::to_array<DescriptorAxis>({
+constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
     {"median_x", -1.5, 1.5, 5},
     {"median_y", -2.5, 2.5, 5},
 });
@@ -276,7 +276,7 @@ const ScenarioInfo& PartitioningScenarioInfo() {
           .metrics = kMetrics,
           .failure_types = PartitioningFailureTypes(),
           .failure_place = FailurePlace{"median_x", "median_y", 0.6},  // chosen: a tenth of the arena
-          .axes = kAxes,
+          .descriptor_axes = kDescriptorAxes,
       });
   return info;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "master/cli/archive_table.h"
 #include "master/cli/confirmation_table.h"
 #include "master/cli/summary.h"
 #include "master/report/verdict_text.h"
@@ -142,6 +143,7 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
           {"statistics", FiguresJson(summary.statistics)},
           {"history", std::move(generations)},
           {"population", std::move(population)},
+          {"archive", ArchiveJson(summary)},
           {"state_hash", summary.state_hash},
           {"nondeterministic", summary.nondeterministic > 0},
           {"verdicts_of_one_worker", summary.lone_verdicts},

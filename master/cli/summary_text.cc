@@ -6,6 +6,7 @@
 
 #include "base/printable.h"
 #include "base/shell_quoted.h"
+#include "master/cli/archive_table.h"
 #include "master/cli/confirmation_table.h"
 #include "master/cli/summary.h"
 #include "master/cli/table.h"
@@ -219,7 +220,8 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
                         FormatCount(summary.runs_done));
   }
   text += Overview(summary) + FailuresByType(summary) + RunsWithoutAResult(summary, context.directory) +
-          Generations(summary) + Members(summary) +
+          Generations(summary) +
+          (summary.archive.axes.empty() ? Members(summary) : ArchiveText(summary, context)) +
           DistinctFailuresText(summary.confirmations, context.program);
 
   std::vector<std::vector<std::string>> first;

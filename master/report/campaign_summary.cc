@@ -190,6 +190,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
 
   summary.progress = search.Progress();
   summary.statistics = search.Statistics();
+  summary.archive = search.Archive();
   summary.statistics.insert(summary.statistics.begin(),
                             {"distinct_individuals", static_cast<double>(summary.distinct_individuals)});
 

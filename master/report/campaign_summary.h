@@ -75,6 +75,7 @@ struct CampaignSummary {
   std::vector<std::pair<std::string, double>> statistics;  // of the search itself
   std::vector<GenerationSummary> generations;
   std::vector<PopulationMember> population;
+  ArchiveView archive = {};  // without axes when the search keeps none
   std::string state_hash;
   std::uint64_t nondeterministic = 0;  // second results of a spec that differed from the first
   std::uint64_t lone_verdicts = 0;     // runs that were given up on the word of a single worker

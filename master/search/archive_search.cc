@@ -75,11 +75,11 @@ ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::Scenar
       failing_(scenario.failing),
       requirements_(setup.requirements),
       way_{setup.requirements.start, setup.requirements.goal},
-      archive_(scenario.axes),
+      archive_(scenario.descriptor_axes),
       slots_(static_cast<std::size_t>(Get(setup.experiment, kSlots))) {
-  places_ = scenario.failure_place && scenario.axes.size() == 2 &&
-            scenario.axes[0].metric == scenario.failure_place->x &&
-            scenario.axes[1].metric == scenario.failure_place->y;
+  places_ = scenario.failure_place && scenario.descriptor_axes.size() == 2 &&
+            scenario.descriptor_axes[0].metric == scenario.failure_place->x &&
+            scenario.descriptor_axes[1].metric == scenario.failure_place->y;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     BeginAnew(slots_[i]);
     waiting_.push_back(i);
@@ -89,7 +89,7 @@ ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::Scenar
 Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& setup) {
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(setup.experiment.scenario);
   GAUNTLET_CHECK(scenario != nullptr, setup.experiment.scenario);
-  if (scenario->axes.empty()) {
+  if (scenario->descriptor_axes.empty()) {
     return InvalidInput(
         fmt::format("scenario {} does not say along which metrics its failures differ, which "
                     "search.algorithm = \"archive\" needs",
@@ -147,6 +147,19 @@ std::vector<std::pair<std::string, double>> ArchiveSearch::Statistics() const {
     statistics.emplace_back(fmt::format("{}_elites", name), static_cast<double>(accounts_[i].elites));
   }
   return statistics;
+}
+
+ArchiveView ArchiveSearch::Archive() const {
+  ArchiveView view;
+  for (const controllers::DescriptorAxis& axis : archive_.grid().axes()) {
+    view.axes.push_back({std::string(axis.metric), axis.min, axis.max, axis.parts});
+  }
+  for (const auto& [cell, shelf] : archive_.shelves()) {
+    const Finding& elite = shelf.front();
+    view.failures.push_back({archive_.grid().PartsOf(cell), elite.Middle(), elite.individual.id,
+                             elite.tally.failures, elite.tally.runs()});
+  }
+  return view;
 }
 
 void ArchiveSearch::Count(const EvaluationOutcome& outcome, Finding& finding) const {
@@ -260,7 +273,7 @@ void ArchiveSearch::BeginAnew(Slot& slot) {
 void ArchiveSearch::BeginRandom(Slot& slot, sim::RandomStream& random) {
   std::optional<sim::TestCase> best;
   double most = -1.0;
-  const int draws = places_ ? kDraws : 1;
+  const int draws = places_ && !archive_.shelves().empty() ? kDraws : 1;
   for (int drawn = 0; drawn < draws;) {
     Result<sim::TestCase> test_case = generator_.RandomTestCase(random);
     if (!test_case.ok()) continue;  // Create has found that there are some

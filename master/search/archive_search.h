@@ -50,6 +50,7 @@ class ArchiveSearch : public PopulationSearch {
   bool WantsMetrics() const override { return true; }
   SearchProgress Progress() const override;
   std::vector<std::pair<std::string, double>> Statistics() const override;
+  ArchiveView Archive() const override;
   // After every kSaveInterval outcomes, and at the end. What was asked and not told is part of the state.
   bool AtBoundary() const override;
 

@@ -62,6 +62,26 @@ struct Individual {
   double fitness = 0.0;  // aggregated over the evaluations; lower = tougher; +infinity before the first
 };
 
+// What a search keeps of one kind of failure.
+struct ArchivedFailure {
+  std::vector<int> cell;       // part of each axis, from 0
+  std::vector<double> middle;  // median of each axis' metric over its failures
+  IndividualId individual = 0;
+  int failures = 0;
+  int runs = 0;  // with a result; they took part in choosing it
+};
+struct ArchiveAxis {
+  std::string metric;
+  double min = 0.0;
+  double max = 0.0;
+  int parts = 1;
+};
+// The cells of a grid over the kinds of failure that hold something, row by row.
+struct ArchiveView {
+  std::vector<ArchiveAxis> axes;  // none: the search keeps no archive
+  std::vector<ArchivedFailure> failures;
+};
+
 struct SearchProgress {
   std::uint32_t generation = 0;   // the one being evaluated, or the last when finished
   std::uint32_t generations = 0;  // planned; 1 for searches without generations
@@ -90,6 +110,7 @@ class SearchAlgorithm {
   virtual SearchProgress Progress() const = 0;
   // The current population, in a fixed order (all cases told so far for searches without survivors).
   virtual const std::vector<Individual>& Population() const = 0;
+  virtual ArchiveView Archive() const { return {}; }
   // Individuals born since the last call, so that they can be stored once.
   virtual std::vector<Individual> TakeNewborns() = 0;
   // A figure or two of the search itself, e.g. {"clone_rate", 0.61}.

@@ -84,6 +84,15 @@ SmallCampaign SmallSteadyState() {
   return campaign;
 }
 
+SmallCampaign SmallArchive() {
+  SmallCampaign campaign;
+  campaign.name = "archive";
+  campaign.population = campaign.generations = 0;
+  campaign.settings = {"search.algorithm=archive", "search.slots=6",
+                       kSanitized ? "search.runs=60" : "search.runs=300"};
+  return campaign;
+}
+
 SmallCampaign SmallRandom() {
   SmallCampaign campaign;
   campaign.name = "random";

@@ -50,6 +50,8 @@ SmallCampaign SmallForaging();
 SmallCampaign SmallPartitioning();
 // Flocking searched steadily, without generations.
 SmallCampaign SmallSteadyState();
+// Flocking searched for many different failures.
+SmallCampaign SmallArchive();
 // Random cases of flocking, so many short runs that states are saved on the way.
 SmallCampaign SmallRandom();
 // A given case with many replicates.

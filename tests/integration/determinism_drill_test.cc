@@ -14,7 +14,8 @@ class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {};
 
 INSTANTIATE_TEST_SUITE_P(Experiments, DeterminismDrill,
                          testing::Values(SmallCampaign{}, SmallForaging(), SmallPartitioning(),
-                                         SmallSteadyState(), SmallRandom(), SmallEvaluation()),
+                                         SmallSteadyState(), SmallArchive(), SmallRandom(),
+                                         SmallEvaluation()),
                          [](const testing::TestParamInfo<SmallCampaign>& parameter) {
                            return parameter.param.name;
                          });

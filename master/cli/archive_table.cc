@@ -1,0 +1,134 @@
+#include "master/cli/archive_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "analysis/statistics/proportions.h"
+#include "base/check.h"
+#include "base/shell_quoted.h"
+#include "master/cli/table.h"
+
+namespace gauntlet::master {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kConfidence = 0.95;
+
+const PopulationMember& MemberOf(const CampaignSummary& summary, const ArchivedFailure& failure) {
+  const auto member = std::ranges::find(summary.population, failure.individual, &PopulationMember::id);
+  GAUNTLET_CHECK(member != summary.population.end(), "every archived failure is in the population");
+  return *member;
+}
+
+double LengthOf(const sim::Genome& obstacles) {
+  double length = 0.0;
+  for (const sim::ObstacleGene& gene : obstacles) length += gene.length;
+  return length;
+}
+
+std::size_t CellsOf(const ArchiveView& archive) {
+  std::size_t cells = 1;
+  for (const ArchiveAxis& axis : archive.axes) cells *= static_cast<std::size_t>(axis.parts);
+  return cells;
+}
+
+// "-3 to -1.8"
+std::string RangeText(const ArchiveAxis& axis, int part) {
+  const double width = (axis.max - axis.min) / axis.parts;
+  return fmt::format("{:.4g} to {:.4g}", axis.min + part * width, axis.min + (part + 1) * width);
+}
+
+// The second axis upwards, the first one to the right.
+std::string Map(const CampaignSummary& summary) {
+  const ArchiveView& archive = summary.archive;
+  const ArchiveAxis& across = archive.axes[0];
+  const ArchiveAxis& up = archive.axes[1];
+  std::vector<std::string> head = {up.metric};
+  for (int x = 0; x < across.parts; ++x) head.push_back(">" + RangeText(across, x));
+  Table table(head);
+  for (int y = up.parts - 1; y >= 0; --y) {
+    std::vector<std::string> row = {RangeText(up, y)};
+    for (int x = 0; x < across.parts; ++x) {
+      const auto here = std::ranges::find(archive.failures, std::vector<int>{x, y}, &ArchivedFailure::cell);
+      row.push_back(
+          here == archive.failures.end() ? "." : fmt::format("{}", MemberOf(summary, *here).genome.size()));
+    }
+    table.AddRow(row);
+  }
+  return fmt::format("\nThe fewest obstacles that break the swarm, by {} (to the right) and {} (upwards)\n{}",
+                     across.metric, up.metric, table.ToText());
+}
+
+}  // namespace
+
+std::string ArchiveText(const CampaignSummary& summary, const HintContext& context) {
+  const ArchiveView& archive = summary.archive;
+  if (archive.axes.empty()) return {};
+  if (archive.failures.empty()) {
+    return "\nNothing fails reliably: no case that was tried failed in 3 of 3 or 4 of 5 runs.\n";
+  }
+  std::vector<ArchivedFailure> failures = archive.failures;
+  const auto size = [&](const ArchivedFailure& failure) {
+    const sim::Genome& obstacles = MemberOf(summary, failure).genome;
+    return std::pair(obstacles.size(), LengthOf(obstacles));
+  };
+  std::ranges::stable_sort(failures, {}, size);
+  std::vector<std::string> head = {">test case", ">obstacles", ">length [m]", ">failed"};
+  for (const ArchiveAxis& axis : archive.axes) head.push_back(">" + axis.metric);
+  head.insert(head.end(), {">run", ""});
+  Table table(head);
+  for (const ArchivedFailure& failure : failures) {
+    const PopulationMember& member = MemberOf(summary, failure);
+    const auto [obstacles, length] = size(failure);
+    std::vector<std::string> row = {fmt::format("{}", failure.individual), fmt::format("{}", obstacles),
+                                    fmt::format("{:.1f}", length),
+                                    fmt::format("{} of {}", failure.failures, failure.runs)};
+    for (const double value : failure.middle) row.push_back(fmt::format("{:.2f}", value));
+    const RunId run = member.runs.empty() ? 0 : member.runs.front();
+    row.push_back(fmt::format("{}", run));
+    row.push_back(fmt::format("{} replay {} {} --svg case-{}.svg", context.program,
+                              PastedPath(context.directory), run, failure.individual));
+    table.AddRow(row);
+  }
+  const std::string map = archive.axes.size() == 2 ? Map(summary) : "";
+  return map +
+         fmt::format("\n{} of {} cells hold a failure; the smallest of each, fewest obstacles first\n",
+                     archive.failures.size(), CellsOf(archive)) +
+         table.ToText() +
+         "  The runs that failed took part in choosing these cases; `gauntlet confirm` simulates them "
+         "anew.\n";
+}
+
+Json ArchiveJson(const CampaignSummary& summary) {
+  const ArchiveView& archive = summary.archive;
+  if (archive.axes.empty()) return {};
+  Json descriptors = Json::array();
+  for (const ArchiveAxis& axis : archive.axes) {
+    descriptors.push_back(
+        {{"metric", axis.metric}, {"min", axis.min}, {"max", axis.max}, {"parts", axis.parts}});
+  }
+  Json elites = Json::array();
+  for (const ArchivedFailure& failure : archive.failures) {
+    const PopulationMember& member = MemberOf(summary, failure);
+    const auto interval = analysis::WilsonInterval(static_cast<std::uint32_t>(failure.failures),
+                                                   static_cast<std::uint32_t>(failure.runs), kConfidence);
+    elites.push_back({{"cell", failure.cell},
+                      {"individual", failure.individual},
+                      {"obstacles", member.genome.size()},
+                      {"length", LengthOf(member.genome)},
+                      {"k", failure.failures},
+                      {"n", failure.runs},
+                      {"interval", {interval.low, interval.high}},
+                      {"middle", failure.middle},
+                      {"run", member.runs.empty() ? Json() : Json(member.runs.front())}});
+  }
+  return {{"descriptors", std::move(descriptors)},
+          {"cells", CellsOf(archive)},
+          {"filled", archive.failures.size()},
+          {"elites", std::move(elites)}};
+}
+
+}  // namespace gauntlet::master
