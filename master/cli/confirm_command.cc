@@ -21,13 +21,22 @@ struct ConfirmOptions : RunningOptions {
   std::string directory;
   std::vector<std::string> cases;
   bool all_failing = false;
+  bool elites = false;
   std::string replicates;
 };
 
 // The cases that are asked about: runs by their numbers, and files.
 Result<QuestionedCampaign> CasesOf(const ConfirmOptions& options) {
-  if (options.cases.empty() != options.all_failing) {
-    return InvalidInput("which cases? Either RUN_ID or FILE..., or --all-failing");
+  if (int{!options.cases.empty()} + int{options.all_failing} + int{options.elites} != 1) {
+    return InvalidInput("which cases? Either RUN_ID or FILE..., or --all-failing, or --elites");
+  }
+  if (options.elites) {
+    Result<QuestionedCampaign> elites = PopulationCases(options.directory);
+    if (elites && elites->cases.empty())
+      return InvalidInput(fmt::format(
+          "{}: its search has found nothing that is worth keeping, so there is no case to confirm",
+          options.directory));
+    return elites;
   }
   if (options.all_failing) {
     Result<QuestionedCampaign> failing = FailingCases(options.directory);
@@ -94,6 +103,8 @@ void AddConfirm(CommandParser& parser) {
   AddDirectory(command, options.directory);
   command.add_option("CASE", options.cases, "runs of the campaign whose cases are meant, or case files");
   command.add_flag("--all-failing", options.all_failing, "every case of the campaign that has failed once");
+  command.add_flag("--elites", options.elites,
+                   "the cases that the search has ended with: its population, or the elites of an archive");
   AddValue(command, "--replicates", "N", options.replicates,
            "exactly N runs per case, for a narrower interval");
   AddRunningOptions(command, options);
@@ -109,6 +120,7 @@ that is known already is not simulated again. After Ctrl-C the same command goes
 Examples:
   gauntlet confirm DIR 812
   gauntlet confirm DIR --all-failing --json
+  gauntlet confirm DIR --elites
   gauntlet confirm DIR 812 817 --replicates 100
   gauntlet confirm DIR my-case.json)");
 }

@@ -28,6 +28,32 @@ Result<CaseInQuestion> CaseOfRun(ResultStore& store, RunId id, const std::string
   return CaseInQuestion{fmt::format("{}{}", kOfRun, id), (*run)->search - 1, std::move(spec->test_case)};
 }
 
+// Every different case of a subset, named by its first run in it.
+Result<QuestionedCampaign> CasesOfSubset(const std::string& dir, const std::string& subset,
+                                         bool only_failing) {
+  const Result<OpenedSubset> opened = OpenSubset({dir, subset});
+  if (!opened) return opened.error();
+  ResultStore& store = *opened->campaign.store;
+  QuestionedCampaign questioned{opened->plans, {}};
+  const auto add = [&](const SubsetSearch& search) -> Status {
+    const std::string failing(FailingOf(search.experiment.scenario));
+    const Result<std::vector<SelectedRun>> runs = SelectRuns(search, store, opened->subset, failing);
+    if (!runs) return runs.error();
+    std::set<IndividualId> individuals;
+    std::set<std::uint64_t> cases;
+    for (const SelectedRun& run : *runs) {
+      if ((only_failing && run.value != 1.0) || !individuals.insert(run.individual).second) continue;
+      Result<CaseInQuestion> one = CaseOfRun(store, run.run, dir);
+      if (!one) return one.error();
+      if (cases.insert(CaseHash(one->test_case)).second) questioned.cases.push_back(*std::move(one));
+    }
+    return Ok{};
+  };
+  if (Status visited = ForEachSearch(opened->plans, store, dir, opened->subset, add); !visited)
+    return visited.error();
+  return questioned;
+}
+
 }  // namespace
 
 Result<QuestionedCampaign> CasesOfRuns(const std::string& dir, const std::vector<RunId>& runs) {
@@ -45,27 +71,11 @@ Result<QuestionedCampaign> CasesOfRuns(const std::string& dir, const std::vector
 }
 
 Result<QuestionedCampaign> FailingCases(const std::string& dir) {
-  const Result<OpenedSubset> opened = OpenSubset({dir, "all"});
-  if (!opened) return opened.error();
-  ResultStore& store = *opened->campaign.store;
-  QuestionedCampaign questioned{opened->plans, {}};
-  const auto add = [&](const SubsetSearch& search) -> Status {
-    const std::string failing(FailingOf(search.experiment.scenario));
-    const Result<std::vector<SelectedRun>> runs = SelectRuns(search, store, opened->subset, failing);
-    if (!runs) return runs.error();
-    std::set<IndividualId> individuals;
-    std::set<std::uint64_t> cases;
-    for (const SelectedRun& run : *runs) {
-      if (run.value != 1.0 || !individuals.insert(run.individual).second) continue;
-      Result<CaseInQuestion> one = CaseOfRun(store, run.run, dir);
-      if (!one) return one.error();
-      if (cases.insert(CaseHash(one->test_case)).second) questioned.cases.push_back(*std::move(one));
-    }
-    return Ok{};
-  };
-  if (Status visited = ForEachSearch(opened->plans, store, dir, opened->subset, add); !visited)
-    return visited.error();
-  return questioned;
+  return CasesOfSubset(dir, "all", /*only_failing=*/true);
+}
+
+Result<QuestionedCampaign> PopulationCases(const std::string& dir) {
+  return CasesOfSubset(dir, "final", /*only_failing=*/false);
 }
 
 RunId RunOfName(const std::string& name) {

@@ -31,6 +31,9 @@ Result<QuestionedCampaign> CasesOfRuns(const std::string& dir, const std::vector
 // Every different case with a run that failed (controllers::ScenarioInfo::failing), named by the first.
 Result<QuestionedCampaign> FailingCases(const std::string& dir);
 
+// Every different case of the population as it stands: of an archive search, its elites.
+Result<QuestionedCampaign> PopulationCases(const std::string& dir);
+
 // The run that the case is one of, by its name; 0 when it came from a file.
 RunId RunOfName(const std::string& name);
 // The same for the same case under the same experiment, whatever it is called. `about` asks about the case.

@@ -391,7 +391,7 @@ TEST(CommandLineTest, NextCommandsCanBePastedAsTheyStand) {
     EXPECT_EQ(pasted.exit_code, 0) << line << "\n" << pasted.err;
     ++commands;
   }
-  EXPECT_EQ(commands, 2);
+  EXPECT_EQ(commands, 3);
 }
 
 TEST(CommandLineTest, ATreeThatWasMovedHasItsOwnExperiments) {

@@ -71,6 +71,22 @@ TEST(ConfirmTest, TheSameForAnyNumberOfWorkersAndTheCampaignStaysAsItWas) {
               HasSubstr(std::to_string(after["distinct_failures"].size()) + " distinct failure"));
 }
 
+TEST(ConfirmTest, TheElitesOfAnArchiveFailAgain) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "archive";
+  const nlohmann::json found = Json({"evolve", "flocking", "--set", "search.algorithm=archive", "--set",
+                                     "search.runs=400", "--dir", dir, "--json", "--quiet"});
+  const nlohmann::json& elites = found["archive"]["elites"];
+  ASSERT_GE(elites.size(), 3U);
+  EXPECT_EQ(elites.size(), found["archive"]["filled"]);
+  std::size_t confirmed = 0;
+  const nlohmann::json cases = Json({"confirm", dir, "--elites", "--json", "--quiet"})["cases"];
+  EXPECT_EQ(cases.size(), elites.size());
+  for (const nlohmann::json& one : cases) confirmed += one["verdict"] == "fail" ? 1 : 0;
+  EXPECT_GE(10 * confirmed, 7 * cases.size()) << "they were chosen for failing 3 of 3 or 4 of 5 times";
+  EXPECT_THAT(Gauntlet({"show", dir}).out, HasSubstr("The fewest obstacles that break the swarm"));
+}
+
 TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
   const TemporaryDirectory scratch;
   MakeCampaign(scratch / "c");
