@@ -176,7 +176,8 @@ Result<std::vector<std::string>> JoinSets(const std::vector<std::string>& sets,
       if (!all[j].starts_with(key + "=") || all[j] == one) continue;
       const std::string other =
           j < sets.size() ? fmt::format("--set {}", all[j]) : extra[j - sets.size()].AsTyped();
-      return InvalidInput(fmt::format("{}: {} already says {}; give one of them", other, option, one));
+      const std::string_view name = std::string_view(option).substr(0, option.find('='));
+      return InvalidInput(fmt::format("{}: {} already says {}; give one of them", other, name, one));
     }
     all.push_back(one);
   }
