@@ -47,6 +47,8 @@ void AddReplay(CommandParser& parser);
 void AddConfirm(CommandParser& parser);
 void AddMinimise(CommandParser& parser);
 void AddBlame(CommandParser& parser);
+void AddCorpus(CommandParser& parser);
+void AddCheck(CommandParser& parser);
 void AddCompare(CommandParser& parser);
 void AddReport(CommandParser& parser);
 void AddFigure(CommandParser& parser);
@@ -62,8 +64,8 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve,   AddRandom, AddEvaluate, AddResume, AddShow,  AddReplay, AddConfirm,
-    AddMinimise, AddBlame,  AddCompare,  AddStudy,  AddTune,  AddReport, AddFigure,
-    AddExport,   AddSubmit, AddMaster,   AddStatus, AddWatch, AddStop,   AddList};
+    AddEvolve, AddRandom, AddEvaluate, AddResume,  AddShow,  AddReplay, AddConfirm, AddMinimise,
+    AddBlame,  AddCorpus, AddCheck,    AddCompare, AddStudy, AddTune,   AddReport,  AddFigure,
+    AddExport, AddSubmit, AddMaster,   AddStatus,  AddWatch, AddStop,   AddList};
 
 }  // namespace gauntlet::master

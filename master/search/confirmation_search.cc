@@ -30,6 +30,13 @@ Experiment ConfirmationOf(const Experiment& experiment, int replicates) {
   return confirmation;
 }
 
+Experiment CheckOf(const Experiment& experiment) {
+  Experiment check = ConfirmationOf(experiment, 0);
+  check.search.algorithm = "check";
+  check.search.parameters.clear();
+  return check;
+}
+
 ConfirmationSearch::ConfirmationSearch(const SearchSetup& setup)
     : PopulationSearch(setup),
       failing_(FailingOf(setup.experiment.scenario)),
@@ -107,6 +114,18 @@ SearchRow ConfirmationRow() {
           .given_cases = true,
           .command = "confirm",
           .seeds_of_cases = true};
+}
+
+SearchRow CheckRow() {
+  SearchRow row = ConfirmationRow();
+  row.info.name = "check";
+  row.info.parameters = {};
+  row.info.description = "whether the cases of a corpus still fail: gauntlet check";
+  row.number = 7;
+  row.title = "check of a corpus";
+  row.purpose = sim::SeedPurpose::kCheck;
+  row.command = "check";
+  return row;
 }
 
 }  // namespace gauntlet::master

@@ -46,4 +46,8 @@ int ConfirmationReplicates(const Experiment& experiment);
 Experiment ConfirmationOf(const Experiment& experiment, int replicates);
 SearchRow ConfirmationRow();
 
+// The same question of the cases of a corpus, with seeds of its own: `gauntlet check`.
+Experiment CheckOf(const Experiment& experiment);
+SearchRow CheckRow();
+
 }  // namespace gauntlet::master

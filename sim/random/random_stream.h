@@ -57,6 +57,7 @@ enum class SeedPurpose : std::uint32_t {
   kEvaluate = 5,
   kMinimise = 6,
   kBlame = 7,
+  kCheck = 8,
 };
 
 // The seed of one run. Seeds are derived, never drawn in order, so any run can be repeated alone.
