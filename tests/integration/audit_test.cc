@@ -19,7 +19,8 @@ TEST(AuditTest, ComparesRunsAndLeavesTheStateAlone) {
   ASSERT_EQ(Gauntlet(plain).exit_code, 0);
   const ProcessResult result = Gauntlet(audited);
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.err, ContainsRegex("[1-9][0-9]* runs simulated on a second worker, all equal"));
+  // On a crowded machine the second worker may come late: then some are repeated on the only one.
+  EXPECT_THAT(result.err, ContainsRegex("[1-9][0-9]* runs simulated on a second worker,.* all equal"));
   EXPECT_EQ(StateHash(scratch / "audited"), StateHash(scratch / "plain"));
 }
 
