@@ -1,5 +1,5 @@
 // How an archive search is saved and restored.
-#include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -11,9 +11,11 @@
 namespace gauntlet::master {
 namespace {
 
-// Of what is no emitter: the last one, which the caller's checks of the rest make harmless.
-Emitter RestoreEmitter(CanonicalDecoder& decoder) {
-  return static_cast<Emitter>(std::min<std::uint64_t>(decoder.Uint(), kEmitters - 1));
+// Nothing: the number is no emitter's.
+std::optional<Emitter> RestoreEmitter(CanonicalDecoder& decoder) {
+  const std::uint64_t number = decoder.Uint();
+  if (number >= kEmitters) return std::nullopt;
+  return static_cast<Emitter>(number);
 }
 
 }  // namespace
@@ -63,7 +65,9 @@ void ArchiveSearch::SaveSlot(const Slot& slot, CanonicalEncoder& encoder) {
 Status ArchiveSearch::RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const {
   slot.plan.clear();
   slot.root.reset();
-  slot.emitter = RestoreEmitter(decoder);
+  const std::optional<Emitter> emitter = RestoreEmitter(decoder);
+  if (!emitter) return Damaged("a layout comes from nowhere");
+  slot.emitter = *emitter;
   slot.cell = decoder.Uint();
   slot.parent = decoder.Uint();
   Result<Finding> finding = RestoreFinding(decoder);
@@ -75,8 +79,9 @@ Status ArchiveSearch::RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const {
     slot.root = *std::move(root);
   }
   for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
-    const Emitter emitter = RestoreEmitter(decoder);
-    slot.plan.push_back({emitter, sim::DecodeGenome(decoder)});
+    const std::optional<Emitter> planned = RestoreEmitter(decoder);
+    if (!planned) return Damaged("a planned layout comes from nowhere");
+    slot.plan.push_back({*planned, sim::DecodeGenome(decoder)});
   }
   return Ok{};
 }
