@@ -3,6 +3,7 @@
 // row.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -32,6 +33,8 @@ struct Lamp {
 // scenario does not have stays as it is here.
 struct ControllerContext {
   sim::RobotIndex robot = 0;         // its own number
+  std::uint64_t seed = 0;            // of the run: for generators that are not the robot's RandomStream
+  sim::Pose start = {};              // its own, in the arena
   double communication_range = 0.0;  // m, of range-and-bearing
   double pickup_distance = 0.0;      // m from the source's centre to its own, where it gets an item
   Lamp nest_lamp = {};               // above the nest
@@ -58,12 +61,19 @@ struct ControllerFactory {
   Status Check(const sim::Arena& arena) const { return check ? check(arena) : Ok{}; }
 };
 
+// Stands for the scenario of a controller that is written for none in particular.
+inline constexpr std::string_view kAnyScenario = "any";
+
 struct ControllerInfo {
   std::string_view name;
-  std::string_view scenario;  // the scenario it is written for
+  std::string_view scenario;  // the scenario it is written for, or kAnyScenario
   std::string_view description;
   std::span<const ParameterInfo> parameters;
   std::function<ControllerFactory(const sim::Parameters& resolved)> make;
+
+  bool WrittenFor(std::string_view name_of_scenario) const {
+    return scenario == name_of_scenario || scenario == kAnyScenario;
+  }
 };
 
 // A row whose controller gets its settings from a table, which outlives the row.

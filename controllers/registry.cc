@@ -94,7 +94,7 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
   if (scenario == nullptr) return InvalidInput(UnknownName("scenario", spec.scenario, Scenarios()));
   const ControllerInfo* controller = FindController(spec.controller);
   if (controller == nullptr) return InvalidInput(UnknownName("controller", spec.controller, Controllers()));
-  if (controller->scenario != scenario->name) {
+  if (!controller->WrittenFor(scenario->name)) {
     std::string message = "controller '";
     message.append(spec.controller).append("' is written for the scenario '").append(controller->scenario);
     return InvalidInput(message.append("', not for '").append(spec.scenario).append("'"));
@@ -112,7 +112,12 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
   if (const auto violation = sim::CheckValidity(spec.test_case, requirements)) {
     return InvalidInput(std::string(NameOf(violation->rule)).append(": ").append(violation->message));
   }
-  return scenario->create(resolved, controller->make(resolved.controller_parameters));
+  ControllerFactory factory = controller->make(resolved.controller_parameters);
+  factory.create = [create = std::move(factory.create), seed = spec.seed](ControllerContext context) {
+    context.seed = seed;
+    return create(context);
+  };
+  return scenario->create(resolved, std::move(factory));
 }
 
 Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {

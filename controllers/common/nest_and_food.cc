@@ -144,6 +144,7 @@ Status NestAndFoodScenario::CheckSite(std::string_view food) const {
 }
 
 sim::RobotSetup NestAndFoodScenario::SetUp(const sim::Pose& pose, ControllerContext context) const {
+  context.start = pose;
   context.communication_range = site_.communication_range;
   context.pickup_distance = site_.pickup_distance;
   sim::RobotSetup robot;

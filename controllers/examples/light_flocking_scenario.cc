@@ -65,7 +65,7 @@ Result<std::vector<sim::RobotSetup>> LightFlockingScenario::CreateSwarm(const si
     swarm.push_back({.pose = pose,
                      .beacon = kFlockmateColor,
                      .camera_range = settings_.camera_range,
-                     .controller = robots_.create({.robot = robot})});
+                     .controller = robots_.create({.robot = robot, .start = pose})});
   }
   return swarm;
 }

@@ -74,7 +74,8 @@ Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::He
   swarm.reserve(static_cast<std::size_t>(settings_.birds) + 1);
   for (const sim::Pose& pose : *poses) {
     const auto bird = static_cast<sim::RobotIndex>(swarm.size());
-    swarm.push_back({pose, kBirdColor, settings_.camera_range, birds_.create({.robot = bird})});
+    swarm.push_back(
+        {pose, kBirdColor, settings_.camera_range, birds_.create({.robot = bird, .start = pose})});
   }
   const sim::Pose prey_pose{start_, sim::AngleOf(goal_ - start_)};
   swarm.push_back({prey_pose, kPreyColor, 0.0,

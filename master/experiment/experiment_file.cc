@@ -214,7 +214,7 @@ class Reader {
           fmt::format("{}: {}", PlaceOf("controller"),
                       UnknownName("controller", experiment_.controller, catalogue_.controllers)));
     }
-    if (controller->scenario != scenario->name) {
+    if (!controller->WrittenFor(scenario->name)) {
       return InvalidInput(fmt::format("{}: controller '{}' is written for the scenario '{}', not for '{}'",
                                       PlaceOf("controller"), controller->name, controller->scenario,
                                       scenario->name));

@@ -77,6 +77,8 @@ const std::vector<Room>& House() {
        {"base"},
        kRunData + Prefixes{"sim/robot/", "sim/scenario.h", "sim/observer.h", "sim/run_style.h"},
        kTheOutsideWorld},
+      {"sdk", {}, {"controllers/behaviour.h", "sim/robot/controller.h"}, kTheOutsideWorld},
+      {"sdk/example", {"controllers", "sdk"}, {}, kTheOutsideWorld},
       {"proto", {"base", "base/system"}, kRunData + kSwarmData, {"zmq", "sqlite3", "box2d"}},
       {"worker",
        {"base", "base/system", "sim", "sim/geometry", "sim/random", "proto"},
