@@ -178,6 +178,7 @@ bool Loop::Tick() {
                   .actuators = actuators_,
                   .surroundings = scenario_,
                   .grippers = grippers_,
+                  .wheels = wheels_,
                   .moving_boxes = course_.boxes(),
                   .obstacle_lights = course_.lights(),
                   .disturber = disturber_ ? &*disturber_ : nullptr,

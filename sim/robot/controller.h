@@ -68,6 +68,8 @@ struct SensorReadings {
   std::span<const ScannerReading> scanner_short;  // 0 to 0.26 m; one ray in the other's back
   std::span<const ScannerReading> scanner_long;   // 0.12 to 1.42 m; across the short ones
   bool holding_item = false;                      // the gripper has something in it
+  Pose pose;                                      // positioning: the robot's own, in the world
+  WheelSpeeds wheels;  // wheel encoders: in effect in this tick, also of a robot that is blocked
 };
 
 // How the distance scanner is driven. Off, it reads nothing.

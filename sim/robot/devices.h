@@ -23,6 +23,8 @@ enum class Device : std::uint8_t {
   kBaseGround,
   kDistanceScanner,
   kGripper,
+  kPositioning,
+  kWheelEncoders,
 };
 
 // Everything that is said of a device. The errors are those of ARGoS where ARGoS has them.
@@ -51,6 +53,8 @@ inline constexpr auto kDevices = std::to_array<DeviceInfo>({
      "", 1.0},
     {Device::kDistanceScanner, "distance_scanner", "of each distance that is read", "m", 1.0},
     {Device::kGripper, "gripper"},
+    {Device::kPositioning, "positioning"},
+    {Device::kWheelEncoders, "wheel_encoders"},
 });
 
 constexpr std::size_t IndexOf(Device device) {

@@ -23,6 +23,7 @@ struct World {
   std::span<const Actuators> actuators;  // as in action
   const Surroundings& surroundings;
   const Grippers& grippers;
+  std::span<const WheelSpeeds> wheels = {};        // in effect; of each robot, or empty: nobody drives
   std::span<const OrientedBox> moving_boxes = {};  // as many as the arena has moving obstacles
   std::span<const Light> obstacle_lights = {};
   const Disturber* disturber = nullptr;       // of the run, when something is disturbed
@@ -73,5 +74,7 @@ MakeSensor MakeLightSensors;
 MakeSensor MakeMotorGroundSensors;
 MakeSensor MakeBaseGroundSensors;
 MakeSensor MakeDistanceScanners;
+MakeSensor MakePositioningSensors;
+MakeSensor MakeWheelEncoders;
 
 }  // namespace gauntlet::sim

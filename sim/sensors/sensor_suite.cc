@@ -32,6 +32,7 @@ constexpr SensorKind kSensorKinds[] = {
     {Device::kProximity, MakeProximityRings},          {Device::kLight, MakeLightSensors},
     {Device::kMotorGround, MakeMotorGroundSensors},    {Device::kBaseGround, MakeBaseGroundSensors},
     {Device::kDistanceScanner, MakeDistanceScanners},  {Device::kGripper, MakeGripperSensor},
+    {Device::kPositioning, MakePositioningSensors},    {Device::kWheelEncoders, MakeWheelEncoders},
 };
 
 }  // namespace

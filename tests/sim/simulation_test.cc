@@ -71,6 +71,36 @@ TEST(Simulation, RobotsHaveOnlyTheDevicesTheyAskFor) {
   EXPECT_EQ(blobs, 1u);
 }
 
+TEST(Simulation, RobotsWithPositioningAndEncodersKnowTheirPoseAndTheirWheels) {
+  std::vector<Pose> poses;
+  std::vector<double> left_wheel;
+  ToyRobot blocked = RobotAt(2.86, 0.5, [&](const ControlStep& step) {
+    poses.push_back(step.readings.pose);
+    left_wheel.push_back(step.readings.wheels.left);
+    step.actuators.left_wheel = 0.1 * step.tick;
+    step.actuators.right_wheel = 0.1;
+  });
+  blocked.devices = Device::kWheels | Device::kPositioning | Device::kWheelEncoders;
+  ToyScenario scenario(TestCase{}, {blocked}, 3);
+  const RunResult result = Simulate(scenario, 1, true);
+  ASSERT_EQ(poses.size(), 3u);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const RobotState& state = result.trajectory[i + 1][0];
+    EXPECT_EQ(poses[i].position, state.position());
+    EXPECT_EQ(poses[i].heading, state.heading);
+  }
+  EXPECT_NE(poses[2].heading, 0.0);
+  EXPECT_EQ(left_wheel, (std::vector<double>{0.0, 0.1, 0.2}));  // as commanded in the tick before
+}
+
+TEST(Simulation, RobotsWithoutPositioningDoNotKnowTheirPose) {
+  Pose pose;
+  ToyScenario scenario(TestCase{},
+                       {RobotAt(1, 1, [&](const ControlStep& step) { pose = step.readings.pose; })}, 1);
+  Simulate(scenario, 1, false);
+  EXPECT_EQ(pose.position, Vec2::Zero());
+}
+
 TEST(Simulation, EndsWhenTheScenarioSaysSo) {
   ToyScenario scenario(TestCase{}, {RobotAt(0, 0, DriveStraight(0.1))}, 1000);
   scenario.finished = [](const Observer& observer) { return observer.Latest()[0].x > 0.1; };
