@@ -2,12 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <filesystem>
 
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/campaign_driver.h"
+#include "tests/integration/question_drill.h"
 #include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
@@ -62,20 +62,9 @@ TEST(BlameTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
   MakeCampaign(scratch / "one");
   std::filesystem::copy(scratch / "one", scratch / "killed", std::filesystem::copy_options::recursive);
   const nlohmann::json one = Found(BlameTrap(scratch / "one", 1));
-  for (const char* sign : {"status.json", "campaign.db-wal"}) {
-    const std::unique_ptr<Process> master = StartGauntlet(BlameTrap(scratch / "killed", 2));
-    const auto begun = [&] {
-      std::error_code none;
-      for (const auto& call : std::filesystem::directory_iterator(scratch / "killed/blame", none)) {
-        if (std::filesystem::exists(call.path() / sign, none)) return true;
-      }
-      return false;
-    };
-    EXPECT_TRUE(Eventually(begun, kPatience));
-    master->Signal(SIGKILL);
-    master->Wait();
-  }
+  AskThroughKills(BlameTrap(scratch / "killed", 2), scratch / "killed/blame", 3);
   EXPECT_EQ(Found(BlameTrap(scratch / "killed", 3)), one);
+  EXPECT_EQ(StateHashesIn(scratch / "killed/blame"), StateHashesIn(scratch / "one/blame"));
 }
 
 TEST(BlameTest, SaysWhatIsWrong) {

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/campaign_driver.h"
+#include "tests/integration/question_drill.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -108,21 +108,11 @@ TEST_F(CheckTest, AnotherControllerIsCheckedAndTakenOver) {
 
 TEST_F(CheckTest, EndsAsUndisturbedWhenItIsKilled) {
   const nlohmann::json whole = CheckJson();
+  const std::vector<std::string> hashes = StateHashesIn(corpus_ + "/.check");
   std::filesystem::remove_all(corpus_ + "/.check");
-  for (const char* entry : {"status.json", "campaign.db-wal"}) {
-    const std::unique_ptr<Process> master = StartGauntlet({"check", corpus_, "--workers", "1", "--quiet"});
-    const auto begun = [&] {
-      std::error_code none;
-      for (const auto& call : std::filesystem::directory_iterator(corpus_ + "/.check", none)) {
-        if (std::filesystem::exists(call.path() / entry, none)) return true;
-      }
-      return false;
-    };
-    EXPECT_TRUE(Eventually(begun, kPatience));
-    master->Signal(SIGKILL);
-    master->Wait();
-  }
+  AskThroughKills({"check", corpus_, "--workers", "1", "--quiet"}, corpus_ + "/.check", 3);
   EXPECT_EQ(CheckJson(), whole);
+  EXPECT_EQ(StateHashesIn(corpus_ + "/.check"), hashes);
 }
 
 TEST_F(CheckTest, SaysWhatIsWrong) {

@@ -2,13 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <filesystem>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/campaign_driver.h"
+#include "tests/integration/question_drill.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -106,21 +106,10 @@ TEST(ConfirmTest, EndsAsUndisturbedWhenItIsKilled) {
   MakeCampaign(scratch / "whole");
   std::filesystem::copy(scratch / "whole", scratch / "killed", std::filesystem::copy_options::recursive);
   const nlohmann::json whole = Json(ConfirmAll(scratch / "whole", 2));
-  for (const auto& [entry, wanted] : {std::pair("status.json", 1), std::pair("campaign.db-wal", 2)}) {
-    const std::unique_ptr<Process> master = StartGauntlet(ConfirmAll(scratch / "killed", wanted));
-    const auto begun = [&] {
-      std::error_code none;
-      for (const auto& call : std::filesystem::directory_iterator(scratch / "killed/confirm", none)) {
-        if (std::filesystem::exists(call.path() / entry, none)) return true;
-      }
-      return false;
-    };
-    EXPECT_TRUE(Eventually(begun, kPatience));
-    Json({"show", scratch / "killed", "--json"});  // works meanwhile
-    master->Signal(SIGKILL);
-    master->Wait();
-  }
-  EXPECT_EQ(Json(ConfirmAll(scratch / "killed", 2)), whole);
+  const ProcessResult killed =
+      AskThroughKills(ConfirmAll(scratch / "killed", 2), scratch / "killed/confirm", 3);
+  EXPECT_EQ(nlohmann::json::parse(killed.out), whole) << killed.err;
+  EXPECT_EQ(StateHashesIn(scratch / "killed/confirm"), StateHashesIn(scratch / "whole/confirm"));
 }
 
 TEST(ConfirmTest, SaysWhatIsWrong) {

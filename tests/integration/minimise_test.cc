@@ -2,13 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <csignal>
 #include <filesystem>
 #include <fstream>
 
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/campaign_driver.h"
+#include "tests/integration/question_drill.h"
 #include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
@@ -50,10 +50,6 @@ nlohmann::json Found(const std::vector<std::string>& arguments) {
 
 std::string CallOf(const std::string& dir) {
   return std::filesystem::directory_iterator(dir + "/minimise")->path().string();
-}
-
-std::string StateHash(const std::string& dir) {
-  return nlohmann::json::parse(Gauntlet({"show", dir, "--json"}).out)["state_hash"];
 }
 
 std::string Write(const std::string& path, const nlohmann::json& document) {
@@ -107,22 +103,10 @@ TEST(MinimiseTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
     std::filesystem::copy(scratch / "one", scratch / copy, std::filesystem::copy_options::recursive);
   const nlohmann::json one = Found(Minimise(scratch / "one", failing, 1));
   EXPECT_EQ(Found(Minimise(scratch / "three", failing, 3)), one);
-  for (const char* sign : {"status.json", "campaign.db-wal"}) {
-    const std::unique_ptr<Process> master = StartGauntlet(Minimise(scratch / "killed", failing, 2));
-    const auto begun = [&] {
-      std::error_code none;
-      for (const auto& call : std::filesystem::directory_iterator(scratch / "killed/minimise", none)) {
-        if (std::filesystem::exists(call.path() / sign, none)) return true;
-      }
-      return false;
-    };
-    EXPECT_TRUE(Eventually(begun, kPatience));
-    master->Signal(SIGKILL);
-    master->Wait();
-  }
+  AskThroughKills(Minimise(scratch / "killed", failing, 2), scratch / "killed/minimise", 5);
   EXPECT_EQ(Found(Minimise(scratch / "killed", failing, 2)), one);
-  EXPECT_EQ(StateHash(CallOf(scratch / "killed")), StateHash(CallOf(scratch / "one")));
-  EXPECT_EQ(StateHash(CallOf(scratch / "three")), StateHash(CallOf(scratch / "one")));
+  for (const char* copy : {"three/minimise", "killed/minimise"})
+    EXPECT_EQ(StateHashesIn(scratch / copy), StateHashesIn(scratch / "one/minimise"));
   // Once it is known, nothing is simulated again.
   const ProcessResult again = Gauntlet({"minimise", scratch / "one", failing[0], failing[1], failing[2]});
   EXPECT_EQ(again.exit_code, 0);
