@@ -5,6 +5,7 @@
 
 #include "base/check.h"
 #include "master/cases/case_file.h"
+#include "master/cases/corpus_file.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 #include "proto/access_file.h"
@@ -68,6 +69,15 @@ void ReadCaseJson(std::string_view bytes) {
                  "a case does not survive:\n" + written);
 }
 
+void ReadCorpusCase(std::string_view bytes) {
+  const Result<master::CorpusCase> read = master::ParseCorpusCase(std::string(bytes), "case.json");
+  if (!read) return ExpectAGoodError(read);
+  const std::string written = master::WriteCorpusCase(*read);
+  const Result<master::CorpusCase> again = master::ParseCorpusCase(written, "again.json");
+  GAUNTLET_CHECK(again.ok() && master::WriteCorpusCase(*again) == written,
+                 "a case of a corpus does not survive:\n" + written);
+}
+
 void ReadArgos(std::string_view bytes) {
   const Result<master::LoadedCase> read = master::ParseArgos(std::string(bytes), "case.argos");
   if (!read) return ExpectAGoodError(read);
@@ -99,9 +109,10 @@ void ReadAccessFile(std::string_view bytes) {
 }  // namespace
 
 std::span<const Parser> Parsers() {
-  static const std::array<Parser, 6> parsers{{{"wire", ReadWire},
+  static const std::array<Parser, 7> parsers{{{"wire", ReadWire},
                                               {"run", ReadRun},
                                               {"case_json", ReadCaseJson},
+                                              {"corpus_case", ReadCorpusCase},
                                               {"argos", ReadArgos},
                                               {"experiment", ReadExperiment},
                                               {"access", ReadAccessFile}}};

@@ -12,11 +12,11 @@ import statistics
 import subprocess
 import tempfile
 
-# The experiment, and what a run must say to count as failing.
+# The experiment, what a run must say to count as failing, and so many random cases that enough of them fail often.
 BEHAVIOURS = {
-    "flocking": ("flocking", "total_failure"),
-    "partitioning": ("task-partitioning", "total_failure"),
-    "foraging": ("foraging", "condition_2"),
+    "flocking": ("flocking", "total_failure", 400),
+    "partitioning": ("task-partitioning", "total_failure", 400),
+    "foraging": ("foraging", "condition_2", 1600),
 }
 BARS = {"flocking": (3, 160), "partitioning": (3, 160), "foraging": (4, 300)}
 FRESH_RUNS = 20
@@ -67,12 +67,12 @@ def probability(program, experiment, case, failing, directory, seed):
 
 
 def measure(program, behaviour, seed, count, scratch):
-    experiment, failing = BEHAVIOURS[behaviour]
+    experiment, failing, random_cases = BEHAVIOURS[behaviour]
     rows = []
     for origin in ("random", "evolved"):
         campaign = scratch / f"{behaviour}-{origin}"
         if not campaign.exists():
-            length = ["random", experiment, "--cases", 400] if origin == "random" else ["evolve", experiment]
+            length = ["random", experiment, "--cases", random_cases] if origin == "random" else ["evolve", experiment]
             call(program, *length, "--seed", seed, "--dir", campaign)
         cases = confirmed(program, campaign, failing, count)
         if not cases:
