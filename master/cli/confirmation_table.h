@@ -7,7 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "master/report/confirmations.h"
+#include "master/report/campaign_summary.h"
 
 namespace gauntlet::master {
 
@@ -18,9 +18,10 @@ nlohmann::ordered_json ConfirmationsJson(const std::vector<Confirmation>& confir
 
 // "8 distinct failures (7 confirmed) ..." and a line for each of the `most` toughest, with a command that
 // shows it. "" when there is nothing to tell.
-std::string DistinctFailuresText(const std::vector<Confirmation>& confirmations, const std::string& program,
+std::string DistinctFailuresText(const CampaignSummary& summary, const std::string& program,
                                  std::size_t most = 20);
-// A list of {what, confirmed, k, n, interval, cases: [...], example: {campaign, run}}, in the same order.
-nlohmann::ordered_json DistinctFailuresJson(const std::vector<Confirmation>& confirmations);
+// A list of {what, confirmed, k, n, interval, cases: [...], example: {campaign, run}, smallest: {case,
+// obstacles, k, n, file}}, in the same order; smallest is null until one of the cases is minimised.
+nlohmann::ordered_json DistinctFailuresJson(const CampaignSummary& summary);
 
 }  // namespace gauntlet::master

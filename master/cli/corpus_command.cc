@@ -20,6 +20,7 @@
 #include "master/cli/output_file.h"
 #include "master/report/confirmations.h"
 #include "master/report/replayed_figure.h"
+#include "master/report/smallest_layouts.h"
 
 namespace gauntlet::master {
 namespace {
@@ -41,18 +42,6 @@ struct Keepsake {
   CorpusCase content;
   std::string picture;  // SVG
 };
-
-// The file of what `gauntlet minimise` has left of the run's case; "" when there is none.
-std::string MinimisedFile(const std::string& directory, RunId run) {
-  std::error_code none;
-  std::vector<std::string> found;
-  for (const fs::directory_entry& call : fs::directory_iterator(directory + "/minimise", none)) {
-    const fs::path file = call.path() / fmt::format("run-{}-minimised.json", run);
-    if (fs::exists(file, none)) found.push_back(file.string());
-  }
-  std::ranges::sort(found);
-  return found.empty() ? "" : found.back();
-}
 
 // The picture that `minimise` has drawn beside a case's file.
 Result<std::string> PictureBeside(const std::string& file) {
@@ -98,8 +87,10 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
   if (!questioned) return questioned.error();
   CaseInQuestion& one = questioned->cases.front();
   const Experiment& experiment = questioned->plans[one.search].experiment;
-  if (const std::string minimised = MinimisedFile(options.directory, run); !minimised.empty()) {
-    Result<Keepsake> kept = KeepsakeOfFile(options, minimised, experiment);
+  const Result<std::vector<SmallestLayout>> smallest = ReadSmallestLayouts(options.directory);
+  if (!smallest) return smallest.error();
+  if (const auto left = std::ranges::find(*smallest, run, &SmallestLayout::run); left != smallest->end()) {
+    Result<Keepsake> kept = KeepsakeOfFile(options, left->file, experiment);
     if (kept && options.name.empty()) kept->content.name = fmt::format("run-{}", run);
     return kept;
   }

@@ -17,6 +17,7 @@
 #include "master/cli/output_file.h"
 #include "master/cli/table.h"
 #include "master/report/minimisations.h"
+#include "master/report/smallest_layouts.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -49,14 +50,6 @@ std::string Remark(const Minimisation& one) {
       return one.Smaller() ? "" : "no smaller part of it fails as reliably";
   }
   return "";
-}
-
-// Where what is left is kept, without the ending.
-std::string FileOf(const std::string& directory, const Minimisation& one) {
-  std::string name = one.run > 0 ? one.name : std::filesystem::path(one.name).stem().string();
-  std::ranges::replace_if(
-      name, [](char c) { return c == ' ' || c == '/'; }, '-');
-  return fmt::format("{}/{}-minimised", directory, name);
 }
 
 analysis::LayoutStrip StripOf(const Minimisation& one) {
@@ -98,7 +91,7 @@ std::string TextOf(const CommandContext& context, const std::string& directory,
                   fmt::format("{:3.0f} to {:3.0f} %", 100.0 * one.interval.low, 100.0 * one.interval.high),
                   fmt::format("{}", one.runs), Remark(one)});
     if (!one.Smaller()) continue;
-    const std::string file = FileOf(directory, one);
+    const std::string file = SmallestLayoutFile(directory, one.name);
     files += fmt::format("  {}\n  {}\n", ShellQuoted(file + ".json"), ShellQuoted(file + ".svg"));
   }
   std::string text = table.ToText();
@@ -118,7 +111,8 @@ Json JsonOf(const std::string& directory, const std::vector<Minimisation>& cases
                    {"interval", {one.interval.low, one.interval.high}},
                    {"case", Json::parse(proto::WriteCaseDocument(one.smallest))}};
       if (one.Smaller())
-        minimised["files"] = {FileOf(directory, one) + ".json", FileOf(directory, one) + ".svg"};
+        minimised["files"] = {SmallestLayoutFile(directory, one.name) + ".json",
+                              SmallestLayoutFile(directory, one.name) + ".svg"};
     }
     const Json original = {
         {"obstacles", one.original.obstacles.size()}, {"k", one.found.failures}, {"n", one.found.runs()}};
@@ -136,7 +130,7 @@ Json JsonOf(const std::string& directory, const std::vector<Minimisation>& cases
 
 Status KeepFiles(const std::string& directory, const Minimisation& one) {
   if (!one.Smaller()) return Ok{};
-  const std::string file = FileOf(directory, one);
+  const std::string file = SmallestLayoutFile(directory, one.name);
   Status written = WriteOutputFile(file + ".json", proto::WriteCaseDocument(one.smallest));
   return written ? WriteOutputFile(file + ".svg", DrawLayoutStrip(StripOf(one))) : written;
 }

@@ -174,7 +174,7 @@ Json Sweep(const CampaignSummary& summary, const std::string& directory) {
 std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
   Json json = summary.searches.empty() ? OneSearch(summary, directory) : Sweep(summary, directory);
   json["confirmed"] = ConfirmationsJson(summary.confirmations);
-  json["distinct_failures"] = DistinctFailuresJson(summary.confirmations);
+  json["distinct_failures"] = DistinctFailuresJson(summary);
   return JsonText(json);
 }
 

@@ -198,7 +198,7 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
                   one.state_hash.substr(0, kShownDigits)});
   }
   const std::string directory = PastedPath(context.directory);
-  return text + table.ToText() + DistinctFailuresText(summary.confirmations, context.program) +
+  return text + table.ToText() + DistinctFailuresText(summary, context.program) +
          Hints(context, summary.finished,
                {{fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,
                              summary.searches.size()),
@@ -222,7 +222,7 @@ std::string SummaryText(const CampaignSummary& summary, const HintContext& conte
   text += Overview(summary) + FailuresByType(summary) + RunsWithoutAResult(summary, context.directory) +
           Generations(summary) +
           (summary.archive.axes.empty() ? Members(summary) : ArchiveText(summary, context)) +
-          DistinctFailuresText(summary.confirmations, context.program);
+          DistinctFailuresText(summary, context.program);
 
   std::vector<std::vector<std::string>> first;
   if (const auto members = Toughest(summary); !members.empty()) {

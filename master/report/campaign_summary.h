@@ -80,8 +80,10 @@ struct CampaignSummary {
   std::uint64_t nondeterministic = 0;  // second results of a spec that differed from the first
   std::uint64_t lone_verdicts = 0;     // runs that were given up on the word of a single worker
   bool finished = false;
-  std::string as_of = "";                        // CampaignView::as_of
-  std::vector<Confirmation> confirmations = {};  // of cases of the campaign, by CampaignService::Read
+  std::string as_of = "";  // CampaignView::as_of
+  // What is known of cases of the campaign, by CampaignService::Read.
+  std::vector<Confirmation> confirmations = {};
+  std::vector<SmallestLayout> smallest_layouts = {};
   // Of a sweep, one for each search, in the order of their numbers; the rest are then totals, and what has no
   // meaning over several searches is empty.
   std::vector<CampaignSummary> searches;

@@ -96,6 +96,20 @@ double ShareOfFailures(const Confirmation& one) {
   return static_cast<double>(one.tally.failures) / static_cast<double>(one.tally.runs());
 }
 
+// Of what is left of the case; null when it was not minimised.
+const SmallestLayout* LayoutOf(const Confirmation& one, const std::vector<SmallestLayout>& layouts) {
+  const auto layout = std::ranges::find(layouts, one.run, &SmallestLayout::run);
+  return one.run == 0 || layout == layouts.end() ? nullptr : &*layout;
+}
+
+const SmallestLayout* Smaller(const SmallestLayout* one, const SmallestLayout* other) {
+  if (one == nullptr || other == nullptr) return one == nullptr ? other : one;
+  const auto obstacles = [](const SmallestLayout* layout) {
+    return layout->document.test_case.obstacles.size();
+  };
+  return obstacles(other) < obstacles(one) ? other : one;
+}
+
 Status AddConfirmationsOf(const std::string& dir, std::map<std::uint64_t, Confirmation>& known) {
   const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
   // One that is just being made, or whose master just ends, has nothing to tell yet.
@@ -139,7 +153,8 @@ Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
   return confirmations;
 }
 
-std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations) {
+std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations,
+                                              const std::vector<SmallestLayout>& layouts) {
   std::map<std::string, std::vector<const Confirmation*>> failed;  // by scenario
   for (const Confirmation& one : confirmations) {
     if (one.example) failed[one.example->scenario].push_back(&one);
@@ -158,6 +173,7 @@ std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& c
       DistinctFailure& failure = distinct[first + groups[i]];
       failure.cases.push_back(cases[i]);
       failure.confirmed = failure.confirmed || cases[i]->verdict == FailureVerdict::kFail;
+      failure.smallest = Smaller(failure.smallest, LayoutOf(*cases[i], layouts));
     }
   }
   std::ranges::stable_sort(distinct, std::greater(), [](const DistinctFailure& one) {

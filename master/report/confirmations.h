@@ -10,6 +10,7 @@
 #include "base/result.h"
 #include "master/report/failure_groups.h"
 #include "master/report/questioned_cases.h"
+#include "master/report/smallest_layouts.h"
 #include "master/search/failure_tally.h"
 
 namespace gauntlet::master {
@@ -42,9 +43,12 @@ struct DistinctFailure {
   std::vector<const Confirmation*> cases;  // the toughest first: by the share of runs that failed
   std::string what;                        // of the toughest one, in words
   bool confirmed = false;                  // at least one of the cases
+  // Of what `gauntlet minimise` has left of the cases, the one with the fewest obstacles; null: of none.
+  const SmallestLayout* smallest = nullptr;
 };
-// The toughest first, of equally tough ones that with most cases. `confirmations` must outlive them.
-std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations);
+// The toughest first, of equally tough ones that with most cases. The arguments must outlive them.
+std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations,
+                                              const std::vector<SmallestLayout>& layouts);
 
 // A campaign that finds out how often cases fail. `known` with fewer runs than `replicates` are simulated
 // anew; 0 = until there is a verdict.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "master/report/answered_calls.h"
+#include "master/report/smallest_layouts.h"
 #include "master/search/minimisation_search.h"
 
 namespace gauntlet::master {
@@ -70,7 +71,7 @@ std::string DescribeStep(const MinimisingStep& step) {
 }
 
 CallPlan PlanMinimisation(const std::string& dir, const QuestionedCampaign& questioned, bool shorten) {
-  return PlanCall(dir + "/minimise", questioned,
+  return PlanCall(dir + kMinimiseFolder, questioned,
                   [shorten](const Experiment& experiment) { return MinimisationOf(experiment, shorten); });
 }
 

@@ -200,6 +200,9 @@ class Campaigns final : public CampaignService {
     Result<std::vector<Confirmation>> confirmations = ReadConfirmations(dir);
     if (!confirmations) return confirmations.error();
     summary->confirmations = *std::move(confirmations);
+    Result<std::vector<SmallestLayout>> smallest = ReadSmallestLayouts(dir);
+    if (!smallest) return smallest.error();
+    summary->smallest_layouts = *std::move(smallest);
     return summary;
   }
 

@@ -2,8 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -93,6 +95,30 @@ TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
   EXPECT_EQ(
       std::ranges::count_if(entries, [](const auto& entry) { return entry.path().extension() == ".svg"; }),
       smaller);
+}
+
+// So that one looks at the small layout rather than at the case it was found in.
+TEST(MinimiseTest, ShowNamesTheSmallestLayoutOfEachFailure) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c");
+  ASSERT_EQ(Gauntlet({"confirm", scratch / "c", "--all-failing", "--quiet"}).exit_code, 0);
+  std::set<std::size_t> left;  // obstacles of all that are smaller
+  for (const nlohmann::json& one : Found(Minimise(scratch / "c", Runs(scratch / "c", true, 4), 2))["cases"]) {
+    if (one["remark"] == "") left.insert(one["minimised"]["obstacles"].get<std::size_t>());
+  }
+  ASSERT_FALSE(left.empty());
+  std::set<std::size_t> told;
+  for (const nlohmann::json& failure : Show(scratch / "c")["distinct_failures"]) {
+    const nlohmann::json& smallest = failure["smallest"];
+    if (smallest.is_null()) continue;
+    EXPECT_THAT(failure["cases"], testing::Contains(smallest["case"]));
+    const nlohmann::json kept = nlohmann::json::parse(ReadFile(smallest["file"]));
+    EXPECT_EQ(kept["obstacles"].size(), smallest["obstacles"]);
+    told.insert(smallest["obstacles"].get<std::size_t>());
+  }
+  EXPECT_FALSE(told.empty());
+  EXPECT_TRUE(std::ranges::includes(left, told));
+  EXPECT_EQ(*told.begin(), *left.begin()) << "the smallest of all is the smallest of its failure";
 }
 
 TEST(MinimiseTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
