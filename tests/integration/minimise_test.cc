@@ -102,13 +102,15 @@ TEST(MinimiseTest, ShowNamesTheSmallestLayoutOfEachFailure) {
   const TemporaryDirectory scratch;
   MakeCampaign(scratch / "c");
   ASSERT_EQ(Gauntlet({"confirm", scratch / "c", "--all-failing", "--quiet"}).exit_code, 0);
+  const nlohmann::json found = Found(Minimise(scratch / "c", Runs(scratch / "c", true, 4), 2));
+  const nlohmann::json shown = Show(scratch / "c");
   std::set<std::size_t> left;  // obstacles of all that are smaller
-  for (const nlohmann::json& one : Found(Minimise(scratch / "c", Runs(scratch / "c", true, 4), 2))["cases"]) {
+  for (const nlohmann::json& one : found["cases"]) {
     if (one["remark"] == "") left.insert(one["minimised"]["obstacles"].get<std::size_t>());
   }
   ASSERT_FALSE(left.empty());
   std::set<std::size_t> told;
-  for (const nlohmann::json& failure : Show(scratch / "c")["distinct_failures"]) {
+  for (const nlohmann::json& failure : shown["distinct_failures"]) {
     const nlohmann::json& smallest = failure["smallest"];
     if (smallest.is_null()) continue;
     EXPECT_THAT(failure["cases"], testing::Contains(smallest["case"]));
