@@ -1,0 +1,104 @@
+#include <algorithm>
+
+#include "argos/devices.h"
+
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_distance_scanner_actuator.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_gripper_actuator.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_turret_actuator.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_actuator.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_leds_actuator.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_range_and_bearing_actuator.h>
+
+namespace gauntlet::argos_form {
+namespace {
+
+using sim::Device;
+
+constexpr double kMetres = 0.01;                          // in a centimetre
+constexpr double kTurnPerMinute = 2.0 * sim::kPi / 60.0;  // rad/s
+constexpr std::size_t kBeacon = 12;                       // its number among the LEDs
+
+class Wheels final : public argos::CCI_DifferentialSteeringActuator, public ActuatorLink {
+ public:
+  explicit Wheels(RobotParts& /*parts*/) {}
+  void Give(sim::Actuators& actuators) override {
+    actuators.left_wheel = m_fCurrentVelocity[0] * kMetres;
+    actuators.right_wheel = m_fCurrentVelocity[1] * kMetres;
+  }
+};
+
+class Leds final : public argos::CCI_LEDsActuator, public ActuatorLink {
+ public:
+  explicit Leds(RobotParts& parts) : palette_(parts.palette) {}
+  void Give(sim::Actuators& actuators) override {
+    for (std::size_t i = 0; i < kBeacon; ++i) actuators.ring[i] = palette_.NumberOf(m_tSettings[i]);
+    actuators.beacon = palette_.NumberOf(m_tSettings[kBeacon]);
+  }
+
+ private:
+  Palette& palette_;
+};
+
+class Radio final : public argos::CCI_RangeAndBearingActuator, public ActuatorLink {
+ public:
+  explicit Radio(RobotParts& /*parts*/) : CCI_RangeAndBearingActuator(sim::Payload().size()) {}
+  void Give(sim::Actuators& actuators) override {
+    std::copy_n(m_cData.ToCArray(), actuators.message.size(), actuators.message.begin());
+  }
+};
+
+class Gripper final : public argos::CCI_FootBotGripperActuator, public ActuatorLink {
+ public:
+  explicit Gripper(RobotParts& /*parts*/) {}
+  void Give(sim::Actuators& actuators) override {
+    actuators.gripper_closed = m_cAperture.GetAbsoluteValue() / (sim::kPi / 2.0) > 0.5;
+  }
+};
+
+class Turret final : public argos::CCI_FootBotTurretActuator, public ActuatorLink {
+ public:
+  explicit Turret(RobotParts& parts) : parts_(parts) {}
+  void Give(sim::Actuators& /*actuators*/) override {
+    if (m_eMode == MODE_POSITION_CONTROL) parts_.turret = sim::WrapAngle(m_cRotation.GetValue());
+    if (m_eMode == MODE_SPEED_CONTROL) {
+      parts_.turret = sim::WrapAngle(parts_.turret + m_nSpeed * kTurnPerMinute * sim::kTickSeconds);
+    }
+  }
+
+ private:
+  RobotParts& parts_;
+};
+
+class Scanner final : public argos::CCI_FootBotDistanceScannerActuator, public ActuatorLink {
+ public:
+  explicit Scanner(RobotParts& /*parts*/) {}
+  void Give(sim::Actuators& actuators) override {
+    using Mode = sim::ScannerCommand::Mode;
+    actuators.scanner = {};
+    if (m_eMode == EMode::kAngle) actuators.scanner = {.mode = Mode::kAngle, .value = m_cAngle.GetValue()};
+    if (m_eMode == EMode::kSpeed)
+      actuators.scanner = {.mode = Mode::kSpeed, .value = m_fRPM * kTurnPerMinute};
+  }
+};
+
+template <typename Actuator>
+LinkedActuator Make(RobotParts& parts) {
+  auto* const actuator = new Actuator(parts);
+  return {actuator, actuator};
+}
+
+}  // namespace
+
+std::span<const ActuatorRow> ActuatorRows() {
+  static constexpr ActuatorRow kRows[] = {
+      {"differential_steering", Device::kWheels, Make<Wheels>},
+      {"footbot_distance_scanner", Device::kDistanceScanner, Make<Scanner>},
+      {"footbot_gripper", Device::kGripper, Make<Gripper>},
+      {"footbot_turret", std::nullopt, Make<Turret>},
+      {"leds", Device::kLeds, Make<Leds>},
+      {"range_and_bearing", Device::kRangeAndBearing, Make<Radio>},
+  };
+  return kRows;
+}
+
+}  // namespace gauntlet::argos_form

@@ -1,0 +1,115 @@
+#include <algorithm>
+
+#include "argos/controller_adapter.h"
+
+#include <argos3/core/simulator/simulator.h>
+#include <argos3/core/utility/math/rng.h>
+
+namespace gauntlet::argos_form {
+namespace {
+
+constexpr const char* kCategory = "argos";
+
+// The colours of the run whose first robot this is, or of the run that has begun. A new run has new random
+// numbers and the time 0; ARGoS itself takes the first generator of a run.
+std::shared_ptr<Palette> JoinRun(std::uint64_t seed) {
+  static std::weak_ptr<Palette> running;
+  if (std::shared_ptr<Palette> palette = running.lock()) return palette;
+  const auto short_seed = static_cast<argos::UInt32>(seed ^ seed >> 32);
+  argos::CRandom::RemoveCategory(kCategory);
+  argos::CRandom::CreateCategory(kCategory, short_seed);
+  argos::CRandom::CreateRNG(kCategory);
+  argos::CSimulator::GetInstance().SetRandomSeed(short_seed);
+  argos::CSimulator::GetInstance().GetSpace().SetSimulationClock(0);
+  auto palette = std::make_shared<Palette>();
+  running = palette;
+  return palette;
+}
+
+bool Has(const std::vector<std::string>& tags, std::string_view tag) {
+  return std::ranges::find(tags, tag) != tags.end();
+}
+
+// A tag of a file that names no device of ours.
+template <typename Rows>
+void RefuseUnknown(const std::vector<std::string>& tags, const Rows& rows, const char* kind) {
+  for (const std::string& tag : tags) {
+    if (std::ranges::none_of(rows, [&](const auto& row) { return row.tag == tag; })) {
+      throw argos::CARGoSException("the robot has no " + std::string(kind) + " \"" + tag + "\"");
+    }
+  }
+}
+
+}  // namespace
+
+ControllerAdapter::ControllerAdapter(const ControllerSection& section, const Robot& robot)
+    : palette_(JoinRun(robot.seed)),
+      parts_{.palette = *palette_, .start = robot.start},
+      controller_(argos::CFactory<argos::CCI_Controller>::New(section.label)) {
+  controller_->SetId("fb" + std::to_string(robot.number));
+  AddDevices(section);
+  argos::TConfigurationNode parameters = section.parameters;
+  controller_->Init(parameters);
+  FindUsed(section);
+}
+
+ControllerAdapter::~ControllerAdapter() {
+  for (const auto& sensor : sensors_) sensor.face->Destroy();
+  for (const auto& actuator : actuators_) actuator.face->Destroy();
+  controller_->Destroy();
+}
+
+void ControllerAdapter::AddDevices(const ControllerSection& section) {
+  if (section.devices) {
+    RefuseUnknown(section.devices->actuators, ActuatorRows(), "actuator");
+    RefuseUnknown(section.devices->sensors, SensorRows(), "sensor");
+  }
+  for (const ActuatorRow& row : ActuatorRows()) {
+    if (section.devices && !Has(section.devices->actuators, row.tag)) continue;
+    const LinkedActuator made = row.make(parts_);
+    actuators_.push_back({row.tag.data(), row.device, made.actuator, made.link});
+    controller_->AddActuator(row.tag.data(), made.actuator);
+  }
+  for (const SensorRow& row : SensorRows()) {
+    if (section.devices && !Has(section.devices->sensors, row.tag)) continue;
+    const LinkedSensor made = row.make(parts_);
+    sensors_.push_back({row.tag.data(), row.device, made.sensor, made.link});
+    controller_->AddSensor(row.tag.data(), made.sensor);
+    if (row.device == sim::Device::kOmnidirectionalCamera) {
+      camera_ = made.sensor;
+    } else {
+      made.sensor->Enable();
+    }
+  }
+}
+
+void ControllerAdapter::FindUsed(const ControllerSection& section) {
+  const auto find = [&](auto& parts, const std::vector<std::string>& asked_for) {
+    for (auto& part : parts) {
+      part.used = section.devices || Has(asked_for, part.tag);
+      if (!part.used || !part.device) continue;
+      devices_ = devices_ | *part.device;
+      if (*part.device == sim::Device::kOmnidirectionalCamera) continue;
+      devices_without_camera_ = devices_without_camera_ | *part.device;
+    }
+  };
+  find(sensors_, controller_->SensorsAskedFor());
+  find(actuators_, controller_->ActuatorsAskedFor());
+}
+
+sim::DeviceSet ControllerAdapter::Attention(bool /*holding_item*/) const {
+  return camera_ != nullptr && camera_->IsEnabled() ? devices_ : devices_without_camera_;
+}
+
+void ControllerAdapter::Step(const sim::ControlStep& step) {
+  argos::CSimulator::GetInstance().GetSpace().SetSimulationClock(static_cast<argos::UInt32>(step.tick));
+  for (const auto& sensor : sensors_) {
+    if (sensor.used && sensor.face->IsEnabled()) sensor.link->Take(step.readings);
+  }
+  controller_->ControlStep();
+  for (const auto& actuator : actuators_) {
+    if (actuator.used) actuator.link->Give(step.actuators);
+  }
+}
+
+}  // namespace gauntlet::argos_form

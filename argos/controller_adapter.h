@@ -1,0 +1,77 @@
+// A controller written for ARGoS as one of ours. In a run all robots' controllers are made one after the
+// other and are gone before those of the next run are made: they share ARGoS' random numbers, its clock and
+// the colours.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "argos/devices.h"
+#include "sim/robot/controller.h"
+
+#include <argos3/core/control_interface/ci_controller.h>
+
+namespace gauntlet::argos_form {
+
+// What an .argos file says of a controller.
+struct ControllerSection {
+  std::string label;  // what it is registered as
+  // The tags of its devices; nothing: every device there is, and the robot has those that Init asks for.
+  struct Devices {
+    std::vector<std::string> actuators;
+    std::vector<std::string> sensors;
+  };
+  std::optional<Devices> devices = {};
+  argos::TConfigurationNode parameters = argos::TConfigurationNode("params");
+};
+
+class ControllerAdapter final : public sim::Controller {
+ public:
+  struct Robot {
+    sim::RobotIndex number = 0;  // it is called fb and this
+    std::uint64_t seed = 0;      // of the run
+    sim::Pose start;
+  };
+
+  // Makes the controller and its devices and calls Init. Throws argos::CARGoSException, or what Init throws,
+  // when that fails.
+  ControllerAdapter(const ControllerSection& section, const Robot& robot);
+  ControllerAdapter(const ControllerAdapter&) = delete;
+  ControllerAdapter& operator=(const ControllerAdapter&) = delete;
+  ~ControllerAdapter() override;
+
+  sim::DeviceSet Devices() const override { return devices_; }
+  sim::DeviceSet Attention(bool holding_item) const override;
+  // Throws what ControlStep throws.
+  void Step(const sim::ControlStep& step) override;
+
+  argos::CCI_Controller& controller() { return *controller_; }
+
+ private:
+  // One of its devices, in use or not.
+  template <typename Face, typename Link>
+  struct Part {
+    const char* tag;
+    std::optional<sim::Device> device;
+    Face* face;
+    Link* link;
+    bool used = false;
+  };
+
+  void AddDevices(const ControllerSection& section);
+  void FindUsed(const ControllerSection& section);
+
+  std::shared_ptr<Palette> palette_;  // of the run
+  RobotParts parts_;
+  std::unique_ptr<argos::CCI_Controller> controller_;
+  std::vector<Part<argos::CCI_Sensor, SensorLink>> sensors_;
+  std::vector<Part<argos::CCI_Actuator, ActuatorLink>> actuators_;
+  argos::CCI_Sensor* camera_ = nullptr;
+  sim::DeviceSet devices_;
+  sim::DeviceSet devices_without_camera_;
+};
+
+}  // namespace gauntlet::argos_form

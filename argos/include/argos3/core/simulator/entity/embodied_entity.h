@@ -1,0 +1,15 @@
+// The body of something in the arena.
+#pragma once
+
+#include <argos3/core/simulator/entity/entity.h>
+
+namespace argos {
+
+class CEmbodiedEntity : public CEntity {
+ public:
+  ARGOS_UNAVAILABLE(
+      const CVector3&, GetOriginAnchor,
+      "a controller of Gauntlet sees no other bodies; its own place is read by the positioning sensor")
+};
+
+}  // namespace argos

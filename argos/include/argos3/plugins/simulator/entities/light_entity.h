@@ -1,0 +1,10 @@
+// A lamp. Only its name: what stands in the arena is the scenario's matter.
+#pragma once
+
+#include <argos3/core/simulator/entity/entity.h>
+
+namespace argos {
+
+class CLightEntity : public CEntity {};
+
+}  // namespace argos

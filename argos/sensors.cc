@@ -1,0 +1,221 @@
+#include <deque>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "argos/devices.h"
+
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_base_ground_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_distance_scanner_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_light_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_motor_ground_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_proximity_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_turret_encoder_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_wheel_speed_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_battery_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_colored_blob_omnidirectional_camera_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_positioning_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_range_and_bearing_sensor.h>
+
+namespace gauntlet::argos_form {
+namespace {
+
+using argos::CRadians;
+using sim::Device;
+
+constexpr double kCentimetres = 100.0;  // in a metre
+
+// Sets the values of readings that are as many as these.
+template <typename Readings, typename Values>
+void TakeValues(Readings& readings, const Values& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) readings[i].Value = static_cast<double>(values[i]);
+}
+
+// Bearings to the last bit as our sensors have them.
+template <typename Readings>
+void SetBearings(Readings& readings) {
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    readings[i].Angle.SetValue(sim::ProximityBearing(static_cast<int>(i)));
+  }
+}
+
+class Proximity final : public argos::CCI_FootBotProximitySensor, public SensorLink {
+ public:
+  explicit Proximity(RobotParts& /*parts*/) { SetBearings(m_tReadings); }
+  void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.proximity); }
+};
+
+class Light final : public argos::CCI_FootBotLightSensor, public SensorLink {
+ public:
+  explicit Light(RobotParts& /*parts*/) { SetBearings(m_tReadings); }
+  void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.light); }
+};
+
+class MotorGround final : public argos::CCI_FootBotMotorGroundSensor, public SensorLink {
+ public:
+  explicit MotorGround(RobotParts& /*parts*/) {}
+  void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.motor_ground); }
+};
+
+class BaseGround final : public argos::CCI_FootBotBaseGroundSensor, public SensorLink {
+ public:
+  explicit BaseGround(RobotParts& /*parts*/) {}
+  void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.base_ground); }
+};
+
+class Camera final : public argos::CCI_ColoredBlobOmnidirectionalCameraSensor, public SensorLink {
+ public:
+  explicit Camera(RobotParts& parts) : palette_(parts.palette) {}
+  void Take(const sim::SensorReadings& readings) override {
+    if (blobs_.size() < readings.blobs.size()) blobs_.resize(readings.blobs.size());
+    m_sReadings.BlobList.clear();
+    for (const sim::Blob& blob : readings.blobs) {
+      SBlob& seen = blobs_[m_sReadings.BlobList.size()];
+      seen.Color = palette_.ColorOf(blob.color);
+      seen.Angle.SetValue(blob.Bearing());
+      seen.Distance = blob.range * kCentimetres;
+      m_sReadings.BlobList.push_back(&seen);
+    }
+    ++m_sReadings.Counter;
+  }
+
+ private:
+  const Palette& palette_;
+  std::deque<SBlob> blobs_;  // kept from tick to tick
+};
+
+class Radio final : public argos::CCI_RangeAndBearingSensor, public SensorLink {
+ public:
+  explicit Radio(RobotParts& /*parts*/) {}
+  void Take(const sim::SensorReadings& readings) override {
+    Resize(readings.range_and_bearing.size());
+    for (std::size_t i = 0; i < m_tReadings.size(); ++i) {
+      const sim::Message& message = readings.range_and_bearing[i];
+      SPacket& packet = m_tReadings[i];
+      packet.Range = message.range * kCentimetres;
+      packet.HorizontalBearing.SetValue(message.Bearing());
+      packet.Data.Resize(message.payload.size());
+      std::copy(message.payload.begin(), message.payload.end(), packet.Data.ToCArray());
+    }
+  }
+
+ private:
+  // Packets that are not needed wait with their memory.
+  void Resize(std::size_t size) {
+    for (; m_tReadings.size() > size; m_tReadings.pop_back()) spare_.push_back(std::move(m_tReadings.back()));
+    for (; m_tReadings.size() < size && !spare_.empty(); spare_.pop_back()) {
+      m_tReadings.push_back(std::move(spare_.back()));
+    }
+    m_tReadings.resize(size);
+  }
+
+  std::vector<SPacket> spare_;
+};
+
+class Positioning final : public argos::CCI_PositioningSensor, public SensorLink {
+ public:
+  explicit Positioning(RobotParts& parts) { Set(parts.start); }
+  void Take(const sim::SensorReadings& readings) override { Set(readings.pose); }
+
+ private:
+  void Set(const sim::Pose& pose) {
+    m_sReading.Position.Set(pose.position.x(), pose.position.y(), 0.0);
+    m_sReading.Orientation.FromAngleAxis(CRadians(pose.heading), argos::CVector3::Z);
+  }
+};
+
+class WheelEncoders final : public argos::CCI_DifferentialSteeringSensor, public SensorLink {
+ public:
+  explicit WheelEncoders(RobotParts& /*parts*/) {}
+  void Take(const sim::SensorReadings& readings) override {
+    m_sReading.VelocityLeftWheel = readings.wheels.left * kCentimetres;
+    m_sReading.VelocityRightWheel = readings.wheels.right * kCentimetres;
+    m_sReading.CoveredDistanceLeftWheel = m_sReading.VelocityLeftWheel * sim::kTickSeconds;
+    m_sReading.CoveredDistanceRightWheel = m_sReading.VelocityRightWheel * sim::kTickSeconds;
+  }
+};
+
+class WheelSpeed final : public argos::CCI_FootBotWheelSpeedSensor, public SensorLink {
+ public:
+  explicit WheelSpeed(RobotParts& /*parts*/) {}
+  void Take(const sim::SensorReadings& readings) override {
+    m_sReading.LinearVelocityLeft = readings.wheels.left * kCentimetres;
+    m_sReading.LinearVelocityRight = readings.wheels.right * kCentimetres;
+  }
+};
+
+class TurretEncoder final : public argos::CCI_FootBotTurretEncoderSensor, public SensorLink {
+ public:
+  explicit TurretEncoder(RobotParts& parts) : parts_(parts) {}
+  void Take(const sim::SensorReadings& /*readings*/) override { m_cRotation.SetValue(parts_.turret); }
+
+ private:
+  const RobotParts& parts_;
+};
+
+class Battery final : public argos::CCI_BatterySensor, public SensorLink {
+ public:
+  explicit Battery(RobotParts& /*parts*/) {}
+  void Take(const sim::SensorReadings& /*readings*/) override {}
+};
+
+class Scanner final : public argos::CCI_FootBotDistanceScannerSensor, public SensorLink {
+ public:
+  explicit Scanner(RobotParts& /*parts*/) {}
+  void Take(const sim::SensorReadings& readings) override {
+    for (TReadingsMap* const map : {&m_tReadingsMap, &m_tShortReadingsMap, &m_tLongReadingsMap}) Empty(*map);
+    for (const sim::ScannerReading& ray : readings.scanner_short) Add(ray, m_tShortReadingsMap);
+    for (const sim::ScannerReading& ray : readings.scanner_long) Add(ray, m_tLongReadingsMap);
+  }
+
+ private:
+  void Empty(TReadingsMap& map) {
+    while (!map.empty()) spare_.push_back(map.extract(map.begin()));
+  }
+  void Add(const sim::ScannerReading& ray, TReadingsMap& map) {
+    const double distance = ray.distance < 0.0 ? ray.distance : ray.distance * kCentimetres;
+    Insert(CRadians(ray.bearing), distance, map);
+    Insert(CRadians(ray.bearing), distance, m_tReadingsMap);
+  }
+  void Insert(const CRadians& angle, double distance, TReadingsMap& map) {
+    if (spare_.empty()) {
+      map[angle] = distance;
+      return;
+    }
+    spare_.back().key() = angle;
+    spare_.back().mapped() = distance;
+    map.insert(std::move(spare_.back()));
+    spare_.pop_back();
+  }
+
+  std::vector<TReadingsMap::node_type> spare_;  // nodes that were used before
+};
+
+template <typename Sensor>
+LinkedSensor Make(RobotParts& parts) {
+  auto* const sensor = new Sensor(parts);
+  return {sensor, sensor};
+}
+
+}  // namespace
+
+std::span<const SensorRow> SensorRows() {
+  static constexpr SensorRow kRows[] = {
+      {"battery", std::nullopt, Make<Battery>},
+      {"colored_blob_omnidirectional_camera", Device::kOmnidirectionalCamera, Make<Camera>},
+      {"differential_steering", Device::kWheelEncoders, Make<WheelEncoders>},
+      {"footbot_base_ground", Device::kBaseGround, Make<BaseGround>},
+      {"footbot_distance_scanner", Device::kDistanceScanner, Make<Scanner>},
+      {"footbot_light", Device::kLight, Make<Light>},
+      {"footbot_motor_ground", Device::kMotorGround, Make<MotorGround>},
+      {"footbot_proximity", Device::kProximity, Make<Proximity>},
+      {"footbot_turret_encoder", std::nullopt, Make<TurretEncoder>},
+      {"footbot_wheel_speed", Device::kWheelEncoders, Make<WheelSpeed>},
+      {"positioning", Device::kPositioning, Make<Positioning>},
+      {"range_and_bearing", Device::kRangeAndBearing, Make<Radio>},
+  };
+  return kRows;
+}
+
+}  // namespace gauntlet::argos_form

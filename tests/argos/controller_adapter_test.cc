@@ -1,0 +1,262 @@
+#include "argos/controller_adapter.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/simulation.h"
+#include "tests/support/toy_scenario.h"
+
+#include <argos3/core/simulator/simulator.h>
+#include <argos3/core/utility/math/rng.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_distance_scanner_actuator.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_distance_scanner_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_gripper_actuator.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_motor_ground_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_proximity_sensor.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_turret_actuator.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_turret_encoder_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_colored_blob_omnidirectional_camera_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_actuator.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_leds_actuator.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_positioning_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_range_and_bearing_actuator.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_range_and_bearing_sensor.h>
+
+// Does in Init and ControlStep what the test says.
+class CScripted : public argos::CCI_Controller {
+ public:
+  inline static std::function<void(CScripted&, argos::TConfigurationNode&)> init;
+  inline static std::function<void(CScripted&)> step;
+  inline static std::vector<std::string> calls;
+
+  void Init(argos::TConfigurationNode& parameters) override {
+    calls.push_back("Init " + GetId());
+    if (init) init(*this, parameters);
+  }
+  void ControlStep() override {
+    calls.push_back("ControlStep " + GetId());
+    if (step) step(*this);
+  }
+  void Destroy() override { calls.push_back("Destroy " + GetId()); }
+};
+
+REGISTER_CONTROLLER(CScripted, "scripted")
+
+namespace gauntlet::argos_form {
+namespace {
+
+using testing::ElementsAre;
+
+class Adapter : public testing::Test {
+ protected:
+  void SetUp() override {
+    CScripted::init = nullptr;
+    CScripted::step = nullptr;
+    CScripted::calls.clear();
+  }
+
+  // Runs scripted controllers from these places.
+  sim::RunResult Run(const std::vector<sim::Pose>& starts, sim::Tick ticks, std::uint64_t seed = 7) {
+    std::vector<std::shared_ptr<ControllerAdapter>> adapters;
+    std::vector<sim::ToyRobot> robots;
+    for (const sim::Pose& start : starts) {
+      const auto number = static_cast<sim::RobotIndex>(robots.size());
+      auto adapter = std::make_shared<ControllerAdapter>(
+          section, ControllerAdapter::Robot{.number = number, .seed = seed, .start = start});
+      adapters.push_back(adapter);
+      robots.push_back({.pose = start,
+                        .behaviour = [adapter](const sim::ControlStep& step) { adapter->Step(step); },
+                        .devices = adapter->Devices(),
+                        .beacon = sim::Color::kBlack});
+    }
+    sim::ToyScenario scenario(sim::TestCase{}, robots, ticks);
+    scenario.floor = [](const sim::Vec2& point) { return point.x() < 0.0 ? 0.25 : 1.0; };
+    return Simulate(scenario, seed, true);
+  }
+
+  ControllerSection section = {.label = "scripted"};
+};
+
+TEST_F(Adapter, KeepsTheLifeCycleOfArgos) {
+  Run({{{0, 0}, 0}, {{1, 0}, 0}}, 2);
+  EXPECT_THAT(CScripted::calls,
+              ElementsAre("Init fb0", "Init fb1", "ControlStep fb0", "ControlStep fb1", "ControlStep fb0",
+                          "ControlStep fb1", "Destroy fb0", "Destroy fb1"));
+}
+
+TEST_F(Adapter, GivesReadingsInTheUnitsOfArgos) {
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetSensor<argos::CCI_ColoredBlobOmnidirectionalCameraSensor>("colored_blob_omnidirectional_camera")
+        ->Enable();
+    robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing");
+    robot.GetSensor<argos::CCI_FootBotMotorGroundSensor>("footbot_motor_ground");
+    robot.GetActuator<argos::CCI_LEDsActuator>("leds")->SetSingleColor(12, argos::CColor(10, 20, 30));
+    auto* const radio = robot.GetActuator<argos::CCI_RangeAndBearingActuator>("range_and_bearing");
+    radio->SetData(0, 42);
+    auto* const place = robot.GetSensor<argos::CCI_PositioningSensor>("positioning");
+    const double y = robot.GetId() == "fb1" ? 0.3 : 0.0;
+    EXPECT_EQ(place->GetReading().Position, argos::CVector3(-0.5, y, 0.0));
+  };
+  int looked = 0;
+  CScripted::step = [&](CScripted& robot) {
+    auto& space = argos::CSimulator::GetInstance().GetSpace();
+    if (robot.GetId() != "fb0" || space.GetSimulationClock() != 3) return;
+    ++looked;
+    const auto& blobs = robot
+                            .GetSensor<argos::CCI_ColoredBlobOmnidirectionalCameraSensor>(
+                                "colored_blob_omnidirectional_camera")
+                            ->GetReadings();
+    ASSERT_EQ(blobs.BlobList.size(), 1u);
+    EXPECT_EQ(blobs.Counter, 3u);
+    EXPECT_EQ(blobs.BlobList[0]->Color, argos::CColor(10, 20, 30));
+    EXPECT_NEAR(blobs.BlobList[0]->Distance, 30.0, 1e-9);
+    EXPECT_NEAR(blobs.BlobList[0]->Angle.GetValue(), sim::kPi / 2, 1e-9);
+    const auto& packets =
+        robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing")->GetReadings();
+    ASSERT_EQ(packets.size(), 1u);
+    EXPECT_NEAR(packets[0].Range, 30.0, 1e-9);
+    EXPECT_NEAR(packets[0].HorizontalBearing.GetValue(), sim::kPi / 2, 1e-9);
+    EXPECT_EQ(packets[0].Data[0], 42);
+    EXPECT_EQ(packets[0].Data.Size(), 10u);
+    const auto& ground =
+        robot.GetSensor<argos::CCI_FootBotMotorGroundSensor>("footbot_motor_ground")->GetReadings();
+    EXPECT_EQ(ground[1].Value, 0.25);
+    EXPECT_EQ(ground[1].Offset, argos::CVector2(-6.3, 1.16));
+  };
+  Run({{{-0.5, 0}, 0}, {{-0.5, 0.3}, 0}}, 3);
+  EXPECT_EQ(looked, 1);
+}
+
+TEST_F(Adapter, DrivesInCentimetresAndTellsWhatTheWheelsDo) {
+  std::vector<double> speeds;
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetActuator<argos::CCI_DifferentialSteeringActuator>("differential_steering")
+        ->SetLinearVelocity(5.0, 10.0);
+    robot.GetSensor<argos::CCI_DifferentialSteeringSensor>("differential_steering");
+  };
+  CScripted::step = [&](CScripted& robot) {
+    const auto& reading =
+        robot.GetSensor<argos::CCI_DifferentialSteeringSensor>("differential_steering")->GetReading();
+    speeds.push_back(reading.VelocityRightWheel);
+    EXPECT_EQ(reading.CoveredDistanceLeftWheel, reading.VelocityLeftWheel * 0.1);
+    EXPECT_EQ(reading.WheelAxisLength, 14.0);
+  };
+  const sim::RunResult result = Run({{{0, 0}, 0}}, 11);
+  ASSERT_EQ(speeds.size(), 11u);
+  EXPECT_EQ(speeds[0], 0.0);
+  EXPECT_EQ(speeds[1], 10.0);
+  EXPECT_NEAR(result.robots[0].path_length, 0.075, 0.002);
+}
+
+TEST_F(Adapter, HasTheDevicesThatInitAsksFor) {
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetSensor<argos::CCI_FootBotProximitySensor>("footbot_proximity");
+    robot.GetActuator<argos::CCI_DifferentialSteeringActuator>("differential_steering");
+  };
+  EXPECT_EQ(ControllerAdapter(section, {}).Devices(), sim::Device::kProximity | sim::Device::kWheels);
+}
+
+TEST_F(Adapter, HasTheDevicesOfTheFile) {
+  section.devices = {.actuators = {"leds"}, .sensors = {"footbot_proximity"}};
+  EXPECT_EQ(ControllerAdapter(section, {}).Devices(), sim::Device::kProximity | sim::Device::kLeds);
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    EXPECT_FALSE(robot.HasSensor("positioning"));
+    robot.GetActuator<argos::CCI_DifferentialSteeringActuator>("differential_steering");
+  };
+  EXPECT_THROW(ControllerAdapter(section, {}), argos::CARGoSException);
+  section.devices->sensors = {"eyebot_camera"};
+  EXPECT_THROW(ControllerAdapter(section, {}), argos::CARGoSException);
+}
+
+TEST_F(Adapter, LooksThroughAnEnabledCameraOnly) {
+  argos::CCI_Sensor* camera = nullptr;
+  CScripted::init = [&](CScripted& robot, argos::TConfigurationNode&) {
+    camera = robot.GetSensor<argos::CCI_Sensor>("colored_blob_omnidirectional_camera");
+  };
+  const ControllerAdapter adapter(section, {});
+  EXPECT_FALSE(adapter.Attention(false).Has(sim::Device::kOmnidirectionalCamera));
+  camera->Enable();
+  EXPECT_TRUE(adapter.Attention(false).Has(sim::Device::kOmnidirectionalCamera));
+}
+
+TEST_F(Adapter, SeedsRandomNumbersByTheRunInTheOrderOfRobots) {
+  std::vector<argos::UInt32> seeds;
+  CScripted::init = [&](CScripted&, argos::TConfigurationNode&) {
+    seeds.push_back(argos::CRandom::CreateRNG("argos")->GetSeed());
+  };
+  // The first generator of seed 124 is ARGoS' own.
+  for (int run = 0; run < 2; ++run) {
+    seeds.clear();
+    Run({{{0, 0}, 0}, {{1, 0}, 0}}, 1, 124);
+    EXPECT_THAT(seeds, ElementsAre(2996933276u, 3201775633u));
+  }
+}
+
+TEST_F(Adapter, TurnsTheScannerAndTheTurret) {
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetActuator<argos::CCI_FootBotDistanceScannerActuator>("footbot_distance_scanner")
+        ->SetAngle(argos::CRadians::ZERO);
+    robot.GetSensor<argos::CCI_FootBotDistanceScannerSensor>("footbot_distance_scanner");
+    robot.GetActuator<argos::CCI_FootBotTurretActuator>("footbot_turret")
+        ->SetActiveWithRotation(argos::CRadians(0.5));
+    robot.GetSensor<argos::CCI_FootBotTurretEncoderSensor>("footbot_turret_encoder");
+  };
+  std::size_t rays = 0;
+  double rotation = 0.0;
+  double nearest = 0.0;
+  CScripted::step = [&](CScripted& robot) {
+    auto* const scanner =
+        robot.GetSensor<argos::CCI_FootBotDistanceScannerSensor>("footbot_distance_scanner");
+    rays = scanner->GetReadingsMap().size();
+    if (rays > 0) nearest = scanner->GetShortReadingsMap().at(argos::CRadians::ZERO);
+    rotation = robot.GetSensor<argos::CCI_FootBotTurretEncoderSensor>("footbot_turret_encoder")
+                   ->GetRotation()
+                   .GetValue();
+  };
+  Run({{{2.75, 0}, 0}}, 3);
+  EXPECT_EQ(rays, 4u);
+  EXPECT_NEAR(nearest, 100.0 * (2.95 - 2.75 - sim::foot_bot::kRadius), 1e-6);
+  EXPECT_EQ(rotation, 0.5);
+}
+
+TEST_F(Adapter, ClosesTheGripperBeyondHalfOfItsAperture) {
+  argos::CCI_FootBotGripperActuator* gripper = nullptr;
+  CScripted::init = [&](CScripted& robot, argos::TConfigurationNode&) {
+    gripper = robot.GetActuator<argos::CCI_FootBotGripperActuator>("footbot_gripper");
+  };
+  ControllerAdapter adapter(section, {});
+  sim::SensorReadings readings;
+  sim::Actuators actuators;
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  const auto closed = [&](double aperture) {
+    gripper->SetAperture(argos::CRadians(aperture));
+    adapter.Step({.tick = 1, .readings = readings, .actuators = actuators, .random = random});
+    return actuators.gripper_closed;
+  };
+  EXPECT_FALSE(closed(0.7));
+  EXPECT_TRUE(closed(-0.8));
+  EXPECT_TRUE(closed(1.5));
+}
+
+TEST_F(Adapter, RefusesAControllerThatNobodyRegistered) {
+  section.label = "unheard_of";
+  EXPECT_THROW(ControllerAdapter(section, {}), argos::CARGoSException);
+}
+
+TEST(Palette, KeepsAtMost256Colors) {
+  Palette palette;
+  EXPECT_EQ(palette.NumberOf(argos::CColor::RED), sim::Color::kRed);
+  for (int i = 0; i < 247; ++i) palette.NumberOf(argos::CColor(1, 2, static_cast<argos::UInt8>(i)));
+  EXPECT_EQ(palette.ColorOf(palette.NumberOf(argos::CColor(1, 2, 200))), argos::CColor(1, 2, 200));
+  EXPECT_THROW(palette.NumberOf(argos::CColor(3, 3, 3)), argos::CARGoSException);
+}
+
+}  // namespace
+}  // namespace gauntlet::argos_form

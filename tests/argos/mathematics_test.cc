@@ -1,0 +1,112 @@
+// Angles, ranges, vectors and rotations against what ARGoS computes.
+#include <argos3/core/utility/math/quaternion.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace argos {
+namespace {
+
+TEST(Arithmetic, HasTheQuirksOfArgos) {
+  EXPECT_EQ(Floor(2.5), 2);
+  EXPECT_EQ(Floor(-2.5), -3);
+  EXPECT_EQ(Floor(-2.0), -3);
+  EXPECT_EQ(Round(2.5), 3);
+  EXPECT_EQ(Round(-2.5), -3);
+  EXPECT_EQ(Sign(-0.5), -1);
+  EXPECT_TRUE(DoubleEq(1.0, 1.00005));
+  EXPECT_FALSE(DoubleEq(1.0, 1.001));
+  EXPECT_EQ(Abs(CRadians(-1.0)), CRadians(1.0));
+  EXPECT_NEAR(Interpolate(3.0, {{0.0, 0.0}, {1.0, 1.0}, {2.0, 3.0}}), 5.0, 1e-15);
+}
+
+TEST(Angles, KeepBothEndsWhenTheyAreNormalised) {
+  EXPECT_EQ(CRadians(CRadians::PI).SignedNormalize(), CRadians::PI);
+  EXPECT_EQ((-CRadians::PI).SignedNormalize(), -CRadians::PI);
+  EXPECT_EQ(CRadians(CRadians::TWO_PI).UnsignedNormalize(), CRadians::TWO_PI);
+  EXPECT_NEAR(CRadians(5.0).SignedNormalize().GetValue(), 5.0 - 2.0 * ARGOS_PI, 1e-15);
+  EXPECT_NEAR(CDegrees(-30.0).UnsignedNormalize().GetValue(), 330.0, 1e-12);
+  EXPECT_EQ(NormalizedDifference(CRadians::PI, -CRadians::PI).GetValue(), 0.0);
+  EXPECT_EQ(NormalizedDifference(-CRadians::PI_OVER_TWO, CRadians::PI_OVER_TWO), -CRadians::PI);
+  EXPECT_EQ(NormalizedDifference(CDegrees(10.0), CDegrees(350.0)).GetValue(), 20.0);
+}
+
+TEST(Angles, Convert) {
+  EXPECT_NEAR(ToDegrees(CRadians(1.0)).GetValue(), 57.295779513082323, 1e-13);
+  CRadians angle;
+  angle.FromValueInDegrees(180.0);
+  EXPECT_EQ(angle, CRadians::PI);
+  EXPECT_NEAR(Sin(CRadians::PI_OVER_SIX), 0.5, 1e-15);
+  EXPECT_NEAR(ACos(0.5).GetValue(), ARGOS_PI / 3.0, 1e-15);
+  EXPECT_NEAR(ASin(-1.0).GetValue(), -ARGOS_PI / 2.0, 1e-15);
+  EXPECT_EQ(CRadians::PI / CRadians::PI_OVER_TWO, 2.0);
+}
+
+TEST(Range, CutsWrapsAndMaps) {
+  const CRange<Real> range(-1.0, 3.0);
+  Real value = 7.5;
+  range.WrapValue(value);
+  EXPECT_EQ(value, -0.5);
+  value = 9.0;
+  range.TruncValue(value);
+  EXPECT_EQ(value, 3.0);
+  EXPECT_EQ(range.NormalizeValue(0.0), 0.25);
+  CRadians mapped;
+  range.MapValueIntoRange(mapped, 1.0, CRange<CRadians>(CRadians(0.0), CRadians(2.0)));
+  EXPECT_EQ(mapped, CRadians(1.0));
+  EXPECT_EQ(CRange<CRadians>(CRadians(0.0), CRadians(2.0)).NormalizeValue(CRadians(0.5)), 0.25);
+  EXPECT_TRUE(range.WithinMinBoundIncludedMaxBoundExcluded(-1.0));
+  EXPECT_FALSE(range.WithinMinBoundIncludedMaxBoundExcluded(3.0));
+}
+
+TEST(Vector2, TurnsAndMeasures) {
+  EXPECT_EQ(CVector2().Angle(), CRadians::ZERO);
+  EXPECT_EQ(CVector2(-1.0, 0.0).Angle(), CRadians::PI);
+  const CVector2 turned = CVector2(1.0, 0.0).Rotate(CRadians::PI_OVER_TWO);
+  EXPECT_NEAR(turned.GetX(), 0.0, 1e-15);
+  EXPECT_NEAR(turned.GetY(), 1.0, 1e-15);
+  EXPECT_TRUE(std::isnan(CVector2().Normalize().GetX()));
+  EXPECT_EQ(CVector2(1.0, 2.0).Perpendicularize(), CVector2(-2.0, 1.0));
+  EXPECT_EQ(CVector2(1.0, 2.0).CrossProduct(CVector2(3.0, 4.0)), -2.0);
+  EXPECT_EQ(Distance(CVector2(1.0, 1.0), CVector2(4.0, 5.0)), 5.0);
+  EXPECT_NEAR(CVector2(2.0, CRadians::PI_OVER_TWO).GetY(), 2.0, 1e-15);
+}
+
+TEST(Vector3, CrossProductChangesIt) {
+  CVector3 vector(CVector3::X);
+  EXPECT_EQ(vector.CrossProduct(CVector3::Y), CVector3::Z);
+  EXPECT_EQ(vector, CVector3::Z);
+  EXPECT_TRUE(CVector3(1.0, 1.0, 1.0) < CVector3(2.0, 2.0, 2.0));
+  EXPECT_FALSE(CVector3(1.0, 3.0, 1.0) < CVector3(2.0, 2.0, 2.0));
+  EXPECT_EQ(CVector3(0.0, 1.0, 5.0).GetZAngle(), CRadians::PI_OVER_TWO);
+}
+
+TEST(Quaternion, GivesTheHeadingOfARobotFirst) {
+  for (const double heading : {0.0, 1.0, -3.0, 3.1}) {
+    CRadians z;
+    CRadians y;
+    CRadians x;
+    CQuaternion(CRadians(heading), CVector3::Z).ToEulerAngles(z, y, x);
+    EXPECT_NEAR(z.GetValue(), heading, 1e-15);
+    EXPECT_EQ(y.GetValue(), 0.0);
+    EXPECT_EQ(x.GetValue(), 0.0);
+  }
+}
+
+TEST(Quaternion, GivesBackItsEulerAngles) {
+  CQuaternion rotation;
+  rotation.FromEulerAngles(CRadians(0.5), CRadians(-0.4), CRadians(0.3));
+  CRadians z;
+  CRadians y;
+  CRadians x;
+  rotation.ToEulerAngles(z, y, x);
+  EXPECT_NEAR(z.GetValue(), 0.5, 1e-14);
+  EXPECT_NEAR(y.GetValue(), -0.4, 1e-14);
+  EXPECT_NEAR(x.GetValue(), 0.3, 1e-14);
+  const CVector3 turned = CVector3(CVector3::X).Rotate(CQuaternion(CVector3::X, CVector3::Y));
+  EXPECT_NEAR(Distance(turned, CVector3::Y), 0.0, 1e-14);
+}
+
+}  // namespace
+}  // namespace argos
