@@ -1,7 +1,9 @@
 #include "controllers/registry.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 #include "base/check.h"
@@ -26,6 +28,24 @@ Status CheckRange(const ParameterInfo& info, double value) {
   }
   if (info.integer && value != std::floor(value)) return InvalidInput(given.append(" is not a whole number"));
   return Ok{};
+}
+
+// Pointers into it stay valid.
+std::deque<PluginInfo>& Plugins() {
+  static std::deque<PluginInfo> plugins;
+  return plugins;
+}
+
+// The spec's controller. Error: there is none of that name, or the plug-in is not known here.
+Result<const ControllerInfo*> ControllerOf(const sim::RunSpec& spec) {
+  const ControllerInfo* controller = FindController(spec.controller, spec.plugin);
+  if (controller != nullptr) return controller;
+  if (spec.plugin.empty()) return InvalidInput(UnknownName("controller", spec.controller, Controllers()));
+  const PluginInfo* plugin = FindPlugin(spec.plugin);
+  if (plugin == nullptr) return InvalidInput("the plug-in " + spec.plugin + " is not loaded");
+  return InvalidInput(
+      "the plug-in " + plugin->file + ": " +
+      UnknownName("controller", spec.controller, std::span<const ControllerInfo>(plugin->controllers)));
 }
 
 }  // namespace
@@ -61,8 +81,27 @@ const ScenarioInfo* FindScenario(std::string_view name) {
   return FindByName(Scenarios(), name);
 }
 
-const ControllerInfo* FindController(std::string_view name) {
-  return FindByName(Controllers(), name);
+const ControllerInfo* FindController(std::string_view name, std::string_view plugin) {
+  if (plugin.empty()) return FindByName(Controllers(), name);
+  const PluginInfo* known = FindPlugin(plugin);
+  return known == nullptr ? nullptr : FindByName(std::span<const ControllerInfo>(known->controllers), name);
+}
+
+Status AddPlugin(PluginInfo plugin) {
+  if (FindPlugin(plugin.hash) != nullptr) return Ok{};
+  for (const ControllerInfo& controller : plugin.controllers) {
+    if (FindController(controller.name) == nullptr) continue;
+    std::string message = "the plug-in " + plugin.file + " brings a controller '";
+    return InvalidInput(message.append(controller.name)
+                            .append("', which is the name of a built-in one: give it a name of its own"));
+  }
+  Plugins().push_back(std::move(plugin));
+  return Ok{};
+}
+
+const PluginInfo* FindPlugin(std::string_view hash) {
+  const auto found = std::ranges::find(Plugins(), hash, &PluginInfo::hash);
+  return found == Plugins().end() ? nullptr : &*found;
 }
 
 const MetricInfo* FindMetric(const ScenarioInfo& scenario, std::string_view name) {
@@ -92,8 +131,9 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos,
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) {
   const ScenarioInfo* scenario = FindScenario(spec.scenario);
   if (scenario == nullptr) return InvalidInput(UnknownName("scenario", spec.scenario, Scenarios()));
-  const ControllerInfo* controller = FindController(spec.controller);
-  if (controller == nullptr) return InvalidInput(UnknownName("controller", spec.controller, Controllers()));
+  const Result<const ControllerInfo*> found = ControllerOf(spec);
+  if (!found.ok()) return found.error();
+  const ControllerInfo* controller = *found;
   if (!controller->WrittenFor(scenario->name)) {
     std::string message = "controller '";
     message.append(spec.controller).append("' is written for the scenario '").append(controller->scenario);

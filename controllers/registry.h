@@ -5,7 +5,9 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.h"
 #include "controllers/behaviour.h"
@@ -15,10 +17,25 @@
 namespace gauntlet::controllers {
 
 std::span<const ScenarioInfo> Scenarios();
-std::span<const ControllerInfo> Controllers();
-// nullptr when there is none of that name.
+std::span<const ControllerInfo> Controllers();  // those that are built in
+
+// What a plug-in brings, as this process knows it: a runner that has loaded the library can run its
+// controllers, a master that was told of it knows their names and parameters.
+struct PluginInfo {
+  std::string hash;  // SHA-256 of the library, 64 hexadecimal digits
+  std::string file;  // where it was found
+  // In a master: what gauntlet-worker said of it, from which the rows come (proto/plugin_description.h).
+  std::string description;
+  std::vector<ControllerInfo> controllers;
+};
+// Makes it known for the rest of this process' life; one that is known already stays as it is. What the rows
+// refer to is never freed. Error: a built-in controller has the name of one of its controllers.
+Status AddPlugin(PluginInfo plugin);
+const PluginInfo* FindPlugin(std::string_view hash);  // nullptr when it is not known
+
+// nullptr when there is none of that name. `plugin`: the hash of the plug-in to look in; "": those built in.
 const ScenarioInfo* FindScenario(std::string_view name);
-const ControllerInfo* FindController(std::string_view name);
+const ControllerInfo* FindController(std::string_view name, std::string_view plugin = "");
 
 // The metric `name` of a scenario, or the family it belongs to; nullptr when the scenario reports none such.
 const MetricInfo* FindMetric(const ScenarioInfo& scenario, std::string_view name);

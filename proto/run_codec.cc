@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/system/sha256.h"
 #include "base/utf8.h"
 #include "proto/run.pb.h"
 #include "sim/arena/validity.h"
@@ -107,6 +108,7 @@ void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
   if (spec.physics == sim::PhysicsKind::kRelaxation) message.set_physics(v1::PHYSICS_RELAXATION);
   if (spec.physics == sim::PhysicsKind::kImpulse) message.set_physics(v1::PHYSICS_IMPULSE);
   ToProto(spec.disturbances, message);
+  message.set_plugin(spec.plugin);
 }
 
 const std::string& Utf8(const std::string& text) {
@@ -443,6 +445,8 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
                  fmt::format("physics {} is none that this version knows", static_cast<int>(wire.physics())));
   spec.physics = PhysicsOf(wire.physics());
   spec.disturbances = ReadDisturbances(wire, reader);
+  spec.plugin = wire.plugin();
+  reader.Require(spec.plugin.empty() || IsSha256(spec.plugin), "a plug-in that is named by no SHA-256");
   if (!reader.ok()) return Corrupt(reader.error());
   return spec;
 }

@@ -24,6 +24,7 @@ struct RunSpec {
   Parameters scenario_parameters;
   std::string controller;  // registry name of the controller under test
   Parameters controller_parameters;
+  std::string plugin;  // SHA-256 of the library that brings the controller, hexadecimal; "": it is built in
   std::uint64_t seed = 0;
   PhysicsKind physics = PhysicsKind::kImpulse;
   Disturbances disturbances;

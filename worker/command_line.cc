@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ Examples:
   gauntlet-worker --dir campaigns/flocking-1            serve the campaign in that directory
   gauntlet-worker --access /shared/access.json --slots 8
   gauntlet-worker --run-spec spec.bin > result.bin      simulate one stored spec
+  gauntlet-worker --describe-plugin libmine.so          what a plug-in brings, as JSON
 )";
 
 // CLI::Range lets "nan" through.
@@ -63,6 +65,7 @@ struct CommandLine {
   SpecOptions spec;
   std::string directory;
   std::vector<std::string> golden;  // controllers
+  std::string described_plugin;
 };
 
 // Options of a worker that serves a master.
@@ -90,6 +93,32 @@ std::vector<CLI::Option*> AddServing(CLI::App& app, CommandLine& line) {
   return {dir, access, slots, orphan, log, allocation};
 }
 
+// Options of one run without a master.
+void AddRunSpec(CLI::App& app, SpecOptions& line) {
+  auto* spec =
+      app.add_option(
+             "--run-spec", line.spec_file,
+             "Simulate one serialized RunSpec (\"-\": from stdin) and write the RunResult to stdout, binary")
+          ->type_name("FILE");
+  app.add_option("--cpu-limit", line.cpu_limit_seconds, "With --run-spec: CPU seconds, 0 = no limit")
+      ->capture_default_str()
+      ->check(Seconds())
+      ->needs(spec);
+  app.add_option("--memory-limit", line.memory_limit_bytes,
+                 "With --run-spec: bytes of address space, 0 = no limit")
+      ->type_name("BYTES")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber)
+      ->needs(spec);
+  app.add_option("--plugin", line.plugins.file, "With --run-spec: the plug-in that the spec names")
+      ->type_name("FILE")
+      ->needs(spec);
+  app.add_option("--scratch", line.plugins.scratch,
+                 "With --run-spec: working directory of a plug-in's run, which keeps what it writes")
+      ->type_name("DIR")
+      ->needs(spec);
+}
+
 void AddOptions(CLI::App& app, CommandLine& line) {
   const std::vector<CLI::Option*> serving = AddServing(app, line);
   auto* quiet = app.add_flag("--quiet", line.worker.quiet, "Log warnings and errors only");
@@ -106,24 +135,16 @@ void AddOptions(CLI::App& app, CommandLine& line) {
           ->type_name("[CONTROLLER...]")
           ->expected(0, -1)
           ->excludes(die);
-  auto* spec =
-      app.add_option(
-             "--run-spec", line.spec.spec_file,
-             "Simulate one serialized RunSpec (\"-\": from stdin) and write the RunResult to stdout, binary")
-          ->type_name("FILE")
-          ->excludes(golden);
-  app.add_option("--cpu-limit", line.spec.cpu_limit_seconds, "With --run-spec: CPU seconds, 0 = no limit")
-      ->capture_default_str()
-      ->check(Seconds())
-      ->needs(spec);
-  app.add_option("--memory-limit", line.spec.memory_limit_bytes,
-                 "With --run-spec: bytes of address space, 0 = no limit")
-      ->type_name("BYTES")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber)
-      ->needs(spec);
+  AddRunSpec(app, line.spec);
+  auto* spec = app.get_option("--run-spec")->excludes(golden);
+  auto* describe = app.add_option("--describe-plugin", line.described_plugin,
+                                  "Print what this plug-in brings, as JSON, after loading it in a process of "
+                                  "its own")
+                       ->type_name("FILE")
+                       ->excludes(golden)
+                       ->excludes(spec);
   quiet->excludes(golden);
-  for (CLI::Option* option : serving) option->excludes(golden)->excludes(spec);
+  for (CLI::Option* option : serving) option->excludes(golden)->excludes(spec)->excludes(describe);
 }
 
 int PrintGoldenHashes(const proto::GoldenHashes& hashes) {
@@ -146,6 +167,10 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
   }
   std::erase(line.golden, "");  // what CLI11 puts there when no name follows
   if (app.count("--golden") > 0) return PrintGoldenHashes(functions.golden_hashes(line.golden));
+  if (app.count("--describe-plugin") > 0)
+    return PrintDescription(line.described_plugin, functions.describe_plugin);
+  line.spec.plugins.load = functions.load_plugin;
+  line.worker.plugins.load = functions.load_plugin;
   if (app.count("--run-spec") > 0) {
     line.spec.parent = line.worker.parent;
     line.spec.quiet = line.worker.quiet;
@@ -162,6 +187,7 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
     return 2;
   }
   if (by_directory) line.worker.access_path = line.directory + "/access.json";
+  line.worker.plugins.folder = std::filesystem::path(line.worker.access_path).parent_path() / "plugins";
   line.worker.software_version = GAUNTLET_VERSION;
   line.worker.golden_hashes = functions.golden_hashes;
   return RunWorker(line.worker, functions.run);

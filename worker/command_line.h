@@ -1,6 +1,7 @@
 // The command line of gauntlet-worker, for any program that brings a run function.
 #pragma once
 
+#include "worker/describe_plugin.h"
 #include "worker/worker_process.h"
 
 namespace gauntlet::worker {
@@ -8,6 +9,8 @@ namespace gauntlet::worker {
 struct WorkerFunctions {
   RunFunction run;
   GoldenHashFunction golden_hashes;
+  LoadPluginFunction load_plugin;
+  DescribePluginFunction describe_plugin;
 };
 
 // The exit code. To be called from main(), before any thread exists.

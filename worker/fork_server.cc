@@ -119,7 +119,8 @@ sigset_t ChildSignals() {
 
 class Server {
  public:
-  Server(UniqueFd control, const RunFunction& run) : control_(std::move(control)), run_(run) {
+  Server(UniqueFd control, const RunFunction& run, const PluginSettings& plugins)
+      : control_(std::move(control)), run_(run), plugins_(plugins) {
     const sigset_t children = ChildSignals();
     sigprocmask(SIG_BLOCK, &children, nullptr);
     child_signals_.Reset(signalfd(-1, &children, SFD_CLOEXEC | SFD_NONBLOCK));
@@ -190,7 +191,7 @@ class Server {
     setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + kRunnerNiceness);
     const UniqueFd null(open("/dev/null", O_RDONLY | O_CLOEXEC));
     if (null.valid()) dup2(null.get(), STDIN_FILENO);
-    RunnerMain(pipe.get(), run_);
+    RunnerMain(pipe.get(), run_, plugins_);
   }
 
   void Reap() {
@@ -224,15 +225,17 @@ class Server {
   UniqueFd control_;
   UniqueFd child_signals_;
   const RunFunction& run_;
+  const PluginSettings& plugins_;
   std::set<pid_t> runners_;
 };
 
 // The process' life. Ends, with all runners, when `control` ends or `supervisor` dies.
-[[noreturn]] void ForkServerMain(UniqueFd control, pid_t supervisor, const RunFunction& run) {
+[[noreturn]] void ForkServerMain(UniqueFd control, pid_t supervisor, const RunFunction& run,
+                                 const PluginSettings& plugins) {
   if (!DieWithParent(supervisor)) _exit(0);
   for (const int ignored : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(ignored, SIG_IGN);
   prctl(PR_SET_NAME, "gauntlet-fork");
-  Server(std::move(control), run).Serve();
+  Server(std::move(control), run, plugins).Serve();
 }
 
 constexpr std::chrono::milliseconds kEndDeadline{2000};
@@ -265,7 +268,7 @@ bool DieWithParent(pid_t parent) {
   return getppid() == parent;
 }
 
-Result<std::unique_ptr<ForkServer>> ForkServer::Start(const RunFunction& run) {
+Result<std::unique_ptr<ForkServer>> ForkServer::Start(const RunFunction& run, const PluginSettings& plugins) {
   CheckSingleThreaded();
   Result<SocketPair> control = MakeSocketPair(SOCK_SEQPACKET);
   if (!control.ok()) return control.error();
@@ -274,7 +277,7 @@ Result<std::unique_ptr<ForkServer>> ForkServer::Start(const RunFunction& run) {
   if (pid < 0) return SystemError("cannot start a process", errno);
   if (pid == 0) {
     control->first.Reset();
-    ForkServerMain(std::move(control->second), supervisor, run);
+    ForkServerMain(std::move(control->second), supervisor, run, plugins);
   }
   return std::unique_ptr<ForkServer>(new ForkServer(pid, std::move(control->first)));
 }

@@ -44,8 +44,9 @@ bool DieWithParent(pid_t parent);
 // The supervisor's handle. Thread-safety: one calling thread, the one that called Start.
 class ForkServer {
  public:
-  // Forks the server. To be called while the process has one thread only. Error: kIo.
-  static Result<std::unique_ptr<ForkServer>> Start(const RunFunction& run);
+  // Forks the server. To be called while the process has one thread only. `plugins`: of its runners. Error:
+  // kIo.
+  static Result<std::unique_ptr<ForkServer>> Start(const RunFunction& run, const PluginSettings& plugins);
   ForkServer(const ForkServer&) = delete;
   ForkServer& operator=(const ForkServer&) = delete;
   // Ends the server and with it all runners; returns when it is reaped.

@@ -1,9 +1,14 @@
 // gauntlet-worker: simulates runs for a master.
 #include "worker/command_line.h"
 #include "worker/golden_hash.h"
+#include "worker/plugin_library.h"
 #include "worker/run_executor.h"
 
 int main(int argc, char** argv) {
   namespace worker = gauntlet::worker;
-  return worker::RunWorkerCommandLine(argc, argv, {worker::Run, worker::GoldenHashes});
+  return worker::RunWorkerCommandLine(argc, argv,
+                                      {.run = worker::Run,
+                                       .golden_hashes = worker::GoldenHashes,
+                                       .load_plugin = worker::LoadPlugin,
+                                       .describe_plugin = worker::DescribePlugin});
 }

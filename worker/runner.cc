@@ -9,9 +9,8 @@
 #include <array>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
 #include <ctime>
-#include <exception>
-#include <new>
 
 #include "base/canonical_encoder.h"
 #include "base/utf8.h"
@@ -24,16 +23,6 @@ using proto::FailureKind;
 using proto::RunnerFailure;
 
 namespace {
-
-void WriteToStderr(std::string_view text) {
-  // Best effort: there is nobody else to tell.
-  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
-}
-
-[[noreturn]] void OutOfMemory() {
-  WriteToStderr("out of memory\n");
-  _exit(kExitOutOfMemory);
-}
 
 double SecondsOf(clockid_t clock) {
   timespec time{};
@@ -80,9 +69,8 @@ sim::RunResult Refuse(const Error& error) {
   return refused;
 }
 
-RunnerReport Execute(const RunnerJob& job, const RunFunction& run) {
+RunnerReport Execute(const RunnerJob& job, const Result<sim::RunSpec>& spec, const RunFunction& run) {
   const double start = SecondsOf(CLOCK_THREAD_CPUTIME_ID);
-  const Result<sim::RunSpec> spec = proto::DecodeRunSpec(job.spec);
   sim::RunResult result = spec.ok() ? run(*spec) : Refuse(spec.error());
   RunnerReport report;
   report.cpu_seconds = SecondsOf(CLOCK_THREAD_CPUTIME_ID) - start;
@@ -95,6 +83,45 @@ RunnerReport Execute(const RunnerJob& job, const RunFunction& run) {
   }
   report.process_cpu_seconds = SecondsOf(CLOCK_PROCESS_CPUTIME_ID);
   return report;
+}
+
+// User and system time of this process and of its children that have ended.
+double SecondsWithChildren() {
+  double seconds = SecondsOf(CLOCK_PROCESS_CPUTIME_ID);
+  rusage children{};
+  if (getrusage(RUSAGE_CHILDREN, &children) == 0) {
+    for (const timeval& time : {children.ru_utime, children.ru_stime})
+      seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  }
+  return seconds;
+}
+
+[[noreturn]] void EndWithoutPlugin(const Error& error) {
+  fmt::print(stderr, "{}\n", error.message);
+  std::fflush(stderr);
+  _exit(kExitWithoutPlugin);
+}
+
+// The report of a run of a plug-in, which gets a process of its own: it begins with fresh statics, and does
+// nothing to this one.
+std::string ExecutePlugin(const RunnerJob& job, const Result<sim::RunSpec>& spec, const RunFunction& run,
+                          PluginFiles& plugins) {
+  const Result<PluginFile> file = plugins.Open(spec->plugin);
+  if (!file) EndWithoutPlugin(file.error());
+  const auto work = [&] {
+    if (const Status loaded = plugins.settings().load(*file); !loaded) EndWithoutPlugin(loaded.error());
+    return EncodeReport(Execute(job, spec, run));
+  };
+  const Result<SeparateOutcome> outcome =
+      CallInSeparateProcess(work, {.cpu_limit_seconds = job.cpu_limit_seconds,
+                                   .memory_limit_bytes = kMemoryLimitWorks ? job.memory_limit_bytes : 0,
+                                   .scratch = plugins.settings().scratch});
+  if (!outcome) EndWithoutPlugin(outcome.error());
+  std::optional<RunnerReport> report;
+  if (outcome->bytes) report = DecodeReport(*outcome->bytes);
+  if (!report) EndAs(*outcome);
+  report->process_cpu_seconds = SecondsWithChildren();
+  return EncodeReport(*report);
 }
 
 bool OnlyOthersSend(int signal) {
@@ -157,7 +184,9 @@ RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail) {
     return failure;
   }
   failure.exit_code = WEXITSTATUS(wait_status);
-  failure.kind = failure.exit_code == kExitOutOfMemory ? FailureKind::kOutOfMemory : FailureKind::kCrashed;
+  failure.kind = failure.exit_code == kExitOutOfMemory     ? FailureKind::kOutOfMemory
+                 : failure.exit_code == kExitWithoutPlugin ? FailureKind::kExternal
+                                                           : FailureKind::kCrashed;
   return failure;
 }
 
@@ -166,12 +195,11 @@ RunnerFailure WaitedTooLong(double wall_seconds) {
           .stderr_tail = fmt::format("no end after {:.0f} s: it waits", wall_seconds)};
 }
 
-void RunnerMain(int pipe, const RunFunction& run) {
-  std::set_new_handler(OutOfMemory);
+void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugin_settings) {
   Limits::ForbidCoreDumps();
   Limits limits;
+  PluginFiles plugins(plugin_settings);
   FrameBuffer messages;
-  double used = SecondsOf(CLOCK_PROCESS_CPUTIME_ID);
   while (true) {
     const std::optional<std::string> message = messages.Next();
     if (!message) {
@@ -180,20 +208,13 @@ void RunnerMain(int pipe, const RunFunction& run) {
     }
     const std::optional<RunnerJob> job = DecodeJob(*message);
     GAUNTLET_CHECK(job.has_value(), "a job that does not decode");
-    limits.Set(*job, used);
-    try {
-      const RunnerReport report = Execute(*job, run);
-      used = report.process_cpu_seconds;
-      if (!WriteFrame(pipe, EncodeReport(report))) _exit(0);
-    } catch (const std::bad_alloc&) {
-      OutOfMemory();
-    } catch (const std::exception& error) {
-      WriteToStderr(fmt::format("uncaught exception: {}\n", error.what()));
-      _exit(kExitException);
-    } catch (...) {
-      WriteToStderr("uncaught exception of an unknown type\n");
-      _exit(kExitException);
-    }
+    limits.Set(*job, SecondsOf(CLOCK_PROCESS_CPUTIME_ID));
+    const std::string report = CallOrEnd([&] {
+      const Result<sim::RunSpec> spec = proto::DecodeRunSpec(job->spec);
+      if (spec.ok() && !spec->plugin.empty()) return ExecutePlugin(*job, spec, run, plugins);
+      return EncodeReport(Execute(*job, spec, run));
+    });
+    if (!WriteFrame(pipe, report)) _exit(0);
   }
 }
 

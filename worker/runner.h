@@ -11,15 +11,13 @@
 #include "proto/messages.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
+#include "worker/plugin_files.h"
+#include "worker/separate_process.h"
 
 namespace gauntlet::worker {
 
 // The pure function that a runner calls; worker/run_executor.h has the real one, tests bring their own.
 using RunFunction = std::function<sim::RunResult(const sim::RunSpec&)>;
-
-// Exit codes by which a runner says why it gave up. Outside the range that programs commonly use.
-inline constexpr int kExitOutOfMemory = 86;
-inline constexpr int kExitException = 87;
 
 // Sanitizers reserve terabytes of address space: memory limits cannot be set under them.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -56,7 +54,7 @@ std::optional<RunnerReport> DecodeReport(std::string_view bytes);
 
 // Why a runner ended without a result, from its status (waitpid). Own faults are the signals a process brings
 // on itself, SIGXCPU (the CPU limit) and any exit; SIGKILL, SIGTERM and the other signals that only somebody
-// else sends are external.
+// else sends are external, and so is that the plug-in of a run cannot be had here (kExitWithoutPlugin).
 proto::RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail);
 
 // A run that sleeps or waits uses no CPU time, so its limit never ends it. So many times its CPU limit of
@@ -65,7 +63,9 @@ inline constexpr double kWallPerCpu = 20.0;
 // Of a run that had not ended after `wall_seconds`.
 proto::RunnerFailure WaitedTooLong(double wall_seconds);
 
-// The child's life: works off jobs from `pipe` until it is closed. Limits apply to this very process.
-[[noreturn]] void RunnerMain(int pipe, const RunFunction& run);
+// The child's life: works off jobs from `pipe` until it is closed. Limits apply to this very process. A run
+// of a plug-in has a process of its own, under the same limits; as that one ends without a result, this one
+// ends.
+[[noreturn]] void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugins);
 
 }  // namespace gauntlet::worker

@@ -206,7 +206,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
   if (const Status allowed = AllowDescriptors(options.slots); !allowed.ok()) {
     return Complain(allowed.error().message, kExitRefused);
   }
-  Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
+  Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run, options.plugins);
   if (!fork_server.ok()) return Complain(fork_server.error().message, ExitCodeOf(fork_server.error()));
   ExplainAborts("gauntlet-worker");  // not of the fork server and its runners, whose aborts are theirs
   const UniqueFd signals = BlockStopSignals();
@@ -241,7 +241,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
 
 int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
   if (options.parent > 0 && !DieWithParent(options.parent)) return WithoutParent(options.parent);
-  Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run);
+  Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run, options.plugins);
   if (!fork_server.ok()) return Complain(fork_server.error().message, ExitCodeOf(fork_server.error()));
   Result<std::string> spec = ReadSpec(options.spec_file);
   if (!spec.ok()) return Complain(spec.error().message, kExitRefused);
@@ -256,6 +256,10 @@ int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
       fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeEnd(DecodeRunResult(result)));
   } else {
     const RunnerFailure& failure = std::get<RunnerFailure>(outcome);
+    if (failure.exit_code == kExitWithoutPlugin) {
+      fmt::print(stderr, "gauntlet-worker: {}", failure.stderr_tail);
+      return kExitRefused;
+    }
     const bool whole_lines = failure.stderr_tail.empty() || failure.stderr_tail.ends_with('\n');
     fmt::print(stderr, "gauntlet-worker: the run {}\n{}{}", Describe(failure), failure.stderr_tail,
                whole_lines ? "" : "\n");

@@ -29,6 +29,7 @@ struct WorkerOptions {
   std::string allocation;  // told to the master, which may keep a pool of batch jobs
   std::string software_version;
   GoldenHashFunction golden_hashes;
+  PluginSettings plugins = {};
 };
 
 // Serves until the master lets it go; the exit code (worker_state.h). To be called from main(), before any
@@ -51,12 +52,13 @@ struct SpecOptions {
   double cpu_limit_seconds = 600.0;
   std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;
   pid_t parent = 0;  // > 0: end with this process, which started us
+  PluginSettings plugins = {};
 };
 
 // Simulates one spec in a runner, under limits, and writes the serialized RunResult to stdout. A run that
 // ends its runner gives a result too, with the verdict and message of proto/README.md; what it printed goes
-// to stderr. Exit code 0 when a result was written, 2 when the spec could not be read, 4 when the runner was
-// ended from outside.
+// to stderr. Exit code 0 when a result was written, 2 when the spec could not be read or its plug-in cannot
+// be had, 4 when the runner was ended from outside.
 int RunOneSpec(const SpecOptions& options, const RunFunction& run);
 
 }  // namespace gauntlet::worker

@@ -163,6 +163,7 @@ void WorkerState::On(RunnerDied& died) {
   const bool reported = slot.state == SlotState::kRunning;
   slot.state = SlotState::kStarting;
   if (!reported) return;
+  if (died.failure.exit_code == kExitWithoutPlugin) return GiveUp(died.failure.stderr_tail, kExitRefused);
   const Given run = std::move(slot.runs.front());
   EndRuns(slot);
   if (!run.wanted) return;
@@ -176,12 +177,13 @@ void WorkerState::On(const NoRunnerStarted& failed) {
   } else if (!without_runners_) {
     without_runners_ = awake_;
   } else if (awake_ - *without_runners_ >= kNoRunnerPatience) {
-    LeaveWithoutRunners(failed.reason);
+    GiveUp(failed.reason, kExitInternal);
   }
 }
 
-void WorkerState::LeaveWithoutRunners(const std::string& reason) {
-  if (drain_ && drain_->exit_code == kExitInternal) return;
+// This worker cannot simulate any more: it gives everything back and leaves.
+void WorkerState::GiveUp(const std::string& reason, int exit_code) {
+  if (drain_ && drain_->exit_code != kExitDone) return;
   for (Slot& slot : slots_) {
     GiveBackRuns(slot, reason);
     slot.state = SlotState::kStarting;
@@ -189,7 +191,7 @@ void WorkerState::LeaveWithoutRunners(const std::string& reason) {
   for (const Lease& lease : std::exchange(waiting_, {})) GiveBack(lease, reason);
   const bool tell = !drain_;
   drain_ = DrainPlan{.reason = reason,
-                     .exit_code = kExitInternal,
+                     .exit_code = exit_code,
                      .drop_at = now_,
                      .leave_at = now_ + settings_.acknowledge_wait};
   if (tell && phase_ == Phase::kWelcomed) Act(Send{Drain{drain_->reason, false}});

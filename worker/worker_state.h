@@ -33,7 +33,7 @@ using Duration = std::chrono::steady_clock::duration;
 
 // Exit codes of gauntlet-worker.
 inline constexpr int kExitDone = 0;
-inline constexpr int kExitRefused = 2;   // by the master, or a wrong command line
+inline constexpr int kExitRefused = 2;   // by the master, a wrong command line, or without a plug-in it needs
 inline constexpr int kExitOrphaned = 3;  // no master within orphan_timeout
 inline constexpr int kExitInternal = 4;
 
@@ -111,7 +111,7 @@ class WorkerState {
   void On(RunFinished& finished);
   void On(RunnerDied& died);
   void On(const NoRunnerStarted& failed);
-  void On(const AllRunnersLost&) { LeaveWithoutRunners("the fork server ended"); }
+  void On(const AllRunnersLost&) { GiveUp("the fork server ended", kExitInternal); }
   void On(const MasterMoved&) { GreetAgain(); }
   void On(const ConnectionRestored& restored);
   void On(const StopRequested& stop);
@@ -135,7 +135,7 @@ class WorkerState {
   void GiveBack(const Lease& lease, const std::string& why);
   void GiveBackRuns(Slot& slot, const std::string& why);
   void DropRunning(const std::string& why);
-  void LeaveWithoutRunners(const std::string& reason);
+  void GiveUp(const std::string& reason, int exit_code);
   void ContinueDrain();
   void Leave(int code, const std::string& reason);
   std::size_t RunningCount() const;

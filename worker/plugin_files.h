@@ -1,0 +1,52 @@
+// The libraries of plug-ins as a runner has them: each is read once and known by its SHA-256.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include "base/result.h"
+#include "base/system/unique_fd.h"
+
+namespace gauntlet::worker {
+
+// A library that was read.
+struct PluginFile {
+  std::string path;  // by which dlopen finds it
+  std::string name;  // what messages call it
+  std::string hash;  // 64 hexadecimal digits
+};
+
+// Makes the controllers of a library known to the run function. Called in a process that is there for one
+// run.
+using LoadPluginFunction = std::function<Status(const PluginFile& file)>;
+
+// Where a runner finds plug-ins, and what it does with them.
+struct PluginSettings {
+  std::string folder = "";   // holds HASH.so
+  std::string file = "";     // this library instead, if it has the hash
+  std::string scratch = "";  // working directory of a run, which stays; "": one that is removed after the run
+  LoadPluginFunction load = nullptr;
+};
+
+// Not for sharing between threads.
+class PluginFiles {
+ public:
+  explicit PluginFiles(PluginSettings settings) : settings_(std::move(settings)) {}
+
+  const PluginSettings& settings() const { return settings_; }
+  // What is loaded is what was hashed, whatever happens to the file later: it is copied into memory. Error:
+  // there is no such file, it cannot be read, or its hash is another one.
+  Result<PluginFile> Open(const std::string& hash);
+
+ private:
+  struct Copy {
+    std::string name;
+    UniqueFd memory;
+  };
+
+  PluginSettings settings_;
+  std::map<std::string, Copy> copies_;  // by hash
+};
+
+}  // namespace gauntlet::worker

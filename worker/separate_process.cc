@@ -1,0 +1,155 @@
+#include "worker/separate_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <csignal>
+#include <exception>
+#include <new>
+
+#include "base/system/atomic_file.h"
+#include "base/system/unique_fd.h"
+#include "proto/messages.h"
+#include "worker/fork_server.h"
+#include "worker/scratch_folder.h"
+
+namespace gauntlet::worker {
+namespace {
+
+constexpr const char* kOutputFile = "output.txt";
+// The largest file that it may write.
+constexpr rlim_t kMostFileBytes = rlim_t{64} << 20;
+constexpr std::size_t kMostResultBytes = std::size_t{1} << 30;
+
+void WriteToStderr(std::string_view text) {
+  // Best effort: there is nobody else to tell.
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+}
+
+[[noreturn]] void OutOfMemory() {
+  WriteToStderr("out of memory\n");
+  _exit(kExitOutOfMemory);
+}
+
+// The end of what was printed.
+std::string OutputTail(const ScratchFolder& scratch) {
+  const Result<std::string> output = ReadSmallFile(scratch.path() + "/" + kOutputFile, kMostFileBytes);
+  if (!output) return "";
+  return output->substr(output->size() - std::min(output->size(), proto::kMaxStderrTail));
+}
+
+void SetLimit(__rlimit_resource resource, rlim_t wanted) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return;
+  limit.rlim_cur = std::min(wanted, limit.rlim_max);
+  setrlimit(resource, &limit);
+}
+
+void Confine(const SeparateOptions& options) {
+  SetLimit(RLIMIT_CORE, 0);
+  SetLimit(RLIMIT_FSIZE, kMostFileBytes);
+  if (options.cpu_limit_seconds > 0.0)
+    SetLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(options.cpu_limit_seconds)));
+  if (options.memory_limit_bytes > 0) SetLimit(RLIMIT_AS, rlim_t{options.memory_limit_bytes});
+  if (options.wall_limit_seconds > 0) alarm(options.wall_limit_seconds);
+}
+
+// Prints into the folder from now on, and reads nothing.
+bool MoveInto(const std::string& folder) {
+  if (chdir(folder.c_str()) != 0) return false;
+  const UniqueFd output(
+      open(kOutputFile, O_WRONLY | O_CREAT | O_APPEND | O_TRUNC | O_CLOEXEC, kReadableByAll));
+  const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  return output.valid() && nothing.valid() && dup2(nothing.get(), STDIN_FILENO) >= 0 &&
+         dup2(output.get(), STDOUT_FILENO) >= 0 && dup2(output.get(), STDERR_FILENO) >= 0;
+}
+
+// A length and so many bytes: whoever reads it knows whether it is all.
+bool WriteResult(int fd, const std::string& bytes) {
+  SetLimit(RLIMIT_FSIZE, RLIM_INFINITY);
+  const std::uint64_t size = bytes.size();
+  if (pwrite(fd, bytes.data(), bytes.size(), sizeof size) != static_cast<ssize_t>(bytes.size())) return false;
+  return pwrite(fd, &size, sizeof size, 0) == sizeof size;
+}
+
+std::optional<std::string> ReadResult(int fd) {
+  std::uint64_t size = 0;
+  if (pread(fd, &size, sizeof size, 0) != sizeof size || size > kMostResultBytes) return std::nullopt;
+  std::string bytes(size, '\0');
+  if (pread(fd, bytes.data(), size, sizeof size) != static_cast<ssize_t>(size)) return std::nullopt;
+  return bytes;
+}
+
+[[noreturn]] void LiveSeparately(const std::function<std::string()>& work, const SeparateOptions& options,
+                                 pid_t parent, const std::string& folder, int result) {
+  setpgid(0, 0);
+  if (!DieWithParent(parent)) _exit(0);
+  if (!MoveInto(folder)) _exit(kExitWithoutPlugin);
+  Confine(options);
+  const std::string bytes = CallOrEnd(work);
+  if (!WriteResult(result, bytes)) OutOfMemory();
+  _exit(0);
+}
+
+}  // namespace
+
+std::string CallOrEnd(const std::function<std::string()>& work) {
+  std::set_new_handler(OutOfMemory);
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    OutOfMemory();
+  } catch (const std::exception& error) {
+    WriteToStderr(fmt::format("uncaught exception: {}\n", error.what()));
+  } catch (...) {
+    WriteToStderr("uncaught exception of an unknown type\n");
+  }
+  _exit(kExitException);
+}
+
+Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>& work,
+                                              const SeparateOptions& options) {
+  const Result<ScratchFolder> scratch = ScratchFolder::Make(options.scratch);
+  if (!scratch) return scratch.error();
+  const UniqueFd result(memfd_create("result", MFD_CLOEXEC));
+  if (!result.valid()) return SystemError("cannot make a file in memory", errno);
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) return SystemError("cannot start a process", errno);
+  if (child == 0) LiveSeparately(work, options, parent, scratch->path(), result.get());
+
+  siginfo_t ended{};
+  while (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) continue;
+  kill(-child, SIGKILL);  // it is not reaped yet, so the process group is still its own
+  SeparateOutcome outcome;
+  while (waitpid(child, &outcome.wait_status, 0) < 0 && errno == EINTR) continue;
+  if (outcome.wait_status == 0) outcome.bytes = ReadResult(result.get());
+  if (!outcome.bytes) outcome.output_tail = OutputTail(*scratch);
+  return outcome;
+}
+
+void EndAs(const SeparateOutcome& outcome) {
+  WriteToStderr(outcome.output_tail);
+  if (WIFSIGNALED(outcome.wait_status)) {
+    const int number = WTERMSIG(outcome.wait_status);
+    SetLimit(RLIMIT_CORE, 0);
+    signal(number, SIG_DFL);
+    sigset_t only;
+    sigemptyset(&only);
+    sigaddset(&only, number);
+    sigprocmask(SIG_UNBLOCK, &only, nullptr);
+    raise(number);
+  }
+  const int code = WEXITSTATUS(outcome.wait_status);
+  if (code == 0) WriteToStderr("exit(0) was called before the run had a result\n");
+  _exit(code == 0 ? kExitWithoutResult : code);
+}
+
+}  // namespace gauntlet::worker
