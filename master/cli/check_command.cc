@@ -18,6 +18,7 @@
 #include "master/cli/given_cases.h"
 #include "master/cli/output_file.h"
 #include "master/cli/run_campaign.h"
+#include "master/directory/plugins.h"
 #include "master/report/answered_calls.h"
 #include "master/report/questioned_cases.h"
 #include "master/report/stored_search.h"
@@ -33,6 +34,7 @@ constexpr const char* kFolder = "/.check";  // of a corpus: the runs of its chec
 struct CheckOptions : RunningOptions {
   std::string corpus;
   std::vector<std::string> sets;
+  std::vector<std::string> plugins;
   std::string junit;
   bool update = false;
 };
@@ -49,11 +51,13 @@ struct CorpusPlan {
 Result<CorpusPlan> PlanCheck(const CheckOptions& options) {
   Result<std::vector<CorpusEntry>> entries = ReadCorpus(options.corpus);
   if (!entries) return entries.error();
+  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.plugins);
+  if (!plugins) return plugins.error();
   CorpusPlan plan{*std::move(entries), {}, {}, {}, ""};
   std::map<std::vector<std::pair<std::string, std::string>>, std::size_t> search_of;
   Fnv1a64 hash;
   for (std::size_t i = 0; i < plan.entries.size(); ++i) {
-    const Result<Experiment> experiment = ExperimentOf(plan.entries[i], options.sets);
+    const Result<Experiment> experiment = ExperimentOf(plan.entries[i], options.sets, *plugins);
     if (!experiment) return experiment.error();
     plan.experiments.push_back(*experiment);
     const auto [search, is_new] = search_of.try_emplace(SettingsOf(*experiment), plan.searches.size());
@@ -215,6 +219,7 @@ void AddCheck(CommandParser& parser) {
   command.add_option("CORPUS", options.corpus, "folder of cases, made by 'gauntlet corpus add'")->required();
   AddValue(command, "--set", "KEY=VALUE", options.sets,
            "check with this setting instead of the files': controller=..., controller_parameters.NAME=...");
+  AddPluginOption(command, options.plugins);
   AddValue(command, "--junit", "F", options.junit, "write the outcome as JUnit's XML");
   command.add_flag("--update", options.update,
                    "expect from now on what was seen, with the settings of --set; prints what changes");

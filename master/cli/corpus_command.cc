@@ -40,7 +40,8 @@ struct CorpusOptions {
 // A case that is to be kept.
 struct Keepsake {
   CorpusCase content;
-  std::string picture;  // SVG
+  std::string picture;               // SVG
+  std::vector<std::string> plugins;  // the one that brings the controller, by its SHA-256, or none
 };
 
 // The picture that `minimise` has drawn beside a case's file.
@@ -74,6 +75,7 @@ Result<Keepsake> KeepsakeOfFile(const CorpusOptions& options, const std::string&
   kept.content.found_in =
       fmt::format("{} of {}, by {}", loaded->lineage->parent.name, experiment.name, loaded->lineage->made_by);
   kept.content.settings = SettingsOf(experiment);
+  if (!experiment.plugin.empty()) kept.plugins = {experiment.plugin};
   kept.content.document = {std::move(loaded->test_case), std::move(loaded->lineage)};
   Result<std::string> picture = PictureBeside(file);
   if (!picture) return picture.error();
@@ -111,7 +113,7 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
   if (const Status fails = CheckFails(fmt::format("run {}", run), kept.content.found); !fails)
     return fails.error();
   const Result<CampaignReplay> replay =
-      context.campaigns.Replay(confirmed->example->campaign, confirmed->example->run);
+      context.campaigns.Replay(confirmed->example->campaign, confirmed->example->run, /*scratch=*/"");
   if (!replay) return replay.error();
   kept.picture = analysis::DrawRun(FigureOf(experiment.name, replay->report));
   kept.content.found_in = fmt::format("run {} of {}", run, experiment.name);
@@ -164,7 +166,7 @@ Status CheckFits(const CorpusOptions& options, const std::vector<Keepsake>& kept
     all.push_back({fmt::format("{}/{}.json", options.corpus, name), one.content});
     if (Result<CorpusCase> read = ParseCorpusCase(WriteCorpusCase(one.content), "--name " + name); !read)
       return read.error();
-    if (const Result<Experiment> experiment = ExperimentOf(all.back(), {}); !experiment)
+    if (const Result<Experiment> experiment = ExperimentOf(all.back(), {}, one.plugins); !experiment)
       return experiment.error();
   }
   return Ok{};

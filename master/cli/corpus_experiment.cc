@@ -46,7 +46,8 @@ std::vector<std::pair<std::string, std::string>> SettingsOf(const Experiment& ex
   return settings;
 }
 
-Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std::string>& sets) {
+Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std::string>& sets,
+                                const std::vector<std::string>& plugins) {
   const std::string scenario = SettingOf(entry.content, "scenario");
   if (const std::string other = SetValue(sets, "scenario"); !other.empty() && other != scenario) {
     return InvalidInput(Printable(fmt::format("--set scenario={}: the corpus is for the scenario '{}' ({})",
@@ -55,7 +56,7 @@ Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std:
   const std::string controller = SetValue(sets, "controller");
   const bool other_controller = !controller.empty() && controller != SettingOf(entry.content, "controller");
   const controllers::ControllerInfo* info = controllers::FindController(controller);
-  if (info != nullptr && info->scenario != scenario) {
+  if (info != nullptr && !info->WrittenFor(scenario)) {
     return InvalidInput(Printable(
         fmt::format("--set controller={}: it is written for the scenario '{}', the corpus is for '{}' ({})",
                     controller, info->scenario, scenario, entry.file)));
@@ -68,7 +69,9 @@ Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std:
   }
   const std::size_t from_file = all.size();
   all.insert(all.end(), sets.begin(), sets.end());
-  Result<Experiment> experiment = ParseExperiment("", entry.file, all, BuiltInCatalogue());
+  Catalogue catalogue = BuiltInCatalogue();
+  catalogue.plugins = plugins;
+  Result<Experiment> experiment = ParseExperiment("", entry.file, all, catalogue);
   if (!experiment) {
     Error error = experiment.error();
     for (std::size_t i = 0; i < from_file; ++i) {  // what stands in the file was not typed

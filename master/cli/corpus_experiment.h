@@ -16,7 +16,8 @@ std::vector<std::pair<std::string, std::string>> SettingsOf(const Experiment& ex
 
 // The experiment of a case, with `sets` ("key=value") instead of what its file says; with another controller
 // the file's controller_parameters are left out. Error: a setting is refused, is of another scenario, or the
-// case breaks a rule.
-Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std::string>& sets);
+// case breaks a rule. `plugins`: the SHA-256 of those that may bring the controller.
+Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std::string>& sets,
+                                const std::vector<std::string>& plugins);
 
 }  // namespace gauntlet::master

@@ -8,9 +8,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/shell_quoted.h"
 #include "controllers/registry.h"
 #include "master/cli/commands.h"
+#include "master/cli/options.h"
 #include "master/cli/table.h"
+#include "master/directory/plugins.h"
 #include "master/experiment/experiment_file.h"
 #include "master/experiment/schema.h"
 #include "master/search/search_table.h"
@@ -26,6 +29,7 @@ constexpr std::size_t kTextWidth = 110;
 struct ListOptions {
   std::string section;  // the name of one of kSections, "" = all
   bool json = false;
+  std::vector<std::string> plugins;  // libraries: what they bring, and nothing else
 };
 
 // What the search reads, keys of searches first.
@@ -127,15 +131,28 @@ std::string ScenariosText() {
   return text;
 }
 
-std::string ControllersText() {
-  std::string text = "Controllers (--set controller=NAME, --set controller_parameters.PARAMETER=VALUE)\n";
-  for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
+std::string RowsText(std::span<const controllers::ControllerInfo> rows) {
+  std::string text;
+  for (const controllers::ControllerInfo& controller : rows) {
     text += "\n  " + Wrapped(fmt::format("{}: {}", controller.name, controller.description), kTextWidth, 4) +
             "\n";
-    text += fmt::format("    written for the scenario {}\n\n", controller.scenario);
+    text += controller.scenario == controllers::kAnyScenario
+                ? "    written for any scenario\n\n"
+                : fmt::format("    written for the scenario {}\n\n", controller.scenario);
     text += ParameterTable(controller.parameters);
   }
   return text;
+}
+
+std::string ControllersText() {
+  return "Controllers (--set controller=NAME, --set controller_parameters.PARAMETER=VALUE)\n" +
+         RowsText(controllers::Controllers());
+}
+
+std::string PluginText(const controllers::PluginInfo& plugin) {
+  return fmt::format("Controllers of {} (--plugin {} --set controller=NAME), SHA-256 {}\n", plugin.file,
+                     PastedPath(plugin.file), plugin.hash) +
+         RowsText(plugin.controllers);
 }
 
 std::string SearchesText() {
@@ -228,6 +245,12 @@ Json ControllerJson(const controllers::ControllerInfo& controller) {
           {"parameters", JsonOf(controller.parameters, ParameterJson)}};
 }
 
+Json PluginJson(const controllers::PluginInfo& plugin) {
+  return {{"file", plugin.file},
+          {"sha256", plugin.hash},
+          {"controllers", JsonOf(plugin.controllers, ControllerJson)}};
+}
+
 Json SearchJson(const SearchInfo& search) {
   return {{"name", search.name},
           {"description", search.description},
@@ -247,7 +270,22 @@ constexpr Section kSections[] = {
     {"searches", SearchesText, [] { return JsonOf(BuiltInCatalogue().searches, SearchJson); }},
     {"disturbances", DisturbancesText, [] { return JsonOf(DisturbanceKeys(), KeyJson); }}};
 
+ExitCode ListPlugins(CommandContext& context, const ListOptions& options) {
+  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.plugins);
+  if (!plugins) return Fail(context, plugins.error());
+  std::string text;
+  Json json = Json::array();
+  for (const std::string& hash : *plugins) {
+    const controllers::PluginInfo& plugin = *controllers::FindPlugin(hash);
+    text += (text.empty() ? "" : "\n") + PluginText(plugin);
+    json.push_back(PluginJson(plugin));
+  }
+  context.out << (options.json ? JsonText({{"plugins", std::move(json)}}) : text) << std::flush;
+  return kExitDone;
+}
+
 ExitCode RunList(CommandContext& context, const ListOptions& options) {
+  if (!options.plugins.empty()) return ListPlugins(context, options);
   std::string text;
   Json json = Json::object();
   for (const Section& section : kSections) {
@@ -270,13 +308,17 @@ void AddList(CommandParser& parser) {
       "list", "experiments, scenarios, controllers, searches, disturbances; all parameters", RunList);
   std::vector<std::string> names;
   for (const Section& section : kSections) names.emplace_back(section.name);
-  command
-      .add_option("SECTION", options.section,
-                  "experiments, scenarios, controllers, searches or disturbances (default: all)")
-      ->check(CLI::IsMember(names));
+  auto* section =
+      command
+          .add_option("SECTION", options.section,
+                      "experiments, scenarios, controllers, searches or disturbances (default: all)")
+          ->check(CLI::IsMember(names));
+  AddValue(command, "--plugin", "LIB.so", options.plugins, "what this library of yours brings, instead");
+  command.get_option("--plugin")->excludes(section);
   command.add_flag("--json", options.json, "as one JSON document");
   command.footer(R"(Examples:
   gauntlet list experiments
+  gauntlet list --plugin build/libmine.so
   gauntlet list controllers --json | jq '.controllers[].name')");
 }
 

@@ -13,6 +13,7 @@
 
 #include "base/parse_number.h"
 #include "master/directory/campaign_directory.h"
+#include "master/directory/plugins.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 
@@ -86,6 +87,12 @@ void AddExperimentOptions(CLI::App& command, ExperimentOptions& options) {
            "seed of the campaign (default: the experiment's, 1)");
   AddValue(command, "--set", "KEY=VALUE", options.sets,
            "change one value of the experiment, e.g. --set search.mutation_probability=0.1; repeatable");
+  AddPluginOption(command, options.plugins);
+}
+
+void AddPluginOption(CLI::App& command, std::vector<std::string>& plugins) {
+  AddValue(command, "--plugin", "LIB.so", plugins,
+           "a library of yours whose controllers may be named too, e.g. --set controller=mine; repeatable");
 }
 
 void AddSizeOptions(CLI::App& command, SizeOptions& options) {
@@ -204,7 +211,16 @@ Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const st
   if (!seed) return seed.error();
   const Result<std::vector<std::string>> sets = JoinSets(options.sets, extra);
   if (!sets) return sets.error();
-  Result<Experiment> experiment = LoadExperiment(options.experiment, *sets, BuiltInCatalogue());
+  const Result<ExperimentText> text = ReadExperimentText(options.experiment);
+  if (!text) return text.error();
+  Result<std::vector<std::string>> files = PluginFilesOf(*text);
+  if (!files) return files.error();
+  files->insert(files->end(), options.plugins.begin(), options.plugins.end());
+  Result<std::vector<std::string>> plugins = AddPluginFiles(*files);
+  if (!plugins) return plugins.error();
+  Catalogue catalogue = BuiltInCatalogue();
+  catalogue.plugins = *std::move(plugins);
+  Result<Experiment> experiment = ParseExperiment(text->text, text->file_name, *sets, catalogue);
   if (!experiment) return AsTyped(experiment.error(), extra);
   if (!options.seed.empty()) experiment->seed = *seed;
   return experiment;

@@ -44,6 +44,7 @@ struct ExperimentOptions {
   std::string directory;
   std::string seed;
   std::vector<std::string> sets;
+  std::vector<std::string> plugins;  // libraries
 };
 // How long a genetic search is.
 struct SizeOptions {
@@ -78,6 +79,8 @@ void AddServingOptions(CLI::App& command, ServingOptions& options);
 void AddRunningOptions(CLI::App& command, RunningOptions& options);
 void AddBindOptions(CLI::App& command, BindOptions& options);
 void AddExperimentOptions(CLI::App& command, ExperimentOptions& options);
+// Libraries of plug-ins.
+void AddPluginOption(CLI::App& command, std::vector<std::string>& plugins);
 void AddSizeOptions(CLI::App& command, SizeOptions& options);
 void AddSweepOptions(CLI::App& command, SweepOptions& options);
 void AddSlurmOptions(CLI::App& command, SlurmOptions& options);

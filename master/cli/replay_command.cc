@@ -27,6 +27,7 @@ struct ReplayOptions {
   std::string svg;
   std::string timeline;
   std::string csv;
+  std::string scratch;
   bool json = false;
 };
 
@@ -92,7 +93,7 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
   const Result<std::uint64_t> run = ParseRunId(options.run);
   if (!run) return Fail(context, run.error());
   if (const Status own_files = CheckOwnFiles(options); !own_files) return Fail(context, own_files.error());
-  const Result<CampaignReplay> replay = context.campaigns.Replay(options.directory, *run);
+  const Result<CampaignReplay> replay = context.campaigns.Replay(options.directory, *run, options.scratch);
   if (!replay) return Fail(context, replay.error());
   PrintAsOf(context, options.directory, replay->as_of);
   if (!replay->report.damage.empty()) {  // what does not read back did not reproduce
@@ -134,6 +135,8 @@ void AddReplay(CommandParser& parser) {
   AddValue(command, "--timeline", "F", options.timeline,
            "write a picture: what every robot did when (foraging, task-partitioning)");
   AddValue(command, "--csv", "F", options.csv, "write every pose of every tick");
+  AddValue(command, "--scratch", "DIR", options.scratch,
+           "working directory of a plug-in's run, which keeps what it writes (output.txt: what it prints)");
   command.add_flag("--json", options.json, "the result as one JSON document");
   command.footer(
       R"(Same run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying what

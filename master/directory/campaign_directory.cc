@@ -21,13 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 13> kOwnNames = {
-    "access.json",   "campaign.db", "epoch",      "lock", "experiment.toml",
-    "log",           "status.json", "master.key", "stop", "slurm.toml",
-    "searches.json", "origin.json", "snapshot.db"};
+constexpr std::array<std::string_view, 14> kOwnNames = {
+    "access.json",   "campaign.db", "epoch",       "lock",   "experiment.toml",
+    "log",           "status.json", "master.key",  "stop",   "slurm.toml",
+    "searches.json", "origin.json", "snapshot.db", "plugins"};
 
 // What a master obeys of a campaign, or writes to.
-constexpr std::array<std::string_view, 16> kTrustedNames = {"access.json",
+constexpr std::array<std::string_view, 17> kTrustedNames = {"access.json",
                                                             "bundles",
                                                             "campaign.db",
                                                             "campaign.db-wal",
@@ -40,6 +40,7 @@ constexpr std::array<std::string_view, 16> kTrustedNames = {"access.json",
                                                             "master.key",
                                                             "searches.json",
                                                             "origin.json",
+                                                            "plugins",
                                                             "slurm.toml",
                                                             "snapshot.db",
                                                             "status.json"};

@@ -55,6 +55,8 @@ class CampaignDirectory {
   std::string origin_path() const { return path_ + "/origin.json"; }
   // `gauntlet stop` was here; the master removes it.
   std::string stop_path() const { return path_ + "/stop"; }
+  // Libraries of plug-ins (campaign_plugins.h).
+  std::string plugins_path() const { return path_ + "/plugins"; }
   std::string log_path() const { return path_ + "/log"; }
 
   // Counts one more start of a master, durably, and returns its number (1, 2, ... 2^32 - 1). Only under the

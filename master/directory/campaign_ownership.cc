@@ -140,6 +140,9 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
     if (text.empty()) continue;
     if (Status written = WriteFileAtomically(path, text, kReadableByAll); !written) return written.error();
   }
+  if (texts.others) {
+    if (Status written = texts.others(*directory); !written) return written.error();
+  }
   const Birth birth{std::move(meta), fill};
   return Own(*std::move(directory), *std::move(lock), &birth);
 }

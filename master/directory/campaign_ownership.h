@@ -34,6 +34,8 @@ struct CampaignTexts {
   std::string experiment;     // experiment.toml
   std::string searches = "";  // searches.json
   std::string slurm = "";     // slurm.toml
+  // Writes what else the searches need, before the campaign exists; may be empty.
+  std::function<Status(const CampaignDirectory&)> others = nullptr;
 };
 
 // Makes a campaign in `dir` and takes it. `meta.campaign_id` and

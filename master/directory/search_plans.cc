@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/system/regular_file.h"
+#include "master/directory/campaign_plugins.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 
@@ -30,6 +31,7 @@ std::string WriteSearchPlans(const std::vector<SearchPlan>& plans) {
 }
 
 Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directory) {
+  if (const Status known = KnowPlugins(directory); !known) return known.error();
   std::vector<SearchPlan> plans;
   const auto add = [&](const std::string& settings, const std::string& text,
                        const std::string& place) -> Status {

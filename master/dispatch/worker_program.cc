@@ -2,13 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <csignal>
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/system/process_call.h"
+#include "base/system/sha256.h"
+#include "base/system/trusted_path.h"
+#include "controllers/registry.h"
 #include "master/dispatch/local_pool.h"
 #include "master/dispatch/run_limits.h"
 #include "proto/run_codec.h"
@@ -36,14 +41,44 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
   }
 }
 
+// A campaign's copy of a plug-in (plugins/HASH.so) may be somebody else's, of a campaign that is only looked
+// at: it must not run in our name.
+Status CheckPluginIsOurs(const std::string& file) {
+  const std::filesystem::path path(file);
+  if (!IsSha256(path.stem().string())) return Ok{};
+  const std::string name = path.filename();
+  return CheckOnlyWeWrite(path.parent_path(), std::array<std::string_view, 1>{name});
+}
+
 }  // namespace
 
-Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec) {
+Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch) {
   const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters));
-  Result<std::string> output =
-      RunWorkerProgram({"--run-spec", "-", "--cpu-limit", cpu_limit, "--quiet"}, proto::EncodeRunSpec(spec));
+  std::vector<std::string> arguments = {"--run-spec", "-", "--cpu-limit", cpu_limit, "--quiet"};
+  if (const auto* plugin = controllers::FindPlugin(spec.plugin); plugin != nullptr) {
+    if (const Status ours = CheckPluginIsOurs(plugin->file); !ours) return ours.error();
+    arguments.insert(arguments.end(), {"--plugin", plugin->file});
+  }
+  if (!scratch.empty()) arguments.insert(arguments.end(), {"--scratch", scratch});
+  Result<std::string> output = RunWorkerProgram(std::move(arguments), proto::EncodeRunSpec(spec));
   if (!output) return output.error();
   return proto::DecodeRunResult(*output);
+}
+
+Result<std::string> DescribePlugin(const std::string& file) {
+  if (const Status ours = CheckPluginIsOurs(file); !ours) return ours.error();
+  // The worker has limits of its own; this one is for a worker that is stuck.
+  const CallOptions options{.deadline = std::chrono::seconds(60)};
+  const Result<CallOutput> output =
+      CallProcess({WorkerProgramPath(), "--describe-plugin", file}, {}, options);
+  if (!output) return output.error();
+  if (output->exit_code == 0) return output->out;
+  std::string_view why = output->err;
+  constexpr std::string_view kWho = "gauntlet-worker: ";
+  if (why.starts_with(kWho)) why.remove_prefix(kWho.size());
+  while (why.ends_with('\n')) why.remove_suffix(1);
+  return InvalidInput(why.empty() ? fmt::format("the plug-in {} cannot be described", file)
+                                  : std::string(why));
 }
 
 Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers) {

@@ -13,8 +13,13 @@
 namespace gauntlet::master {
 
 // Simulates a run in a runner, under the limits of any run, and returns the result (not checked against
-// anything).
-Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec);
+// anything). `scratch`: working directory of a plug-in's run, which keeps what it writes; "": one that is
+// removed.
+Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch = "");
+
+// What the library brings, as gauntlet-worker describes it (proto/plugin_description.h). Error: what is wrong
+// with it.
+Result<std::string> DescribePlugin(const std::string& file);
 
 // Of those of these controllers that gauntlet-worker was built with.
 Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers);

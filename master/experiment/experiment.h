@@ -70,6 +70,7 @@ struct Experiment {
   sim::Parameters scenario_parameters;  // resolved
   std::string controller;
   sim::Parameters controller_parameters;  // resolved
+  std::string plugin;  // SHA-256 of the plug-in that brings the controller; "": it is built in
   ArenaSpec arena;
   GenomeSpec genome;
   SearchSpec search;
@@ -87,6 +88,7 @@ inline sim::RunSpec SpecOf(const Experiment& experiment, const sim::TestCase& te
   spec.scenario_parameters = experiment.scenario_parameters;
   spec.controller = experiment.controller;
   spec.controller_parameters = experiment.controller_parameters;
+  spec.plugin = experiment.plugin;
   spec.seed = seed;
   spec.physics = experiment.physics;
   spec.disturbances = experiment.disturbances;

@@ -10,10 +10,13 @@
 #include "base/nearest_name.h"
 #include "base/parse_number.h"
 #include "base/printable.h"
+#include "base/system/sha256.h"
 #include "master/experiment/toml_text.h"
 
 namespace gauntlet::master {
 namespace {
+
+constexpr std::string_view kPluginsKey = "plugins";
 
 std::string KindOf(const TomlValue& value) {
   if (const auto* other = std::get_if<OtherToml>(&value)) return other->kind;
@@ -107,6 +110,7 @@ class Reader {
 
   Result<Experiment> Read() {
     for (Key& key : CommonKeys(catalogue_)) AddWithDefault(std::move(key));
+    AddWithDefault(PluginKey());
     if (Status status = AssignAll(/*base=*/true); !status.ok()) return status.error();
     if (Status status = ResolveNames(); !status.ok()) return status.error();
     if (Status status = AssignAll(/*base=*/false); !status.ok()) return status.error();
@@ -121,13 +125,16 @@ class Reader {
   // `base`: the keys that decide which other keys there are; else the others.
   Status AssignAll(bool base) {
     for (const Assignment& assignment : assignments_) {
-      if (base != (assignment.path == "scenario" || assignment.path == "controller")) continue;
+      const bool is_base =
+          assignment.path == "scenario" || assignment.path == "controller" || assignment.path == "plugin";
+      if (base != is_base) continue;
       if (Status status = Assign(assignment); !status.ok()) return status;
     }
     return Ok{};
   }
 
   Status Assign(const Assignment& assignment) {
+    if (assignment.path == kPluginsKey) return CheckPlugins(assignment);
     const auto key = std::ranges::find(keys_, assignment.path, &Key::path);
     if (key == keys_.end()) return UnknownKey(assignment);
     const std::optional<KeyValue> value = Convert(*key, assignment);
@@ -162,6 +169,18 @@ class Reader {
         fmt::format("{}: unknown key '{}'; {}", assignment.where, assignment.path, HintFor(assignment.path)));
   }
 
+  // The libraries are given to the catalogue by who has read their names (PluginFilesOf).
+  static Status CheckPlugins(const Assignment& assignment) {
+    if (!assignment.text.empty()) {
+      return InvalidInput(fmt::format("{}: plug-ins are given with --plugin FILE, or in an experiment file",
+                                      assignment.where));
+    }
+    if (const auto* other = std::get_if<OtherToml>(&assignment.value); other != nullptr && other->texts)
+      return Ok{};
+    return InvalidInput(fmt::format("{}: {} is {}, expected a list of files: [\"libmine.so\"]",
+                                    assignment.where, kPluginsKey, KindOf(assignment.value)));
+  }
+
   // "search.algorithm" of "search"; "" when there is no such table.
   std::string FirstKeyOf(const std::string& table) const {
     for (const Key& key : keys_) {
@@ -192,7 +211,7 @@ class Reader {
     if (const std::string sibling = NearestName(name, siblings); !sibling.empty()) nearest = table + sibling;
     if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
     if (!siblings_text.empty()) return siblings_text;
-    return "known at the top: name, description, seed, scenario, controller, physics, faults";
+    return "known at the top: name, description, seed, scenario, controller, physics, faults, plugins";
   }
 
   // Looks scenario and controller up and adds the keys of their parameters, with defaults.
@@ -207,13 +226,9 @@ class Reader {
                                       UnknownName("scenario", experiment_.scenario, catalogue_.scenarios)));
     }
     if (experiment_.controller.empty()) experiment_.controller = scenario->default_controller;
-    const controllers::ControllerInfo* controller =
-        FindByName(catalogue_.controllers, experiment_.controller);
-    if (controller == nullptr) {
-      return InvalidInput(
-          fmt::format("{}: {}", PlaceOf("controller"),
-                      UnknownName("controller", experiment_.controller, catalogue_.controllers)));
-    }
+    const Result<const controllers::ControllerInfo*> found = ResolveController();
+    if (!found) return found.error();
+    const controllers::ControllerInfo* controller = *found;
     if (!controller->WrittenFor(scenario->name)) {
       return InvalidInput(fmt::format("{}: controller '{}' is written for the scenario '{}', not for '{}'",
                                       PlaceOf("controller"), controller->name, controller->scenario,
@@ -222,6 +237,33 @@ class Reader {
     for (Key& key : ScenarioParameterKeys(*scenario)) AddWithDefault(std::move(key));
     for (Key& key : ControllerParameterKeys(*controller)) AddWithDefault(std::move(key));
     return Ok{};
+  }
+
+  // The controller of that name, and the plug-in that brings it.
+  Result<const controllers::ControllerInfo*> ResolveController() {
+    const std::string plugin = std::exchange(experiment_.plugin, "");
+    std::vector<controllers::ControllerInfo> known(catalogue_.controllers.begin(),
+                                                   catalogue_.controllers.end());
+    if (const auto* built_in = FindByName(catalogue_.controllers, experiment_.controller)) return built_in;
+    if (!plugin.empty() && controllers::FindPlugin(plugin) == nullptr) {
+      return InvalidInput(
+          fmt::format("{}: plugin = \"{}\": this library is not here; it stands in plugins/ "
+                      "of the campaign that the experiment is from",
+                      PlaceOf("plugin"), plugin));
+    }
+    std::vector<std::string> plugins = catalogue_.plugins;
+    if (!plugin.empty()) plugins.insert(plugins.begin(), plugin);
+    for (const std::string& hash : plugins) {
+      if (const auto* controller = controllers::FindController(experiment_.controller, hash)) {
+        experiment_.plugin = hash;
+        return controller;
+      }
+      const std::vector<controllers::ControllerInfo>& more = controllers::FindPlugin(hash)->controllers;
+      known.insert(known.end(), more.begin(), more.end());
+    }
+    return InvalidInput(fmt::format("{}: {}", PlaceOf("controller"),
+                                    UnknownName("controller", experiment_.controller,
+                                                std::span<const controllers::ControllerInfo>(known))));
   }
 
   void AddWithDefault(Key key) {
@@ -260,6 +302,23 @@ Result<Experiment> ParseExperiment(std::string_view text, const std::string& fil
   return experiment;
 }
 
+Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment) {
+  const Result<std::vector<Assignment>> assignments = ReadToml(experiment.text, experiment.file_name);
+  if (!assignments) return Error{assignments.error().kind, Printable(assignments.error().message)};
+  const std::filesystem::path folder = std::filesystem::path(experiment.file_name).parent_path();
+  std::vector<std::string> files;
+  for (const Assignment& assignment : *assignments) {
+    const auto* other = std::get_if<OtherToml>(&assignment.value);
+    if (assignment.path == kPluginsKey && other != nullptr && other->texts) {
+      for (const std::string& name : *other->texts) files.push_back(folder / name);
+    }
+    const auto* hash = std::get_if<std::string>(&assignment.value);
+    if (assignment.path == "plugin" && hash != nullptr && IsSha256(*hash))
+      files.push_back(folder / "plugins" / (*hash + ".so"));
+  }
+  return files;
+}
+
 std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header,
                             const Catalogue& catalogue) {
   std::vector<Key> keys = CommonKeys(catalogue);
@@ -269,8 +328,10 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
   };
   if (const auto* scenario = FindByName(catalogue.scenarios, experiment.scenario))
     insert_before_tables(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = FindByName(catalogue.controllers, experiment.controller))
+  if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
     insert_before_tables(ControllerParameterKeys(*controller));
+  if (!experiment.plugin.empty())
+    keys.insert(std::ranges::find(keys, "controller", &Key::path) + 1, PluginKey());
 
   std::string text;
   for (const std::string& line : header) text += line.empty() ? "#\n" : fmt::format("# {}\n", line);

@@ -33,6 +33,10 @@ struct ExperimentText {
 // The text that LoadExperiment would read.
 Result<ExperimentText> ReadExperimentText(const std::string& name_or_path);
 
+// The libraries that an experiment's text asks for: those of plugins = ["FILE", ...], by a path relative to
+// the file, and the copy that a resolved experiment has beside it. Errors as above.
+Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment);
+
 // The resolved experiment, every default written out, with what each key means. ParseExperiment gives back an
 // equal one. `header` are comment lines for the top, without '#'.
 std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/nearest_name.h"
+#include "base/system/sha256.h"
 #include "master/experiment/genome_ranges.h"
 #include "master/experiment/toml_text.h"
 #include "sim/arena/color.h"
@@ -297,6 +298,20 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
     key.for_people = key.path == "name" || key.path == "description" || key.path.starts_with("store.");
   }
   return keys;
+}
+
+Key PluginKey() {
+  Key key = FieldKey<&Experiment::plugin>(
+      "plugin", "SHA-256 of the library that brings the controller, in plugins/ beside this file");
+  key.default_value = std::string();
+  key.check = [](const KeyValue& v) -> std::optional<std::string> {
+    const auto& text = std::get<std::string>(v);
+    if (text.empty() || IsSha256(text)) return std::nullopt;
+    return fmt::format(
+        "plugin = {} is no SHA-256 of 64 hexadecimal digits; name files by plugins = [\"FILE\"]",
+        QuoteToml(text));
+  };
+  return key;
 }
 
 std::string_view NameOf(KeyType type) {

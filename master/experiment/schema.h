@@ -69,11 +69,14 @@ struct Catalogue {
   std::span<const controllers::ScenarioInfo> scenarios;
   std::span<const controllers::ControllerInfo> controllers;
   std::span<const SearchInfo> searches;
+  std::vector<std::string> plugins = {};  // SHA-256 of those whose controllers may be named too
 };
 
 // Keys of every experiment, those of all searches among them, in the order they are written. Defaults are
 // those of Experiment{}.
 std::vector<Key> CommonKeys(const Catalogue& catalogue);
+// "plugin": the plug-in that brings the controller. Written only where there is one.
+Key PluginKey();
 // Whether the key is about what is wrong with robots: "faults", "noise.DEVICE.NAME".
 bool IsDisturbance(const Key& key);
 // A parameter's value, or its default when it was not given.

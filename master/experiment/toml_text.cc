@@ -12,12 +12,22 @@
 namespace gauntlet::master {
 namespace {
 
+OtherToml ArrayOf(const toml::array& array) {
+  std::vector<std::string> texts;
+  for (const toml::node& node : array) {
+    const auto* text = node.as_string();
+    if (text == nullptr) return {"an array"};
+    texts.push_back(text->get());
+  }
+  return {"an array", std::move(texts)};
+}
+
 TomlValue ValueOf(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* integer = node.as_integer()) return integer->get();
   if (const auto* number = node.as_floating_point()) return number->get();
   if (const auto* flag = node.as_boolean()) return flag->get();
-  if (node.is_array()) return OtherToml{"an array"};
+  if (const auto* array = node.as_array()) return ArrayOf(*array);
   if (node.is_table()) return OtherToml{"a table"};
   return OtherToml{"a date or time"};
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,9 +12,10 @@
 
 namespace gauntlet::master {
 
-// A value of a kind that no key takes; `kind` is for the message: "an array", "a date".
+// A value of a kind that no key of one value takes; `kind` is for the message: "an array", "a date".
 struct OtherToml {
   std::string kind;
+  std::optional<std::vector<std::string>> texts = std::nullopt;  // of an array of nothing but texts
 };
 using TomlValue = std::variant<std::string, std::int64_t, double, bool, OtherToml>;
 

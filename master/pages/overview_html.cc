@@ -45,7 +45,7 @@ std::string Listed(const std::vector<std::string>& texts) {
 std::string TestedHtml(const CampaignFacts& facts) {
   const Experiment& experiment = facts.plans.front().experiment;
   const auto* scenario = controllers::FindScenario(experiment.scenario);
-  const auto* controller = controllers::FindController(experiment.controller);
+  const auto* controller = controllers::FindController(experiment.controller, experiment.plugin);
   const SearchRow& search = RowOf(experiment);
   const CampaignSummary& summary = facts.summary;
   std::string failed = FormatCount(summary.total_failures);

@@ -94,6 +94,10 @@ std::string EncodeExperiment(const Experiment& experiment) {
     encoder.String(key);
     encoder.String(value);
   }
+  if (!experiment.plugin.empty()) {
+    encoder.String("plugin");
+    encoder.String(experiment.plugin);
+  }
   return encoder.Take();
 }
 

@@ -29,6 +29,7 @@ struct Forecast {
 // generations' may take longer or shorter. Makes no file. Errors: those of MakeSearch and of `simulate`.
 Result<Forecast> MakeForecast(
     const std::vector<SearchPlan>& plans,
-    const std::function<Result<sim::RunResult>(const sim::RunSpec&)>& simulate = SimulateInRunner);
+    const std::function<Result<sim::RunResult>(const sim::RunSpec&)>& simulate =
+        [](const sim::RunSpec& spec) { return SimulateInRunner(spec); });
 
 }  // namespace gauntlet::master

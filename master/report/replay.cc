@@ -42,15 +42,15 @@ std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::
 
 }  // namespace
 
-Result<ReplayReport> ReplayRun(ResultStore& store, RunId run) {
+Result<ReplayReport> ReplayRun(ResultStore& store, RunId run, const std::string& scratch) {
   Result<std::optional<StoredRun>> loaded = store.LoadRun(run);
   if (!loaded) return loaded.error();
   if (!loaded->has_value())
     return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", run)};
-  return ReplayRun(std::move(**loaded));
+  return ReplayRun(std::move(**loaded), scratch);
 }
 
-Result<ReplayReport> ReplayRun(StoredRun stored) {
+Result<ReplayReport> ReplayRun(StoredRun stored, const std::string& scratch) {
   ReplayReport report;
   report.stored = std::move(stored);
   const RunId run = report.stored.id;
@@ -71,7 +71,7 @@ Result<ReplayReport> ReplayRun(StoredRun stored) {
 
   sim::RunSpec recorded = report.spec;
   recorded.record_trajectory = true;
-  Result<sim::RunResult> replayed = SimulateInRunner(recorded);
+  Result<sim::RunResult> replayed = SimulateInRunner(recorded, scratch);
   if (!replayed) return replayed.error();
   report.replayed = std::move(*replayed);
 

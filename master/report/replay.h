@@ -30,8 +30,9 @@ struct CampaignReplay {
 };
 
 // Error: the run is not there (kNotFound), or its row contradicts the result stored in it (kCorrupt).
-Result<ReplayReport> ReplayRun(ResultStore& store, RunId run);
+// `scratch`: as SimulateInRunner has it.
+Result<ReplayReport> ReplayRun(ResultStore& store, RunId run, const std::string& scratch = "");
 // The same of a run that was read. Thread-safe.
-Result<ReplayReport> ReplayRun(StoredRun stored);
+Result<ReplayReport> ReplayRun(StoredRun stored, const std::string& scratch = "");
 
 }  // namespace gauntlet::master

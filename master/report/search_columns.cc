@@ -18,7 +18,7 @@ std::vector<Key> KeysOf(const Experiment& experiment) {
   const auto add = [&](std::vector<Key> more) { keys.insert(keys.end(), more.begin(), more.end()); };
   if (const auto* scenario = controllers::FindScenario(experiment.scenario))
     add(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = controllers::FindController(experiment.controller))
+  if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
     add(ControllerParameterKeys(*controller));
   return keys;
 }

@@ -85,6 +85,7 @@ std::string SearchIdentity(const SearchSetup& setup) {
   const auto add = [&](std::string_view table, const sim::Parameters& parameters) {
     for (const auto& [name, value] : parameters) identity += fmt::format("{}.{} = {}\n", table, name, value);
   };
+  if (!experiment.plugin.empty()) identity += fmt::format("plugin = {}\n", experiment.plugin);
   add("scenario_parameters", experiment.scenario_parameters);
   add("controller_parameters", experiment.controller_parameters);
   if (row.given_cases) {

@@ -9,7 +9,9 @@
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
 #include "base/system/regular_file.h"
+#include "controllers/registry.h"
 #include "master/directory/campaign_ownership.h"
+#include "master/directory/campaign_plugins.h"
 #include "master/directory/search_length.h"
 #include "master/dispatch/worker_program.h"
 #include "master/experiment/experiment_file.h"
@@ -50,10 +52,17 @@ Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
                   *difference->offered)};
 }
 
+// The controller whose golden hash says whether a machine computes the experiment's runs as another does. Of
+// a plug-in, whose library is the same everywhere, it is the scenario's own.
+std::string GoldenControllerOf(const Experiment& experiment) {
+  if (experiment.plugin.empty()) return experiment.controller;
+  return std::string(controllers::FindScenario(experiment.scenario)->default_controller);
+}
+
 // Of the controllers that the searches use.
 Result<proto::GoldenHashes> GoldenHashesFor(const std::vector<SearchPlan>& plans) {
   std::set<std::string> used;
-  for (const SearchPlan& plan : plans) used.insert(plan.experiment.controller);
+  for (const SearchPlan& plan : plans) used.insert(GoldenControllerOf(plan.experiment));
   Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine({used.begin(), used.end()});
   if (!ours) return ours;
   for (const std::string& controller : used) {
@@ -88,7 +97,7 @@ CampaignTexts TextsOf(const std::vector<SearchPlan>& plans, const std::string& v
   const Experiment& experiment = plans.front().experiment;
   std::vector<std::string> header = {
       fmt::format("Resolved experiment of this campaign; made by gauntlet {}, golden hash {:016x}.", version,
-                  begun_with.at(experiment.controller))};
+                  begun_with.at(GoldenControllerOf(experiment)))};
   if (plans.size() > 1) header.emplace_back("It is the first of several: searches.json has all.");
   return {WriteExperiment(experiment, header, BuiltInCatalogue()),
           plans.size() > 1 ? WriteSearchPlans(plans) : ""};
@@ -117,6 +126,7 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
   meta.golden_hashes = proto::WriteGoldenHashes(*golden_hashes);
   CampaignTexts texts = TextsOf(plans, meta.software_version, *golden_hashes);
   texts.slurm = slurm;
+  texts.others = [&](const CampaignDirectory& directory) { return KeepPlugins(directory, plans); };
   Result<CampaignOwnership> campaign =
       CreateCampaign(dir, texts, meta, [&](ResultStore& store) { return AddPlans(plans, store); });
   if (!campaign) return campaign.error();
@@ -155,7 +165,7 @@ class Campaigns final : public CampaignService {
     const CampaignMeta& meta = campaign->store->meta();
     const Result<proto::GoldenHashes> begun_with = CheckGoldenHashes(meta);
     if (!begun_with) return begun_with.error();
-    if (const std::string& controller = longer->front().experiment.controller;
+    if (const std::string controller = GoldenControllerOf(longer->front().experiment);
         !begun_with->contains(controller)) {
       return Error{ErrorKind::kCorrupt,
                    fmt::format("{} names the controller '{}', with which the campaign has not begun",
@@ -182,6 +192,7 @@ class Campaigns final : public CampaignService {
     if (!plans) return plans.error();
     const Result<proto::GoldenHashes> golden_hashes = CheckGoldenHashes(campaign->store->meta());
     if (!golden_hashes) return golden_hashes.error();
+    if (Status same = CheckPlugins(campaign->directory, *plans); !same) return same.error();
     if (Status whole = CheckStored(*plans, *campaign->store); !whole) return whole.error();
     const Result<CampaignSummary> totals = SummariseTotals(*plans, *campaign->store);
     if (!totals) return totals.error();
@@ -217,12 +228,12 @@ class Campaigns final : public CampaignService {
     return Ok{};
   }
 
-  Result<CampaignReplay> Replay(const std::string& dir, RunId run) override {
+  Result<CampaignReplay> Replay(const std::string& dir, RunId run, const std::string& scratch) override {
     const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
     if (!campaign) return campaign.error();
     const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
     if (!plans) return plans.error();
-    Result<ReplayReport> report = ReplayRun(*campaign->store, run);
+    Result<ReplayReport> report = ReplayRun(*campaign->store, run, scratch);
     if (!report) return report.error();
     const std::size_t search = SearchOf(run) - 1;
     if (search >= plans->size())

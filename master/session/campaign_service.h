@@ -78,7 +78,8 @@ class CampaignService {
   virtual Result<CampaignSummary> Read(const std::string& dir) = 0;
   // The runs of a campaign in logical order, search by search.
   virtual Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) = 0;
-  virtual Result<CampaignReplay> Replay(const std::string& dir, RunId run) = 0;
+  // `scratch`: as SimulateInRunner has it (master/dispatch/worker_program.h).
+  virtual Result<CampaignReplay> Replay(const std::string& dir, RunId run, const std::string& scratch) = 0;
 
   // status.json of a living master (with "state": "running" or "stopping", and "status_age_seconds"); else
   // what is stored, with "state": "stopped" or "finished" and no workers.

@@ -31,9 +31,9 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   }
   const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
   if (!spec) return spec.error();
-  const std::string command =
-      fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
-                  context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
+  std::string command = fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
+                                    context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
+  if (!spec->plugin.empty()) command += fmt::format(" --plugin ../../plugins/{}.so", spec->plugin);
   const proto::GoldenHashes& known = context.campaign.golden_hashes;
   const auto golden = known.find(spec->controller);
   const std::string readme = fmt::format(

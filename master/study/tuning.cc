@@ -27,7 +27,7 @@ std::vector<Key> AllKeys(const Experiment& experiment) {
   const auto add = [&](std::vector<Key> more) { std::ranges::move(more, std::back_inserter(keys)); };
   if (const auto* scenario = controllers::FindScenario(experiment.scenario))
     add(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = controllers::FindController(experiment.controller))
+  if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
     add(ControllerParameterKeys(*controller));
   return keys;
 }

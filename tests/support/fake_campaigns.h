@@ -72,7 +72,8 @@ class FakeCampaigns : public master::CampaignService {
     std::ranges::for_each(stored, visit);
     return Ok{};
   }
-  Result<master::CampaignReplay> Replay(const std::string& /*dir*/, master::RunId run) override {
+  Result<master::CampaignReplay> Replay(const std::string& /*dir*/, master::RunId run,
+                                        const std::string& /*scratch*/) override {
     replayed_run = run;
     return Answer(replay);
   }

@@ -1,0 +1,88 @@
+#include "master/directory/campaign_plugins.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include "base/system/atomic_file.h"
+#include "base/system/regular_file.h"
+#include "base/system/sha256.h"
+#include "controllers/registry.h"
+#include "master/directory/plugins.h"
+#include "proto/plugin_description.h"
+
+namespace gauntlet::master {
+namespace {
+
+constexpr const char* kLibrary = ".so";
+constexpr const char* kDescription = ".json";
+
+std::string PathOf(const CampaignDirectory& directory, const std::string& hash, const char* ending) {
+  return fmt::format("{}/{}{}", directory.plugins_path(), hash, ending);
+}
+
+// Without the empty one, which stands for no plug-in.
+std::set<std::string> PluginsOf(const std::vector<SearchPlan>& plans) {
+  std::set<std::string> hashes;
+  for (const SearchPlan& plan : plans) hashes.insert(plan.experiment.plugin);
+  hashes.erase("");
+  return hashes;
+}
+
+// Error: the file holds something else.
+Result<std::string> ReadPlugin(const std::string& path, const std::string& hash) {
+  Result<std::string> bytes = ReadSmallFile(path, proto::kMaxPluginBytes);
+  if (!bytes) return bytes;
+  if (const std::string found = Sha256(*bytes); found != hash) {
+    return InvalidInput(fmt::format(
+        "{} is another plug-in now: its SHA-256 is {}, the searches were begun with {}", path, found, hash));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Status KeepPlugins(const CampaignDirectory& directory, const std::vector<SearchPlan>& plans) {
+  for (const std::string& hash : PluginsOf(plans)) {
+    const controllers::PluginInfo* plugin = controllers::FindPlugin(hash);
+    GAUNTLET_CHECK(plugin != nullptr, hash);
+    const Result<std::string> library = ReadPlugin(plugin->file, hash);
+    if (!library) return library.error();
+    if (Status made = MakeDirectory(directory.plugins_path()); !made) return made;
+    for (const auto& [ending, content] : {std::pair<const char*, const std::string&>(kLibrary, *library),
+                                          {kDescription, plugin->description}}) {
+      if (Status kept = WriteFileAtomically(PathOf(directory, hash, ending), content, kReadableByAll); !kept)
+        return kept;
+    }
+  }
+  return Ok{};
+}
+
+Status KnowPlugins(const CampaignDirectory& directory) {
+  namespace fs = std::filesystem;
+  std::error_code missing;
+  for (fs::directory_iterator entry(directory.plugins_path(), missing), end; !missing && entry != end;
+       entry.increment(missing)) {
+    const fs::path& path = entry->path();
+    const std::string hash = path.stem();
+    if (path.extension() != kDescription || !IsSha256(hash)) continue;
+    const Result<std::string> description = ReadRegularFile(path);
+    if (!description) return description.error();
+    const Status known =
+        AddDescribedPlugin(hash, PathOf(directory, hash, kLibrary), *description, path.string());
+    if (!known) return known;
+  }
+  return Ok{};
+}
+
+Status CheckPlugins(const CampaignDirectory& directory, const std::vector<SearchPlan>& plans) {
+  for (const std::string& hash : PluginsOf(plans)) {
+    if (const Result<std::string> read = ReadPlugin(PathOf(directory, hash, kLibrary), hash); !read)
+      return read.error();
+  }
+  return Ok{};
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,24 @@
+// The plug-ins of a campaign: plugins/HASH.so, a copy of the library, from which its workers take it, and
+// plugins/HASH.json, what it brings, from which whoever reads the campaign knows it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "master/directory/campaign_directory.h"
+#include "master/directory/search_plans.h"
+
+namespace gauntlet::master {
+
+// Copies the plug-ins of these searches into the directory; all are known (master/directory/plugins.h).
+Status KeepPlugins(const CampaignDirectory& directory, const std::vector<SearchPlan>& plans);
+
+// Makes those of the directory known. Error: a description does not read back.
+Status KnowPlugins(const CampaignDirectory& directory);
+
+// Whether each plug-in of these searches is still the one that the campaign was begun with. Error: the file
+// is missing, or its hash is another one.
+Status CheckPlugins(const CampaignDirectory& directory, const std::vector<SearchPlan>& plans);
+
+}  // namespace gauntlet::master

@@ -1,0 +1,124 @@
+// Campaigns with plug-ins, as people run them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/plugin/plugin_files.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class PluginCampaign : public testing::Test {
+ protected:
+  // `random` with a few short runs.
+  ProcessResult Random(const std::string& experiment, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = {
+        "random",  experiment,  "--cases", "4", "--dir", dir_, "--set", "scenario_parameters.time_limit=3",
+        "--quiet", "--workers", "2"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Gauntlet(arguments);
+  }
+  ProcessResult RandomTwins(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"--plugin", PluginPath("of_twins"), "--set", "controller=twin"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Random(experiment_, arguments);
+  }
+  std::string KeptLibrary() const {
+    return dir_ + "/plugins/" + Sha256(ReadFile(PluginPath("of_twins"))) + ".so";
+  }
+
+  void SetUp() override { std::ofstream(experiment_) << "scenario = 'light-flocking'\n"; }
+
+  TemporaryDirectory scratch_;
+  std::string experiment_ = scratch_ / "mine.toml";
+  std::string dir_ = scratch_ / "c";
+};
+
+TEST_F(PluginCampaign, GivesTheFitnessOfTheBuiltInController) {
+  ASSERT_EQ(RandomTwins().exit_code, 0);
+  const nlohmann::json twins = Show(dir_);
+  dir_ = scratch_ / "built_in";
+  ASSERT_EQ(Random(experiment_, {}).exit_code, 0);
+  const nlohmann::json built_in = Show(dir_);
+  ASSERT_EQ(twins["population"].size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(twins["population"][i]["fitness"], built_in["population"][i]["fitness"]);
+}
+
+TEST_F(PluginCampaign, TakesItsPluginFromAPathRelativeToTheExperimentFile) {
+  fs::copy_file(PluginPath("of_twins"), scratch_ / "libtwin.so");
+  std::ofstream(experiment_)
+      << "scenario = 'light-flocking'\ncontroller = 'twin'\nplugins = ['libtwin.so']\n";
+  const ProcessResult result = Random(experiment_, {"--set", "controller_parameters.max_speed=0.2"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+}
+
+TEST_F(PluginCampaign, ChecksParametersAsThoseOfBuiltInControllers) {
+  const ProcessResult range = RandomTwins({"--set", "controller_parameters.max_speed=7"});
+  EXPECT_EQ(range.exit_code, 2);
+  EXPECT_THAT(range.err,
+              HasSubstr("controller_parameters.max_speed = 7.0 is out of range, allowed 0.005 to 0.3 m/s"));
+  const ProcessResult unknown = RandomTwins({"--set", "controller_parameters.max_sped=0.1"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("did you mean 'controller_parameters.max_speed'?"));
+}
+
+TEST_F(PluginCampaign, NamesTheNearestControllerOfAPlugin) {
+  const ProcessResult result =
+      Random(experiment_, {"--plugin", PluginPath("of_twins"), "--set", "controller=twim"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("did you mean 'twin'?"));
+}
+
+TEST_F(PluginCampaign, CanBeMovedReplayedAndExtendedWithoutTheOriginalLibrary) {
+  fs::copy_file(PluginPath("of_twins"), scratch_ / "libtwin.so");
+  ASSERT_EQ(Random(experiment_, {"--plugin", scratch_ / "libtwin.so", "--set", "controller=twin"}).exit_code,
+            0);
+  fs::remove(scratch_ / "libtwin.so");
+  fs::rename(dir_, scratch_ / "moved");
+  const std::string moved = scratch_ / "moved";
+  const ProcessResult replay = Gauntlet({"replay", moved, "2"});
+  EXPECT_EQ(replay.exit_code, 0) << replay.err;
+  EXPECT_THAT(replay.out, HasSubstr("run 2: reproduced"));
+  const ProcessResult longer = Gauntlet({"resume", moved, "--set", "search.cases=6", "--quiet"});
+  EXPECT_EQ(longer.exit_code, 0) << longer.err;
+  EXPECT_EQ(Show(moved)["runs_done"], 6);
+  const ProcessResult again = Gauntlet(
+      {"evaluate", moved + "/experiment.toml", "--from", moved, "--dir", scratch_ / "again", "--quiet"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+}
+
+TEST_F(PluginCampaign, IsNotResumedWithAReplacedLibrary) {
+  ASSERT_EQ(RandomTwins().exit_code, 0);
+  fs::copy_file(PluginPath("of_faults"), KeptLibrary(), fs::copy_options::overwrite_existing);
+  const ProcessResult result = Gauntlet({"resume", dir_, "--set", "search.cases=6", "--quiet"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("is another plug-in now: its SHA-256 is"));
+}
+
+TEST_F(PluginCampaign, IsLookedAtButNotReplayedWhenOthersMayWriteItsLibrary) {
+  ASSERT_EQ(RandomTwins().exit_code, 0);
+  fs::permissions(KeptLibrary(), fs::perms::others_write, fs::perm_options::add);
+  EXPECT_EQ(Gauntlet({"show", dir_}).exit_code, 0);
+  const ProcessResult result = Gauntlet({"replay", dir_, "1"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("other users may write it"));
+}
+
+TEST_F(PluginCampaign, FaultyRunsAreResultsThatSaySo) {
+  const ProcessResult result =
+      Random("flocking", {"--plugin", PluginPath("of_faults"), "--set", "controller=throw"});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  const nlohmann::json show = Show(dir_);
+  EXPECT_EQ(show["runs_failed"], 4);
+  EXPECT_THAT(ReadFile(dir_ + "/bundles/run-1/stderr.txt"), HasSubstr("tired of walking"));
+  EXPECT_THAT(ReadFile(dir_ + "/bundles/run-1/README.txt"), HasSubstr("--plugin ../../plugins/"));
+}
+
+}  // namespace
+}  // namespace gauntlet::testing_support

@@ -1,0 +1,31 @@
+// The plug-ins that tests/plugin/CMakeLists.txt makes, and campaigns with them.
+#pragma once
+
+#include <fstream>
+#include <string>
+
+#include "base/system/sha256.h"
+#include "tests/integration/campaign_driver.h"
+
+namespace gauntlet::testing_support {
+
+// "twins": the path of its library.
+inline std::string PluginPath(const std::string& name) {
+  return std::string(GAUNTLET_PLUGINS) + "/libplugin_" + name + ".so";
+}
+
+// Of light flocking by the twin from the library; what a campaign says of it must be what it says of the
+// built-in one.
+inline SmallCampaign SmallPlugin(const TemporaryDirectory& scratch) {
+  const std::string file = scratch / "twins.toml";
+  std::ofstream(file) << "scenario = 'light-flocking'\ncontroller = 'twin'\n"
+                         "plugins = ['"
+                      << PluginPath("of_twins") << "']\n";
+  SmallCampaign campaign;
+  campaign.name = "plugin";
+  campaign.experiment = file;
+  campaign.settings = {"scenario_parameters.time_limit=20"};
+  return campaign;
+}
+
+}  // namespace gauntlet::testing_support
