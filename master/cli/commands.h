@@ -55,6 +55,7 @@ void AddFigure(CommandParser& parser);
 void AddExport(CommandParser& parser);
 void AddStudy(CommandParser& parser);
 void AddTune(CommandParser& parser);
+void AddBuildController(CommandParser& parser);
 void AddSubmit(CommandParser& parser);
 void AddMaster(CommandParser& parser);
 void AddStatus(CommandParser& parser);
@@ -64,8 +65,8 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom, AddEvaluate, AddResume,  AddShow,  AddReplay, AddConfirm, AddMinimise,
-    AddBlame,  AddCorpus, AddCheck,    AddCompare, AddStudy, AddTune,   AddReport,  AddFigure,
-    AddExport, AddSubmit, AddMaster,   AddStatus,  AddWatch, AddStop,   AddList};
+    AddEvolve, AddRandom,          AddEvaluate, AddResume,  AddShow,   AddReplay, AddConfirm, AddMinimise,
+    AddBlame,  AddCorpus,          AddCheck,    AddCompare, AddStudy,  AddTune,   AddReport,  AddFigure,
+    AddExport, AddBuildController, AddSubmit,   AddMaster,  AddStatus, AddWatch,  AddStop,    AddList};
 
 }  // namespace gauntlet::master

@@ -8,12 +8,12 @@
 #include <memory>
 #include <vector>
 
-#include "argos/controller_adapter.h"
 #include "controllers/common/proximity.h"
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/examples/light_flocking_scenario.h"
 #include "controllers/registry.h"
 #include "sim/simulation.h"
+#include "tests/argos/light_flocking_form.h"
 
 namespace gauntlet::argos_form {
 namespace {
@@ -102,34 +102,6 @@ class CentimetreFlocker final : public sim::Controller {
   Turning turning_ = Turning::kNone;
 };
 
-ControllerSection Example() {
-  ControllerSection section = {.label = "light_flocking_controller",
-                               .devices = ControllerSection::Devices{
-                                   .actuators = {"differential_steering", "leds"},
-                                   .sensors = {"colored_blob_omnidirectional_camera", "footbot_light"}}};
-  argos::TConfigurationNode& turning =
-      section.parameters.AddChild(argos::TConfigurationNode("wheel_turning"));
-  turning.SetAttributeText("max_speed", "10");
-  turning.SetAttributeText("no_turn_angle_threshold", "10");
-  turning.SetAttributeText("soft_turn_angle_threshold", "70");
-  turning.SetAttributeText("hard_turn_angle_threshold", "90");
-  argos::TConfigurationNode& flocking = section.parameters.AddChild(argos::TConfigurationNode("flocking"));
-  flocking.SetAttributeText("target_distance", "75");
-  flocking.SetAttributeText("gain", "1000");
-  flocking.SetAttributeText("exponent", "2");
-  return section;
-}
-
-ControllerFactory ArgosForm() {
-  return {.create =
-              [](const ControllerContext& context) {
-                return std::make_unique<ControllerAdapter>(
-                    Example(), ControllerAdapter::Robot{
-                                   .number = context.robot, .seed = context.seed, .start = context.start});
-              },
-          .traits = {.link_range = 1.35}};
-}
-
 ControllerFactory OurForm() {
   return {.create = [](const ControllerContext&) { return std::make_unique<CentimetreFlocker>(); },
           .traits = {.link_range = 1.35}};
@@ -147,12 +119,12 @@ sim::RunResult RunOf(const ControllerFactory& robots, std::uint64_t seed) {
 
 TEST(LightFlocking, AsASourceForArgosMovesEveryRobotAsOurForm) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    const sim::RunResult argos = RunOf(ArgosForm(), seed);
+    const sim::RunResult argos = RunOf(ExampleFlockers(), seed);
     ASSERT_EQ(argos.verdict, sim::Verdict::kCompleted) << argos.message;
     EXPECT_EQ(argos.ticks, 2000);
     EXPECT_GT(argos.robots[0].path_length, 1.0);
     EXPECT_EQ(argos.trajectory_hash, RunOf(OurForm(), seed).trajectory_hash);
-    EXPECT_EQ(argos.trajectory_hash, RunOf(ArgosForm(), seed).trajectory_hash);
+    EXPECT_EQ(argos.trajectory_hash, RunOf(ExampleFlockers(), seed).trajectory_hash);
   }
 }
 

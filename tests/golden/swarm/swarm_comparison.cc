@@ -72,6 +72,11 @@ Ending EndingOf(const std::map<sim::Tick, std::vector<sim::Pose>>& poses, const 
               controllers::light_flocking::CountClusters(late.back(), arena, link_range))};
 }
 
+template <typename Table>
+auto DefaultsOf(const Table& table) {
+  return table.Read(*controllers::ResolveParameters(table.infos(), {}));
+}
+
 double Mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
@@ -123,14 +128,14 @@ Result<std::vector<SwarmCase>> LoadSwarmCases(const fs::path& recorded, const fs
   return cases;
 }
 
-CaseComparison Compare(const SwarmCase& swarm_case) {
-  const auto defaults = [](const auto& table) {
-    return table.Read(*controllers::ResolveParameters(table.infos(), {}));
-  };
-  const controllers::ControllerFactory flockers = controllers::light_flocking::MakeLightFlockers(
-      defaults(controllers::light_flocking::LightFlockingParameters()));
+controllers::ControllerFactory BuiltInFlockers() {
+  return controllers::light_flocking::MakeLightFlockers(
+      DefaultsOf(controllers::light_flocking::LightFlockingParameters()));
+}
+
+CaseComparison Compare(const SwarmCase& swarm_case, const controllers::ControllerFactory& flockers) {
   LightFlockingScenario scenario(swarm_case.test_case,
-                                 defaults(controllers::light_flocking::LightFlockingScenarioParameters()),
+                                 DefaultsOf(controllers::light_flocking::LightFlockingScenarioParameters()),
                                  flockers, swarm_case.argos.at(0));
   const sim::RunResult run = sim::Simulate(scenario, 0, true);
   GAUNTLET_CHECK(run.verdict == sim::Verdict::kCompleted, swarm_case.name + ": " + run.message);

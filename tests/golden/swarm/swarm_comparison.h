@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "controllers/behaviour.h"
 #include "sim/arena/test_case.h"
 #include "sim/geometry/vec2.h"
 #include "sim/robot/foot_bot.h"
@@ -59,8 +60,12 @@ std::filesystem::path RecordedDirectory();
 Result<std::vector<SwarmCase>> LoadSwarmCases(const std::filesystem::path& recorded,
                                               const std::filesystem::path& layouts);
 
+// The light flocking example with its defaults.
+controllers::ControllerFactory BuiltInFlockers();
+
 // Simulates the case from ARGoS' start poses.
-CaseComparison Compare(const SwarmCase& swarm_case);
+CaseComparison Compare(const SwarmCase& swarm_case,
+                       const controllers::ControllerFactory& flockers = BuiltInFlockers());
 
 struct Verdict {
   std::string table;  // Markdown

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/argos/light_flocking_form.h"
+
 namespace gauntlet::golden {
 namespace {
 
@@ -13,7 +15,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 // The layouts are the thesis author's and not part of the repository.
-TEST(WholeSwarm, IsEquivalentToArgosWithinTheMarginsWrittenDownBefore) {
+void ExpectEquivalentToArgos(const controllers::ControllerFactory& flockers) {
   if (!fs::is_directory(LayoutDirectory())) {
     GTEST_SKIP() << "no " << LayoutDirectory()
                  << "; set GAUNTLET_ARGOS_CASES to the directory of the author's files";
@@ -23,9 +25,17 @@ TEST(WholeSwarm, IsEquivalentToArgosWithinTheMarginsWrittenDownBefore) {
   ASSERT_TRUE(cases.ok()) << cases.error().message;
   EXPECT_EQ(cases->size(), 14U);
   std::vector<CaseComparison> comparisons;
-  for (const SwarmCase& swarm_case : *cases) comparisons.push_back(Compare(swarm_case));
+  for (const SwarmCase& swarm_case : *cases) comparisons.push_back(Compare(swarm_case, flockers));
   const Verdict verdict = Judge(comparisons);
   EXPECT_TRUE(verdict.holds) << verdict.table;
+}
+
+TEST(WholeSwarm, IsEquivalentToArgosWithinTheMarginsWrittenDownBefore) {
+  ExpectEquivalentToArgos(BuiltInFlockers());
+}
+
+TEST(WholeSwarm, OfASourceForArgosIsSoToo) {
+  ExpectEquivalentToArgos(argos_form::ExampleFlockers());
 }
 
 std::vector<CaseComparison> FourEqualCases() {

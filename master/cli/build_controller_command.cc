@@ -1,0 +1,199 @@
+// gauntlet build-controller: sources of controllers that were written for ARGoS become a plug-in.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "base/printable.h"
+#include "base/system/atomic_file.h"
+#include "base/system/process_call.h"
+#include "base/system/program_path.h"
+#include "master/cases/argos_controllers.h"
+#include "master/cli/commands.h"
+#include "master/cli/options.h"
+#include "master/cli/output_file.h"
+
+namespace gauntlet::master {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFile = std::size_t{16} << 20;  // bytes of an .argos file
+constexpr std::size_t kShownErrors = 20;                  // lines of the compiler
+
+struct BuildControllerOptions {
+  std::vector<std::string> sources;
+  std::vector<std::string> include_folders;
+  std::string argos;
+  std::string output;
+  std::string table;
+  std::string sdk;
+};
+
+// A folder for the build that is gone afterwards.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "gauntlet-build-XXXXXX").string();
+    if (mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code error;
+    if (!path_.empty()) fs::remove_all(path_, error);
+  }
+  const std::string& path() const { return path_; }  // "": none could be made
+
+ private:
+  std::string path_;
+};
+
+// As an argument of CMake, whatever bytes it holds.
+std::string Quoted(const fs::path& path) {
+  return fmt::format("[==[{}]==]", fs::absolute(path).lexically_normal().string());
+}
+
+std::string ProjectText(const BuildControllerOptions& options, bool with_table) {
+  std::string sources;
+  for (const std::string& source : options.sources) sources += " " + Quoted(source);
+  std::string folders;
+  for (const std::string& folder : options.include_folders) folders += " " + Quoted(folder);
+  const fs::path output = fs::absolute(options.output);
+  return fmt::format(R"(cmake_minimum_required(VERSION 3.25)
+project(controller LANGUAGES CXX)
+set(CMAKE_BUILD_TYPE Release)
+find_package(Gauntlet REQUIRED)
+gauntlet_add_argos_plugin(controller SOURCES{}{})
+target_include_directories(controller PRIVATE{})
+set_target_properties(controller PROPERTIES PREFIX "" SUFFIX "" OUTPUT_NAME [==[{}]==] LIBRARY_OUTPUT_DIRECTORY {})
+)",
+                     sources, with_table ? " TABLE table.cc" : "", folders, output.filename().string(),
+                     Quoted(output.parent_path()));
+}
+
+// The first lines that tell of errors; all of them when none does.
+std::string ErrorsIn(const std::string& output) {
+  std::string errors;
+  std::size_t count = 0;
+  for (std::size_t begin = 0; begin < output.size() && count < kShownErrors;) {
+    const std::size_t end = std::min(output.find('\n', begin), output.size());
+    const std::string line = output.substr(begin, end - begin);
+    if (line.find("rror:") != std::string::npos || line.find("undefined") != std::string::npos ||
+        line.find("CMake Error") != std::string::npos) {
+      errors += "  " + Printable(line) + "\n";
+      ++count;
+    }
+    begin = end + 1;
+  }
+  return errors.empty() ? output : errors;
+}
+
+Status RunCMake(CommandContext& context, const std::vector<std::string>& arguments) {
+  Result<CallOutput> done = CallProcess(arguments, "", {});
+  if (!done && done.error().kind == ErrorKind::kNotFound) {
+    return InvalidInput(
+        "there is no cmake in PATH, which plug-ins are built with: install CMake 3.25 or later");
+  }
+  if (!done) return done.error();
+  if (done->exit_code == 0) return Ok{};
+  context.err << ErrorsIn(done->out + done->err) << std::flush;
+  return InvalidInput("the plug-in could not be built: see above");
+}
+
+Result<std::string> ReadTable(const std::string& argos) {
+  const Result<std::string> text = ReadSmallFile(argos, kMostFile);
+  if (!text) return text.error();
+  return ArgosControllerTable(*text, argos);
+}
+
+Status CheckOptions(const BuildControllerOptions& options) {
+  if (!options.table.empty()) {
+    return options.argos.empty() ? InvalidInput("--table needs the file that it is made of: --argos FILE")
+                                 : Status(Ok{});
+  }
+  if (options.sources.empty()) return InvalidInput("which sources? name one or more C++ files");
+  if (options.output.empty()) return InvalidInput("where to? say -o libNAME.so");
+  std::error_code error;
+  for (const std::string& source : options.sources) {
+    if (!fs::is_regular_file(source, error)) {
+      return InvalidInput(fmt::format("{}: there is no such source file", Printable(source)));
+    }
+  }
+  for (const std::string& folder : options.include_folders) {
+    if (!fs::is_directory(folder, error))
+      return InvalidInput(fmt::format("{}: there is no such folder", Printable(folder)));
+  }
+  return Ok{};
+}
+
+Status Build(CommandContext& context, const BuildControllerOptions& options, const std::string& table) {
+  const ScratchFolder scratch;
+  if (scratch.path().empty()) return Error{ErrorKind::kIo, "no folder can be made in $TMPDIR or /tmp"};
+  if (!table.empty()) {
+    if (Status written = WriteOutputFile(scratch.path() + "/table.cc", table); !written) return written;
+  }
+  if (Status written =
+          WriteOutputFile(scratch.path() + "/CMakeLists.txt", ProjectText(options, !table.empty()));
+      !written) {
+    return written;
+  }
+  const std::string prefix =
+      options.sdk.empty() ? fs::path(MasterProgramPath()).parent_path().parent_path().string() : options.sdk;
+  const std::string build = scratch.path() + "/build";
+  if (Status configured = RunCMake(context, {"cmake", "-S", scratch.path(), "-B", build,
+                                             "-DCMAKE_PREFIX_PATH=" + fs::absolute(prefix).string()});
+      !configured) {
+    return configured;
+  }
+  return RunCMake(context, {"cmake", "--build", build});
+}
+
+ExitCode RunBuildController(CommandContext& context, const BuildControllerOptions& options) {
+  if (const Status checked = CheckOptions(options); !checked) return Fail(context, checked.error());
+  std::string table;
+  if (!options.argos.empty()) {
+    Result<std::string> read = ReadTable(options.argos);
+    if (!read) return Fail(context, read.error());
+    table = *std::move(read);
+  }
+  const std::string& written = options.table.empty() ? options.output : options.table;
+  const Status made =
+      options.table.empty() ? Build(context, options, table) : WriteOutputFile(options.table, table);
+  if (!made) return Fail(context, made.error());
+  PrintMessage(context, fmt::format("wrote {}", Printable(written)));
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddBuildController(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("build-controller", "make a plug-in of controllers written for ARGoS", RunBuildController);
+  command.add_option("SOURCE", options.sources, "C++ sources of foot-bot controllers, as they are");
+  AddValue(command, "--argos", "F", options.argos,
+           "take devices and parameters from the <controllers> of this file");
+  AddValue(command, "-o,--output", "F", options.output, "where the plug-in goes, such as libmine.so");
+  AddValue(command, "-I,--include", "DIR", options.include_folders, "folder of headers; may be repeated");
+  AddValue(command, "--sdk", "DIR", options.sdk,
+           "where the SDK was installed (default: where this program was)");
+  AddValue(command, "--table", "F", options.table,
+           "build nothing; write C++ of the file's parameters, for CMake");
+  command.footer(
+      R"(Headers of our own stand in for ARGoS' (argos/README.md says what there is, and what cannot be). With --argos
+every numeric attribute below <params> is a parameter, called by its path, whose default is the file's; without
+it the controllers get no parameters, and the devices that they ask for in Init. Needs a C++ compiler, CMake
+and Eigen.
+
+Examples:
+  gauntlet build-controller footbot.cpp --argos experiment.argos -o libmine.so
+  gauntlet list --plugin libmine.so
+  gauntlet evolve light-flocking --plugin libmine.so --set controller=my_controller
+      --set controller_parameters.wheel_turning.max_speed=8)");
+}
+
+}  // namespace gauntlet::master

@@ -1,0 +1,120 @@
+// `gauntlet build-controller` with a real compiler: the plug-in that it makes, and what it refuses.
+#include <dlfcn.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "controllers/examples/light_flocking_registry.h"
+#include "controllers/examples/light_flocking_scenario.h"
+#include "controllers/registry.h"
+#include "sdk/plugin.h"
+#include "sim/simulation.h"
+#include "tests/argos/light_flocking_form.h"
+#include "tests/support/paths.h"
+#include "tests/support/process.h"
+
+namespace gauntlet::argos_form {
+namespace {
+
+namespace fs = std::filesystem;
+using controllers::ControllerInfo;
+using testing::HasSubstr;
+using testing_support::ProcessResult;
+
+const std::string kExample = std::string(GAUNTLET_SOURCE_DIR) + "/argos/example/light_flocking";
+
+class BuildController : public testing::Test {
+ protected:
+  BuildController() : folder_(testing::TempDir() + "build-controller-" + std::to_string(getpid())) {
+    fs::create_directories(folder_);
+  }
+  ~BuildController() override { fs::remove_all(folder_); }
+
+  std::string File(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_ / name) << content;
+    return folder_ / name;
+  }
+  static ProcessResult Run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {GAUNTLET_BINARY_DIR "/gauntlet", "build-controller"});
+    return testing_support::RunProcess(arguments);
+  }
+  static void ExpectRefusal(const std::vector<std::string>& arguments, const std::string& message) {
+    const ProcessResult result = Run(arguments);
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.out, "");
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+
+  fs::path folder_;
+};
+
+std::uint64_t TrajectoryOf(const controllers::ControllerFactory& robots) {
+  const auto& table = controllers::light_flocking::LightFlockingScenarioParameters();
+  auto settings = table.Read(*controllers::ResolveParameters(table.infos(), {}));
+  settings.tick_limit = 300;
+  controllers::light_flocking::LightFlockingScenario scenario(sim::TestCase{}, settings, robots, 5);
+  const sim::RunResult result = Simulate(scenario, 5, false);
+  EXPECT_EQ(result.verdict, sim::Verdict::kCompleted) << result.message;
+  return result.trajectory_hash;
+}
+
+TEST_F(BuildController, MakesAPluginWhoseParametersAreThoseOfTheFile) {
+  const std::string library = folder_ / "libflock.so";
+  const ProcessResult built = Run({kExample + ".cc", "--argos", kExample + ".argos", "-o", library});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  void* const handle = dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
+  ASSERT_NE(handle, nullptr) << dlerror();
+  const auto* const plugin = static_cast<const sdk::Plugin*>(dlsym(handle, sdk::kPluginSymbol));
+  ASSERT_NE(plugin, nullptr);
+  EXPECT_STREQ(plugin->fingerprint, sdk::kPluginFingerprint.c_str());
+  const std::vector<ControllerInfo> rows = plugin->controllers();
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].name, "light_flocking_controller");
+  sim::Parameters values;
+  for (const auto& parameter : rows[0].parameters) {
+    values[std::string(parameter.name)] = parameter.default_value;
+  }
+  EXPECT_EQ(values.at("wheel_turning.max_speed"), 10.0);
+  EXPECT_EQ(values.at("flocking.gain"), 1000.0);
+
+  const std::uint64_t trajectory = TrajectoryOf(rows[0].make(values));
+  EXPECT_EQ(trajectory, TrajectoryOf(ExampleFlockers()));
+  values["wheel_turning.max_speed"] = 8.0;
+  EXPECT_NE(TrajectoryOf(rows[0].make(values)), trajectory);
+}
+
+TEST_F(BuildController, NamesWhatIsWrong) {
+  const std::string library = folder_ / "libbad.so";
+  const std::string broken = File("broken.cpp", "int x = ;\n");
+  ExpectRefusal({broken, "-o", library}, "broken.cpp:1:9: error:");
+  ExpectRefusal({folder_ / "absent.cpp", "-o", library}, "there is no such source file");
+  ExpectRefusal({broken}, "say -o libNAME.so");
+  ExpectRefusal({"-o", library}, "which sources?");
+  ExpectRefusal({broken, "-o", library, "--argos", File("cut.argos", "<argos-configuration>")},
+                "cut.argos:1:");
+  ExpectRefusal({broken, "-o", library, "-I", folder_ / "absent"}, "there is no such folder");
+}
+
+TEST_F(BuildController, SaysWhatToDoInsteadOfWhatCannotBe) {
+  const std::string library = folder_ / "libloop.so";
+  ExpectRefusal({File("loop.cpp",
+                      "#include <argos3/core/simulator/loop_functions.h>\n"
+                      "using namespace argos;\n"
+                      "class CLoop : public CLoopFunctions {};\n"
+                      "REGISTER_LOOP_FUNCTIONS(CLoop, \"loop\")\n"),
+                 "-o", library},
+                "let a scenario judge the swarm");
+  ExpectRefusal({File("window.cpp",
+                      "#include <argos3/plugins/simulator/visualizations/qt-opengl/"
+                      "qtopengl_user_functions.h>\n"),
+                 "-o", library},
+                "Gauntlet shows no window");
+}
+
+}  // namespace
+}  // namespace gauntlet::argos_form
