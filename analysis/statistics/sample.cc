@@ -7,6 +7,7 @@
 #include <numeric>
 #include <string>
 
+#include "analysis/statistics/distributions.h"
 #include "base/check.h"
 
 namespace gauntlet::analysis {
@@ -85,6 +86,15 @@ Description Describe(std::span<const double> values) {
     description.sd = std::sqrt(squares / (n - 1.0));
   }
   return description;
+}
+
+Interval MeanInterval(std::span<const double> values, double confidence) {
+  GAUNTLET_CHECK(values.size() >= 2, "a single value has no spread");
+  const Description description = Describe(values);
+  const auto n = static_cast<double>(values.size());
+  const double half =
+      StudentUpperQuantile((1.0 - confidence) / 2.0, n - 1.0) * description.sd.value() / std::sqrt(n);
+  return {description.mean - half, description.mean + half};
 }
 
 double Quantile(std::span<const double> values, double probability, QuantileType type) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/statistics/interval.h"
 #include "base/result.h"
 
 namespace gauntlet::analysis {
@@ -25,6 +26,9 @@ struct Description {
   double maximum = 0.0;
 };
 Description Describe(std::span<const double> values);
+
+// Of the mean of at least two values, by Student's t distribution; confidence in (0, 1).
+Interval MeanInterval(std::span<const double> values, double confidence);
 
 // The number of Hyndman and Fan 1996, which is also R's: 5 is MATLAB's, 6 SPSS's, 7 the default of R and
 // NumPy, 8 nearly unbiased for the median whatever the distribution.

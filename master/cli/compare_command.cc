@@ -1,4 +1,5 @@
-// gauntlet compare: two sets of runs, by the statistics that the thesis uses and by those that it lacks.
+// gauntlet compare: two sets of runs, by the statistics that the thesis uses and by those that it lacks; or
+// what searches give for the same number of runs.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -7,11 +8,13 @@
 #include "analysis/statistics/comparison.h"
 #include "base/printable.h"
 #include "controllers/registry.h"
+#include "master/cli/budget_comparison.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
 #include "master/cli/table.h"
 #include "master/report/run_set.h"
+#include "master/report/search_yield.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -20,8 +23,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct CompareOptions {
-  std::string first;
-  std::string second;
+  std::vector<std::string> sets;
+  bool budget = false;
   std::string metric = "fitness";
   std::string svg;
   bool mixed = false;
@@ -138,9 +141,14 @@ std::string ComparisonText(const Outcome& outcome, const std::string& metric) {
 }
 
 Result<Outcome> Compute(const CompareOptions& options) {
-  Result<RunSet> first = ReadRunSet(options.first, options.metric);
+  if (options.sets.size() != 2) {
+    return InvalidInput(fmt::format(
+        "{} sets of runs were named, two are compared: A and B (--budget takes any number of searches)",
+        options.sets.size()));
+  }
+  Result<RunSet> first = ReadRunSet(options.sets[0], options.metric);
   if (!first) return first.error();
-  Result<RunSet> second = ReadRunSet(options.second, options.metric);
+  Result<RunSet> second = ReadRunSet(options.sets[1], options.metric);
   if (!second) return second.error();
   const std::vector<std::string> differences = WhatDiffers(*first, *second);
   if (!differences.empty() && !options.mixed) {
@@ -183,7 +191,20 @@ std::string Drawing(const Outcome& outcome, const std::string& metric) {
                  {"2: " + outcome.second.values.name, c.second_box, c.second.mean, c.second.n}}});
 }
 
+ExitCode CompareBudgets(CommandContext& context, const CompareOptions& options) {
+  std::vector<YieldSet> sets;
+  for (const std::string& text : options.sets) {
+    Result<YieldSet> set = ReadYields(text);
+    if (!set) return Fail(context, set.error());
+    sets.push_back(*std::move(set));
+  }
+  if (Status same = CheckSameBudget(sets); !same) return Fail(context, same.error());
+  context.out << (options.json ? JsonText(BudgetJson(sets)) : BudgetText(sets)) << std::flush;
+  return kExitDone;
+}
+
 ExitCode RunCompare(CommandContext& context, const CompareOptions& options) {
+  if (options.budget) return CompareBudgets(context, options);
   const Result<Outcome> outcome = Compute(options);
   if (!outcome) return Fail(context, outcome.error());
   if (!options.svg.empty()) {
@@ -203,15 +224,20 @@ void AddCompare(CommandParser& parser) {
   const auto [command, options] =
       parser.Add("compare", "two sets of runs: is one worse than the other, and by how much?", RunCompare);
   command
-      .add_option("A", options.first, "a set of runs: DIR[:SUBSET] or FILE.csv[:COLUMN]; several with commas")
+      .add_option("SET", options.sets,
+                  "two sets of runs, A and B: DIR[:SUBSET] or FILE.csv[:COLUMN]; several with commas")
       ->required();
-  command.add_option("B", options.second, "the other one")->required();
+  CLI::Option* budget = command.add_flag(
+      "--budget", options.budget, "instead: campaigns, by the different failures that their searches found");
   AddValue(command, "--metric", "NAME", options.metric,
            "what is compared: fitness (the default), total_failure, failure_type or a metric of the scenario "
-           "('gauntlet list')");
-  AddValue(command, "--svg", "F", options.svg, "write a picture: box plots of both");
-  command.add_flag("--mixed", options.mixed,
-                   "compare runs of different scenarios, parameters of them or versions too, and say so");
+           "('gauntlet list')")
+      ->excludes(budget);
+  AddValue(command, "--svg", "F", options.svg, "write a picture: box plots of both")->excludes(budget);
+  command
+      .add_flag("--mixed", options.mixed,
+                "compare runs of different scenarios, parameters of them or versions too, and say so")
+      ->excludes(budget);
   command.add_flag("--json", options.json, "the result as one JSON document");
   command.footer(
       R"(Subsets of a campaign, one value for each run:
@@ -227,7 +253,13 @@ Mann-Whitney's U with the normal approximation (ties and continuity corrected), 
 10,000 pairs, and Vargha and Delaney's A: the probability that a run of the first set exceeds one of the
 second. Lower fitness = tougher. Runs of one evolution, or of one case, are relatives: a second interval of A draws whole ones.
 
+--budget holds searches of as many runs against each other: any number of campaigns, each a search with
+several seeds (or DIR,DIR,... of one seed each). It counts cells, as an archive search does, in which a case
+failed in at least half of its runs with fresh seeds, which 'gauntlet confirm' has to have simulated before:
+'--elites' of an archive search, '--all-failing' of any other. The first campaign is tested against each other.
+
 Examples:
+  gauntlet compare --budget campaigns/archive campaigns/random-deletion campaigns/random
   gauntlet compare campaigns/random:random:100 campaigns/evolved-1,campaigns/evolved-2
   gauntlet compare DIR:all results.csv:fitness --json
   gauntlet compare before after --metric food_delivered --svg boxes.svg)");

@@ -26,8 +26,10 @@ class CaseRuns {
  public:
   CaseRuns(const Experiment& experiment, const sim::TestCase& test_case)
       : failing_(FailingOf(experiment.scenario)) {
-    if (const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario))
+    if (const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario)) {
       ways_of_.emplace(*scenario, experiment.scenario_parameters, test_case);
+      grid_.emplace(scenario->descriptor_axes);
+    }
   }
 
   // Error: the run does not read back.
@@ -40,6 +42,8 @@ class CaseRuns {
     if (tally_.failures == failures || !ways_of_) return Ok{};
     ways_.push_back(ways_of_->Of(outcome->metrics));
     failed_.push_back(run.id);
+    if (std::optional<Descriptor> failure = grid_->Describe(*outcome))
+      failures_.push_back(*std::move(failure));
     return Ok{};
   }
 
@@ -51,6 +55,7 @@ class CaseRuns {
                      .tally = tally_,
                      .verdict = VerdictOf(tally_, ConfirmationReplicates(experiment)),
                      .interval = FailureInterval(tally_),
+                     .middle = failures_.empty() ? std::nullopt : std::optional(MiddleOf(failures_)),
                      .message = message_,
                      .example = {}};
     if (!ways_.empty()) {
@@ -63,10 +68,12 @@ class CaseRuns {
  private:
   const std::string_view failing_;
   std::optional<FailureWays> ways_of_;
+  std::optional<DescriptorGrid> grid_;  // where ways_of_ is
   FailureTally tally_;
   std::string message_;
   std::vector<FailureWay> ways_;  // of the failed runs
   std::vector<RunId> failed_;
+  std::vector<Descriptor> failures_;  // of those that could be described
 };
 
 // The confirmations of one search. Error: what is stored does not read back.

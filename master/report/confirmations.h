@@ -11,6 +11,7 @@
 #include "master/report/failure_groups.h"
 #include "master/report/questioned_cases.h"
 #include "master/report/smallest_layouts.h"
+#include "master/search/failure_archive.h"
 #include "master/search/failure_tally.h"
 
 namespace gauntlet::master {
@@ -22,7 +23,9 @@ struct Confirmation {
   FailureTally tally;
   FailureVerdict verdict = FailureVerdict::kOpen;
   analysis::Interval interval;  // of the probability to fail (Wilson, 95 %)
-  std::string message;          // of the first run that ended without a result; "" = none did
+  // Of its failed runs, along the scenario's descriptor axes. Nothing when none could be described.
+  std::optional<Descriptor> middle;
+  std::string message;  // of the first run that ended without a result; "" = none did
   // How most of its failed runs failed, and the one that shows it best. Nothing when none failed.
   struct Example {
     std::string scenario;

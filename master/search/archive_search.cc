@@ -18,21 +18,28 @@ namespace gauntlet::master {
 namespace {
 
 constexpr std::array kParameters = std::to_array<controllers::ParameterInfo>({
-    {"runs", "", 1000, 1, 1e8, true, "archive only: simulations in all"},
-    {"slots", "", 32, 1, 10000, true, "archive only: layouts under test at a time; workers it can keep busy"},
+    {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: simulations in all"},
+    {"slots", "", 32, 1, 10000, true,
+     "archive and random-deletion only: layouts under test at a time; workers it can keep busy"},
     {"keep_out", "m", 0, 0, 10, false,
-     "archive only: no obstacle nearer than this to where the swarm starts and arrives"},
+     "archive and random-deletion only: no obstacle nearer than this to where the swarm starts and arrives"},
     {"alone_share", "", 0.06, 0, 1, false,
-     "of the lines that begin: with one obstacle on the way to the goal"},
+     "archive only: of the lines that begin, with one obstacle on the way to the goal"},
     {"jittered_share", "", 0.10, 0, 1, false,
-     "of the lines that begin: with an elite that is changed a little"},
+     "archive only: of the lines that begin, with an elite that is changed a little"},
     {"recheck_share", "", 0.04, 0, 1, false,
-     "of the lines that begin: one more run of an elite; the rest begin with random cases"},
+     "archive only: of the lines that begin, one more run of an elite; the rest begin with random cases"},
 });
 enum Parameter : std::size_t { kRuns, kSlots, kKeepOut, kAloneShare, kJitteredShare, kRecheckShare };
 
 double Get(const Experiment& experiment, Parameter parameter) {
   return ValueOf(kParameters[parameter], experiment.search.parameters);
+}
+
+constexpr std::string_view kRandomDeletion = "random-deletion";
+
+std::string PlanOf(const Experiment& experiment) {
+  return FormatCount(static_cast<std::uint64_t>(Get(experiment, kRuns))) + " runs";
 }
 
 // Obstacles of a random case that are tried alone: so many nearest to the failure and so many in the way.
@@ -67,12 +74,13 @@ std::string_view NameOf(Emitter emitter) {
 
 ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario)
     : PopulationSearch(setup),
+      only_deletion_(setup.experiment.search.algorithm == kRandomDeletion),
       failing_(scenario.failing),
       requirements_(setup.requirements),
       way_{setup.requirements.start, setup.requirements.goal},
       archive_(scenario.descriptor_axes),
       slots_(static_cast<std::size_t>(Get(setup.experiment, kSlots))) {
-  places_ = scenario.failure_place && scenario.descriptor_axes.size() == 2 &&
+  places_ = !only_deletion_ && scenario.failure_place && scenario.descriptor_axes.size() == 2 &&
             scenario.descriptor_axes[0].metric == scenario.failure_place->x &&
             scenario.descriptor_axes[1].metric == scenario.failure_place->y;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
@@ -87,8 +95,8 @@ Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& 
   if (scenario->descriptor_axes.empty()) {
     return InvalidInput(
         fmt::format("scenario {} does not say along which metrics its failures differ, which "
-                    "search.algorithm = \"archive\" needs",
-                    scenario->name));
+                    "search.algorithm = \"{}\" needs",
+                    scenario->name, setup.experiment.search.algorithm));
   }
   SearchSetup kept_out = setup;
   double& clearance = kept_out.requirements.clearance;
@@ -188,12 +196,12 @@ void ArchiveSearch::Continue(Slot& slot) {
   const bool first_run = finding.tally.runs() + finding.tally.errors == spec().replicates;
   Race race = Judge(finding.tally);
   if (finding.failures.empty()) race = Race::kDrop;  // nothing to say in which cell it belongs
-  if (race != Race::kDrop && slot.emitter == Emitter::kRandom && first_run) {
+  if (race != Race::kDrop && !only_deletion_ && slot.emitter == Emitter::kRandom && first_run) {
     PlanNearest(slot);
     if (BeginPlanned(slot)) return;
     return BeginAnew(slot);
   }
-  if (race != Race::kDrop && !archive_.WouldWin(archive_.grid().CellOf(finding.Middle()), finding.size())) {
+  if (race != Race::kDrop && !Matters(archive_.grid().CellOf(finding.Middle()), finding.size())) {
     race = Race::kDrop;
   }
   if (race == Race::kAdmit) race = JudgePlace(finding);
@@ -206,6 +214,10 @@ void ArchiveSearch::Continue(Slot& slot) {
     UpdatePopulation();
   }
   if (!BeginPlanned(slot)) BeginAnew(slot);
+}
+
+bool ArchiveSearch::Matters(std::size_t cell, const LayoutSize& size) const {
+  return only_deletion_ || archive_.WouldWin(cell, size);
 }
 
 Race ArchiveSearch::JudgePlace(const Finding& finding) const {
@@ -234,7 +246,7 @@ bool ArchiveSearch::BeginPlanned(Slot& slot) {
   while (!slot.plan.empty()) {
     Step step = std::move(slot.plan.front());
     slot.plan.pop_front();
-    if (!archive_.WouldWin(slot.cell, SizeOf(step.obstacles))) continue;
+    if (!Matters(slot.cell, SizeOf(step.obstacles))) continue;
     Begin(slot, step.emitter, std::move(step.obstacles), slot.parent);
     return true;
   }
@@ -252,17 +264,19 @@ void ArchiveSearch::BeginAnew(Slot& slot) {
   sim::RandomStream random(search_seed_, sim::StreamPurpose::kVariation,
                            static_cast<std::uint32_t>(evaluations_done_),
                            static_cast<std::uint32_t>(&slot - slots_.data()));
+  if (!only_deletion_ && BeginDrawn(slot, random)) return;
+  BeginRandom(slot, random);
+}
+
+bool ArchiveSearch::BeginDrawn(Slot& slot, sim::RandomStream& random) {
   const double draw = random.Uniform();
   const Experiment& e = setup_.experiment;
   const double alone = places_ ? Get(e, kAloneShare) : 0.0;
   const double jittered = alone + Get(e, kJitteredShare);
   const double recheck = jittered + Get(e, kRecheckShare);
-  if (draw < alone && BeginAlone(slot, random)) return;
-  if (!archive_.shelves().empty()) {
-    if (draw >= alone && draw < jittered && BeginJittered(slot, random)) return;
-    if (draw >= jittered && draw < recheck && BeginRecheck(slot)) return;
-  }
-  BeginRandom(slot, random);
+  if (draw < alone) return BeginAlone(slot, random);
+  if (draw >= recheck || archive_.shelves().empty()) return false;
+  return draw < jittered ? BeginJittered(slot, random) : BeginRecheck(slot);
 }
 
 void ArchiveSearch::BeginRandom(Slot& slot, sim::RandomStream& random) {
@@ -427,11 +441,21 @@ SearchRow ArchiveRow() {
           .number = 8,
           .title = "archive search",
           .members = "elites",
-          .plan =
-              [](const Experiment& e) {
-                return FormatCount(static_cast<std::uint64_t>(Get(e, kRuns))) + " runs";
-              },
+          .plan = PlanOf,
           .make = Make<ArchiveSearch>};
+}
+
+SearchRow RandomDeletionRow() {
+  return {
+      .info = {.name = kRandomDeletion,
+               .description = "random cases and, as long as they fail, without one obstacle after the other",
+               .keys = {"search.replicates", "search.runs", "search.slots", "search.keep_out", "genome."},
+               .length = "search.runs"},
+      .number = 9,
+      .title = "random search with deletion",
+      .members = "elites",
+      .plan = PlanOf,
+      .make = Make<ArchiveSearch>};
 }
 
 }  // namespace gauntlet::master

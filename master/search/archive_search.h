@@ -40,6 +40,10 @@ enum class Race { kOpen, kAdmit, kDrop };
 // When nothing follows, a slot goes on with a random case, an elite moved to another cell, a changed elite,
 // or one more run of an elite, which leaves the archive when less than 60 % of its runs fail.
 //
+// As "random-deletion", the baseline, it knows nothing of cells: random cases alone, each run until it is
+// admitted or dropped and then shortened by one obstacle, the farthest from the way first, as long as what is
+// left is admitted. The archive only collects what comes of it.
+//
 // Population() is the smallest of each cell, in the order of the cells.
 class ArchiveSearch : public PopulationSearch {
  public:
@@ -85,6 +89,9 @@ class ArchiveSearch : public PopulationSearch {
   void Begin(Slot& slot, Emitter emitter, sim::Genome obstacles, IndividualId parent);
   bool BeginPlanned(Slot& slot);
   void BeginAnew(Slot& slot);
+  // One of the kinds of lines that have a share; false: it is not their turn, or there is nothing to begin
+  // with.
+  bool BeginDrawn(Slot& slot, sim::RandomStream& random);
   void BeginRandom(Slot& slot, sim::RandomStream& random);
   // What could be won along the shortest way through the arena.
   double Promise(const sim::TestCase& test_case) const;
@@ -94,6 +101,8 @@ class ArchiveSearch : public PopulationSearch {
   bool BeginRecheck(Slot& slot);
   void PlanNearest(Slot& slot);
   void PlanWithout(Slot& slot, const Finding& found);
+  // Whether it is worth knowing that a layout of this size fails in the cell.
+  bool Matters(std::size_t cell, const LayoutSize& size) const;
   // Whether a layout that fails often enough does so in one cell.
   Race JudgePlace(const Finding& finding) const;
   void Rechecked(Slot& slot);
@@ -106,6 +115,7 @@ class ArchiveSearch : public PopulationSearch {
   static void SaveSlot(const Slot& slot, CanonicalEncoder& encoder);
   Status RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const;
 
+  const bool only_deletion_;
   const std::string_view failing_;
   const sim::ArenaRequirements requirements_;
   const Way way_;
@@ -119,5 +129,6 @@ class ArchiveSearch : public PopulationSearch {
 };
 
 SearchRow ArchiveRow();
+SearchRow RandomDeletionRow();
 
 }  // namespace gauntlet::master

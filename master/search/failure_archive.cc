@@ -51,7 +51,7 @@ std::optional<Descriptor> DescriptorGrid::Describe(const RunOutcome& run) const 
   return descriptor;
 }
 
-Descriptor Finding::Middle() const {
+Descriptor MiddleOf(const std::vector<Descriptor>& failures) {
   GAUNTLET_CHECK(!failures.empty(), "a middle of something");
   Descriptor middle;
   for (std::size_t axis = 0; axis < failures.front().size(); ++axis) {

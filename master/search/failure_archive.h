@@ -27,6 +27,8 @@ LayoutSize SizeOf(const sim::Genome& obstacles);
 
 // What a failed run showed, a value for each axis.
 using Descriptor = std::vector<double>;
+// The median of each axis over failures, of which there is at least one.
+Descriptor MiddleOf(const std::vector<Descriptor>& failures);
 
 class DescriptorGrid {
  public:
@@ -54,8 +56,8 @@ struct Finding {
   bool mirrored = false;  // has been an example for a layout on the other side
 
   LayoutSize size() const { return SizeOf(individual.test_case.obstacles); }
-  // The median of each axis over the failures, of which there is at least one.
-  Descriptor Middle() const;
+  // Of the failures, of which there is at least one.
+  Descriptor Middle() const { return MiddleOf(failures); }
 };
 
 class FailureArchive {

@@ -21,9 +21,9 @@
 namespace gauntlet::master {
 
 std::span<const SearchRow> Searches() {
-  static const std::array rows = {GeneticRow(),  SteadyStateRow(),  RandomRow(),       ArchiveRow(),
-                                  CaseListRow(), ResimulationRow(), ConfirmationRow(), MinimisationRow(),
-                                  BlameRow(),    CheckRow()};
+  static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
+                                  RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
+                                  MinimisationRow(),   BlameRow(),       CheckRow()};
   return rows;
 }
 

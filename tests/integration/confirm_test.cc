@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 
@@ -85,6 +86,39 @@ TEST(ConfirmTest, TheElitesOfAnArchiveFailAgain) {
   for (const nlohmann::json& one : cases) confirmed += one["verdict"] == "fail" ? 1 : 0;
   EXPECT_GE(10 * confirmed, 7 * cases.size()) << "they were chosen for failing 3 of 3 or 4 of 5 times";
   EXPECT_THAT(Gauntlet({"show", dir}).out, HasSubstr("The fewest obstacles that break the swarm"));
+}
+
+TEST(ConfirmTest, BudgetsAreComparedByWhatWasConfirmed) {
+  const TemporaryDirectory scratch;
+  const auto search = [&](const std::string& algorithm, const std::string& length) {
+    const std::string dir = scratch / algorithm;
+    const ProcessResult result =
+        Gauntlet({"evolve", "flocking", "--set", "search.algorithm=" + algorithm, "--set", "search." + length,
+                  "--seeds", "1..2", "--dir", dir, "--quiet"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return dir;
+  };
+  const std::string archive = search("archive", "runs=120");
+  const std::string random = search("random", "cases=120");
+  const ProcessResult early = Gauntlet({"compare", "--budget", archive, random});
+  EXPECT_EQ(early.exit_code, 2);
+  EXPECT_THAT(early.err, HasSubstr("gauntlet confirm " + archive + " --elites"));
+
+  const std::size_t elites = Json({"confirm", archive, "--elites", "--json", "--quiet"})["cases"].size();
+  const nlohmann::json failing = Json(ConfirmAll(random, 2))["cases"];
+  const nlohmann::json table = Json({"compare", "--budget", archive, random, "--json"});
+  EXPECT_EQ(table["runs"], 120);
+  EXPECT_EQ(table["sets"][0]["cases"], elites);
+  EXPECT_EQ(table["sets"][1]["cases"], failing.size());
+  const auto confirmed =
+      std::ranges::count(failing, "fail", [](const nlohmann::json& one) { return one["verdict"]; });
+  EXPECT_EQ(table["sets"][1]["confirmed"], confirmed);
+  EXPECT_EQ(table["sets"][0]["cells"]["values"].size(), 2U);
+  EXPECT_GT(table["sets"][0]["cells_with_up_to_3"]["mean"], 0.0);
+  EXPECT_EQ(table["sets"][1]["cells_with_up_to_3"]["mean"], 0.0) << "random cases have eight obstacles";
+  EXPECT_LE(table["sets"][1]["cells_with_up_to_3"]["p"], 1.0);
+  EXPECT_THAT(Gauntlet({"compare", "--budget", archive, random}).out,
+              HasSubstr("What 120 runs of a search give"));
 }
 
 TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {

@@ -35,6 +35,13 @@ TEST(DescribeTest, OneValueHasNoSpreadAndEqualOnesNone) {
   EXPECT_EQ(equal.sd, 0.0);
 }
 
+TEST(DescribeTest, AMeansIntervalIsThatOfStudentsT) {
+  // t.test(1:5)$conf.int in R.
+  const Interval interval = MeanInterval(std::vector<double>{1, 2, 3, 4, 5}, 0.95);
+  EXPECT_NEAR(interval.low, 1.036757, 1e-6);
+  EXPECT_NEAR(interval.high, 4.963243, 1e-6);
+}
+
 TEST(DescribeTest, KeepsDigitsOfValuesFarFromZero) {
   const Description description = Describe(std::vector<double>{1e9 + 4, 1e9 + 7, 1e9 + 13, 1e9 + 16});
   EXPECT_EQ(description.mean, 1e9 + 10);

@@ -149,6 +149,35 @@ TEST(ArchiveSearchTest, ARunThatEndsWithoutAResultIsNoFailure) {
   EXPECT_TRUE(search->Population().empty());
 }
 
+bool IsOneLess(const sim::Genome& fewer, const sim::Genome& more) {
+  if (fewer.size() + 1 != more.size()) return false;
+  return std::ranges::all_of(
+      fewer, [&](const sim::ObstacleGene& gene) { return std::ranges::find(more, gene) != more.end(); });
+}
+
+TEST(ArchiveSearchTest, RandomDeletionOnlyDrawsCasesAndTakesObstaclesAway) {
+  SearchSetup setup = ArchiveSetup(1000);
+  setup.experiment.search.algorithm = "random-deletion";
+  const auto search = MakeArchive(setup);
+  std::map<IndividualId, sim::Genome> seen;
+  std::size_t deletions = 0;
+  for (const EvaluationRequest& request : Drive(*search, 5, BreaksAtTraps)) {
+    const sim::Genome& obstacles = request.test_case.obstacles;
+    seen.emplace(request.individual, obstacles);
+    if (request.parents.empty()) {
+      EXPECT_EQ(std::ssize(obstacles), setup.experiment.genome.genes);
+      continue;
+    }
+    ++deletions;
+    EXPECT_TRUE(IsOneLess(obstacles, seen.at(request.parents.front()))) << request.individual;
+  }
+  EXPECT_GT(deletions, 100U);
+  EXPECT_GE(StatisticOf(*search, "cells_with_up_to_1"), 3.0) << "one trap is enough";
+  for (const char* emitter : {"nearest", "mirrored", "alone", "jittered", "recheck"}) {
+    EXPECT_EQ(StatisticOf(*search, std::string(emitter) + "_runs"), 0.0) << emitter;
+  }
+}
+
 TEST(ArchiveSearchTest, AScenarioWithoutAxesIsRefused) {
   SearchSetup setup = ArchiveSetup(200);
   setup.experiment.scenario = "light-flocking";
