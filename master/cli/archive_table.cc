@@ -6,9 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/statistics/proportions.h"
-#include "base/check.h"
 #include "base/shell_quoted.h"
 #include "master/cli/table.h"
+#include "master/report/archive_cells.h"
+#include "master/search/failure_archive.h"
 
 namespace gauntlet::master {
 namespace {
@@ -16,30 +17,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kConfidence = 0.95;
-
-const PopulationMember& MemberOf(const CampaignSummary& summary, const ArchivedFailure& failure) {
-  const auto member = std::ranges::find(summary.population, failure.individual, &PopulationMember::id);
-  GAUNTLET_CHECK(member != summary.population.end(), "every archived failure is in the population");
-  return *member;
-}
-
-double LengthOf(const sim::Genome& obstacles) {
-  double length = 0.0;
-  for (const sim::ObstacleGene& gene : obstacles) length += gene.length;
-  return length;
-}
-
-std::size_t CellsOf(const ArchiveView& archive) {
-  std::size_t cells = 1;
-  for (const ArchiveAxis& axis : archive.axes) cells *= static_cast<std::size_t>(axis.parts);
-  return cells;
-}
-
-// "-3 to -1.8"
-std::string RangeText(const ArchiveAxis& axis, int part) {
-  const double width = (axis.max - axis.min) / axis.parts;
-  return fmt::format("{:.4g} to {:.4g}", axis.min + part * width, axis.min + (part + 1) * width);
-}
 
 // The second axis upwards, the first one to the right.
 std::string Map(const CampaignSummary& summary) {
@@ -70,21 +47,15 @@ std::string ArchiveText(const CampaignSummary& summary, const HintContext& conte
   if (archive.failures.empty()) {
     return "\nNothing fails reliably: no case that was tried failed in 3 of 3 or 4 of 5 runs.\n";
   }
-  std::vector<ArchivedFailure> failures = archive.failures;
-  const auto size = [&](const ArchivedFailure& failure) {
-    const sim::Genome& obstacles = MemberOf(summary, failure).genome;
-    return std::pair(obstacles.size(), LengthOf(obstacles));
-  };
-  std::ranges::stable_sort(failures, {}, size);
   std::vector<std::string> head = {">test case", ">obstacles", ">length [m]", ">failed"};
   for (const ArchiveAxis& axis : archive.axes) head.push_back(">" + axis.metric);
   head.insert(head.end(), {">run", ""});
   Table table(head);
-  for (const ArchivedFailure& failure : failures) {
+  for (const ArchivedFailure& failure : BySize(summary)) {
     const PopulationMember& member = MemberOf(summary, failure);
-    const auto [obstacles, length] = size(failure);
-    std::vector<std::string> row = {fmt::format("{}", failure.individual), fmt::format("{}", obstacles),
-                                    fmt::format("{:.1f}", length),
+    const LayoutSize size = SizeOf(member.genome);
+    std::vector<std::string> row = {fmt::format("{}", failure.individual), fmt::format("{}", size.obstacles),
+                                    fmt::format("{:.1f}", size.length),
                                     fmt::format("{} of {}", failure.failures, failure.runs)};
     for (const double value : failure.middle) row.push_back(fmt::format("{:.2f}", value));
     const RunId run = member.runs.empty() ? 0 : member.runs.front();
@@ -118,7 +89,7 @@ Json ArchiveJson(const CampaignSummary& summary) {
     elites.push_back({{"cell", failure.cell},
                       {"individual", failure.individual},
                       {"obstacles", member.genome.size()},
-                      {"length", LengthOf(member.genome)},
+                      {"length", SizeOf(member.genome).length},
                       {"k", failure.failures},
                       {"n", failure.runs},
                       {"interval", {interval.low, interval.high}},

@@ -1,5 +1,6 @@
 // gauntlet figure: a campaign's figures for papers, with their data.
 #include <algorithm>
+#include <iterator>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -9,6 +10,7 @@
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
 #include "master/cli/table.h"
+#include "master/pages/archive_figure.h"
 #include "master/pages/campaign_figures.h"
 
 namespace gauntlet::master {
@@ -68,6 +70,7 @@ ExitCode RunFigureCommand(CommandContext& context, const FigureOptions& options)
   std::vector<NamedFigure> figures;
   if (*run == 0) {
     figures = FiguresOf(CoursesOf(*facts), MapsOf(*facts));
+    std::ranges::move(ArchiveFigures(*facts), std::back_inserter(figures));
   } else {
     Result<std::vector<ShownRun>> one = ShowRuns(*facts, {*run});
     if (!one) return Fail(context, one.error());

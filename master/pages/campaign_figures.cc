@@ -12,23 +12,6 @@
 namespace gauntlet::master {
 namespace {
 
-std::string CsvOf(const std::vector<std::string>& columns, const std::vector<std::vector<Cell>>& rows) {
-  std::vector<Column> named;
-  for (const std::string& column : columns) named.push_back({column, "", ""});
-  std::string text;
-  DataTable table(
-      TableFormat::kCsv, named,
-      [&](std::string_view bytes) -> Status {
-        text += bytes;
-        return Ok{};
-      },
-      "", "");
-  // Appending to a text cannot fail.
-  for (const std::vector<Cell>& row : rows) (void)table.AddRow(row);
-  (void)table.Finish();
-  return text;
-}
-
 std::string LinesCsv(const analysis::LineFigure& figure) {
   std::vector<std::vector<Cell>> rows;
   for (const analysis::LinePanel& panel : figure.panels) {
@@ -40,7 +23,7 @@ std::string LinesCsv(const analysis::LineFigure& figure) {
       }
     }
   }
-  return CsvOf({"line", "meaning", figure.x_name, "value", "lowest", "highest"}, rows);
+  return CsvText({"line", "meaning", figure.x_name, "value", "lowest", "highest"}, rows);
 }
 
 std::string MapCsv(const RunMap& map) {
@@ -52,9 +35,9 @@ std::string MapCsv(const RunMap& map) {
           {map.rows[row], map.columns[column], cell.runs, cell.toughest == 0 ? Cell() : Cell(cell.toughest)});
     }
   }
-  return CsvOf({map.down_name.empty() ? "row" : map.down_name,
-                map.across_name.empty() ? "column" : map.across_name, "runs", "toughest run"},
-               rows);
+  return CsvText({map.down_name.empty() ? "row" : map.down_name,
+                  map.across_name.empty() ? "column" : map.across_name, "runs", "toughest run"},
+                 rows);
 }
 
 std::string StatesCsv(const analysis::RunFigure& figure) {
@@ -64,7 +47,7 @@ std::string StatesCsv(const analysis::RunFigure& figure) {
     rows.push_back({std::int64_t{spell.robot}, states.names[static_cast<std::size_t>(spell.state)],
                     spell.begin, spell.end});
   }
-  return CsvOf({"robot", "state", "begin_s", "end_s"}, rows);
+  return CsvText({"robot", "state", "begin_s", "end_s"}, rows);
 }
 
 NamedFigure ProgressFigure(const SearchCourse& course, const std::string& name) {

@@ -7,6 +7,7 @@
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "controllers/registry.h"
+#include "master/pages/archive_figure.h"
 #include "master/pages/campaign_figures.h"
 #include "master/pages/campaign_pages.h"
 #include "master/pages/html_text.h"
@@ -164,6 +165,7 @@ std::string OverviewHtml(const CampaignPages& pages) {
   for (std::size_t i = 0; i < figures.size(); ++i) {
     html += FigureHtml(figures[i], facts.directory) + CourseTable(pages.courses[i]);
   }
+  for (const NamedFigure& figure : ArchiveFigures(facts)) html += FigureHtml(figure, facts.directory);
   html += SearchesTable(facts.summary) + CommandsHtml(facts);
   return html + fmt::format(
                     "<details><summary>The whole experiment, as it was resolved</summary><pre>{}</pre>"

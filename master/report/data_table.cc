@@ -118,4 +118,21 @@ Status DataTable::Flush() {
   return written;
 }
 
+std::string CsvText(const std::vector<std::string>& columns, const std::vector<std::vector<Cell>>& rows) {
+  std::vector<Column> named;
+  for (const std::string& column : columns) named.push_back({column, "", ""});
+  std::string text;
+  DataTable table(
+      TableFormat::kCsv, named,
+      [&](std::string_view bytes) -> Status {
+        text += bytes;
+        return Ok{};
+      },
+      "", "");
+  // Appending to a text cannot fail.
+  for (const std::vector<Cell>& row : rows) (void)table.AddRow(row);
+  (void)table.Finish();
+  return text;
+}
+
 }  // namespace gauntlet::master

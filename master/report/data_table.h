@@ -57,4 +57,7 @@ class DataTable {
   std::uint64_t rows_ = 0;
 };
 
+// A whole CSV of columns without units; a row has a cell for each of them.
+std::string CsvText(const std::vector<std::string>& columns, const std::vector<std::vector<Cell>>& rows);
+
 }  // namespace gauntlet::master
