@@ -27,15 +27,17 @@ std::string Counted(std::size_t obstacles) {
 
 analysis::LayoutGrid GridOf(const CampaignSummary& summary, const Experiment& experiment) {
   const ArchiveView& archive = summary.archive;
-  analysis::LayoutGrid grid{.title = kTitle,
-                            .outcome = fmt::format("{} of {} cells hold a failure that repeats",
-                                                   archive.failures.size(), CellsOf(archive)),
-                            .across_name = archive.axes[0].metric,
-                            .up_name = archive.axes[1].metric,
-                            .columns = {},
-                            .rows = {},
-                            .arena = EmptyArena(experiment.arena),
-                            .layouts = {}};
+  analysis::LayoutGrid grid{
+      .title = kTitle,
+      .outcome = fmt::format(
+          "{} of {} cells hold a failure that repeats; below each, in how many of its runs it came",
+          archive.failures.size(), CellsOf(archive)),
+      .across_name = archive.axes[0].metric,
+      .up_name = archive.axes[1].metric,
+      .columns = {},
+      .rows = {},
+      .arena = EmptyArena(experiment.arena),
+      .layouts = {}};
   for (int part = 0; part < archive.axes[0].parts; ++part) {
     grid.columns.push_back(RangeText(archive.axes[0], part));
   }
