@@ -154,10 +154,11 @@ Result<double> ParseShare(const std::string& option, const std::string& text) {
   return InvalidInput(fmt::format("{} {}: must be a share from 0 to 1, e.g. 0.05", option, text));
 }
 
-Result<int> ParseMetricsPort(const std::string& text) {
+Result<int> ParsePort(const std::string& option, const std::string& text) {
+  if (text.empty()) return 0;
   if (const auto port = ParseNumber<std::uint16_t>(text)) return *port;
   return InvalidInput(
-      fmt::format("--metrics-port {}: must be a port from 1 to 65535, or 0 for any free one", text));
+      fmt::format("{} {}: must be a port from 1 to 65535, or 0 for any free one", option, text));
 }
 
 Result<std::uint64_t> ParseRunId(const std::string& text) {

@@ -96,8 +96,8 @@ int AvailableCores();
 Result<int> ParseWorkers(const std::string& text);
 // A share, 0 to 1; "" gives 0.
 Result<double> ParseShare(const std::string& option, const std::string& text);
-// 0 (any free one) to 65535.
-Result<int> ParseMetricsPort(const std::string& text);
+// 0 (any free one) to 65535; "" gives 0.
+Result<int> ParsePort(const std::string& option, const std::string& text);
 // Decimal, at least 1.
 Result<std::uint64_t> ParseRunId(const std::string& text);
 

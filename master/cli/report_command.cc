@@ -11,7 +11,6 @@
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
 #include "master/pages/report_page.h"
-#include "master/report/subset.h"
 
 namespace gauntlet::master {
 namespace {
@@ -34,39 +33,10 @@ Result<std::size_t> ShownRunsOf(const std::string& text) {
   return *number;
 }
 
-// The campaigns that the sets name, each once.
-Result<std::vector<std::string>> DirectoriesOf(const std::vector<std::string>& sets) {
-  std::vector<std::string> directories;
-  for (const std::string& set : sets) {
-    const Result<std::vector<SetPart>> parts = SplitSet(set);
-    if (!parts) return parts.error();
-    for (const SetPart& part : *parts) {
-      if (std::ranges::find(directories, part.path) == directories.end()) directories.push_back(part.path);
-    }
-  }
-  return directories;
-}
-
-Result<Report> Gather(const std::vector<std::string>& sets, std::size_t shown_runs) {
-  const Result<std::vector<std::string>> directories = DirectoriesOf(sets);
-  if (!directories) return directories.error();
-  Report report;
-  for (const std::string& directory : *directories) {
-    Result<CampaignPages> pages = GatherPages(directory, shown_runs / directories->size());
-    if (!pages) return pages.error();
-    report.campaigns.push_back(*std::move(pages));
-  }
-  if (sets.size() < 2) return report;
-  Result<SetComparisons> comparisons = CompareSets(sets);
-  if (!comparisons) return comparisons.error();
-  report.comparisons = *std::move(comparisons);
-  return report;
-}
-
 ExitCode RunReport(CommandContext& context, const ReportCommandOptions& options) {
   const Result<std::size_t> shown_runs = ShownRunsOf(options.runs);
   if (!shown_runs) return Fail(context, shown_runs.error());
-  const Result<Report> report = Gather(options.sets, *shown_runs);
+  const Result<Report> report = GatherReport(options.sets, *shown_runs);
   if (!report) return Fail(context, report.error());
   const std::string page = ReportPage(*report);
   if (const Status written = WriteOutputFile(options.out, page); !written)

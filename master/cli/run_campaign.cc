@@ -93,7 +93,7 @@ void WarnOfManyWorkers(CommandContext& context, int workers) {
 
 Result<std::unique_ptr<MetricsServer>> StartMetrics(CommandContext& context, const ServingOptions& options) {
   if (options.metrics_port.empty()) return std::unique_ptr<MetricsServer>();
-  const Result<int> port = ParseMetricsPort(options.metrics_port);
+  const Result<int> port = ParsePort("--metrics-port", options.metrics_port);
   if (!port) return port.error();
   Result<std::unique_ptr<MetricsServer>> metrics = MetricsServer::Start(*port);
   if (metrics && !options.quiet) PrintMessage(context, fmt::format("metrics at {}", (*metrics)->url()));

@@ -37,15 +37,8 @@ std::vector<const controllers::MetricInfo*> DescriptorsOf(const std::string& sce
 
 Result<RunFacts> FactsOf(const StoredRun& run,
                          const std::vector<const controllers::MetricInfo*>& descriptors) {
-  RunFacts facts{.id = run.id,
-                 .search = run.search,
-                 .individual = run.individual,
-                 .generation = run.generation,
-                 .completed = run.verdict == static_cast<int>(sim::Verdict::kCompleted),
-                 .total_failure = run.total_failure,
-                 .failure_type = run.failure_type,
-                 .fitness = run.fitness,
-                 .descriptors = std::vector<double>(descriptors.size(), kNone)};
+  RunFacts facts = FactsOfRow(run);
+  facts.descriptors.assign(descriptors.size(), kNone);
   if (!facts.completed || descriptors.empty()) return facts;
   const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
   if (!result) return Error{result.error().kind, fmt::format("run {}: {}", run.id, result.error().message)};
@@ -184,6 +177,18 @@ std::string TextOfFile(const std::string& path) {
 
 }  // namespace
 
+RunFacts FactsOfRow(const StoredRun& run) {
+  return {.id = run.id,
+          .search = run.search,
+          .individual = run.individual,
+          .generation = run.generation,
+          .completed = run.verdict == static_cast<int>(sim::Verdict::kCompleted),
+          .total_failure = run.total_failure,
+          .failure_type = run.failure_type,
+          .fitness = run.fitness,
+          .descriptors = {}};
+}
+
 Result<CampaignFacts> ReadFacts(const std::string& dir) {
   const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
   if (!campaign) return campaign.error();
@@ -215,11 +220,11 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
 }
 
 Result<std::vector<StoredRun>> ReadRuns(const std::string& dir, const std::vector<RunId>& ids) {
-  const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
+  const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kTotals);
   if (!campaign) return campaign.error();
   std::vector<StoredRun> runs;
   for (const RunId id : ids) {
-    Result<std::optional<StoredRun>> run = campaign->view.store->LoadRun(id);
+    Result<std::optional<StoredRun>> run = campaign->store->LoadRun(id);
     if (!run) return run.error();
     if (!run->has_value())
       return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", id, dir)};

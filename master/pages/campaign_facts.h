@@ -65,10 +65,13 @@ struct CampaignFacts {
   std::vector<CaseFacts> cases;    // the toughest first: by mean fitness, those without a result last
 };
 
+// Without descriptors.
+RunFacts FactsOfRow(const StoredRun& run);
+
 // Errors: those of OpenStoredCampaign, Summarise and ReadConfirmations; a run does not read back.
 Result<CampaignFacts> ReadFacts(const std::string& dir);
 
-// The runs with these ids, whole. Errors: those of OpenStoredCampaign; one is not there.
+// The runs with these ids, whole; others are not looked at. Errors: those of ViewCampaign; one is not there.
 Result<std::vector<StoredRun>> ReadRuns(const std::string& dir, const std::vector<RunId>& ids);
 
 }  // namespace gauntlet::master

@@ -1,11 +1,18 @@
 #include "master/pages/campaign_pages.h"
 
+#include <algorithm>
+
 namespace gauntlet::master {
+
+bool CampaignPages::HasPage(RunId run) const {
+  if (every_run) return run != 0;
+  return std::ranges::any_of(shown, [run](const ShownRun& one) { return one.report.stored.id == run; });
+}
 
 Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown) {
   Result<CampaignFacts> facts = ReadFacts(dir);
   if (!facts) return facts.error();
-  CampaignPages pages{*std::move(facts), {}, {}, {}};
+  CampaignPages pages{.facts = *std::move(facts), .courses = {}, .maps = {}, .shown = {}};
   pages.courses = CoursesOf(pages.facts);
   pages.maps = MapsOf(pages.facts);
   Result<std::vector<ShownRun>> shown =

@@ -19,6 +19,9 @@ struct CampaignPages {
   std::vector<SearchCourse> courses;
   std::vector<RunMap> maps;
   std::vector<ShownRun> shown;
+  bool every_run = false;  // others than those shown can be had too: pages that are served
+
+  bool HasPage(RunId run) const;
 };
 
 // Error: those of ReadFacts and ShowRuns.
@@ -33,6 +36,8 @@ std::string OverviewHtml(const CampaignPages& pages);
 std::string FailuresHtml(const CampaignPages& pages, std::size_t number);
 // A page for each run that is shown.
 std::string CasesHtml(const CampaignPages& pages, std::size_t number);
+// One of them.
+std::string CaseHtml(const CampaignFacts& facts, std::size_t number, const ShownRun& shown);
 std::string ComparisonHtml(const std::vector<SetComparison>& comparisons,
                            const std::vector<std::string>& notes);
 

@@ -63,16 +63,18 @@ std::string CommandsHtml(const CampaignFacts& facts, RunId id) {
              "gauntlet export {} --format csv --what trajectories --run {} --out run-{}.csv", dir, id, id));
 }
 
-std::string CaseHtml(const CampaignPages& pages, std::size_t number, const ShownRun& shown) {
+}  // namespace
+
+std::string CaseHtml(const CampaignFacts& facts, std::size_t number, const ShownRun& shown) {
   const RunId id = shown.report.stored.id;
   const std::string page_id = IdOfRun(number, id);
   std::string html = fmt::format(
       "<section class=\"page case\" id=\"{}\">\n<h2>Run {}</h2>\n<p class=\"soft\">{} &middot; <a "
       "href=\"#failures\">all failures</a></p>\n",
-      page_id, id, Html(pages.facts.directory));
+      page_id, id, Html(facts.directory));
   if (!shown.trouble.empty())
     html += fmt::format("<ul class=\"notes\"><li>{}</li></ul>\n", Html(shown.trouble));
-  if (shown.figure.result.trajectory.empty()) return html + CommandsHtml(pages.facts, id) + "</section>\n";
+  if (shown.figure.result.trajectory.empty()) return html + CommandsHtml(facts, id) + "</section>\n";
   html += fmt::format(
       "<p class=\"verdict\">{}</p>\n<div class=\"columns\"><div>\n<div class=\"replay needs-js\" "
       "data-run=\"{}\"></div>\n<noscript><figure><img class=\"arena\" alt=\"The arena from above\" "
@@ -83,19 +85,17 @@ std::string CaseHtml(const CampaignPages& pages, std::size_t number, const Shown
       "heads. A dashed circle appears where the swarm split, a red ring around who is trapped.</p>\n</div>\n"
       "<div>{}</div></div>\n",
       Html(analysis::DescribeOutcome(shown.figure)), page_id,
-      DataUri(analysis::DrawThumbnail(shown.figure, kPicturePixels)), RunFactsHtml(pages.facts, shown));
+      DataUri(analysis::DrawThumbnail(shown.figure, kPicturePixels)), RunFactsHtml(facts, shown));
   for (const NamedFigure& figure : FiguresOf(shown)) {
     if (figure.name.starts_with("run-")) continue;  // the replay shows more
-    html += FigureHtml(figure, pages.facts.directory);
+    html += FigureHtml(figure, facts.directory);
   }
-  return html + CommandsHtml(pages.facts, id) + "</section>\n";
+  return html + CommandsHtml(facts, id) + "</section>\n";
 }
-
-}  // namespace
 
 std::string CasesHtml(const CampaignPages& pages, std::size_t number) {
   std::string html;
-  for (const ShownRun& shown : pages.shown) html += CaseHtml(pages, number, shown);
+  for (const ShownRun& shown : pages.shown) html += CaseHtml(pages.facts, number, shown);
   return html;
 }
 

@@ -1,6 +1,3 @@
-#include <algorithm>
-#include <set>
-
 #include <fmt/format.h>
 
 #include "analysis/figures/run_thumbnail.h"
@@ -16,21 +13,20 @@ namespace {
 constexpr double kThumbnailPixels = 220.0;
 constexpr std::size_t kMostRows = 50;  // of the table of cases, where no script makes a whole one
 
-std::string CellHtml(const MapCell& cell, std::uint64_t largest, std::size_t number,
-                     const std::set<RunId>& shown) {
+std::string CellHtml(const CampaignPages& pages, std::size_t number, const MapCell& cell,
+                     std::uint64_t largest) {
   const analysis::HeatColors colors = analysis::HeatColorsOf(cell.runs, largest);
   if (cell.runs == 0) return fmt::format("<td class=\"none\" title=\"{}: none\"></td>", Html(cell.meaning));
   const std::string style = fmt::format("style=\"background:{};color:{}\"", colors.fill, colors.text);
   const std::string title = Html(fmt::format("{}: {} runs; the toughest is run {}", cell.meaning,
                                              FormatCount(cell.runs), cell.toughest));
-  if (!shown.contains(cell.toughest))
+  if (!pages.HasPage(cell.toughest))
     return fmt::format("<td {} title=\"{}\">{}</td>", style, title, FormatCount(cell.runs));
   return fmt::format("<td {}><a href=\"#{}\" title=\"{}\" aria-label=\"{}\">{}</a></td>", style,
                      IdOfRun(number, cell.toughest), title, title, FormatCount(cell.runs));
 }
 
-std::string MapHtml(const RunMap& map, std::size_t number, const std::set<RunId>& shown,
-                    const std::string& directory) {
+std::string MapHtml(const CampaignPages& pages, std::size_t number, const RunMap& map) {
   std::string html = fmt::format(
       "<h3>{}</h3>\n<p>{}. {} A click on a field leads to its toughest run.</p>\n"
       "<div class=\"scroll\"><table class=\"map\"><thead><tr><th></th><th scope=\"colgroup\" "
@@ -43,12 +39,12 @@ std::string MapHtml(const RunMap& map, std::size_t number, const std::set<RunId>
   const std::uint64_t largest = LargestCount(map);
   for (std::size_t row = 0; row < map.rows.size(); ++row) {
     html += fmt::format("<tr><th scope=\"row\">{}</th>", Html(map.rows[row]));
-    for (const MapCell& cell : map.cells[row]) html += CellHtml(cell, largest, number, shown);
+    for (const MapCell& cell : map.cells[row]) html += CellHtml(pages, number, cell, largest);
     html += "</tr>\n";
   }
   return html + "</tbody></table></div>\n<details><summary>For a paper: as SVG, its data as CSV</summary>" +
-         CommandHtml(fmt::format("gauntlet figure {0} {1} -o {1}.svg --csv {1}.csv", PastedPath(directory),
-                                 map.name)) +
+         CommandHtml(fmt::format("gauntlet figure {0} {1} -o {1}.svg --csv {1}.csv",
+                                 PastedPath(pages.facts.directory), map.name)) +
          "</details>\n";
 }
 
@@ -72,13 +68,13 @@ std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
   return drawn == 0 ? "" : html + "</ul>\n";
 }
 
-std::string CasesTable(const CampaignPages& pages, std::size_t number, const std::set<RunId>& shown) {
+std::string CasesTable(const CampaignPages& pages, std::size_t number) {
   const CampaignFacts& facts = pages.facts;
   std::vector<std::vector<std::string>> rows;
   for (const CaseFacts& one : facts.cases) {
     if (rows.size() == kMostRows) break;
     std::string run = one.toughest == 0 ? "-" : fmt::format("{}", one.toughest);
-    if (shown.contains(one.toughest))
+    if (pages.HasPage(one.toughest))
       run = fmt::format("<a href=\"#{}\">{}</a>", IdOfRun(number, one.toughest), run);
     rows.push_back({fmt::format("{}", one.individual), Html(one.name),
                     one.completed == 0 ? "-" : fmt::format("{:.3f}", one.mean_fitness), FormatCount(one.runs),
@@ -101,14 +97,12 @@ std::string IdOfRun(std::size_t number, RunId run) {
 }
 
 std::string FailuresHtml(const CampaignPages& pages, std::size_t number) {
-  std::set<RunId> shown;
-  for (const ShownRun& one : pages.shown) shown.insert(one.report.stored.id);
   std::string html = fmt::format("<h2>{}</h2>\n<p class=\"soft\">{}</p>\n",
                                  Html(pages.facts.summary.experiment), Html(pages.facts.directory));
   if (pages.facts.cases.empty()) return html + "<p>There is no run yet.</p>\n";
   if (pages.maps.empty()) html += "<p>Nothing failed, and the scenario describes no behaviour.</p>\n";
-  for (const RunMap& map : pages.maps) html += MapHtml(map, number, shown, pages.facts.directory);
-  return html + ThumbnailsHtml(pages, number) + CasesTable(pages, number, shown);
+  for (const RunMap& map : pages.maps) html += MapHtml(pages, number, map);
+  return html + ThumbnailsHtml(pages, number) + CasesTable(pages, number);
 }
 
 }  // namespace gauntlet::master

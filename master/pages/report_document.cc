@@ -1,7 +1,5 @@
 #include "master/pages/report_document.h"
 
-#include <sodium.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 
 #include "analysis/figures/run_panel.h"
 #include "controllers/registry.h"
+#include "master/pages/base64.h"
 #include "sim/arena/arena.h"
 
 namespace gauntlet::master {
@@ -28,13 +27,6 @@ double Short(double metres) {
 
 Json PointJson(const sim::Vec2& point) {
   return Json::array({Short(point.x()), Short(point.y())});
-}
-
-std::string Base64(const std::vector<unsigned char>& bytes) {
-  std::string text(sodium_base64_encoded_len(bytes.size(), sodium_base64_VARIANT_ORIGINAL), '\0');
-  sodium_bin2base64(text.data(), text.size(), bytes.data(), bytes.size(), sodium_base64_VARIANT_ORIGINAL);
-  text.pop_back();  // its terminator
-  return text;
 }
 
 // `share` 0 to 1 as a whole number from 0 to `most`.
@@ -140,6 +132,15 @@ Json CasesJson(const CampaignFacts& facts) {
   return cases;
 }
 
+// m: how far robots see or hear one another, as the scenario's parameters say; null where none does.
+Json SightRangeOf(const sim::RunSpec& spec) {
+  for (const char* name : {"link_range", "communication_range"}) {
+    const auto found = spec.scenario_parameters.find(name);
+    if (found != spec.scenario_parameters.end()) return found->second;
+  }
+  return nullptr;
+}
+
 Json CampaignJson(const CampaignPages& pages) {
   Json columns = Json::array();
   for (const auto& [key, title] : CaseColumns()) {
@@ -150,7 +151,9 @@ Json CampaignJson(const CampaignPages& pages) {
   for (const FailureCount& type : pages.facts.summary.failure_types) {
     if (type.runs > 0) types.push_back(type.name);
   }
-  return {{"failure_types", std::move(types)},
+  return {{"directory", pages.facts.directory},
+          {"runs_done", pages.facts.summary.runs_done},
+          {"failure_types", std::move(types)},
           {"case_columns", std::move(columns)},
           {"cases", CasesJson(pages.facts)}};
 }
@@ -164,7 +167,7 @@ Json ReplayDocument(const analysis::RunFigure& figure) {
   Json json = {{"side_x", test_case.side_x},         {"side_y", test_case.side_y},
                {"wall", test_case.wall_thickness},   {"robots", robots},
                {"guide", analysis::GuideOf(figure)}, {"guide_name", figure.style.guide},
-               {"member", figure.style.member}};
+               {"member", figure.style.member},      {"sight_range", SightRangeOf(figure.spec)}};
   Json lost = Json::array();
   for (const sim::RobotSummary& robot : figure.result.robots) lost.push_back(robot.lost);
   json["lost"] = std::move(lost);
@@ -191,8 +194,9 @@ Json ReplayDocument(const analysis::RunFigure& figure) {
   return json;
 }
 
-Json ReportDocument(const std::vector<CampaignPages>& campaigns) {
-  Json json = {{"campaigns", Json::array()}, {"replays", Json::object()}};
+Json ReportDocument(const Report& report) {
+  const std::vector<CampaignPages>& campaigns = report.campaigns;
+  Json json = {{"served", report.served}, {"campaigns", Json::array()}, {"replays", Json::object()}};
   for (std::size_t i = 0; i < campaigns.size(); ++i) {
     json["campaigns"].push_back(CampaignJson(campaigns[i]));
     for (const ShownRun& shown : campaigns[i].shown) {

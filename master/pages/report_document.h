@@ -4,13 +4,14 @@
 #include <nlohmann/json_fwd.hpp>
 #include <vector>
 
-#include "master/pages/campaign_pages.h"
+#include "master/pages/report_page.h"
 
 namespace gauntlet::master {
 
-// {"campaigns": [{"failure_types", "case_columns": [{"key", "title", "number"}], "cases": [[...]]}],
+// {"served", "campaigns": [{"directory", "runs_done", "failure_types",
+//  "case_columns": [{"key", "title", "number"}], "cases": [[...]]}],
 //  "replays": {ID: ...}}, campaigns in their order, replays by the ids of their pages.
-nlohmann::ordered_json ReportDocument(const std::vector<CampaignPages>& campaigns);
+nlohmann::ordered_json ReportDocument(const Report& report);
 
 // A run that plays. Lengths in m, times in s, angles in rad; `poses` in base64, four bytes for each moment of
 // `times` and robot: 12 bits for x and 12 for y over the arena between the walls' centre lines, 8 for the

@@ -1,11 +1,15 @@
 #include "master/pages/report_page.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "master/pages/base64.h"
 #include "master/pages/front_end.h"
 #include "master/pages/html_text.h"
 #include "master/pages/report_document.h"
+#include "master/report/subset.h"
 
 namespace gauntlet::master {
 namespace {
@@ -16,15 +20,16 @@ std::string TitleOf(const Report& report) {
   return title;
 }
 
-std::string HeadHtml(const std::string& title) {
+std::string HeadHtml(const std::string& title, const std::string& script, bool served) {
   return fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src "
-      "'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{}: Gauntlet report</title>\n"
-      "<link rel=\"icon\" href=\"data:,\">\n<style>\n{}</style>\n</head>\n",
-      Html(title), kPageStyle);
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:{0}; {1}"
+      "style-src 'unsafe-inline'; script-src '{2}'; base-uri 'none'; form-action 'none'\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{3}: Gauntlet report</title>\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<style>\n{4}</style>\n</head>\n",
+      served ? " 'self'" : "", served ? "connect-src 'self'; " : "", ScriptHash(script), Html(title),
+      kPageStyle);
 }
 
 // The first run that has a page; "" when there is none.
@@ -42,6 +47,7 @@ std::string NavigationHtml(const Report& report) {
   if (const std::string first = FirstCase(report); !first.empty())
     html += fmt::format("<a href=\"#{}\" data-page=\"case\">Runs</a>\n", first);
   if (!report.comparisons.comparisons.empty()) html += "<a href=\"#comparison\">Comparison</a>\n";
+  if (report.served) html += "<a href=\"#live\">Live</a>\n";
   return html + "</nav>\n";
 }
 
@@ -63,7 +69,49 @@ std::string CampaignsTable(const Report& report) {
          TableHtml({"campaign", "scenario", "controller", ">runs", ">total failures", "finished"}, rows);
 }
 
+// What goes on now; scripts fill it.
+std::string LiveHtml(const Report& report) {
+  if (!report.served) return "";
+  std::string html = "<section class=\"page\" id=\"live\">\n";
+  for (std::size_t i = 0; i < report.campaigns.size(); ++i) {
+    const CampaignFacts& facts = report.campaigns[i].facts;
+    html += fmt::format(
+        "<h2>{}</h2>\n<p class=\"soft\">{}</p>\n<div class=\"live\" data-campaign=\"{}\"></div>\n",
+        Html(facts.summary.experiment), Html(facts.directory), i);
+  }
+  return html + "</section>\n";
+}
+
+// The campaigns that the sets name, each once.
+Result<std::vector<std::string>> DirectoriesOf(const std::vector<std::string>& sets) {
+  std::vector<std::string> directories;
+  for (const std::string& set : sets) {
+    const Result<std::vector<SetPart>> parts = SplitSet(set);
+    if (!parts) return parts.error();
+    for (const SetPart& part : *parts) {
+      if (std::ranges::find(directories, part.path) == directories.end()) directories.push_back(part.path);
+    }
+  }
+  return directories;
+}
+
 }  // namespace
+
+Result<Report> GatherReport(const std::vector<std::string>& sets, std::size_t shown_runs) {
+  const Result<std::vector<std::string>> directories = DirectoriesOf(sets);
+  if (!directories) return directories.error();
+  Report report;
+  for (const std::string& directory : *directories) {
+    Result<CampaignPages> pages = GatherPages(directory, shown_runs / directories->size());
+    if (!pages) return pages.error();
+    report.campaigns.push_back(*std::move(pages));
+  }
+  if (sets.size() < 2) return report;
+  Result<SetComparisons> comparisons = CompareSets(sets);
+  if (!comparisons) return comparisons.error();
+  report.comparisons = *std::move(comparisons);
+  return report;
+}
 
 std::string ReportPage(const Report& report) {
   std::string overview = CampaignsTable(report);
@@ -76,7 +124,8 @@ std::string ReportPage(const Report& report) {
   }
   const SetComparisons& comparisons = report.comparisons;
   if (comparisons.comparisons.empty()) overview += ComparisonHtml({}, comparisons.notes);
-  return HeadHtml(TitleOf(report)) +
+  const std::string script = fmt::format("\n{}", kPageScript);
+  return HeadHtml(TitleOf(report), script, report.served) +
          fmt::format(
              "<body>\n<a class=\"skip\" href=\"#overview\">To the overview</a>\n<header><h1>Gauntlet "
              "report</h1>\n"
@@ -89,11 +138,14 @@ std::string ReportPage(const Report& report) {
          (comparisons.comparisons.empty()
               ? ""
               : SectionHtml("comparison", ComparisonHtml(comparisons.comparisons, comparisons.notes))) +
+         LiveHtml(report) +
          fmt::format(
-             "</main>\n<footer>Made by Gauntlet. This file needs no network and no other file.</footer>\n"
-             "<script type=\"application/json\" id=\"data\">{}</script>\n<script>\n{}</script>\n"
+             "</main>\n<footer>Made by Gauntlet. {}</footer>\n"
+             "<script type=\"application/json\" id=\"data\">{}</script>\n<script>{}</script>\n"
              "</body>\n</html>\n",
-             JsonInHtml(ReportDocument(report.campaigns)), kPageScript);
+             report.served ? "Served by gauntlet ui, to this machine only."
+                           : "This file needs no network and no other file.",
+             JsonInHtml(ReportDocument(report)), script);
 }
 
 }  // namespace gauntlet::master

@@ -1,4 +1,5 @@
-// The report: one HTML file about one or several campaigns that needs nothing else to be read.
+// The report: one HTML document about one or several campaigns. As a file it needs nothing else to be read;
+// served, its scripts ask for what it does not hold.
 #pragma once
 
 #include <string>
@@ -11,10 +12,17 @@ namespace gauntlet::master {
 struct Report {
   std::vector<CampaignPages> campaigns;  // at least one
   SetComparisons comparisons;            // empty of a single set
+  // By `gauntlet ui`: with a live page, and every run at hand.
+  bool served = false;
 };
 
-// The document. It asks the network for nothing and forbids the browser to; without JavaScript its pages
-// stand one below the other, with every table. The same bytes for the same report.
+// Of the campaigns that the sets name, each once, with `shown_runs` replays shared by them; several sets are
+// compared. Errors: those of SplitSet, GatherPages and CompareSets.
+Result<Report> GatherReport(const std::vector<std::string>& sets, std::size_t shown_runs);
+
+// The document. A file asks the network for nothing and forbids the browser to, a served one asks its own
+// server only; without JavaScript its pages stand one below the other, with every table. The same bytes for
+// the same report.
 std::string ReportPage(const Report& report);
 
 }  // namespace gauntlet::master

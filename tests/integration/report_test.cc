@@ -12,6 +12,7 @@
 
 #include "tests/integration/browser.h"
 #include "tests/integration/campaign_driver.h"
+#include "tests/integration/replayed_poses.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -146,44 +147,8 @@ class ReportInBrowserTest : public testing::Test {
     if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium)";
     browser_ = std::make_unique<Browser>();
   }
-  // Its poses in the replay that is shown: x, y and heading in degrees of every robot.
-  std::vector<std::array<double, 3>> Poses() {
-    const json transforms = browser_->Evaluate(
-        "[...document.querySelectorAll('.page.shown .robot')].map(r => r.getAttribute('transform'))");
-    std::vector<std::array<double, 3>> poses;
-    for (const std::string transform : transforms) {
-      std::array<double, 3>& pose = poses.emplace_back();
-      EXPECT_EQ(
-          std::sscanf(transform.c_str(), "translate(%lf %lf) rotate(%lf)", &pose[0], &pose[1], &pose[2]), 3)
-          << transform;
-    }
-    return poses;
-  }
   std::unique_ptr<Browser> browser_;
 };
-
-// x, y and heading in degrees of every robot at the run's end, simulated again.
-std::vector<std::array<double, 3>> LastPoses(const std::string& run) {
-  const std::string csv = Scratch() / "run.csv";
-  EXPECT_EQ(Gauntlet({"replay", Campaign(), run, "--csv", csv}).exit_code, 0);
-  std::istringstream lines(ReadFile(csv));
-  std::vector<std::array<double, 3>> poses;
-  std::string line;
-  std::getline(lines, line);
-  while (std::getline(lines, line)) {
-    int tick = 0;
-    double time = 0;
-    std::size_t robot = 0;
-    std::array<double, 3> pose{};
-    EXPECT_EQ(std::sscanf(line.c_str(), "%d,%lf,%zu,%lf,%lf,%lf", &tick, &time, &robot, &pose[0], &pose[1],
-                          &pose[2]),
-              6);
-    pose[2] *= 180.0 / M_PI;
-    if (robot >= poses.size()) poses.resize(robot + 1);
-    poses[robot] = pose;
-  }
-  return poses;
-}
 
 TEST_F(ReportInBrowserTest, OpensWithoutComplaintAndAsksTheNetworkForNothing) {
   browser_->Open("file://" + OneReport());
@@ -218,18 +183,11 @@ TEST_F(ReportInBrowserTest, AClickOnAFieldOfTheMapLeadsToItsRunWhichPlaysToItsSt
       "(() => { const field = document.querySelector('table.map a'); field.click(); return "
       "field.hash.slice(1); })()");
   ASSERT_TRUE(browser_->Becomes("document.getElementById('" + target + "').classList.contains('shown')"));
-  const auto expected = LastPoses(target.substr(target.rfind('-') + 1));
-  const auto start = Poses();
+  const Poses expected = LastPoses(Campaign(), target.substr(target.rfind('-') + 1));
+  const Poses start = ShownPoses(*browser_);
   ASSERT_EQ(start.size(), expected.size());
-  browser_->Evaluate(
-      "(() => { const page = document.querySelector('.page.shown'); "
-      "const [speed] = page.querySelectorAll('.controls select'); speed.value = '64'; "
-      "page.querySelector('.controls button').click(); })()");
-  ASSERT_TRUE(browser_->Becomes(
-      "(() => { const slider = document.querySelector('.page.shown input[type=range]'); "
-      "return slider.value === slider.max && "
-      "document.querySelector('.page.shown .controls button').textContent === 'Play'; })()"));
-  const auto end = Poses();
+  ASSERT_TRUE(PlayToTheEnd(*browser_));
+  const Poses end = ShownPoses(*browser_);
   double moved = 0.0;
   for (std::size_t robot = 0; robot < expected.size(); ++robot) {
     for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(end[robot][i], expected[robot][i], 1e-9) << robot;

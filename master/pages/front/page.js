@@ -15,10 +15,14 @@ function make(name, attributes = {}, ...children) {
 
 // --- which page is shown: the one that the address names, or that holds what it names
 
-const pages = [...document.querySelectorAll('.page')];
-
 function show() {
-  const wanted = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+  const name = decodeURIComponent(location.hash.slice(1));
+  if (mustBeFetched(name)) {
+    fetchRun(name);
+    return;
+  }
+  const pages = [...document.querySelectorAll('.page')];
+  const wanted = document.getElementById(name);
   const page = (wanted && wanted.closest('.page')) || pages[0];
   for (const one of pages) one.classList.toggle('shown', one === page);
   for (const link of document.querySelectorAll('nav a')) {
@@ -33,25 +37,28 @@ addEventListener('hashchange', show);
 
 // --- buttons that copy
 
-for (const command of document.querySelectorAll('.command')) {
-  const button = make('button', {type: 'button'}, 'Copy');
-  button.addEventListener('click', async () => {
-    const text = command.querySelector('code').textContent;
-    try {
-      await navigator.clipboard.writeText(text);
-    } catch (refused) {  // from a file, some browsers allow only the old way
-      const area = make('textarea');
-      area.value = text;
-      document.body.append(area);
-      area.select();
-      document.execCommand('copy');
-      area.remove();
-    }
-    button.textContent = 'Copied';
-    setTimeout(() => { button.textContent = 'Copy'; }, 1500);
-  });
-  command.append(button);
+function addCopyButtons(place) {
+  for (const command of place.querySelectorAll('.command')) {
+    const button = make('button', {type: 'button'}, 'Copy');
+    button.addEventListener('click', async () => {
+      const text = command.querySelector('code').textContent;
+      try {
+        await navigator.clipboard.writeText(text);
+      } catch (refused) {  // from a file, some browsers allow only the old way
+        const area = make('textarea');
+        area.value = text;
+        document.body.append(area);
+        area.select();
+        document.execCommand('copy');
+        area.remove();
+      }
+      button.textContent = 'Copied';
+      setTimeout(() => { button.textContent = 'Copy'; }, 1500);
+    });
+    command.append(button);
+  }
 }
+addCopyButtons(document);
 
 // --- the table of all cases
 
@@ -67,8 +74,8 @@ function caseTable(place) {
 
   const text = make('input', {type: 'search', 'aria-label': 'Filter cases', placeholder: 'number, name, ...'});
   const kind = make('select', {'aria-label': 'Which cases'}, make('option', {value: ''}, 'all cases'),
-                    make('option', {value: 'failing'}, 'with a total failure'),
-                    make('option', {value: 'shown'}, 'with a replay here'));
+                    make('option', {value: 'failing'}, 'with a total failure'));
+  if (!data.served) kind.append(make('option', {value: 'shown'}, 'with a replay here'));
   campaign.failure_types.forEach((type) => kind.append(make('option', {value: 'type ' + type}, type)));
   const count = make('output', {});
   const more = make('button', {type: 'button'}, 'Show more');
@@ -119,7 +126,7 @@ function caseTable(place) {
   }
   function linked(column, value) {
     const id = 'run-' + place.dataset.campaign + '-' + value;
-    if (column.key !== 'run' || !document.getElementById(id)) return String(value);
+    if (column.key !== 'run' || !(data.served || document.getElementById(id))) return String(value);
     return make('a', {href: '#' + id}, String(value));
   }
   at.type = at.type ?? -1;
@@ -127,8 +134,7 @@ function caseTable(place) {
   kind.addEventListener('change', () => { shown = kRowsAtATime; fill(); });
   more.addEventListener('click', () => { shown += kRowsAtATime; fill(); });
   fill();
-  place.replaceChildren(make('div', {class: 'controls'}, text, kind, count),
+  place.replaceChildren(make('div', {class: 'controls'}, text, kind, count, ...anyRun(place.dataset.campaign)),
                         make('div', {class: 'scroll'}, make('table', {}, make('thead', {}, head), body)),
                         more);
 }
-document.querySelectorAll('.all-cases').forEach(caseTable);

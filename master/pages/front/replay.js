@@ -35,6 +35,17 @@ function unpack(run) {
   return frames;
 }
 
+// Whether the segments ab and cd cross.
+function cross([ax, ay], [bx, by], [cx, cy], [dx, dy]) {
+  const side = (px, py, qx, qy, rx, ry) => Math.sign((qx - px) * (ry - py) - (qy - py) * (rx - px));
+  return side(ax, ay, bx, by, cx, cy) !== side(ax, ay, bx, by, dx, dy) &&
+         side(cx, cy, dx, dy, ax, ay) !== side(cx, cy, dx, dy, bx, by);
+}
+
+// Whether nothing stands between two points outside of the obstacles.
+const seesPast = (obstacles, a, b) =>
+    !obstacles.some((box) => box.some((corner, i) => cross(a, b, corner, box[(i + 1) % box.length])));
+
 class Replay {
   constructor(place, run) {
     this.run = run;
@@ -60,8 +71,27 @@ class Replay {
     this.button.addEventListener('click', () => (this.playing ? this.stop() : this.play()));
     this.slider.addEventListener('input', () => { this.stop(); this.showAt(Number(this.slider.value)); });
     this.trails.addEventListener('change', () => this.showAt(this.time));
+    this.sight = make('input', {type: 'checkbox'});
+    this.sight.addEventListener('change', () => this.showAt(this.time));
+    const range = this.run.sight_range;
+    const sight = range === null ? [] : [make('label', {}, this.sight, `who sees whom (within ${range.toFixed(2)} m)`)];
     place.append(make('div', {class: 'controls'}, this.button, this.slider, this.clock,
-                      make('label', {}, 'speed', this.speed), make('label', {}, 'trails', this.trails)));
+                      make('label', {}, 'speed', this.speed), make('label', {}, 'trails', this.trails),
+                      ...sight),
+                 make('p', {class: 'soft'}, 'Keys: space plays and pauses, arrows step by a second, with shift by ten.'));
+  }
+
+  // A key pressed anywhere on its page; true when it meant something.
+  press(key, shift) {
+    if (key === ' ') {
+      if (this.playing) this.stop(); else this.play();
+      return true;
+    }
+    if (key !== 'ArrowLeft' && key !== 'ArrowRight') return false;
+    this.stop();
+    const step = (shift ? 10 : 1) * (key === 'ArrowLeft' ? -1 : 1);
+    this.showAt(Math.max(0, this.time + step));
+    return true;
   }
 
   makePicture(place) {
@@ -90,6 +120,8 @@ class Replay {
       mark: draw(up, 'circle', {cx: moment.x, cy: moment.y, r: Math.max(moment.r, 0.12), fill: 'none',
                                 stroke: kColors[moment.mark] ?? kColors.split, 'stroke-width': 0.03,
                                 'stroke-dasharray': '0.06 0.04', class: 'moment'})}));
+    this.sights = draw(up, 'path', {fill: 'none', stroke: '#3a424c', 'stroke-width': 0.012, 'stroke-opacity': 0.55,
+                                    class: 'sights'});
     const trails = draw(up, 'g', {fill: 'none', 'stroke-width': 0.025, 'stroke-opacity': 0.6});
     const colors = this.frames[0].map((_, i) => kColors[i === run.guide ? 'guide' : run.lost[i] ? 'lost' : 'kept']);
     this.ways = colors.map((color) => draw(trails, 'polyline', {stroke: color}));
@@ -132,10 +164,21 @@ class Replay {
       const points = this.trails.value === '0' ? [] : [...recorded, poses].map((frame) => frame[i].slice(0, 2));
       way.setAttribute('points', pointsOf(points));
     });
+    this.sights.setAttribute('d', this.sight.checked ? this.linesOfSight(poses) : '');
     for (const one of this.moments) one.mark.setAttribute('visibility', one.time <= this.time ? 'visible' : 'hidden');
     for (const one of this.rings) one.ring.setAttribute('visibility', one.time <= this.time ? 'visible' : 'hidden');
     this.slider.value = this.time;
     this.clock.textContent = `${this.time.toFixed(1)} of ${this.end.toFixed(1)} s`;
+  }
+
+  // A line between any two robots that are within range and have nothing between them.
+  linesOfSight(poses) {
+    const lines = [];
+    poses.forEach((a, i) => poses.slice(0, i).forEach((b) => {
+      if (Math.hypot(a[0] - b[0], a[1] - b[1]) > this.run.sight_range || !seesPast(this.run.obstacles, a, b)) return;
+      lines.push(`M${a[0]},${a[1]}L${b[0]},${b[1]}`);
+    }));
+    return lines.join('');
   }
 
   play() {
@@ -168,4 +211,10 @@ function stopReplaysBut(page) {
   for (const [place, replay] of replays) if (!page.contains(place)) replay.stop();
 }
 
-show();
+addEventListener('keydown', (event) => {
+  const replay = replays.get(document.querySelector('.page.shown .replay'));
+  // What has the focus comes first: a button is pressed by space, a slider and a list move by arrows.
+  if (!replay || event.target.closest('button, select, input, summary, a') || event.ctrlKey || event.altKey ||
+      event.metaKey) return;
+  if (replay.press(event.key, event.shiftKey)) event.preventDefault();
+});

@@ -66,7 +66,7 @@ TEST(ReportDocumentTest, ACaseIsARowOfItsColumns) {
   CampaignPages pages = PagesWithNames("x");
   pages.facts.cases.push_back(
       {.search = 1, .individual = 2, .runs = 1, .mean_fitness = std::numeric_limits<double>::quiet_NaN()});
-  const ordered_json campaign = ReportDocument({pages})["campaigns"][0];
+  const ordered_json campaign = ReportDocument({{pages}, {}})["campaigns"][0];
   ASSERT_EQ(campaign["cases"].size(), 2U);
   for (const ordered_json& row : campaign["cases"]) EXPECT_EQ(row.size(), campaign["case_columns"].size());
   EXPECT_EQ(campaign["case_columns"][3]["key"], "mean");

@@ -1,0 +1,57 @@
+#include "master/ui/web_server.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/local_socket.h"
+
+namespace gauntlet::master {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+using testing_support::Converse;
+
+// What it was asked, in words.
+WebAnswer Echo(const WebRequest& request) {
+  return {.status = 403,
+          .type = "text/plain",
+          .body = request.method + " " + request.path + " " + request.host + " " + request.origin};
+}
+
+TEST(WebServerTest, HandsOnWhatWasAskedAndAnswersWhatItIsTold) {
+  const auto server = WebServer::Start(0, Echo);
+  ASSERT_TRUE(server) << server.error().message;
+  EXPECT_THAT(Converse((*server)->port(),
+                       "GET /a%2e%2e/b?c=d HTTP/1.1\r\nHost: here:1\r\nOrigin: http://there\r\n"
+                       "Connection: close\r\n\r\n"),
+              AllOf(StartsWith("HTTP/1.1 403"), HasSubstr("GET /a../b here:1 http://there"),
+                    HasSubstr("frame-ancestors 'none'"), HasSubstr("Referrer-Policy: no-referrer")));
+}
+
+TEST(WebServerTest, SurvivesWhatIsNoHttp) {
+  const auto server = WebServer::Start(0, Echo);
+  ASSERT_TRUE(server) << server.error().message;
+  Converse((*server)->port(), std::string(100'000, 'x') + "\r\n\r\n");
+  Converse((*server)->port(), "POST / HTTP/1.1\r\nHost: here\r\nContent-Length: -1\r\n\r\n");
+  EXPECT_THAT(Converse((*server)->port(), "GET / HTTP/1.1\r\nHost: here\r\nConnection: close\r\n\r\n"),
+              HasSubstr("GET / here"));
+}
+
+TEST(WebServerTest, APortThatIsTakenIsNamed) {
+  const testing_support::ListeningSocket other;
+  const auto server = WebServer::Start(other.port(), Echo);
+  ASSERT_FALSE(server);
+  EXPECT_EQ(server.error().kind, ErrorKind::kInUse);
+  EXPECT_THAT(server.error().message, AllOf(HasSubstr(std::to_string(other.port())), HasSubstr("--port")));
+}
+
+TEST(WebServerTest, TwoDoNotShareAPort) {
+  const auto first = WebServer::Start(0, Echo);
+  ASSERT_TRUE(first) << first.error().message;
+  EXPECT_FALSE(WebServer::Start((*first)->port(), Echo));
+}
+
+}  // namespace
+}  // namespace gauntlet::master
