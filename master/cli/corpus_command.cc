@@ -118,6 +118,7 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
   kept.picture = analysis::DrawRun(FigureOf(experiment.name, replay->report));
   kept.content.found_in = fmt::format("run {} of {}", run, experiment.name);
   kept.content.settings = SettingsOf(experiment);
+  if (!experiment.plugin.empty()) kept.plugins = {experiment.plugin};
   kept.content.document = {std::move(one.test_case)};
   kept.content.name = options.name.empty() ? fmt::format("run-{}", run) : options.name;
   return kept;

@@ -58,7 +58,7 @@ ControllerInfo RowOf(proto::DescribedController described) {
 
 Result<std::string> AddPluginFile(const std::string& file) {
   const Result<std::string> bytes = ReadSmallFile(file, proto::kMaxPluginBytes);
-  if (!bytes) return InvalidInput(fmt::format("the plug-in {}", bytes.error().message));
+  if (!bytes) return InvalidInput("plug-in: " + bytes.error().message);
   std::string hash = Sha256(*bytes);
   if (controllers::FindPlugin(hash) != nullptr) return hash;
   const Result<std::string> description = DescribePlugin(file);

@@ -328,8 +328,10 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
   };
   if (const auto* scenario = FindByName(catalogue.scenarios, experiment.scenario))
     insert_before_tables(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
-    insert_before_tables(ControllerParameterKeys(*controller));
+  const auto* controller = experiment.plugin.empty()
+                               ? FindByName(catalogue.controllers, experiment.controller)
+                               : controllers::FindController(experiment.controller, experiment.plugin);
+  if (controller != nullptr) insert_before_tables(ControllerParameterKeys(*controller));
   if (!experiment.plugin.empty())
     keys.insert(std::ranges::find(keys, "controller", &Key::path) + 1, PluginKey());
 

@@ -110,6 +110,21 @@ TEST_F(PluginCampaign, IsLookedAtButNotReplayedWhenOthersMayWriteItsLibrary) {
   EXPECT_THAT(result.err, HasSubstr("other users may write it"));
 }
 
+// A corpus outlives the library: the cases are asked of the one that is given.
+TEST_F(PluginCampaign, GivesItsFailingCasesToACorpus) {
+  const std::string corpus = scratch_ / "corpus";
+  ASSERT_EQ(
+      Random(experiment_, {"--plugin", PluginPath("of_faults"), "--set", "controller=counting"}).exit_code,
+      0);
+  const ProcessResult confirmed = Gauntlet({"confirm", dir_, "1", "--replicates", "5", "--quiet"});
+  ASSERT_EQ(confirmed.exit_code, 0) << confirmed.err;
+  const ProcessResult added = Gauntlet({"corpus", "add", dir_, "1", "--to", corpus});
+  ASSERT_EQ(added.exit_code, 0) << added.err;
+  const ProcessResult checked = Gauntlet({"check", corpus, "--plugin", PluginPath("of_faults"), "--quiet"});
+  EXPECT_NE(checked.exit_code, 2) << checked.err;
+  EXPECT_EQ(Gauntlet({"check", corpus, "--quiet"}).exit_code, 2) << "without the library";
+}
+
 TEST_F(PluginCampaign, FaultyRunsAreResultsThatSaySo) {
   const ProcessResult result =
       Random("flocking", {"--plugin", PluginPath("of_faults"), "--set", "controller=throw"});

@@ -34,7 +34,7 @@ TEST(ExperimentErrorsTest, UnknownKeysComeWithTheNearestKnownOne) {
             "toy.toml:3:1: unknown key 'search.length_max'; did you mean 'genome.length_max'?");
   EXPECT_EQ(ErrorOf(Marching("quux = 3\n")),
             "toy.toml:2:1: unknown key 'quux'; known at the top: name, description, seed, scenario, "
-            "controller, physics, faults");
+            "controller, physics, faults, plugins");
   EXPECT_EQ(ErrorOf(kMarching, {"serch.population=4"}),
             "--set serch.population=4: unknown key 'serch.population'; did you mean 'search.population'?");
 }
