@@ -1,5 +1,7 @@
 #include <argos3/core/control_interface/ci_controller.h>
 
+#include <algorithm>
+
 namespace argos {
 namespace {
 
@@ -8,9 +10,10 @@ Device* Find(const std::map<std::string, Device*>& devices, const std::string& t
              std::vector<std::string>& asked_for) {
   const auto found = devices.find(tag);
   if (found == devices.end()) {
-    throw CARGoSException("The robot has no " + std::string(kind) + " \"" + tag + "\"");
+    throw CARGoSException("The robot has no " + std::string(kind) + " \"" + tag +
+                          "\"; it has those of its .argos file, or those that Init asks for");
   }
-  asked_for.push_back(tag);
+  if (std::find(asked_for.begin(), asked_for.end(), tag) == asked_for.end()) asked_for.push_back(tag);
   return found->second;
 }
 

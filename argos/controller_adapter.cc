@@ -50,7 +50,12 @@ ControllerAdapter::ControllerAdapter(const ControllerSection& section, const Rob
   AddDevices(section);
   argos::TConfigurationNode parameters = section.parameters;
   controller_->Init(parameters);
-  FindUsed(section);
+  Equip(actuators_, controller_->GetAllActuators(),
+        section.devices ? nullptr : &controller_->ActuatorsAskedFor());
+  Equip(sensors_, controller_->GetAllSensors(), section.devices ? nullptr : &controller_->SensorsAskedFor());
+  for (const auto& sensor : sensors_) {
+    if (sensor.device == sim::Device::kOmnidirectionalCamera) camera_ = sensor.face;
+  }
 }
 
 ControllerAdapter::~ControllerAdapter() {
@@ -75,26 +80,24 @@ void ControllerAdapter::AddDevices(const ControllerSection& section) {
     const LinkedSensor made = row.make(parts_);
     sensors_.push_back({row.tag.data(), row.device, made.sensor, made.link});
     controller_->AddSensor(row.tag.data(), made.sensor);
-    if (row.device == sim::Device::kOmnidirectionalCamera) {
-      camera_ = made.sensor;
-    } else {
-      made.sensor->Enable();
-    }
+    if (row.device != sim::Device::kOmnidirectionalCamera) made.sensor->Enable();
   }
 }
 
-void ControllerAdapter::FindUsed(const ControllerSection& section) {
-  const auto find = [&](auto& parts, const std::vector<std::string>& asked_for) {
-    for (auto& part : parts) {
-      part.used = section.devices || Has(asked_for, part.tag);
-      if (!part.used || !part.device) continue;
-      devices_ = devices_ | *part.device;
-      if (*part.device == sim::Device::kOmnidirectionalCamera) continue;
-      devices_without_camera_ = devices_without_camera_ | *part.device;
-    }
-  };
-  find(sensors_, controller_->SensorsAskedFor());
-  find(actuators_, controller_->ActuatorsAskedFor());
+template <typename Parts, typename Map>
+void ControllerAdapter::Equip(Parts& parts, Map& map, const std::vector<std::string>* asked_for) {
+  std::erase_if(parts, [&](const auto& part) {
+    if (asked_for == nullptr || Has(*asked_for, part.tag)) return false;
+    map.erase(part.tag);
+    delete part.face;
+    return true;
+  });
+  for (const auto& part : parts) {
+    if (!part.device) continue;
+    devices_ = devices_ | *part.device;
+    if (*part.device == sim::Device::kOmnidirectionalCamera) continue;
+    devices_without_camera_ = devices_without_camera_ | *part.device;
+  }
 }
 
 sim::DeviceSet ControllerAdapter::Attention(bool /*holding_item*/) const {
@@ -104,12 +107,10 @@ sim::DeviceSet ControllerAdapter::Attention(bool /*holding_item*/) const {
 void ControllerAdapter::Step(const sim::ControlStep& step) {
   argos::CSimulator::GetInstance().GetSpace().SetSimulationClock(static_cast<argos::UInt32>(step.tick));
   for (const auto& sensor : sensors_) {
-    if (sensor.used && sensor.face->IsEnabled()) sensor.link->Take(step.readings);
+    if (sensor.face->IsEnabled()) sensor.link->Take(step.readings);
   }
   controller_->ControlStep();
-  for (const auto& actuator : actuators_) {
-    if (actuator.used) actuator.link->Give(step.actuators);
-  }
+  for (const auto& actuator : actuators_) actuator.link->Give(step.actuators);
 }
 
 }  // namespace gauntlet::argos_form

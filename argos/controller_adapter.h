@@ -51,25 +51,26 @@ class ControllerAdapter final : public sim::Controller {
   argos::CCI_Controller& controller() { return *controller_; }
 
  private:
-  // One of its devices, in use or not.
+  // One of its devices.
   template <typename Face, typename Link>
   struct Part {
     const char* tag;
     std::optional<sim::Device> device;
     Face* face;
     Link* link;
-    bool used = false;
   };
 
   void AddDevices(const ControllerSection& section);
-  void FindUsed(const ControllerSection& section);
+  // Takes the devices away that were not asked for, unless null; the robot has the rest.
+  template <typename Parts, typename Map>
+  void Equip(Parts& parts, Map& map, const std::vector<std::string>* asked_for);
 
   std::shared_ptr<Palette> palette_;  // of the run
   RobotParts parts_;
   std::unique_ptr<argos::CCI_Controller> controller_;
   std::vector<Part<argos::CCI_Sensor, SensorLink>> sensors_;
   std::vector<Part<argos::CCI_Actuator, ActuatorLink>> actuators_;
-  argos::CCI_Sensor* camera_ = nullptr;
+  argos::CCI_Sensor* camera_ = nullptr;  // if it has one
   sim::DeviceSet devices_;
   sim::DeviceSet devices_without_camera_;
 };

@@ -1,4 +1,3 @@
-#include <deque>
 #include <map>
 #include <utility>
 #include <vector>
@@ -66,9 +65,11 @@ class BaseGround final : public argos::CCI_FootBotBaseGroundSensor, public Senso
 
 class Camera final : public argos::CCI_ColoredBlobOmnidirectionalCameraSensor, public SensorLink {
  public:
-  explicit Camera(RobotParts& parts) : palette_(parts.palette) {}
+  explicit Camera(RobotParts& parts) : palette_(parts.palette), blobs_(kRoom) {
+    m_sReadings.BlobList.reserve(kRoom);
+  }
   void Take(const sim::SensorReadings& readings) override {
-    if (blobs_.size() < readings.blobs.size()) blobs_.resize(readings.blobs.size());
+    if (blobs_.size() < readings.blobs.size()) blobs_.resize(2 * readings.blobs.size());
     m_sReadings.BlobList.clear();
     for (const sim::Blob& blob : readings.blobs) {
       SBlob& seen = blobs_[m_sReadings.BlobList.size()];
@@ -81,13 +82,18 @@ class Camera final : public argos::CCI_ColoredBlobOmnidirectionalCameraSensor, p
   }
 
  private:
+  static constexpr std::size_t kRoom = 128;  // blobs that it sees without more memory
+
   const Palette& palette_;
-  std::deque<SBlob> blobs_;  // kept from tick to tick
+  std::vector<SBlob> blobs_;  // kept from tick to tick
 };
 
 class Radio final : public argos::CCI_RangeAndBearingSensor, public SensorLink {
  public:
-  explicit Radio(RobotParts& /*parts*/) {}
+  explicit Radio(RobotParts& /*parts*/) : spare_(kRoom) {
+    for (SPacket& packet : spare_) packet.Data.Resize(sim::Payload().size());
+    m_tReadings.reserve(kRoom);
+  }
   void Take(const sim::SensorReadings& readings) override {
     Resize(readings.range_and_bearing.size());
     for (std::size_t i = 0; i < m_tReadings.size(); ++i) {
@@ -109,6 +115,8 @@ class Radio final : public argos::CCI_RangeAndBearingSensor, public SensorLink {
     }
     m_tReadings.resize(size);
   }
+
+  static constexpr std::size_t kRoom = 32;  // packets that it hears without more memory
 
   std::vector<SPacket> spare_;
 };
@@ -185,8 +193,11 @@ class Scanner final : public argos::CCI_FootBotDistanceScannerSensor, public Sen
     }
     spare_.back().key() = angle;
     spare_.back().mapped() = distance;
-    map.insert(std::move(spare_.back()));
+    auto result = map.insert(std::move(spare_.back()));
     spare_.pop_back();
+    if (result.inserted) return;
+    result.position->second = distance;
+    spare_.push_back(std::move(result.node));
   }
 
   std::vector<TReadingsMap::node_type> spare_;  // nodes that were used before

@@ -192,7 +192,7 @@ and Eigen.
 Examples:
   gauntlet build-controller footbot.cpp --argos experiment.argos -o libmine.so
   gauntlet list --plugin libmine.so
-  gauntlet evolve light-flocking --plugin libmine.so --set controller=my_controller
+  gauntlet evolve flocking --set scenario=light-flocking --plugin libmine.so --set controller=my_controller
       --set controller_parameters.wheel_turning.max_speed=8)");
 }
 

@@ -163,6 +163,15 @@ TEST_F(Adapter, HasTheDevicesThatInitAsksFor) {
   EXPECT_EQ(ControllerAdapter(section, {}).Devices(), sim::Device::kProximity | sim::Device::kWheels);
 }
 
+TEST_F(Adapter, HasNoDeviceThatIsAskedForAfterInit) {
+  CScripted::step = [](CScripted& robot) {
+    EXPECT_FALSE(robot.HasSensor("positioning"));
+    EXPECT_THROW(robot.GetSensor<argos::CCI_PositioningSensor>("positioning"), argos::CARGoSException);
+  };
+  Run({{{0, 0}, 0}}, 2);
+  EXPECT_EQ(CScripted::calls.size(), 4u);
+}
+
 TEST_F(Adapter, HasTheDevicesOfTheFile) {
   section.devices = {.actuators = {"leds"}, .sensors = {"footbot_proximity"}};
   EXPECT_EQ(ControllerAdapter(section, {}).Devices(), sim::Device::kProximity | sim::Device::kLeds);
