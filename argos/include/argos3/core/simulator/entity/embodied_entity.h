@@ -2,6 +2,7 @@
 #pragma once
 
 #include <argos3/core/simulator/entity/entity.h>
+#include <argos3/core/utility/math/ray3.h>
 
 namespace argos {
 
