@@ -14,6 +14,7 @@
 #include "master/cli/given_cases.h"
 #include "master/cli/output_file.h"
 #include "master/cli/table.h"
+#include "master/report/answered_calls.h"
 #include "master/report/blames.h"
 #include "proto/json_text.h"
 
@@ -33,18 +34,6 @@ Result<int> ParsePartRuns(const std::string& text) {
   const auto number = ParseNumber<int>(text);
   if (number && *number >= 2 && *number <= 10000) return *number;
   return InvalidInput(fmt::format("--replicates {}: a whole number from 2 to 10000 is needed", text));
-}
-
-std::string OutOf(const FailureTally& tally) {
-  return fmt::format("{} of {}", tally.failures, tally.runs());
-}
-
-std::string NamesOf(const BlamedPart& part) {
-  std::string names;
-  for (const std::size_t obstacle : part.obstacles) {
-    names += fmt::format("{}{}", names.empty() ? "" : " and ", obstacle + 1);
-  }
-  return names;
 }
 
 std::string Touched(const BlamedPart& part, const Blame& blame) {
@@ -113,34 +102,13 @@ Json JsonOf(const Blame& blame, const std::string& picture) {
           {"picture", picture}};
 }
 
-std::string PictureOf(const Blame& blame) {
-  const std::string sentence = DescribeBlame(blame);
-  const std::size_t end = sentence.find(". ");
-  analysis::BlameFigure figure{.title = blame.name,
-                               .sentences = {sentence},
-                               .test_case = blame.test_case,
-                               .effects = {},
-                               .stuck = blame.stuck,
-                               .lines = {}};
-  if (end != std::string::npos) figure.sentences = {sentence.substr(0, end + 1), sentence.substr(end + 2)};
-  figure.lines = {"Without an obstacle the case fails in:"};
-  for (const BlamedPart& part : blame.singles) {
-    figure.effects.push_back(part.effect);
-    figure.lines.push_back(
-        fmt::format("{}:  {}{}", NamesOf(part), OutOf(part.without), part.to_blame ? ", to blame" : ""));
-  }
-  figure.lines.insert(figure.lines.end(),
-                      {"", "Red: by how much less it fails without", "Blue: where robots stayed for 5 s,",
-                       fmt::format("in {} runs of the whole case", blame.whole.runs())});
-  return DrawBlame(figure);
-}
-
 Status Conclude(CommandContext& context, const BlameOptions& options, const std::string& directory) {
   const Result<std::vector<Blame>> blames = ReadBlames(directory);
   if (!blames) return blames.error();
   for (const Blame& blame : *blames) {
     const std::string picture = directory + "/blame.svg";
-    if (Status written = WriteOutputFile(picture, PictureOf(blame)); !written) return written;
+    if (Status written = WriteOutputFile(picture, analysis::DrawBlame(FigureOf(blame))); !written)
+      return written;
     context.out << (options.json ? JsonText(JsonOf(blame, picture)) : TextOf(blame, picture)) << std::flush;
   }
   return Ok{};

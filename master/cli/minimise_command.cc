@@ -16,6 +16,7 @@
 #include "master/cli/given_cases.h"
 #include "master/cli/output_file.h"
 #include "master/cli/table.h"
+#include "master/report/answered_calls.h"
 #include "master/report/minimisations.h"
 #include "master/report/smallest_layouts.h"
 #include "proto/json_text.h"
@@ -30,10 +31,6 @@ struct MinimiseOptions : RunningOptions {
   std::vector<std::string> cases;
   bool shorten = false;
 };
-
-std::string OutOf(const FailureTally& tally) {
-  return fmt::format("{} of {}", tally.failures, tally.runs());
-}
 
 // What became of a case that is not simply smaller now, in words.
 std::string Remark(const Minimisation& one) {

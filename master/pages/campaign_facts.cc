@@ -205,6 +205,12 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
   Result<std::vector<Confirmation>> confirmations = ReadConfirmations(dir);
   if (!confirmations) return confirmations.error();
   facts.summary.confirmations = *std::move(confirmations);
+  Result<std::vector<SmallestLayout>> layouts = ReadSmallestLayouts(dir);
+  if (!layouts) return layouts.error();
+  facts.summary.smallest_layouts = *std::move(layouts);
+  Result<std::vector<Blame>> blames = ReadAllBlames(dir);
+  if (!blames) return blames.error();
+  facts.blames = *std::move(blames);
   Result<CampaignHistory> history = HistoryOf(store);
   if (!history) return history.error();
   facts.history = *std::move(history);

@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "master/directory/search_plans.h"
+#include "master/report/blames.h"
 #include "master/report/campaign_summary.h"
 #include "master/store/result_store.h"
 
@@ -58,7 +59,8 @@ struct CampaignFacts {
   std::string golden_hashes;  // of its controllers, as text
   std::string experiment_toml;
   std::vector<SearchPlan> plans;
-  CampaignSummary summary;  // with confirmations
+  CampaignSummary summary;         // with confirmations
+  std::vector<Blame> blames = {};  // of its cases
   CampaignHistory history;
   std::vector<std::string> notes;  // what a reader has to know, a sentence each
   std::vector<RunFacts> runs;      // in logical order, search by search
@@ -68,7 +70,8 @@ struct CampaignFacts {
 // Without descriptors.
 RunFacts FactsOfRow(const StoredRun& run);
 
-// Errors: those of OpenStoredCampaign, Summarise and ReadConfirmations; a run does not read back.
+// Errors: those of OpenStoredCampaign, Summarise, ReadConfirmations, ReadSmallestLayouts and ReadAllBlames; a
+// run does not read back.
 Result<CampaignFacts> ReadFacts(const std::string& dir);
 
 // The runs with these ids, whole; others are not looked at. Errors: those of ViewCampaign; one is not there.

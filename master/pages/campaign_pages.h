@@ -32,7 +32,7 @@ Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown
 
 // What was tested, and what came of it, in two or three sentences; a text.
 std::string VerdictOf(const CampaignPages& pages);
-std::string OverviewHtml(const CampaignPages& pages);
+std::string OverviewHtml(const CampaignPages& pages, std::size_t number);
 std::string FailuresHtml(const CampaignPages& pages, std::size_t number);
 // A page for each run that is shown.
 std::string CasesHtml(const CampaignPages& pages, std::size_t number);

@@ -4,6 +4,7 @@
 
 #include "analysis/figures/run_thumbnail.h"
 #include "base/shell_quoted.h"
+#include "master/pages/answers_html.h"
 #include "master/pages/campaign_figures.h"
 #include "master/pages/campaign_pages.h"
 #include "master/pages/html_text.h"
@@ -58,7 +59,9 @@ std::string CommandsHtml(const CampaignFacts& facts, RunId id) {
          "<p>Does it fail with fresh seeds too, and how often?</p>\n" +
          CommandHtml(fmt::format("gauntlet confirm {} {}", dir, id)) +
          "<p>Which of its obstacles does it take?</p>\n" +
-         CommandHtml(fmt::format("gauntlet minimise {} {}", dir, id)) + "<p>Its ways as a table:</p>\n" +
+         CommandHtml(fmt::format("gauntlet minimise {} {}", dir, id)) +
+         "<p>How much does each of them do?</p>\n" +
+         CommandHtml(fmt::format("gauntlet blame {} {}", dir, id)) + "<p>Its ways as a table:</p>\n" +
          CommandHtml(fmt::format(
              "gauntlet export {} --format csv --what trajectories --run {} --out run-{}.csv", dir, id, id));
 }
@@ -90,6 +93,7 @@ std::string CaseHtml(const CampaignFacts& facts, std::size_t number, const Shown
     if (figure.name.starts_with("run-")) continue;  // the replay shows more
     html += FigureHtml(figure, facts.directory);
   }
+  if (const CaseFacts* of_case = CaseOf(facts, shown.report.stored)) html += AnswersHtml(facts, *of_case);
   return html + CommandsHtml(facts, id) + "</section>\n";
 }
 

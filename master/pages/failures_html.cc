@@ -4,6 +4,7 @@
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "controllers/registry.h"
+#include "master/pages/answers_html.h"
 #include "master/pages/campaign_pages.h"
 #include "master/pages/html_text.h"
 
@@ -101,6 +102,7 @@ std::string FailuresHtml(const CampaignPages& pages, std::size_t number) {
                                  Html(pages.facts.summary.experiment), Html(pages.facts.directory));
   if (pages.facts.cases.empty()) return html + "<p>There is no run yet.</p>\n";
   if (pages.maps.empty()) html += "<p>Nothing failed, and the scenario describes no behaviour.</p>\n";
+  html += DistinctFailuresHtml(pages, number) + MinimisedCasesHtml(pages, number);
   for (const RunMap& map : pages.maps) html += MapHtml(pages, number, map);
   return html + ThumbnailsHtml(pages, number) + CasesTable(pages, number);
 }

@@ -7,6 +7,7 @@
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "controllers/registry.h"
+#include "master/pages/answers_html.h"
 #include "master/pages/archive_figure.h"
 #include "master/pages/campaign_figures.h"
 #include "master/pages/campaign_pages.h"
@@ -147,7 +148,7 @@ std::string SearchesTable(const CampaignSummary& summary) {
 
 }  // namespace
 
-std::string OverviewHtml(const CampaignPages& pages) {
+std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
   const CampaignFacts& facts = pages.facts;
   std::string html =
       fmt::format("<h2>{}</h2>\n<p class=\"soft\">{}</p>\n<p class=\"verdict\">{}</p>\n",
@@ -157,6 +158,7 @@ std::string OverviewHtml(const CampaignPages& pages) {
     for (const std::string& note : facts.notes) html += fmt::format("<li>{}</li>\n", Html(note));
     html += "</ul>\n";
   }
+  html += DistinctFailuresHtml(pages, number);
   html += fmt::format(
       "<div class=\"columns\"><div><h3>What was tested</h3>\n{}</div>\n<div><h3>Where it comes "
       "from</h3>\n{}</div></div>\n",

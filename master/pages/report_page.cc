@@ -118,7 +118,7 @@ std::string ReportPage(const Report& report) {
   std::string failures;
   std::string cases;
   for (std::size_t i = 0; i < report.campaigns.size(); ++i) {
-    overview += OverviewHtml(report.campaigns[i]);
+    overview += OverviewHtml(report.campaigns[i], i);
     failures += FailuresHtml(report.campaigns[i], i);
     cases += CasesHtml(report.campaigns[i], i);
   }

@@ -45,6 +45,9 @@ std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunM
   const auto add = [&](RunId id) {
     if (id != 0 && ids.size() < most && known.insert(id).second) ids.push_back(id);
   };
+  for (const DistinctFailure& failure : DistinctFailures(facts.summary.confirmations, {}))
+    add(failure.cases.front()->run);
+  for (const SmallestLayout& one : facts.summary.smallest_layouts) add(one.run);
   for (const RunMap& map : maps) {
     for (const std::vector<MapCell>& row : map.cells) {
       for (const MapCell& cell : row) add(cell.toughest);

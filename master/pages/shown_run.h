@@ -20,7 +20,8 @@ struct ShownRun {
   analysis::RunFigure figure;  // empty when the stored run does not read back
 };
 
-// At most `most` runs that are worth a look: the toughest of each field of the maps, the first map first,
+// At most `most` runs that are worth a look: of the distinct failures, of cases that were made smaller, the
+// toughest of each field of the maps, the first map first,
 // then the toughest run of the toughest cases. Each once, in this order.
 std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunMap>& maps, std::size_t most);
 

@@ -1,6 +1,10 @@
 #include "master/report/answered_calls.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "analysis/statistics/proportions.h"
 #include "master/directory/campaign_ownership.h"
@@ -22,6 +26,19 @@ std::string FirstMessage(ResultStore& store, SearchId search, IndividualId indiv
 
 }  // namespace
 
+std::vector<std::string> CallsIn(const std::string& folder) {
+  std::error_code none;
+  std::vector<std::string> calls;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    calls.push_back(entry.path().string());
+  std::ranges::sort(calls);
+  return calls;
+}
+
+bool HasNothingYet(const Error& error) {
+  return error.kind == ErrorKind::kNotFound || error.kind == ErrorKind::kInUse;
+}
+
 Status ForEachAnswer(const std::string& directory,
                      const std::function<Status(const AnsweredSearch& answered)>& visit) {
   const Result<CampaignView> campaign = ViewCampaign(directory);
@@ -40,6 +57,10 @@ Status ForEachAnswer(const std::string& directory,
     if (Status visited = visit({id, experiment, **search, store, first_message}); !visited) return visited;
   }
   return Ok{};
+}
+
+std::string OutOf(const FailureTally& tally) {
+  return fmt::format("{} of {}", tally.failures, tally.runs());
 }
 
 analysis::Interval FailureInterval(const FailureTally& tally) {

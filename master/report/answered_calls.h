@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "analysis/statistics/interval.h"
 #include "base/result.h"
@@ -12,6 +13,11 @@
 #include "master/store/result_store.h"
 
 namespace gauntlet::master {
+
+// The calls in a folder of a campaign, directories, the earliest name first; none when there is no folder.
+std::vector<std::string> CallsIn(const std::string& folder);
+// Whether a call that cannot be read has nothing to tell yet: it is just being made, or its master just ends.
+bool HasNothingYet(const Error& error);
 
 struct AnsweredSearch {
   SearchId id = 0;
@@ -26,6 +32,8 @@ struct AnsweredSearch {
 Status ForEachAnswer(const std::string& directory,
                      const std::function<Status(const AnsweredSearch& answered)>& visit);
 
+// "5 of 6": how many runs failed.
+std::string OutOf(const FailureTally& tally);
 // Of the probability to fail (Wilson, 95 %); 0 to 1 without a run.
 analysis::Interval FailureInterval(const FailureTally& tally);
 

@@ -73,11 +73,15 @@ std::string Numbers(const std::vector<std::size_t>& obstacles) {
   return text;
 }
 
-std::string OutOf(const FailureTally& tally) {
-  return fmt::format("{} of {}", tally.failures, tally.runs());
-}
-
 }  // namespace
+
+std::string NamesOf(const BlamedPart& part) {
+  std::string names;
+  for (const std::size_t obstacle : part.obstacles) {
+    names += fmt::format("{}{}", names.empty() ? "" : " and ", obstacle + 1);
+  }
+  return names;
+}
 
 std::string DescribeBlame(const Blame& blame) {
   if (blame.whole.failures == 0)
@@ -101,6 +105,28 @@ std::string DescribeBlame(const Blame& blame) {
                                Numbers(pair->obstacles), OutOf(pair->without));
   }
   return fails + "No obstacle and no pair of them explains it.";
+}
+
+analysis::BlameFigure FigureOf(const Blame& blame) {
+  const std::string sentence = DescribeBlame(blame);
+  const std::size_t end = sentence.find(". ");
+  analysis::BlameFigure figure{.title = blame.name,
+                               .sentences = {sentence},
+                               .test_case = blame.test_case,
+                               .effects = {},
+                               .stuck = blame.stuck,
+                               .lines = {}};
+  if (end != std::string::npos) figure.sentences = {sentence.substr(0, end + 1), sentence.substr(end + 2)};
+  figure.lines = {"Without an obstacle the case fails in:"};
+  for (const BlamedPart& part : blame.singles) {
+    figure.effects.push_back(part.effect);
+    figure.lines.push_back(
+        fmt::format("{}:  {}{}", NamesOf(part), OutOf(part.without), part.to_blame ? ", to blame" : ""));
+  }
+  figure.lines.insert(figure.lines.end(),
+                      {"", "Red: by how much less it fails without", "Blue: where robots stayed for 5 s,",
+                       fmt::format("in {} runs of the whole case", blame.whole.runs())});
+  return figure;
 }
 
 CallPlan PlanBlame(const std::string& dir, const QuestionedCampaign& questioned, int replicates) {
@@ -130,6 +156,17 @@ Result<std::vector<Blame>> ReadBlames(const std::string& directory) {
     return Ok{};
   };
   if (Status read = ForEachAnswer(directory, add); !read) return read.error();
+  return all;
+}
+
+Result<std::vector<Blame>> ReadAllBlames(const std::string& dir) {
+  std::vector<Blame> all;
+  for (const std::string& call : CallsIn(dir + "/blame")) {
+    Result<std::vector<Blame>> some = ReadBlames(call);
+    if (!some && HasNothingYet(some.error())) continue;
+    if (!some) return some.error();
+    for (Blame& one : *some) all.push_back(std::move(one));
+  }
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/figures/blame_figure.h"
 #include "analysis/statistics/interval.h"
 #include "base/result.h"
 #include "master/report/questioned_cases.h"
@@ -35,6 +36,10 @@ struct Blame {
   std::uint64_t runs = 0;        // simulated
 };
 
+// Its obstacles as people count them, from 1: "1 and 3".
+std::string NamesOf(const BlamedPart& part);
+// Drawn on the case.
+analysis::BlameFigure FigureOf(const Blame& blame);
 // What it says, in one or two sentences.
 std::string DescribeBlame(const Blame& blame);
 
@@ -42,5 +47,7 @@ std::string DescribeBlame(const Blame& blame);
 CallPlan PlanBlame(const std::string& dir, const QuestionedCampaign& questioned, int replicates);
 // What the call in `directory` has found, when it has come to its end, in the order of its cases.
 Result<std::vector<Blame>> ReadBlames(const std::string& directory);
+// What all calls about cases of the campaign in `dir` have found.
+Result<std::vector<Blame>> ReadAllBlames(const std::string& dir);
 
 }  // namespace gauntlet::master

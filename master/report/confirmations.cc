@@ -1,7 +1,6 @@
 #include "master/report/confirmations.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <functional>
 #include <map>
 #include <set>
@@ -16,8 +15,6 @@
 
 namespace gauntlet::master {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* kFolder = "/confirm";
 
@@ -119,11 +116,7 @@ const SmallestLayout* Smaller(const SmallestLayout* one, const SmallestLayout* o
 
 Status AddConfirmationsOf(const std::string& dir, std::map<std::uint64_t, Confirmation>& known) {
   const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
-  // One that is just being made, or whose master just ends, has nothing to tell yet.
-  if (!campaign) {
-    const ErrorKind kind = campaign.error().kind;
-    return kind == ErrorKind::kNotFound || kind == ErrorKind::kInUse ? Status(Ok{}) : campaign.error();
-  }
+  if (!campaign) return HasNothingYet(campaign.error()) ? Status(Ok{}) : campaign.error();
   const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
   if (!plans) return plans.error();
   if (Status whole = CheckStored(*plans, *campaign->store, Checked::kRows); !whole) return whole;
@@ -143,13 +136,7 @@ std::uint64_t ConfirmationKey(const Experiment& experiment, const sim::TestCase&
 
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
   std::map<std::uint64_t, Confirmation> known;
-  std::error_code none;
-  std::vector<std::string> calls;
-  for (const fs::directory_entry& entry : fs::directory_iterator(dir + kFolder, none)) {
-    calls.push_back(entry.path().string());
-  }
-  std::ranges::sort(calls);
-  for (const std::string& call : calls) {
+  for (const std::string& call : CallsIn(dir + kFolder)) {
     if (Status added = AddConfirmationsOf(call, known); !added) return added.error();
   }
   std::vector<Confirmation> confirmations;

@@ -130,6 +130,29 @@ TEST(ReportTest, ACampaignThatIsBeingWrittenIsToldOfAsFarAsItIs) {
   EXPECT_TRUE(Says(MakeReport({dir}, "half.html"), "is half-finished"));
 }
 
+TEST(ReportTest, LeadsWithDistinctFailuresAndShowsWhatObstaclesDo) {
+  const std::string dir = Scratch() / "questioned";
+  fs::copy(Campaign(), dir, fs::copy_options::recursive);
+  EXPECT_TRUE(Says(OneReport(), "gauntlet confirm " + Campaign() + " --all-failing")) << "how to find out";
+  Gauntlet({"confirm", dir, "--all-failing", "--workers", "2", "--quiet"});
+  const json failures = Show(dir)["distinct_failures"];
+  ASSERT_GE(failures.size(), 2U);
+  const std::string toughest = failures[0]["cases"][0];  // "run 17"
+  const std::string run = toughest.substr(toughest.find(' ') + 1);
+  ASSERT_EQ(Gauntlet({"minimise", dir, run, "--workers", "2", "--quiet"}).exit_code, 0);
+  ASSERT_EQ(Gauntlet({"blame", dir, run, "--replicates", "5", "--workers", "2", "--quiet"}).exit_code, 0);
+  const std::string page = ReadFile(MakeReport({dir}, "questioned.html"));
+  const std::size_t found = page.find(std::to_string(failures.size()) + " distinct failures (");
+  ASSERT_NE(found, std::string::npos);
+  EXPECT_LT(found, page.find("What was tested"));
+  const std::size_t pictures = page.find("What its obstacles do");
+  ASSERT_NE(pictures, std::string::npos);
+  EXPECT_LT(page.rfind("id=\"run-0-" + run + "\"", pictures), pictures) << "on the page of its run";
+  EXPECT_NE(page.find("How the case was made smaller", pictures), std::string::npos);
+  EXPECT_NE(page.find("Which obstacles are to blame", pictures), std::string::npos);
+  EXPECT_NE(page.find("The few obstacles that do it"), std::string::npos);
+}
+
 TEST(ReportTest, SetsOfOneScenarioAreComparedAndThoseOfOthersNamed) {
   const std::string foraging = Scratch() / "foraging";
   ASSERT_EQ(Gauntlet({"random", "foraging", "--cases", "3", "--set", "scenario_parameters.time_limit=40",
