@@ -39,13 +39,37 @@ std::string Map(const CampaignSummary& summary) {
                      across.metric, up.metric, table.ToText());
 }
 
+// What was tried in vain.
+std::string NothingFound(const CampaignSummary& summary) {
+  const std::uint64_t failed = summary.failing.empty() ? summary.total_failures : summary.failing_runs;
+  std::string text = fmt::format(
+      "\nNothing fails reliably: none of {} test cases failed in 3 of 3 or 4 of 5 runs. {} of {} runs "
+      "failed.",
+      FormatCount(summary.distinct_individuals), FormatCount(failed), FormatCount(summary.runs_done));
+  std::string separator = " The runs went to";
+  const auto tried = [&](const char* statistic, const char* what) {
+    const auto found =
+        std::ranges::find(summary.statistics, statistic, &std::pair<std::string, double>::first);
+    if (found == summary.statistics.end() || found->second == 0.0) return;
+    text +=
+        fmt::format("{} {} ({})", separator, what, FormatCount(static_cast<std::uint64_t>(found->second)));
+    separator = ",";
+  };
+  tried("random_runs", "random cases");
+  tried("alone_runs", "single obstacles in the way");
+  tried("nearest_runs", "parts of cases that had failed once");
+  return text +
+         ".\nMore runs (`gauntlet resume DIR --set search.runs=N`) or more obstacles (genome.genes) may find "
+         "something.\n";
+}
+
 }  // namespace
 
 std::string ArchiveText(const CampaignSummary& summary, const HintContext& context) {
   const ArchiveView& archive = summary.archive;
   if (archive.axes.empty()) return {};
   if (archive.failures.empty()) {
-    return "\nNothing fails reliably: no case that was tried failed in 3 of 3 or 4 of 5 runs.\n";
+    return NothingFound(summary);
   }
   std::vector<std::string> head = {">test case", ">obstacles", ">length [m]", ">failed"};
   for (const ArchiveAxis& axis : archive.axes) head.push_back(">" + axis.metric);

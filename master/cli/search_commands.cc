@@ -1,10 +1,14 @@
 // gauntlet evolve and gauntlet random: a search on a pool of workers of this machine.
+#include <set>
+
 #include <CLI/CLI.hpp>
 
 #include "master/cli/commands.h"
 #include "master/cli/dry_run.h"
 #include "master/cli/run_campaign.h"
 #include "master/cli/sweep.h"
+#include "master/report/empty_arena.h"
+#include "master/search/search_table.h"
 
 namespace gauntlet::master {
 namespace {
@@ -17,6 +21,17 @@ struct RandomOptions : SearchOptions {
   std::string cases;
 };
 
+// A search for the fewest obstacles that make a swarm fail needs one that does not fail without any.
+Status CheckEmptyArenas(const std::vector<SearchPlan>& searches) {
+  std::set<std::string> checked;  // controllers
+  for (const SearchPlan& search : searches) {
+    const Experiment& experiment = search.experiment;
+    if (RowOf(experiment).members != "elites" || !checked.insert(experiment.controller).second) continue;
+    if (Status sound = CheckEmptyArena(experiment); !sound) return sound;
+  }
+  return Ok{};
+}
+
 // Runs the experiment with `extra` settings, once or as a sweep.
 ExitCode RunSearches(CommandContext& context, const SearchOptions& options,
                      const std::vector<ExtraSet>& extra) {
@@ -24,6 +39,7 @@ ExitCode RunSearches(CommandContext& context, const SearchOptions& options,
   all.insert(all.end(), extra.begin(), extra.end());
   const Result<std::vector<SearchPlan>> searches = PlanSearches(options.experiment, all, options.sweep);
   if (!searches) return Fail(context, searches.error());
+  if (const Status sound = CheckEmptyArenas(*searches); !sound) return Fail(context, sound.error());
   Result<CampaignRun> campaign = LocalRun(*searches, options);
   if (!campaign) return Fail(context, campaign.error());
   if (options.dry_run) return PrintDryRun(context, *campaign, *searches);

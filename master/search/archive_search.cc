@@ -42,6 +42,22 @@ std::string PlanOf(const Experiment& experiment) {
   return FormatCount(static_cast<std::uint64_t>(Get(experiment, kRuns))) + " runs";
 }
 
+// A case is admitted after so many failures at the earliest.
+constexpr int kFewestFailures = 3;
+
+std::optional<BrokenRule> CheckBudget(const Experiment& experiment) {
+  const int replicates = experiment.search.replicates;
+  const int rounds = (kFewestFailures + replicates - 1) / replicates;
+  const double needed = ((rounds - 1) * Get(experiment, kSlots) + 1) * replicates;
+  if (Get(experiment, kRuns) >= needed) return std::nullopt;
+  return BrokenRule{
+      "search.runs",
+      fmt::format("search.runs = {} cannot fill a cell: a case has to fail in {} runs, and all "
+                  "search.slots = {} cases have a run before one of them has its next; use {} runs or more, "
+                  "or fewer slots",
+                  Get(experiment, kRuns), kFewestFailures, Get(experiment, kSlots), needed)};
+}
+
 // Obstacles of a random case that are tried alone: so many nearest to the failure and so many in the way.
 constexpr std::array<std::pair<std::ptrdiff_t, std::size_t>, 6> kFirstTried = {
     {{1, 0}, {2, 0}, {2, 1}, {3, 0}, {3, 1}, {4, 1}}};
@@ -56,7 +72,7 @@ constexpr double kPathStep = 0.2;  // m, between the points of a path that are l
 Race Judge(const FailureTally& tally) {
   const int passes = tally.passes + tally.errors;
   if (tally.failures == 0 || passes >= 2) return Race::kDrop;
-  if ((tally.failures >= 3 && passes == 0) || tally.failures >= 4) return Race::kAdmit;
+  if ((tally.failures >= kFewestFailures && passes == 0) || tally.failures >= 4) return Race::kAdmit;
   return Race::kOpen;
 }
 
@@ -437,7 +453,8 @@ SearchRow ArchiveRow() {
                    .description = "many different failures, each with as few obstacles as possible",
                    .keys = {"search.replicates", "genome."},
                    .parameters = kParameters,
-                   .length = "search.runs"},
+                   .length = "search.runs",
+                   .check = CheckBudget},
           .number = 8,
           .title = "archive search",
           .members = "elites",
@@ -450,7 +467,8 @@ SearchRow RandomDeletionRow() {
       .info = {.name = kRandomDeletion,
                .description = "random cases and, as long as they fail, without one obstacle after the other",
                .keys = {"search.replicates", "search.runs", "search.slots", "search.keep_out", "genome."},
-               .length = "search.runs"},
+               .length = "search.runs",
+               .check = CheckBudget},
       .number = 9,
       .title = "random search with deletion",
       .members = "elites",

@@ -7,6 +7,8 @@
 #include <deque>
 #include <map>
 
+#include "master/experiment/experiment_file.h"
+#include "master/search/search_table.h"
 #include "tests/master/search/toy_search.h"
 
 namespace gauntlet::master {
@@ -184,6 +186,21 @@ TEST(ArchiveSearchTest, AScenarioWithoutAxesIsRefused) {
   const auto search = ArchiveSearch::Create(setup);
   ASSERT_FALSE(search.ok());
   EXPECT_THAT(search.error().message, HasSubstr("light-flocking"));
+}
+
+TEST(ArchiveSearchTest, ABudgetThatCannotFillACellIsRefused) {
+  const auto load = [](const std::vector<std::string>& settings) {
+    std::vector<std::string> all = {"search.algorithm=archive"};
+    all.insert(all.end(), settings.begin(), settings.end());
+    return LoadExperiment("flocking", all, BuiltInCatalogue());
+  };
+  const auto few = load({"search.runs=64"});
+  ASSERT_FALSE(few.ok());
+  EXPECT_THAT(few.error().message, HasSubstr("search.runs = 64 cannot fill a cell"));
+  EXPECT_THAT(few.error().message, HasSubstr("use 65 runs or more"));
+  EXPECT_TRUE(load({"search.runs=65"}).ok());
+  EXPECT_TRUE(load({"search.runs=5", "search.slots=2"}).ok());
+  EXPECT_FALSE(load({"search.runs=4", "search.slots=2"}).ok());
 }
 
 }  // namespace

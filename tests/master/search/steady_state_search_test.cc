@@ -181,7 +181,7 @@ TEST(SteadyStateSearchTest, ImpossibleSettingsAreNamed) {
   EXPECT_THAT(RefusalOfSettings({steady, "search.lag=-1"}), HasSubstr("search.lag = -1 is out of range"));
   EXPECT_THAT(RefusalOfSettings({steady, "search.reevaluation=population"}), HasSubstr("needs generations"));
   EXPECT_THAT(RefusalOfSettings({"search.algorithm=steady"}),
-              HasSubstr("genetic, steady-state, random, archive, cases"));
+              HasSubstr("genetic, steady-state, random, archive, random-deletion, cases"));
   EXPECT_THAT(RefusalOfSettings({"search.mode=steady-state"}),
               HasSubstr("unknown key 'search.mode'; write search.algorithm = \"steady-state\""));
 }
