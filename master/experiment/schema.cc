@@ -10,6 +10,7 @@
 #include "base/nearest_name.h"
 #include "base/system/sha256.h"
 #include "master/experiment/genome_ranges.h"
+#include "master/experiment/objective.h"
 #include "master/experiment/toml_text.h"
 #include "sim/arena/color.h"
 #include "sim/robot/disturbances.h"
@@ -78,6 +79,22 @@ Key ChoiceKey(const std::string& path, const std::vector<std::string>& choices,
     auto& field = Field<Path...>(e);
     const auto found = std::find(choices.begin(), choices.end(), std::get<std::string>(v));
     field = static_cast<std::remove_reference_t<decltype(field)>>(found - choices.begin());
+  };
+  return key;
+}
+
+Key ObjectiveKey() {
+  Key key = MakeKey(
+      "search.objective", KeyType::kChoice,
+      "what is searched for: low fitness, short obstacles that make the swarm fail, or frequent failures");
+  key.choices.assign(kObjectiveNames.begin(), kObjectiveNames.end());
+  key.get = [](const Experiment& e) -> KeyValue {
+    return std::string(kObjectiveNames.at(static_cast<std::size_t>(ObjectiveOf(e.search))));
+  };
+  key.set = [](Experiment& e, const KeyValue& v) {
+    const auto found = std::ranges::find(kObjectiveNames, std::get<std::string>(v));
+    e.search.parameters[std::string(kObjectiveParameter)] =
+        static_cast<double>(found - kObjectiveNames.begin());
   };
   return key;
 }
@@ -219,6 +236,7 @@ std::vector<Key> SearchKeys(const Catalogue& catalogue) {
           "who is simulated in a generation; scheme = the children in AllParent-BestHalf, else everybody"),
       ChoiceKey<kSearch, &SearchSpec::aggregation>("search.fitness_aggregation", {"mean", "last"},
                                                    "how an individual's evaluations make its fitness"),
+      ObjectiveKey(),
       NumberKey<kSearch, &SearchSpec::replicates>("search.replicates", "", 1, 10000,
                                                   "runs per evaluation, each with its own seed"),
       NumberKey<kSearch, &SearchSpec::variation_tries>(

@@ -57,23 +57,17 @@ void BreedingSearch::RestoreBirths(CanonicalDecoder& decoder) {
 }
 
 std::vector<std::string_view> BreedingKeys() {
-  return {"search.population",
-          "search.generations",
-          "search.parent_selection",
-          "search.crossover",
-          "search.crossover_probability",
-          "search.mutation_probability",
-          "search.reevaluation",
-          "search.fitness_aggregation",
-          "search.replicates",
-          "search.variation_tries",
-          "genome."};
+  return {"search.population",   "search.generations",           "search.parent_selection",
+          "search.crossover",    "search.crossover_probability", "search.mutation_probability",
+          "search.reevaluation", "search.fitness_aggregation",   "search.objective",
+          "search.replicates",   "search.variation_tries",       "genome."};
 }
 
 std::optional<BrokenRule> CheckBreeding(const Experiment& experiment) {
   if (experiment.genome.genes == 0) {
     return BrokenRule{"genome.genes", "genome.genes = 0 leaves nothing to evolve: use 1 or more"};
   }
+  if (std::optional<BrokenRule> objective = CheckObjective(experiment)) return objective;
   if (experiment.search.population % 2 == 0) return std::nullopt;
   return BrokenRule{"search.population", fmt::format("search.population = {} must be even: couples breed",
                                                      experiment.search.population)};

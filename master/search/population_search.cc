@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/check.h"
+#include "master/search/failure_tally.h"
 #include "master/search/search_table.h"
 #include "sim/arena/genome.h"
 
@@ -78,6 +79,18 @@ EvaluationOutcome OutcomeOfRuns(IndividualId individual, std::uint32_t evaluatio
   return outcome;
 }
 
+std::optional<BrokenRule> CheckObjective(const Experiment& experiment) {
+  if (ObjectiveOf(experiment.search) != Objective::kSmallestFailure) return std::nullopt;
+  const GenomeSpec& genome = experiment.genome;
+  if (genome.genes > 0 && genome.length_min < genome.length_max) return std::nullopt;
+  return BrokenRule{
+      "search.objective",
+      fmt::format("search.objective = \"smallest-failure\" tells test cases apart by how long their "
+                  "obstacles are, and genome.genes = {} of {} to {} m (genome.length_min, length_max) "
+                  "are all as long: use \"failure-probability\"",
+                  genome.genes, genome.length_min, genome.length_max)};
+}
+
 std::uint64_t CountDistinctGenomes(const std::vector<Individual>& individuals) {
   std::set<std::uint64_t> genomes;
   for (const Individual& one : individuals) genomes.insert(GenomeHash(one.test_case.obstacles));
@@ -88,6 +101,9 @@ PopulationSearch::PopulationSearch(const SearchSetup& setup)
     : setup_(setup),
       generator_(MakeGenerator(setup)),
       search_seed_(SearchSeed(setup)),
+      objective_(Reads(RowOf(setup.experiment).info, "search.objective")
+                     ? ObjectiveOf(setup.experiment.search)
+                     : Objective::kFitness),
       identity_(SearchIdentity(setup)) {}
 
 Individual PopulationSearch::MakeIndividual(IndividualId id, sim::TestCase test_case) {
@@ -116,15 +132,33 @@ EvaluationRequest PopulationSearch::Request(const Individual& individual, std::u
           .parents = individual.parents};
 }
 
+bool PopulationSearch::WantsMetrics() const {
+  return objective_ != Objective::kFitness && FailingNeedsMetrics(FailingOf(setup_.experiment.scenario));
+}
+
+double PopulationSearch::FitnessOf(const EvaluationOutcome& outcome, const sim::Genome& obstacles) const {
+  if (objective_ == Objective::kFitness) return outcome.fitness;
+  double of_failure = 0.0;
+  if (objective_ == Objective::kSmallestFailure) {
+    const GenomeSpec& genome = setup_.experiment.genome;
+    for (const sim::ObstacleGene& gene : obstacles) of_failure += gene.length;
+    of_failure /= genome.genes * genome.length_max;
+  }
+  FailureTally tally;
+  for (const RunOutcome& run : outcome.runs) tally.Add(run, FailingOf(setup_.experiment.scenario));
+  return (tally.passes + tally.failures * of_failure) / tally.runs();
+}
+
 void PopulationSearch::Record(const EvaluationOutcome& outcome, Individual& individual) const {
   if (!outcome.completed || !std::isfinite(outcome.fitness)) {
     ++individual.failed_evaluations;
     return;
   }
+  const double fitness = FitnessOf(outcome, individual.test_case.obstacles);
   ++individual.evaluations;
-  individual.fitness_sum += outcome.fitness;
+  individual.fitness_sum += fitness;
   individual.fitness = spec().aggregation == FitnessAggregation::kLast
-                           ? outcome.fitness
+                           ? fitness
                            : individual.fitness_sum / individual.evaluations;
 }
 

@@ -5,15 +5,21 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "master/experiment/objective.h"
+#include "master/experiment/schema.h"
 #include "master/search/genome_generator.h"
 #include "master/search/search_algorithm.h"
 #include "master/search/search_setup.h"
 
 namespace gauntlet::master {
+
+// Rules of search.objective, for the rows of searches that read it.
+std::optional<BrokenRule> CheckObjective(const Experiment& experiment);
 
 // Different genomes among the individuals.
 std::uint64_t CountDistinctGenomes(const std::vector<Individual>& individuals);
@@ -27,6 +33,7 @@ class PopulationSearch : public SearchAlgorithm {
   std::vector<Individual> TakeNewborns() final { return std::exchange(newborns_, {}); }
   std::vector<std::pair<std::string, double>> Statistics() const override { return {}; }
   bool AtBoundary() const override { return pending_.empty(); }
+  bool WantsMetrics() const override;
   void Save(CanonicalEncoder& encoder) const final;
   Status Restore(CanonicalDecoder& decoder, const History& history) final;
 
@@ -48,9 +55,9 @@ class PopulationSearch : public SearchAlgorithm {
   // The individual's next evaluation, whose outcome is waited for from now on; `ahead`: how many of it have
   // been asked for and not been told.
   EvaluationRequest Request(const Individual& individual, std::uint32_t generation, std::uint32_t ahead = 0);
-  // Adds the outcome to the individual's account and aggregates its fitness anew. An evaluation that was not
-  // completed, or whose fitness is not finite (a controller under test may return anything), is counted as
-  // failed and left out of the aggregate.
+  // Adds the outcome to the individual's account and aggregates its fitness, which is what search.objective
+  // says, anew. An evaluation that was not completed, or whose fitness is not finite (a controller under test
+  // may return anything), is counted as failed and left out of the aggregate.
   void Record(const EvaluationOutcome& outcome, Individual& individual) const;
 
   // For a search that evaluates individuals 1, 2, ... once each, in this order: hands over the outcomes of
@@ -78,6 +85,10 @@ class PopulationSearch : public SearchAlgorithm {
     std::uint32_t evaluation;
   };
 
+  // What search.objective makes of the outcome; lower = tougher.
+  double FitnessOf(const EvaluationOutcome& outcome, const sim::Genome& obstacles) const;
+
+  const Objective objective_;
   const std::string identity_;
   std::deque<Pending> pending_;  // asked for and not told
 };

@@ -79,9 +79,10 @@ Status RandomSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const History& h
 SearchRow RandomRow() {
   return {.info = {.name = "random",
                    .description = "independent random test cases, the baseline: gauntlet random",
-                   .keys = {"search.replicates", "genome."},
+                   .keys = {"search.replicates", "search.objective", "genome."},
                    .parameters = kParameters,
-                   .length = "search.cases"},
+                   .length = "search.cases",
+                   .check = CheckObjective},
           .number = 1,
           .title = "random search",
           .members = "cases",

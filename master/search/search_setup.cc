@@ -76,7 +76,9 @@ std::string SearchIdentity(const SearchSetup& setup) {
     if (key.path == "search.algorithm") return true;
     const bool of_searches = key.path.starts_with("search.") || key.path.starts_with("genome.");
     if (of_searches && !Reads(row.info, key.path)) return false;
-    return !IsDisturbance(key) || key.get(experiment) != key.default_value;  // most are absent
+    // Of what came later than stored campaigns, only what was asked for.
+    const bool if_asked_for = IsDisturbance(key) || key.path == "search.objective";
+    return !if_asked_for || key.get(experiment) != key.default_value;
   };
   std::string identity = fmt::format("search = {}\n", setup.search_id);
   for (const Key& key : keys) {

@@ -43,10 +43,25 @@ void Table(int population, int generations, const std::vector<int>& lags) {
   }
 }
 
+void ArchiveTable() {
+  std::printf("\n| 600 runs | 2 workers | 4 | 8 | 16 | 64 |\n|---|---|---|---|---|---|\n");
+  SearchSetup setup = ReportSetup();
+  setup.experiment.scenario = "flocking";
+  setup.experiment.search.algorithm = "archive";
+  setup.experiment.search.parameters["runs"] = 600;
+  for (const int slots : {32, 64, 128}) {
+    setup.experiment.search.parameters["slots"] = slots;
+    char name[32];
+    std::snprintf(name, sizeof(name), "archive, %d slots", slots);
+    Row(name, setup);
+  }
+}
+
 void PrintReport() {
   std::printf("Idle share of the workers; 600 evaluations, durations Pareto(1.5)\n");
   Table(20, 30, {2, 5, 10, 15, 19});
   Table(100, 6, {10, 50, 99});
+  ArchiveTable();
 }
 
 }  // namespace
