@@ -8,13 +8,10 @@
 
 namespace gauntlet::master {
 
-// What the fitness of a test case is, as the mean over its runs.
-enum class Objective {
-  kFitness,          // the scenario's fitness (thesis)
-  kSmallestFailure,  // 1 where the swarm came through, else the length of all obstacles, as a share of the
-                     // greatest that the experiment allows
-  kFailureProbability,  // 1 where the swarm came through, else 0
-};
+// What the fitness of a test case is, as the mean over its runs: the scenario's fitness (thesis); 1 where the
+// swarm came through, else the length of all obstacles as a share of the greatest that the experiment allows;
+// 1 where the swarm came through, else 0.
+enum class Objective { kFitness, kSmallestFailure, kFailureProbability };
 // As in experiments, in the order of their numbers.
 inline constexpr std::array<std::string_view, 3> kObjectiveNames = {"fitness", "smallest-failure",
                                                                     "failure-probability"};
