@@ -9,8 +9,8 @@ namespace gauntlet::worker {
 struct WorkerFunctions {
   RunFunction run;
   GoldenHashFunction golden_hashes;
-  LoadPluginFunction load_plugin;
-  DescribePluginFunction describe_plugin;
+  LoadPluginFunction load_plugin = {};  // without: it is never given a plug-in, as the next
+  DescribePluginFunction describe_plugin = {};
 };
 
 // The exit code. To be called from main(), before any thread exists.
