@@ -16,6 +16,7 @@
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
+#include "master/directory/plugins.h"
 
 namespace gauntlet::master {
 namespace {
@@ -131,6 +132,17 @@ Status CheckOptions(const BuildControllerOptions& options) {
   return Ok{};
 }
 
+Status FindSdk(const fs::path& prefix) {
+  std::error_code error;
+  for (const char* libraries : {"lib", "lib64"}) {
+    if (fs::exists(prefix / libraries / "cmake/Gauntlet/GauntletConfig.cmake", error)) return Ok{};
+  }
+  return InvalidInput(
+      fmt::format("{}: the SDK is not there: install it with 'cmake --install BUILD --prefix DIR --component "
+                  "sdk' and say --sdk DIR",
+                  Printable(prefix.string())));
+}
+
 Status Build(CommandContext& context, const BuildControllerOptions& options, const std::string& table) {
   const ScratchFolder scratch;
   if (scratch.path().empty()) return Error{ErrorKind::kIo, "no folder can be made in $TMPDIR or /tmp"};
@@ -144,13 +156,16 @@ Status Build(CommandContext& context, const BuildControllerOptions& options, con
   }
   const std::string prefix =
       options.sdk.empty() ? fs::path(MasterProgramPath()).parent_path().parent_path().string() : options.sdk;
+  if (Status there = FindSdk(prefix); !there) return there;
   const std::string build = scratch.path() + "/build";
   if (Status configured = RunCMake(context, {"cmake", "-S", scratch.path(), "-B", build,
                                              "-DCMAKE_PREFIX_PATH=" + fs::absolute(prefix).string()});
       !configured) {
     return configured;
   }
-  return RunCMake(context, {"cmake", "--build", build});
+  if (Status built = RunCMake(context, {"cmake", "--build", build}); !built) return built;
+  const Result<std::string> usable = AddPluginFile(options.output);
+  return usable ? Status(Ok{}) : usable.error();
 }
 
 ExitCode RunBuildController(CommandContext& context, const BuildControllerOptions& options) {

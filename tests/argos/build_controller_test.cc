@@ -97,6 +97,9 @@ TEST_F(BuildController, NamesWhatIsWrong) {
   ExpectRefusal({"-o", library}, "which sources?");
   ExpectRefusal({broken, "-o", library, "--argos", File("cut.argos", "<argos-configuration>")},
                 "cut.argos:1:");
+  const std::string idle = File("idle.cpp", "int Idle() { return 1; }\n");
+  ExpectRefusal({idle, "-o", library}, "it brings no controller");
+  ExpectRefusal({idle, "-o", library, "--sdk", folder_}, "the SDK is not there");
   ExpectRefusal({broken, "-o", library, "-I", folder_ / "absent"}, "there is no such folder");
 }
 

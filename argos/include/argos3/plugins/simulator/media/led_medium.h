@@ -1,8 +1,10 @@
-// What LEDs are seen through. Only its name.
+// What LEDs are seen through. Only its name: sources include this header without use.
 #pragma once
+
+#include <argos3/core/simulator/medium/medium.h>
 
 namespace argos {
 
-class CLEDMedium {};
+class CLEDMedium : public CMedium {};
 
 }  // namespace argos

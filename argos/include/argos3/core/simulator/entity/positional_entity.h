@@ -1,0 +1,10 @@
+// Something at a place. Only its name: sources include this header without use.
+#pragma once
+
+#include <argos3/core/simulator/entity/entity.h>
+
+namespace argos {
+
+class CPositionalEntity : public CEntity {};
+
+}  // namespace argos

@@ -1,0 +1,10 @@
+// Something with a battery. Only its name: sources include this header without use.
+#pragma once
+
+#include <argos3/core/simulator/entity/entity.h>
+
+namespace argos {
+
+class CBatteryEquippedEntity : public CEntity {};
+
+}  // namespace argos

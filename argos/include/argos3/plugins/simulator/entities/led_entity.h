@@ -1,0 +1,10 @@
+// An LED. Only its name: sources include this header without use.
+#pragma once
+
+#include <argos3/core/simulator/entity/entity.h>
+
+namespace argos {
+
+class CLEDEntity : public CEntity {};
+
+}  // namespace argos

@@ -1,0 +1,10 @@
+// Something with proximity sensors. Only its name: sources include this header without use.
+#pragma once
+
+#include <argos3/core/simulator/entity/entity.h>
+
+namespace argos {
+
+class CProximitySensorEquippedEntity : public CEntity {};
+
+}  // namespace argos
