@@ -220,6 +220,27 @@ TEST_F(ReportInBrowserTest, AClickOnAFieldOfTheMapLeadsToItsRunWhichPlaysToItsSt
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
+TEST_F(ReportInBrowserTest, KeysStepThroughARunAndLinesShowWhoSeesWhom) {
+  browser_->Open("file://" + OneReport());
+  browser_->Evaluate("location.hash = '#' + document.querySelector('.page.case').id");
+  ASSERT_TRUE(browser_->Becomes("document.querySelectorAll('.page.shown .robot').length > 0"));
+  const auto press = [&](const std::string& key, bool shift) {
+    browser_->Evaluate("document.body.dispatchEvent(new KeyboardEvent('keydown', {key: '" + key +
+                       "', bubbles: true, shiftKey: " + (shift ? "true" : "false") + "}))");
+    return browser_->Evaluate("document.querySelector('.page.shown input[type=range]').value");
+  };
+  EXPECT_EQ(press("ArrowRight", true), "10");
+  EXPECT_EQ(press("ArrowLeft", false), "9");
+  const std::string lines = "document.querySelector('.page.shown .sights').getAttribute('d')";
+  EXPECT_EQ(browser_->Evaluate(lines), "");
+  browser_->Evaluate("document.querySelector('.page.shown input[type=checkbox]').click()");
+  EXPECT_THAT(browser_->Evaluate(lines).get<std::string>(), HasSubstr("L")) << "the flock is together then";
+  press(" ", false);
+  EXPECT_EQ(browser_->Evaluate("document.querySelector('.page.shown .controls button').textContent"),
+            "Pause");
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
 TEST_F(ReportInBrowserTest, TheTableOfCasesSortsAndFilters) {
   browser_->Open("file://" + OneReport() + "#failures");
   const std::string rows = "document.querySelectorAll('.all-cases tbody tr').length";
