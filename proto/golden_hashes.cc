@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <charconv>
-#include <ranges>
 #include <sstream>
 
 namespace gauntlet::proto {
@@ -35,8 +34,9 @@ Result<GoldenHashes> ReadGoldenHashes(const std::string& text) {
 }
 
 std::vector<std::string> ControllersOf(const GoldenHashes& hashes) {
-  const auto names = std::views::keys(hashes);
-  return {names.begin(), names.end()};
+  std::vector<std::string> names;
+  for (const auto& [controller, hash] : hashes) names.push_back(controller);
+  return names;
 }
 
 std::optional<GoldenDifference> FirstDifference(const GoldenHashes& needed, const GoldenHashes& offered) {
