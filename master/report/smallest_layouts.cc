@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/system/atomic_file.h"
+#include "master/report/answered_calls.h"
 #include "master/report/questioned_cases.h"
 
 namespace gauntlet::master {
@@ -16,16 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kEnding = "-minimised";
-
-// Files of one folder, in the order of their names.
-std::vector<std::string> EntriesOf(const std::string& folder) {
-  std::vector<std::string> entries;
-  std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
-    entries.push_back(entry.path().string());
-  std::ranges::sort(entries);
-  return entries;
-}
 
 // The run whose case the file holds what is left of; 0 when it is another file.
 RunId RunOfFile(const fs::path& file) {
@@ -51,8 +42,10 @@ std::string SmallestLayoutFile(const std::string& directory, const std::string& 
 
 Result<std::vector<SmallestLayout>> ReadSmallestLayouts(const std::string& dir) {
   std::map<RunId, SmallestLayout> smallest;
-  for (const std::string& call : EntriesOf(dir + kMinimiseFolder)) {
-    for (const std::string& file : EntriesOf(call)) {
+  for (const std::string& call : CallsIn(dir + kMinimiseFolder)) {
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(call, none)) {
+      const std::string file = entry.path().string();
       const RunId run = RunOfFile(file);
       if (run == 0) continue;
       const Result<std::string> text = ReadSmallFile(file);
