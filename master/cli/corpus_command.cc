@@ -202,8 +202,10 @@ ExitCode RunCorpus(CommandContext& context, const CorpusOptions& options) {
                                one.content.found.failures, one.content.found.runs, one.content.found_in,
                                path);
   }
-  context.out << fmt::format("\nDoes the controller still fail? {} check {}\n", context.program,
-                             PastedPath(options.corpus))
+  const bool from_plugin =
+      std::ranges::any_of(kept, [](const Keepsake& one) { return !one.plugins.empty(); });
+  context.out << fmt::format("\nDoes the controller still fail? {} check {}{}\n", context.program,
+                             PastedPath(options.corpus), from_plugin ? " --plugin LIB.so" : "")
               << std::flush;
   return kExitDone;
 }

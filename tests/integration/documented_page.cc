@@ -1,0 +1,70 @@
+#include "tests/integration/documented_page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "tests/integration/campaign_driver.h"
+#include "tests/support/paths.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+constexpr const char* kPrograms[] = {"gauntlet ", "cmake ", "cp ", "printf "};
+
+bool IsCommand(const std::string& line) {
+  return std::ranges::any_of(kPrograms, [&](const char* program) { return line.starts_with(program); });
+}
+
+std::vector<std::string> PartsOf(const std::string& quoted) {
+  std::vector<std::string> parts(1);
+  for (const std::string& word : Words(quoted)) {
+    const std::size_t left_out = word.find("...");
+    parts.back() += left_out == std::string::npos ? word + " " : word.substr(0, left_out);
+    if (left_out != std::string::npos) parts.emplace_back();
+  }
+  std::erase(parts, "");
+  return parts;
+}
+
+}  // namespace
+
+DocumentedPage ReadPage(const std::string& file) {
+  DocumentedPage page;
+  std::ifstream text(GAUNTLET_SOURCE_DIR "/docs/" + file);
+  bool fenced = false;
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with("```")) fenced = !fenced;
+    if (fenced || !line.starts_with("    ")) continue;
+    line.erase(0, 4);
+    (IsCommand(line) ? page.commands : page.quoted).push_back(line);
+  }
+  return page;
+}
+
+std::vector<std::string> Words(const std::string& text) {
+  std::istringstream stream(text);
+  return {std::istream_iterator<std::string>(stream), {}};
+}
+
+std::string AsRead(const std::string& output, const std::string& folder) {
+  std::string read;
+  for (std::string word : Words(output)) {
+    if (word == GauntletPath()) word = "gauntlet";
+    if (word.starts_with(folder + "/")) word.erase(0, folder.size() + 1);
+    read += word + " ";
+  }
+  return read;
+}
+
+void ExpectQuoted(const DocumentedPage& page, const std::string& said) {
+  for (const std::string& line : page.quoted) {
+    for (const std::string& part : PartsOf(line)) EXPECT_THAT(said, testing::HasSubstr(part));
+  }
+}
+
+}  // namespace gauntlet::testing_support

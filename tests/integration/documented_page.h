@@ -1,0 +1,27 @@
+// A page of docs/ whose commands are run and whose quoted output is held.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace gauntlet::testing_support {
+
+// Of the lines that are indented by four blanks outside of fenced blocks: commands are those that begin with
+// a program's name, everything else is output that the page quotes.
+struct DocumentedPage {
+  std::vector<std::string> commands;
+  std::vector<std::string> quoted;
+};
+// `file`: below docs/.
+DocumentedPage ReadPage(const std::string& file);
+
+// The blank-separated words of a text.
+std::vector<std::string> Words(const std::string& text);
+// Output with one blank between words, as somebody sees it who works in `folder` and calls the program
+// `gauntlet`.
+std::string AsRead(const std::string& output, const std::string& folder);
+
+// Expects every quoted line, or each part of one between its "...", in what was `said` (AsRead).
+void ExpectQuoted(const DocumentedPage& page, const std::string& said);
+
+}  // namespace gauntlet::testing_support
