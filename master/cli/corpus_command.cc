@@ -155,6 +155,11 @@ Status CheckFits(const CorpusOptions& options, const std::vector<Keepsake>& kept
       return InvalidInput(fmt::format("{} has a case called '{}' already: give this one another --name",
                                       options.corpus, name));
     }
+    for (const char* ending : {".json", ".svg"}) {
+      const std::string file = fmt::format("{}/{}{}", options.corpus, name, ending);
+      if (fs::exists(file, none))
+        return InvalidInput(fmt::format("{} exists already: give this case another --name", file));
+    }
     if (!all.empty()) {
       const std::string here = SettingOf(all.front().content, "scenario");
       const std::string scenario = SettingOf(one.content, "scenario");

@@ -59,6 +59,7 @@ CampaignRun RunOfCall(CommandContext& context, const CallPlan& plan, int workers
   for (const SearchPlan& search : plan.searches) cases += search.cases.size();
   CampaignRun campaign;
   campaign.directory = plan.directory;
+  campaign.same_command_resumes = true;
   campaign.announcement =
       fmt::format("{} case{} with fresh seeds, {} worker{}, in {}", cases, cases == 1 ? "" : "s", workers,
                   workers == 1 ? "" : "s", plan.directory);

@@ -18,6 +18,7 @@ namespace gauntlet::master {
 namespace {
 
 std::string ResumeHint(const CommandContext& context, const CampaignRun& campaign) {
+  if (campaign.same_command_resumes) return "the same command";
   const std::string& directory = campaign.resumed_by.empty() ? campaign.directory : campaign.resumed_by;
   return fmt::format("{} resume {}", context.program, PastedPath(directory));
 }

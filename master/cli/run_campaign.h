@@ -12,8 +12,9 @@ namespace gauntlet::master {
 
 struct CampaignRun {
   std::string directory;
-  std::string resumed_by = "";  // the directory that `resume` takes, when it is not `directory`
-  std::string announcement;     // one line before it begins, without "gauntlet: "; "" = none
+  std::string resumed_by = "";        // the directory that `resume` takes, when it is not `directory`
+  bool same_command_resumes = false;  // it answers a question, which `resume` knows nothing of
+  std::string announcement;           // one line before it begins, without "gauntlet: "; "" = none
   ServingOptions serving;
   BindOptions bind;
   SessionOptions session;  // workers, pool and batch job; the rest follows from what stands above

@@ -123,6 +123,10 @@ TEST_F(CheckTest, SaysWhatIsWrong) {
     return result.err;
   };
   EXPECT_THAT(not_added({failing_[0], "--to", corpus_}), HasSubstr("already: give this one another --name"));
+  std::filesystem::rename(file_, corpus_ + "/mine.json");  // a case that is called otherwise than its file
+  EXPECT_THAT(not_added({failing_[0], "--to", corpus_, "--name", "mine"}),
+              HasSubstr("mine.json exists already"));
+  std::filesystem::rename(corpus_ + "/mine.json", file_);
   EXPECT_THAT(not_added({"999999", "--to", corpus_}), HasSubstr("there is no run 999999"));
   EXPECT_THAT(not_added({failing_[0]}), HasSubstr("--to"));
   if (!harmless_.empty()) {
