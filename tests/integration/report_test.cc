@@ -13,6 +13,7 @@
 #include "tests/integration/browser.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/replayed_poses.h"
+#include "tests/integration/shown_campaign.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -25,19 +26,6 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-// One campaign for all tests; some of its cases fail.
-const TemporaryDirectory& Scratch() {
-  static const TemporaryDirectory scratch;
-  return scratch;
-}
-const std::string& Campaign() {
-  static const std::string dir = [] {
-    const std::string path = Scratch() / "campaign";
-    EXPECT_EQ(Gauntlet({"random", "flocking", "--cases", "60", "--dir", path, "--quiet"}).exit_code, 0);
-    return path;
-  }();
-  return dir;
-}
 std::string MakeReport(const std::vector<std::string>& sets, const std::string& name) {
   const std::string path = Scratch() / name;
   std::vector<std::string> arguments = {"report"};

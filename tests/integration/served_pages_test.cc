@@ -10,6 +10,7 @@
 #include "tests/integration/browser.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/replayed_poses.h"
+#include "tests/integration/shown_campaign.h"
 #include "tests/support/local_socket.h"
 
 namespace gauntlet::testing_support {
@@ -23,20 +24,6 @@ using testing::IsEmpty;
 using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
-
-const TemporaryDirectory& Scratch() {
-  static const TemporaryDirectory scratch;
-  return scratch;
-}
-// Sixty runs, more than the pages show at once.
-const std::string& Campaign() {
-  static const std::string dir = [] {
-    const std::string path = Scratch() / "campaign";
-    EXPECT_EQ(Gauntlet({"random", "flocking", "--cases", "60", "--dir", path, "--quiet"}).exit_code, 0);
-    return path;
-  }();
-  return dir;
-}
 
 // A living `gauntlet ui`.
 class Ui {
