@@ -158,6 +158,9 @@ struct ScenarioInfo {
       passages = nullptr;
   std::span<const FailureKind> failure_kinds = {};
   std::string_view failure_note = "";  // what was measured about total failures and their types
+  bool any_controller = false;         // also takes controllers that are written for other scenarios
+  // What is wrong with RunSpec::definition. nullptr: the scenario takes none.
+  std::function<Status(std::string_view definition)> check_definition = nullptr;
   // Along which failures differ in a way that repeats when a case is simulated again.
   std::span<const DescriptorAxis> descriptor_axes = {};
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
@@ -167,6 +170,7 @@ struct ScenarioInfo {
   std::function<std::unique_ptr<sim::Scenario>(const sim::RunSpec& spec, ControllerFactory controller)>
       create = nullptr;
 
+  bool Takes(const ControllerInfo& controller) const { return any_controller || controller.WrittenFor(name); }
   // The longest that a run with these parameters simulates, s; what they do not name has its default.
   double TimeLimit(const sim::Parameters& given) const;
 };

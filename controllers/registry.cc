@@ -30,6 +30,12 @@ Status CheckRange(const ParameterInfo& info, double value) {
   return Ok{};
 }
 
+Status CheckDefinition(const ScenarioInfo& scenario, const std::string& definition) {
+  if (scenario.check_definition) return scenario.check_definition(definition);
+  if (definition.empty()) return Ok{};
+  return InvalidInput("the scenario '" + std::string(scenario.name) + "' takes no definition");
+}
+
 // Pointers into it stay valid.
 std::deque<PluginInfo>& Plugins() {
   static std::deque<PluginInfo> plugins;
@@ -134,11 +140,13 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
   const Result<const ControllerInfo*> found = ControllerOf(spec);
   if (!found.ok()) return found.error();
   const ControllerInfo* controller = *found;
-  if (!controller->WrittenFor(scenario->name)) {
+  if (!scenario->Takes(*controller)) {
     std::string message = "controller '";
     message.append(spec.controller).append("' is written for the scenario '").append(controller->scenario);
     return InvalidInput(message.append("', not for '").append(spec.scenario).append("'"));
   }
+  if (const Status definition = CheckDefinition(*scenario, spec.definition); !definition.ok())
+    return definition.error();
 
   sim::RunSpec resolved = spec;
   auto scenario_parameters = ResolveParameters(scenario->parameters, spec.scenario_parameters);

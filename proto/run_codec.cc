@@ -109,6 +109,7 @@ void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
   if (spec.physics == sim::PhysicsKind::kImpulse) message.set_physics(v1::PHYSICS_IMPULSE);
   ToProto(spec.disturbances, message);
   message.set_plugin(spec.plugin);
+  message.set_definition(spec.definition);
 }
 
 const std::string& Utf8(const std::string& text) {
@@ -447,6 +448,7 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   spec.disturbances = ReadDisturbances(wire, reader);
   spec.plugin = wire.plugin();
   reader.Require(spec.plugin.empty() || IsSha256(spec.plugin), "a plug-in that is named by no SHA-256");
+  spec.definition = wire.definition();
   if (!reader.ok()) return Corrupt(reader.error());
   return spec;
 }

@@ -99,6 +99,8 @@ std::optional<std::string> CheckSurroundings(const Surroundings& surroundings, T
 }
 
 std::optional<std::string> CheckOutcome(const Outcome& outcome, Tick tick) {
+  if (!outcome.complaint.empty())
+    return "invalid-outcome: tick " + std::to_string(tick) + ": " + outcome.complaint;
   if (!std::isfinite(outcome.fitness)) return InvalidOutcome("fitness", outcome.fitness, tick);
   for (const auto& [name, value] : outcome.metrics) {
     if (!std::isfinite(value)) return InvalidOutcome("metric " + name, value, tick);

@@ -21,6 +21,9 @@ enum class PhysicsKind { kBox2d, kRelaxation, kImpulse };
 struct RunSpec {
   TestCase test_case;
   std::string scenario;  // registry name
+  // What the scenario consists of beyond its parameters, in the form that it writes itself; "": it is built
+  // in as a whole.
+  std::string definition;
   Parameters scenario_parameters;
   std::string controller;  // registry name of the controller under test
   Parameters controller_parameters;

@@ -37,6 +37,8 @@ struct Outcome {
   SwarmFailure failure;
   std::vector<bool> lost;  // per robot
   std::vector<Annotation> annotations;
+  // Why the run cannot be judged, with the values that are to blame; not empty: all else is meaningless.
+  std::string complaint;
 };
 
 // What a scenario sees and moves between physics and sensing.

@@ -56,7 +56,8 @@ Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std:
   const std::string controller = SetValue(sets, "controller");
   const bool other_controller = !controller.empty() && controller != SettingOf(entry.content, "controller");
   const controllers::ControllerInfo* info = controllers::FindController(controller);
-  if (info != nullptr && !info->WrittenFor(scenario)) {
+  const controllers::ScenarioInfo* tested = controllers::FindScenario(scenario);
+  if (info != nullptr && tested != nullptr && !tested->Takes(*info)) {
     return InvalidInput(Printable(
         fmt::format("--set controller={}: it is written for the scenario '{}', the corpus is for '{}' ({})",
                     controller, info->scenario, scenario, entry.file)));

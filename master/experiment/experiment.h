@@ -68,6 +68,7 @@ struct Experiment {
   std::string description;
   std::string scenario;
   sim::Parameters scenario_parameters;  // resolved
+  std::string definition;               // of a scenario that is defined in the experiment, as in sim::RunSpec
   std::string controller;
   sim::Parameters controller_parameters;  // resolved
   std::string plugin;  // SHA-256 of the plug-in that brings the controller; "": it is built in
@@ -85,6 +86,7 @@ inline sim::RunSpec SpecOf(const Experiment& experiment, const sim::TestCase& te
   sim::RunSpec spec;
   spec.test_case = test_case;
   spec.scenario = experiment.scenario;
+  spec.definition = experiment.definition;
   spec.scenario_parameters = experiment.scenario_parameters;
   spec.controller = experiment.controller;
   spec.controller_parameters = experiment.controller_parameters;

@@ -229,7 +229,7 @@ class Reader {
     const Result<const controllers::ControllerInfo*> found = ResolveController();
     if (!found) return found.error();
     const controllers::ControllerInfo* controller = *found;
-    if (!controller->WrittenFor(scenario->name)) {
+    if (!scenario->Takes(*controller)) {
       return InvalidInput(fmt::format("{}: controller '{}' is written for the scenario '{}', not for '{}'",
                                       PlaceOf("controller"), controller->name, controller->scenario,
                                       scenario->name));

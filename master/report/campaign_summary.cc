@@ -98,6 +98,10 @@ std::string EncodeExperiment(const Experiment& experiment) {
     encoder.String("plugin");
     encoder.String(experiment.plugin);
   }
+  if (!experiment.definition.empty()) {
+    encoder.String("definition");
+    encoder.String(experiment.definition);
+  }
   return encoder.Take();
 }
 

@@ -140,6 +140,12 @@ TEST(CreateScenario, BeginsWithTheRuleThatTheTestCaseBreaks) {
   EXPECT_THAT(ErrorOf(spec), StartsWith("start-blocked: "));
 }
 
+TEST(CreateScenario, RefusesADefinitionOfAScenarioThatHasNone) {
+  sim::RunSpec spec = FlockingSpec();
+  spec.definition = "fitness = \"1\"\n";
+  EXPECT_EQ(ErrorOf(spec), "the scenario 'flocking' takes no definition");
+}
+
 TEST(FlockingParameters, TurnSecondsIntoTicks) {
   const FlockingSettings settings =
       FlockingParameters().Read(*ResolveParameters(FlockingParameters().infos(), {}));

@@ -37,6 +37,16 @@ TEST(RunCodecTest, ARunSpecSurvivesTheRoundTrip) {
   EXPECT_EQ(EncodeRunSpec(*decoded), bytes);
 }
 
+TEST(RunCodecTest, ADefinitionTravelsAndCostsNothingWhereThereIsNone) {
+  sim::RunSpec spec = SampleSpec();
+  const std::string without = EncodeRunSpec(spec);
+  spec.definition = "fitness = \"1\"\nlight.1.x = 0.5\n";
+  const Result<sim::RunSpec> decoded = DecodeRunSpec(EncodeRunSpec(spec));
+  ASSERT_TRUE(decoded.ok());
+  EXPECT_EQ(decoded->definition, spec.definition);
+  EXPECT_EQ(EncodeRunSpec(spec).size(), without.size() + 2 + spec.definition.size());
+}
+
 RC_GTEST_PROP(RunCodecProperty, CasesOfAllKindsOfGenesSurviveFilesAndSpecs, ()) {
   sim::RunSpec spec;
   spec.test_case.name = "all kinds";

@@ -324,6 +324,15 @@ TEST(Simulation, GivesNoResultThatIsNotFinite) {
   EXPECT_TRUE(result.metrics.empty());
 }
 
+TEST(Simulation, GivesNoResultOfARunThatTheScenarioCannotJudge) {
+  ToyScenario scenario(TestCase{}, {RobotAt(0, 0, DriveStraight(0.1))}, 5);
+  scenario.complaint = "fitness divides 1 by 0";
+  const RunResult result = Simulate(scenario, 1, false);
+  EXPECT_EQ(result.verdict, Verdict::kInvalidCommand);
+  EXPECT_EQ(result.message, "invalid-outcome: tick 5: fitness divides 1 by 0");
+  EXPECT_TRUE(result.metrics.empty());
+}
+
 TEST(Simulation, EndsAtAScannerCommandThatIsNotFinite) {
   ToyRobot robot = RobotAt(0, 0, [](const ControlStep& step) {
     if (step.tick == 2) step.actuators.scanner.value = std::numeric_limits<double>::quiet_NaN();

@@ -55,6 +55,7 @@ class ToyScenario final : public Scenario {
   std::vector<Light> lamps;
   std::vector<RadioBeacon> radios;
   std::vector<std::pair<std::string, double>> extra_metrics;
+  std::string complaint;
 
   const Arena& arena() const override { return arena_; }
   Tick tick_limit() const override { return tick_limit_; }
@@ -82,6 +83,7 @@ class ToyScenario final : public Scenario {
     outcome.fitness /= observer.robots();
     outcome.metrics = {{"robots", observer.robots()}};
     outcome.metrics.insert(outcome.metrics.end(), extra_metrics.begin(), extra_metrics.end());
+    outcome.complaint = complaint;
     outcome.lost.assign(static_cast<std::size_t>(observer.robots()), false);
     return outcome;
   }
