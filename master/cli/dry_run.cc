@@ -7,6 +7,7 @@
 
 #include "base/printable.h"
 #include "master/cli/table.h"
+#include "master/report/duration_text.h"
 #include "master/report/forecast.h"
 #include "proto/json_text.h"
 

@@ -6,12 +6,16 @@
 #include <CLI/CLI.hpp>
 
 #include "base/printable.h"
+#include "base/shell_quoted.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
 #include "master/cli/table.h"
 #include "master/pages/archive_figure.h"
 #include "master/pages/campaign_figures.h"
+#include "master/pages/study_figures.h"
+#include "master/pages/study_pages.h"
+#include "master/study/study_campaigns.h"
 
 namespace gauntlet::master {
 namespace {
@@ -31,20 +35,27 @@ Result<RunId> RunOf(const std::string& name) {
   return RunId{0};
 }
 
-std::string ListText(const std::vector<NamedFigure>& figures) {
+// Names of figures and their titles.
+using Listed = std::vector<std::pair<std::string, std::string>>;
+
+// Of every run of a campaign.
+Listed FiguresOfRuns() {
+  return {{"run-ID", "of a run: everybody's way"},
+          {"motion-ID", "of a run: how the swarm moved, over time"},
+          {"states-ID", "of a run: what every robot did when (foraging, task-partitioning)"}};
+}
+
+std::string ListText(const Listed& listed) {
   Table table({"name", "figure"});
-  for (const NamedFigure& figure : figures) table.AddRow({figure.name, figure.title});
-  table.AddRow({"run-ID", "of a run: everybody's way"});
-  table.AddRow({"motion-ID", "of a run: how the swarm moved, over time"});
-  table.AddRow({"states-ID", "of a run: what every robot did when (foraging, task-partitioning)"});
+  for (const auto& [name, title] : listed) table.AddRow({name, title});
   return table.ToText();
 }
 
-Error NoSuchFigure(const std::string& name, const std::vector<NamedFigure>& figures) {
+Error NoSuchFigure(const std::string& name, const Listed& listed) {
   std::string known;
-  for (const NamedFigure& figure : figures) known += figure.name + ", ";
-  return InvalidInput(fmt::format("there is no figure '{}'; there are {}run-ID, motion-ID and states-ID",
-                                  Printable(name), known));
+  for (const auto& [one, title] : listed) known += (known.empty() ? "" : ", ") + one;
+  return InvalidInput(
+      fmt::format("there is no figure '{}'; there are: {}", Printable(name), known.empty() ? "none" : known));
 }
 
 // Writes what was asked for; the picture to stdout when nothing was.
@@ -60,7 +71,39 @@ Status Write(CommandContext& context, const NamedFigure& figure, const FigureOpt
   return Ok{};
 }
 
+// Lists the figures, or writes the one that was asked for. `others`: that there are too, but not for this
+// name.
+ExitCode ListOrWrite(CommandContext& context, const FigureOptions& options,
+                     const std::vector<NamedFigure>& figures, const Listed& others) {
+  Listed listed;
+  for (const NamedFigure& figure : figures) listed.emplace_back(figure.name, figure.title);
+  listed.insert(listed.end(), others.begin(), others.end());
+  if (options.name.empty()) {
+    context.out << ListText(listed) << std::flush;
+    return kExitDone;
+  }
+  const auto figure = std::ranges::find(figures, options.name, &NamedFigure::name);
+  if (figure == figures.end()) return Fail(context, NoSuchFigure(options.name, listed));
+  if (const Status written = Write(context, *figure, options); !written)
+    return Fail(context, written.error());
+  return kExitDone;
+}
+
+ExitCode RunStudyFigure(CommandContext& context, const FigureOptions& options) {
+  const Result<StudyPages> study = GatherStudy(options.directory);
+  if (!study) return Fail(context, study.error());
+  if (!study->report) {
+    return Fail(context,
+                InvalidInput(fmt::format(
+                    "{0} holds a study that has not finished: 'gauntlet resume {0}' goes on; figures "
+                    "of its searches: 'gauntlet figure {0}/searches'",
+                    PastedPath(options.directory))));
+  }
+  return ListOrWrite(context, options, FiguresOf(*study->report), {});
+}
+
 ExitCode RunFigureCommand(CommandContext& context, const FigureOptions& options) {
+  if (IsStudy(options.directory)) return RunStudyFigure(context, options);
   const Result<RunId> run = RunOf(options.name);
   if (!run) return Fail(context, run.error());
   const Result<CampaignFacts> facts = ReadFacts(options.directory);
@@ -81,15 +124,7 @@ ExitCode RunFigureCommand(CommandContext& context, const FigureOptions& options)
     }
     figures = FiguresOf(shown.front());
   }
-  if (options.name.empty()) {
-    context.out << ListText(figures) << std::flush;
-    return kExitDone;
-  }
-  const auto figure = std::ranges::find(figures, options.name, &NamedFigure::name);
-  if (figure == figures.end()) return Fail(context, NoSuchFigure(options.name, figures));
-  if (const Status written = Write(context, *figure, options); !written)
-    return Fail(context, written.error());
-  return kExitDone;
+  return ListOrWrite(context, options, figures, FiguresOfRuns());
 }
 
 }  // namespace
@@ -104,8 +139,9 @@ void AddFigure(CommandParser& parser) {
   command.footer(
       R"(Figures of a whole campaign: progress (fitness and failures over the runs spent; searches that differ in
 their seed only are repeats of one another and are drawn with a band), failure-types, behaviour. Figures of
-a run simulate it again: exit 1 when it does not end as it was stored. The same figures stand in
-'gauntlet report'; box plots draws 'gauntlet compare --svg'.
+a run simulate it again: exit 1 when it does not end as it was stored. Figures of a study: the box plots of
+each comparison; of a tuning: robustness, consistency. The same figures stand in 'gauntlet report'; box plots
+of any two sets of runs draws 'gauntlet compare --svg'.
 
 Examples:
   gauntlet figure campaigns/flocking-20260131T120000Z

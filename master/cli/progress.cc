@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "master/cli/table.h"
+#include "master/report/duration_text.h"
 
 namespace gauntlet::master {
 namespace {

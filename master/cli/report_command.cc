@@ -64,9 +64,10 @@ void AddReport(CommandParser& parser) {
   const auto [command, options] =
       parser.Add("report", "campaigns as one HTML file: what failed, how, and replays", RunReport);
   command
-      .add_option("DIR", options.sets,
-                  "a campaign; of several, or of several sets of runs as 'compare' names them "
-                  "(DIR:all, DIR:random:100), the fitness is compared")
+      .add_option(
+          "DIR", options.sets,
+          "a campaign, or what 'study' or 'tune' has made; of several campaigns, or of several sets of "
+          "runs as 'compare' names them (DIR:all, DIR:random:100), the fitness is compared")
       ->required();
   AddValue(command, "-o,--out", "F", options.out, "the file to write")->required();
   AddValue(command, "--runs", "N", options.runs,
@@ -74,11 +75,13 @@ void AddReport(CommandParser& parser) {
   command.footer(
       R"(The file needs no network and no other file; a double click opens it. It tells what was tested and what
 came of it, maps the failures and behaviours, replays the toughest run of each field and of the toughest
-test cases, and compares sets of runs when it is given several. Without JavaScript its tables and pictures
-are there too. Its figures for papers writes 'gauntlet figure'.
+test cases, and compares sets of runs when it is given several. Of a study it shows every comparison, of a
+tuning which values to take and how sure that is. Without JavaScript its tables and pictures are there too.
+Its figures for papers writes 'gauntlet figure'.
 
 Examples:
   gauntlet report campaigns/flocking-20260131T120000Z -o report.html
+  gauntlet report campaigns/tuning -o parameters.html
   gauntlet report campaigns/random:random:100 campaigns/evolved:final -o comparison.html)");
 }
 

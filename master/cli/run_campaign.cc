@@ -10,6 +10,7 @@
 #include "master/cli/stop_signal.h"
 #include "master/cli/summary.h"
 #include "master/cli/table.h"
+#include "master/report/duration_text.h"
 #include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_server.h"

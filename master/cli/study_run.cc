@@ -15,7 +15,8 @@
 #include "master/cli/study_output.h"
 #include "master/cli/submitted_campaign.h"
 #include "master/cli/table.h"
-#include "master/cli/tuning_output.h"
+#include "master/pages/study_figures.h"
+#include "master/report/duration_text.h"
 #include "master/report/forecast.h"
 #include "master/session/bind_endpoint.h"
 #include "master/study/study_report.h"
@@ -138,9 +139,9 @@ ExitCode PrintForecast(CommandContext& context, const Study& study, const Runnin
 Status WritePictures(CommandContext& context, const StudyReport& report, const StudyRun& run) {
   for (const StudySection& section : report.sections) {
     if (!section.tuning) continue;
-    for (const auto& [name, picture] : TuningPictures(section)) {
-      const std::string file = fmt::format("{}/{}.svg", run.directory, name);
-      if (Status written = WriteOutputFile(file, picture); !written) return written;
+    for (const NamedFigure& figure : FiguresOf(report, section)) {
+      const std::string file = fmt::format("{}/{}.svg", run.directory, figure.name);
+      if (Status written = WriteOutputFile(file, figure.svg()); !written) return written;
       if (!run.running.quiet) PrintMessage(context, fmt::format("wrote {}", file));
     }
   }

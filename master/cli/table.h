@@ -34,7 +34,5 @@ std::string Wrapped(std::string_view text, std::size_t width, std::size_t indent
 
 // Three decimals; "-" for NaN and infinity.
 std::string FormatFitness(double fitness);
-// "0.8 s", "42 s", "3 min 05 s", "2 h 10 min", "5 d 3 h"; "-" when not finite or negative.
-std::string FormatDuration(double seconds);
 
 }  // namespace gauntlet::master

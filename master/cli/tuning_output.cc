@@ -1,10 +1,6 @@
 #include "master/cli/tuning_output.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include "analysis/figures/tuning_figure.h"
-#include "master/cli/table.h"
 
 namespace gauntlet::master {
 namespace {
@@ -23,28 +19,6 @@ Json ValueJson(const TriedValue& value) {
   json["p_two_sided"] = value.p;
   json["p_holm"] = value.p_holm;
   return json;
-}
-
-analysis::RobustnessFigure RobustnessOf(const StudySection& section) {
-  analysis::RobustnessFigure figure;
-  figure.title = section.title;
-  figure.outcome = "Robustness analysis: one value changed at a time. " + section.sentences.back();
-  figure.low = "easier cases than the baseline";
-  figure.high = "tougher cases";
-  for (const TriedParameter& parameter : section.tuning->parameters) {
-    analysis::RobustnessGroup& group = figure.groups.emplace_back();
-    group.parameter = parameter.key;
-    for (const TriedValue& value : parameter.values) {
-      group.points.push_back({.value = value.value,
-                              .remark = fmt::format("median {}, {} simulations", FormatFitness(value.median),
-                                                    FormatCount(value.simulations)),
-                              .is_baseline = value.is_baseline,
-                              .a = value.a,
-                              .interval = value.interval,
-                              .exceeds = value.exceeds});
-    }
-  }
-  return figure;
 }
 
 }  // namespace
@@ -70,19 +44,6 @@ Json TuningJson(const StudySection& section) {
           {"enough", tuning.enough ? Json(*tuning.enough) : Json()},
           {"enough_in_words", tuning.enough_in_words},
           {"p_by", tuning.p_by}};
-}
-
-std::vector<std::pair<std::string, std::string>> TuningPictures(const StudySection& section) {
-  std::vector<std::pair<std::string, std::string>> pictures = {
-      {"robustness", analysis::DrawRobustness(RobustnessOf(section))}};
-  if (section.tuning->consistency.empty()) return pictures;
-  const auto& enough = section.tuning->enough;
-  const std::string outcome =
-      enough ? fmt::format("Consistency analysis: {} repeats are enough", *enough)
-             : std::string("Consistency analysis: more repeats are needed than were looked at");
-  pictures.emplace_back("consistency",
-                        analysis::DrawConsistency({section.title, outcome, section.tuning->consistency}));
-  return pictures;
 }
 
 }  // namespace gauntlet::master

@@ -46,7 +46,8 @@ void AddUi(CommandParser& parser) {
       "ui", "campaigns in a browser: what 'report' tells, live, and every run to be replayed", RunUi);
   command
       .add_option("DIR", options.sets,
-                  "a campaign, also while it runs; of several, or of several sets of runs as 'compare' names "
+                  "a campaign, also while it runs, or what 'study' or 'tune' makes; of several campaigns, or "
+                  "of several sets of runs as 'compare' names "
                   "them, the fitness is compared")
       ->required();
   AddValue(command, "--port", "PORT", options.port, "of 127.0.0.1 (default: any free one)");

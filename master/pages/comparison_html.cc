@@ -48,13 +48,12 @@ std::string ComparisonHtml(const std::vector<SetComparison>& comparisons,
   for (const SetComparison& one : comparisons) {
     html += fmt::format(
         "<h2>{}</h2>\n<figure><div class=\"scroll\"><img alt=\"Box plots of fitness\" src=\"{}\"></div>\n"
-        "<figcaption>A box for each set of runs holds the middle half of its values, the line in it is the "
-        "median, the ring the mean; lower fitness means tougher test cases.</figcaption></figure>\n{}\n"
+        "<figcaption>{}</figcaption></figure>\n{}\n"
         "<p>A is the probability that a run of the first set scores higher than one of the second (Vargha "
         "and "
         "Delaney; 0.5 = no difference, 0.56 small, 0.64 medium, 0.71 large). p is Mann-Whitney's, two-sided; "
         "the last column makes up for the number of tests.</p>\n{}",
-        Html(one.scenario), DataUri(one.box_plots), SetsTable(one), PairsTable(one));
+        Html(one.scenario), DataUri(one.box_plots), Html(kReadingOfBoxes), SetsTable(one), PairsTable(one));
     for (const ComparedPair& pair : one.pairs) {
       html += fmt::format("<p>{}</p>\n", Html(pair.words));
       for (const std::string& difference : pair.differences)

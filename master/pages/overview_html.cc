@@ -12,11 +12,13 @@
 #include "master/pages/campaign_figures.h"
 #include "master/pages/campaign_pages.h"
 #include "master/pages/html_text.h"
+#include "master/report/duration_text.h"
 #include "master/search/search_table.h"
 
 namespace gauntlet::master {
 namespace {
 
+constexpr std::size_t kCoursesAtOnce = 3;
 constexpr std::size_t kMostRows = 12;  // of a search's course
 
 std::string Fitness(double value) {
@@ -25,13 +27,6 @@ std::string Fitness(double value) {
 
 std::string TimeText(std::int64_t unix_ms) {
   return unix_ms == 0 ? "" : fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(unix_ms / 1000));
-}
-
-std::string SecondsText(double seconds) {
-  if (seconds < 60.0) return fmt::format("{:.1f} s", seconds);
-  const auto minutes = static_cast<std::int64_t>(seconds / 60.0);
-  return minutes < 60 ? fmt::format("{} min", minutes)
-                      : fmt::format("{} h {} min", minutes / 60, minutes % 60);
 }
 
 // "1, 2, 3 and 17 more"
@@ -81,7 +76,7 @@ std::string ProvenanceHtml(const CampaignFacts& facts) {
        {"hosts of workers", Html(Listed(history.hosts))},
        {"created", TimeText(history.created_unix_ms)},
        {"last event", TimeText(history.last_unix_ms)},
-       {"time served", fmt::format("{} in {} {}", SecondsText(history.served_seconds), history.sessions,
+       {"time served", fmt::format("{} in {} {}", FormatDuration(history.served_seconds), history.sessions,
                                    history.sessions == 1 ? "session" : "sessions")},
        {"state hash", Html(facts.summary.state_hash)}});
 }
@@ -132,6 +127,19 @@ std::string CourseTable(const SearchCourse& course) {
       TableHtml({">runs spent", ">toughest fitness", ">mean fitness", ">total failures"}, rows));
 }
 
+// The first kinds of searches are seen at once, the others on demand.
+std::string CoursesHtml(const CampaignPages& pages) {
+  const std::vector<NamedFigure> figures = FiguresOf(pages.courses, {});
+  std::string html;
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    if (i == kCoursesAtOnce)
+      html += fmt::format("<details><summary>How {} other kinds of searches went</summary>\n",
+                          figures.size() - i);
+    html += FigureHtml(figures[i], pages.facts.directory) + CourseTable(pages.courses[i]);
+  }
+  return figures.size() > kCoursesAtOnce ? html + "</details>\n" : html;
+}
+
 std::string SearchesTable(const CampaignSummary& summary) {
   if (summary.searches.empty()) return "";
   std::vector<std::vector<std::string>> rows;
@@ -163,10 +171,7 @@ std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
       "<div class=\"columns\"><div><h3>What was tested</h3>\n{}</div>\n<div><h3>Where it comes "
       "from</h3>\n{}</div></div>\n",
       TestedHtml(facts), ProvenanceHtml(facts));
-  const std::vector<NamedFigure> figures = FiguresOf(pages.courses, {});
-  for (std::size_t i = 0; i < figures.size(); ++i) {
-    html += FigureHtml(figures[i], facts.directory) + CourseTable(pages.courses[i]);
-  }
+  html += CoursesHtml(pages);
   for (const NamedFigure& figure : ArchiveFigures(facts)) html += FigureHtml(figure, facts.directory);
   html += SearchesTable(facts.summary) + CommandsHtml(facts);
   return html + fmt::format(

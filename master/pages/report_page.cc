@@ -5,18 +5,22 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/shell_quoted.h"
 #include "master/pages/base64.h"
 #include "master/pages/front_end.h"
 #include "master/pages/html_text.h"
 #include "master/pages/report_document.h"
 #include "master/report/subset.h"
+#include "master/study/study_campaigns.h"
 
 namespace gauntlet::master {
 namespace {
 
 std::string TitleOf(const Report& report) {
-  std::string title = report.campaigns.front().facts.summary.experiment;
-  if (report.campaigns.size() > 1) title += fmt::format(" and {} more", report.campaigns.size() - 1);
+  std::string title = report.studies.empty() ? report.campaigns.front().facts.summary.experiment
+                                             : report.studies.front().name;
+  if (report.studies.empty() && report.campaigns.size() > 1)
+    title += fmt::format(" and {} more", report.campaigns.size() - 1);
   return title;
 }
 
@@ -41,17 +45,37 @@ std::string FirstCase(const Report& report) {
   return "";
 }
 
-std::string NavigationHtml(const Report& report) {
+// The pages that a report has besides those of its campaigns.
+struct OtherPages {
+  std::string comparison;
+  std::string parameters;
+};
+
+OtherPages OtherPagesOf(const Report& report) {
+  OtherPages pages;
+  for (const StudyPages& study : report.studies) {
+    pages.comparison += StudyResultsHtml(study);
+    pages.parameters += ParametersHtml(study);
+  }
+  const SetComparisons& sets = report.comparisons;
+  if (!sets.comparisons.empty()) pages.comparison += ComparisonHtml(sets.comparisons, sets.notes);
+  return pages;
+}
+
+std::string NavigationHtml(const Report& report, const OtherPages& others) {
   std::string html =
       "<nav aria-label=\"Pages\">\n<a href=\"#overview\">Overview</a>\n<a href=\"#failures\">Failures</a>\n";
   if (const std::string first = FirstCase(report); !first.empty())
     html += fmt::format("<a href=\"#{}\" data-page=\"case\">Runs</a>\n", first);
-  if (!report.comparisons.comparisons.empty()) html += "<a href=\"#comparison\">Comparison</a>\n";
+  if (!others.comparison.empty()) html += "<a href=\"#comparison\">Comparison</a>\n";
+  if (!others.parameters.empty()) html += "<a href=\"#parameters\">Parameters</a>\n";
   if (report.served) html += "<a href=\"#live\">Live</a>\n";
   return html + "</nav>\n";
 }
 
+// "" of a page without content.
 std::string SectionHtml(const char* id, const std::string& html) {
+  if (html.empty()) return "";
   return fmt::format("<section class=\"page\" id=\"{}\">\n{}</section>\n", id, html);
 }
 
@@ -82,39 +106,70 @@ std::string LiveHtml(const Report& report) {
   return html + "</section>\n";
 }
 
-// The campaigns that the sets name, each once.
-Result<std::vector<std::string>> DirectoriesOf(const std::vector<std::string>& sets) {
-  std::vector<std::string> directories;
+// What the sets name, each once.
+struct Named {
+  std::vector<std::string> campaigns;
+  std::vector<std::string> studies;
+  std::vector<std::string> compared;  // sets of runs: all but studies
+};
+
+void AddOnce(const std::string& path, std::vector<std::string>& paths) {
+  if (std::ranges::find(paths, path) == paths.end()) paths.push_back(path);
+}
+
+Result<Named> WhatSetsName(const std::vector<std::string>& sets) {
+  Named named;
   for (const std::string& set : sets) {
+    if (IsStudy(set)) {
+      const std::vector<std::string> campaigns = CampaignsIn(set);
+      if (campaigns.empty())
+        return InvalidInput(fmt::format("{} holds a study that has not begun: `gauntlet resume {}` begins it",
+                                        set, PastedPath(set)));
+      AddOnce(set, named.studies);
+      for (const std::string& campaign : campaigns) AddOnce(campaign, named.campaigns);
+      continue;
+    }
     const Result<std::vector<SetPart>> parts = SplitSet(set);
     if (!parts) return parts.error();
-    for (const SetPart& part : *parts) {
-      if (std::ranges::find(directories, part.path) == directories.end()) directories.push_back(part.path);
-    }
+    for (const SetPart& part : *parts) AddOnce(part.path, named.campaigns);
+    named.compared.push_back(set);
   }
-  return directories;
+  return named;
 }
 
 }  // namespace
 
 Result<Report> GatherReport(const std::vector<std::string>& sets, std::size_t shown_runs) {
-  const Result<std::vector<std::string>> directories = DirectoriesOf(sets);
-  if (!directories) return directories.error();
+  const Result<Named> named = WhatSetsName(sets);
+  if (!named) return named.error();
   Report report;
-  for (const std::string& directory : *directories) {
-    Result<CampaignPages> pages = GatherPages(directory, shown_runs / directories->size());
+  for (const std::string& directory : named->studies) {
+    Result<StudyPages> study = GatherStudy(directory);
+    if (!study) return study.error();
+    report.studies.push_back(*std::move(study));
+  }
+  for (const std::string& directory : named->campaigns) {
+    Result<CampaignPages> pages = GatherPages(directory, shown_runs / named->campaigns.size());
     if (!pages) return pages.error();
     report.campaigns.push_back(*std::move(pages));
   }
-  if (sets.size() < 2) return report;
-  Result<SetComparisons> comparisons = CompareSets(sets);
+  if (named->compared.size() < 2) return report;
+  Result<SetComparisons> comparisons = CompareSets(named->compared);
   if (!comparisons) return comparisons.error();
   report.comparisons = *std::move(comparisons);
   return report;
 }
 
+Result<std::vector<std::string>> CampaignsNamed(const std::vector<std::string>& sets) {
+  Result<Named> named = WhatSetsName(sets);
+  if (!named) return named.error();
+  return std::move(named->campaigns);
+}
+
 std::string ReportPage(const Report& report) {
-  std::string overview = CampaignsTable(report);
+  std::string overview;
+  for (const StudyPages& study : report.studies) overview += StudyOverviewHtml(study);
+  overview += CampaignsTable(report);
   std::string failures;
   std::string cases;
   for (std::size_t i = 0; i < report.campaigns.size(); ++i) {
@@ -124,6 +179,7 @@ std::string ReportPage(const Report& report) {
   }
   const SetComparisons& comparisons = report.comparisons;
   if (comparisons.comparisons.empty()) overview += ComparisonHtml({}, comparisons.notes);
+  const OtherPages others = OtherPagesOf(report);
   const std::string script = fmt::format("\n{}", kPageScript);
   return HeadHtml(TitleOf(report), script, report.served) +
          fmt::format(
@@ -133,11 +189,9 @@ std::string ReportPage(const Report& report) {
              "robots in obstacle courses (test cases), searches for courses in which it fails, and "
              "tells where, how often and how. A run is one simulation; its fitness says how well the "
              "swarm did, lower means a tougher course.</p></header>\n<main>\n{}",
-             NavigationHtml(report)) +
+             NavigationHtml(report, others)) +
          SectionHtml("overview", overview) + SectionHtml("failures", failures) + cases +
-         (comparisons.comparisons.empty()
-              ? ""
-              : SectionHtml("comparison", ComparisonHtml(comparisons.comparisons, comparisons.notes))) +
+         SectionHtml("comparison", others.comparison) + SectionHtml("parameters", others.parameters) +
          LiveHtml(report) +
          fmt::format(
              "</main>\n<footer>Made by Gauntlet. {}</footer>\n"

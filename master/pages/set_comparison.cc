@@ -7,6 +7,7 @@
 
 #include "analysis/figures/box_figure.h"
 #include "analysis/statistics/multiple_tests.h"
+#include "master/report/data_table.h"
 
 namespace gauntlet::master {
 namespace {
@@ -26,21 +27,6 @@ Result<ComparedPair> Compared(const std::vector<RunSet>& sets, std::size_t first
   return pair;
 }
 
-std::string BoxPlotsOf(const std::vector<RunSet>& sets, const std::string& scenario) {
-  analysis::BoxFigure figure{.title = fmt::format("{}: fitness of {} sets of runs", scenario, sets.size()),
-                             .outcome = "lower = tougher test cases",
-                             .axis_name = "fitness",
-                             .boxes = {}};
-  for (const RunSet& set : sets) {
-    std::vector<double> values;
-    for (const auto& cluster : set.values.clusters)
-      values.insert(values.end(), cluster.begin(), cluster.end());
-    figure.boxes.push_back(
-        {set.values.name, analysis::MakeBoxPlot(values), analysis::Describe(values).mean, values.size()});
-  }
-  return analysis::DrawBoxes(figure);
-}
-
 Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunSet> sets) {
   SetComparison comparison{scenario, std::move(sets), {}, ""};
   const std::size_t count = comparison.sets.size();
@@ -55,11 +41,40 @@ Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunS
   for (const ComparedPair& pair : comparison.pairs) p.push_back(pair.comparison.test.p_two_sided);
   const std::vector<double> adjusted = analysis::HolmAdjusted(p);
   for (std::size_t i = 0; i < adjusted.size(); ++i) comparison.pairs[i].p_adjusted = adjusted[i];
-  comparison.box_plots = BoxPlotsOf(comparison.sets, scenario);
+  std::vector<analysis::ComparedSet> values;
+  for (const RunSet& set : comparison.sets) values.push_back(set.values);
+  comparison.box_plots =
+      DrawSets(fmt::format("{}: fitness of {} sets of runs", scenario, count), "fitness", values);
   return comparison;
 }
 
 }  // namespace
+
+std::string DrawSets(const std::string& title, const std::string& metric,
+                     const std::vector<analysis::ComparedSet>& sets) {
+  analysis::BoxFigure figure{.title = title,
+                             .outcome = metric == "fitness" ? "lower = tougher test cases" : "",
+                             .axis_name = metric,
+                             .boxes = {}};
+  for (const analysis::ComparedSet& set : sets) {
+    std::vector<double> values;
+    for (const auto& cluster : set.clusters) values.insert(values.end(), cluster.begin(), cluster.end());
+    figure.boxes.push_back(
+        {set.name, analysis::MakeBoxPlot(values), analysis::Describe(values).mean, values.size()});
+  }
+  return analysis::DrawBoxes(figure);
+}
+
+std::string SetsCsv(const std::string& metric, const std::vector<analysis::ComparedSet>& sets) {
+  std::vector<std::vector<Cell>> rows;
+  for (const analysis::ComparedSet& set : sets) {
+    for (std::size_t unit = 0; unit < set.clusters.size(); ++unit) {
+      for (const double value : set.clusters[unit])
+        rows.push_back({set.name, std::uint64_t{unit + 1}, NumberCell(value)});
+    }
+  }
+  return CsvText({"set", "unit", metric}, rows);
+}
 
 Result<SetComparisons> CompareSets(const std::vector<std::string>& names) {
   SetComparisons all;

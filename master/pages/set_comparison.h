@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/statistics/comparison.h"
@@ -31,6 +32,16 @@ struct SetComparisons {
   std::vector<SetComparison> comparisons;
   std::vector<std::string> notes;  // why something is not compared, or what a reader has to know
 };
+
+// An SVG document: a box for each set.
+std::string DrawSets(const std::string& title, const std::string& metric,
+                     const std::vector<analysis::ComparedSet>& sets);
+// How such a picture is read.
+inline constexpr std::string_view kReadingOfBoxes =
+    "A box for each set of runs holds the middle half of its values, the line in it is the median, the ring "
+    "the mean; lower fitness means tougher test cases.";
+// Its data: a row for each value. Values of one unit (an evolution, a case) are relatives.
+std::string SetsCsv(const std::string& metric, const std::vector<analysis::ComparedSet>& sets);
 
 // By their fitness; `names` as `compare` takes them. Sets of scenarios that no other set has, and sets
 // without a value, are not compared, which is noted. Errors: those of ReadRunSet.

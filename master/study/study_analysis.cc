@@ -129,6 +129,7 @@ Status Compare(const Desk& desk) {
   const Result<analysis::Comparison> computed = analysis::Compare(first->values, second->values);
   if (!computed) return computed.error();
   const analysis::Comparison& c = *computed;
+  desk.section.compared = ComparedSets{desk.Metric(), {first->values, second->values}};
   StudyTable sets{
       {"set", ">n", ">units", ">mean", ">sd", ">median", ">zero %", ">rank sum", ">mean rank", ">U"}, {}};
   // The thesis prints n1 n2 + n1 (n1 + 1) / 2 - R1 as the U of the first set, which is our U of the second.

@@ -100,6 +100,15 @@ std::string UnfinishedCampaignOf(const std::string& dir, StudyStage stage) {
   return CampaignOf(dir, stage) + ".new";
 }
 
+std::vector<std::string> CampaignsIn(const std::string& dir) {
+  std::vector<std::string> campaigns;
+  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+    std::error_code error;
+    if (fs::exists(CampaignOf(dir, stage), error)) campaigns.push_back(CampaignOf(dir, stage));
+  }
+  return campaigns;
+}
+
 bool IsStudy(const std::string& dir) {
   std::error_code error;
   return fs::exists(StudyFile(dir), error);

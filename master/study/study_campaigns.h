@@ -20,6 +20,8 @@ StudyStage StageOf(const StudyPart& part);
 std::string StudyFile(const std::string& dir);                               // study.json: the study's texts
 std::string CampaignOf(const std::string& dir, StudyStage stage);            // a campaign's directory
 std::string UnfinishedCampaignOf(const std::string& dir, StudyStage stage);  // while it is being made
+// The directories of those of its campaigns that there are.
+std::vector<std::string> CampaignsIn(const std::string& dir);
 
 // Whether `dir` holds a study.
 bool IsStudy(const std::string& dir);

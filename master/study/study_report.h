@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/statistics/comparison.h"
 #include "analysis/statistics/interval.h"
 #include "analysis/statistics/parameter_analysis.h"
 #include "base/result.h"
@@ -71,6 +72,12 @@ struct TuningResult {
   std::string p_by;
 };
 
+// The sets that an analysis of the kind "compare" holds against each other.
+struct ComparedSets {
+  std::string metric;
+  std::vector<analysis::ComparedSet> sets;
+};
+
 struct StudySection {
   std::string name;
   std::string title;
@@ -78,7 +85,8 @@ struct StudySection {
   std::vector<std::string> sentences;
   std::optional<StudyClaim> claim;
   std::vector<JudgedRow> published;
-  std::optional<TuningResult> tuning;  // of the kind "tune"
+  std::optional<TuningResult> tuning;    // of the kind "tune"
+  std::optional<ComparedSets> compared;  // of the kind "compare"
 };
 
 struct StudyReport {

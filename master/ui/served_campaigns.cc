@@ -108,18 +108,28 @@ Result<std::unique_ptr<ServedCampaigns>> ServedCampaigns::Open(const std::vector
                                                                CampaignService& campaigns) {
   const Result<Report> report = GatherReport(sets, 0);
   if (!report) return report.error();
-  std::vector<std::string> directories;
-  for (const CampaignPages& pages : report->campaigns) directories.push_back(pages.facts.directory);
-  return std::unique_ptr<ServedCampaigns>(new ServedCampaigns(sets, directories, campaigns));
+  return std::unique_ptr<ServedCampaigns>(new ServedCampaigns(sets, campaigns));
 }
 
-ServedCampaigns::ServedCampaigns(std::vector<std::string> sets, const std::vector<std::string>& directories,
-                                 CampaignService& campaigns)
-    : sets_(std::move(sets)), campaigns_(campaigns) {
-  for (const std::string& directory : directories) followed_.push_back(std::make_unique<Followed>(directory));
-}
+ServedCampaigns::ServedCampaigns(std::vector<std::string> sets, CampaignService& campaigns)
+    : sets_(std::move(sets)), campaigns_(campaigns) {}
 
 ServedCampaigns::~ServedCampaigns() = default;
+
+std::vector<std::shared_ptr<ServedCampaigns::Followed>> ServedCampaigns::FollowedNow() {
+  const Result<std::vector<std::string>> directories = CampaignsNamed(sets_);
+  const std::lock_guard lock(mutex_);
+  const auto is_there = [&](const auto& one) { return std::ranges::count(*directories, one->directory) > 0; };
+  if (!directories || !std::ranges::all_of(followed_, is_there)) return followed_;
+  std::vector<std::shared_ptr<Followed>> now;
+  for (const std::string& directory : *directories) {
+    const auto before =
+        std::ranges::find(followed_, directory, [](const auto& one) { return one->directory; });
+    now.push_back(before == followed_.end() ? std::make_shared<Followed>(directory) : *before);
+  }
+  followed_ = std::move(now);
+  return followed_;
+}
 
 WebAnswer ServedCampaigns::Answer(const std::string& path) {
   const std::vector<std::string_view> parts = PartsOf(path);
@@ -131,10 +141,12 @@ WebAnswer ServedCampaigns::Answer(const std::string& path) {
     if (!number) return NoSuchPage();
     numbers.push_back(*number);
   }
-  if (numbers.empty() || numbers[0] >= followed_.size()) return NoSuchPage();
+  const std::vector<std::shared_ptr<Followed>> followed = FollowedNow();
+  if (numbers.empty() || numbers[0] >= followed.size()) return NoSuchPage();
+  Followed& campaign = *followed[numbers[0]];
   if (parts[0] == "progress" && numbers.size() <= 2)
-    return AnswerProgress(numbers[0], numbers.size() == 2 ? numbers[1] : 0);
-  if (parts[0] == "run" && numbers.size() == 2) return AnswerRun(numbers[0], numbers[1]);
+    return AnswerProgress(campaign, numbers.size() == 2 ? numbers[1] : 0);
+  if (parts[0] == "run" && numbers.size() == 2) return AnswerRun(campaign, numbers[0], numbers[1]);
   return NoSuchPage();
 }
 
@@ -142,18 +154,25 @@ WebAnswer ServedCampaigns::AnswerPages() {
   Result<Report> report = GatherReport(sets_, kShownRuns);
   if (!report) return Gone(report.error());
   report->served = true;
-  for (std::size_t i = 0; i < report->campaigns.size(); ++i) {
-    report->campaigns[i].every_run = true;
-    followed_.at(i)->Remember(report->campaigns[i].facts);
+  const std::vector<std::shared_ptr<Followed>> followed = FollowedNow();
+  for (CampaignPages& pages : report->campaigns) {
+    pages.every_run = true;
+    const auto one =
+        std::ranges::find(followed, pages.facts.directory, [](const auto& f) { return f->directory; });
+    if (one != followed.end()) (*one)->Remember(pages.facts);
   }
   return {.type = "text/html; charset=utf-8", .body = ReportPage(*report)};
 }
 
 WebAnswer ServedCampaigns::AnswerStatus() {
   Json all = Json::array();
-  for (const std::unique_ptr<Followed>& one : followed_) {
+  for (const std::shared_ptr<Followed>& one : FollowedNow()) {
     const std::lock_guard lock(one->mutex);
-    Json json = {{"error", nullptr}, {"status", nullptr}, {"events", Json::array()}, {"toughest", nullptr}};
+    Json json = {{"directory", one->directory},
+                 {"error", nullptr},
+                 {"status", nullptr},
+                 {"events", Json::array()},
+                 {"toughest", nullptr}};
     const Result<std::string> text = campaigns_.ReadStatus(one->directory);
     const Json status = text ? Json::parse(*text, nullptr, /*allow_exceptions=*/false) : Json::object();
     const Status looked = text ? one->Look(status) : text.error();
@@ -171,16 +190,15 @@ WebAnswer ServedCampaigns::AnswerStatus() {
   return JsonAnswer({{"campaigns", std::move(all)}});
 }
 
-WebAnswer ServedCampaigns::AnswerProgress(std::size_t campaign, std::size_t course) {
-  Followed& followed = *followed_[campaign];
+WebAnswer ServedCampaigns::AnswerProgress(Followed& followed, std::size_t course) {
   const std::lock_guard lock(followed.mutex);
   const std::vector<SearchCourse> courses = followed.feed.courses();
   if (course >= courses.size()) return NoSuchPage();
   return {.type = "image/svg+xml", .body = FiguresOf(courses, {})[course].svg()};
 }
 
-WebAnswer ServedCampaigns::AnswerRun(std::size_t campaign, RunId run) {
-  const Result<std::shared_ptr<const CampaignFacts>> known = followed_[campaign]->FactsWith(run);
+WebAnswer ServedCampaigns::AnswerRun(Followed& followed, std::size_t campaign, RunId run) {
+  const Result<std::shared_ptr<const CampaignFacts>> known = followed.FactsWith(run);
   if (!known) return Gone(known.error());
   const CampaignFacts& facts = **known;
   const Result<std::vector<ShownRun>> shown = ShowRuns(facts, {run});

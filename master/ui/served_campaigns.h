@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ class ServedCampaigns {
 
   // Thread-safe. C is the number of a campaign, from 0.
   //   ""              the pages, of what is stored now (HTML)
-  //   "status"        {"campaigns": [{"error", "status", "events", "toughest"}]}: what each of them does now
+  //   "status"        {"campaigns": [{"directory", "error", "status", "events", "toughest"}]}: what each does
   //   "progress/C"    how its searches went so far (SVG); "progress/C/K": the K-th kind of search, from 0
   //   "run/C/ID"      {"page", "replay"}: a run, simulated again
   // Anything else: 404. What cannot be read, because it was deleted, for instance: 410 with the reason.
@@ -31,17 +32,20 @@ class ServedCampaigns {
 
  private:
   struct Followed;
-  ServedCampaigns(std::vector<std::string> sets, const std::vector<std::string>& directories,
-                  CampaignService& campaigns);
+  ServedCampaigns(std::vector<std::string> sets, CampaignService& campaigns);
 
   WebAnswer AnswerPages();
   WebAnswer AnswerStatus();
-  WebAnswer AnswerProgress(std::size_t campaign, std::size_t course);
-  WebAnswer AnswerRun(std::size_t campaign, RunId run);
+  WebAnswer AnswerProgress(Followed& followed, std::size_t course);
+  WebAnswer AnswerRun(Followed& followed, std::size_t campaign, RunId run);
 
   const std::vector<std::string> sets_;
   CampaignService& campaigns_;
-  std::vector<std::unique_ptr<Followed>> followed_;
+  // Those that the sets name now, a study's later ones too; those that were there before when they are gone.
+  std::vector<std::shared_ptr<Followed>> FollowedNow();
+
+  std::mutex mutex_;  // guards the rest
+  std::vector<std::shared_ptr<Followed>> followed_;
 };
 
 }  // namespace gauntlet::master

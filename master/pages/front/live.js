@@ -169,13 +169,18 @@ function startLive() {
       const now = await ask('status');
       const sentences = [];
       let more = 0;
+      let begun = '';
       now.campaigns.forEach((one, i) => {
+        if (data.campaigns[i]?.directory !== one.directory) {
+          begun = `${one.directory} has begun since these pages were read.`;
+          return;
+        }
         if (one.error) sentences.push(one.error + '. What stands here was read before.');
         if (!one.status) return;
         views[i].update(one);
         more += Math.max(0, (one.status.runs_done ?? 0) - data.campaigns[i].runs_done);
       });
-      tell(news, sentences, more > 0 ? `${grouped(more)} more runs are stored than these pages tell of.` : '');
+      tell(news, sentences, begun || (more > 0 ? `${grouped(more)} more runs are stored than these pages tell of.` : ''));
     } catch (trouble) {
       tell(news, ['Nobody serves these pages any more. Start `gauntlet ui` again and open the address that it ' +
                   'prints; what stands here was read before.'], '');
