@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 namespace gauntlet::master {
 namespace {
 
 constexpr std::chrono::milliseconds kPollTime{100};
 constexpr std::chrono::seconds kRateWindow{5};
+// While workers have this many runs each before them, a commit may wait for more results, because a commit
+// for every result is most of what the master costs. With fewer, the search is soon to be told.
+constexpr std::size_t kRunsAheadOfAWorker = 8;
+constexpr std::chrono::milliseconds kCommitSoon{20};
 // A search waits at the end of each generation for its slowest run; others fill the gap.
 constexpr std::size_t kSearchesAtOnce = 64;
 
@@ -106,6 +109,22 @@ CampaignProgress SearchLoop::Progress(TimePoint started) {
   return progress;
 }
 
+void SearchLoop::StoreResults(std::vector<FinishedRun> finished) {
+  bool waited_for = false;  // a search cannot go on before its last results are durable
+  for (FinishedRun& run : finished) {
+    SearchDriver& search = DriverOf(run.id);
+    search.Store(std::move(run));
+    waited_for |= search.at_backend() == 0;
+  }
+  std::size_t ahead = 0;
+  for (const SearchDriver* search : running_) ahead += search->at_backend();
+  const auto workers = static_cast<std::size_t>(parts_.backend.Statistics().connected);
+  if (waited_for)
+    parts_.store.CommitWithin(std::chrono::milliseconds(0));
+  else if (ahead < kRunsAheadOfAWorker * workers)
+    parts_.store.CommitWithin(kCommitSoon);
+}
+
 // What is durable is told once more, and what follows from it is stored.
 Status SearchLoop::EndSession() {
   if (Status flushed = parts_.store.Flush(); !flushed) return flushed;
@@ -139,14 +158,7 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
       if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();
       return finished.error();
     }
-    std::set<SearchDriver*> fed;
-    for (FinishedRun& run : *finished) {
-      SearchDriver& search = DriverOf(run.id);
-      fed.insert(&search);
-      search.Store(std::move(run));
-    }
-    // A search cannot go on before its last results are durable.
-    if (std::ranges::count(fed, 0U, &SearchDriver::at_backend) > 0) parts_.store.Hurry();
+    StoreResults(*std::move(finished));
     StoreEvents();
   }
   if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();

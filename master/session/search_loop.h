@@ -50,6 +50,7 @@ class SearchLoop {
   SearchDriver& DriverOf(RunId run) { return *parts_.searches.at(SearchOf(run) - 1); }
   Status Advance();
   Status ApplyCommits();
+  void StoreResults(std::vector<FinishedRun> finished);
   Status EndSession();
   CampaignProgress Progress(TimePoint started);
 

@@ -3,6 +3,7 @@
 // Thread-safety: one calling thread.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -100,8 +101,8 @@ class ResultStore {
   // acknowledged.
   virtual Result<std::vector<RunId>> Committed() = 0;
   virtual Status Flush() = 0;
-  // Commit what waits without waiting for more: somebody needs it to go on. Does not block.
-  virtual void Hurry() = 0;
+  // Commit what waits, and wait no longer than this for more: somebody needs it to go on. Does not block.
+  virtual void CommitWithin(std::chrono::milliseconds time) = 0;
   // A file descriptor that becomes readable when Committed() has news; -1 when there is none to wait for.
   virtual int CommitNotifier() const = 0;
 

@@ -81,7 +81,7 @@ void SqliteStore::Add(Record record) {
     if (failure_) return;  // never acknowledged; the caller learns of it from Committed()
     if (std::holds_alternative<StoredRun>(record)) ++queued_runs_;
     first = queue_.empty();
-    if (first) first_queued_ = std::chrono::steady_clock::now();
+    if (first) due_ = std::chrono::steady_clock::now() + options_.longest_wait;
     queue_.push_back(std::move(record));
     full = queued_runs_ == kLargestGroup || queue_.size() == kLargestQueue;
   }
@@ -103,11 +103,13 @@ bool SqliteStore::TakeGroup(Group& group) {
   group.clear();
   std::unique_lock lock(mutex_);
   records_waiting_.wait(lock, [this] { return !queue_.empty() || closing_; });
-  records_waiting_.wait_until(lock, first_queued_ + options_.longest_wait, [this] {
-    return queued_runs_ >= kLargestGroup || queue_.size() >= kLargestQueue || flushing_ || in_a_hurry_ ||
-           closing_;
-  });
-  in_a_hurry_ = false;
+  const auto ready = [this] {
+    return queued_runs_ >= kLargestGroup || queue_.size() >= kLargestQueue || flushing_ || closing_;
+  };
+  while (!ready() && std::chrono::steady_clock::now() < due_) {
+    const auto due = due_;  // CommitWithin may change it meanwhile
+    records_waiting_.wait_until(lock, due);
+  }
   std::size_t runs = 0;
   while (!queue_.empty()) {
     const bool is_run = std::holds_alternative<StoredRun>(queue_.front());
@@ -117,7 +119,6 @@ bool SqliteStore::TakeGroup(Group& group) {
     queue_.pop_front();
   }
   queued_runs_ -= runs;
-  first_queued_ = std::chrono::steady_clock::now();
   writing_ = !group.empty();
   return writing_;
 }
@@ -191,11 +192,12 @@ Status SqliteStore::Flush() {
   return Ok{};
 }
 
-void SqliteStore::Hurry() {
+void SqliteStore::CommitWithin(std::chrono::milliseconds time) {
   {
     const std::lock_guard lock(mutex_);
-    if (queue_.empty()) return;
-    in_a_hurry_ = true;
+    const auto due = std::chrono::steady_clock::now() + time;
+    if (queue_.empty() || due >= due_) return;
+    due_ = due;
   }
   records_waiting_.notify_one();
 }

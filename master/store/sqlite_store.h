@@ -22,14 +22,14 @@
 
 namespace gauntlet::master {
 
-// A commit begins kLongestWait after its first record was handed over, or earlier by Flush, Hurry or when
-// kLargestGroup runs wait, which is as many as a group holds. One commit costs one fsync. When writing fails,
-// or the guard answers with an error, nothing is committed any more, and every later Committed() and Flush()
-// says so; what was durable stays durable and readable. Thread-safety: one calling thread, as for every
-// ResultStore. The store must not be open twice.
+// A commit begins kLongestWait after its first record was handed over, or earlier by Flush, CommitWithin or
+// when kLargestGroup runs wait, which is as many as a group holds. One commit costs one fsync. When writing
+// fails, or the guard answers with an error, nothing is committed any more, and every later Committed() and
+// Flush() says so; what was durable stays durable and readable. Thread-safety: one calling thread, as for
+// every ResultStore. The store must not be open twice.
 class SqliteStore final : public ResultStore {
  public:
-  static constexpr std::chrono::milliseconds kLongestWait{20};
+  static constexpr std::chrono::milliseconds kLongestWait{200};
   static constexpr std::size_t kLargestGroup = 512;  // runs
   // Records that may wait for a commit; then adding blocks.
   static constexpr std::size_t kLargestQueue = 4096;
@@ -76,7 +76,7 @@ class SqliteStore final : public ResultStore {
   // After a failure, runs that became durable before it are still reported once; from then on the error.
   Result<std::vector<RunId>> Committed() override;
   Status Flush() override;
-  void Hurry() override;
+  void CommitWithin(std::chrono::milliseconds time) override;
   int CommitNotifier() const override { return notifier_; }
 
   Result<std::vector<StoredSearch>> LoadSearches() override { return Tables()->LoadSearches(); }
@@ -139,14 +139,13 @@ class SqliteStore final : public ResultStore {
   std::condition_variable records_written_;
   std::deque<Record> queue_;
   std::size_t queued_runs_ = 0;
-  bool writing_ = false;     // a group has left the queue and is not committed yet
-  bool flushing_ = false;    // Flush waits
-  bool in_a_hurry_ = false;  // the next group is to be committed at once
+  bool writing_ = false;                            // a group has left the queue and is not committed yet
+  bool flushing_ = false;                           // Flush waits
+  std::chrono::steady_clock::time_point due_ = {};  // when what waits is committed at the latest
   bool closing_ = false;
   std::vector<RunId> committed_;
   std::optional<Error> failure_;
   std::uint64_t commits_ = 0;
-  std::chrono::steady_clock::time_point first_queued_{};  // when the queue was last empty before an Add
 
   int notifier_ = -1;  // eventfd
   std::thread writer_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <map>
 #include <optional>
@@ -26,7 +27,7 @@ class MemoryStore final : public master::ResultStore {
   std::map<master::RunId, master::StoredRun> runs;
   std::map<master::SearchId, std::vector<master::SavedState>> states;  // the newest last
   std::vector<master::StoredEvent> events;
-  int hurries = 0;
+  std::vector<std::chrono::milliseconds> commits_wanted_within;
 
   void CommitAll() {
     for (const auto& record : std::exchange(waiting_, {})) record();
@@ -76,7 +77,7 @@ class MemoryStore final : public master::ResultStore {
     CommitAll();
     return Ok{};
   }
-  void Hurry() override { ++hurries; }
+  void CommitWithin(std::chrono::milliseconds time) override { commits_wanted_within.push_back(time); }
   int CommitNotifier() const override { return -1; }
 
   Result<std::vector<master::StoredSearch>> LoadSearches() override { return searches; }

@@ -94,7 +94,26 @@ TEST(SearchLoopTest, NothingIsAcknowledgedOrToldBeforeItIsDurable) {
   EXPECT_EQ(session.backend.acknowledged.size(), session.backend.submitted.size());
   MemoryStore undisturbed = FinishedToyCampaign({ToyExperiment()});
   EXPECT_EQ(EndOf(store), EndOf(undisturbed));
-  EXPECT_GT(store.hurries, 0) << "a search that waits for its last results asks for a commit";
+  EXPECT_THAT(store.commits_wanted_within, testing::Contains(std::chrono::milliseconds(0)))
+      << "a search that waits for its last results asks for a commit";
+}
+
+TEST(SearchLoopTest, ACommitWaitsForMoreResultsWhileWorkersHaveManyRunsAhead) {
+  using std::chrono::milliseconds;
+  Experiment experiment = ToyExperiment();
+  experiment.search.algorithm = "random";
+  experiment.search.parameters = {{"cases", 40.0}};
+  for (const int workers : {1, 4}) {
+    MemoryStore store;
+    ToySession session({experiment}, store);
+    session.backend.statistics.connected = workers;
+    ASSERT_TRUE(session.Run().ok());
+    const std::size_t runs = store.runs.size();
+    ASSERT_GT(runs, 32U);
+    // One result at a time: the last eight of each worker hurry, and the very last is waited for.
+    EXPECT_EQ(store.commits_wanted_within.size(), 8U * static_cast<std::size_t>(workers)) << workers;
+    EXPECT_EQ(std::ranges::count(store.commits_wanted_within, milliseconds(0)), 1) << workers;
+  }
 }
 
 // The process dies after every number of results that there can be, with later results stored before earlier

@@ -130,7 +130,7 @@ TEST_F(StoreCommitTest, AGroupIsWaitedForUnlessSomebodyIsInAHurry) {
   store_ = *std::move(store);
   for (RunId id = 1; id <= 3; ++id) store_->AddRun(MakeRun(id));
   EXPECT_FALSE(Notified(std::chrono::milliseconds(50)));
-  store_->Hurry();
+  store_->CommitWithin(std::chrono::milliseconds(0));
   ASSERT_TRUE(Notified(std::chrono::seconds(20)));
   EXPECT_EQ(store_->Commits(), 1u);
   for (RunId id = 4; id <= 3 + SqliteStore::kLargestGroup; ++id) store_->AddRun(MakeRun(id, 10));
