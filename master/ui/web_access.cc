@@ -40,7 +40,8 @@ std::string AddressOf(int port, const std::string& token) {
 }
 
 Admission Admit(const WebRequest& request, const std::string& token) {
-  if (request.method != "GET") return {"", Refused(405, "only GET is answered here")};
+  if (request.method != "GET" && request.method != "HEAD")
+    return {"", Refused(405, "only GET and HEAD are answered here")};
   if (!IsThisMachine(request.host)) return {"", Refused(403, "this host is not served here")};
   if (!request.origin.empty() && request.origin != "http://" + request.host)
     return {"", Refused(403, "pages of other sites are not answered")};

@@ -10,7 +10,7 @@
 namespace gauntlet::master {
 
 struct WebRequest {
-  std::string method;  // "GET"
+  std::string method;  // "GET"; "HEAD" asks for the same, of which no body is sent
   std::string path;    // without the query, percent-encoding undone
   std::string host;    // of the header Host, as all the others; "" = there is none
   std::string origin;

@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
@@ -64,6 +65,9 @@ TEST(ServedPagesTest, OnlyWhoKnowsTheAddressAndIsHereGetsIn) {
                                       "status HTTP/1.1\r\nHost: evil.example\r\n"
                                       "Connection: close\r\n\r\n"),
               StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(Converse(ui.port(), fmt::format("HEAD {}status HTTP/1.1\r\nHost: 127.0.0.1:{}\r\n\r\n",
+                                              ui.root(), ui.port())),
+              AllOf(StartsWith("HTTP/1.1 200"), EndsWith("\r\n\r\n")));
   for (const std::string path :
        {"run/0/61", "run/1/1", "run/0/x", "run/0", "progress/7", "progress/0/9", "what"})
     EXPECT_THAT(ui.Get(ui.root() + path), StartsWith("HTTP/1.1 404")) << path;

@@ -9,6 +9,7 @@ namespace gauntlet::master {
 namespace {
 
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 using testing_support::Converse;
@@ -28,6 +29,28 @@ TEST(WebServerTest, HandsOnWhatWasAskedAndAnswersWhatItIsTold) {
                        "Connection: close\r\n\r\n"),
               AllOf(StartsWith("HTTP/1.1 403"), HasSubstr("GET /a../b here:1 http://there"),
                     HasSubstr("frame-ancestors 'none'"), HasSubstr("Referrer-Policy: no-referrer")));
+}
+
+TEST(WebServerTest, AHeadIsTheSameWithoutItsBody) {
+  const auto server =
+      WebServer::Start(0, [](const WebRequest&) { return WebAnswer{.body = "twelve bytes"}; });
+  ASSERT_TRUE(server) << server.error().message;
+  const std::string rest = " / HTTP/1.1\r\nHost: here\r\nConnection: close\r\n\r\n";
+  const std::string whole = Converse((*server)->port(), "GET" + rest);
+  EXPECT_THAT(whole, AllOf(HasSubstr("Content-Length: 12\r\n"), EndsWith("\r\n\r\ntwelve bytes")));
+  EXPECT_THAT(Converse((*server)->port(), "HEAD" + rest),
+              AllOf(StartsWith("HTTP/1.1 200"), HasSubstr("Content-Length: 12\r\n"), EndsWith("\r\n\r\n")));
+}
+
+// To compress a status costs more than to make it.
+TEST(WebServerTest, SendsWhatItIsGivenAsItIs) {
+  const std::string body(100'000, 'x');
+  const auto server = WebServer::Start(0, [&](const WebRequest&) { return WebAnswer{.body = body}; });
+  ASSERT_TRUE(server) << server.error().message;
+  EXPECT_THAT(
+      Converse((*server)->port(), "GET / HTTP/1.1\r\nHost: here\r\nAccept-Encoding: br, gzip\r\n\r\n"),
+      EndsWith("\r\n\r\n" + body))
+      << "and closes the connection";
 }
 
 TEST(WebServerTest, SurvivesWhatIsNoHttp) {
