@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "controllers/common/clusters.h"
+
 namespace gauntlet::controllers::light_flocking {
 
 double MeanDistance(std::span<const sim::Vec2> robots, const sim::Vec2& point) {
@@ -13,26 +15,7 @@ double MeanDistance(std::span<const sim::Vec2> robots, const sim::Vec2& point) {
 
 int CountClusters(std::span<const sim::Vec2> robots, const sim::Arena& arena, double link_range,
                   std::span<const sim::Vec2> obstacles) {
-  std::vector<bool> seen(robots.size(), false);
-  std::vector<std::size_t> open;
-  int clusters = 0;
-  for (std::size_t first = 0; first < robots.size(); ++first) {
-    if (seen[first]) continue;
-    ++clusters;
-    seen[first] = true;
-    open.push_back(first);
-    while (!open.empty()) {
-      const sim::Vec2& from = robots[open.back()];
-      open.pop_back();
-      for (std::size_t to = 0; to < robots.size(); ++to) {
-        if (seen[to] || (robots[to] - from).squaredNorm() >= link_range * link_range) continue;
-        if (!arena.LineOfSight(from, robots[to], obstacles)) continue;
-        seen[to] = true;
-        open.push_back(to);
-      }
-    }
-  }
-  return clusters;
+  return static_cast<int>(Clusters().SizesOf(robots, arena, link_range, obstacles).size());
 }
 
 double ShareStopped(const std::vector<std::vector<sim::Vec2>>& samples, double threshold) {
