@@ -12,6 +12,7 @@
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/flocking/flocking_registry.h"
 #include "controllers/foraging/foraging_registry.h"
+#include "controllers/generic/generic_registry.h"
 #include "controllers/partitioning/partitioning_registry.h"
 
 namespace gauntlet::controllers {
@@ -65,9 +66,9 @@ double ScenarioInfo::TimeLimit(const sim::Parameters& given) const {
 }
 
 std::span<const ScenarioInfo> Scenarios() {
-  static const std::array scenarios = {FlockingScenarioInfo(), ForagingScenarioInfo(),
-                                       PartitioningScenarioInfo(),
-                                       light_flocking::LightFlockingScenarioInfo()};
+  static const std::array scenarios = {
+      FlockingScenarioInfo(), ForagingScenarioInfo(), PartitioningScenarioInfo(),
+      light_flocking::LightFlockingScenarioInfo(), generic::GenericScenarioInfo()};
   return scenarios;
 }
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include <fmt/format.h>
 
 #include "base/printable.h"
 #include "controllers/registry.h"
 #include "master/cli/given_cases.h"
+#include "master/experiment/definition_table.h"
 #include "master/experiment/experiment_file.h"
 #include "master/search/search_table.h"
 
@@ -43,6 +45,7 @@ std::vector<std::pair<std::string, std::string>> SettingsOf(const Experiment& ex
   };
   add("scenario_parameters", experiment.scenario_parameters);
   add("controller_parameters", experiment.controller_parameters);
+  std::ranges::move(DefinitionSettings(experiment.definition), std::back_inserter(settings));
   return settings;
 }
 

@@ -11,6 +11,7 @@
 #include "base/parse_number.h"
 #include "base/printable.h"
 #include "base/system/sha256.h"
+#include "master/experiment/definition_table.h"
 #include "master/experiment/toml_text.h"
 
 namespace gauntlet::master {
@@ -18,14 +19,7 @@ namespace {
 
 constexpr std::string_view kPluginsKey = "plugins";
 
-std::string KindOf(const TomlValue& value) {
-  if (const auto* other = std::get_if<OtherToml>(&value)) return other->kind;
-  if (std::holds_alternative<std::string>(value)) return "text";
-  if (std::holds_alternative<std::int64_t>(value)) return "a whole number";
-  return std::holds_alternative<double>(value) ? "a number that is not whole" : "true or false";
-}
-
-// The same of an assignment to `key`, closer where the kind alone would puzzle.
+// What the value of an assignment to `key` is (KindOf), closer where the kind alone would puzzle.
 std::string KindFor(const Key& key, const Assignment& assignment) {
   const std::string_view digits =
       std::string_view(assignment.text).substr(assignment.text.starts_with('-') ? 1 : 0);
@@ -114,6 +108,7 @@ class Reader {
     if (Status status = AssignAll(/*base=*/true); !status.ok()) return status.error();
     if (Status status = ResolveNames(); !status.ok()) return status.error();
     if (Status status = AssignAll(/*base=*/false); !status.ok()) return status.error();
+    if (Status status = Define(); !status.ok()) return status.error();
     if (experiment_.name.empty()) experiment_.name = NameFromFile(file_name_);
     if (const std::optional<BrokenRule> broken = CheckRules(experiment_, catalogue_)) {
       return InvalidInput(fmt::format("{}: {}", PlaceOf(broken->path), broken->message));
@@ -127,7 +122,7 @@ class Reader {
     for (const Assignment& assignment : assignments_) {
       const bool is_base =
           assignment.path == "scenario" || assignment.path == "controller" || assignment.path == "plugin";
-      if (base != is_base) continue;
+      if (base != is_base || InDefinition(assignment.path)) continue;
       if (Status status = Assign(assignment); !status.ok()) return status;
     }
     return Ok{};
@@ -157,16 +152,18 @@ class Reader {
       return InvalidInput(
           fmt::format("{}: settings of Slurm are given with --slurm KEY=VALUE", assignment.where));
     }
-    const std::string example = FirstKeyOf(assignment.path);
     const auto* other = std::get_if<OtherToml>(&assignment.value);
+    const bool in_list = other != nullptr && other->kind == kListOfTables;
+    const std::string path =
+        in_list ? assignment.path.substr(0, assignment.path.rfind('.')) : assignment.path;
+    const std::string example = FirstKeyOf(path);
     if (!example.empty() && other != nullptr && other->kind == "a table")
       return Ok{};  // an empty one is harmless
     if (!example.empty()) {
-      return InvalidInput(fmt::format("{}: {} is a table of keys such as {}, not {}", assignment.where,
-                                      assignment.path, example, KindOf(assignment.value)));
+      return InvalidInput(fmt::format("{}: {} is a table of keys such as {}, not {}", assignment.where, path,
+                                      example, KindOf(assignment.value)));
     }
-    return InvalidInput(
-        fmt::format("{}: unknown key '{}'; {}", assignment.where, assignment.path, HintFor(assignment.path)));
+    return InvalidInput(fmt::format("{}: unknown key '{}'; {}", assignment.where, path, HintFor(path)));
   }
 
   // The libraries are given to the catalogue by who has read their names (PluginFilesOf).
@@ -237,6 +234,20 @@ class Reader {
     for (Key& key : ScenarioParameterKeys(*scenario)) AddWithDefault(std::move(key));
     for (Key& key : ControllerParameterKeys(*controller)) AddWithDefault(std::move(key));
     return Ok{};
+  }
+
+  // What [generic] says, of the scenario that it is for.
+  Status Define() {
+    if (FindByName(catalogue_.scenarios, experiment_.scenario)->check_definition) {
+      Result<std::string> definition = ReadDefinition(assignments_, file_name_);
+      if (!definition.ok()) return definition.error();
+      experiment_.definition = *std::move(definition);
+      return Ok{};
+    }
+    const auto stray = std::ranges::find_if(assignments_, InDefinition, &Assignment::path);
+    if (stray == assignments_.end()) return Ok{};
+    return InvalidInput(fmt::format("{}: {} defines the scenario 'generic', and this is '{}'", stray->where,
+                                    stray->path, experiment_.scenario));
   }
 
   // The controller of that name, and the plug-in that brings it.
@@ -347,6 +358,7 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
         fmt::format("{} = {}", key.path.substr(table.empty() ? 0 : dot + 1), ToToml(key.get(experiment)));
     text += fmt::format("{:<36}  # {}{}{}\n", line, key.unit, key.unit.empty() ? "" : "; ", key.description);
   }
+  text += WriteDefinition(experiment.definition);
   return text;
 }
 

@@ -106,6 +106,12 @@ struct Located {
   Assignment assignment;
 };
 
+bool IsListOfTables(const toml::node& node) {
+  const toml::array* list = node.as_array();
+  return list != nullptr && !list->empty() &&
+         std::ranges::all_of(*list, [](const toml::node& element) { return element.is_table(); });
+}
+
 void Flatten(const toml::table& table, const std::string& prefix, const std::string& file_name,
              std::vector<Located>& out) {
   for (const auto& [key, node] : table) {
@@ -115,12 +121,24 @@ void Flatten(const toml::table& table, const std::string& prefix, const std::str
       Flatten(*inner, path + ".", file_name, out);
       continue;
     }
-    const toml::source_position position = key.source().begin;
-    out.push_back(
-        {position, Assignment{.path = path,
-                              .value = ValueOf(node),
-                              .text = "",
-                              .where = fmt::format("{}:{}:{}", file_name, position.line, position.column)}});
+    const auto add = [&](const std::string& full_path, TomlValue value,
+                         const toml::source_position& position) {
+      out.push_back({position, Assignment{.path = full_path,
+                                          .value = std::move(value),
+                                          .text = "",
+                                          .where = fmt::format("{}:{}:{}", file_name, position.line,
+                                                               position.column)}});
+    };
+    if (!IsListOfTables(node)) {
+      add(path, ValueOf(node), key.source().begin);
+      continue;
+    }
+    int number = 0;
+    for (const toml::node& element : *node.as_array()) {
+      const std::string place = fmt::format("{}.{}", path, ++number);
+      add(place, OtherToml{std::string(kListOfTables)}, element.source().begin);
+      Flatten(*element.as_table(), place + ".", file_name, out);
+    }
   }
 }
 
@@ -174,6 +192,13 @@ Result<Assignment> ReadSet(const std::string& set) {
   if (!value.has_value()) return InvalidInput(where + ": the value is not valid UTF-8 text");
   assignment.value = std::move(*value);
   return assignment;
+}
+
+std::string KindOf(const TomlValue& value) {
+  if (const auto* other = std::get_if<OtherToml>(&value)) return other->kind;
+  if (std::holds_alternative<std::string>(value)) return "text";
+  if (std::holds_alternative<std::int64_t>(value)) return "a whole number";
+  return std::holds_alternative<double>(value) ? "a number that is not whole" : "true or false";
 }
 
 std::string QuoteToml(std::string_view text) {
