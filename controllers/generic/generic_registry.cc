@@ -12,8 +12,8 @@ namespace {
 using sim::kPi;
 
 constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
-    {"dispersion", 0.0, 2.5, 5},
-    {"goal_distance", 0.0, 5.0, 5},
+    {"center_x", -3.0, 3.0, 5},
+    {"center_y", -3.0, 3.0, 5},
 });
 
 constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
@@ -75,6 +75,7 @@ const ScenarioInfo& GenericScenarioInfo() {
       .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
       .parameters = GenericParameters().infos(),
       .metrics = Metrics(),
+      .failure_place = FailurePlace{"center_x", "center_y", 0.6},
       .any_controller = true,
       .check_definition = [](std::string_view definition) -> Status {
         const Result<Definition> parsed = ParseDefinition(definition);

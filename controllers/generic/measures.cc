@@ -26,6 +26,8 @@ struct MomentInfo {
 
 // In the order of Measures::Look.
 constexpr std::array<MomentInfo, kMoments> kMomentInfos = {{
+    {"center_x", "m", "where the swarm's centre is, from the arena's centre", true},
+    {"center_y", "m", "where the swarm's centre is, from the arena's centre", true},
     {"goal_distance", "m", "distance of the swarm's centre from the goal", true},
     {"robots_in_goal", "", "robots whose centres are within goal_radius of the goal"},
     {"largest_cluster", "", "robots in the largest cluster: linked over link_range and line of sight", true},
@@ -142,7 +144,9 @@ Moment Measures::Look(const sim::Observer& observer) {
   for (const Vec2& place : places_) dispersion += std::sqrt((place - center).squaredNorm()) / count;
   const std::span<const int> sizes =
       clusters_.SizesOf(places_, arena_, settings_.link_range, observer.ObstaclesAt(observer.last_tick()));
-  return {std::sqrt((center - settings_.goal).squaredNorm()),
+  return {center.x(),
+          center.y(),
+          std::sqrt((center - settings_.goal).squaredNorm()),
           in_goal,
           static_cast<double>(std::ranges::max(sizes)),
           static_cast<double>(sizes.size()),

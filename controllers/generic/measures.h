@@ -27,7 +27,7 @@ struct MeasureSettings {
 
 // What can be said of one moment. Each of these names stands for the value at the end; with _mean, _min and
 // _max behind it for that of all seconds of the run.
-inline constexpr std::size_t kMoments = 7;
+inline constexpr std::size_t kMoments = 9;
 using Moment = std::array<double, kMoments>;
 
 // What has been counted of items.

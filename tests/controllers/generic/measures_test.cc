@@ -55,6 +55,8 @@ TEST(Measures, TellOfTheEndAndOfAllSeconds) {
   for (int tick = 0; tick <= 20; ++tick)
     where.push_back({{.x = 0.1 * tick, .y = 0.0, .heading = 0.0, .speed = tick == 0 ? 0.0 : 1.0}});
   const Watched run(sim::TestCase{}, where);
+  EXPECT_NEAR(run["center_x"], 2.0, 1e-12);
+  EXPECT_NEAR(run["center_x_min"], 1.0, 1e-12);
   EXPECT_NEAR(run["goal_distance"], 0.0, 1e-12);
   EXPECT_NEAR(run["goal_distance_mean"], 0.5, 1e-12);
   EXPECT_NEAR(run["goal_distance_max"], 1.0, 1e-12);
@@ -78,6 +80,7 @@ TEST(Measures, CountClustersThatSeeEachOther) {
   const Watched open(sim::TestCase{}, where);
   EXPECT_EQ(open["largest_cluster"], 3.0);
   EXPECT_EQ(open["clusters"], 1.0);
+  EXPECT_NEAR(open["center_x"], 0.0, 1e-12);
   EXPECT_NEAR(open["dispersion"], 1.0 / 3.0, 1e-12);
   EXPECT_NEAR(open["order"], 1.0 / 3.0, 1e-9);  // two cancel out
 

@@ -1,0 +1,60 @@
+// Every command of docs/generic-scenario.md, run in its order, and its tables held against the code.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "controllers/registry.h"
+#include "tests/integration/campaign_driver.h"
+#include "tests/integration/documented_page.h"
+#include "tests/support/paths.h"
+
+namespace gauntlet::testing_support {
+namespace {
+
+using testing::HasSubstr;
+
+std::string TextOf(const std::string& file) {
+  std::ifstream in(std::string(GAUNTLET_SOURCE_DIR) + "/" + file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+TEST(GenericScenarioPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
+  const TemporaryDirectory scratch;
+  const DocumentedPage page = ReadPage("generic-scenario.md");
+  EXPECT_GE(page.commands.size(), 7U);
+  EXPECT_GE(page.quoted.size(), 6U);
+  {
+    std::ofstream script(scratch / "script");
+    script << "cd '" << scratch.path() << "'\nPATH='" << GAUNTLET_BINARY_DIR << "':$PATH\n";
+    for (const std::string& command : page.commands) script << command << "\n";
+  }
+  const ProcessResult result =
+      RunProcess({"/bin/bash", "-eux", scratch / "script"}, {}, std::chrono::seconds(200));
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  ExpectQuoted(page, AsRead(result.out, scratch.path()));
+}
+
+TEST(GenericScenarioPageTest, ItsFileIsTheShippedOne) {
+  const std::string page = TextOf("docs/generic-scenario.md");
+  const std::size_t begin = page.find("```toml\n") + 8;
+  std::istringstream lines(page.substr(begin, page.find("```", begin) - begin));
+  const std::string shipped = TextOf("experiments/gathering.toml");
+  for (std::string line; std::getline(lines, line);) EXPECT_THAT(shipped, HasSubstr(line));
+}
+
+TEST(GenericScenarioPageTest, NamesEveryMeasure) {
+  const std::string page = TextOf("docs/generic-scenario.md");
+  for (const controllers::MetricInfo& metric : controllers::FindScenario("generic")->metrics) {
+    const bool of_time =
+        metric.name.ends_with("_mean") || metric.name.ends_with("_min") || metric.name.ends_with("_max");
+    if (of_time) continue;
+    EXPECT_THAT(page, HasSubstr("`" + std::string(metric.name) + "`"));
+  }
+}
+
+}  // namespace
+}  // namespace gauntlet::testing_support
