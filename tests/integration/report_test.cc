@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/browser.h"
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/replayed_poses.h"
 #include "tests/integration/shown_campaign.h"
@@ -101,6 +102,12 @@ TEST(ReportTest, BadInputIsNamedAndLeavesNoFile) {
   const ProcessResult broken = Gauntlet({"report", damaged, "-o", out});
   EXPECT_EQ(broken.exit_code, 2);
   EXPECT_THAT(broken.err, HasSubstr("damaged"));
+  const std::string newer = Scratch() / "newer";
+  fs::copy(Campaign(), newer, fs::copy_options::recursive);
+  AlterDatabase(newer, "PRAGMA user_version = 999");
+  const ProcessResult other = Gauntlet({"report", newer, "-o", out});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, AllOf(HasSubstr(newer), HasSubstr("format 999"), HasSubstr("newer gauntlet")));
   EXPECT_FALSE(fs::exists(out));
 }
 

@@ -8,9 +8,11 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/integration/browser.h"
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/replayed_poses.h"
 #include "tests/integration/shown_campaign.h"
+#include "tests/integration/ui_driver.h"
 #include "tests/support/local_socket.h"
 
 namespace gauntlet::testing_support {
@@ -22,36 +24,8 @@ using testing::AllOf;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::MatchesRegex;
 using testing::Not;
 using testing::StartsWith;
-
-// A living `gauntlet ui`.
-class Ui {
- public:
-  explicit Ui(const std::string& dir) : process_(StartGauntlet({"ui", dir})) {
-    EXPECT_TRUE(Eventually([&] { return process_->Out().ends_with("\n"); }, kPatience)) << process_->Err();
-    address_ = process_->Out();
-    if (!address_.empty()) address_.pop_back();
-    EXPECT_THAT(address_, MatchesRegex("http://127\\.0\\.0\\.1:[0-9]+/[0-9a-f]+/"));
-  }
-  const std::string& address() const { return address_; }
-  int port() const { return std::atoi(address_.c_str() + address_.rfind(':') + 1); }
-  // "/TOKEN/"
-  std::string root() const { return address_.substr(address_.find('/', address_.rfind(':'))); }
-  Process& process() { return *process_; }
-
-  // The whole answer to a GET.
-  std::string Get(const std::string& path, const std::string& headers = "") const {
-    return Converse(port(),
-                    fmt::format("GET {} HTTP/1.1\r\nHost: 127.0.0.1:{}\r\nConnection: close\r\n{}\r\n", path,
-                                port(), headers));
-  }
-
- private:
-  std::unique_ptr<Process> process_;
-  std::string address_;
-};
 
 TEST(ServedPagesTest, OnlyWhoKnowsTheAddressAndIsHereGetsIn) {
   const Ui ui(Campaign());
@@ -71,6 +45,16 @@ TEST(ServedPagesTest, OnlyWhoKnowsTheAddressAndIsHereGetsIn) {
   for (const std::string path :
        {"run/0/61", "run/1/1", "run/0/x", "run/0", "progress/7", "progress/0/9", "what"})
     EXPECT_THAT(ui.Get(ui.root() + path), StartsWith("HTTP/1.1 404")) << path;
+}
+
+TEST(ServedPagesTest, ACampaignOfANewerFormatIsRefusedByItsNumber) {
+  const std::string dir = Scratch() / "newer";
+  fs::copy(Campaign(), dir, fs::copy_options::recursive);
+  AlterDatabase(dir, "PRAGMA user_version = 999");
+  const ProcessResult ui = Gauntlet({"ui", dir});
+  EXPECT_EQ(ui.exit_code, 2);
+  EXPECT_THAT(ui.out, IsEmpty());
+  EXPECT_THAT(ui.err, AllOf(HasSubstr(dir), HasSubstr("format 999"), HasSubstr("newer gauntlet")));
 }
 
 TEST(ServedPagesTest, BadInputIsNamedAndSignalsEndIt) {

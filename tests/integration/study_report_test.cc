@@ -11,6 +11,7 @@
 #include "tests/integration/browser.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/shown_campaign.h"
+#include "tests/integration/ui_driver.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -179,14 +180,12 @@ TEST_F(StudyReportInBrowserTest, ServedPagesTellOfATuningWhoseSecondPartBegins) 
   const std::string dir = Scratch() / "going";
   fs::copy(TuningDirectory(), dir, fs::copy_options::recursive);
   fs::rename(dir + "/evaluations", dir + "/later");
-  const std::unique_ptr<Process> ui = StartGauntlet({"ui", dir});
-  ASSERT_TRUE(Eventually([&] { return ui->Out().ends_with("\n"); }, kPatience)) << ui->Err();
-  const std::string address = ui->Out().substr(0, ui->Out().find('\n'));
-  browser_->Open(address);
+  const Ui ui(dir);
+  browser_->Open(ui.address());
   EXPECT_THAT(Text("overview"), HasSubstr("It has not finished"));
   fs::rename(dir + "/later", dir + "/evaluations");
   EXPECT_TRUE(browser_->Becomes("(document.getElementById('news')?.innerText ?? '').includes('has begun')"));
-  browser_->Open(address + "#parameters");
+  browser_->Open(ui.address() + "#parameters");
   EXPECT_THAT(Text("parameters"), HasSubstr("Recommended"));
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
