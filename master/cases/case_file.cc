@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/system/atomic_file.h"
+#include "master/cases/corpus_file.h"
 #include "proto/case_json.h"
 
 namespace gauntlet::master {
@@ -53,7 +54,11 @@ Result<LoadedCase> LoadCase(const std::filesystem::path& path) {
     loaded.test_case.name = path.filename().string();
   } else {
     Result<proto::CaseDocument> parsed = proto::ParseCaseDocument(*text, path.string());
-    if (!parsed) return parsed.error();
+    if (!parsed) {
+      Result<CorpusCase> kept = ParseCorpusCase(*text, path.string());
+      if (!kept) return parsed.error();
+      parsed = std::move(kept->document);
+    }
     loaded.test_case = std::move(parsed->test_case);
     loaded.lineage = std::move(parsed->lineage);
     if (loaded.test_case.name.empty()) loaded.test_case.name = path.filename().string();

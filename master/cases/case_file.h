@@ -18,8 +18,9 @@ struct LoadedCase {
   std::optional<proto::CaseLineage> lineage = {};  // of a case that a command made out of another one
 };
 
-// Reads a case file: .json (proto/README.md) or .argos by its extension, any other by its content. A case
-// without a name is named after the file. Error: no such file, larger than 16 MiB, or "FILE:LINE:COLUMN:
+// Reads a case file: .json (proto/README.md, or a file of a corpus, of which only the case counts) or .argos
+// by its extension, any other by its content. A case without a name is named after the file. Error: no such
+// file, larger than 16 MiB, or "FILE:LINE:COLUMN:
 // ...".
 Result<LoadedCase> LoadCase(const std::filesystem::path& path);
 

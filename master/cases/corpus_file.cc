@@ -63,6 +63,10 @@ Status ReadSettings(const nlohmann::json& json, const std::string& file, CorpusC
   for (const auto& [key, value] : json.items()) {
     if (!value.is_string() && !value.is_number())
       return Wrong(file, fmt::format("experiment.{} is neither a number nor a text", key));
+    if (value.is_string() && JsonOf(value.get<std::string>()).is_number()) {
+      return Wrong(file, fmt::format("experiment.{} = \"{}\": a number stands without quotes", key,
+                                     value.get<std::string>()));
+    }
     into.settings.emplace_back(key, value.is_string() ? value.get<std::string>() : value.dump());
   }
   for (const char* key : {"scenario", "controller"}) {
@@ -86,6 +90,13 @@ Status ReadFound(const nlohmann::json& json, const std::string& file, CorpusCase
   if (!interval.is_array() || interval.size() != 2 || !interval[0].is_number() || !interval[1].is_number())
     return Wrong(file, "found.interval needs two numbers, from and to");
   into.found.interval = {interval[0].get<double>(), interval[1].get<double>()};
+  const auto [from, to] = into.found.interval;
+  const double share = static_cast<double>(into.found.failures) / std::max(into.found.runs, 1);
+  if (!(0.0 <= from && from <= share && share <= to && to <= 1.0)) {
+    return Wrong(file, fmt::format("found.interval = [{}, {}]: of a probability, with {} of {} within it, is "
+                                   "needed",
+                                   from, to, into.found.failures, into.found.runs));
+  }
   return Ok{};
 }
 
@@ -115,13 +126,18 @@ Result<CorpusCase> ParseCorpusCase(const std::string& text, const std::string& f
   if (const Status keys = CheckKeys(*json, file_name); !keys) return keys.error();
   CorpusCase one;
   one.name = TextAt(*json, "name");
-  if (one.name.empty() || one.name.front() == '.' || one.name.find('/') != std::string::npos) {
+  const bool names_a_file =
+      !one.name.empty() && one.name.front() != '.' &&
+      std::ranges::none_of(one.name, [](unsigned char c) { return c == '/' || c < ' '; });
+  if (!names_a_file) {
     return Wrong(file_name, fmt::format("name = '{}': a text that can name a file is needed", one.name));
   }
   one.expected = TextAt(*json, "expected");
   if (std::ranges::find(kExpectations, one.expected) == std::end(kExpectations)) {
     return Wrong(file_name, fmt::format("expected = '{}': one of fail, flaky, pass is needed", one.expected));
   }
+  if (json->contains("found_in") && !(*json)["found_in"].is_string())
+    return Wrong(file_name, "found_in is no text");
   one.found_in = TextAt(*json, "found_in");
   if (const Status found = ReadFound(*json, file_name, one); !found) return found.error();
   if (const Status settings = ReadSettings((*json)["experiment"], file_name, one); !settings)
@@ -135,6 +151,13 @@ Result<CorpusCase> ParseCorpusCase(const std::string& text, const std::string& f
 
 Result<std::vector<CorpusEntry>> ReadCorpus(const std::string& directory) {
   std::error_code error;
+  if (fs::exists(directory + "/campaign.db", error)) {
+    return InvalidInput(fmt::format(
+        "{} is a campaign, no corpus: `gauntlet corpus add {} RUN_ID --to CORPUS` keeps cases of it",
+        directory, directory));
+  }
+  if (fs::exists(directory, error) && !fs::is_directory(directory, error))
+    return InvalidInput(fmt::format("{} is a file: a corpus is a folder of cases", directory));
   if (!fs::is_directory(directory, error)) {
     return Error{ErrorKind::kNotFound,
                  fmt::format("{}: no such folder; `gauntlet corpus add DIR RUN_ID --to {}` makes it",

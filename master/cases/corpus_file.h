@@ -38,8 +38,8 @@ struct CorpusEntry {
   std::string file;
   CorpusCase content;
 };
-// All cases in a folder, by the names of their files. Errors: there is no such folder, or no case in it; two
-// of one name; cases of two scenarios; those of ParseCorpusCase.
+// All cases in a folder, by the names of their files. Errors: there is no such folder, it is a campaign, or
+// no case is in it; two of one name; cases of two scenarios; those of ParseCorpusCase.
 Result<std::vector<CorpusEntry>> ReadCorpus(const std::string& directory);
 
 }  // namespace gauntlet::master

@@ -1,5 +1,6 @@
 // gauntlet blame: which obstacle of a case breaks the swarm.
 #include <cmath>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -10,12 +11,14 @@
 #include "analysis/figures/blame_figure.h"
 #include "base/parse_number.h"
 #include "base/shell_quoted.h"
+#include "master/cases/case_file.h"
 #include "master/cli/commands.h"
 #include "master/cli/given_cases.h"
 #include "master/cli/output_file.h"
 #include "master/cli/table.h"
 #include "master/report/answered_calls.h"
 #include "master/report/blames.h"
+#include "master/report/smallest_layouts.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::master {
@@ -102,16 +105,36 @@ Json JsonOf(const Blame& blame, const std::string& picture) {
           {"picture", picture}};
 }
 
-Status Conclude(CommandContext& context, const BlameOptions& options, const std::string& directory) {
-  const Result<std::vector<Blame>> blames = ReadBlames(directory);
+// The same case may have been asked about as another run's: it gets the name that it has now, and a picture
+// of that name. A picture that is there stays: the campaign may be somebody's who may only read it.
+Status Conclude(CommandContext& context, const BlameOptions& options, const std::string& name,
+                const std::string& directory) {
+  Result<std::vector<Blame>> blames = ReadBlames(directory);
   if (!blames) return blames.error();
-  for (const Blame& blame : *blames) {
-    const std::string picture = directory + "/blame.svg";
-    if (Status written = WriteOutputFile(picture, analysis::DrawBlame(FigureOf(blame))); !written)
-      return written;
+  for (Blame& blame : *blames) {
+    blame.name = name;
+    blame.run = RunOfName(name);
+    const std::string picture = fmt::format("{}/{}-blame.svg", directory, FileNameOf(name));
+    std::error_code none;
+    if (!std::filesystem::exists(picture, none)) {
+      if (Status written = WriteOutputFile(picture, analysis::DrawBlame(FigureOf(blame))); !written)
+        return written;
+    }
     context.out << (options.json ? JsonText(JsonOf(blame, picture)) : TextOf(blame, picture)) << std::flush;
   }
   return Ok{};
+}
+
+// Which obstacles of the parent those of a case file are that `minimise` has made: blame counts them anew.
+std::string Renumbered(const std::string& file) {
+  const Result<LoadedCase> loaded = LoadCase(file);
+  if (!loaded || !loaded->lineage || loaded->lineage->steps.empty()) return "";
+  const std::vector<int>& kept = loaded->lineage->steps.back().obstacles;
+  if (kept.size() != loaded->test_case.obstacles.size()) return "";
+  std::string text;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    text += fmt::format("{}{} was {}", i == 0 ? "" : ", ", i + 1, kept[i]);
+  return fmt::format("obstacles count from 1 in {}; in {} {}", file, loaded->lineage->parent.name, text);
 }
 
 ExitCode RunBlame(CommandContext& context, const BlameOptions& options) {
@@ -119,14 +142,22 @@ ExitCode RunBlame(CommandContext& context, const BlameOptions& options) {
   if (!replicates) return Fail(context, replicates.error());
   const Result<int> workers = ParseWorkers(options.workers);
   if (!workers) return Fail(context, workers.error());
-  const Result<QuestionedCampaign> questioned = GivenCases(options.directory, {options.test_case});
+  const Result<QuestionedCampaign> questioned = GivenCases(context, options.directory, {options.test_case});
   if (!questioned) return Fail(context, questioned.error());
-  if (questioned->cases.front().test_case.obstacles.empty())
-    return Fail(context, InvalidInput(questioned->cases.front().name + " has no obstacles to blame"));
+  if (const Status obstacles = CheckHaveObstacles(*questioned); !obstacles)
+    return Fail(context, obstacles.error());
+  const std::string& name = questioned->cases.front().name;
+  if (const std::string numbers = RunOfName(name) > 0 ? "" : Renumbered(options.test_case);
+      !numbers.empty() && !options.quiet)
+    PrintMessage(context, numbers);
   const CallPlan plan = PlanBlame(options.directory, *questioned, *replicates);
+  if (const Result<std::vector<Blame>> known = ReadBlames(plan.directory); known && !known->empty()) {
+    const Status concluded = Conclude(context, options, name, plan.directory);
+    return concluded ? kExitDone : Fail(context, concluded.error());
+  }
   CampaignRun campaign = RunOfCall(context, plan, *workers, options);
   campaign.report = [&](const SessionReport& report) -> Status {
-    return report.end == CampaignEnd::kStopped ? Ok{} : Conclude(context, options, plan.directory);
+    return report.end == CampaignEnd::kStopped ? Ok{} : Conclude(context, options, name, plan.directory);
   };
   return RunCampaign(context, campaign);
 }
@@ -144,8 +175,9 @@ void AddBlame(CommandParser& parser) {
   AddRunningOptions(command, options);
   command.footer(
       R"(Simulates the case with fresh seeds, and then without each of its obstacles. An obstacle is to blame when
-without it the case fails less often by more than three standard errors. When none is, pairs are left out. The
-picture, kept below DIR/blame, shows how much each obstacle does and where robots got stuck.
+without it the case fails less often by more than three standard errors; it does it when it then fails less than
+half as often, else it contributes. When none is to blame, pairs are left out. The picture, kept below DIR/blame,
+shows how much each obstacle does and where robots got stuck.
 
 In --json, "index" counts obstacles from 0, as in a case file, and "number" from 1, as in pictures. "effect" is
 the failure probability of the case less that without the obstacle. "touched" says of how many of the failing

@@ -188,6 +188,12 @@ ExitCode RunCheck(CommandContext& context, const CheckOptions& options) {
   if (!workers) return Fail(context, workers.error());
   const Result<CorpusPlan> plan = PlanCheck(options);
   if (!plan) return Fail(context, plan.error());
+  std::optional<OutputFile> junit;  // opened before the runs, which would be for nothing without it
+  if (!options.junit.empty()) {
+    Result<OutputFile> opened = OutputFile::Open(options.junit);
+    if (!opened) return Fail(context, opened.error());
+    junit.emplace(*std::move(opened));
+  }
   if (const Status room = MakeRoom(context, *plan); !room) return Fail(context, room.error());
   if (const Status folder = MakeFolder(options); !folder) return Fail(context, folder.error());
 
@@ -199,9 +205,9 @@ ExitCode RunCheck(CommandContext& context, const CheckOptions& options) {
     if (!report) return report.error();
     worse = report->Count(CheckOutcome::kWorse) > 0;
     context.out << (options.json ? CheckJson(*report) : CheckText(*report, context.program)) << std::flush;
-    if (!options.junit.empty()) {
-      if (const Status written = WriteOutputFile(options.junit, CheckJunit(*report)); !written)
-        return written;
+    if (junit) {
+      if (const Status written = junit->Write(CheckJunit(*report)); !written) return written;
+      if (const Status closed = junit->Close(); !closed) return closed;
     }
     if (!options.update) return Ok{};
     worse = std::ranges::count(report->cases, FailureVerdict::kError, &CheckedCase::verdict) > 0;

@@ -26,7 +26,7 @@ struct ConfirmOptions : RunningOptions {
 };
 
 // The cases that are asked about: runs by their numbers, and files.
-Result<QuestionedCampaign> CasesOf(const ConfirmOptions& options) {
+Result<QuestionedCampaign> CasesOf(CommandContext& context, const ConfirmOptions& options) {
   if (int{!options.cases.empty()} + int{options.all_failing} + int{options.elites} != 1) {
     return InvalidInput("which cases? Either RUN_ID or FILE..., or --all-failing, or --elites");
   }
@@ -45,7 +45,7 @@ Result<QuestionedCampaign> CasesOf(const ConfirmOptions& options) {
           fmt::format("{}: no run has failed, so there is no case to confirm", options.directory));
     return failing;
   }
-  return GivenCases(options.directory, options.cases);
+  return GivenCases(context, options.directory, options.cases);
 }
 
 Result<int> ParseReplicates(const std::string& text) {
@@ -80,7 +80,7 @@ ExitCode RunConfirm(CommandContext& context, const ConfirmOptions& options) {
   if (!replicates) return Fail(context, replicates.error());
   const Result<int> workers = ParseWorkers(options.workers);
   if (!workers) return Fail(context, workers.error());
-  const Result<QuestionedCampaign> questioned = CasesOf(options);
+  const Result<QuestionedCampaign> questioned = CasesOf(context, options);
   if (!questioned) return Fail(context, questioned.error());
   const Result<std::vector<Confirmation>> known = ReadConfirmations(options.directory);
   if (!known) return Fail(context, known.error());

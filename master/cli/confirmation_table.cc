@@ -45,8 +45,12 @@ std::string ConfirmationsText(const std::vector<Confirmation>& confirmations, st
   if (confirmations.size() > most) {
     text += fmt::format("  and {} more; see show --json\n", confirmations.size() - most);
   }
-  return fmt::format("{}{} of {} cases confirmed: with fresh seeds they fail in at least half of the runs.\n",
-                     text, confirmed, confirmations.size());
+  const auto files = std::ranges::count(confirmations, RunId{0}, &Confirmation::run);
+  const std::string of_files =
+      files == 0 ? "" : fmt::format(" ({} from {})", files, files == 1 ? "a file" : "files");
+  return fmt::format(
+      "{}{} of {} cases{} confirmed: with fresh seeds they fail in at least half of the runs.\n", text,
+      confirmed, confirmations.size(), of_files);
 }
 
 nlohmann::ordered_json ConfirmationsJson(const std::vector<Confirmation>& confirmations) {

@@ -21,6 +21,7 @@
 #include "master/report/confirmations.h"
 #include "master/report/replayed_figure.h"
 #include "master/report/smallest_layouts.h"
+#include "master/search/search_setup.h"
 
 namespace gauntlet::master {
 namespace {
@@ -84,6 +85,17 @@ Result<Keepsake> KeepsakeOfFile(const CorpusOptions& options, const std::string&
   return kept;
 }
 
+// What is left of the run's case, whose clone may have been minimised as another run's.
+std::vector<SmallestLayout>::const_iterator LeftOf(const std::vector<SmallestLayout>& layouts,
+                                                   const QuestionedCampaign& questioned, RunId run) {
+  const auto own = std::ranges::find(layouts, run, &SmallestLayout::run);
+  if (own != layouts.end() || questioned.plans.size() > 1) return own;  // clones in other searches are others
+  const std::uint64_t test_case = CaseHash(questioned.cases.front().test_case);
+  return std::ranges::find_if(layouts, [test_case](const SmallestLayout& one) {
+    return CaseHash(one.document.lineage->parent) == test_case;
+  });
+}
+
 Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& options, RunId run) {
   Result<QuestionedCampaign> questioned = CasesOfRuns(options.directory, {run});
   if (!questioned) return questioned.error();
@@ -91,7 +103,7 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
   const Experiment& experiment = questioned->plans[one.search].experiment;
   const Result<std::vector<SmallestLayout>> smallest = ReadSmallestLayouts(options.directory);
   if (!smallest) return smallest.error();
-  if (const auto left = std::ranges::find(*smallest, run, &SmallestLayout::run); left != smallest->end()) {
+  if (const auto left = LeftOf(*smallest, *questioned, run); left != smallest->end()) {
     Result<Keepsake> kept = KeepsakeOfFile(options, left->file, experiment);
     if (kept && options.name.empty()) kept->content.name = fmt::format("run-{}", run);
     return kept;
@@ -160,13 +172,12 @@ Status CheckFits(const CorpusOptions& options, const std::vector<Keepsake>& kept
       if (fs::exists(file, none))
         return InvalidInput(fmt::format("{} exists already: give this case another --name", file));
     }
-    if (!all.empty()) {
-      const std::string here = SettingOf(all.front().content, "scenario");
-      const std::string scenario = SettingOf(one.content, "scenario");
-      if (here != scenario) {
-        return InvalidInput(
-            fmt::format("{} holds cases of the scenario '{}', '{}' is of '{}': --to another folder",
-                        options.corpus, here, name, scenario));
+    for (const char* key : {"scenario", "controller"}) {
+      const std::string here = all.empty() ? "" : SettingOf(all.front().content, key);
+      const std::string its = SettingOf(one.content, key);
+      if (!all.empty() && here != its) {
+        return InvalidInput(fmt::format("{} holds cases of the {} '{}', '{}' is of '{}': --to another folder",
+                                        options.corpus, key, here, name, its));
       }
     }
     all.push_back({fmt::format("{}/{}.json", options.corpus, name), one.content});
@@ -187,8 +198,9 @@ ExitCode RunCorpus(CommandContext& context, const CorpusOptions& options) {
     return Fail(context, InvalidInput(fmt::format("--name {}: {} cases cannot have one name", options.name,
                                                   options.cases.size())));
   std::vector<Keepsake> kept;
-  for (const std::string& text : options.cases) {
-    Result<Keepsake> one = KeepsakeOf(context, options, text);
+  for (auto text = options.cases.begin(); text != options.cases.end(); ++text) {
+    if (std::find(options.cases.begin(), text, *text) != text) continue;  // given twice
+    Result<Keepsake> one = KeepsakeOf(context, options, *text);
     if (!one) return Fail(context, one.error());
     kept.push_back(*std::move(one));
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,10 +10,31 @@
 #include "controllers/registry.h"
 #include "master/cases/case_file.h"
 #include "master/report/verdict_text.h"
+#include "master/search/search_setup.h"
 #include "master/search/search_table.h"
 #include "sim/arena/validity.h"
 
 namespace gauntlet::master {
+namespace {
+
+bool IsCampaign(const std::string& path) {
+  std::error_code none;
+  return std::filesystem::exists(path + "/campaign.db", none);
+}
+
+// Each different case once, under the name that came first.
+void AskOnce(CommandContext& context, QuestionedCampaign& questioned) {
+  std::map<std::pair<std::size_t, std::uint64_t>, std::string> names;
+  std::erase_if(questioned.cases, [&](const CaseInQuestion& one) {
+    const auto [first, is_new] = names.try_emplace({one.search, CaseHash(one.test_case)}, one.name);
+    if (!is_new && first->second != one.name)
+      PrintMessage(context, fmt::format("{} has the same case as {}", one.name, first->second));
+    return !is_new;
+  });
+}
+
+}  // namespace
+
 std::optional<Refusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case) {
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
   if (scenario == nullptr) return std::nullopt;
@@ -24,7 +46,13 @@ std::optional<Refusal> RefusalOf(const Experiment& experiment, const sim::TestCa
   return std::nullopt;
 }
 
-Result<QuestionedCampaign> GivenCases(const std::string& directory, const std::vector<std::string>& cases) {
+Result<QuestionedCampaign> GivenCases(CommandContext& context, const std::string& directory,
+                                      const std::vector<std::string>& cases) {
+  if (const auto swapped = std::ranges::find_if(cases, IsCampaign);
+      swapped != cases.end() && !IsCampaign(directory)) {
+    return InvalidInput(fmt::format(
+        "{} is a campaign and {} is none: the campaign comes first, then its runs", *swapped, directory));
+  }
   std::vector<RunId> runs;
   std::vector<CaseInQuestion> files;
   for (const std::string& text : cases) {
@@ -50,7 +78,15 @@ Result<QuestionedCampaign> GivenCases(const std::string& directory, const std::v
       return InvalidInput(fmt::format("{}: {}", file.name, refusal->message));
     questioned->cases.push_back(std::move(file));
   }
+  AskOnce(context, *questioned);
   return questioned;
+}
+
+Status CheckHaveObstacles(const QuestionedCampaign& questioned) {
+  const auto bare = std::ranges::find_if(
+      questioned.cases, [](const CaseInQuestion& one) { return one.test_case.obstacles.empty(); });
+  if (bare == questioned.cases.end()) return Ok{};
+  return InvalidInput(fmt::format("{} has no obstacles: there is nothing to leave out", bare->name));
 }
 
 CampaignRun RunOfCall(CommandContext& context, const CallPlan& plan, int workers,

@@ -19,9 +19,13 @@ struct Refusal {
 };
 std::optional<Refusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case);
 
-// The cases of a campaign's runs, by their numbers, and of files. Error: one is not there or breaks a rule,
-// or a file could belong to several searches.
-Result<QuestionedCampaign> GivenCases(const std::string& directory, const std::vector<std::string>& cases);
+// The cases of a campaign's runs, by their numbers, and of files, each different one once: of those that are
+// given again, under whatever name, it is said. Error: one is not there or breaks a rule, a file could belong
+// to several searches, or the campaign does not come first.
+Result<QuestionedCampaign> GivenCases(CommandContext& context, const std::string& directory,
+                                      const std::vector<std::string>& cases);
+// Error: one of the cases has no obstacle.
+Status CheckHaveObstacles(const QuestionedCampaign& questioned);
 
 // The campaign begins, or goes on where an earlier call with the same cases was stopped. Its caller sets what
 // it reports.

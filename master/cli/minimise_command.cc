@@ -44,8 +44,18 @@ std::string Remark(const Minimisation& one) {
     case MinimisedTo::kEmpty:
       return fmt::format("not minimised: the EMPTY ARENA FAILS TOO, in {} runs", OutOf(one.empty));
     case MinimisedTo::kLayout:
-      return one.Smaller() ? "" : "no smaller part of it fails as reliably";
+      break;
   }
+  std::string remark = one.Smaller() ? "" : "no smaller part of it fails as reliably";
+  if (!CaseMinimiser::IsReliable(one.verified.tally))
+    remark += fmt::format("{}below the bar of {} in {} runs", remark.empty() ? "" : "; ",
+                          CaseMinimiser::kVerifyingFailures, CaseMinimiser::kVerifyingRuns);
+  return remark;
+}
+
+// The file that keeps what is left, without its ending.
+std::string FileOf(const Minimisation& one) {
+  return SmallestLayoutFile(one.directory, one.name);
   return "";
 }
 
@@ -67,8 +77,7 @@ analysis::LayoutStrip StripOf(const Minimisation& one) {
   return strip;
 }
 
-std::string TextOf(const CommandContext& context, const std::string& directory,
-                   const std::vector<Minimisation>& cases) {
+std::string TextOf(const CommandContext& context, const std::vector<Minimisation>& cases) {
   Table table(
       {"case", ">failed", ">obstacles", ">left", "which", ">fails", "probability (95 %)", ">runs", ""});
   std::string files;
@@ -88,8 +97,8 @@ std::string TextOf(const CommandContext& context, const std::string& directory,
                   fmt::format("{:3.0f} to {:3.0f} %", 100.0 * one.interval.low, 100.0 * one.interval.high),
                   fmt::format("{}", one.runs), Remark(one)});
     if (!one.Smaller()) continue;
-    const std::string file = SmallestLayoutFile(directory, one.name);
-    files += fmt::format("  {}\n  {}\n", ShellQuoted(file + ".json"), ShellQuoted(file + ".svg"));
+    files +=
+        fmt::format("  {}\n  {}\n", ShellQuoted(FileOf(one) + ".json"), ShellQuoted(FileOf(one) + ".svg"));
   }
   std::string text = table.ToText();
   if (files.empty()) return text;
@@ -97,7 +106,7 @@ std::string TextOf(const CommandContext& context, const std::string& directory,
                             context.program, files);
 }
 
-Json JsonOf(const std::string& directory, const std::vector<Minimisation>& cases) {
+Json JsonOf(const std::vector<Minimisation>& cases) {
   Json list = Json::array();
   for (const Minimisation& one : cases) {
     Json minimised;  // null: refused
@@ -107,9 +116,7 @@ Json JsonOf(const std::string& directory, const std::vector<Minimisation>& cases
                    {"n", one.verified.tally.runs()},
                    {"interval", {one.interval.low, one.interval.high}},
                    {"case", Json::parse(proto::WriteCaseDocument(one.smallest))}};
-      if (one.Smaller())
-        minimised["files"] = {SmallestLayoutFile(directory, one.name) + ".json",
-                              SmallestLayoutFile(directory, one.name) + ".svg"};
+      minimised["files"] = {FileOf(one) + ".json", FileOf(one) + ".svg"};
     }
     const Json original = {
         {"obstacles", one.original.obstacles.size()}, {"k", one.found.failures}, {"n", one.found.runs()}};
@@ -125,39 +132,48 @@ Json JsonOf(const std::string& directory, const std::vector<Minimisation>& cases
   return {{"cases", std::move(list)}};
 }
 
-Status KeepFiles(const std::string& directory, const Minimisation& one) {
-  if (!one.Smaller()) return Ok{};
-  const std::string file = SmallestLayoutFile(directory, one.name);
-  Status written = WriteOutputFile(file + ".json", proto::WriteCaseDocument(one.smallest));
-  return written ? WriteOutputFile(file + ".svg", DrawLayoutStrip(StripOf(one))) : written;
+// What is there already stays: the campaign may be somebody's who may only read it.
+Status KeepFiles(const Minimisation& one) {
+  std::error_code none;
+  if (one.outcome != MinimisedTo::kLayout || std::filesystem::exists(FileOf(one) + ".svg", none)) return Ok{};
+  Status written = WriteOutputFile(FileOf(one) + ".json", proto::WriteCaseDocument(one.smallest));
+  return written ? WriteOutputFile(FileOf(one) + ".svg", DrawLayoutStrip(StripOf(one))) : written;
 }
 
 // Prints and keeps what is left; kExitUsage when every case was refused.
 Result<ExitCode> Conclude(CommandContext& context, const MinimiseOptions& options,
-                          const std::string& directory) {
-  const Result<std::vector<Minimisation>> cases = ReadMinimisations(directory);
-  if (!cases) return cases.error();
-  for (const Minimisation& one : *cases) {
-    if (const Status kept = KeepFiles(directory, one); !kept) return kept.error();
+                          const QuestionedCampaign& questioned) {
+  const Result<std::vector<Minimisation>> known = ReadMinimisations(options.directory);
+  if (!known) return known.error();
+  const std::vector<Minimisation> cases = AnswersTo(questioned, options.shorten, *known);
+  for (const Minimisation& one : cases) {
+    if (const Status kept = KeepFiles(one); !kept) return kept.error();
   }
-  context.out << (options.json ? JsonText(JsonOf(directory, *cases)) : TextOf(context, directory, *cases))
-              << std::flush;
-  const bool any = std::ranges::any_of(
-      *cases, [](const Minimisation& one) { return one.outcome == MinimisedTo::kLayout; });
+  context.out << (options.json ? JsonText(JsonOf(cases)) : TextOf(context, cases)) << std::flush;
+  const bool any =
+      std::ranges::any_of(cases, [](const Minimisation& one) { return one.outcome == MinimisedTo::kLayout; });
   return any ? kExitDone : kExitUsage;
 }
 
 ExitCode RunMinimise(CommandContext& context, const MinimiseOptions& options) {
   const Result<int> workers = ParseWorkers(options.workers);
   if (!workers) return Fail(context, workers.error());
-  const Result<QuestionedCampaign> questioned = GivenCases(options.directory, options.cases);
+  const Result<QuestionedCampaign> questioned = GivenCases(context, options.directory, options.cases);
   if (!questioned) return Fail(context, questioned.error());
-  const CallPlan plan = PlanMinimisation(options.directory, *questioned, options.shorten);
+  if (const Status obstacles = CheckHaveObstacles(*questioned); !obstacles)
+    return Fail(context, obstacles.error());
+  const Result<std::vector<Minimisation>> known = ReadMinimisations(options.directory);
+  if (!known) return Fail(context, known.error());
+  const CallPlan plan = PlanMinimisation(options.directory, *questioned, options.shorten, *known);
+  if (plan.searches.empty()) {
+    const Result<ExitCode> code = Conclude(context, options, *questioned);
+    return code ? *code : Fail(context, code.error());
+  }
   CampaignRun campaign = RunOfCall(context, plan, *workers, options);
   ExitCode concluded = kExitDone;
   campaign.report = [&](const SessionReport& report) -> Status {
     if (report.end == CampaignEnd::kStopped) return Ok{};
-    const Result<ExitCode> code = Conclude(context, options, plan.directory);
+    const Result<ExitCode> code = Conclude(context, options, *questioned);
     if (!code) return code.error();
     concluded = *code;
     return Ok{};
@@ -184,7 +200,8 @@ each is left out in turn, until none can be spared. A step is taken when runs pr
 must fail in 24 of 30 more runs that took no part in choosing it, else a step is taken back.
 
 What is left is kept below DIR/minimise: a case file that says how it came about, and pictures of its way.
-Exit 2 when every case was refused. After Ctrl-C or a kill the same command goes on.
+A case that was minimised before is not simulated again. Exit 2 when every case was refused. After Ctrl-C or a
+kill the same command goes on.
 
 Examples:
   gauntlet minimise DIR 812

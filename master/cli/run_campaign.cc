@@ -110,6 +110,8 @@ ExitCode FailCampaign(CommandContext& context, const CampaignRun& campaign, cons
   const bool resumable = error.kind == ErrorKind::kNoSpace ||
                          (began && (error.kind == ErrorKind::kIo || error.kind == ErrorKind::kInUse)) ||
                          (error.kind == ErrorKind::kInUse && StopSignal::Requested());
+  if (error.kind == ErrorKind::kInUse && campaign.same_command_resumes && !began)
+    PrintMessage(context, "the same question is being answered just now; when that has ended, ask again");
   if (!resumable) return code;
   PrintMessage(context, HowToGoOn(context, campaign));
   return kExitStopped;

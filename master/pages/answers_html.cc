@@ -131,7 +131,8 @@ std::string DistinctFailuresHtml(const CampaignPages& pages, std::size_t number)
 }
 
 std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {
-  const std::vector<SmallestLayout>& layouts = pages.facts.summary.smallest_layouts;
+  std::vector<SmallestLayout> layouts = pages.facts.summary.smallest_layouts;
+  std::erase_if(layouts, std::not_fn(&SmallestLayout::Smaller));
   if (layouts.empty()) return "";
   std::string html =
       "<h3>The few obstacles that do it</h3>\n<p>Cases beside the smallest part of them that still breaks "
@@ -150,7 +151,7 @@ std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {
 std::string AnswersHtml(const CampaignFacts& facts, const CaseFacts& of_case) {
   std::string html;
   for (const SmallestLayout& one : facts.summary.smallest_layouts) {
-    if (!IsOf(facts, one.run, of_case)) continue;
+    if (!one.Smaller() || !IsOf(facts, one.run, of_case)) continue;
     html +=
         PictureHtml(DrawSteps(one, /*every_step=*/true), "How the case was made smaller",
                     "How the case was made smaller: each picture takes something away and the swarm still "

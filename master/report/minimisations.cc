@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "master/report/answered_calls.h"
@@ -32,16 +33,24 @@ proto::CaseLineage LineageOf(const Minimisation& one, std::string_view failing) 
   return lineage;
 }
 
+void Name(Minimisation& one, const std::string& name) {
+  one.name = name;
+  one.run = RunOfName(name);
+  one.original.name = name;
+  if (!one.smallest.lineage) return;
+  one.smallest.test_case.name = fmt::format("{}, minimised", name);
+  one.smallest.lineage->parent.name = name;
+}
+
 Minimisation Found(const sim::TestCase& original, const CaseMinimiser& minimiser,
                    const std::string& scenario) {
   Minimisation one;
-  one.name = original.name;
-  one.run = RunOfName(one.name);
   one.original = original;
   one.outcome = minimiser.outcome();
   one.found = minimiser.original();
   one.empty = minimiser.empty();
   one.smallest.test_case = original;
+  Name(one, original.name);
   one.has_place = FailurePlaceOf(scenario) != nullptr;
   if (one.outcome != MinimisedTo::kLayout) return one;
   one.steps = minimiser.steps();
@@ -49,9 +58,30 @@ Minimisation Found(const sim::TestCase& original, const CaseMinimiser& minimiser
   one.interval = FailureInterval(one.verified.tally);
   one.same_way = minimiser.SameFailures(one.verified);
   one.smallest.test_case.obstacles = minimiser.layout().obstacles;
-  one.smallest.test_case.name = fmt::format("{}, minimised", one.name);
   one.smallest.lineage = LineageOf(one, FailingOf(scenario));
+  Name(one, original.name);
   return one;
+}
+
+// What the call in the directory has found, when it has come to its end.
+Status AddAnswersOf(const std::string& directory, std::vector<Minimisation>& all) {
+  return ForEachAnswer(directory, [&](const AnsweredSearch& answered) -> Status {
+    const auto& search = dynamic_cast<const MinimisationSearch&>(answered.search);
+    for (std::size_t i = 0; i < search.Population().size(); ++i) {
+      const sim::TestCase& original = search.Population()[i].test_case;
+      all.push_back(Found(original, search.MinimiserOf(i), answered.experiment.scenario));
+      Minimisation& one = all.back();
+      one.key = KeyOfCase(answered.experiment, original);
+      one.directory = directory;
+      one.runs = search.RunsOf(i);
+      if (one.outcome == MinimisedTo::kError) one.message = answered.first_message(i + 1);
+    }
+    return Ok{};
+  });
+}
+
+std::uint64_t KeyOf(const QuestionedCampaign& questioned, const CaseInQuestion& one, bool shorten) {
+  return KeyOfCase(MinimisationOf(questioned.plans[one.search].experiment, shorten), one.test_case);
 }
 
 }  // namespace
@@ -70,25 +100,35 @@ std::string DescribeStep(const MinimisingStep& step) {
   return "";
 }
 
-CallPlan PlanMinimisation(const std::string& dir, const QuestionedCampaign& questioned, bool shorten) {
-  return PlanCall(dir + kMinimiseFolder, questioned,
+CallPlan PlanMinimisation(const std::string& dir, const QuestionedCampaign& questioned, bool shorten,
+                          const std::vector<Minimisation>& known) {
+  QuestionedCampaign open = questioned;
+  std::erase_if(open.cases, [&](const CaseInQuestion& one) {
+    return std::ranges::find(known, KeyOf(open, one, shorten), &Minimisation::key) != known.end();
+  });
+  return PlanCall(dir + kMinimiseFolder, open,
                   [shorten](const Experiment& experiment) { return MinimisationOf(experiment, shorten); });
 }
 
-Result<std::vector<Minimisation>> ReadMinimisations(const std::string& directory) {
+Result<std::vector<Minimisation>> ReadMinimisations(const std::string& dir) {
   std::vector<Minimisation> all;
-  const auto add = [&](const AnsweredSearch& answered) -> Status {
-    const auto& search = dynamic_cast<const MinimisationSearch&>(answered.search);
-    for (std::size_t i = 0; i < search.Population().size(); ++i) {
-      all.push_back(
-          Found(search.Population()[i].test_case, search.MinimiserOf(i), answered.experiment.scenario));
-      all.back().runs = search.RunsOf(i);
-      if (all.back().outcome == MinimisedTo::kError) all.back().message = answered.first_message(i + 1);
-    }
-    return Ok{};
-  };
-  if (Status read = ForEachAnswer(directory, add); !read) return read.error();
+  for (const std::string& call : CallsIn(dir + kMinimiseFolder)) {
+    const Status read = AddAnswersOf(call, all);
+    if (!read && !HasNothingYet(read.error())) return read.error();
+  }
   return all;
+}
+
+std::vector<Minimisation> AnswersTo(const QuestionedCampaign& questioned, bool shorten,
+                                    const std::vector<Minimisation>& known) {
+  std::vector<Minimisation> answers;
+  for (const CaseInQuestion& one : questioned.cases) {
+    const auto found = std::ranges::find(known, KeyOf(questioned, one, shorten), &Minimisation::key);
+    if (found == known.end()) continue;
+    answers.push_back(*found);
+    Name(answers.back(), one.name);
+  }
+  return answers;
 }
 
 }  // namespace gauntlet::master

@@ -1,6 +1,7 @@
 // The smallest parts of a campaign's cases that still fail: what `gauntlet minimise` finds.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,10 @@
 namespace gauntlet::master {
 
 struct Minimisation {
-  std::string name;  // of the case, as in CaseInQuestion
-  RunId run = 0;     // that it is the case of; 0 when it came from a file
+  std::string name;       // of the case, as in CaseInQuestion
+  RunId run = 0;          // that it is the case of; 0 when it came from a file
+  std::uint64_t key = 0;  // KeyOfCase, of the question as it was asked
+  std::string directory;  // of the call that has found it
   sim::TestCase original;
   MinimisedTo outcome = MinimisedTo::kOpen;
   FailureTally found;                 // of the case as it is
@@ -34,9 +37,15 @@ struct Minimisation {
 // The step in words: "without obstacle 3".
 std::string DescribeStep(const MinimisingStep& step);
 
-// A campaign that minimises cases; `shorten`: also the lengths of their obstacles.
-CallPlan PlanMinimisation(const std::string& dir, const QuestionedCampaign& questioned, bool shorten);
-// What the call in `directory` has found, when it has come to its end, in the order of its cases.
-Result<std::vector<Minimisation>> ReadMinimisations(const std::string& directory);
+// A campaign that minimises those of the cases that are not `known`; `shorten`: also the lengths of their
+// obstacles.
+CallPlan PlanMinimisation(const std::string& dir, const QuestionedCampaign& questioned, bool shorten,
+                          const std::vector<Minimisation>& known);
+// What all calls about cases of the campaign in `dir` have found that have come to their end.
+Result<std::vector<Minimisation>> ReadMinimisations(const std::string& dir);
+// Of these, the answers to one call, in the order of its cases and under the names that it gives them: the
+// same case may have been asked about as another run's.
+std::vector<Minimisation> AnswersTo(const QuestionedCampaign& questioned, bool shorten,
+                                    const std::vector<Minimisation>& known);
 
 }  // namespace gauntlet::master

@@ -33,11 +33,15 @@ std::size_t Obstacles(const SmallestLayout& one) {
 
 }  // namespace
 
-std::string SmallestLayoutFile(const std::string& directory, const std::string& case_name) {
+std::string FileNameOf(const std::string& case_name) {
   std::string name = RunOfName(case_name) > 0 ? case_name : fs::path(case_name).stem().string();
   std::ranges::replace_if(
       name, [](char c) { return c == ' ' || c == '/'; }, '-');
-  return fmt::format("{}/{}{}", directory, name, kEnding);
+  return name;
+}
+
+std::string SmallestLayoutFile(const std::string& directory, const std::string& case_name) {
+  return fmt::format("{}/{}{}", directory, FileNameOf(case_name), kEnding);
 }
 
 Result<std::vector<SmallestLayout>> ReadSmallestLayouts(const std::string& dir) {

@@ -24,8 +24,6 @@ constexpr int kMostRuns = 40;  // of a layout between the two probabilities
 // both errors 5 %.
 constexpr int kClearMajority = 4;
 
-constexpr int kVerifyingRuns = 30;
-constexpr int kVerifyingFailures = 24;
 constexpr int kVerifiedAtOnce = 10;
 
 constexpr double kLengthsPerMetre = 10.0;  // lengths are rounded to multiples of 0.1 m
@@ -124,7 +122,7 @@ bool CaseMinimiser::Fails() const {
   const FailureTally& tally = told_.tally;
   if (phase_ == Phase::kOriginal) return VerdictOf(tally, /*replicates=*/0) == FailureVerdict::kFail;
   if (phase_ == Phase::kEmpty) return Majority(tally) > 0;
-  if (phase_ == Phase::kVerify) return tally.failures >= kVerifyingFailures && SameFailures(told_);
+  if (phase_ == Phase::kVerify) return IsReliable(tally) && SameFailures(told_);
   return Evidence(tally) >= kBound;
 }
 

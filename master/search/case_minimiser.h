@@ -50,6 +50,11 @@ struct MinimisingRules {
 // one obstacle more.
 class CaseMinimiser final : public LayoutQuestion {
  public:
+  static constexpr int kVerifyingRuns = 30;
+  static constexpr int kVerifyingFailures = 24;
+  // Only a case of which nothing smaller is left may be verified without being so.
+  static bool IsReliable(const FailureTally& verified) { return verified.failures >= kVerifyingFailures; }
+
   CaseMinimiser(sim::Genome obstacles, const MinimisingRules& rules);
 
   const Layout& layout() const override { return layout_; }

@@ -135,7 +135,16 @@ TEST_F(CheckTest, SaysWhatIsWrong) {
 
   EXPECT_THAT(Refused({"--set", "controller=foraging"}), HasSubstr("the corpus is for 'flocking'"));
   EXPECT_THAT(Refused({"--set", "controller_parameters.bird_sped=1"}), HasSubstr("bird_speed"));
+  EXPECT_THAT(Refused({"--junit", scratch_ / "none/check.xml"}),
+              HasSubstr("none/check.xml: cannot be written"));
   const std::string good = ReadText(file_);
+  Replace(file_, "\"controller\": \"flocking\"", "\"controller\": \"flocking-improved\"");
+  for (const char* ending : {".json", ".svg"})
+    std::filesystem::remove(corpus_ + "/run-" + failing_[1] + ending);
+  EXPECT_THAT(not_added({failing_[1], "--to", corpus_}),
+              HasSubstr("holds cases of the controller 'flocking-improved'"));
+  std::ofstream(file_) << good;
+  ASSERT_EQ(Gauntlet({"corpus", "add", dir_, failing_[1], "--to", corpus_}).exit_code, 0);
   Replace(file_, "\"format\": 1", "\"format\": 9");
   EXPECT_THAT(Refused(), HasSubstr("newer version"));
   std::ofstream(file_) << good;
@@ -146,6 +155,8 @@ TEST_F(CheckTest, SaysWhatIsWrong) {
                         std::filesystem::copy_options::overwrite_existing);
   EXPECT_THAT(Refused(), HasSubstr("are both called"));
   EXPECT_THAT(Gauntlet({"check", scratch_ / "none"}).err, HasSubstr("no such folder"));
+  EXPECT_THAT(Gauntlet({"check", dir_}).err, HasSubstr("is a campaign, no corpus"));
+  EXPECT_THAT(Gauntlet({"check", file_}).err, HasSubstr("is a file: a corpus is a folder"));
   std::filesystem::create_directory(scratch_ / "empty");
   EXPECT_THAT(Gauntlet({"check", scratch_ / "empty"}).err, HasSubstr("holds no case"));
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -67,9 +68,11 @@ TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
   const nlohmann::json found = Found(Minimise(scratch / "c", failing, 2));
   ASSERT_EQ(found["cases"].size(), failing.size());
   EXPECT_EQ(StateHash(scratch / "c"), before);
+  int kept = 0;
   int smaller = 0;
   for (const nlohmann::json& one : found["cases"]) {
     const nlohmann::json& left = one["minimised"];
+    if (!left.is_null()) ++kept;
     if (left.is_null() || left["obstacles"] == 8) continue;
     ++smaller;
     EXPECT_EQ(left["n"], 30);
@@ -94,7 +97,7 @@ TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
   const auto entries = std::filesystem::directory_iterator(CallOf(scratch / "c"));
   EXPECT_EQ(
       std::ranges::count_if(entries, [](const auto& entry) { return entry.path().extension() == ".svg"; }),
-      smaller);
+      kept);
 }
 
 // So that one looks at the small layout rather than at the case it was found in.
@@ -104,9 +107,9 @@ TEST(MinimiseTest, ShowNamesTheSmallestLayoutOfEachFailure) {
   ASSERT_EQ(Gauntlet({"confirm", scratch / "c", "--all-failing", "--quiet"}).exit_code, 0);
   const nlohmann::json found = Found(Minimise(scratch / "c", Runs(scratch / "c", true, 4), 2));
   const nlohmann::json shown = Show(scratch / "c");
-  std::set<std::size_t> left;  // obstacles of all that are smaller
+  std::set<std::size_t> left;  // obstacles of all
   for (const nlohmann::json& one : found["cases"]) {
-    if (one["remark"] == "") left.insert(one["minimised"]["obstacles"].get<std::size_t>());
+    if (!one["minimised"].is_null()) left.insert(one["minimised"]["obstacles"].get<std::size_t>());
   }
   ASSERT_FALSE(left.empty());
   std::set<std::size_t> told;
@@ -141,6 +144,44 @@ TEST(MinimiseTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
   EXPECT_THAT(again.err, testing::Not(HasSubstr(" runs in ")));
 }
 
+// Two runs of every case.
+TEST(MinimiseTest, AnswersForACloneUnderTheNumberThatItWasGiven) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "30", "--set", "search.replicates=2", "--dir", dir,
+                      "--quiet"})
+                .exit_code,
+            0);
+  const nlohmann::json shown = nlohmann::json::parse(Gauntlet({"show", dir, "--json", "--runs"}).out);
+  std::map<std::string, std::vector<std::string>> failed;  // runs by individual
+  for (const nlohmann::json& run : shown["runs"]) {
+    if (run["total_failure"].get<bool>()) failed[run["individual"].dump()].push_back(run["id"].dump());
+  }
+  const auto twice = std::ranges::find_if(failed, [](const auto& one) { return one.second.size() == 2; });
+  ASSERT_NE(twice, failed.end());
+  const std::string& first = twice->second[0];
+  const std::string& second = twice->second[1];
+
+  const nlohmann::json one = Found(Minimise(dir, {first}, 2))["cases"][0];
+  const ProcessResult again = Gauntlet(Minimise(dir, {second}, 2));
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  const nlohmann::json other = nlohmann::json::parse(again.out)["cases"][0];
+  EXPECT_EQ(again.err, "") << "nothing is simulated again";
+  EXPECT_EQ(other["name"], "run " + second);
+  EXPECT_EQ(other["minimised"]["obstacles"], one["minimised"]["obstacles"]);
+  EXPECT_THAT(std::string(other["minimised"]["files"][0]), HasSubstr("run-" + second + "-minimised.json"));
+
+  const ProcessResult both = Gauntlet({"confirm", dir, first, second, "--json"});
+  EXPECT_EQ(nlohmann::json::parse(both.out)["cases"].size(), 1U);
+  EXPECT_THAT(both.err, HasSubstr("run " + second + " has the same case as run " + first));
+
+  std::filesystem::remove(other["minimised"]["files"][0]);  // then that of the first speaks for both
+  const ProcessResult kept = Gauntlet({"corpus", "add", dir, second, second, "--to", scratch / "corpus"});
+  ASSERT_EQ(kept.exit_code, 0) << kept.err;
+  const nlohmann::json file = nlohmann::json::parse(ReadFile(scratch / ("corpus/run-" + second + ".json")));
+  EXPECT_EQ(file["case"]["obstacles"].size(), one["minimised"]["obstacles"]);
+}
+
 // Walls 2, 5 and 7 are a trap together: without any of them the flock passes. The others are out of the way.
 TEST(MinimiseTest, FindsAPlantedTrap) {
   const TemporaryDirectory scratch;
@@ -155,7 +196,9 @@ TEST(MinimiseTest, FindsAPlantedTrap) {
 TEST(MinimiseTest, RefusesWhatDoesNotFailAndWhatFailsWithoutObstacles) {
   const TemporaryDirectory scratch;
   MakeCampaign(scratch / "c");
-  const std::string harmless = Write(scratch / "harmless.json", {{"name", "nothing in the way"}});
+  const std::string harmless =
+      Write(scratch / "harmless.json",
+            {{"obstacles", {{{"x", 2.5}, {"y", -2.5}, {"length", 0.5}, {"width", 0.2}}}}});
   const ProcessResult passes = Gauntlet({"minimise", scratch / "c", harmless, "--quiet"});
   EXPECT_EQ(passes.exit_code, 2);
   EXPECT_THAT(passes.out, HasSubstr("harmless.json  0 of 6"));
@@ -187,6 +230,11 @@ TEST(MinimiseTest, SaysWhatIsWrong) {
                                         {{{"x", 2.5}, {"y", 2.5}, {"length", 1.0}, {"width", 1.0}},
                                          {{"x", -2.5}, {"y", -2.5}, {"length", 1.0}, {"width", 1.0}}}}});
   EXPECT_THAT(refused({blocked}), HasSubstr("blocked.json: "));
+  const std::string bare = Write(scratch / "bare.json", {{"name", "nothing in the way"}});
+  EXPECT_THAT(refused({bare}), HasSubstr("bare.json has no obstacles: there is nothing to leave out"));
+  const ProcessResult swapped = Gauntlet({"minimise", "200", scratch / "c"});
+  EXPECT_EQ(swapped.exit_code, 2);
+  EXPECT_THAT(swapped.err, HasSubstr("/c is a campaign and 200 is none: the campaign comes first"));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "master/cases/case_file.h"
 #include "tests/support/process.h"
 
 namespace gauntlet::master {
@@ -54,6 +55,15 @@ TEST(CorpusFileTest, ACaseSurvivesTheRoundTrip) {
   EXPECT_EQ(read->expected, "fail");
 }
 
+TEST(CorpusFileTest, IsACaseFileToo) {
+  const TemporaryDirectory scratch;
+  const CorpusCase one = Sample("run-812");
+  std::ofstream(scratch / "run-812.json") << WriteCorpusCase(one);
+  const Result<LoadedCase> loaded = LoadCase(scratch / "run-812.json");
+  ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+  EXPECT_EQ(loaded->test_case.obstacles, one.document.test_case.obstacles);
+}
+
 TEST(CorpusFileTest, SaysWhatIsWrong) {
   const std::string good = WriteCorpusCase(Sample("run-812"));
   EXPECT_THAT(ErrorOf("{}"), HasSubstr("\"format\""));
@@ -69,6 +79,11 @@ TEST(CorpusFileTest, SaysWhatIsWrong) {
   EXPECT_THAT(ErrorOf(Replaced(good, "\"k\": 5", "\"k\": 7")),
               HasSubstr("'found' needs k failures of n runs"));
   EXPECT_THAT(ErrorOf(Replaced(good, "\"run-812\"", "\"../x\"")), HasSubstr("name = '../x'"));
+  EXPECT_THAT(ErrorOf(Replaced(good, "\"run-812\"", "\"a\\nb\"")), HasSubstr("that can name a file"));
+  EXPECT_THAT(ErrorOf(Replaced(good, "\"run 812 of flocking\"", "812")), HasSubstr("found_in is no text"));
+  EXPECT_THAT(ErrorOf(Replaced(good, "0.44", "0.94")), HasSubstr("found.interval = [0.94, 0.97]"));
+  EXPECT_THAT(ErrorOf(Replaced(good, "0.055", "\"0.055\"")),
+              HasSubstr("experiment.controller_parameters.bird_speed = \"0.055\": a number stands without"));
   EXPECT_THAT(ErrorOf("{\"format\": 1"), HasSubstr("a.json:1:"));
 }
 
