@@ -32,12 +32,21 @@ constexpr std::string_view kStyle =
 .value { font-size: 12px; fill: #5b6470; text-anchor: end; }
 )";
 
+// About so many pixels take the lines above the boxes.
+double WidthOfTexts(const BoxFigure& figure) {
+  constexpr double kTitleCharacter = 15.0;
+  constexpr double kCharacter = 7.0;
+  return kLeft + std::max(kTitleCharacter * static_cast<double>(figure.title.size()),
+                          kCharacter * static_cast<double>(figure.outcome.size()));
+}
+
 class BoxDrawing {
  public:
   explicit BoxDrawing(const BoxFigure& figure)
       : figure_(figure),
-        canvas_(kLeft + kColumn * static_cast<double>(figure.boxes.size()) + 40, kTop + kHeight + kBottom,
-                figure.title, kStyle) {
+        canvas_(
+            std::max(kLeft + kColumn * static_cast<double>(figure.boxes.size()), WidthOfTexts(figure)) + 40,
+            kTop + kHeight + kBottom, figure.title, kStyle) {
     low_ = high_ = figure.boxes.front().box.median;
     for (const NamedBox& one : figure.boxes) {
       low_ = std::min(low_, one.box.lower_whisker);

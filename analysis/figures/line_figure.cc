@@ -144,7 +144,7 @@ class Panel {
       y = std::max(y, least);
       least = y + kNameHeight;
     }
-    double most = top_ + kHeight + kNameHeight / 2;
+    double most = top_ + kHeight;
     for (auto end = ends_.rbegin(); end != ends_.rend(); ++end) {
       end->first = std::min(end->first, most);
       most = end->first - kNameHeight;

@@ -44,17 +44,17 @@ Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunS
   std::vector<analysis::ComparedSet> values;
   for (const RunSet& set : comparison.sets) values.push_back(set.values);
   comparison.box_plots =
-      DrawSets(fmt::format("{}: fitness of {} sets of runs", scenario, count), "fitness", values);
+      DrawSets(fmt::format("{}: fitness of {} sets of runs", scenario, count), "", "fitness", values);
   return comparison;
 }
 
 }  // namespace
 
-std::string DrawSets(const std::string& title, const std::string& metric,
+std::string DrawSets(const std::string& title, const std::string& outcome, const std::string& metric,
                      const std::vector<analysis::ComparedSet>& sets) {
   analysis::BoxFigure figure{.title = title,
-                             .outcome = metric == "fitness" ? "lower = tougher test cases" : "",
-                             .axis_name = metric,
+                             .outcome = outcome,
+                             .axis_name = metric == "fitness" ? "fitness (lower = tougher)" : metric,
                              .boxes = {}};
   for (const analysis::ComparedSet& set : sets) {
     std::vector<double> values;

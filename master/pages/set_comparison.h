@@ -33,8 +33,8 @@ struct SetComparisons {
   std::vector<std::string> notes;  // why something is not compared, or what a reader has to know
 };
 
-// An SVG document: a box for each set.
-std::string DrawSets(const std::string& title, const std::string& metric,
+// An SVG document: a box for each set. `outcome`: a line below the title.
+std::string DrawSets(const std::string& title, const std::string& outcome, const std::string& metric,
                      const std::vector<analysis::ComparedSet>& sets);
 // How such a picture is read.
 inline constexpr std::string_view kReadingOfBoxes =

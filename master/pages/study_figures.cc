@@ -107,7 +107,7 @@ std::vector<NamedFigure> FiguresOf(const StudyReport& report, const StudySection
   if (!section.compared) return {};
   const ComparedSets& compared = *section.compared;
   return {{section.name, section.title, std::string(kReadingOfBoxes),
-           [&] { return DrawSets(section.title, compared.metric, compared.sets); },
+           [&] { return DrawSets(section.name, section.title, compared.metric, compared.sets); },
            [&compared] { return SetsCsv(compared.metric, compared.sets); }}};
 }
 

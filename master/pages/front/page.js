@@ -66,8 +66,10 @@ const kRowsAtATime = 100;
 
 function caseTable(place) {
   const campaign = data.campaigns[Number(place.dataset.campaign)];
-  const columns = campaign.case_columns;
-  const at = Object.fromEntries(columns.map((column, i) => [column.key, i]));
+  const at = Object.fromEntries(campaign.case_columns.map((column, i) => [column.key, i]));
+  // A column without any value tells nothing, nor does the number of the only search.
+  const columns = campaign.case_columns.filter(({key}) => campaign.cases.some((row) =>
+      row[at[key]] !== null && (key !== 'search' || row[at[key]] !== 1)));
   let shown = kRowsAtATime;
   let sorted = null;  // by the report: the toughest first
   let falling = false;
@@ -81,11 +83,11 @@ function caseTable(place) {
   const more = make('button', {type: 'button'}, 'Show more');
   const head = make('tr');
   const body = make('tbody');
-  columns.forEach((column, i) => {
+  columns.forEach((column) => {
     const button = make('button', {type: 'button'}, column.title);
     button.addEventListener('click', () => {
-      falling = sorted === i ? !falling : false;
-      sorted = i;
+      falling = sorted === at[column.key] ? !falling : false;
+      sorted = at[column.key];
       fill();
     });
     head.append(make('th', {scope: 'col', class: column.number ? 'number' : ''}, button));
@@ -109,14 +111,15 @@ function caseTable(place) {
       });
     }
     [...head.children].forEach((cell, i) => {
-      if (i === sorted) cell.setAttribute('aria-sort', falling ? 'descending' : 'ascending');
+      if (at[columns[i].key] === sorted) cell.setAttribute('aria-sort', falling ? 'descending' : 'ascending');
       else cell.removeAttribute('aria-sort');
     });
     body.replaceChildren(...rows.slice(0, shown).map((row) => {
       const line = make('tr');
-      columns.forEach((column, i) => {
+      columns.forEach((column) => {
         const cell = make('td', {class: column.number ? 'number' : ''});
-        if (row[i] !== null) cell.append(linked(column, row[i]));
+        const value = row[at[column.key]];
+        if (value !== null) cell.append(linked(column, value));
         line.append(cell);
       });
       return line;
