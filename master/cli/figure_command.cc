@@ -13,6 +13,7 @@
 #include "master/cli/table.h"
 #include "master/pages/archive_figure.h"
 #include "master/pages/campaign_figures.h"
+#include "master/pages/set_comparison.h"
 #include "master/pages/study_figures.h"
 #include "master/pages/study_pages.h"
 #include "master/study/study_campaigns.h"
@@ -23,6 +24,7 @@ namespace {
 struct FigureOptions {
   std::string directory;
   std::string name;
+  std::vector<std::string> others;
   std::string svg;
   std::string csv;
 };
@@ -38,9 +40,10 @@ Result<RunId> RunOf(const std::string& name) {
 // Names of figures and their titles.
 using Listed = std::vector<std::pair<std::string, std::string>>;
 
-// Of every run of a campaign.
-Listed FiguresOfRuns() {
-  return {{"run-ID", "of a run: everybody's way"},
+// Of every campaign, by what is said about them.
+Listed FiguresOfMore() {
+  return {{"comparison", "with --with SET: box plots of several sets of runs"},
+          {"run-ID", "of a run: everybody's way"},
           {"motion-ID", "of a run: how the swarm moved, over time"},
           {"states-ID", "of a run: what every robot did when (foraging, task-partitioning)"}};
 }
@@ -102,8 +105,24 @@ ExitCode RunStudyFigure(CommandContext& context, const FigureOptions& options) {
   return ListOrWrite(context, options, FiguresOf(*study->report), {});
 }
 
+// Of sets of runs, as `report` compares them.
+ExitCode RunComparisonFigure(CommandContext& context, const FigureOptions& options) {
+  std::vector<std::string> sets = {options.directory};
+  sets.insert(sets.end(), options.others.begin(), options.others.end());
+  const Result<SetComparisons> compared = CompareSets(sets);
+  if (!compared) return Fail(context, compared.error());
+  for (const std::string& note : compared->notes) PrintMessage(context, note);
+  if (compared->comparisons.size() != 1) {
+    return Fail(context, InvalidInput("these sets are not of one scenario: name at least two that are, the "
+                                      "first in place of DIR and each other one by --with"));
+  }
+  return ListOrWrite(context, options, {FigureOf(compared->comparisons.front())}, {});
+}
+
 ExitCode RunFigureCommand(CommandContext& context, const FigureOptions& options) {
+  if (!options.others.empty()) return RunComparisonFigure(context, options);
   if (IsStudy(options.directory)) return RunStudyFigure(context, options);
+  if (options.name == "comparison") return RunComparisonFigure(context, options);
   const Result<RunId> run = RunOf(options.name);
   if (!run) return Fail(context, run.error());
   const Result<CampaignFacts> facts = ReadFacts(options.directory);
@@ -124,7 +143,7 @@ ExitCode RunFigureCommand(CommandContext& context, const FigureOptions& options)
     }
     figures = FiguresOf(shown.front());
   }
-  return ListOrWrite(context, options, figures, FiguresOfRuns());
+  return ListOrWrite(context, options, figures, FiguresOfMore());
 }
 
 }  // namespace
@@ -134,19 +153,22 @@ void AddFigure(CommandParser& parser) {
       parser.Add("figure", "a campaign's figures as SVG, and their data as CSV", RunFigureCommand);
   AddDirectory(command, options.directory);
   command.add_option("NAME", options.name, "which one; without it, they are listed");
+  AddValue(command, "--with", "SET", options.others,
+           "of the figure 'comparison': another set of runs, as 'compare' names them; repeatable");
   AddValue(command, "-o,--svg", "F", options.svg, "where the picture goes; stdout when nothing is said");
   AddValue(command, "--csv", "F", options.csv, "write the data that it shows");
   command.footer(
       R"(Figures of a whole campaign: progress (fitness and failures over the runs spent; searches that differ in
 their seed only are repeats of one another and are drawn with a band), failure-types, behaviour. Figures of
 a run simulate it again: exit 1 when it does not end as it was stored. Figures of a study: the box plots of
-each comparison; of a tuning: robustness, consistency. The same figures stand in 'gauntlet report'; box plots
-of any two sets of runs draws 'gauntlet compare --svg'.
+each comparison; of a tuning: robustness, consistency. Of several sets of runs, DIR and those of --with: their
+box plots, comparison. The same figures stand in 'gauntlet report'.
 
 Examples:
   gauntlet figure campaigns/flocking-20260131T120000Z
   gauntlet figure DIR failure-types -o types.svg --csv types.csv
-  gauntlet figure DIR motion-812 -o motion.svg)");
+  gauntlet figure DIR motion-812 -o motion.svg
+  gauntlet figure random:all comparison --with evolved:final -o boxes.svg --csv boxes.csv)");
 }
 
 }  // namespace gauntlet::master

@@ -84,14 +84,14 @@ std::string CommandHtml(const std::string& command) {
   return fmt::format("<div class=\"command\"><code>{}</code></div>\n", Html(command));
 }
 
-std::string FigureHtml(const NamedFigure& figure, const std::string& directory) {
+std::string FigureHtml(const NamedFigure& figure, const std::string& directory, const std::string& options) {
   return fmt::format(
       "<figure><div class=\"scroll\"><img alt=\"{}\" src=\"{}\"></div>\n"
       "<figcaption>{}<details><summary>For a paper: as SVG, its data as CSV</summary>{}</details>"
       "</figcaption></figure>\n",
       Html(figure.title), DataUri(figure.svg()), Html(figure.reading),
-      CommandHtml(fmt::format("gauntlet figure {0} {1} -o {1}.svg --csv {1}.csv", PastedPath(directory),
-                              figure.name)));
+      CommandHtml(fmt::format("gauntlet figure {0} {1}{2} -o {1}.svg --csv {1}.csv", PastedPath(directory),
+                              figure.name, options)));
 }
 
 }  // namespace gauntlet::master

@@ -29,7 +29,8 @@ std::string TableHtml(const std::vector<std::string>& headers,
 std::string FactsHtml(const std::vector<std::pair<std::string, std::string>>& facts);
 // A command to be copied; a text.
 std::string CommandHtml(const std::string& command);
-// The figure, what it shows, and the command that writes it for a paper.
-std::string FigureHtml(const NamedFigure& figure, const std::string& directory);
+// The figure, what it shows, and the command that writes it for a paper, with these options.
+std::string FigureHtml(const NamedFigure& figure, const std::string& directory,
+                       const std::string& options = "");
 
 }  // namespace gauntlet::master

@@ -28,7 +28,7 @@ Result<ComparedPair> Compared(const std::vector<RunSet>& sets, std::size_t first
 }
 
 Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunSet> sets) {
-  SetComparison comparison{scenario, std::move(sets), {}, ""};
+  SetComparison comparison{scenario, std::move(sets), {}};
   const std::size_t count = comparison.sets.size();
   for (std::size_t first = 0; first < (count <= kMostInAllPairs ? count : 1); ++first) {
     for (std::size_t second = first + 1; second < count; ++second) {
@@ -41,10 +41,6 @@ Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunS
   for (const ComparedPair& pair : comparison.pairs) p.push_back(pair.comparison.test.p_two_sided);
   const std::vector<double> adjusted = analysis::HolmAdjusted(p);
   for (std::size_t i = 0; i < adjusted.size(); ++i) comparison.pairs[i].p_adjusted = adjusted[i];
-  std::vector<analysis::ComparedSet> values;
-  for (const RunSet& set : comparison.sets) values.push_back(set.values);
-  comparison.box_plots =
-      DrawSets(fmt::format("{}: fitness of {} sets of runs", scenario, count), "", "fitness", values);
   return comparison;
 }
 
@@ -74,6 +70,15 @@ std::string SetsCsv(const std::string& metric, const std::vector<analysis::Compa
     }
   }
   return CsvText({"set", "unit", metric}, rows);
+}
+
+NamedFigure FigureOf(const SetComparison& comparison) {
+  const std::string title =
+      fmt::format("{}: fitness of {} sets of runs", comparison.scenario, comparison.sets.size());
+  std::vector<analysis::ComparedSet> values;
+  for (const RunSet& set : comparison.sets) values.push_back(set.values);
+  return {"comparison", title, std::string(kReadingOfBoxes),
+          [=] { return DrawSets(title, "", "fitness", values); }, [=] { return SetsCsv("fitness", values); }};
 }
 
 Result<SetComparisons> CompareSets(const std::vector<std::string>& names) {

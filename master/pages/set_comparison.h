@@ -7,6 +7,7 @@
 
 #include "analysis/statistics/comparison.h"
 #include "base/result.h"
+#include "master/pages/campaign_figures.h"
 #include "master/report/run_set.h"
 
 namespace gauntlet::master {
@@ -25,7 +26,6 @@ struct SetComparison {
   std::string scenario;
   std::vector<RunSet> sets;         // at least two
   std::vector<ComparedPair> pairs;  // each two of up to four sets; of more, each with the first
-  std::string box_plots;            // SVG
 };
 
 struct SetComparisons {
@@ -42,6 +42,9 @@ inline constexpr std::string_view kReadingOfBoxes =
     "the mean; lower fitness means tougher test cases.";
 // Its data: a row for each value. Values of one unit (an evolution, a case) are relatives.
 std::string SetsCsv(const std::string& metric, const std::vector<analysis::ComparedSet>& sets);
+
+// "comparison": a box for each of its sets.
+NamedFigure FigureOf(const SetComparison& comparison);
 
 // By their fitness; `names` as `compare` takes them. Sets of scenarios that no other set has, and sets
 // without a value, are not compared, which is noted. Errors: those of ReadRunSet.

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -72,6 +73,20 @@ TEST(FigureTest, WritesPictureAndDataOfTheSameThing) {
   for (const json& type : shown["failure_types"]) typed += type["runs"].get<std::uint64_t>();
   EXPECT_GT(typed, 0U);
   EXPECT_EQ(counted, typed);
+}
+
+TEST(FigureTest, SetsOfRunsAreComparedByBoxPlots) {
+  const std::string csv = Scratch() / "boxes.csv";
+  const std::string svg = Scratch() / "boxes.svg";
+  const ProcessResult result = Gauntlet({"figure", Campaign() + ":all", "comparison", "--with",
+                                         Campaign() + ":worst:10", "-o", svg, "--csv", csv});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(ReadFile(svg), HasSubstr("fitness of 2 sets of runs"));
+  const std::string data = ReadFile(csv);
+  EXPECT_EQ(std::ranges::count(data, '\n'), 1 + 60 + 10);
+  const ProcessResult alone = Gauntlet({"figure", Campaign(), "comparison"});
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_THAT(alone.err, HasSubstr("--with"));
 }
 
 TEST(FigureTest, NamesWhatThereIs) {
@@ -156,6 +171,8 @@ TEST(ReportTest, SetsOfOneScenarioAreComparedAndThoseOfOthersNamed) {
             0);
   const std::string page = MakeReport({Campaign() + ":all", Campaign() + ":worst:10", foraging}, "two.html");
   EXPECT_TRUE(Says(page, "id=\"comparison\""));
+  EXPECT_TRUE(
+      Says(page, "gauntlet figure " + Campaign() + ":all comparison --with " + Campaign() + ":worst:10 -o"));
   EXPECT_TRUE(Says(page, foraging + " stands alone: no other set is of the scenario foraging"));
 }
 
