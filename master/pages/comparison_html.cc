@@ -16,7 +16,7 @@ std::string PairsTable(const SetComparison& comparison) {
     rows.push_back({Html(comparison.sets[pair.first].values.name),
                     Html(comparison.sets[pair.second].values.name), fmt::format("{:.3f}", c.test.a),
                     interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-",
-                    Html(c.effect), fmt::format("{:.2g}", c.test.p_two_sided),
+                    Html(c.effect), fmt::format("{:.2g}", c.p_two_sided),
                     fmt::format("{:.2g}", pair.p_adjusted)});
   }
   return TableHtml({"first", "second", ">A", "95 % interval", "effect", ">p", ">p, Holm"}, rows);
@@ -57,9 +57,9 @@ std::string ComparisonHtml(const std::vector<SetComparison>& comparisons,
     html += fmt::format(
         "<h2>{}</h2>\n{}{}\n"
         "<p>A is the probability that a run of the first set scores higher than one of the second (Vargha "
-        "and "
-        "Delaney; 0.5 = no difference, 0.56 small, 0.64 medium, 0.71 large). p is Mann-Whitney's, two-sided; "
-        "the last column makes up for the number of tests.</p>\n{}",
+        "and Delaney; 0.5 = no difference, 0.56 small, 0.64 medium, 0.71 large). p is Mann-Whitney's, "
+        "two-sided, exact where that can be computed; the last column makes up for the number of "
+        "tests.</p>\n{}",
         Html(one.scenario), BoxesHtml(one), SetsTable(one), PairsTable(one));
     for (const ComparedPair& pair : one.pairs) {
       html += fmt::format("<p>{}</p>\n", Html(pair.words));

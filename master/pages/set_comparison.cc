@@ -38,7 +38,7 @@ Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunS
     }
   }
   std::vector<double> p;
-  for (const ComparedPair& pair : comparison.pairs) p.push_back(pair.comparison.test.p_two_sided);
+  for (const ComparedPair& pair : comparison.pairs) p.push_back(pair.comparison.p_two_sided);
   const std::vector<double> adjusted = analysis::HolmAdjusted(p);
   for (std::size_t i = 0; i < adjusted.size(); ++i) comparison.pairs[i].p_adjusted = adjusted[i];
   return comparison;
