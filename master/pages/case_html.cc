@@ -82,10 +82,10 @@ std::string CaseHtml(const CampaignFacts& facts, std::size_t number, const Shown
       "<p class=\"verdict\">{}</p>\n<div class=\"columns\"><div>\n<div class=\"replay needs-js\" "
       "data-run=\"{}\"></div>\n<noscript><figure><img class=\"arena\" alt=\"The arena from above\" "
       "src=\"{}\"></figure></noscript>\n<p class=\"soft\">The arena from above, as the run went: blue are "
-      "those "
-      "that did well, red those that were lost in the end, green is a guide. The stroke within is where a "
-      "robot "
-      "heads. A dashed circle appears where the swarm split, a red ring around who is trapped.</p>\n</div>\n"
+      "those that did well, red those that were lost in the end, green is a guide. The stroke within is "
+      "where "
+      "a robot heads. A dashed circle appears where the swarm split or an item changed hands, a red ring "
+      "around who is trapped.</p>\n</div>\n"
       "<div>{}</div></div>\n",
       Html(analysis::DescribeOutcome(shown.figure)), page_id,
       DataUri(analysis::DrawThumbnail(shown.figure, kPicturePixels)), RunFactsHtml(facts, shown));

@@ -121,7 +121,7 @@ class Bins {
       const double begin = low_ + width_ * static_cast<double>(i);
       const double end = whole ? begin + width_ - 1 : begin + width_;
       names_.push_back(begin == end ? fmt::format("{:.4g}", begin)
-                                    : fmt::format("{:.4g}-{:.4g}", begin, end));
+                                    : fmt::format("{:.4g}{}{:.4g}", begin, low_ < 0.0 ? " to " : "-", end));
     }
   }
 
@@ -168,6 +168,7 @@ RunMap BehaviourMap(const CampaignFacts& facts, const std::vector<Bins>& bins) {
              .down_name = down == nullptr ? "" : down->name(),
              .columns = across.names(),
              .rows = down == nullptr ? std::vector<std::string>{"runs"} : down->names()};
+  std::ranges::reverse(map.rows);  // upwards, as in an arena that is seen from above
   map.cells.assign(map.rows.size(), std::vector<MapCell>(map.columns.size()));
   Filling filling(facts);
   std::uint64_t counted = 0;
@@ -176,7 +177,7 @@ RunMap BehaviourMap(const CampaignFacts& facts, const std::vector<Bins>& bins) {
     const std::size_t row = down == nullptr ? 0 : down->BinOf(run);
     if (column == map.columns.size() || row == map.rows.size()) continue;
     ++counted;
-    filling.Add(run, map.cells[row][column]);
+    filling.Add(run, map.cells[map.rows.size() - 1 - row][column]);
   }
   for (std::size_t row = 0; row < map.rows.size(); ++row) {
     for (std::size_t column = 0; column < map.columns.size(); ++column) {
@@ -188,7 +189,8 @@ RunMap BehaviourMap(const CampaignFacts& facts, const std::vector<Bins>& bins) {
   map.outcome =
       fmt::format("{} of {} runs have these values", FormatCount(counted), FormatCount(facts.runs.size()));
   map.reading =
-      "Each field counts the runs whose behaviour lies in these ranges, failed or not: the darker, the more.";
+      "Each field counts the runs whose behaviour lies in these ranges, failed or not: the darker, the more. "
+      "Values grow to the right and upwards.";
   return map;
 }
 

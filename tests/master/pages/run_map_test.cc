@@ -61,10 +61,16 @@ TEST(RunMapTest, BehaviourIsCutIntoRoundRanges) {
   EXPECT_EQ(maps[0].name, "behaviour");
   EXPECT_EQ(maps[0].columns.front(), "10-15");
   EXPECT_EQ(maps[0].columns.back(), "45-50");
-  EXPECT_EQ(maps[0].rows.front(), "0-50");
-  EXPECT_EQ(maps[0].cells.front().front().toughest, 1U);
-  EXPECT_EQ(maps[0].cells.back().back().toughest, 2U);
+  EXPECT_EQ(maps[0].rows.back(), "0-50") << "values grow upwards";
+  EXPECT_EQ(maps[0].cells.back().front().toughest, 1U);
+  EXPECT_EQ(maps[0].cells.front().back().toughest, 2U);
   EXPECT_THAT(maps[0].down_name, HasSubstr("degrees"));
+}
+
+TEST(RunMapTest, RangesBelowZeroAreReadWithoutDoubt) {
+  CampaignFacts facts = FactsOf("flocking");
+  facts.runs = {RunOf(1, 1.0, -2, {-0.9, 0.0}), RunOf(2, 1.0, -2, {0.9, 0.0})};
+  EXPECT_EQ(MapsOf(facts).front().columns.front(), "-1 to -0.5");
 }
 
 TEST(RunMapTest, NoRunsGiveNoMap) {
