@@ -161,6 +161,12 @@ class CaseReader {
                    {"max_y", Into(area.max.y())}});
   }
 
+  Reader Into(sim::Pose& pose) {
+    pose.position.setZero();
+    return Object(
+        {{"x", Into(pose.position.x())}, {"y", Into(pose.position.y())}, {"heading", Into(pose.heading)}});
+  }
+
   Reader Into(sim::ObstacleGene& gene) {
     return Object({{"x", Into(gene.x)},
                    {"y", Into(gene.y)},
@@ -175,7 +181,7 @@ class CaseReader {
     return {{"name", Into(test_case.name)},           {"side_x", Into(test_case.side_x)},
             {"side_y", Into(test_case.side_y)},       {"wall_thickness", Into(test_case.wall_thickness)},
             {"obstacles", Into(test_case.obstacles)}, {"spawn_area", Into(test_case.spawn_area)},
-            {"robots", Into(test_case.robots)}};
+            {"robots", Into(test_case.robots)},       {"start_poses", Into(test_case.start_poses)}};
   }
   Reader Into(sim::TestCase& test_case) { return Object(KeysOf(test_case)); }
 
@@ -232,6 +238,10 @@ nlohmann::ordered_json JsonOf(const sim::TestCase& test_case) {
                              {"max_y", area->max.y()}};
   }
   if (test_case.robots) written["robots"] = *test_case.robots;
+  for (const sim::Pose& pose : test_case.start_poses) {
+    written["start_poses"].push_back(
+        {{"x", pose.position.x()}, {"y", pose.position.y()}, {"heading", pose.heading}});
+  }
   return written;
 }
 
@@ -260,6 +270,9 @@ Result<CaseDocument> ParseCaseDocument(const std::string& text, const std::strin
   CaseReader reader;
   reader.Read(*json, document);
   if (reader.complaint()) return InvalidInput(Printable(file_name + ": " + *reader.complaint()));
+  sim::TestCase& test_case = document.test_case;
+  if (!test_case.robots && !test_case.start_poses.empty())
+    test_case.robots = static_cast<int>(test_case.start_poses.size());
   return document;
 }
 

@@ -25,6 +25,12 @@ Error Corrupt(std::string what) {
 
 // --- Writing ---
 
+void ToProto(const sim::Pose& pose, v1::Pose& message) {
+  message.set_x(pose.position.x());
+  message.set_y(pose.position.y());
+  message.set_heading(pose.heading);
+}
+
 void ToProto(const sim::TestCase& test_case, v1::TestCase& message) {
   message.set_name(test_case.name);
   message.set_side_x(test_case.side_x);
@@ -55,6 +61,7 @@ void ToProto(const sim::TestCase& test_case, v1::TestCase& message) {
     area.set_max_y(test_case.spawn_area->max.y());
   }
   if (test_case.robots) message.set_robots(*test_case.robots);
+  for (const sim::Pose& pose : test_case.start_poses) ToProto(pose, *message.add_start_poses());
 }
 
 void ToProto(const sim::Disturbances& disturbances, v1::RunSpec& message) {
@@ -71,12 +78,6 @@ void ToProto(const sim::Disturbances& disturbances, v1::RunSpec& message) {
     if (fault.device) written.set_device(sim::KeyOf(*fault.device));
     written.set_tick(fault.tick);
   }
-}
-
-void ToProto(const sim::Pose& pose, v1::Pose& message) {
-  message.set_x(pose.position.x());
-  message.set_y(pose.position.y());
-  message.set_heading(pose.heading);
 }
 
 template <typename Repeated>
@@ -222,6 +223,14 @@ sim::TestCase ReadTestCase(const v1::TestCase& wire, SpecReader& reader) {
                                                   reader.Finite(area.max_y(), "spawn_area.max_y")}};
   }
   if (wire.has_robots()) test_case.robots = wire.robots();
+  reader.RequireAtMost(wire.start_poses(), sim::kMaxRobots, "start poses");
+  if (!reader.ok()) return test_case;
+  for (const v1::Pose& pose : wire.start_poses()) {
+    reader.RequireKnownFields(pose, "start_pose");
+    test_case.start_poses.push_back(
+        {{reader.Finite(pose.x(), "start_poses.x"), reader.Finite(pose.y(), "start_poses.y")},
+         reader.Finite(pose.heading(), "start_poses.heading")});
+  }
   return test_case;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -28,6 +29,7 @@ struct RobotSetup {
   double radio_range = foot_bot::kRangeAndBearingRange;  // m, how far its messages are heard
   bool bodies_block_radio = true;     // it hears no message through another robot, as in ARGoS
   DeviceSet equipment = kAllDevices;  // its controller must not ask for more
+  bool under_test = true;             // false: it belongs to the scenario, as the prey of a flock does
 };
 
 // Fitness, metrics, failure, robots' `lost` flags and annotations of a finished run.
@@ -39,6 +41,15 @@ struct Outcome {
   std::vector<Annotation> annotations;
   // Why the run cannot be judged, with the values that are to blame; not empty: all else is meaningless.
   std::string complaint;
+};
+
+// A part of the floor that means something to the swarm.
+struct GroundArea {
+  std::string_view name;             // "nest"
+  Vec2 center = Vec2::Zero();        // m
+  double radius = 0.0;               // m, of a disc; 0: a rectangle
+  Vec2 half_extents = Vec2::Zero();  // m along x and y, of a rectangle
+  double grey = 1.0;                 // of the floor there, 0 = black, 1 = white as elsewhere
 };
 
 // What a scenario sees and moves between physics and sensing.
@@ -56,6 +67,8 @@ class Scenario : public Surroundings {
   // The swarm in robot order. `headquarters` outlives the robots. Error: refused, the message begins with the
   // rule's name and a colon.
   virtual Result<std::vector<RobotSetup>> CreateSwarm(const Headquarters& headquarters) = 0;
+  // For those who rebuild the scenario elsewhere.
+  virtual std::vector<GroundArea> ground_areas() const { return {}; }
   // In every tick after physics, before sensing: hand items over, change lights and radio beacons.
   virtual void Interact(const Interaction& /*interaction*/) {}
   // After every tick: has the run come to its end?

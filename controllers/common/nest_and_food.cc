@@ -125,6 +125,7 @@ NestAndFoodScenario::NestAndFoodScenario(const sim::TestCase& test_case, const N
       site_(WithRobots(site, test_case.robots)),
       nest_(site.Nest()),
       food_(site.Food()),
+      start_poses_(test_case.start_poses),
       controller_(std::move(controller)),
       source_(site_),
       states_(states) {}
@@ -161,6 +162,16 @@ void NestAndFoodScenario::Begin(std::uint8_t state) {
   items_.Begin(site_.tick_limit);
   last_at_rest_.assign(robots, -1);
   carrying_.assign(robots, 0);
+}
+
+std::vector<sim::GroundArea> NestAndFoodScenario::ground_areas() const {
+  return {
+      {.name = "nest", .center = nest_, .radius = site_.nest_radius, .half_extents = {0.0, 0.0}, .grey = 0.0},
+      {.name = "food",
+       .center = food_,
+       .radius = site_.food_radius,
+       .half_extents = {0.0, 0.0},
+       .grey = 1.0}};
 }
 
 bool NestAndFoodScenario::InNest(const sim::Vec2& point) const {

@@ -109,6 +109,7 @@ class NestAndFoodScenario : public sim::Scenario {
   double FloorHolds(const sim::Vec2& point) const override {
     return std::abs(std::sqrt((point - nest_).squaredNorm()) - site_.nest_radius);
   }
+  std::vector<sim::GroundArea> ground_areas() const override;
   bool Finished(const sim::Observer& observer) override { return observer.last_tick() >= site_.tick_limit; }
 
  protected:
@@ -150,6 +151,7 @@ class NestAndFoodScenario : public sim::Scenario {
   NestAndFood site_;
   sim::Vec2 nest_;
   sim::Vec2 food_;
+  std::vector<sim::Pose> start_poses_;  // that the test case gives; empty: the seed decides
   ControllerFactory controller_;
   FoodSource source_;
   FoodCount items_;

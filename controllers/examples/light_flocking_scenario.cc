@@ -29,7 +29,8 @@ LightFlockingScenario::LightFlockingScenario(const sim::TestCase& test_case,
       seed_(seed),
       start_(settings.Requirements(test_case).start),
       light_({.position = -start_, .height = settings.light_height, .intensity = settings.light_intensity}),
-      spawn_area_(settings.StartArea(test_case)) {
+      spawn_area_(settings.StartArea(test_case)),
+      given_poses_(test_case.start_poses) {
   settings_.robots = test_case.robots.value_or(settings.robots);
 }
 

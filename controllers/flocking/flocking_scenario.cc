@@ -44,7 +44,8 @@ FlockingScenario::FlockingScenario(const sim::TestCase& test_case, const Flockin
       seed_(seed),
       start_(settings.Requirements(test_case).start),
       goal_(-start_),
-      spawn_area_(settings.StartArea(test_case)) {
+      spawn_area_(settings.StartArea(test_case)),
+      start_poses_(test_case.start_poses) {
   settings_.birds = test_case.robots.value_or(settings.birds);
 }
 
@@ -67,7 +68,7 @@ Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::He
                                      .start = start_};
   sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
   const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
-  const auto poses = sim::Spawn(request, grid, random);
+  const auto poses = start_poses_.empty() ? sim::Spawn(request, grid, random) : start_poses_;
   if (!poses.ok()) return poses.error();
 
   std::vector<sim::RobotSetup> swarm;
@@ -80,6 +81,7 @@ Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::He
   const sim::Pose prey_pose{start_, sim::AngleOf(goal_ - start_)};
   swarm.push_back({prey_pose, kPreyColor, 0.0,
                    std::make_unique<PreyController>(headquarters, prey(), prey_path_, settings_.prey)});
+  swarm.back().under_test = false;
   return swarm;
 }
 

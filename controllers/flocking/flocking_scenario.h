@@ -54,6 +54,7 @@ class FlockingScenario : public sim::Scenario {
   sim::Vec2 start_;
   sim::Vec2 goal_;
   sim::Rectangle spawn_area_;
+  std::vector<sim::Pose> start_poses_;  // that the test case gives; empty: the seed decides
   std::vector<sim::Vec2> prey_path_;
 };
 

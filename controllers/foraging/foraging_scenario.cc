@@ -42,7 +42,7 @@ Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
                                      .start = nest_};
   sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
   const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
-  const auto poses = sim::Spawn(request, grid, random);
+  const auto poses = start_poses_.empty() ? sim::Spawn(request, grid, random) : start_poses_;
   if (!poses.ok()) return poses.error();
 
   std::vector<sim::RobotSetup> swarm;

@@ -55,6 +55,7 @@ GenericScenario::GenericScenario(const sim::TestCase& test_case, const GenericSe
       seed_(seed),
       start_(settings.Requirements(test_case).start),
       spawn_area_(settings.StartArea(test_case)),
+      start_poses_(test_case.start_poses),
       items_(definition_.sources, definition_.nests),
       measures_(arena_, settings_),
       fitness_(Compiled(definition_.fitness, NamesAtTheEnd())),
@@ -69,6 +70,17 @@ double GenericScenario::FloorGrey(const sim::Vec2& point) const {
     }
   }
   return 1.0;
+}
+
+std::vector<sim::GroundArea> GenericScenario::ground_areas() const {
+  std::vector<sim::GroundArea> all;
+  for (const auto& [what, areas] : {std::pair{"nest", &definition_.nests},
+                                    {"source", &definition_.sources},
+                                    {"ground", &definition_.ground}}) {
+    for (const Area& area : *areas)
+      all.push_back({what, {area.x, area.y}, area.radius, area.HalfExtents(), area.grey});
+  }
+  return all;
 }
 
 Status GenericScenario::Check() const {
@@ -100,6 +112,7 @@ Status GenericScenario::Check() const {
 }
 
 Result<std::vector<sim::Pose>> GenericScenario::StartPoses() const {
+  if (!start_poses_.empty()) return start_poses_;
   const sim::SpawnRequest request = {.count = settings_.robots,
                                      .area = spawn_area_,
                                      .robot_radius = sim::foot_bot::kRadius,

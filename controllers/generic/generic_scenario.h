@@ -46,6 +46,7 @@ class GenericScenario : public sim::Scenario {
   sim::Tick tick_limit() const override { return settings_.tick_limit; }
   std::span<const sim::Light> lights() const override { return definition_.lights; }
   double FloorGrey(const sim::Vec2& point) const override;
+  std::vector<sim::GroundArea> ground_areas() const override;
   Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters& headquarters) override;
   void Interact(const sim::Interaction& interaction) override { items_.Move(interaction); }
   bool Finished(const sim::Observer& observer) override;
@@ -67,6 +68,7 @@ class GenericScenario : public sim::Scenario {
   std::uint64_t seed_ = 0;
   sim::Vec2 start_;
   sim::Rectangle spawn_area_;
+  std::vector<sim::Pose> start_poses_;  // that the test case gives; empty: the seed decides
   Items items_;
   Measures measures_;
   Formula fitness_;

@@ -63,6 +63,7 @@ Status PartitioningScenario::CheckSettings() const {
 }
 
 Result<std::vector<sim::Pose>> PartitioningScenario::StartPoses() const {
+  if (!start_poses_.empty()) return start_poses_;
   const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
   sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
   const sim::Vec2 half_side(site_.spawn_radius, site_.spawn_radius);

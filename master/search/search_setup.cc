@@ -18,6 +18,11 @@ void AddCase(const sim::TestCase& test_case, Fnv1a64& hash) {
   hash.AddDouble(test_case.side_y);
   hash.AddDouble(test_case.wall_thickness);
   hash.AddUint64(static_cast<std::uint64_t>(test_case.robots.value_or(-1)));
+  for (const sim::Pose& pose : test_case.start_poses) {
+    hash.AddDouble(pose.position.x());
+    hash.AddDouble(pose.position.y());
+    hash.AddDouble(pose.heading);
+  }
   if (!test_case.spawn_area.has_value()) return;
   for (const sim::Vec2& corner : {test_case.spawn_area->min, test_case.spawn_area->max}) {
     hash.AddDouble(corner.x());

@@ -53,6 +53,12 @@ std::string EncodeTestCase(const sim::TestCase& test_case) {
   }
   encoder.Bool(test_case.robots.has_value());
   if (test_case.robots) encoder.Int(*test_case.robots);
+  // At the end, and only where there are some: stored cases without keep their bytes.
+  for (const sim::Pose& pose : test_case.start_poses) {
+    encoder.Double(pose.position.x());
+    encoder.Double(pose.position.y());
+    encoder.Double(pose.heading);
+  }
   return encoder.Take();
 }
 
@@ -78,6 +84,10 @@ bool DecodeTestCase(std::string_view bytes, sim::TestCase& test_case) {
     }
   }
   if (decoder.Bool()) test_case.robots = static_cast<int>(decoder.Int());
+  while (decoder.ok() && !decoder.AtEnd()) {
+    sim::Pose& pose = test_case.start_poses.emplace_back();
+    for (double* value : {&pose.position.x(), &pose.position.y(), &pose.heading}) *value = decoder.Double();
+  }
   return decoder.ok() && decoder.AtEnd();
 }
 

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sim/arena/genome.h"
 
@@ -25,6 +26,9 @@ struct TestCase {
   Genome obstacles;
   std::optional<Rectangle> spawn_area;  // overrides the scenario's spawn area (imported .argos files)
   std::optional<int> robots;            // overrides the scenario's number of robots under test (birds)
+  // Where each of `robots` starts, in their order, instead of where the seed puts it. Empty: the seed
+  // decides.
+  std::vector<Pose> start_poses = {};
 };
 
 }  // namespace gauntlet::sim

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/number_text.h"
+#include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::sim {
 namespace {
@@ -70,6 +71,19 @@ std::optional<Violation> JudgeSwarmNumbers(const TestCase& test_case) {
   if (test_case.robots && (*test_case.robots < 1 || *test_case.robots > kMaxRobots)) {
     return Violation{kLimits, -1,
                      std::to_string(*test_case.robots) + " robots; want 1 to " + std::to_string(kMaxRobots)};
+  }
+  const std::size_t poses = test_case.start_poses.size();
+  if (poses > 0 && test_case.robots != static_cast<int>(poses)) {
+    return Violation{kLimits, -1,
+                     std::to_string(poses) + " start poses for " +
+                         std::to_string(test_case.robots.value_or(0)) +
+                         " robots; want one for each, or none"};
+  }
+  for (const Pose& pose : test_case.start_poses) {
+    if (pose.position.allFinite() && std::abs(pose.heading) <= kPi) continue;
+    return Violation{kLimits, -1,
+                     "the start pose at " + PointText(pose.position) + " m has the heading " +
+                         NumberText(pose.heading) + "; want finite numbers, the heading from -pi to pi"};
   }
   if (test_case.obstacles.size() > kMaxObstacles) {
     return Violation{kLimits, -1,

@@ -119,12 +119,25 @@ TEST(CaseJsonTest, MalformedTextIsRefusedWithLineAndColumn) {
   EXPECT_THAT(CaseError(std::string(100, '[')), HasSubstr("nested deeper than 64 levels"));
 }
 
+TEST(CaseJsonTest, StartPosesGiveTheNumberOfRobots) {
+  const Result<sim::TestCase> parsed =
+      ParseCaseJson(R"({"start_poses": [{"x": 1, "y": -0.25, "heading": 0.1}, {}]})", "case.json");
+  ASSERT_TRUE(parsed.ok()) << parsed.error().message;
+  EXPECT_EQ(parsed->robots, 2);
+  ASSERT_EQ(parsed->start_poses.size(), 2U);
+  EXPECT_EQ(parsed->start_poses[0].position, sim::Vec2(1.0, -0.25));
+  EXPECT_EQ(parsed->start_poses[0].heading, 0.1);
+  EXPECT_EQ(WriteCaseJson(*ParseCaseJson(WriteCaseJson(*parsed), "again.json")), WriteCaseJson(*parsed));
+  EXPECT_EQ(CaseError("{\"start_poses\": [{\"x\": 1, \"z\": 2}]}"),
+            "case.json: start_poses[0]: unknown key 'z'; known: x, y, heading");
+}
+
 TEST(CaseJsonTest, AnUnknownKeyIsRefusedWithTheNearestKnownOne) {
   EXPECT_EQ(CaseError("{\"obstacles\": [{\"x\": 1},\n  {\"lenght\": 2}]}"),
             "case.json: obstacles[1]: unknown key 'lenght'; did you mean 'length'?");
   EXPECT_EQ(CaseError("{\"quux\": 1}"),
             "case.json: unknown key 'quux'; known: name, side_x, side_y, wall_thickness, obstacles, "
-            "spawn_area, robots, lineage");
+            "spawn_area, robots, start_poses, lineage");
 }
 
 TEST(CaseJsonTest, AWrongTypeIsRefusedWhereItStands) {

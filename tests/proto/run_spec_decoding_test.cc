@@ -74,6 +74,13 @@ SpecPair ArbitrarySpec() {
     wire.mutable_spawn_area()->set_max_y(4.0);
   }
   if (*rc::gen::arbitrary<bool>()) wire.set_robots(*(test_case.robots = *rc::gen::arbitrary<int>()));
+  if (*rc::gen::arbitrary<bool>()) {
+    test_case.start_poses = {{{*FiniteDouble(), 2.0}, 0.5}};
+    v1::Pose& pose = *wire.add_start_poses();
+    pose.set_x(test_case.start_poses[0].position.x());
+    pose.set_y(2.0);
+    pose.set_heading(0.5);
+  }
   pair.wire.set_scenario(pair.spec.scenario = *Name());
   pair.wire.set_controller(pair.spec.controller = *Name());
   Write(pair.spec.scenario_parameters = ArbitraryParameters(), pair.wire.mutable_scenario_parameters());
@@ -104,6 +111,11 @@ RC_GTEST_PROP(RunCodecProperty, SpecsDecodeToWhatWasSent, ()) {
   if (expected.spawn_area) {
     RC_ASSERT(actual.spawn_area->min == expected.spawn_area->min);
     RC_ASSERT(actual.spawn_area->max == expected.spawn_area->max);
+  }
+  RC_ASSERT(actual.start_poses.size() == expected.start_poses.size());
+  if (!expected.start_poses.empty()) {
+    RC_ASSERT(actual.start_poses[0].position == expected.start_poses[0].position);
+    RC_ASSERT(actual.start_poses[0].heading == 0.5);
   }
   RC_ASSERT(decoded->scenario == pair.spec.scenario);
   RC_ASSERT(decoded->controller == pair.spec.controller);
