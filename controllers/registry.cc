@@ -169,20 +169,4 @@ Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) 
   return scenario->create(resolved, std::move(factory));
 }
 
-Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {
-  constexpr std::uint64_t kSeeds = 5;
-  Error error;
-  for (std::uint64_t i = 0; i < kSeeds; ++i) {
-    sim::RunSpec trial = spec;
-    trial.seed += i;
-    const auto scenario = CreateScenario(trial);
-    if (!scenario.ok()) return scenario.error();
-    const sim::Observer observer(0, 0);
-    const auto swarm = (*scenario)->CreateSwarm(sim::Headquarters(observer));
-    if (swarm.ok()) return swarm->size();
-    error = swarm.error();
-  }
-  return error;
-}
-
 }  // namespace gauntlet::controllers

@@ -1,6 +1,6 @@
 // One table of what can be tested: scenarios and controllers by name, each parameter with its unit, default
-// and range. A runner builds the scenario of a run; the master does so only to see whether a swarm finds room
-// (CountSwarm).
+// and range. A runner builds the scenario of a run; the master does so only to see how its swarm begins
+// (controllers/run_start.h).
 #pragma once
 
 #include <memory>
@@ -47,10 +47,5 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos, 
 // Checks names, parameters and the arena, then builds the scenario. Error: the message begins with the broken
 // rule's name and a colon when the test case is at fault.
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec);
-
-// The number of robots of the spec's swarm, provided that it can be put into the arena at all. Start places
-// are random, so a few seeds from the spec's on are tried, and one that works is enough. Error: as
-// CreateScenario, or why the last try failed ("no-room-to-spawn: ...").
-Result<std::size_t> CountSwarm(const sim::RunSpec& spec);
 
 }  // namespace gauntlet::controllers

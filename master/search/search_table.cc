@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "controllers/registry.h"
+#include "controllers/run_start.h"
 #include "master/search/archive_search.h"
 #include "master/search/blame_search.h"
 #include "master/search/case_list_search.h"

@@ -53,7 +53,7 @@ const Prefixes kRunData = {"sim/geometry/", "sim/arena/", "sim/random/", "sim/ru
                            "sim/run_result.h"};
 const Prefixes kSwarmData = {"sim/observer.h", "sim/run_style.h", "sim/robot/foot_bot.h",
                              "sim/robot/disturbances.h"};
-const Prefixes kBehaviours = {"controllers/registry.h", "controllers/behaviour.h"};
+const Prefixes kBehaviours = {"controllers/registry.h", "controllers/behaviour.h", "controllers/run_start.h"};
 
 // The house from the ground up: a room includes rooms that stand before it here, never one that comes later.
 const std::vector<Room>& House() {
@@ -95,7 +95,10 @@ const std::vector<Room>& House() {
        kRunData + kSwarmData + kBehaviours + Prefixes{"controllers/generic/definition.h"},
        {"box2d", "zmq"}},
       {"master/search", {"base", "master/experiment"}, kRunData + kSwarmData + kBehaviours, kTheOutsideWorld},
-      {"master/cases", {"base", "base/system", "proto"}, kRunData, {"box2d", "zmq"}},
+      {"master/cases",
+       {"base", "base/system", "proto"},
+       kRunData + kSwarmData + Prefixes{"controllers/run_start.h"},
+       {"box2d", "zmq"}},
       {"master/store",
        {"base", "base/system", "proto", "master/search"},
        kRunData,
