@@ -1,15 +1,36 @@
-// The controllers of an ARGoS3 experiment file, for plug-ins that are built from their sources.
+// The controllers of ARGoS3 experiment files.
 #pragma once
 
 #include <string>
 
 #include "base/result.h"
+#include "sim/run_spec.h"
 
 namespace gauntlet::master {
+
+// What a robot of the scenario, such as a flock's prey, is given as its controller in files that we write.
+inline constexpr const char* kScenarioController = "scenario";
 
 // C++ source of a plug-in's table of controllers that holds every section of <controllers>: tags of devices,
 // parameters and ids. `file_name` stands in messages. Error "FILE:LINE:COLUMN: ..." for malformed XML,
 // another root than <argos-configuration>, and no <controllers> with at least one element.
 Result<std::string> ArgosControllerTable(const std::string& text, const std::string& file_name);
+
+// Controllers for the robots of another file.
+struct ArgosControllers {
+  std::string sections;  // XML: the elements below <controllers>
+  std::string id;        // of the one that the robots under test get
+};
+
+// Out of an .argos file, or an XML file whose root is <controllers>. `id` chooses a controller; "" takes the
+// only one. Error "FILE:LINE:COLUMN: ..." for malformed XML, no controllers, one that ARGoS would not load
+// (without id, <actuators>, <sensors> or <params>), an id that is given twice or is not there, several
+// controllers and no `id`.
+Result<ArgosControllers> ReadArgosControllers(const std::string& text, const std::string& file_name,
+                                              const std::string& id);
+
+// The same with the values of a plug-in's parameters, "flocking.target_distance", where the chosen
+// controller's <params> have a number of that path.
+ArgosControllers WithParameters(ArgosControllers controllers, const sim::Parameters& parameters);
 
 }  // namespace gauntlet::master

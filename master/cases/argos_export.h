@@ -1,16 +1,26 @@
-// Test cases as ARGoS3 experiment files.
+// Runs as ARGoS3 experiment files.
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "base/result.h"
-#include "sim/arena/test_case.h"
+#include "controllers/run_start.h"
+#include "master/cases/argos_controllers.h"
+#include "sim/run_spec.h"
 
 namespace gauntlet::master {
 
-// An .argos file with the case's arena, its walls and obstacles, and its foot-bots where the case says how
-// many start where; ParseArgos reads the same case out of it, but for its name. The controllers are for the
-// reader to add. Error: what such a file cannot say, obstacles that move or carry lights among it.
-Result<std::string> WriteArgos(const sim::TestCase& test_case);
+struct ArgosFile {
+  std::string text;
+  // What the run has and ARGoS has not, a sentence each; they stand in the file too.
+  std::vector<std::string> notices;
+};
+
+// A file that ARGoS3 (3.0.0-beta59 and later) loads and runs as it is, and of which ParseArgos makes the
+// spec's test case again. It has the arena, walls, obstacles, lamps, every robot at its start pose, the seed
+// and the length. `title` begins its comment, in words. Without `controllers` the robots get one that does
+// nothing, for which ARGoS must know Lua; devices are those of `start`.
+ArgosFile WriteArgos(const sim::RunSpec& spec, const controllers::RunStart& start,
+                     const ArgosControllers* controllers, const std::string& title);
 
 }  // namespace gauntlet::master

@@ -16,6 +16,9 @@
 #include "base/parse_number.h"
 #include "base/printable.h"
 #include "base/utf8.h"
+#include "master/cases/argos_controllers.h"
+#include "master/cases/argos_form.h"
+#include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::master {
 namespace {
@@ -59,11 +62,14 @@ class Importer {
     }
     const pugi::xml_node arena = root.child("arena");
     if (!arena) return Fail(root, "<argos-configuration> has no <arena>");
+    const pugi::xml_node own = root.child(kOwnElement);
+    if (own) known_ = {kOwnElement, "framework", "controllers", "physics_engines", "media", "floor", "light"};
     for (const pugi::xml_node child : root.children()) {
       if (child.type() == pugi::node_element && child != arena) Ignore(child.name());
     }
     if (Status read = ReadArena(arena); !read) return read.error();
     SeparateWalls();
+    if (Status read = ReadOwn(own); !read) return read.error();
     return LoadedCase{test_case_, Notice()};
   }
 
@@ -84,13 +90,20 @@ class Importer {
     return id ? fmt::format("<{} id=\"{}\">", node.name(), id.value()) : fmt::format("<{}>", node.name());
   }
 
-  // Three numbers "a,b,c". `owner` is the element a person looks for.
-  Result<Triple> ReadTriple(const pugi::xml_node& node, const char* name, std::string_view meaning,
-                            const pugi::xml_node& owner) const {
+  // Numbers "a,b,c" of an attribute of `node`. `owner` is the element a person looks for.
+  template <std::size_t kCount>
+  Result<std::array<double, kCount>> ReadNumbers(const pugi::xml_node& node, const char* name,
+                                                 std::string_view meaning,
+                                                 const pugi::xml_node& owner) const {
     const pugi::xml_attribute attribute = node.attribute(name);
     if (!attribute) return Fail(node, fmt::format("{} has no {}=\"{}\"", Called(owner), name, meaning));
-    const std::string_view text = attribute.value();
-    Triple numbers{};
+    return NumbersIn<kCount>(attribute.value(), node, name, meaning, owner);
+  }
+  template <std::size_t kCount>
+  Result<std::array<double, kCount>> NumbersIn(std::string_view text, const pugi::xml_node& node,
+                                               const char* name, std::string_view meaning,
+                                               const pugi::xml_node& owner) const {
+    std::array<double, kCount> numbers{};
     std::size_t count = 0;
     for (std::size_t begin = 0; begin <= text.size(); ++count) {
       const std::size_t end = std::min(text.find(',', begin), text.size());
@@ -100,14 +113,18 @@ class Importer {
         return Fail(node, fmt::format("{} has {}=\"{}\": '{}' is not a number, expected \"{}\"",
                                       Called(owner), name, text, Trimmed(part), meaning));
       }
-      if (count < numbers.size()) numbers[count] = *number;
+      if (count < kCount) numbers[count] = *number;
       begin = end + 1;
     }
-    if (count != numbers.size()) {
+    if (count != kCount) {
       return Fail(node, fmt::format("{} has {}=\"{}\": {} numbers, expected \"{}\"", Called(owner), name,
                                     text, count, meaning));
     }
     return numbers;
+  }
+  Result<Triple> ReadTriple(const pugi::xml_node& node, const char* name, std::string_view meaning,
+                            const pugi::xml_node& owner) const {
+    return ReadNumbers<3>(node, name, meaning, owner);
   }
   Result<Triple> ReadTripleOrZero(const pugi::xml_node& node, const char* name, std::string_view meaning,
                                   const pugi::xml_node& owner) const {
@@ -115,7 +132,8 @@ class Importer {
   }
 
   void Ignore(std::string_view what) {
-    if (std::ranges::count(ignored_, what) == 0) ignored_.emplace_back(what);
+    if (known_.contains(what) || std::ranges::count(ignored_, what) > 0) return;
+    ignored_.emplace_back(what);
   }
 
   Status ReadArena(const pugi::xml_node& arena) {
@@ -136,6 +154,11 @@ class Importer {
       return Fail(arena, fmt::format("{} foot-bots; at most {} can be meant", robots_, kMostRobots));
     }
     if (robots_ > 0) test_case_.robots = static_cast<int>(robots_);
+    if (static_cast<std::int64_t>(poses_.size()) == robots_) {
+      test_case_.start_poses = poses_;
+    } else if (!poses_.empty()) {
+      Ignore("poses of single foot-bots, as others are distributed");
+    }
     return Ok{};
   }
 
@@ -146,13 +169,33 @@ class Importer {
     if (name == "cylinder") {
       return Fail(node, fmt::format("{} is round: obstacles must be boxes", Called(node)));
     }
-    if (name == "foot-bot") {
-      ++robots_;
-      Ignore("poses of single foot-bots");
-    } else {
-      Ignore(name);
-    }
+    if (name == "foot-bot") return ReadRobot(node);
+    Ignore(name);
     return Ok{};
+  }
+
+  Status ReadRobot(const pugi::xml_node& node) {
+    const bool of_scenario =
+        std::string_view(node.child("controller").attribute("config").value()) == kScenarioController;
+    if (of_scenario && !known_.empty()) return Ok{};  // the scenario brings it
+    ++robots_;
+    const pugi::xml_node body = node.child("body");
+    if (!body) return Fail(node, fmt::format("{} has no <body>", Called(node)));
+    const Result<Triple> position = ReadTripleOrZero(body, "position", "x,y,z in m", node);
+    if (!position) return position.error();
+    const Result<double> heading = ReadHeading(body, node);
+    if (!heading) return heading.error();
+    poses_.push_back({sim::Vec2{(*position)[0], (*position)[1]} - center_, *heading});
+    return Ok{};
+  }
+
+  // rad: the rotation about z, which `<body orientation>` names first, with more digits than a double has.
+  Result<double> ReadHeading(const pugi::xml_node& body, const pugi::xml_node& owner) const {
+    const Result<Triple> orientation = ReadTripleOrZero(body, "orientation", "z,y,x in degrees", owner);
+    if (!orientation) return orientation.error();
+    const std::string_view text = body.attribute("orientation").value();
+    const auto degrees = ReadNumber<long double>(text.substr(0, text.find(',')));
+    return sim::WrapAngle(HeadingOf(degrees.value_or(0.0L)));
   }
 
   Status ReadBox(const pugi::xml_node& node) {
@@ -172,8 +215,13 @@ class Importer {
     double degrees = std::fmod((*orientation)[0], 360.0);
     if (degrees < 0.0) degrees += 360.0;
     if (degrees >= 360.0) degrees = 0.0;
-    boxes_.push_back(
-        {(*position)[0] - center_.x(), (*position)[1] - center_.y(), (*size)[0], (*size)[1], degrees});
+    Box& box = boxes_.emplace_back();
+    box.id = node.attribute("id").value();
+    box.gene.x = (*position)[0] - center_.x();
+    box.gene.y = (*position)[1] - center_.y();
+    box.gene.length = (*size)[0];
+    box.gene.width = (*size)[1];
+    box.gene.orientation_deg = degrees;
     if (node.attribute("movable").as_bool()) ++movable_;
     if ((*position)[2] + (*size)[2] < kCameraHeight) ++low_;
     return Ok{};
@@ -251,18 +299,66 @@ class Importer {
     return std::nullopt;
   }
 
+  // The same of a file that we wrote, where an obstacle may stand as a wall does.
+  static std::optional<Wall> OwnWall(const sim::ObstacleGene& box, const std::string& id) {
+    const auto side = std::ranges::find(kWallIds, id);
+    if (side == std::end(kWallIds)) return std::nullopt;
+    return Wall{static_cast<int>(side - std::begin(kWallIds)), box.width};
+  }
+
   void SeparateWalls() {
     std::optional<double> thickness;
-    for (const sim::ObstacleGene& box : boxes_) {
-      const std::optional<Wall> wall = AsWall(box);
+    for (const auto& [box, id] : boxes_) {
+      const std::optional<Wall> wall = known_.empty() ? AsWall(box) : OwnWall(box, id);
       if (wall && wall->thickness > 0 && (!thickness || Near(wall->thickness, *thickness))) {
         if (!thickness) thickness = wall->thickness;
         walls_.insert(wall->side);
       } else {
         test_case_.obstacles.push_back(box);
+        obstacle_ids_.push_back(id);
       }
     }
     if (thickness) test_case_.wall_thickness = *thickness;
+  }
+
+  // What ARGoS has no words for, of files that we wrote.
+  Status ReadOwn(const pugi::xml_node& own) {
+    if (own.attribute("spawn_area")) {
+      const auto area = ReadNumbers<4>(own, "spawn_area", "min x,min y,max x,max y in m", own);
+      if (!area) return area.error();
+      test_case_.spawn_area = sim::Rectangle{{(*area)[0], (*area)[1]}, {(*area)[2], (*area)[3]}};
+    }
+    for (const pugi::xml_node obstacle : own.children("obstacle")) {
+      const auto found = std::ranges::find(obstacle_ids_, obstacle.attribute("id").value());
+      if (found == obstacle_ids_.end())
+        return Fail(obstacle,
+                    fmt::format("{} of <{}> is no box of the arena", Called(obstacle), kOwnElement));
+      Status read = ReadMotionAndLight(
+          obstacle, test_case_.obstacles[static_cast<std::size_t>(found - obstacle_ids_.begin())]);
+      if (!read) return read;
+    }
+    return Ok{};
+  }
+
+  Status ReadMotionAndLight(const pugi::xml_node& node, sim::ObstacleGene& obstacle) const {
+    const auto numbers = ReadNumbers<1>(node, "speed", "m/s", node);
+    if (!numbers) return numbers.error();
+    obstacle.speed = (*numbers)[0];
+    const std::optional<sim::Color> light = sim::ColorNamed(node.attribute("light").value());
+    if (!light) {
+      return Fail(node, fmt::format("{} has light=\"{}\", expected one of {}", Called(node),
+                                    node.attribute("light").value(), fmt::join(sim::kColorNames, ", ")));
+    }
+    obstacle.light = *light;
+    const std::string_view path = node.attribute("path").value();
+    for (std::size_t begin = 0; begin < path.size();) {
+      const std::size_t end = std::min(path.find(' ', begin), path.size());
+      const auto point = NumbersIn<2>(path.substr(begin, end - begin), node, "path", "x,y x,y in m", node);
+      if (!point) return point.error();
+      obstacle.path.emplace_back((*point)[0], (*point)[1]);
+      begin = end + 1;
+    }
+    return Ok{};
   }
 
   std::string Notice() const {
@@ -283,9 +379,16 @@ class Importer {
   std::string file_name_;
   sim::TestCase test_case_;
   sim::Vec2 center_ = sim::Vec2::Zero();  // of the arena in the file's coordinates, m
-  std::vector<sim::ObstacleGene> boxes_;
+  struct Box {
+    sim::ObstacleGene gene;
+    std::string id;
+  };
+  std::vector<Box> boxes_;
+  std::vector<std::string> obstacle_ids_;  // in the order of the test case's obstacles
+  std::set<std::string_view> known_;       // elements that a file of ours has for ARGoS alone; {}: not ours
   std::set<int> walls_;
   std::int64_t robots_ = 0;
+  std::vector<sim::Pose> poses_;  // of those that stand in the file by themselves
   int movable_ = 0;
   int low_ = 0;
   std::vector<std::string> ignored_;

@@ -24,14 +24,15 @@ struct LoadedCase {
 // ...".
 Result<LoadedCase> LoadCase(const std::filesystem::path& path);
 
-// Reads the environment out of an ARGoS3 experiment file (.argos): arena, boxes, number and start area of the
+// Reads the environment out of an ARGoS3 experiment file (.argos): arena, boxes, number and start of the
 // foot-bots. `file_name` stands in messages and becomes the case's name.
 //
 // - Coordinates are relative to the arena's centre. Boxes that stand where our walls are (centre on the
 //   arena's edge, length of the side, within 1 cm) become the walls; all others become obstacles in file
 //   order.
-// - <distribute> of foot-bots gives the number and, with method="uniform", the spawn area. Foot-bots that
-//   stand in the file by themselves are counted only.
+// - Foot-bots that stand in the file by themselves give the start poses. <distribute> of foot-bots gives the
+//   number and, with method="uniform", the spawn area.
+// - What WriteArgos has written gives the very same test case, also what ARGoS has no words for.
 // - Movable boxes become fixed and all boxes count as full height; the notice says so.
 // - Error "FILE:LINE:COLUMN: ..." for malformed XML, a missing arena, values that are no numbers, boxes
 //   rotated about another axis than z and cylinders.

@@ -54,6 +54,7 @@ void AddReport(CommandParser& parser);
 void AddFigure(CommandParser& parser);
 void AddUi(CommandParser& parser);
 void AddExport(CommandParser& parser);
+void AddImport(CommandParser& parser);
 void AddStudy(CommandParser& parser);
 void AddTune(CommandParser& parser);
 void AddBuildController(CommandParser& parser);
@@ -66,9 +67,9 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom, AddEvaluate,        AddResume,  AddShow,   AddReplay, AddConfirm, AddMinimise,
-    AddBlame,  AddCorpus, AddCheck,           AddCompare, AddStudy,  AddTune,   AddReport,  AddUi,
-    AddFigure, AddExport, AddBuildController, AddSubmit,  AddMaster, AddStatus, AddWatch,   AddStop,
-    AddList};
+    AddEvolve,   AddRandom, AddEvaluate, AddResume, AddShow,    AddReplay,          AddConfirm,
+    AddMinimise, AddBlame,  AddCorpus,   AddCheck,  AddCompare, AddStudy,           AddTune,
+    AddReport,   AddUi,     AddFigure,   AddExport, AddImport,  AddBuildController, AddSubmit,
+    AddMaster,   AddStatus, AddWatch,    AddStop,   AddList};
 
 }  // namespace gauntlet::master

@@ -237,7 +237,7 @@ void AddEvaluate(CommandParser& parser) {
   command.footer(
       R"(Simulates each case and prints its fitness (mean of the replicates; lower = tougher). A case that
 breaks a validity rule is refused by the rule's name; the others go on. Exit 2 when all were refused.
-Of .argos files the arena, the boxes, the number of foot-bots and their start area are read.
+Of .argos files the arena, the boxes, the foot-bots and where they start are read.
 
 With --from every individual that has a run in the subset is simulated once (K times with --replicates),
 clones included: a population of twenty gives twenty cases, as in the thesis, also when some are copies of

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/number_text.h"
-#include "master/cases/argos_export.h"
+#include "master/cli/argos_files.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
@@ -27,6 +27,8 @@ struct ExportCommandOptions {
   std::string format;
   std::string out;
   std::vector<std::string> runs;
+  std::string controller_file;
+  std::string controller;
 };
 
 Result<Exported> WhatOf(const std::string& name) {
@@ -63,8 +65,15 @@ Result<ExportOptions> Judge(const ExportCommandOptions& options) {
   if (options.format != "csv" && options.format != "json" && options.format != "argos")
     return InvalidInput(fmt::format("--format {}: give csv, json or argos", options.format));
   judged.format = options.format == "csv" ? TableFormat::kCsv : TableFormat::kJson;
+  const bool argos = options.format == "argos";
+  if (!argos && !options.controller_file.empty())
+    return InvalidInput(
+        fmt::format("--controller-file {}: only .argos files hold controllers", options.controller_file));
+  if (options.controller_file.empty() && !options.controller.empty())
+    return InvalidInput(
+        fmt::format("--controller {}: of which file? Give --controller-file FILE", options.controller));
   for (const std::string& run : options.runs) {
-    if (judged.what == Exported::kCases || judged.what == Exported::kEvents)
+    if ((judged.what == Exported::kCases && !argos) || judged.what == Exported::kEvents)
       return InvalidInput(fmt::format("--run {}: {} belong to no single run", run,
                                       judged.what == Exported::kCases ? "cases" : "events"));
     const Result<std::uint64_t> id = ParseRunId(run);
@@ -103,9 +112,8 @@ std::string HeadJson(const StoredCampaign& campaign, const std::string& director
                    {"notes", condition.notes}});
 }
 
-// A file for each test case, as `evaluate --case` takes it. `format`: "json" or "argos".
-Result<std::uint64_t> WriteCaseFiles(const StoredCampaign& campaign, const std::string& format,
-                                     const fs::path& directory) {
+// A file for each test case, as `evaluate --case` takes it.
+Result<std::uint64_t> WriteCaseFiles(const StoredCampaign& campaign, const fs::path& directory) {
   std::uint64_t files = 0;
   for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
     const Result<std::vector<Individual>> individuals = campaign.view.store->LoadIndividuals(search);
@@ -114,12 +122,8 @@ Result<std::uint64_t> WriteCaseFiles(const StoredCampaign& campaign, const std::
     // As many digits for all, so that files sort by number.
     const std::size_t digits = individuals->empty() ? 1 : fmt::formatted_size("{}", individuals->back().id);
     for (const Individual& individual : *individuals) {
-      const std::string name = fmt::format("{}case-{:0{}}.{}", of_search, individual.id, digits, format);
-      const Result<std::string> text = format == "json"
-                                           ? Result<std::string>(proto::WriteCaseJson(individual.test_case))
-                                           : WriteArgos(individual.test_case);
-      if (!text) return Error{text.error().kind, fmt::format("{}: {}", name, text.error().message)};
-      const Status written = WriteOutputFile(directory / name, *text);
+      const std::string name = fmt::format("{}case-{:0{}}.json", of_search, individual.id, digits);
+      const Status written = WriteOutputFile(directory / name, proto::WriteCaseJson(individual.test_case));
       if (!written) return written.error();
       ++files;
     }
@@ -148,10 +152,20 @@ ExitCode RunExport(CommandContext& context, const ExportCommandOptions& options)
   for (const std::string& note : condition->notes) PrintMessage(context, note);
 
   if (WantsCaseFiles(options, judged->what)) {
+    const ArgosFilesOptions argos = {judged->runs, options.controller_file, options.controller};
+    ArgosFilesReport argos_files;
     const Result<std::uint64_t> files = WriteOutputDirectory(
-        "--out", options.out,
-        [&](const std::string& directory) { return WriteCaseFiles(*campaign, options.format, directory); });
+        "--out", options.out, [&](const std::string& directory) -> Result<std::uint64_t> {
+          if (options.format == "json") return WriteCaseFiles(*campaign, directory);
+          Result<ArgosFilesReport> report = WriteArgosFiles(*campaign, argos, directory);
+          if (!report) return report.error();
+          argos_files = std::move(*report);
+          return argos_files.files;
+        });
     if (!files) return Fail(context, files.error());
+    for (const auto& [notice, of_files] : argos_files.notices)
+      PrintMessage(context,
+                   of_files == *files ? notice : fmt::format("{} of {} files: {}", of_files, *files, notice));
     PrintMessage(context, fmt::format("wrote {} case files into {}", FormatCount(*files), options.out));
     return kExitDone;
   }
@@ -190,11 +204,17 @@ void AddExport(CommandParser& parser) {
       ->required();
   AddValue(command, "--what", "WHAT", options.what,
            "runs (the default; of argos: cases), cases, trajectories or events: see below");
-  AddValue(command, "--run", "ID", options.runs, "of runs and trajectories: only this run's; repeatable");
+  AddValue(command, "--run", "ID", options.runs,
+           "of runs, trajectories and argos: only this run's; repeatable");
+  AddValue(command, "--controller-file", "FILE", options.controller_file,
+           "argos: robots get the <controllers> of this .argos or XML file (default: a placeholder)");
+  AddValue(command, "--controller", "ID", options.controller, "argos: which of that file's controllers");
   command.footer(
       R"(runs          a row for each run
 cases         csv: a row for each obstacle of each test case; json, argos: a directory with a case file for
-              each test case, as 'evaluate --case' takes them
+              each test case, as 'evaluate --case' takes them. Of argos it is the run in which the case was
+              found, or each --run: ARGoS loads and runs the file as it is, with arena, walls, obstacles, lamps,
+              seed, length and every robot at its start pose. What ARGoS does not have is said
 trajectories  a row for each robot every 5 s; where the campaign has not kept them (store.trajectories),
               each run is simulated again and must end as it did. Every pose of a run: 'replay --csv'
 events        a row for everything that happened to the campaign: starts, workers lost, ...
@@ -213,7 +233,7 @@ In pandas: runs = pandas.read_csv("runs.csv", dtype={"seed": str, "hash": str})
 Examples:
   gauntlet export campaigns/sweep --format csv --out runs.csv
   gauntlet export DIR --format json --what cases --out cases && gauntlet evaluate flocking --case cases/*.json
-  gauntlet export DIR --format argos --out environments
+  gauntlet export DIR --format argos --run 812 --controller-file my_experiment.argos --out for-argos
   gauntlet export DIR --format csv --what trajectories --run 812 --out ways.csv)");
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "master/cases/argos_controllers.h"
 #include "master/cases/case_file.h"
 #include "master/cases/corpus_file.h"
 #include "master/experiment/experiment_file.h"
@@ -79,12 +80,17 @@ void ReadCorpusCase(std::string_view bytes) {
 }
 
 void ReadArgos(std::string_view bytes) {
+  const auto controllers = master::ReadArgosControllers(std::string(bytes), "case.argos", "");
+  if (!controllers) ExpectAGoodError(controllers);
   const Result<master::LoadedCase> read = master::ParseArgos(std::string(bytes), "case.argos");
   if (!read) return ExpectAGoodError(read);
   for (const sim::ObstacleGene& obstacle : read->test_case.obstacles) {
     GAUNTLET_CHECK(std::isfinite(obstacle.x) && std::isfinite(obstacle.y) && std::isfinite(obstacle.length) &&
                        std::isfinite(obstacle.width) && std::isfinite(obstacle.orientation_deg),
                    "an obstacle that is no number");
+  }
+  for (const sim::Pose& pose : read->test_case.start_poses) {
+    GAUNTLET_CHECK(pose.position.allFinite() && std::abs(pose.heading) <= sim::kPi, "a pose that is none");
   }
   GAUNTLET_CHECK(read->notice.find('\n') == std::string::npos, "a notice of several lines");
 }

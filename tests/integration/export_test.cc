@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "tests/integration/campaign_driver.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -115,6 +116,32 @@ TEST_F(ExportTest, CaseFilesAreWhatEvaluateTakes) {
     EXPECT_EQ(again[i].at("genome"), population[i].at("genome"));
     EXPECT_EQ(third_time[i].at("genome"), population[i].at("genome"));
   }
+}
+
+TEST_F(ExportTest, AnArgosFileStartsItsRun) {
+  const std::string run = *scratch_ / "one-run";
+  const ProcessResult exported =
+      Gauntlet({"export", dir_, "--format", "argos", "--run", "2", "--controller-file",
+                GAUNTLET_SOURCE_DIR "/argos/example/light_flocking.argos", "--out", run});
+  ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_THAT(exported.err, HasSubstr("The robot with the controller 'scenario' belongs to the scenario"));
+  const std::string text = ReadFile(run + "/run-2.argos");
+  EXPECT_THAT(text, HasSubstr("<controller config=\"flocker\" />"));
+  const json ways = json::parse(Export(dir_, {"--format", "json", "--what", "trajectories", "--run", "2"}));
+  for (const json& row : ways.at("trajectories")) {
+    if (row.at("time") != 0) continue;
+    EXPECT_THAT(text,
+                HasSubstr("<body position=\"" + row.at("x").dump() + "," + row.at("y").dump() + ",0\""));
+  }
+
+  const ProcessResult none =
+      Gauntlet({"export", dir_, "--format", "argos", "--run", "9999", "--out", run + "x"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("there is no run 9999"));
+  const ProcessResult missing = Gauntlet({"export", dir_, "--format", "argos", "--run", "2",
+                                          "--controller-file", run + "/none.argos", "--out", run + "x"});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.err, HasSubstr("--controller-file cannot open " + run + "/none.argos"));
 }
 
 TEST_F(ExportTest, CasesAsATableHaveARowForEachObstacle) {

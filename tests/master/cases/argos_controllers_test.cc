@@ -43,5 +43,45 @@ TEST(ArgosControllerTable, NamesWhatIsWrong) {
   EXPECT_THAT(ErrorOf(deep + "</controllers></argos-configuration>"), HasSubstr("nested deeper"));
 }
 
+constexpr const char* kTwo = R"(<argos-configuration><controllers>
+    <walker id="w" library="lib"><actuators/><sensors/><params><turning speed="2.5" name="x"/></params></walker>
+    <sitter id="s" library="lib"><actuators/><sensors/><params/></sitter>
+  </controllers></argos-configuration>)";
+
+std::string RefusalOf(const std::string& text, const std::string& id = "") {
+  const auto read = ReadArgosControllers(text, "mine.argos", id);
+  return read.ok() ? "no error" : read.error().message;
+}
+
+TEST(ReadArgosControllers, TakesAllAndChoosesOne) {
+  const auto read = ReadArgosControllers(kTwo, "mine.argos", "s");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->id, "s");
+  EXPECT_THAT(read->sections, HasSubstr("<turning speed=\"2.5\" name=\"x\""));
+  const auto bare = ReadArgosControllers(
+      R"(<controllers><a id="a"><actuators/><sensors/><params/></a></controllers>)", "a.xml", "");
+  ASSERT_TRUE(bare.ok()) << bare.error().message;
+  EXPECT_EQ(bare->id, "a");
+}
+
+TEST(ReadArgosControllers, SaysWhatArgosWouldMiss) {
+  EXPECT_THAT(RefusalOf(kTwo), HasSubstr("several controllers: choose one by --controller, of: s, w"));
+  EXPECT_THAT(RefusalOf(kTwo, "v"), HasSubstr("no controller 'v'; it has: s, w"));
+  EXPECT_THAT(RefusalOf("<controllers><a id='a'><sensors/><params/></a></controllers>"),
+              HasSubstr("mine.argos:1:15: <a> has no <actuators>"));
+  EXPECT_THAT(RefusalOf("<controllers><a><sensors/></a></controllers>"), HasSubstr("<a> has no id="));
+  EXPECT_THAT(RefusalOf("<arena/>"), HasSubstr("<arena> has no controller"));
+  EXPECT_THAT(RefusalOf("<controllers>"), HasSubstr("malformed XML"));
+}
+
+TEST(ReadArgosControllers, GivesParametersOfTheCampaign) {
+  const auto read = ReadArgosControllers(kTwo, "mine.argos", "w");
+  ASSERT_TRUE(read.ok());
+  const ArgosControllers changed =
+      WithParameters(*read, {{"turning.speed", 3.25}, {"turning.name", 1.0}, {"link_range", 1.0}});
+  EXPECT_THAT(changed.sections, HasSubstr("<turning speed=\"3.25\" name=\"x\""));
+  EXPECT_THAT(WithParameters(*read, {{"turning.speed", 2.5}}).sections, testing::Eq(read->sections));
+}
+
 }  // namespace
 }  // namespace gauntlet::master

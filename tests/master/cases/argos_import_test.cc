@@ -2,9 +2,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numbers>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -112,7 +114,7 @@ TEST(ArgosImport, CoordinatesAreRelativeToTheArenasCenter) {
 
 TEST(ArgosImport, FixedFootBotsAreCountedAndSeveralAreasJoined) {
   const auto imported = ParseArgos(Document(R"(
-    <foot-bot id="x"/><foot-bot id="y"/>
+    <foot-bot id="x"><body/></foot-bot><foot-bot id="y"><body/></foot-bot>
     <distribute><position method="uniform" min="0,0,0" max="1,1,0"/>
       <entity quantity="3"><foot-bot id="f"/></entity></distribute>
     <distribute><position method="uniform" min="-1,0.5,0" max="0,2,0"/>
@@ -126,6 +128,58 @@ TEST(ArgosImport, FixedFootBotsAreCountedAndSeveralAreasJoined) {
   EXPECT_EQ(imported->test_case.spawn_area->max, sim::Vec2(1.0, 2.0));
   EXPECT_THAT(imported->notice, HasSubstr("poses of single foot-bots"));
   EXPECT_THAT(imported->notice, HasSubstr("start positions (method \"grid\")"));
+}
+
+TEST(ArgosImport, FootBotsThatStandByThemselvesStartThere) {
+  const auto imported = ParseArgos(Document(R"(
+    <foot-bot id="a"><body position="1.5,2,0" orientation="270,0,0"/><controller config="c"/></foot-bot>
+    <foot-bot id="b"><body position="-1,0.5,0"/><controller config="scenario"/></foot-bot>)",
+                                            R"(size="6,6,1" center="1,1,0.5")"),
+                                   "case.argos");
+  ASSERT_TRUE(imported.ok()) << imported.error().message;
+  EXPECT_EQ(imported->test_case.robots, 2);
+  const std::vector<sim::Pose>& poses = imported->test_case.start_poses;
+  ASSERT_EQ(poses.size(), 2U);
+  EXPECT_EQ(poses[0].position, sim::Vec2(0.5, 1.0));
+  EXPECT_NEAR(poses[0].heading, -std::numbers::pi / 2, 1e-15);
+  EXPECT_EQ(poses[1].heading, 0.0);
+  EXPECT_THAT(imported->notice, Not(HasSubstr("foot-bots")));
+
+  const auto in = [](const std::string& robot) { return ErrorOf(Document("\n" + robot)); };
+  EXPECT_THAT(in("<foot-bot id='a'/>"), HasSubstr("case.argos:5:2: <foot-bot id=\"a\"> has no <body>"));
+  EXPECT_THAT(in("<foot-bot id='a'><body position='1,nan,0'/></foot-bot>"),
+              HasSubstr("<foot-bot id=\"a\"> has position=\"1,nan,0\": 'nan' is not a number"));
+  EXPECT_THAT(in("<foot-bot id='a'><body orientation='1e400,0,0'/></foot-bot>"), HasSubstr("'1e400' is not"));
+}
+
+TEST(ArgosImport, HostileFilesAreRefusedAtOnce) {
+  std::string bomb = "<?xml version=\"1.0\"?><!DOCTYPE a [<!ENTITY a \"1,1\">";
+  for (char c = 'b'; c < 'z'; ++c)
+    bomb += fmt::format("<!ENTITY {0} \"&{1};&{1};&{1};&{1};\">", c, static_cast<char>(c - 1));
+  EXPECT_THAT(ErrorOf(bomb + "]><argos-configuration><arena size=\"&y;\"/></argos-configuration>"),
+              HasSubstr("'&y;' is not a number"));
+  std::string deep = "<argos-configuration>";
+  for (int i = 0; i < 1'000'000; ++i) deep += "<a>";
+  EXPECT_THAT(ErrorOf(deep), HasSubstr("malformed XML"));
+}
+
+TEST(ArgosImport, ReadsWhatOnlyWeSay) {
+  const auto own = [](const std::string& content) {
+    std::string text = Document(R"(<box id="b" size="1,0.2,1"><body position="1,1,0"/></box>)");
+    return text.insert(text.find("<media/>"), "<gauntlet>" + content + "</gauntlet>");
+  };
+  const auto read =
+      ParseArgos(own(R"(<obstacle id="b" path="1,2 3,-1" speed="0.02" light="red"/>)"), "case.argos");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const sim::ObstacleGene& obstacle = read->test_case.obstacles.front();
+  EXPECT_THAT(obstacle.path, testing::ElementsAre(sim::Vec2(1, 2), sim::Vec2(3, -1)));
+  EXPECT_EQ(obstacle.speed, 0.02);
+  EXPECT_EQ(obstacle.light, sim::Color::kRed);
+  EXPECT_THAT(ErrorOf(own(R"(<obstacle id="c" path="" speed="0" light="red"/>)")),
+              HasSubstr("<obstacle id=\"c\"> of <gauntlet> is no box of the arena"));
+  EXPECT_THAT(ErrorOf(own(R"(<obstacle id="b" path="1" speed="0" light="red"/>)")), HasSubstr("path=\"1\""));
+  EXPECT_THAT(ErrorOf(own(R"(<obstacle id="b" path="" speed="0" light="mauve"/>)")),
+              HasSubstr("light=\"mauve\", expected one of black, red"));
 }
 
 TEST(ArgosImport, WithoutFootBotsTheScenarioDecides) {

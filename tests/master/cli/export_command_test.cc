@@ -22,6 +22,8 @@ TEST_F(CommandLine, ExportRefusesWhatItDoesNotKnow) {
   expect({"--format", "csv", "--run", "x"}, "--run x is no run");
   expect({"--format", "csv", "--what", "events", "--run", "3"}, "events belong to no single run");
   expect({"--format", "argos", "--what", "runs"}, "--what runs: .argos files hold cases");
+  expect({"--format", "csv", "--controller-file", "mine.argos"}, "only .argos files hold controllers");
+  expect({"--format", "argos", "--controller", "mine"}, "Give --controller-file FILE");
   expect({"--format", "csv"}, Path("c"));
 }
 
