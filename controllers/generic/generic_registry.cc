@@ -18,10 +18,14 @@ constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
 
 constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
     {"area", "start of the robots", sim::Mark::kArea, "area the swarm starts in"},
-    {"area", "", sim::Mark::kArea, ""},
+    {"area", "ground", sim::Mark::kArea, ""},
+    {"area", "source", sim::Mark::kArea, ""},
+    {"area", "nest", sim::Mark::kArea, ""},
+    {"disc", "ground", sim::Mark::kGoal, ""},
     {"disc", "source", sim::Mark::kFood, ""},
     {"disc", "nest", sim::Mark::kNest, ""},
-    {"disc", "", sim::Mark::kGoal, ""},
+    {"disc", "goal", sim::Mark::kGoal, ""},
+    {"disc", "light", sim::Mark::kGoal, ""},
 });
 
 }  // namespace

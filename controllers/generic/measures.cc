@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -51,11 +52,17 @@ constexpr std::array kWholeInfos = std::to_array<MetricInfo>({
 
 // In squares that the robots' centres were in at a tick, m^2.
 double CoveredArea(const sim::Observer& observer) {
-  std::set<std::pair<int, int>> cells;
-  for (sim::Tick tick = 0; tick <= observer.last_tick(); ++tick) {
-    for (const sim::RobotState& robot : observer.At(tick))
-      cells.emplace(static_cast<int>(std::floor(robot.x / kCell)),
-                    static_cast<int>(std::floor(robot.y / kCell)));
+  using Cell = std::pair<int, int>;
+  std::set<Cell> cells;
+  for (std::size_t robot = 0; robot < observer.Latest().size(); ++robot) {
+    std::optional<Cell> last;  // robots stay in one for many ticks
+    for (sim::Tick tick = 0; tick <= observer.last_tick(); ++tick) {
+      const sim::RobotState& state = observer.At(tick)[robot];
+      const Cell cell(static_cast<int>(std::floor(state.x / kCell)),
+                      static_cast<int>(std::floor(state.y / kCell)));
+      if (cell != last) cells.insert(cell);
+      last = cell;
+    }
   }
   return static_cast<double>(cells.size()) * kCell * kCell;
 }

@@ -38,6 +38,7 @@ std::string ForecastJson(const Forecast& forecast, const std::vector<SearchPlan>
                    {"workers", workers},
                    {"seconds", forecast.Seconds(workers)},
                    {"measured_runs", forecast.measured_runs},
+                   {"measured_without_result", forecast.measured_without_result},
                    {"cpu_seconds_per_run", forecast.seconds_per_run},
                    {"bytes", std::llround(forecast.bytes)}});
 }
@@ -54,6 +55,10 @@ std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>
                            "later ones may differ)",
                            FormatDuration(forecast.Seconds(workers)), workers, workers == 1 ? "" : "s",
                            forecast.measured_runs, 1e3 * forecast.seconds_per_run)});
+  if (forecast.measured_without_result > 0) {
+    table.AddRow({"no result", fmt::format("{} of those {} runs: {}", forecast.measured_without_result,
+                                           forecast.measured_runs, Printable(forecast.why_without_result))});
+  }
   table.AddRow({"disk", "about " + FormatBytes(forecast.bytes)});
   return fmt::format("{}: a dry run, nothing was made\n\n{}", Printable(searches.front().experiment.name),
                      table.ToText());

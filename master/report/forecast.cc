@@ -113,6 +113,10 @@ Result<Forecast> MakeForecast(const std::vector<SearchPlan>& plans,
       if (!result) return result.error();
       seconds += result->cpu_seconds;
       ++forecast.measured_runs;
+      if (result->verdict != sim::Verdict::kCompleted) {
+        ++forecast.measured_without_result;
+        forecast.why_without_result = result->message;
+      }
       size.Add(runs[i], *result, plans[search * plans.size() / sampled].experiment.store.trajectories);
     }
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "base/result.h"
@@ -18,8 +19,10 @@ struct Forecast {
   // seed share cases.
   bool cases_exact = false;
   std::uint64_t measured_runs = 0;
-  double seconds_per_run = 0.0;  // CPU time on this machine, mean of the measured runs
-  double bytes = 0.0;            // of the campaign's directory at its end
+  std::uint64_t measured_without_result = 0;  // of those
+  std::string why_without_result;             // the latest of them; "" when there is none
+  double seconds_per_run = 0.0;               // CPU time on this machine, mean of the measured runs
+  double bytes = 0.0;                         // of the campaign's directory at its end
 
   // With so many workers, each on a core of its own.
   double Seconds(int workers) const { return static_cast<double>(runs) * seconds_per_run / workers; }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "controllers/generic/definition.h"
 #include "master/cases/argos_controllers.h"
 #include "master/cases/case_file.h"
 #include "master/cases/corpus_file.h"
@@ -61,6 +62,23 @@ void ReadRun(std::string_view bytes) {
   (void)proto::DecodeStoredResult(bytes);
 }
 
+// The one form of a definition that is right.
+std::string Rewritten(std::string_view definition) {
+  const auto entries = controllers::generic::EntriesOf(definition);
+  controllers::generic::DefinitionReader reader;
+  for (const auto& [path, value] : *entries)
+    GAUNTLET_CHECK(reader.Set(path, value).ok(), "an entry that was taken is refused");
+  return reader.Text().value();
+}
+
+// A definition comes with the spec of a run.
+void ReadDefinition(std::string_view bytes) {
+  const Result<controllers::generic::Definition> read = controllers::generic::ParseDefinition(bytes);
+  if (!read) return ExpectAGoodError(read);
+  const std::string written = Rewritten(bytes);
+  GAUNTLET_CHECK(Rewritten(written) == written, "a definition does not survive:\n" + written);
+}
+
 void ReadCaseJson(std::string_view bytes) {
   const Result<sim::TestCase> read = proto::ParseCaseJson(std::string(bytes), "case.json");
   if (!read) return ExpectAGoodError(read);
@@ -115,12 +133,13 @@ void ReadAccessFile(std::string_view bytes) {
 }  // namespace
 
 std::span<const Parser> Parsers() {
-  static const std::array<Parser, 7> parsers{{{"wire", ReadWire},
+  static const std::array<Parser, 8> parsers{{{"wire", ReadWire},
                                               {"run", ReadRun},
                                               {"case_json", ReadCaseJson},
                                               {"corpus_case", ReadCorpusCase},
                                               {"argos", ReadArgos},
                                               {"experiment", ReadExperiment},
+                                              {"definition", ReadDefinition},
                                               {"access", ReadAccessFile}}};
   return parsers;
 }

@@ -50,6 +50,22 @@ TEST_F(PluginCampaign, GivesTheFitnessOfTheBuiltInController) {
     EXPECT_EQ(twins["population"][i]["fitness"], built_in["population"][i]["fitness"]);
 }
 
+// The scenario takes controllers that are written for others.
+TEST_F(PluginCampaign, RunsInAScenarioThatTheFileDefines) {
+  const std::string defined =
+      "scenario = 'generic'\n[generic]\nfitness = 'dispersion'\nfailure = 'clusters > 1'\n";
+  std::ofstream(experiment_) << defined;
+  const ProcessResult twins = RandomTwins();
+  ASSERT_EQ(twins.exit_code, 0) << twins.err;
+  const nlohmann::json with_plugin = Show(dir_);
+  dir_ = scratch_ / "built_in";
+  ASSERT_EQ(Random(experiment_, {"--set", "controller=light-flocking"}).exit_code, 0);
+  const nlohmann::json built_in = Show(dir_);
+  ASSERT_EQ(with_plugin["population"].size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_EQ(with_plugin["population"][i]["fitness"], built_in["population"][i]["fitness"]);
+}
+
 TEST_F(PluginCampaign, TakesItsPluginFromAPathRelativeToTheExperimentFile) {
   fs::copy_file(PluginPath("of_twins"), scratch_ / "libtwin.so");
   std::ofstream(experiment_)

@@ -71,6 +71,21 @@ TEST(Forecast, MeasuresRunsOfSearchesThatAreSpreadOverThemAll) {
   EXPECT_GT(*birds.rbegin(), 18.0);
 }
 
+TEST(Forecast, TellsOfRunsWithoutAResult) {
+  std::uint64_t run = 0;
+  const auto forecast =
+      MakeForecast({{"", Flocking({})}}, [&](const sim::RunSpec&) -> Result<sim::RunResult> {
+        sim::RunResult result;
+        if (++run % 3 != 0) return result;
+        result.verdict = sim::Verdict::kInvalidCommand;
+        result.message = "invalid-outcome: it divides 1 by 0";
+        return result;
+      });
+  ASSERT_TRUE(forecast.ok());
+  EXPECT_EQ(forecast->measured_without_result, 4U);
+  EXPECT_EQ(forecast->why_without_result, "invalid-outcome: it divides 1 by 0");
+}
+
 TEST(Forecast, StopsMeasuringLongRuns) {
   Simulator simulator;
   simulator.seconds = 60.0;
