@@ -74,7 +74,8 @@ and looks how far A strays between them.
 
 The shipped lists are those of H. Wei's thesis, Tables 4.1 and 5.1 (studies tune-flocking, tune-foraging). A
 tuning is a study: it shares the workers among all evolutions, leaves robustness.svg and consistency.svg in
-its directory, and goes on with the same command, or 'gauntlet resume DIR', whenever it was killed.
+its directory, and goes on with the same command, or 'gauntlet resume DIR', whenever it was killed. 'gauntlet
+report DIR -o tuning.html' shows it in a browser.
 
 Examples:
   gauntlet tune flocking --dry-run

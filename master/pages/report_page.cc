@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "master/pages/base64.h"
 #include "master/pages/front_end.h"
@@ -86,8 +87,8 @@ std::string CampaignsTable(const Report& report) {
   for (const CampaignPages& one : report.campaigns) {
     const CampaignSummary& summary = one.facts.summary;
     rows.push_back({Html(one.facts.directory), Html(one.facts.plans.front().experiment.scenario),
-                    Html(one.facts.plans.front().experiment.controller), fmt::format("{}", summary.runs_done),
-                    fmt::format("{}", summary.total_failures), summary.finished ? "yes" : "no"});
+                    Html(one.facts.plans.front().experiment.controller), FormatCount(summary.runs_done),
+                    FormatCount(summary.total_failures), summary.finished ? "yes" : "no"});
   }
   return "<h2>The campaigns</h2>\n" +
          TableHtml({"campaign", "scenario", "controller", ">runs", ">total failures", "finished"}, rows);
