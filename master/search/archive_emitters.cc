@@ -15,6 +15,14 @@ constexpr double kPlaceNoise = 0.15;   // m
 constexpr double kTurnNoise = 20.0;    // degrees
 constexpr double kPlaceJitter = 0.3;   // m
 constexpr double kLengthJitter = 0.2;  // m
+constexpr double kTurnInRow = 12.0;    // degrees
+constexpr double kLeanNoise = 25.0;    // degrees
+constexpr double kRowNoise = 0.3;      // m
+// Of obstacles across the way. Of 492 rows of two on flocking's way that were drawn like these, 48 % broke
+// the swarm in 3 of 3 runs, of 448 rows of three 83 %; of single obstacles 4 % at any angle and length, none
+// of which was shorter than half of the range.
+constexpr double kLongest = 0.25;  // the part of the range of lengths that is drawn from
+constexpr double kSpacing = 0.75;  // between centres, of the greatest length
 
 double OnGrid(double value, double low, double high, double step) {
   value = std::clamp(value, low, high);
@@ -93,18 +101,30 @@ sim::Genome Without(const sim::Genome& obstacles, std::size_t index) {
   return rest;
 }
 
-std::optional<sim::Genome> Alone(const sim::Vec2& place, const GenomeSpec& spec,
-                                 const GenomeGenerator& generator, sim::RandomStream& random) {
-  sim::ObstacleGene gene = generator.RandomGene(random);
-  gene.x =
-      OnGrid(place.x() + kPlaceNoise * random.Gaussian(), spec.position_min, spec.position_max, spec.step);
-  gene.y =
-      OnGrid(place.y() + kPlaceNoise * random.Gaussian(), spec.position_min, spec.position_max, spec.step);
-  const double half = (spec.length_min + spec.length_max) / 2.0;
-  gene.length = OnGrid(random.Uniform(half, spec.length_max), spec.length_min, spec.length_max, spec.step);
-  sim::Genome alone = {std::move(gene)};
-  if (!generator.Valid(alone)) return std::nullopt;
-  return alone;
+std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& way, const GenomeSpec& spec,
+                                  const GenomeGenerator& generator, sim::RandomStream& random) {
+  const sim::Vec2 along = (way.goal - way.start).normalized();
+  const sim::Vec2 across(-along.y(), along.x());
+  const double turn = sim::AngleOf(across) / sim::kDegree;
+  const double shortest = spec.length_max - kLongest * (spec.length_max - spec.length_min);
+  const sim::Vec2 middle =
+      place + kPlaceNoise * random.Gaussian() * along + kRowNoise * random.Gaussian() * across;
+  const double lean = kLeanNoise * random.Gaussian();
+  sim::Genome row;
+  for (int i = 0; i < count; ++i) {
+    const double side = i - 0.5 * (count - 1);
+    const sim::Vec2 center = middle + side * kSpacing * spec.length_max * across;
+    sim::ObstacleGene gene = generator.RandomGene(random);
+    gene.x = OnGrid(center.x(), spec.position_min, spec.position_max, spec.step);
+    gene.y = OnGrid(center.y(), spec.position_min, spec.position_max, spec.step);
+    gene.length =
+        OnGrid(random.Uniform(shortest, spec.length_max), spec.length_min, spec.length_max, spec.step);
+    const double leaning = side > 0.0 ? lean : side < 0.0 ? -lean : 0.0;
+    gene.orientation_deg = WholeTurn(turn + leaning + kTurnInRow * random.Gaussian());
+    row.push_back(std::move(gene));
+  }
+  if (!generator.Valid(row)) return std::nullopt;
+  return row;
 }
 
 std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeSpec& spec,

@@ -34,10 +34,10 @@ sim::Vec2 Mirrored(const sim::Vec2& point, const Way& way);
 std::optional<sim::Genome> Mirrored(const sim::Genome& obstacles, const Way& way, const GenomeSpec& spec,
                                     const GenomeGenerator& generator);
 
-// One obstacle whose centre lies near `place`, in the longer half of the range of lengths, at any angle.
-// Nothing when the layout is not valid.
-std::optional<sim::Genome> Alone(const sim::Vec2& place, const GenomeSpec& spec,
-                                 const GenomeGenerator& generator, sim::RandomStream& random);
+// `count` obstacles side by side across the way, near `place`: long ones, which the swarm has to go around.
+// Those at the ends lean forward or backward. Nothing when the layout is not valid.
+std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& way, const GenomeSpec& spec,
+                                  const GenomeGenerator& generator, sim::RandomStream& random);
 
 // Every obstacle moved, stretched and turned a little. Nothing when the layout is not valid.
 std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeSpec& spec,

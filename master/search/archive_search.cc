@@ -23,14 +23,14 @@ constexpr std::array kParameters = std::to_array<controllers::ParameterInfo>({
      "archive and random-deletion only: layouts under test at a time; workers it can keep busy"},
     {"keep_out", "m", 0, 0, 10, false,
      "archive and random-deletion only: no obstacle nearer than this to where the swarm starts and arrives"},
-    {"alone_share", "", 0.06, 0, 1, false,
-     "archive only: of the lines that begin, with one obstacle on the way to the goal"},
+    {"across_share", "", 0.60, 0, 1, false,
+     "archive only: of the lines that begin, with one to three obstacles across the way to the goal"},
     {"jittered_share", "", 0.10, 0, 1, false,
      "archive only: of the lines that begin, with an elite that is changed a little"},
     {"recheck_share", "", 0.04, 0, 1, false,
      "archive only: of the lines that begin, one more run of an elite; the rest begin with random cases"},
 });
-enum Parameter : std::size_t { kRuns, kSlots, kKeepOut, kAloneShare, kJitteredShare, kRecheckShare };
+enum Parameter : std::size_t { kRuns, kSlots, kKeepOut, kAcrossShare, kJitteredShare, kRecheckShare };
 
 double Get(const Experiment& experiment, Parameter parameter) {
   return ValueOf(kParameters[parameter], experiment.search.parameters);
@@ -65,9 +65,10 @@ constexpr int kMaxRuns = 8;                   // of an elite; then it is known w
 constexpr double kReliable = 0.6;             // of its runs an elite has to fail
 constexpr std::ptrdiff_t kMostElsewhere = 1;  // failures of a layout outside its cell, when it is admitted
 constexpr std::ptrdiff_t kEnoughWithOneElsewhere = 5;
-constexpr int kTries = 20;         // to make a layout that is valid
-constexpr int kDraws = 4;          // random cases of which the most promising one is simulated
-constexpr double kPathStep = 0.2;  // m, between the points of a path that are looked at
+constexpr std::uint32_t kMostAcross = 3;  // obstacles in a row across the way
+constexpr int kTries = 20;                // to make a layout that is valid
+constexpr int kDraws = 4;                 // random cases of which the most promising one is simulated
+constexpr double kPathStep = 0.2;         // m, between the points of a path that are looked at
 
 Race Judge(const FailureTally& tally) {
   const int passes = tally.passes + tally.errors;
@@ -84,7 +85,7 @@ double FailureShare(const FailureTally& tally) {
 
 std::string_view NameOf(Emitter emitter) {
   constexpr std::array<std::string_view, kEmitters> names = {"random", "nearest",  "without", "mirrored",
-                                                             "alone",  "jittered", "recheck"};
+                                                             "across", "jittered", "recheck"};
   return names[static_cast<std::size_t>(emitter)];
 }
 
@@ -287,10 +288,10 @@ void ArchiveSearch::BeginAnew(Slot& slot) {
 bool ArchiveSearch::BeginDrawn(Slot& slot, sim::RandomStream& random) {
   const double draw = random.Uniform();
   const Experiment& e = setup_.experiment;
-  const double alone = places_ ? Get(e, kAloneShare) : 0.0;
-  const double jittered = alone + Get(e, kJitteredShare);
+  const double across = way_.start != way_.goal ? Get(e, kAcrossShare) : 0.0;
+  const double jittered = across + Get(e, kJitteredShare);
   const double recheck = jittered + Get(e, kRecheckShare);
-  if (draw < alone) return BeginAlone(slot, random);
+  if (draw < across) return BeginAcross(slot, random);
   if (draw >= recheck || archive_.shelves().empty()) return false;
   return draw < jittered ? BeginJittered(slot, random) : BeginRecheck(slot);
 }
@@ -358,16 +359,17 @@ bool ArchiveSearch::BeginMirrored(Slot& slot) {
   return false;
 }
 
-bool ArchiveSearch::BeginAlone(Slot& slot, sim::RandomStream& random) {
+bool ArchiveSearch::BeginAcross(Slot& slot, sim::RandomStream& random) {
   for (int i = 0; i < kTries; ++i) {
     const sim::Vec2 place = way_.start + (way_.goal - way_.start) * random.Uniform();
-    const std::size_t cell = archive_.grid().CellOf({place.x(), place.y()});
-    const Finding* elite = archive_.EliteOf(cell);
+    const auto count = static_cast<int>(1 + random.Below(kMostAcross));
+    // One obstacle breaks a swarm where it stands, if anywhere.
+    const Finding* elite =
+        places_ && count == 1 ? archive_.EliteOf(archive_.grid().CellOf({place.x(), place.y()})) : nullptr;
     if (elite != nullptr && elite->size().obstacles == 1) continue;
-    std::optional<sim::Genome> alone = Alone(place, setup_.experiment.genome, generator_, random);
-    if (!alone) continue;
-    slot.cell = cell;
-    Begin(slot, Emitter::kAlone, *std::move(alone), 0);
+    std::optional<sim::Genome> row = Across(place, count, way_, setup_.experiment.genome, generator_, random);
+    if (!row) continue;
+    Begin(slot, Emitter::kAcross, *std::move(row), 0);
     return true;
   }
   return false;

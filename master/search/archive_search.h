@@ -19,7 +19,7 @@
 namespace gauntlet::master {
 
 // Where a layout came from. Saved states depend on the order.
-enum class Emitter : std::uint8_t { kRandom, kNearest, kWithout, kMirrored, kAlone, kJittered, kRecheck };
+enum class Emitter : std::uint8_t { kRandom, kNearest, kWithout, kMirrored, kAcross, kJittered, kRecheck };
 inline constexpr std::size_t kEmitters = 7;
 std::string_view NameOf(Emitter emitter);
 
@@ -37,8 +37,9 @@ enum class Race { kOpen, kAdmit, kDrop };
 // passes or shows that it cannot become the smallest of its cell, or when a second run passes; it is admitted
 // when 3 of 3 or 4 of 5 runs fail. A layout that was admitted is followed by those with one obstacle less; a
 // random case that fails, by its obstacles nearest to where it failed: 1, 2, 3, 4 of them, and then itself.
-// When nothing follows, a slot goes on with a random case, an elite moved to another cell, a changed elite,
-// or one more run of an elite, which leaves the archive when less than 60 % of its runs fail.
+// When nothing follows, a slot goes on with a random case, obstacles across the way, an elite moved to
+// another cell, a changed elite, or one more run of an elite, which leaves the archive when less than 60 % of
+// its runs fail.
 //
 // As "random-deletion", the baseline, it knows nothing of cells: random cases alone, each run until it is
 // admitted or dropped and then shortened by one obstacle, the farthest from the way first, as long as what is
@@ -96,7 +97,7 @@ class ArchiveSearch : public PopulationSearch {
   // What could be won along the shortest way through the arena.
   double Promise(const sim::TestCase& test_case) const;
   bool BeginMirrored(Slot& slot);
-  bool BeginAlone(Slot& slot, sim::RandomStream& random);
+  bool BeginAcross(Slot& slot, sim::RandomStream& random);
   bool BeginJittered(Slot& slot, sim::RandomStream& random);
   bool BeginRecheck(Slot& slot);
   void PlanNearest(Slot& slot);

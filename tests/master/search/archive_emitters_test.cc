@@ -57,14 +57,15 @@ TEST(ArchiveEmittersTest, WhatIsDrawnIsValidAndOnTheGridOfTheGenome) {
   const GenomeSpec& spec = setup.experiment.genome;
   const GenomeGenerator generator = MakeGenerator(setup);
   sim::RandomStream random = GenomeStream(1, 1);
-  int alone = 0;
+  const Way way = {{2.5, 2.5}, {-2.5, -2.5}};
+  int valid = 0;
   for (int i = 0; i < 200; ++i) {
-    const auto drawn = Alone({1.0, 1.0}, spec, generator, random);
+    const auto drawn = Across({1.0, 1.0}, 1, way, spec, generator, random);
     if (!drawn) continue;
-    ++alone;
+    ++valid;
     ASSERT_EQ(drawn->size(), 1U);
     EXPECT_NEAR(drawn->front().x, 1.0, 1.0);
-    EXPECT_GE(drawn->front().length, 1.2);
+    EXPECT_GE(drawn->front().length, 1.6);
     EXPECT_LE(drawn->front().length, spec.length_max);
     EXPECT_DOUBLE_EQ(drawn->front().x * 10.0, std::round(drawn->front().x * 10.0));
     const auto jittered = Jittered(*drawn, spec, generator, random);
@@ -73,7 +74,30 @@ TEST(ArchiveEmittersTest, WhatIsDrawnIsValidAndOnTheGridOfTheGenome) {
       EXPECT_LE(jittered->front().length, spec.length_max);
     }
   }
-  EXPECT_GT(alone, 100);
+  EXPECT_GT(valid, 100);
+}
+
+TEST(ArchiveEmittersTest, ARowLiesAcrossTheWay) {
+  const SearchSetup setup = ToySetup();
+  const GenomeGenerator generator = MakeGenerator(setup);
+  const Way way = {{-2.0, 0.0}, {2.0, 0.0}};
+  sim::RandomStream random = GenomeStream(1, 1);
+  int valid = 0;
+  double lean = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const auto row = Across({0.0, 0.0}, 3, way, setup.experiment.genome, generator, random);
+    if (!row) continue;
+    ++valid;
+    ASSERT_EQ(row->size(), 3U);
+    for (std::size_t k = 1; k < 3; ++k) {
+      EXPECT_NEAR((*row)[k].x, (*row)[k - 1].x, 1e-9);
+      EXPECT_NEAR((*row)[k].y, (*row)[k - 1].y + 1.5, 0.1 + 1e-9);
+    }
+    EXPECT_NEAR((*row)[1].orientation_deg, 90.0, 60.0);
+    lean = std::max(lean, std::abs((*row)[0].orientation_deg - (*row)[2].orientation_deg));
+  }
+  EXPECT_GT(valid, 50);
+  EXPECT_GT(lean, 60.0);
 }
 
 }  // namespace

@@ -175,7 +175,7 @@ TEST(ArchiveSearchTest, RandomDeletionOnlyDrawsCasesAndTakesObstaclesAway) {
   }
   EXPECT_GT(deletions, 100U);
   EXPECT_GE(StatisticOf(*search, "cells_with_up_to_1"), 3.0) << "one trap is enough";
-  for (const char* emitter : {"nearest", "mirrored", "alone", "jittered", "recheck"}) {
+  for (const char* emitter : {"nearest", "mirrored", "across", "jittered", "recheck"}) {
     EXPECT_EQ(StatisticOf(*search, std::string(emitter) + "_runs"), 0.0) << emitter;
   }
 }
