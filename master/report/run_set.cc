@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "master/experiment/definition_table.h"
 #include "master/report/csv_column.h"
 #include "master/search/search_table.h"
 
@@ -62,6 +65,15 @@ Status AddCsv(const SetPart& part, const std::string& metric, RunSet& set) {
   return Ok{};
 }
 
+// What an experiment says of its scenario, by key.
+std::map<std::string, std::string> ScenarioSettings(const Experiment& experiment) {
+  std::map<std::string, std::string> settings;
+  for (const auto& [name, value] : experiment.scenario_parameters)
+    settings.emplace("scenario_parameters." + name, fmt::format("{}", value));
+  for (auto& setting : DefinitionSettings(experiment.definition)) settings.insert(std::move(setting));
+  return settings;
+}
+
 }  // namespace
 
 Status AddRuns(const std::vector<SearchPlan>& plans, ResultStore& store, const RunOrigin& campaign,
@@ -100,20 +112,24 @@ std::vector<std::string> WhatDiffers(const RunSet& first, const RunSet& second) 
   std::vector<std::string> differences;
   for (const RunOrigin* origin : origins) {
     const RunOrigin& base = *origins.front();
-    const auto differs = [&](const std::string& what, const std::string& there, const std::string& here) {
+    const auto differs = [&](const std::string& what, const std::string& of_base,
+                             const std::string& of_other) {
       differences.push_back(
-          fmt::format("{}: {} has {}, {} has {}", what, base.place, there, origin->place, here));
+          fmt::format("{}: {} has {}, {} has {}", what, base.place, of_base, origin->place, of_other));
     };
     if (origin->experiment.scenario != base.experiment.scenario) {
       differs("scenario", base.experiment.scenario, origin->experiment.scenario);
       continue;
     }
-    for (const auto& [name, value] : base.experiment.scenario_parameters) {
-      const auto other = origin->experiment.scenario_parameters.find(name);
-      if (other != origin->experiment.scenario_parameters.end() && other->second == value) continue;
-      differs(
-          "scenario_parameters." + name, fmt::format("{}", value),
-          other == origin->experiment.scenario_parameters.end() ? "none" : fmt::format("{}", other->second));
+    const std::map<std::string, std::string> there = ScenarioSettings(base.experiment);
+    const std::map<std::string, std::string> here = ScenarioSettings(origin->experiment);
+    for (const auto& [key, value] : there) {
+      const auto other = here.find(key);
+      if (other == here.end() || other->second != value)
+        differs(key, value, other == here.end() ? "none" : other->second);
+    }
+    for (const auto& [key, value] : here) {
+      if (!there.contains(key)) differs(key, "none", value);
     }
     if (origin->software_version != base.software_version) {
       differs("version", base.software_version, origin->software_version);

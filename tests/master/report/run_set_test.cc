@@ -267,6 +267,18 @@ TEST(WhatDiffersTest, ControllersMayDifferAndNothingElse) {
   EXPECT_THAT(WhatDiffers(base, From(other, "1.0", 7)), ElementsAre(HasSubstr("scenario: ")));
 }
 
+TEST(WhatDiffersTest, ScenariosThatFilesDefineAreToldApart) {
+  const auto gathering = [](const std::vector<std::string>& sets) {
+    return From(LoadExperiment("gathering", sets, BuiltInCatalogue()).value(), "1.0", 7);
+  };
+  const RunSet base = gathering({});
+  EXPECT_THAT(WhatDiffers(base, gathering({"controller=flocking"})), ElementsAre());
+  EXPECT_THAT(WhatDiffers(base, gathering({"generic.fitness=clusters"})),
+              ElementsAre("generic.fitness: c-1.0 has 1 / (1 + goal_distance), c-1.0 has clusters"));
+  EXPECT_THAT(WhatDiffers(base, gathering({"generic.nest.1.radius=1"})),
+              testing::Contains("generic.nest.1.radius: c-1.0 has none, c-1.0 has 1"));
+}
+
 TEST(ReadRunSetTest, CsvColumnsAreSetsAndPathsMayHoldColonsAndCommas) {
   testing_support::TemporaryDirectory scratch;
   const std::string path = scratch / "a:b,c.csv";
