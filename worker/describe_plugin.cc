@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <system_error>
@@ -18,6 +19,7 @@ namespace {
 // Of the time in which a library is loaded and lists its controllers, which takes milliseconds.
 constexpr double kCpuSeconds = 10.0;
 constexpr unsigned kWallSeconds = 30;
+constexpr std::uint64_t kMemoryBytes = kMemoryLimitWorks ? std::uint64_t{2} << 30 : 0;  // as runners have
 
 // What a description begins with, and what a refusal, in what comes back from the process.
 constexpr char kDescribed = '+';
@@ -48,8 +50,9 @@ int PrintDescription(const std::string& path, const DescribePluginFunction& desc
     const Result<std::string> description = describe({.path = absolute, .name = path, .hash = ""});
     return description ? kDescribed + *description : kRefused + description.error().message;
   };
-  const Result<SeparateOutcome> outcome =
-      CallInSeparateProcess(work, {.cpu_limit_seconds = kCpuSeconds, .wall_limit_seconds = kWallSeconds});
+  const Result<SeparateOutcome> outcome = CallInSeparateProcess(work, {.cpu_limit_seconds = kCpuSeconds,
+                                                                       .memory_limit_bytes = kMemoryBytes,
+                                                                       .wall_limit_seconds = kWallSeconds});
   if (!outcome) return refuse(outcome.error().message);
   if (!outcome->bytes) return refuse(fmt::format("the plug-in {} {}", path, WhatHappened(*outcome)));
   const std::string text = outcome->bytes->substr(1);

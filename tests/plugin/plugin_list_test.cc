@@ -40,6 +40,8 @@ void PrintTo(const Refusal& refusal, std::ostream* os) {
 class RefusedPlugin : public testing::TestWithParam<Refusal> {};
 
 TEST_P(RefusedPlugin, IsRefusedByTheReason) {
+  if (kSanitized && GetParam().plugin == "allocates_when_loaded")
+    GTEST_SKIP() << "sanitizers know no memory limit";
   const std::string file = PluginPath(GetParam().plugin);
   const ProcessResult result = Gauntlet({"list", "--plugin", file});
   EXPECT_EQ(result.exit_code, 2);
@@ -57,6 +59,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"missing_symbol", "undefined symbol: symbol_that_nobody_has"},
                     Refusal{"throws_when_loaded", "no license"},
                     Refusal{"exits_when_loaded", "called exit(0)"},
+                    Refusal{"allocates_when_loaded", "exceeded its memory when it was loaded"},
                     Refusal{"throws_in_list", "its list of controllers throws: no list today"},
                     Refusal{"built_in_name", "'flocking', which is the name of a built-in one"},
                     Refusal{"bad_range", "parameter 'value': its range is 0 to -1"}),

@@ -1,6 +1,9 @@
 // Plug-ins that must be refused, one for each definition that tests/plugin/CMakeLists.txt makes.
+#include <cstddef>
 #include <cstdlib>
+#include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "sdk/plugin.h"
 
@@ -34,6 +37,12 @@ const bool kLoaded = [] {
 #elif defined(EXITS_WHEN_LOADED)
 const bool kLoaded = [] {
   std::exit(0);
+  return true;
+}();
+#elif defined(ALLOCATES_WHEN_LOADED)
+const bool kLoaded = [] {
+  std::vector<std::unique_ptr<char[]>> all;
+  while (true) all.push_back(std::make_unique<char[]>(std::size_t{64} << 20));
   return true;
 }();
 #endif
