@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/integration/durability_drill.h"
 #include "tests/integration/service_driver.h"
 #include "tests/plugin/plugin_files.h"
 
@@ -48,6 +49,15 @@ TEST_F(PluginDrill, KilledWorkersAndRunnersDoNotChangeTheStateHash) {
   ASSERT_EQ(Gauntlet(EvolveArguments(campaign_, scratch_ / "undisturbed", 2)).exit_code, 0);
   EvolveThroughWorkerKills(campaign_, scratch_ / "c", 2, 6, 2, std::chrono::milliseconds(200));
   EXPECT_EQ(StateHash(scratch_ / "c"), StateHash(scratch_ / "undisturbed"));
+}
+
+TEST_F(PluginDrill, KillsOfMastersAndWorkersTogetherLoseNothing) {
+  campaign_.generations = 8;
+  const MassacreReport report = EvolveThroughMassacre(
+      campaign_, scratch_ / "c", 2, 3, 6, 2, std::chrono::milliseconds(700), std::chrono::milliseconds(100));
+  EXPECT_EQ(report.master_kills, 3);
+  EXPECT_EQ(report.worker_kills, 6);
+  EXPECT_EQ(report.evaluated_after_stored, 0);
 }
 
 // A worker that cannot have the plug-in gives no result, and says why.

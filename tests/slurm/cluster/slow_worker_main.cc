@@ -11,6 +11,7 @@
 
 #include "worker/command_line.h"
 #include "worker/golden_hash.h"
+#include "worker/plugin_library.h"
 #include "worker/run_executor.h"
 
 namespace {
@@ -35,5 +36,10 @@ gauntlet::sim::RunResult SlowRun(const gauntlet::sim::RunSpec& spec) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return gauntlet::worker::RunWorkerCommandLine(argc, argv, {SlowRun, gauntlet::worker::GoldenHashes});
+  namespace worker = gauntlet::worker;
+  return worker::RunWorkerCommandLine(argc, argv,
+                                      {.run = SlowRun,
+                                       .golden_hashes = worker::GoldenHashes,
+                                       .load_plugin = worker::LoadPlugin,
+                                       .describe_plugin = worker::DescribePlugin});
 }

@@ -92,6 +92,7 @@ std::vector<std::string> SlurmTest::SubmitArguments(const SmallCampaign& campaig
                                         "--no-progress",
                                         "--slurm",
                                         "bind=tcp://127.0.0.1:*"};
+  for (const std::string& setting : campaign.settings) arguments.insert(arguments.end(), {"--set", setting});
   for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--slurm", setting});
   return arguments;
 }

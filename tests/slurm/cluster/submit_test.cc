@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/plugin/plugin_files.h"
 #include "tests/slurm/cluster/slurm_cluster.h"
 
 namespace gauntlet::testing_support {
@@ -65,6 +66,21 @@ TEST_F(SlurmTest, ASubmittedSearchEndsLikeALocalOneAndLeavesNothing) {
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("a job script cannot hold a line break"));
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "two\nlines"));
+}
+
+// Master and workers on other nodes have the plug-in from the campaign's directory.
+TEST_F(SlurmTest, ASubmittedSearchWithAPluginEndsLikeALocalOneWithoutItsLibrary) {
+  StartCluster({"--nodes", "2", "--cpus", "4"});
+  const SmallCampaign campaign = SmallPlugin(scratch_);
+  const std::string hash = LocalHash(campaign);
+  const ProcessResult submitted = Gauntlet(SubmitArguments(campaign, "job", {"max_allocations=3"}));
+  ASSERT_EQ(submitted.exit_code, 0) << submitted.err;
+  std::filesystem::remove(scratch_ / "twins.so");
+  EXPECT_TRUE(
+      StatusBecomes([](const nlohmann::json& status) { return status.value("state", "") == "finished"; }));
+  EXPECT_EQ(StateHash(dir()), hash);
+  EXPECT_EQ(Show(dir())["runs_failed"], 0);
+  EXPECT_TRUE(QueueEmpties());
 }
 
 constexpr const char* kStudy = R"(
