@@ -95,6 +95,8 @@ std::string ErrorsIn(const std::string& output) {
 }
 
 Status RunCMake(CommandContext& context, const std::vector<std::string>& arguments) {
+  // Without any, as in some batch jobs, CMake does not find its own files.
+  setenv("PATH", "/usr/local/bin:/usr/bin:/bin", /*overwrite=*/0);
   Result<CallOutput> done = CallProcess(arguments, "", {});
   if (!done && done.error().kind == ErrorKind::kNotFound) {
     return InvalidInput(
@@ -202,7 +204,7 @@ void AddBuildController(CommandParser& parser) {
       R"(Headers of our own stand in for ARGoS' (argos/README.md says what there is, and what cannot be). With --argos
 every numeric attribute below <params> is a parameter, called by its path, whose default is the file's; without
 it the controllers get no parameters, and the devices that they ask for in Init. Needs a C++ compiler, CMake
-and Eigen.
+and Eigen; where Gauntlet was unpacked from its package, Eigen is in it.
 
 Examples:
   gauntlet build-controller footbot.cpp --argos experiment.argos -o libmine.so
