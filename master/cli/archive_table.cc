@@ -21,8 +21,8 @@ constexpr double kConfidence = 0.95;
 // The second axis upwards, the first one to the right.
 std::string Map(const CampaignSummary& summary) {
   const ArchiveView& archive = summary.archive;
-  const ArchiveAxis& across = archive.axes[0];
-  const ArchiveAxis& up = archive.axes[1];
+  const CellAxis& across = archive.axes[0];
+  const CellAxis& up = archive.axes[1];
   std::vector<std::string> head = {up.metric};
   for (int x = 0; x < across.parts; ++x) head.push_back(">" + RangeText(across, x));
   Table table(head);
@@ -72,7 +72,7 @@ std::string ArchiveText(const CampaignSummary& summary, const HintContext& conte
     return NothingFound(summary);
   }
   std::vector<std::string> head = {">test case", ">obstacles", ">length [m]", ">failed"};
-  for (const ArchiveAxis& axis : archive.axes) head.push_back(">" + axis.metric);
+  for (const CellAxis& axis : archive.axes) head.push_back(">" + axis.metric);
   head.insert(head.end(), {">run", ""});
   Table table(head);
   for (const ArchivedFailure& failure : BySize(summary)) {
@@ -101,7 +101,7 @@ Json ArchiveJson(const CampaignSummary& summary) {
   const ArchiveView& archive = summary.archive;
   if (archive.axes.empty()) return {};
   Json descriptors = Json::array();
-  for (const ArchiveAxis& axis : archive.axes) {
+  for (const CellAxis& axis : archive.axes) {
     descriptors.push_back(
         {{"metric", axis.metric}, {"min", axis.min}, {"max", axis.max}, {"parts", axis.parts}});
   }

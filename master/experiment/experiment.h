@@ -50,6 +50,7 @@ struct SearchSpec {
   FitnessAggregation aggregation = FitnessAggregation::kMean;
   int replicates = 1;          // runs per evaluation
   int variation_tries = 100;   // of an offspring that breaks a validity rule; then it becomes a copy
+  std::string cells;           // failure_cells.h; "" = those that the scenario declares
   sim::Parameters parameters;  // what one search alone reads (SearchInfo::parameters); missing = its default
 };
 

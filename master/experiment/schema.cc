@@ -234,6 +234,10 @@ std::vector<Key> SearchKeys(const Catalogue& catalogue) {
       ChoiceKey<kSearch, &SearchSpec::reevaluation>(
           "search.reevaluation", {"scheme", "population", "children"},
           "who is simulated in a generation; scheme = the children in AllParent-BestHalf, else everybody"),
+      FieldKey<kSearch, &SearchSpec::cells>(
+          "search.cells",
+          "METRIC:FROM:TO:PARTS, with spaces between several: how failures are told apart, instead of the "
+          "scenario's own cells"),
       ChoiceKey<kSearch, &SearchSpec::aggregation>("search.fitness_aggregation", {"mean", "last"},
                                                    "how an individual's evaluations make its fitness"),
       ObjectiveKey(),

@@ -61,7 +61,7 @@ std::string CsvOf(const CampaignSummary& summary) {
   const ArchiveView& archive = summary.archive;
   std::vector<std::string> columns = {"column",   "row",    "test case", "obstacles",
                                       "length_m", "failed", "runs"};
-  for (const ArchiveAxis& axis : archive.axes) columns.push_back(axis.metric);
+  for (const CellAxis& axis : archive.axes) columns.push_back(axis.metric);
   std::vector<std::vector<Cell>> rows;
   for (const ArchivedFailure& failure : archive.failures) {
     const LayoutSize size = SizeOf(MemberOf(summary, failure).genome);

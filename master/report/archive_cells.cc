@@ -11,11 +11,11 @@ namespace gauntlet::master {
 
 std::size_t CellsOf(const ArchiveView& archive) {
   std::size_t cells = 1;
-  for (const ArchiveAxis& axis : archive.axes) cells *= static_cast<std::size_t>(axis.parts);
+  for (const CellAxis& axis : archive.axes) cells *= static_cast<std::size_t>(axis.parts);
   return cells;
 }
 
-std::string RangeText(const ArchiveAxis& axis, int part) {
+std::string RangeText(const CellAxis& axis, int part) {
   const double width = (axis.max - axis.min) / axis.parts;
   return fmt::format("{:.4g} to {:.4g}", axis.min + part * width, axis.min + (part + 1) * width);
 }

@@ -12,7 +12,7 @@ namespace gauntlet::master {
 // How many there are, filled or not.
 std::size_t CellsOf(const ArchiveView& archive);
 // "-3 to -1.8"
-std::string RangeText(const ArchiveAxis& axis, int part);
+std::string RangeText(const CellAxis& axis, int part);
 // Of the population that the summary tells of, which holds every archived failure.
 const PopulationMember& MemberOf(const CampaignSummary& summary, const ArchivedFailure& failure);
 // The smallest layouts first.

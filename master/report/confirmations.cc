@@ -8,6 +8,7 @@
 
 #include "controllers/registry.h"
 #include "master/directory/campaign_ownership.h"
+#include "master/experiment/failure_cells.h"
 #include "master/report/answered_calls.h"
 #include "master/report/stored_check.h"
 #include "master/report/stored_search.h"
@@ -25,7 +26,7 @@ class CaseRuns {
       : failing_(FailingOf(experiment.scenario)) {
     if (const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario)) {
       ways_of_.emplace(*scenario, experiment.scenario_parameters, test_case);
-      grid_.emplace(scenario->descriptor_axes);
+      grid_.emplace(CellsOf(experiment));
     }
   }
 

@@ -11,6 +11,7 @@
 
 #include "base/shell_quoted.h"
 #include "controllers/registry.h"
+#include "master/experiment/failure_cells.h"
 #include "master/report/confirmations.h"
 #include "master/report/stored_campaign.h"
 #include "master/report/subset.h"
@@ -114,7 +115,7 @@ Status AddCampaign(const std::string& dir, YieldSet& set) {
     }
     const Confirmation& confirmation = *found->second;
     if (confirmation.verdict != FailureVerdict::kFail || !confirmation.middle) continue;
-    const DescriptorGrid grid(controllers::FindScenario(yield.experiment.scenario)->descriptor_axes);
+    const DescriptorGrid grid(CellsOf(yield.experiment));
     yield.confirmed.push_back({grid.CellOf(*confirmation.middle), one.test_case.obstacles.size(),
                                finding_runs[one.search].Of(RunOfName(one.name), candidates->elites)});
   }
@@ -126,8 +127,7 @@ Status AddCampaign(const std::string& dir, YieldSet& set) {
 }
 
 Status CheckAxes(const SearchYield& yield) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(yield.experiment.scenario);
-  if (scenario != nullptr && !scenario->descriptor_axes.empty()) return Ok{};
+  if (!CellsOf(yield.experiment).empty()) return Ok{};
   return InvalidInput(fmt::format("{}: scenario {} does not say along which metrics its failures differ",
                                   yield.place, yield.experiment.scenario));
 }

@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "base/number_text.h"
+#include "master/experiment/failure_cells.h"
 #include "master/search/archive_emitters.h"
 #include "sim/arena/arena.h"
 #include "sim/arena/genome.h"
@@ -45,7 +46,8 @@ std::string PlanOf(const Experiment& experiment) {
 // A case is admitted after so many failures at the earliest.
 constexpr int kFewestFailures = 3;
 
-std::optional<BrokenRule> CheckBudget(const Experiment& experiment) {
+std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
+  if (std::optional<BrokenRule> cells = CheckCells(experiment)) return cells;
   const int replicates = experiment.search.replicates;
   const int rounds = (kFewestFailures + replicates - 1) / replicates;
   const double needed = ((rounds - 1) * Get(experiment, kSlots) + 1) * replicates;
@@ -95,11 +97,11 @@ ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::Scenar
       failing_(scenario.failing),
       requirements_(setup.requirements),
       way_{setup.requirements.start, setup.requirements.goal},
-      archive_(scenario.descriptor_axes),
+      archive_(CellsOf(setup.experiment)),
       slots_(static_cast<std::size_t>(Get(setup.experiment, kSlots))) {
-  places_ = !only_deletion_ && scenario.failure_place && scenario.descriptor_axes.size() == 2 &&
-            scenario.descriptor_axes[0].metric == scenario.failure_place->x &&
-            scenario.descriptor_axes[1].metric == scenario.failure_place->y;
+  const std::vector<CellAxis>& axes = archive_.grid().axes();
+  places_ = !only_deletion_ && scenario.failure_place && axes.size() == 2 &&
+            axes[0].metric == scenario.failure_place->x && axes[1].metric == scenario.failure_place->y;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     BeginAnew(slots_[i]);
     waiting_.push_back(i);
@@ -109,10 +111,10 @@ ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::Scenar
 Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& setup) {
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(setup.experiment.scenario);
   GAUNTLET_CHECK(scenario != nullptr, setup.experiment.scenario);
-  if (scenario->descriptor_axes.empty()) {
+  if (CellsOf(setup.experiment).empty()) {
     return InvalidInput(
         fmt::format("scenario {} does not say along which metrics its failures differ, which "
-                    "search.algorithm = \"{}\" needs",
+                    "search.algorithm = \"{}\" needs: search.cells does",
                     scenario->name, setup.experiment.search.algorithm));
   }
   SearchSetup kept_out = setup;
@@ -171,9 +173,7 @@ std::vector<std::pair<std::string, double>> ArchiveSearch::Statistics() const {
 
 ArchiveView ArchiveSearch::Archive() const {
   ArchiveView view;
-  for (const controllers::DescriptorAxis& axis : archive_.grid().axes()) {
-    view.axes.push_back({std::string(axis.metric), axis.min, axis.max, axis.parts});
-  }
+  view.axes = archive_.grid().axes();
   for (const auto& [cell, shelf] : archive_.shelves()) {
     const Finding& elite = shelf.front();
     view.failures.push_back({archive_.grid().PartsOf(cell), elite.Middle(), elite.individual.id,
@@ -453,10 +453,10 @@ void ArchiveSearch::UpdatePopulation() {
 SearchRow ArchiveRow() {
   return {.info = {.name = "archive",
                    .description = "many different failures, each with as few obstacles as possible",
-                   .keys = {"search.replicates", "genome."},
+                   .keys = {"search.replicates", "search.cells", "genome."},
                    .parameters = kParameters,
                    .length = "search.runs",
-                   .check = CheckBudget},
+                   .check = CheckArchive},
           .number = 8,
           .title = "archive search",
           .members = "elites",
@@ -468,9 +468,10 @@ SearchRow RandomDeletionRow() {
   return {
       .info = {.name = kRandomDeletion,
                .description = "random cases and, as long as they fail, without one obstacle after the other",
-               .keys = {"search.replicates", "search.runs", "search.slots", "search.keep_out", "genome."},
+               .keys = {"search.replicates", "search.cells", "search.runs", "search.slots", "search.keep_out",
+                        "genome."},
                .length = "search.runs",
-               .check = CheckBudget},
+               .check = CheckArchive},
       .number = 9,
       .title = "random search with deletion",
       .members = "elites",

@@ -25,6 +25,7 @@ int ConfirmationReplicates(const Experiment& experiment) {
 Experiment ConfirmationOf(const Experiment& experiment, int replicates) {
   Experiment confirmation = experiment;
   confirmation.search = SearchSpec{};
+  confirmation.search.cells = experiment.search.cells;
   confirmation.search.algorithm = "confirmation";
   confirmation.search.parameters[std::string(kParameters[0].name)] = replicates;
   return confirmation;
@@ -34,6 +35,7 @@ Experiment CheckOf(const Experiment& experiment) {
   Experiment check = ConfirmationOf(experiment, 0);
   check.search.algorithm = "check";
   check.search.parameters.clear();
+  check.search.cells.clear();
   return check;
 }
 
@@ -104,6 +106,7 @@ Status ConfirmationSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const Hist
 SearchRow ConfirmationRow() {
   return {.info = {.name = "confirmation",
                    .description = "how often given cases fail with fresh seeds: gauntlet confirm",
+                   .keys = {"search.cells"},
                    .parameters = kParameters},
           .number = 4,
           .title = "confirmation of cases",
@@ -119,6 +122,7 @@ SearchRow ConfirmationRow() {
 SearchRow CheckRow() {
   SearchRow row = ConfirmationRow();
   row.info.name = "check";
+  row.info.keys = {};
   row.info.parameters = {};
   row.info.description = "whether the cases of a corpus still fail: gauntlet check";
   row.number = 7;

@@ -7,11 +7,10 @@
 #include <cstddef>
 #include <map>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
-#include "controllers/behaviour.h"
+#include "master/experiment/cell_axis.h"
 #include "master/search/failure_tally.h"
 #include "master/search/search_algorithm.h"
 
@@ -32,9 +31,9 @@ Descriptor MiddleOf(const std::vector<Descriptor>& failures);
 
 class DescriptorGrid {
  public:
-  explicit DescriptorGrid(std::span<const controllers::DescriptorAxis> axes) : axes_(axes) {}
+  explicit DescriptorGrid(std::vector<CellAxis> axes) : axes_(std::move(axes)) {}
 
-  std::span<const controllers::DescriptorAxis> axes() const { return axes_; }
+  const std::vector<CellAxis>& axes() const { return axes_; }
   std::size_t cells() const;
   // Row by row: the last axis runs fastest.
   std::size_t CellOf(const Descriptor& descriptor) const;
@@ -44,7 +43,7 @@ class DescriptorGrid {
   std::optional<Descriptor> Describe(const RunOutcome& run) const;
 
  private:
-  std::span<const controllers::DescriptorAxis> axes_;
+  std::vector<CellAxis> axes_;
 };
 
 // A test case with what its runs showed.
@@ -66,7 +65,7 @@ class FailureArchive {
   static constexpr std::size_t kShelf = 3;
   using Shelves = std::map<std::size_t, std::vector<Finding>>;
 
-  explicit FailureArchive(std::span<const controllers::DescriptorAxis> axes) : grid_(axes) {}
+  explicit FailureArchive(std::vector<CellAxis> axes) : grid_(std::move(axes)) {}
 
   const DescriptorGrid& grid() const { return grid_; }
   // By cell; no shelf is empty.

@@ -11,6 +11,7 @@
 
 #include "base/canonical_encoder.h"
 #include "base/result.h"
+#include "master/experiment/cell_axis.h"
 #include "sim/arena/test_case.h"
 #include "sim/run_result.h"
 
@@ -70,15 +71,9 @@ struct ArchivedFailure {
   int failures = 0;
   int runs = 0;  // with a result; they took part in choosing it
 };
-struct ArchiveAxis {
-  std::string metric;
-  double min = 0.0;
-  double max = 0.0;
-  int parts = 1;
-};
 // The cells of a grid over the kinds of failure that hold something, row by row.
 struct ArchiveView {
-  std::vector<ArchiveAxis> axes;  // none: the search keeps no archive
+  std::vector<CellAxis> axes;  // none: the search keeps no archive
   std::vector<ArchivedFailure> failures;
 };
 

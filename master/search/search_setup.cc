@@ -82,7 +82,8 @@ std::string SearchIdentity(const SearchSetup& setup) {
     const bool of_searches = key.path.starts_with("search.") || key.path.starts_with("genome.");
     if (of_searches && !Reads(row.info, key.path)) return false;
     // Of what came later than stored campaigns, only what was asked for.
-    const bool if_asked_for = IsDisturbance(key) || key.path == "search.objective";
+    const bool if_asked_for =
+        IsDisturbance(key) || key.path == "search.objective" || key.path == "search.cells";
     return !if_asked_for || key.get(experiment) != key.default_value;
   };
   std::string identity = fmt::format("search = {}\n", setup.search_id);

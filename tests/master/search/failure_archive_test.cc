@@ -8,10 +8,10 @@ namespace {
 
 using ::testing::ElementsAre;
 
-constexpr std::array kAxes = std::to_array<controllers::DescriptorAxis>({
+const std::vector<CellAxis> kAxes = {
     {"x", -3.0, 3.0, 5},
     {"y", 0.0, 2.0, 2},
-});
+};
 
 Finding FindingOf(IndividualId id, std::size_t obstacles, const std::vector<Descriptor>& failures) {
   Finding finding;
