@@ -63,6 +63,8 @@ std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
 // Obstacles of a random case that are tried alone: so many nearest to the failure and so many in the way.
 constexpr std::array<std::pair<std::ptrdiff_t, std::size_t>, 6> kFirstTried = {
     {{1, 0}, {2, 0}, {2, 1}, {3, 0}, {3, 1}, {4, 1}}};
+// To take the place of an elite of as many obstacles: of many that are tried some fail three times by luck.
+constexpr int kFailuresToShorten = 5;
 constexpr int kMaxRuns = 8;                   // of an elite; then it is known well enough
 constexpr double kReliable = 0.6;             // of its runs an elite has to fail
 constexpr std::ptrdiff_t kMostElsewhere = 1;  // failures of a layout outside its cell, when it is admitted
@@ -222,6 +224,9 @@ void ArchiveSearch::Continue(Slot& slot) {
     race = Race::kDrop;
   }
   if (race == Race::kAdmit) race = JudgePlace(finding);
+  if (race == Race::kAdmit && !only_deletion_ && OnlyShortens(finding) &&
+      finding.tally.failures < kFailuresToShorten)
+    race = Race::kOpen;
   if (race == Race::kOpen) return;
   if (race == Race::kAdmit) {
     slot.plan.clear();
@@ -235,6 +240,11 @@ void ArchiveSearch::Continue(Slot& slot) {
 
 bool ArchiveSearch::Matters(std::size_t cell, const LayoutSize& size) const {
   return only_deletion_ || archive_.WouldWin(cell, size);
+}
+
+bool ArchiveSearch::OnlyShortens(const Finding& finding) const {
+  const Finding* elite = archive_.EliteOf(archive_.grid().CellOf(finding.Middle()));
+  return elite != nullptr && elite->size().obstacles == finding.size().obstacles;
 }
 
 Race ArchiveSearch::JudgePlace(const Finding& finding) const {

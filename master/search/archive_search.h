@@ -105,6 +105,8 @@ class ArchiveSearch : public PopulationSearch {
   // Whether it is worth knowing that a layout of this size fails in the cell.
   bool Matters(std::size_t cell, const LayoutSize& size) const;
   // Whether a layout that fails often enough does so in one cell.
+  // Whether it would take the place of an elite of as many obstacles.
+  bool OnlyShortens(const Finding& finding) const;
   Race JudgePlace(const Finding& finding) const;
   void Rechecked(Slot& slot);
   // The obstacles in the order in which they are probably needed.
