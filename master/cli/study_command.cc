@@ -4,6 +4,7 @@
 
 #include "master/cli/commands.h"
 #include "master/cli/study_run.h"
+#include "master/directory/plugins.h"
 
 namespace gauntlet::master {
 namespace {
@@ -14,7 +15,9 @@ struct StudyOptions {
 };
 
 ExitCode RunStudy(CommandContext& context, const StudyOptions& options) {
-  const Result<Study> study = LoadStudy(options.study);
+  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.start.plugins);
+  if (!plugins) return Fail(context, plugins.error());
+  const Result<Study> study = LoadStudy(options.study, {}, *plugins);
   if (!study) return Fail(context, study.error());
   return StartStudy(context, *study, options.start);
 }

@@ -206,6 +206,7 @@ void AddStudyStartOptions(CLI::App& command, StudyStartOptions& options) {
       "--submit", options.submit,
       "its workers, and by default its master, are jobs of a Slurm cluster ('gauntlet submit --help' "
       "lists the settings)");
+  AddPluginOption(command, options.plugins);
   AddSlurmOptions(command, options.slurm);
   AddRunningOptions(command, options.running);
 }

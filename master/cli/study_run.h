@@ -31,6 +31,7 @@ struct StudyStartOptions {
   std::string markdown;
   bool dry_run = false;
   bool submit = false;
+  std::vector<std::string> plugins;  // libraries
   SlurmOptions slurm;
   RunningOptions running;
 };

@@ -7,6 +7,7 @@
 
 #include "master/cli/commands.h"
 #include "master/cli/study_run.h"
+#include "master/directory/plugins.h"
 
 namespace gauntlet::master {
 namespace {
@@ -26,17 +27,19 @@ bool IsTuning(const Study& study) {
 }
 
 Result<Study> LoadTuning(const TuneOptions& options) {
+  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.start.plugins);
+  if (!plugins) return plugins.error();
   const std::vector<std::string> shipped = ShippedStudies();
   const std::string own = "tune-" + options.experiment;
   if (options.candidates.empty() && std::ranges::count(shipped, own) > 0)
-    return LoadStudy(own, {"", options.repeats, options.sets});
+    return LoadStudy(own, {"", options.repeats, options.sets}, *plugins);
   std::string experiment = options.experiment;
   // A file is found again by whoever goes on, from wherever that is.
   std::error_code error;
   const bool is_file = experiment.find('/') != std::string::npos || experiment.ends_with(".toml");
   if (is_file) experiment = std::filesystem::absolute(experiment, error).string();
   Result<Study> study = LoadStudy(options.candidates.empty() ? kCandidates : options.candidates,
-                                  {experiment, options.repeats, options.sets});
+                                  {experiment, options.repeats, options.sets}, *plugins);
   if (study && !IsTuning(*study)) {
     return InvalidInput(fmt::format("--candidates {}: the study has no table [tune.NAME] with candidates",
                                     options.candidates));

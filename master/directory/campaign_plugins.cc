@@ -19,8 +19,8 @@ namespace {
 constexpr const char* kLibrary = ".so";
 constexpr const char* kDescription = ".json";
 
-std::string PathOf(const CampaignDirectory& directory, const std::string& hash, const char* ending) {
-  return fmt::format("{}/{}{}", directory.plugins_path(), hash, ending);
+std::string PathOf(const std::string& folder, const std::string& hash, const char* ending) {
+  return fmt::format("{}/{}{}", folder, hash, ending);
 }
 
 // Without the empty one, which stands for no plug-in.
@@ -44,26 +44,26 @@ Result<std::string> ReadPlugin(const std::string& path, const std::string& hash)
 
 }  // namespace
 
-Status KeepPlugins(const CampaignDirectory& directory, const std::vector<SearchPlan>& plans) {
+Status KeepPlugins(const std::string& folder, const std::vector<SearchPlan>& plans) {
   for (const std::string& hash : PluginsOf(plans)) {
     const controllers::PluginInfo* plugin = controllers::FindPlugin(hash);
     GAUNTLET_CHECK(plugin != nullptr, hash);
     const Result<std::string> library = ReadPlugin(plugin->file, hash);
     if (!library) return library.error();
-    if (Status made = MakeDirectory(directory.plugins_path()); !made) return made;
+    if (Status made = MakeDirectory(folder); !made) return made;
     for (const auto& [ending, content] : {std::pair<const char*, const std::string&>(kLibrary, *library),
                                           {kDescription, plugin->description}}) {
-      if (Status kept = WriteFileAtomically(PathOf(directory, hash, ending), content, kReadableByAll); !kept)
+      if (Status kept = WriteFileAtomically(PathOf(folder, hash, ending), content, kReadableByAll); !kept)
         return kept;
     }
   }
   return Ok{};
 }
 
-Status KnowPlugins(const CampaignDirectory& directory) {
+Status KnowPlugins(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code missing;
-  for (fs::directory_iterator entry(directory.plugins_path(), missing), end; !missing && entry != end;
+  for (fs::directory_iterator entry(folder, missing), end; !missing && entry != end;
        entry.increment(missing)) {
     const fs::path& path = entry->path();
     const std::string hash = path.stem();
@@ -71,15 +71,15 @@ Status KnowPlugins(const CampaignDirectory& directory) {
     const Result<std::string> description = ReadRegularFile(path);
     if (!description) return description.error();
     const Status known =
-        AddDescribedPlugin(hash, PathOf(directory, hash, kLibrary), *description, path.string());
+        AddDescribedPlugin(hash, PathOf(folder, hash, kLibrary), *description, path.string());
     if (!known) return known;
   }
   return Ok{};
 }
 
-Status CheckPlugins(const CampaignDirectory& directory, const std::vector<SearchPlan>& plans) {
+Status CheckPlugins(const std::string& folder, const std::vector<SearchPlan>& plans) {
   for (const std::string& hash : PluginsOf(plans)) {
-    if (const Result<std::string> read = ReadPlugin(PathOf(directory, hash, kLibrary), hash); !read)
+    if (const Result<std::string> read = ReadPlugin(PathOf(folder, hash, kLibrary), hash); !read)
       return read.error();
   }
   return Ok{};

@@ -6,19 +6,20 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/directory/campaign_directory.h"
 #include "master/directory/search_plans.h"
 
 namespace gauntlet::master {
 
-// Copies the plug-ins of these searches into the directory; all are known (master/directory/plugins.h).
-Status KeepPlugins(const CampaignDirectory& directory, const std::vector<SearchPlan>& plans);
+// `folder` is plugins_path() of a campaign, or plugins/ of a study, and made when it is needed.
 
-// Makes those of the directory known. Error: a description does not read back.
-Status KnowPlugins(const CampaignDirectory& directory);
+// Copies the plug-ins of these searches into the folder; all are known (master/directory/plugins.h).
+Status KeepPlugins(const std::string& folder, const std::vector<SearchPlan>& plans);
+
+// Makes those of the folder known. Error: a description does not read back.
+Status KnowPlugins(const std::string& folder);
 
 // Whether each plug-in of these searches is still the one that the campaign was begun with. Error: the file
 // is missing, or its hash is another one.
-Status CheckPlugins(const CampaignDirectory& directory, const std::vector<SearchPlan>& plans);
+Status CheckPlugins(const std::string& folder, const std::vector<SearchPlan>& plans);
 
 }  // namespace gauntlet::master

@@ -31,7 +31,7 @@ std::string WriteSearchPlans(const std::vector<SearchPlan>& plans) {
 }
 
 Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directory) {
-  if (const Status known = KnowPlugins(directory); !known) return known.error();
+  if (const Status known = KnowPlugins(directory.plugins_path()); !known) return known.error();
   std::vector<SearchPlan> plans;
   const auto add = [&](const std::string& settings, const std::string& text,
                        const std::string& place) -> Status {

@@ -126,7 +126,9 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
   meta.golden_hashes = proto::WriteGoldenHashes(*golden_hashes);
   CampaignTexts texts = TextsOf(plans, meta.software_version, *golden_hashes);
   texts.slurm = slurm;
-  texts.others = [&](const CampaignDirectory& directory) { return KeepPlugins(directory, plans); };
+  texts.others = [&](const CampaignDirectory& directory) {
+    return KeepPlugins(directory.plugins_path(), plans);
+  };
   Result<CampaignOwnership> campaign =
       CreateCampaign(dir, texts, meta, [&](ResultStore& store) { return AddPlans(plans, store); });
   if (!campaign) return campaign.error();
@@ -192,7 +194,7 @@ class Campaigns final : public CampaignService {
     if (!plans) return plans.error();
     const Result<proto::GoldenHashes> golden_hashes = CheckGoldenHashes(campaign->store->meta());
     if (!golden_hashes) return golden_hashes.error();
-    if (Status same = CheckPlugins(campaign->directory, *plans); !same) return same.error();
+    if (Status same = CheckPlugins(campaign->directory.plugins_path(), *plans); !same) return same.error();
     if (Status whole = CheckStored(*plans, *campaign->store); !whole) return whole.error();
     const Result<CampaignSummary> totals = SummariseTotals(*plans, *campaign->store);
     if (!totals) return totals.error();

@@ -103,16 +103,18 @@ struct Study {
   std::map<std::string, std::string> texts;
   std::string main_file;
   TuningChanges changes;
+  std::vector<std::string> plugins;  // SHA-256 of those that bring controllers of its parts
 };
 
 // A shipped study by its name, or a file by its path (with a '/' or ending in ".toml"). Files that it
 // includes or takes published figures from stand beside it. Errors begin with the place and name what would
 // be right. Published figures of a tuning are left out when experiment or settings are changed: they are of
-// another one.
-Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes = {});
+// another one. `plugins`: the SHA-256 of those that may bring controllers, which are known.
+Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes = {},
+                        const std::vector<std::string>& plugins = {});
 // The same of texts that were read before.
 Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file,
-                        const TuningChanges& changes = {});
+                        const TuningChanges& changes = {}, const std::vector<std::string>& plugins = {});
 
 // One of the sets that an analysis names, "PART:SUBSET".
 struct StudySet {

@@ -13,6 +13,7 @@
 #include "base/system/regular_file.h"
 #include "base/system/trusted_path.h"
 #include "controllers/registry.h"
+#include "master/directory/campaign_plugins.h"
 #include "master/report/campaign_summary.h"
 #include "master/report/case_set.h"
 #include "master/search/population_search.h"
@@ -73,11 +74,20 @@ Result<OpenedSubset> OpenStage(const std::string& dir, StudyStage stage) {
   return OpenSubset({CampaignOf(dir, stage), "all"});
 }
 
+std::string PluginsOf(const std::string& dir) {
+  return dir + "/plugins";
+}
+
 Status WriteStudy(const std::string& dir, const Study& study) {
   nlohmann::ordered_json json = {{"format", kFormat}, {"main", study.main_file}, {"files", study.texts}};
   if (const TuningChanges& changes = study.changes; changes != TuningChanges{}) {
     json["changes"] = {
         {"experiment", changes.experiment}, {"repeats", changes.repeats}, {"sets", changes.sets}};
+  }
+  if (!study.plugins.empty()) json["plugins"] = study.plugins;
+  // The libraries first: a study whose file is there is whole.
+  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+    if (Status kept = KeepPlugins(PluginsOf(dir), ExpectedPlans(study, stage)); !kept) return kept;
   }
   return WriteFileAtomically(StudyFile(dir), JsonText(json), kReadableByAll);
 }
@@ -126,7 +136,8 @@ Status BeginStudy(const std::string& dir, const Study& study) {
       if (const Result<StageState> fits = LookAtStage(study, dir, stage); !fits) return fits.error();
     }
     // What is computed from the same runs may change.
-    const bool same = there->texts == study.texts && there->changes == study.changes;
+    const bool same =
+        there->texts == study.texts && there->changes == study.changes && there->plugins == study.plugins;
     return same ? Status(Ok{}) : WriteStudy(dir, study);
   }
   if (fs::exists(dir, error)) {
@@ -134,7 +145,7 @@ Status BeginStudy(const std::string& dir, const Study& study) {
     for (const fs::directory_entry& entry : fs::directory_iterator(dir, error)) {
       const std::string name = entry.path().filename().string();
       // What a write that was killed has left.
-      if (name.find("study.json") != std::string::npos) continue;
+      if (name.find("study.json") != std::string::npos || name == "plugins") continue;
       return InvalidInput(
           fmt::format("{} holds no study, but {}: name a directory that is new or empty", dir, name));
     }
@@ -172,7 +183,13 @@ Result<Study> OpenStudy(const std::string& dir) {
       changes.sets.push_back(set.get<std::string>());
     }
   }
-  return ReadStudy(texts, TextAt(json, "main"), changes);
+  if (Status known = KnowPlugins(PluginsOf(dir)); !known) return known.error();
+  std::vector<std::string> plugins;
+  for (const nlohmann::json& hash : json.value("plugins", nlohmann::json::array())) {
+    if (!hash.is_string() || controllers::FindPlugin(hash.get<std::string>()) == nullptr) return damaged;
+    plugins.push_back(hash.get<std::string>());
+  }
+  return ReadStudy(texts, TextAt(json, "main"), changes, plugins);
 }
 
 Result<std::vector<SearchPlan>> PlanSearchStage(const Study& study) {

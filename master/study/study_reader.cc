@@ -32,8 +32,10 @@ constexpr std::size_t kMostSearches = 1000;
 
 class Reader {
  public:
-  Reader(ReadText read, TuningChanges changes) : read_(std::move(read)) {
+  Reader(ReadText read, TuningChanges changes, std::vector<std::string> plugins) : read_(std::move(read)) {
     study_.changes = std::move(changes);
+    study_.plugins = std::move(plugins);
+    catalogue_.plugins = study_.plugins;
   }
 
   Result<Study> Read(const std::string& main_file) {
@@ -42,6 +44,10 @@ class Reader {
     if (study_.name.empty()) return InvalidInput(main_file + ": the study has no name");
     if (study_.parts.empty()) return InvalidInput(main_file + ": the study has no parts");
     if (Status whole = CheckAnalyses(); !whole) return whole.error();
+    std::erase_if(study_.plugins, [this](const std::string& hash) {
+      return std::ranges::none_of(study_.parts,
+                                  [&](const StudyPart& part) { return part.experiment.plugin == hash; });
+    });
     if (!study_.changes.experiment.empty()) {
       const std::string& experiment = study_.parts.front().experiment.name;
       study_.name = "tune-" + experiment;
@@ -185,7 +191,7 @@ class Reader {
       });
       sets.emplace_back("search.algorithm=cases");
     }
-    Result<Experiment> experiment = LoadExperiment(name, sets, BuiltInCatalogue());
+    Result<Experiment> experiment = LoadExperiment(name, sets, catalogue_);
     if (!experiment) {
       return Error{experiment.error().kind,
                    fmt::format("{}: part '{}': {}", table.where, part.name, experiment.error().message)};
@@ -210,7 +216,7 @@ class Reader {
     analysis.where = table.where;
     analysis.keys.insert(table.keys.begin(), table.keys.end());
     if (analysis.kind != "tune") return Ok{};
-    Result<ExpandedTuning> expanded = ExpandTuning(table, study_.changes);
+    Result<ExpandedTuning> expanded = ExpandTuning(table, study_.changes, catalogue_);
     if (!expanded) return expanded.error();
     analysis.tuning = std::move(expanded->tuning);
     std::ranges::move(expanded->parts, std::back_inserter(study_.parts));
@@ -282,6 +288,7 @@ class Reader {
 
   ReadText read_;
   Study study_;
+  Catalogue catalogue_ = BuiltInCatalogue();
   std::map<std::string, std::pair<std::string, std::vector<std::string>>> sources_;  // by part
 };
 
@@ -336,7 +343,8 @@ std::vector<std::string> ShippedStudies() {
   return {names.begin(), names.end()};
 }
 
-Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes) {
+Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes,
+                        const std::vector<std::string>& plugins) {
   const Result<fs::path> path = PathOf(name_or_path);
   if (!path) return path.error();
   const auto read = [&](const std::string& file) -> Result<std::string> {
@@ -345,17 +353,17 @@ Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& ch
     return Error{ErrorKind::kNotFound,
                  fmt::format("there is no study file '{}'", (path->parent_path() / file).string())};
   };
-  return Reader(read, changes).Read(path->filename().string());
+  return Reader(read, changes, plugins).Read(path->filename().string());
 }
 
 Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file,
-                        const TuningChanges& changes) {
+                        const TuningChanges& changes, const std::vector<std::string>& plugins) {
   const auto read = [&](const std::string& file) -> Result<std::string> {
     const auto found = texts.find(file);
     if (found != texts.end()) return found->second;
     return Error{ErrorKind::kCorrupt, fmt::format("the study's file '{}' is missing", file)};
   };
-  return Reader(read, changes).Read(main_file);
+  return Reader(read, changes, plugins).Read(main_file);
 }
 
 }  // namespace gauntlet::master

@@ -45,7 +45,8 @@ std::string ValueOf(const Experiment& experiment, const std::string& path) {
 
 class Expander {
  public:
-  Expander(const StudyFileTable& table, const TuningChanges& changes) : table_(table) {
+  Expander(const StudyFileTable& table, const TuningChanges& changes, const Catalogue& catalogue)
+      : table_(table), catalogue_(catalogue) {
     tuning_.experiment = changes.experiment.empty() ? table.Key("experiment") : changes.experiment;
     for (const auto& [key, value] : table.Nested("set")) sets_.push_back(fmt::format("{}={}", key, value));
     sets_.insert(sets_.end(), changes.sets.begin(), changes.sets.end());
@@ -55,7 +56,7 @@ class Expander {
 
   Result<ExpandedTuning> Expand() {
     if (Status read = ReadNumbers(); !read) return read.error();
-    Result<Experiment> baseline = LoadExperiment(tuning_.experiment, sets_, BuiltInCatalogue());
+    Result<Experiment> baseline = LoadExperiment(tuning_.experiment, sets_, catalogue_);
     if (!baseline) return baseline.error();
     const SearchRow& search = RowOf(*baseline);
     if (search.members != "population" || search.given_cases) {
@@ -119,7 +120,7 @@ class Expander {
     sets.insert(sets.end(), change.begin(), change.end());
     std::erase_if(sets, [](const std::string& set) { return set.starts_with("search."); });
     sets.emplace_back("search.algorithm=cases");
-    Result<Experiment> loaded = LoadExperiment(tuning_.experiment, sets, BuiltInCatalogue());
+    Result<Experiment> loaded = LoadExperiment(tuning_.experiment, sets, catalogue_);
     if (!loaded) return loaded.error();
     again.experiment = *std::move(loaded);
     again.experiment.search.replicates = 1;
@@ -172,10 +173,11 @@ class Expander {
   Result<Experiment> LoadWith(const std::string& key, const std::string& value) const {
     std::vector<std::string> sets = sets_;
     sets.push_back(fmt::format("{}={}", key, value));
-    return LoadExperiment(tuning_.experiment, sets, BuiltInCatalogue());
+    return LoadExperiment(tuning_.experiment, sets, catalogue_);
   }
 
   const StudyFileTable& table_;
+  const Catalogue& catalogue_;
   std::string repeats_;
   std::string repeats_place_;
   std::vector<std::string> sets_;
@@ -189,8 +191,9 @@ std::string AgainPart(const std::string& part) {
   return part + "-again";
 }
 
-Result<ExpandedTuning> ExpandTuning(const StudyFileTable& table, const TuningChanges& changes) {
-  return Expander(table, changes).Expand();
+Result<ExpandedTuning> ExpandTuning(const StudyFileTable& table, const TuningChanges& changes,
+                                    const Catalogue& catalogue) {
+  return Expander(table, changes, catalogue).Expand();
 }
 
 }  // namespace gauntlet::master

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "master/experiment/schema.h"
 #include "master/study/study.h"
 #include "master/study/study_file.h"
 
@@ -16,6 +17,7 @@ struct ExpandedTuning {
 };
 
 // Error: names what is wrong in the table or in `changes`, and what would be right.
-Result<ExpandedTuning> ExpandTuning(const StudyFileTable& table, const TuningChanges& changes);
+Result<ExpandedTuning> ExpandTuning(const StudyFileTable& table, const TuningChanges& changes,
+                                    const Catalogue& catalogue);
 
 }  // namespace gauntlet::master

@@ -141,6 +141,46 @@ TEST_F(PluginCampaign, GivesItsFailingCasesToACorpus) {
   EXPECT_EQ(Gauntlet({"check", corpus, "--quiet"}).exit_code, 2) << "without the library";
 }
 
+// The whole study knows its plug-in from its own directory.
+TEST_F(PluginCampaign, StudiesAndTuningsGoOnWithoutTheOriginalLibrary) {
+  const std::string library = scratch_ / "libtwin.so";
+  fs::copy_file(PluginPath("of_twins"), library);
+  const std::string study = scratch_ / "small.toml";
+  std::ofstream(study) << R"(name = "small"
+[tune.small]
+title = "a small tuning"
+experiment = "flocking"
+repeats = 1
+sizes = "1, 5"
+set.search.population = 4
+set.search.generations = 1
+set.scenario = "light-flocking"
+set.controller = "twin"
+set.scenario_parameters.time_limit = 3
+candidates.genome.genes = "1, 8"
+)";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"study", study},
+        std::vector<std::string>{"tune", "flocking", "--candidates", study}}) {
+    SCOPED_TRACE(command[0]);
+    const std::string dir = scratch_ / command[0];
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--dir", dir, "--workers", "2", "--quiet", "--json"});
+    EXPECT_EQ(Gauntlet(arguments).exit_code, 2) << "without the library";
+    arguments.insert(arguments.end(), {"--plugin", library});
+    const ProcessResult whole = Gauntlet(arguments);
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    fs::rename(library, scratch_ / "away.so");
+    fs::remove_all(dir + "/evaluations");
+    const ProcessResult resumed = Gauntlet({"resume", dir, "--quiet", "--json"});
+    ASSERT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_EQ(nlohmann::json::parse(resumed.out).at("tunings"),
+              nlohmann::json::parse(whole.out).at("tunings"));
+    EXPECT_EQ(Show(dir + "/evaluations")["runs_failed"], 0);
+    fs::rename(scratch_ / "away.so", library);
+  }
+}
+
 TEST_F(PluginCampaign, FaultyRunsAreResultsThatSaySo) {
   const ProcessResult result =
       Random("flocking", {"--plugin", PluginPath("of_faults"), "--set", "controller=throw"});
