@@ -72,6 +72,12 @@ std::string TextOf(const std::vector<pugi::xml_node>& sections) {
   return text.str();
 }
 
+Status Parse(const std::string& text, const std::string& file_name, pugi::xml_document& document) {
+  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
+  if (parsed) return Ok{};
+  return ErrorAt(text, file_name, parsed.offset, fmt::format("malformed XML: {}", parsed.description()));
+}
+
 }  // namespace
 
 Result<std::string> ArgosControllerTable(const std::string& text, const std::string& file_name) {
@@ -79,8 +85,7 @@ Result<std::string> ArgosControllerTable(const std::string& text, const std::str
     return ErrorAt(text, file_name, offset, message);
   };
   pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
-  if (!parsed) return fail(parsed.offset, fmt::format("malformed XML: {}", parsed.description()));
+  if (Status parsed = Parse(text, file_name, document); !parsed) return parsed.error();
   const pugi::xml_node root = document.document_element();
   if (std::string_view(root.name()) != "argos-configuration") {
     return fail(root.offset_debug(),
@@ -117,8 +122,7 @@ Result<ArgosControllers> ReadArgosControllers(const std::string& text, const std
     return ErrorAt(text, file_name, offset, message);
   };
   pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
-  if (!parsed) return fail(parsed.offset, fmt::format("malformed XML: {}", parsed.description()));
+  if (Status parsed = Parse(text, file_name, document); !parsed) return parsed.error();
   const pugi::xml_node root = document.document_element();
   const bool bare = std::string_view(root.name()) == "controllers";
   const std::vector<pugi::xml_node> sections = ElementsOf(bare ? root : root.child("controllers"));
