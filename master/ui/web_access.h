@@ -15,8 +15,8 @@ std::string NewToken();
 std::string AddressOf(int port, const std::string& token);
 
 // The path behind the token, "" of the first page; the refusal of a request that has no business here: the
-// method is neither GET nor HEAD (405), another site's page sends it or has a name of its own point here (Host and Origin
-// are not this machine: 403), it does not know the token (403), or its path has "..": 404.
+// method is neither GET nor HEAD (405), another site's page sends it or has a name of its own point here
+// (Host and Origin are not this machine: 403), it does not know the token (403), or its path has "..": 404.
 // Host may name any port, so that the pages can be reached through a tunnel.
 struct Admission {
   std::string path;

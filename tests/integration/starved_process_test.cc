@@ -95,8 +95,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Famine{"--nofile=24", {"ulimit -Hn"}}, Famine{"--nofile=32", {"ulimit -Hn"}},
                     Famine{"--nofile=64", {"ulimit -Hn"}}, Famine{"--nproc=1", {"ulimit -u"}},
                     Famine{"--nproc=2", {"ulimit -u"}}, Famine{"--nproc=3", {"ulimit -u"}},
-                    Famine{"--as=31457280", {"ulimit -v", "shared libraries"}},
                     // Enough for a worker, which finds no master then.
+                    Famine{"--as=36700160", {"ulimit -v", "shared libraries", "no word from a master"}},
                     Famine{"--as=51200000", {"ulimit -v", "shared libraries", "no word from a master"}},
                     Famine{"--fsize=8192", {"ulimit -f"}}, Famine{"--fsize=200000", {"ulimit -f"}}),
     [](const auto& test) {
