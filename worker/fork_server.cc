@@ -21,6 +21,7 @@
 #include <set>
 
 #include "base/system/atomic_file.h"
+#include "worker/scratch_folder.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -219,6 +220,7 @@ class Server {
     for (const pid_t pid : runners_) kill(pid, SIGKILL);
     while (wait4(-1, nullptr, 0, nullptr) > 0 || errno == EINTR) {
     }
+    ScratchFolder::RemoveAbandoned();
     _exit(0);
   }
 

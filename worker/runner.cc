@@ -11,11 +11,13 @@
 #include <csignal>
 #include <cstdio>
 #include <ctime>
+#include <map>
 
 #include "base/canonical_encoder.h"
 #include "base/utf8.h"
 #include "proto/run_codec.h"
 #include "worker/pipe.h"
+#include "worker/prepared_process.h"
 
 namespace gauntlet::worker {
 
@@ -85,44 +87,59 @@ RunnerReport Execute(const RunnerJob& job, const Result<sim::RunSpec>& spec, con
   return report;
 }
 
-// User and system time of this process and of its children that have ended.
-double SecondsWithChildren() {
-  double seconds = SecondsOf(CLOCK_PROCESS_CPUTIME_ID);
-  rusage children{};
-  if (getrusage(RUSAGE_CHILDREN, &children) == 0) {
-    for (const timeval& time : {children.ru_utime, children.ru_stime})
-      seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  }
-  return seconds;
-}
-
 [[noreturn]] void EndWithoutPlugin(const Error& error) {
   fmt::print(stderr, "{}\n", error.message);
   std::fflush(stderr);
   _exit(kExitWithoutPlugin);
 }
 
-// The report of a run of a plug-in, which gets a process of its own: it begins with fresh statics, and does
+// Runs of plug-ins. Each gets a process of its own, which begins with the library as freshly loaded and does
 // nothing to this one.
-std::string ExecutePlugin(const RunnerJob& job, const Result<sim::RunSpec>& spec, const RunFunction& run,
-                          PluginFiles& plugins) {
-  const Result<PluginFile> file = plugins.Open(spec->plugin);
-  if (!file) EndWithoutPlugin(file.error());
-  const auto work = [&] {
-    if (const Status loaded = plugins.settings().load(*file); !loaded) EndWithoutPlugin(loaded.error());
-    return EncodeReport(Execute(job, spec, run));
-  };
-  const Result<SeparateOutcome> outcome =
-      CallInSeparateProcess(work, {.cpu_limit_seconds = job.cpu_limit_seconds,
-                                   .memory_limit_bytes = kMemoryLimitWorks ? job.memory_limit_bytes : 0,
-                                   .scratch = plugins.settings().scratch});
-  if (!outcome) EndWithoutPlugin(outcome.error());
-  std::optional<RunnerReport> report;
-  if (outcome->bytes) report = DecodeReport(*outcome->bytes);
-  if (!report) EndAs(*outcome);
-  report->process_cpu_seconds = SecondsWithChildren();
-  return EncodeReport(*report);
-}
+class PluginRuns {
+ public:
+  PluginRuns(const PluginSettings& settings, const RunFunction& run) : files_(settings), run_(run) {}
+
+  // The report of the run. Ends this process as that of the run when that one ended without a result.
+  std::string Execute(const RunnerJob& job, const std::string& plugin) {
+    PreparedProcess& process = ProcessOf(plugin);
+    const Result<SeparateOutcome> outcome =
+        process.Call(EncodeJob(job), {.cpu_limit_seconds = job.cpu_limit_seconds,
+                                      .memory_limit_bytes = kMemoryLimitWorks ? job.memory_limit_bytes : 0,
+                                      .scratch = files_.settings().scratch});
+    if (!outcome) EndWithoutPlugin(outcome.error());
+    std::optional<RunnerReport> report;
+    if (outcome->bytes) report = DecodeReport(*outcome->bytes);
+    if (!report) {
+      processes_.clear();  // reaped, they count as part of this one
+      EndAs(*outcome);
+    }
+    report->process_cpu_seconds = SecondsWithChildren();
+    for (const auto& [hash, living] : processes_) report->process_cpu_seconds += living.cpu_seconds();
+    return EncodeReport(*report);
+  }
+
+ private:
+  // The process that has loaded the plug-in and runs nothing.
+  PreparedProcess& ProcessOf(const std::string& plugin) {
+    const auto found = processes_.find(plugin);
+    if (found != processes_.end()) return found->second;
+    const Result<PluginFile> file = files_.Open(plugin);
+    if (!file) EndWithoutPlugin(file.error());
+    const auto load = [this, file = *file] {
+      if (const Status loaded = files_.settings().load(file); !loaded) EndWithoutPlugin(loaded.error());
+    };
+    const auto work = [this](const std::string& bytes) {
+      const std::optional<RunnerJob> job = DecodeJob(bytes);
+      GAUNTLET_CHECK(job.has_value(), "a job that does not decode");
+      return EncodeReport(worker::Execute(*job, proto::DecodeRunSpec(job->spec), run_));
+    };
+    return processes_.try_emplace(plugin, load, work).first->second;
+  }
+
+  PluginFiles files_;
+  const RunFunction& run_;
+  std::map<std::string, PreparedProcess> processes_;  // by the plug-in's hash
+};
 
 bool OnlyOthersSend(int signal) {
   // SIGPIPE: the supervisor has closed the pipe.
@@ -198,7 +215,7 @@ RunnerFailure WaitedTooLong(double wall_seconds) {
 void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugin_settings) {
   Limits::ForbidCoreDumps();
   Limits limits;
-  PluginFiles plugins(plugin_settings);
+  PluginRuns plugins(plugin_settings, run);
   FrameBuffer messages;
   while (true) {
     const std::optional<std::string> message = messages.Next();
@@ -211,7 +228,7 @@ void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugin_s
     limits.Set(*job, SecondsOf(CLOCK_PROCESS_CPUTIME_ID));
     const std::string report = CallOrEnd([&] {
       const Result<sim::RunSpec> spec = proto::DecodeRunSpec(job->spec);
-      if (spec.ok() && !spec->plugin.empty()) return ExecutePlugin(*job, spec, run, plugins);
+      if (spec.ok() && !spec->plugin.empty()) return plugins.Execute(*job, spec->plugin);
       return EncodeReport(Execute(*job, spec, run));
     });
     if (!WriteFrame(pipe, report)) _exit(0);

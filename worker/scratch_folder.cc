@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -29,8 +30,11 @@ UniqueFd Lock(const fs::path& folder) {
   return opened;
 }
 
-void RemoveAbandoned(const fs::path& place) {
+}  // namespace
+
+void ScratchFolder::RemoveAbandoned() {
   std::error_code ignored;
+  const fs::path place = fs::temp_directory_path(ignored);
   for (fs::directory_iterator entry(place, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
     if (!entry->path().filename().string().starts_with(kLocked)) continue;
@@ -38,8 +42,6 @@ void RemoveAbandoned(const fs::path& place) {
     if (Lock(entry->path()).valid()) fs::remove_all(entry->path(), kept);
   }
 }
-
-}  // namespace
 
 Result<ScratchFolder> ScratchFolder::Make(const std::string& named) {
   std::error_code failed;
@@ -50,7 +52,7 @@ Result<ScratchFolder> ScratchFolder::Make(const std::string& named) {
   }
   const fs::path place = fs::temp_directory_path(failed);
   if (failed) return SystemError("there is no folder for temporary files (TMPDIR)", failed.value());
-  static const bool cleaned = (RemoveAbandoned(place), true);  // once in the life of a process
+  static const bool cleaned = (RemoveAbandoned(), true);  // once in the life of a process
   static_cast<void>(cleaned);
   std::string made = place / (std::string(kUnlocked) + "XXXXXX");
   if (mkdtemp(made.data()) == nullptr) return SystemError(fmt::format("cannot make {}", made), errno);
@@ -60,6 +62,20 @@ Result<ScratchFolder> ScratchFolder::Make(const std::string& named) {
   if (!lock.valid() || rename(made.c_str(), path.c_str()) != 0)
     return SystemError(fmt::format("cannot make {}", path), errno);
   return ScratchFolder(path, std::move(lock));
+}
+
+bool ScratchFolder::HoldsOnlyEmpty(const std::string& file) const {
+  struct stat made {};
+  struct stat there {};
+  if (fstat(lock_.get(), &made) != 0 || lstat(path_.c_str(), &there) != 0) return false;
+  if (made.st_dev != there.st_dev || made.st_ino != there.st_ino || there.st_mode != (S_IFDIR | S_IRWXU))
+    return false;
+  std::error_code failed;
+  for (fs::directory_iterator entry(path_, failed), end; !failed && entry != end; entry.increment(failed)) {
+    if (entry->path().filename() != file || lstat(entry->path().c_str(), &there) != 0) return false;
+    if (!S_ISREG(there.st_mode) || there.st_size != 0 || there.st_nlink != 1) return false;
+  }
+  return !failed;
 }
 
 ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept

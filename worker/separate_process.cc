@@ -23,7 +23,6 @@
 namespace gauntlet::worker {
 namespace {
 
-constexpr const char* kOutputFile = "output.txt";
 // The largest file that it may write.
 constexpr rlim_t kMostFileBytes = rlim_t{64} << 20;
 constexpr std::size_t kMostResultBytes = std::size_t{1} << 30;
@@ -38,37 +37,11 @@ void WriteToStderr(std::string_view text) {
   _exit(kExitOutOfMemory);
 }
 
-// The end of what was printed.
-std::string OutputTail(const ScratchFolder& scratch) {
-  const Result<std::string> output = ReadSmallFile(scratch.path() + "/" + kOutputFile, kMostFileBytes);
-  if (!output) return "";
-  return output->substr(output->size() - std::min(output->size(), proto::kMaxStderrTail));
-}
-
 void SetLimit(__rlimit_resource resource, rlim_t wanted) {
   rlimit limit{};
   if (getrlimit(resource, &limit) != 0) return;
   limit.rlim_cur = std::min(wanted, limit.rlim_max);
   setrlimit(resource, &limit);
-}
-
-void Confine(const SeparateOptions& options) {
-  SetLimit(RLIMIT_CORE, 0);
-  SetLimit(RLIMIT_FSIZE, kMostFileBytes);
-  if (options.cpu_limit_seconds > 0.0)
-    SetLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(options.cpu_limit_seconds)));
-  if (options.memory_limit_bytes > 0) SetLimit(RLIMIT_AS, rlim_t{options.memory_limit_bytes});
-  if (options.wall_limit_seconds > 0) alarm(options.wall_limit_seconds);
-}
-
-// Prints into the folder from now on, and reads nothing.
-bool MoveInto(const std::string& folder) {
-  if (chdir(folder.c_str()) != 0) return false;
-  const UniqueFd output(
-      open(kOutputFile, O_WRONLY | O_CREAT | O_APPEND | O_TRUNC | O_CLOEXEC, kReadableByAll));
-  const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
-  return output.valid() && nothing.valid() && dup2(nothing.get(), STDIN_FILENO) >= 0 &&
-         dup2(output.get(), STDOUT_FILENO) >= 0 && dup2(output.get(), STDERR_FILENO) >= 0;
 }
 
 // A length and so many bytes: whoever reads it knows whether it is all.
@@ -100,6 +73,50 @@ std::optional<std::string> ReadResult(int fd) {
 
 }  // namespace
 
+void Confine(const SeparateOptions& options) {
+  SetLimit(RLIMIT_CORE, 0);
+  SetLimit(RLIMIT_FSIZE, kMostFileBytes);
+  if (options.cpu_limit_seconds > 0.0)
+    SetLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(options.cpu_limit_seconds)));
+  if (options.memory_limit_bytes > 0) SetLimit(RLIMIT_AS, rlim_t{options.memory_limit_bytes});
+  if (options.wall_limit_seconds > 0) alarm(options.wall_limit_seconds);
+}
+
+bool MoveInto(const std::string& folder) {
+  if (chdir(folder.c_str()) != 0) return false;
+  const UniqueFd output(
+      open(kOutputFile, O_WRONLY | O_CREAT | O_APPEND | O_TRUNC | O_CLOEXEC, kReadableByAll));
+  const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  return output.valid() && nothing.valid() && dup2(nothing.get(), STDIN_FILENO) >= 0 &&
+         dup2(output.get(), STDOUT_FILENO) >= 0 && dup2(output.get(), STDERR_FILENO) >= 0;
+}
+
+int WaitForGroup(pid_t child) {
+  siginfo_t ended{};
+  while (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) continue;
+  kill(-child, SIGKILL);  // it is not reaped yet, so the process group is still its own
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  return status;
+}
+
+std::string OutputTail(const std::string& folder) {
+  const Result<std::string> output = ReadSmallFile(folder + "/" + kOutputFile, kMostFileBytes);
+  if (!output) return "";
+  return output->substr(output->size() - std::min(output->size(), proto::kMaxStderrTail));
+}
+
+double SecondsWithChildren() {
+  double seconds = 0.0;
+  for (const int whose : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    if (getrusage(whose, &usage) != 0) continue;
+    for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+      seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  }
+  return seconds;
+}
+
 std::string CallOrEnd(const std::function<std::string()>& work) {
   std::set_new_handler(OutOfMemory);
   try {
@@ -125,13 +142,10 @@ Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>
   if (child < 0) return SystemError("cannot start a process", errno);
   if (child == 0) LiveSeparately(work, options, parent, scratch->path(), result.get());
 
-  siginfo_t ended{};
-  while (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) continue;
-  kill(-child, SIGKILL);  // it is not reaped yet, so the process group is still its own
   SeparateOutcome outcome;
-  while (waitpid(child, &outcome.wait_status, 0) < 0 && errno == EINTR) continue;
+  outcome.wait_status = WaitForGroup(child);
   if (outcome.wait_status == 0) outcome.bytes = ReadResult(result.get());
-  if (!outcome.bytes) outcome.output_tail = OutputTail(*scratch);
+  if (!outcome.bytes) outcome.output_tail = OutputTail(scratch->path());
   return outcome;
 }
 

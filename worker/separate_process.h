@@ -1,6 +1,8 @@
 // Work in a process that is forked for it and ends with it: for code that may do anything to its process.
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -40,6 +42,21 @@ struct SeparateOutcome {
 // To be called while this process has one thread only. Error: no process or no folder could be made.
 Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>& work,
                                               const SeparateOptions& options);
+
+// The parts of it, for processes that are started in another way.
+// What a process of this kind prints, in its folder.
+inline constexpr const char* kOutputFile = "output.txt";
+// This process gets that working directory and prints into it from now on, and reads nothing. False: it
+// cannot.
+bool MoveInto(const std::string& folder);
+// Limits this process, and forbids it core dumps and files of more than 64 MiB.
+void Confine(const SeparateOptions& options);
+// Waits for the child, with whatever of its process group is left, and reaps it. Its status, as of waitpid.
+int WaitForGroup(pid_t child);
+// The end of what was printed in the folder.
+std::string OutputTail(const std::string& folder);
+// User and system time of this process and of its children that have ended, s.
+double SecondsWithChildren();
 
 // Ends this process in the way in which a separate one ended without a result, after saying on stderr what
 // that one printed last.

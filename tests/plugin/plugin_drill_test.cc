@@ -87,13 +87,17 @@ TEST_F(PluginDrill, KilledRunnersLeaveNoFolders) {
 }
 
 // Every run begins with freshly loaded statics, whichever runner has it.
+// A library that prints when it is loaded is loaded by each.
 TEST_F(PluginDrill, RunsDoNotSeeEachOthersStatics) {
-  const ProcessResult result =
-      Gauntlet({"random", "flocking", "--cases", "40", "--dir", scratch_ / "c", "--workers", "2", "--quiet",
-                "--plugin", PluginPath("of_faults"), "--set", "controller=counting", "--set",
-                "scenario_parameters.time_limit=2", "--audit", "1"});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(Show(scratch_ / "c")["runs_failed"], 0);
+  for (const auto& [library, controller] : {std::pair{"of_faults", "counting"}, {"of_noise", "loud"}}) {
+    const std::string dir = scratch_ / controller;
+    const ProcessResult result =
+        Gauntlet({"random", "flocking", "--cases", "40", "--dir", dir, "--workers", "2", "--quiet",
+                  "--plugin", PluginPath(library), "--set", std::string("controller=") + controller, "--set",
+                  "scenario_parameters.time_limit=2", "--audit", "1"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(Show(dir)["runs_failed"], 0);
+  }
 }
 
 }  // namespace

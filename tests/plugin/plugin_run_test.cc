@@ -126,6 +126,13 @@ TEST_F(PluginRun, KeepsTheFolderOnRequest) {
   EXPECT_THAT(ReadFile(scratch + "/output.txt"), HasSubstr("on stderr\n"));
 }
 
+TEST_F(PluginRun, HasWhatItsLibraryPrintsWhenLoaded) {
+  const std::string scratch = directory_ / "scratch";
+  const Ended ended = Run(SpecOf("of_noise", "loud"), PluginPath("of_noise"), {"--scratch", scratch});
+  EXPECT_EQ(ended.result.verdict, sim::Verdict::kCompleted) << ended.process.err;
+  EXPECT_EQ(ReadFile(scratch + "/output.txt"), "loaded\n");
+}
+
 TEST_F(PluginRun, IsWorthNothingWithAnotherLibrary) {
   const Ended ended = Run(SpecOf("of_twins", "twin"), PluginPath("of_faults"));
   EXPECT_EQ(ended.process.exit_code, 2);
