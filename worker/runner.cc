@@ -212,10 +212,10 @@ RunnerFailure WaitedTooLong(double wall_seconds) {
           .stderr_tail = fmt::format("no end after {:.0f} s: it waits", wall_seconds)};
 }
 
-void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugin_settings) {
+void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugins) {
   Limits::ForbidCoreDumps();
   Limits limits;
-  PluginRuns plugins(plugin_settings, run);
+  PluginRuns plugin_runs(plugins, run);
   FrameBuffer messages;
   while (true) {
     const std::optional<std::string> message = messages.Next();
@@ -228,7 +228,7 @@ void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugin_s
     limits.Set(*job, SecondsOf(CLOCK_PROCESS_CPUTIME_ID));
     const std::string report = CallOrEnd([&] {
       const Result<sim::RunSpec> spec = proto::DecodeRunSpec(job->spec);
-      if (spec.ok() && !spec->plugin.empty()) return plugins.Execute(*job, spec->plugin);
+      if (spec.ok() && !spec->plugin.empty()) return plugin_runs.Execute(*job, spec->plugin);
       return EncodeReport(Execute(*job, spec, run));
     });
     if (!WriteFrame(pipe, report)) _exit(0);
