@@ -31,12 +31,15 @@ class Leds final : public argos::CCI_LEDsActuator, public ActuatorLink {
  public:
   explicit Leds(RobotParts& parts) : palette_(parts.palette) {}
   void Give(sim::Actuators& actuators) override {
+    if (given_ == m_tSettings) return;
+    given_ = m_tSettings;
     for (std::size_t i = 0; i < kBeacon; ++i) actuators.ring[i] = palette_.NumberOf(m_tSettings[i]);
     actuators.beacon = palette_.NumberOf(m_tSettings[kBeacon]);
   }
 
  private:
   Palette& palette_;
+  TSettings given_;  // what the robot's actuators have
 };
 
 class Radio final : public argos::CCI_RangeAndBearingActuator, public ActuatorLink {

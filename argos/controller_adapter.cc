@@ -10,20 +10,20 @@ namespace {
 
 constexpr const char* kCategory = "argos";
 
-// The colours of the run whose first robot this is, or of the run that has begun. A new run has new random
-// numbers and the time 0; ARGoS itself takes the first generator of a run.
-std::shared_ptr<Palette> JoinRun(std::uint64_t seed) {
-  static std::weak_ptr<Palette> running;
-  if (std::shared_ptr<Palette> palette = running.lock()) return palette;
+// What the robots share of the run whose first one this is, or of the run that has begun. A new run has new
+// random numbers and the time 0; ARGoS itself takes the first generator of a run.
+std::shared_ptr<RunParts> JoinRun(std::uint64_t seed) {
+  static std::weak_ptr<RunParts> running;
+  if (std::shared_ptr<RunParts> run = running.lock()) return run;
   const auto short_seed = static_cast<argos::UInt32>(seed ^ seed >> 32);
   argos::CRandom::RemoveCategory(kCategory);
   argos::CRandom::CreateCategory(kCategory, short_seed);
   argos::CRandom::CreateRNG(kCategory);
   argos::CSimulator::GetInstance().SetRandomSeed(short_seed);
   argos::CSimulator::GetInstance().GetSpace().SetSimulationClock(0);
-  auto palette = std::make_shared<Palette>();
-  running = palette;
-  return palette;
+  auto run = std::make_shared<RunParts>();
+  running = run;
+  return run;
 }
 
 bool Has(const std::vector<std::string>& tags, std::string_view tag) {
@@ -43,8 +43,8 @@ void RefuseUnknown(const std::vector<std::string>& tags, const Rows& rows, const
 }  // namespace
 
 ControllerAdapter::ControllerAdapter(const ControllerSection& section, const Robot& robot)
-    : palette_(JoinRun(robot.seed)),
-      parts_{.palette = *palette_, .start = robot.start},
+    : run_(JoinRun(robot.seed)),
+      parts_{.palette = run_->palette, .directions = run_->directions, .start = robot.start},
       controller_(argos::CFactory<argos::CCI_Controller>::New(section.label)) {
   controller_->SetId("fb" + std::to_string(robot.number));
   AddDevices(section);

@@ -65,7 +65,7 @@ class ControllerAdapter final : public sim::Controller {
   template <typename Parts, typename Map>
   void Equip(Parts& parts, Map& map, const std::vector<std::string>* asked_for);
 
-  std::shared_ptr<Palette> palette_;  // of the run
+  std::shared_ptr<RunParts> run_;
   RobotParts parts_;
   std::unique_ptr<argos::CCI_Controller> controller_;
   std::vector<Part<argos::CCI_Sensor, SensorLink>> sensors_;

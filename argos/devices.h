@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "argos/palette.h"
+#include "sim/geometry/directions.h"
 #include "sim/robot/controller.h"
 
 #include <argos3/core/control_interface/ci_actuator.h>
@@ -14,9 +15,18 @@
 
 namespace gauntlet::argos_form {
 
+// What those of all robots of a run share.
+struct RunParts {
+  static constexpr std::size_t kRoom = 128;  // places without more memory
+
+  Palette palette;
+  sim::Directions directions = sim::Directions(kRoom);
+};
+
 // What the devices of one robot share.
 struct RobotParts {
   Palette& palette;
+  sim::Directions& directions;  // for whoever needs some at the moment
   sim::Pose start;
   double turret = 0.0;  // rad, counter-clockwise from the heading
 };

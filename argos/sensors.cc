@@ -20,6 +20,7 @@
 namespace gauntlet::argos_form {
 namespace {
 
+using argos::CBearing;
 using argos::CRadians;
 using sim::Device;
 
@@ -31,11 +32,13 @@ void TakeValues(Readings& readings, const Values& values) {
   for (std::size_t i = 0; i < values.size(); ++i) readings[i].Value = static_cast<double>(values[i]);
 }
 
-// Bearings to the last bit as our sensors have them.
+// Bearings to the last bit as our sensors have them, with their sines.
 template <typename Readings>
 void SetBearings(Readings& readings) {
   for (std::size_t i = 0; i < readings.size(); ++i) {
-    readings[i].Angle.SetValue(sim::ProximityBearing(static_cast<int>(i)));
+    const double bearing = sim::ProximityBearing(static_cast<int>(i));
+    const sim::SinCos both = sim::SineCosine(bearing);
+    readings[i].Angle = CBearing(bearing, both.sin, both.cos);
   }
 }
 
@@ -51,6 +54,10 @@ class Light final : public argos::CCI_FootBotLightSensor, public SensorLink {
   void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.light); }
 };
 
+CBearing BearingOf(const sim::Directions& directions, std::size_t i) {
+  return {directions.Angle(i), directions.Sine(i), directions.Cosine(i)};
+}
+
 class MotorGround final : public argos::CCI_FootBotMotorGroundSensor, public SensorLink {
  public:
   explicit MotorGround(RobotParts& /*parts*/) {}
@@ -65,18 +72,20 @@ class BaseGround final : public argos::CCI_FootBotBaseGroundSensor, public Senso
 
 class Camera final : public argos::CCI_ColoredBlobOmnidirectionalCameraSensor, public SensorLink {
  public:
-  explicit Camera(RobotParts& parts) : palette_(parts.palette), blobs_(kRoom) {
+  explicit Camera(RobotParts& parts) : palette_(parts.palette), directions_(parts.directions), blobs_(kRoom) {
     m_sReadings.BlobList.reserve(kRoom);
   }
   void Take(const sim::SensorReadings& readings) override {
-    if (blobs_.size() < readings.blobs.size()) blobs_.resize(2 * readings.blobs.size());
-    m_sReadings.BlobList.clear();
-    for (const sim::Blob& blob : readings.blobs) {
-      SBlob& seen = blobs_[m_sReadings.BlobList.size()];
-      seen.Color = palette_.ColorOf(blob.color);
-      seen.Angle.SetValue(blob.Bearing());
-      seen.Distance = blob.range * kCentimetres;
-      m_sReadings.BlobList.push_back(&seen);
+    const std::span<const sim::Blob> blobs = readings.blobs;
+    if (blobs_.size() < blobs.size()) blobs_.resize(2 * blobs.size());
+    directions_.WorkOut(blobs);
+    m_sReadings.BlobList.resize(blobs.size());
+    for (std::size_t i = 0; i < blobs.size(); ++i) {
+      SBlob& seen = blobs_[i];
+      seen.Color = palette_.ColorOf(blobs[i].color);
+      seen.Angle = BearingOf(directions_, i);
+      seen.Distance = blobs[i].range * kCentimetres;
+      m_sReadings.BlobList[i] = &seen;
     }
     ++m_sReadings.Counter;
   }
@@ -85,22 +94,24 @@ class Camera final : public argos::CCI_ColoredBlobOmnidirectionalCameraSensor, p
   static constexpr std::size_t kRoom = 128;  // blobs that it sees without more memory
 
   const Palette& palette_;
+  sim::Directions& directions_;
   std::vector<SBlob> blobs_;  // kept from tick to tick
 };
 
 class Radio final : public argos::CCI_RangeAndBearingSensor, public SensorLink {
  public:
-  explicit Radio(RobotParts& /*parts*/) : spare_(kRoom) {
+  explicit Radio(RobotParts& parts) : directions_(parts.directions), spare_(kRoom) {
     for (SPacket& packet : spare_) packet.Data.Resize(sim::Payload().size());
     m_tReadings.reserve(kRoom);
   }
   void Take(const sim::SensorReadings& readings) override {
     Resize(readings.range_and_bearing.size());
+    directions_.WorkOut(readings.range_and_bearing);
     for (std::size_t i = 0; i < m_tReadings.size(); ++i) {
       const sim::Message& message = readings.range_and_bearing[i];
       SPacket& packet = m_tReadings[i];
       packet.Range = message.range * kCentimetres;
-      packet.HorizontalBearing.SetValue(message.Bearing());
+      packet.HorizontalBearing = BearingOf(directions_, i);
       packet.Data.Resize(message.payload.size());
       std::copy(message.payload.begin(), message.payload.end(), packet.Data.ToCArray());
     }
@@ -118,6 +129,7 @@ class Radio final : public argos::CCI_RangeAndBearingSensor, public SensorLink {
 
   static constexpr std::size_t kRoom = 32;  // packets that it hears without more memory
 
+  sim::Directions& directions_;
   std::vector<SPacket> spare_;
 };
 

@@ -5,72 +5,24 @@
 #include <cstdint>
 #include <limits>
 
+#include "sim/geometry/series.h"
+
 namespace gauntlet::sim {
 namespace {
 
-// Every polynomial below is a truncated Taylor series; the comment beside it states the first omitted term at
-// the end of the reduced interval. Parentheses fix the order of every sum, so no compiler may choose one.
+using series::kHalfPiA;
+using series::kHalfPiB;
+using series::kHalfPiC;
+using series::kTwoOverPi;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kReductionLimit = 1e6;
 
-// pi/2 = A + B + C (reduction after Cody and Waite 1980): A and B have at most 33 significant bits, so that
-// n * A and n * B are exact for n < 2^20; A + B + C is right to 2^-119.
-constexpr double kHalfPiA = 0x1.921fb544p+0;
-constexpr double kHalfPiB = 0x1.0b4611a6p-34;
-constexpr double kHalfPiC = 0x1.3198a2e037073p-69;
-constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
-
 // ln 2 = A + B; A has 42 significant bits, so that n * A is exact for every exponent n.
 constexpr double kLn2A = 0x1.62e42fefa38p-1;
 constexpr double kLn2B = 0x1.ef35793c7673p-45;
 constexpr double kOneOverLn2 = 0x1.71547652b82fep+0;
-
-// angle = quadrant * pi/2 + remainder, |remainder| <= pi/4 (up to rounding).
-struct Reduced {
-  double remainder;
-  std::int64_t quadrant;
-};
-
-Reduced ReduceToOctant(double angle) {
-  const double n = std::floor(angle * kTwoOverPi + 0.5);
-  const double r = ((angle - n * kHalfPiA) - n * kHalfPiB) - n * kHalfPiC;
-  return {r, static_cast<std::int64_t>(n)};
-}
-
-// c[0] + c[1] z + ... + c[6] z^6.
-inline double SevenTerms(const double (&c)[7], double z) {
-  const double z2 = z * z;
-  const double low = (c[0] + c[1] * z) + (c[2] + c[3] * z) * z2;
-  const double high = (c[4] + c[5] * z) + c[6] * z2;
-  return low + high * (z2 * z2);
-}
-
-// sin r for |r| <= pi/4; the first omitted term, r^17 / 17!, is below 5e-17.
-double SineSeries(double r) {
-  static constexpr double c[] = {-1.0 / 6.0,        1.0 / 120.0,        -1.0 / 5040.0,         1.0 / 362880.0,
-                                 -1.0 / 39916800.0, 1.0 / 6227020800.0, -1.0 / 1307674368000.0};
-  const double z = r * r;
-  return r + (r * z) * SevenTerms(c, z);
-}
-
-// cos r for |r| <= pi/4; the first omitted term, r^18 / 18!, is below 3e-18.
-double CosineSeries(double r) {
-  static constexpr double c[] = {
-      1.0 / 24.0,        -1.0 / 720.0,         1.0 / 40320.0,         -1.0 / 3628800.0,
-      1.0 / 479001600.0, -1.0 / 87178291200.0, 1.0 / 20922789888000.0};
-  const double z = r * r;
-  return (1.0 - 0.5 * z) + (z * z) * SevenTerms(c, z);
-}
-
-// atan u for |u| <= 1/8; the first omitted term, u^17 / 17, is below 3e-17.
-double ArctangentSeries(double u) {
-  static constexpr double c[] = {-1.0 / 3.0,  1.0 / 5.0,  -1.0 / 7.0, 1.0 / 9.0,
-                                 -1.0 / 11.0, 1.0 / 13.0, -1.0 / 15.0};
-  const double z = u * u;
-  return u + (u * z) * SevenTerms(c, z);
-}
 
 // Choices between results are made without branches: angles are random, so a branch would be guessed wrong
 // every other time, which costs more than the polynomial.
@@ -91,13 +43,13 @@ SinCos SineCosine(double angle) {
     if (!std::isfinite(angle)) return {kNotANumber, kNotANumber};
     angle = std::fmod(angle, 2.0 * kPi);
   }
-  const Reduced reduced = ReduceToOctant(angle);
-  const double s = SineSeries(reduced.remainder);
-  const double c = CosineSeries(reduced.remainder);
-  const double series[2] = {s, c};
-  const auto quadrant = static_cast<std::uint64_t>(reduced.quadrant);
-  return {NegateIf((quadrant & 2) != 0, series[quadrant & 1]),
-          NegateIf(((quadrant + 1) & 2) != 0, series[(quadrant + 1) & 1])};
+  const series::Reduced reduced = series::ReduceToOctant(angle);
+  const double s = series::Sine(reduced.remainder);
+  const double c = series::Cosine(reduced.remainder);
+  const double both[2] = {s, c};
+  const auto quadrant = static_cast<std::uint64_t>(static_cast<std::int64_t>(reduced.quadrant));
+  return {NegateIf((quadrant & 2) != 0, both[quadrant & 1]),
+          NegateIf(((quadrant + 1) & 2) != 0, both[(quadrant + 1) & 1])};
 }
 
 double Sin(double angle) {
@@ -114,17 +66,13 @@ double Atan2(double y, double x) {
   double larger = opposite > adjacent ? opposite : adjacent;
   // Written so that a NaN on either side survives in one of the two.
   double smaller = adjacent < opposite ? adjacent : opposite;
-  if (!(larger > 1e-290 && larger < 1e290)) [[unlikely]] {
+  if (!(larger > series::kShortest && larger < series::kLongest)) [[unlikely]] {
     if (larger == 0.0 && smaller == 0.0) return 0.0;
     if (!(std::isfinite(opposite) && std::isfinite(adjacent))) return kNotANumber;
     const double scale = larger < 1.0 ? 0x1p+100 : 0x1p-100;
     larger *= scale;
     smaller *= scale;
   }
-  // atan t = atan c + atan((t - c) / (1 + t c)) with t = smaller / larger and c the nearest of 0, 1/4, 1/2,
-  // 3/4, 1, hence |(t - c) / (1 + t c)| <= 1/8.
-  static constexpr double kArctangentOfQuarters[5] = {0.0, 0.24497866312686414, 0.4636476090008061,
-                                                      0.6435011087932844, 0.78539816339744831};
   const double eighths = 8.0 * smaller;
   const int quarter = static_cast<int>(eighths > larger) + static_cast<int>(eighths > 3.0 * larger) +
                       static_cast<int>(eighths > 5.0 * larger) + static_cast<int>(eighths > 7.0 * larger);
@@ -134,7 +82,7 @@ double Atan2(double y, double x) {
   static constexpr double kZeroOrPi[2] = {0.0, kPi};
   const bool steep = opposite > adjacent;
   const bool backward = x < 0.0;
-  double angle = kArctangentOfQuarters[quarter] + ArctangentSeries(u);
+  double angle = series::kArctangentOfQuarters[quarter] + series::Arctangent(u);
   angle = kZeroOrHalfPi[steep ? 1 : 0] + NegateIf(steep, angle);
   angle = kZeroOrPi[backward ? 1 : 0] + NegateIf(backward, angle);
   // -pi is the same direction as pi and outside the range.

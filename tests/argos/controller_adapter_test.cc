@@ -118,11 +118,14 @@ TEST_F(Adapter, GivesReadingsInTheUnitsOfArgos) {
     EXPECT_EQ(blobs.BlobList[0]->Color, argos::CColor(10, 20, 30));
     EXPECT_NEAR(blobs.BlobList[0]->Distance, 30.0, 1e-9);
     EXPECT_NEAR(blobs.BlobList[0]->Angle.GetValue(), sim::kPi / 2, 1e-9);
+    EXPECT_TRUE(blobs.BlobList[0]->Angle.HasSine());
+    EXPECT_EQ(Sin(blobs.BlobList[0]->Angle), Sin(argos::CRadians(blobs.BlobList[0]->Angle)));
     const auto& packets =
         robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing")->GetReadings();
     ASSERT_EQ(packets.size(), 1u);
     EXPECT_NEAR(packets[0].Range, 30.0, 1e-9);
     EXPECT_NEAR(packets[0].HorizontalBearing.GetValue(), sim::kPi / 2, 1e-9);
+    EXPECT_TRUE(packets[0].HorizontalBearing.HasSine());
     EXPECT_EQ(packets[0].Data[0], 42);
     EXPECT_EQ(packets[0].Data.Size(), 10u);
     const auto& ground =

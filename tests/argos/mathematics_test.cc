@@ -1,4 +1,5 @@
 // Angles, ranges, vectors and rotations against what ARGoS computes.
+#include <argos3/core/utility/math/bearing.h>
 #include <argos3/core/utility/math/quaternion.h>
 
 #include <gtest/gtest.h>
@@ -41,6 +42,50 @@ TEST(Angles, Convert) {
   EXPECT_NEAR(ACos(0.5).GetValue(), ARGOS_PI / 3.0, 1e-15);
   EXPECT_NEAR(ASin(-1.0).GetValue(), -ARGOS_PI / 2.0, 1e-15);
   EXPECT_EQ(CRadians::PI / CRadians::PI_OVER_TWO, 2.0);
+}
+
+// Of an angle that knows wrong ones, so that it shows where they come from.
+TEST(Bearings, BringTheirSineAlong) {
+  const CBearing bearing(0.5, 3.0, 4.0);
+  EXPECT_EQ(Sin(bearing), 3.0);
+  EXPECT_EQ(Cos(bearing), 4.0);
+  EXPECT_EQ(CVector2(2.0, bearing), CVector2(8.0, 6.0));
+  CVector2 vector;
+  vector.FromPolarCoordinates(1.0, bearing);
+  EXPECT_EQ(vector, CVector2(4.0, 3.0));
+  const CBearing copy = bearing;
+  EXPECT_EQ(Sin(copy), 3.0);
+}
+
+TEST(Bearings, ForgetTheirSineWithTheirValue) {
+  const CRadians half(0.5);
+  EXPECT_EQ(Sin(CBearing(half)), Sin(half));
+  EXPECT_EQ(CVector2(1.0, CBearing(half)), CVector2(1.0, half));
+  CBearing turned(0.25, 3.0, 4.0);
+  turned += CRadians(0.25);
+  EXPECT_EQ(Sin(turned), Sin(half));
+  EXPECT_EQ(CVector2(1.0, turned), CVector2(1.0, half));
+  CBearing set(0.0, 3.0, 4.0);
+  set.SetValue(-0.0);
+  EXPECT_EQ(Cos(set), 1.0);
+  const CRadians angle = CBearing(0.5, 3.0, 4.0);
+  EXPECT_EQ(Sin(angle), Sin(half));
+}
+
+TEST(Bearings, AreAnglesForEverythingElse) {
+  const CBearing bearing(-0.5, 3.0, 4.0);
+  const CRadians angle(0.25);
+  EXPECT_EQ(bearing + angle, CRadians(-0.25));
+  EXPECT_EQ(-bearing, CRadians(0.5));
+  EXPECT_EQ(Abs(bearing), CRadians(0.5));
+  EXPECT_EQ(Max(bearing, angle), angle);
+  EXPECT_EQ(Min(angle, bearing), bearing);
+  EXPECT_TRUE(bearing < angle);
+  EXPECT_EQ(Sign(bearing), -1);
+  EXPECT_NEAR(ToDegrees(bearing).GetValue(), -28.6478897565, 1e-9);
+  EXPECT_EQ(true ? bearing : angle, bearing);
+  EXPECT_EQ(CBearing(bearing).UnsignedNormalize(), CRadians(bearing).UnsignedNormalize());
+  EXPECT_EQ(NormalizedDifference(bearing, angle), CRadians(-0.75));
 }
 
 TEST(Range, CutsWrapsAndMaps) {

@@ -35,9 +35,7 @@ class CColor {
   // Puts it on that background by its opacity, in place.
   CColor& Blend(const CColor& background);
 
-  bool operator==(const CColor& other) const {
-    return red_ == other.red_ && green_ == other.green_ && blue_ == other.blue_ && alpha_ == other.alpha_;
-  }
+  bool operator==(const CColor& other) const { return UInt32(*this) == UInt32(other); }
   bool operator!=(const CColor& other) const { return !(*this == other); }
   operator UInt32() const {
     return static_cast<UInt32>(red_) << 24 | static_cast<UInt32>(green_) << 16 |

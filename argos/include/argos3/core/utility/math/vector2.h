@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include <argos3/core/utility/math/angles.h>
+#include <argos3/core/utility/math/bearing.h>
 #include <argos3/core/utility/math/general.h>
 
 namespace argos {
@@ -18,6 +19,7 @@ class CVector2 {
   constexpr CVector2(Real x, Real y) : x_(x), y_(y) {}
   explicit constexpr CVector2(const std::array<Real, 2>& values) : x_(values[0]), y_(values[1]) {}
   CVector2(Real length, const CRadians& angle) { FromPolarCoordinates(length, angle); }
+  CVector2(Real length, const CBearing& angle) { FromPolarCoordinates(length, angle); }
 
   Real GetX() const { return x_; }
   Real GetY() const { return y_; }
@@ -28,6 +30,12 @@ class CVector2 {
     y_ = y;
   }
   void FromPolarCoordinates(Real length, const CRadians& angle) {
+    Real sine = 0.0;
+    Real cosine = 0.0;
+    SinCos(angle, sine, cosine);
+    Set(length * cosine, length * sine);
+  }
+  void FromPolarCoordinates(Real length, const CBearing& angle) {
     Real sine = 0.0;
     Real cosine = 0.0;
     SinCos(angle, sine, cosine);

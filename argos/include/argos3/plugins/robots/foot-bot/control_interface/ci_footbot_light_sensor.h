@@ -5,7 +5,7 @@
 
 #include <argos3/core/control_interface/ci_sensor.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
-#include <argos3/core/utility/math/angles.h>
+#include <argos3/core/utility/math/bearing.h>
 
 namespace argos {
 
@@ -13,7 +13,7 @@ class CCI_FootBotLightSensor : public CCI_Sensor {
  public:
   struct SReading {
     Real Value = 0.0;  // 0, dark to 1
-    CRadians Angle;    // from the heading
+    CBearing Angle;    // from the heading
 
     SReading() = default;
     SReading(Real value, const CRadians& angle) : Value(value), Angle(angle) {}

@@ -9,7 +9,7 @@
 #include <argos3/core/utility/datatypes/color.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
 #include <argos3/core/utility/logging/argos_log.h>
-#include <argos3/core/utility/math/angles.h>
+#include <argos3/core/utility/math/bearing.h>
 
 namespace argos {
 
@@ -17,7 +17,7 @@ class CCI_ColoredBlobOmnidirectionalCameraSensor : public CCI_Sensor {
  public:
   struct SBlob {
     CColor Color;
-    CRadians Angle;       // from the heading
+    CBearing Angle;       // from the heading
     Real Distance = 0.0;  // cm
   };
   using TBlobList = std::vector<SBlob*>;

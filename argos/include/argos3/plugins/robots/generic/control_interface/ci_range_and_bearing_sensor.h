@@ -6,7 +6,7 @@
 #include <argos3/core/control_interface/ci_sensor.h>
 #include <argos3/core/utility/datatypes/byte_array.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
-#include <argos3/core/utility/math/angles.h>
+#include <argos3/core/utility/math/bearing.h>
 #include <argos3/core/utility/math/quaternion.h>
 #include <argos3/core/utility/math/vector3.h>
 
@@ -16,7 +16,7 @@ class CCI_RangeAndBearingSensor : public CCI_Sensor {
  public:
   struct SPacket {
     Real Range = 0.0;            // cm
-    CRadians HorizontalBearing;  // from the heading
+    CBearing HorizontalBearing;  // from the heading
     CRadians VerticalBearing;
     CByteArray Data;
   };
