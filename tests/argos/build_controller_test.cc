@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,24 @@ TEST_F(BuildController, MakesAPluginWhoseParametersAreThoseOfTheFile) {
   EXPECT_EQ(trajectory, TrajectoryOf(ExampleFlockers()));
   values["wheel_turning.max_speed"] = 8.0;
   EXPECT_NE(TrajectoryOf(rows[0].make(values)), trajectory);
+}
+
+// Without obstacles, where the built-in robots gather too.
+TEST_F(BuildController, MakesRobotsThatGatherInAScenarioWhichAFileDefines) {
+  const std::string library = folder_ / "libflock.so";
+  const ProcessResult built = Run({kExample + ".cc", "--argos", kExample + ".argos", "-o", library});
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  const ProcessResult evaluated = testing_support::RunProcess(
+      {GAUNTLET_BINARY_DIR "/gauntlet", "evaluate", "gathering", "--plugin", library, "--set",
+       "controller=light_flocking_controller", "--case", File("empty.json", R"({"obstacles": []})"),
+       "--replicates", "3", "--dir", folder_ / "campaign", "--workers", "1", "--quiet", "--json"});
+  ASSERT_EQ(evaluated.exit_code, 0) << evaluated.err;
+  const nlohmann::json runs = nlohmann::json::parse(evaluated.out).at("cases").at(0).at("runs");
+  ASSERT_EQ(runs.size(), 3u);
+  for (const nlohmann::json& run : runs) {
+    EXPECT_EQ(run.at("verdict"), "completed");
+    EXPECT_EQ(run.at("failure").at("total"), false) << run.at("metrics").at("robots_in_goal");
+  }
 }
 
 TEST_F(BuildController, NamesWhatIsWrong) {
