@@ -68,7 +68,7 @@ bool ScratchFolder::HoldsOnlyEmpty(const std::string& file) const {
   struct stat made {};
   struct stat there {};
   if (fstat(lock_.get(), &made) != 0 || lstat(path_.c_str(), &there) != 0) return false;
-  if (made.st_dev != there.st_dev || made.st_ino != there.st_ino || there.st_mode != (S_IFDIR | S_IRWXU))
+  if (made.st_dev != there.st_dev || made.st_ino != there.st_ino || (there.st_mode & S_IRWXU) != S_IRWXU)
     return false;
   std::error_code failed;
   for (fs::directory_iterator entry(path_, failed), end; !failed && entry != end; entry.increment(failed)) {

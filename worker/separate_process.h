@@ -44,7 +44,8 @@ Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>
                                               const SeparateOptions& options);
 
 // The parts of it, for processes that are started in another way.
-// What a process of this kind prints, in its folder.
+
+// What such a process prints, in its folder.
 inline constexpr const char* kOutputFile = "output.txt";
 // This process gets that working directory and prints into it from now on, and reads nothing. False: it
 // cannot.

@@ -146,6 +146,20 @@ TEST_F(PreparedProcessTest, EveryCallBeginsInAnEmptyFolderWhichIsGoneAfterwards)
   EXPECT_TRUE(fs::exists(third));
 }
 
+// As temporary folders of a group are.
+TEST_F(PreparedProcessTest, PreparesOnceInATemporaryFolderWhoseGroupIsInherited) {
+  const TemporaryDirectory place;
+  fs::permissions(place.path(), fs::perms::owner_all | fs::perms::set_gid);
+  setenv("TMPDIR", place.path().c_str(), /*overwrite=*/1);
+  {
+    PreparedProcess process = Make();
+    for (const char* request : {"a", "b"}) EXPECT_EQ(Answer(process, request), request + std::string("7"));
+    EXPECT_EQ(counts_->prepared, 1);
+  }
+  unsetenv("TMPDIR");
+  EXPECT_TRUE(fs::is_empty(place.path()));
+}
+
 TEST_F(PreparedProcessTest, UsesTheFolderThatIsNamed) {
   const TemporaryDirectory scratch;
   PreparedProcess process([] {}, [](const std::string&) { return fs::current_path().string(); });
