@@ -14,6 +14,7 @@
 #include "tests/integration/service_driver.h"
 #include "tests/integration/stranger.h"
 #include "tests/integration/zmtp_fuzz.h"
+#include "tests/plugin/plugin_files.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -56,9 +57,9 @@ TEST(LongDrill, EveryWorkerCountGivesTheSameStateHash) {
 
 // The number to hold: 100 masters and 200 workers within one evolution. They take two minutes, in which two
 // workers end 2,700 runs of 100 ms at most.
-TEST(LongDrill, AHundredMastersAndTwoHundredWorkersKilled) {
+void KillAHundredMastersAndTwoHundredWorkers(SmallCampaign campaign) {
   const TemporaryDirectory scratch;
-  SmallCampaign campaign = DefaultCampaign();
+  campaign.population = 20;
   campaign.generations = 200;
   const MassacreReport report =
       EvolveThroughMassacre(campaign, scratch / "c", 2, 100, 200, 5, std::chrono::milliseconds(2000),
@@ -69,6 +70,15 @@ TEST(LongDrill, AHundredMastersAndTwoHundredWorkersKilled) {
   EXPECT_EQ(report.master_kills, 100);
   EXPECT_EQ(report.worker_kills, 200);
   EXPECT_EQ(report.evaluated_after_stored, 0);
+}
+
+TEST(LongDrill, AHundredMastersAndTwoHundredWorkersKilled) {
+  KillAHundredMastersAndTwoHundredWorkers(DefaultCampaign());
+}
+
+TEST(LongDrill, AHundredMastersAndTwoHundredWorkersKilledOverAPlugin) {
+  const TemporaryDirectory scratch;
+  KillAHundredMastersAndTwoHundredWorkers(SmallPlugin(scratch));
 }
 
 TEST(LongDrill, AHundredLossesOfPower) {
