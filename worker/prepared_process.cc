@@ -89,7 +89,8 @@ bool HasChildren() {
   return waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT) == 0 || errno != ECHILD;
 }
 
-void LiftCpuLimit() {
+void LiftTimeLimits() {
+  alarm(0);
   rlimit limit{};
   if (getrlimit(RLIMIT_CPU, &limit) != 0) return;
   limit.rlim_cur = limit.rlim_max;
@@ -159,7 +160,7 @@ void PreparedProcess::Live(UniqueFd pipe, pid_t parent, const SeparateOptions& o
   const bool fit =
       EntriesIn("/proc/self/fd") == descriptors && EntriesIn("/proc/self/task") == 1 && !HasChildren();
   if (!WriteFrame(pipe.get(), fit ? kPrepared : kUnfit)) _exit(0);
-  LiftCpuLimit();
+  LiftTimeLimits();
   Serve(std::move(pipe));
 }
 

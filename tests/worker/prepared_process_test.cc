@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -123,6 +124,17 @@ TEST_F(PreparedProcessTest, LimitsHoldWhenItPreparesAndInEveryCall) {
     ASSERT_TRUE(outcome.ok());
     EXPECT_EQ(WEXITSTATUS(outcome->wait_status), kExitOutOfMemory);
   }
+}
+
+TEST_F(PreparedProcessTest, TimeLimitsAreThoseOfACall) {
+  PreparedProcess process([] {},
+                          [](const std::string& request) {
+                            rlimit cpu{};
+                            getrlimit(RLIMIT_CPU, &cpu);
+                            return request + std::to_string(cpu.rlim_cur) + ", " + std::to_string(alarm(0));
+                          });
+  EXPECT_EQ(process.Call("", {.cpu_limit_seconds = 5.0, .wall_limit_seconds = 50})->bytes, "5, 50");
+  EXPECT_EQ(process.Call("", {.cpu_limit_seconds = 7.5, .wall_limit_seconds = 0})->bytes, "8, 0");
 }
 
 TEST_F(PreparedProcessTest, EveryCallBeginsInAnEmptyFolderWhichIsGoneAfterwards) {
