@@ -43,16 +43,23 @@ std::deque<PluginInfo>& Plugins() {
   return plugins;
 }
 
-// The spec's controller. Error: there is none of that name, or the plug-in is not known here.
-Result<const ControllerInfo*> ControllerOf(const sim::RunSpec& spec) {
-  const ControllerInfo* controller = FindController(spec.controller, spec.plugin);
-  if (controller != nullptr) return controller;
-  if (spec.plugin.empty()) return InvalidInput(UnknownName("controller", spec.controller, Controllers()));
-  const PluginInfo* plugin = FindPlugin(spec.plugin);
-  if (plugin == nullptr) return InvalidInput("the plug-in " + spec.plugin + " is not loaded");
-  return InvalidInput(
-      "the plug-in " + plugin->file + ": " +
-      UnknownName("controller", spec.controller, std::span<const ControllerInfo>(plugin->controllers)));
+// The row called `name` among those built in or, if `hash` names one, those of the plug-in, its member
+// `rows`. `what` it is, in words. Error: there is none of that name, or the plug-in is not known here.
+template <typename Info>
+Result<const Info*> RowOf(std::string_view what, const std::string& name, const std::string& hash,
+                          std::span<const Info> built_in, std::vector<Info> PluginInfo::*rows) {
+  const PluginInfo* plugin = hash.empty() ? nullptr : FindPlugin(hash);
+  if (plugin == nullptr && !hash.empty()) return InvalidInput("the plug-in " + hash + " is not loaded");
+  const std::span<const Info> known = plugin == nullptr ? built_in : std::span<const Info>(plugin->*rows);
+  if (const Info* row = FindByName(known, name)) return row;
+  return InvalidInput((plugin == nullptr ? "" : "the plug-in " + plugin->file + ": ") +
+                      UnknownName(what, name, known));
+}
+
+Error TakenName(const PluginInfo& plugin, std::string_view what, std::string_view name) {
+  std::string message = "the plug-in " + plugin.file + " brings a ";
+  return InvalidInput(message.append(what).append(" '").append(name).append(
+      "', which is the name of a built-in one: give it a name of its own"));
 }
 
 }  // namespace
@@ -84,8 +91,10 @@ std::span<const ControllerInfo> Controllers() {
   return controllers;
 }
 
-const ScenarioInfo* FindScenario(std::string_view name) {
-  return FindByName(Scenarios(), name);
+const ScenarioInfo* FindScenario(std::string_view name, std::string_view plugin) {
+  if (plugin.empty()) return FindByName(Scenarios(), name);
+  const PluginInfo* known = FindPlugin(plugin);
+  return known == nullptr ? nullptr : FindByName(std::span<const ScenarioInfo>(known->scenarios), name);
 }
 
 const ControllerInfo* FindController(std::string_view name, std::string_view plugin) {
@@ -97,10 +106,10 @@ const ControllerInfo* FindController(std::string_view name, std::string_view plu
 Status AddPlugin(PluginInfo plugin) {
   if (FindPlugin(plugin.hash) != nullptr) return Ok{};
   for (const ControllerInfo& controller : plugin.controllers) {
-    if (FindController(controller.name) == nullptr) continue;
-    std::string message = "the plug-in " + plugin.file + " brings a controller '";
-    return InvalidInput(message.append(controller.name)
-                            .append("', which is the name of a built-in one: give it a name of its own"));
+    if (FindController(controller.name) != nullptr) return TakenName(plugin, "controller", controller.name);
+  }
+  for (const ScenarioInfo& scenario : plugin.scenarios) {
+    if (FindScenario(scenario.name) != nullptr) return TakenName(plugin, "scenario", scenario.name);
   }
   Plugins().push_back(std::move(plugin));
   return Ok{};
@@ -109,6 +118,11 @@ Status AddPlugin(PluginInfo plugin) {
 const PluginInfo* FindPlugin(std::string_view hash) {
   const auto found = std::ranges::find(Plugins(), hash, &PluginInfo::hash);
   return found == Plugins().end() ? nullptr : &*found;
+}
+
+Result<const ScenarioInfo*> ScenarioOf(const sim::RunSpec& spec) {
+  return RowOf<ScenarioInfo>("scenario", spec.scenario, spec.scenario_plugin, Scenarios(),
+                             &PluginInfo::scenarios);
 }
 
 const MetricInfo* FindMetric(const ScenarioInfo& scenario, std::string_view name) {
@@ -136,9 +150,12 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos,
 }
 
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) {
-  const ScenarioInfo* scenario = FindScenario(spec.scenario);
-  if (scenario == nullptr) return InvalidInput(UnknownName("scenario", spec.scenario, Scenarios()));
-  const Result<const ControllerInfo*> found = ControllerOf(spec);
+  const Result<const ScenarioInfo*> tested = ScenarioOf(spec);
+  if (!tested.ok()) return tested.error();
+  const ScenarioInfo* scenario = *tested;
+  if (!scenario->create) return InvalidInput("the plug-in " + spec.scenario_plugin + " is not loaded");
+  const auto found = RowOf<ControllerInfo>("controller", spec.controller, spec.plugin, Controllers(),
+                                           &PluginInfo::controllers);
   if (!found.ok()) return found.error();
   const ControllerInfo* controller = *found;
   if (!scenario->Takes(*controller)) {

@@ -3,6 +3,7 @@
 // (controllers/run_start.h).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "base/result.h"
 #include "controllers/behaviour.h"
 #include "sim/run_spec.h"
+#include "sim/run_start.h"
 #include "sim/scenario.h"
 
 namespace gauntlet::controllers {
@@ -19,23 +21,30 @@ namespace gauntlet::controllers {
 std::span<const ScenarioInfo> Scenarios();
 std::span<const ControllerInfo> Controllers();  // those that are built in
 
-// What a plug-in brings, as this process knows it: a runner that has loaded the library can run its
-// controllers, a master that was told of it knows their names and parameters.
+// What a plug-in brings, as this process knows it: a runner that has loaded the library can run it, a master
+// that was told of it knows names, parameters, metrics and the like.
 struct PluginInfo {
   std::string hash;  // SHA-256 of the library, 64 hexadecimal digits
   std::string file;  // where it was found
   // In a master: what gauntlet-worker said of it, from which the rows come (proto/plugin_description.h).
   std::string description;
   std::vector<ControllerInfo> controllers;
+  std::vector<ScenarioInfo> scenarios = {};  // in a master without the functions of their rows
+  // In a master: how a run in one of its scenarios begins, as a process answers that loads the library.
+  // Error: why that gives no answer. nullptr: the rows say it.
+  std::function<Result<sim::RunBeginning>(const sim::RunSpec& spec)> begin = nullptr;
 };
 // Makes it known for the rest of this process' life; one that is known already stays as it is. What the rows
-// refer to is never freed. Error: a built-in controller has the name of one of its controllers.
+// refer to is never freed. Error: one of its controllers or scenarios has the name of a built-in one.
 Status AddPlugin(PluginInfo plugin);
 const PluginInfo* FindPlugin(std::string_view hash);  // nullptr when it is not known
 
 // nullptr when there is none of that name. `plugin`: the hash of the plug-in to look in; "": those built in.
-const ScenarioInfo* FindScenario(std::string_view name);
+const ScenarioInfo* FindScenario(std::string_view name, std::string_view plugin = "");
 const ControllerInfo* FindController(std::string_view name, std::string_view plugin = "");
+
+// The spec's scenario. Error: there is none of that name, or its plug-in is not known here.
+Result<const ScenarioInfo*> ScenarioOf(const sim::RunSpec& spec);
 
 // The metric `name` of a scenario, or the family it belongs to; nullptr when the scenario reports none such.
 const MetricInfo* FindMetric(const ScenarioInfo& scenario, std::string_view name);

@@ -1,18 +1,46 @@
 #include "controllers/run_start.h"
 
 #include <cstdint>
+#include <functional>
+#include <utility>
 
 #include "controllers/registry.h"
 
 namespace gauntlet::controllers {
+namespace {
 
-Result<RunStart> StartOf(const sim::RunSpec& spec) {
+// Whoever answers for the spec's scenario in another process; nullptr: its row is here.
+const std::function<Result<sim::RunBeginning>(const sim::RunSpec&)>* ElsewhereOf(const sim::RunSpec& spec) {
+  const PluginInfo* plugin = spec.scenario_plugin.empty() ? nullptr : FindPlugin(spec.scenario_plugin);
+  return plugin == nullptr || !plugin->begin ? nullptr : &plugin->begin;
+}
+
+// Whatever depends on no seed is asked with this one.
+constexpr std::uint64_t kAnySeed = 1;
+
+sim::RunSpec WithSeed(sim::RunSpec spec, std::uint64_t seed) {
+  spec.seed = seed;
+  return spec;
+}
+
+Result<sim::ArenaRequirements> RequirementsHere(const sim::RunSpec& spec) {
+  const Result<const ScenarioInfo*> scenario = ScenarioOf(spec);
+  if (!scenario.ok()) return scenario.error();
+  if (!(*scenario)->requirements)
+    return InvalidInput("the plug-in " + spec.scenario_plugin + " is not loaded");
+  const Result<sim::Parameters> parameters =
+      ResolveParameters((*scenario)->parameters, spec.scenario_parameters);
+  if (!parameters.ok()) return parameters.error();
+  return (*scenario)->requirements(*parameters, spec.test_case);
+}
+
+Result<sim::RunStart> StartHere(const sim::RunSpec& spec) {
   const auto scenario = CreateScenario(spec);
   if (!scenario.ok()) return scenario.error();
   const sim::Observer observer(0, 0);
   const auto swarm = (*scenario)->CreateSwarm(sim::Headquarters(observer));
   if (!swarm.ok()) return swarm.error();
-  RunStart start;
+  sim::RunStart start;
   for (const sim::RobotSetup& robot : *swarm) {
     start.robots.push_back({.pose = robot.pose,
                             .camera_range = robot.camera_range,
@@ -28,17 +56,40 @@ Result<RunStart> StartOf(const sim::RunSpec& spec) {
   return start;
 }
 
+}  // namespace
+
+Result<sim::ArenaRequirements> RequirementsOf(const sim::RunSpec& spec) {
+  const auto* elsewhere = ElsewhereOf(spec);
+  if (elsewhere == nullptr) return RequirementsHere(spec);
+  const Result<sim::RunBeginning> beginning = (*elsewhere)(WithSeed(spec, kAnySeed));
+  if (!beginning.ok()) return beginning.error();
+  return beginning->requirements;
+}
+
+Result<sim::RunStart> StartOf(const sim::RunSpec& spec) {
+  const auto* elsewhere = ElsewhereOf(spec);
+  if (elsewhere == nullptr) return StartHere(spec);
+  Result<sim::RunBeginning> beginning = (*elsewhere)(spec);
+  if (!beginning.ok()) return beginning.error();
+  return std::move(beginning->start);
+}
+
 Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {
   constexpr std::uint64_t kSeeds = 5;
+  const std::uint64_t first = ElsewhereOf(spec) == nullptr ? spec.seed : kAnySeed;
   Error error;
   for (std::uint64_t i = 0; i < kSeeds; ++i) {
-    sim::RunSpec trial = spec;
-    trial.seed += i;
-    const Result<RunStart> start = StartOf(trial);
+    const Result<sim::RunStart> start = StartOf(WithSeed(spec, first + i));
     if (start.ok()) return start->robots.size();
     error = start.error();
   }
   return error;
+}
+
+Result<sim::RunBeginning> BeginningOf(const sim::RunSpec& spec) {
+  Result<sim::ArenaRequirements> requirements = RequirementsHere(spec);
+  if (!requirements.ok()) return requirements.error();
+  return sim::RunBeginning{*requirements, StartHere(spec)};
 }
 
 }  // namespace gauntlet::controllers

@@ -1,41 +1,30 @@
-// How a run begins, for a master, which builds a scenario for this alone, and for programs that begin the
-// same run elsewhere.
+// How a run begins, for a master, which builds a scenario for this alone. Of a scenario that a plug-in
+// brings, a master asks another process (PluginInfo::begin).
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
 #include "base/result.h"
 #include "sim/run_spec.h"
-#include "sim/scenario.h"
+#include "sim/run_start.h"
 
 namespace gauntlet::controllers {
 
-struct StartingRobot {
-  sim::Pose pose = {};
-  double camera_range = 0.0;  // m, as sim::RobotSetup has it
-  double radio_range = 0.0;   // m
-  bool bodies_block_radio = true;
-  // Those that its controller asks for; none when the controller is a plug-in's, which a master never loads.
-  sim::DeviceSet devices = {};
-  bool under_test = true;  // false: it belongs to the scenario, as the prey of a flock does
-};
-
-struct RunStart {
-  std::vector<StartingRobot> robots;  // in robot order
-  std::vector<sim::Light> lights;
-  std::size_t radio_beacons = 0;
-  std::vector<sim::GroundArea> ground_areas;
-  sim::Tick tick_limit = 0;  // the run ends at this tick at the latest
-};
+// What the spec's scenario demands of its arena. Error: there is no such scenario, its parameters are wrong,
+// or why the plug-in that brings it gives no answer.
+Result<sim::ArenaRequirements> RequirementsOf(const sim::RunSpec& spec);
 
 // Start poses are those of the spec's seed. Error: as CreateScenario, or why the swarm cannot be put into the
 // arena ("no-room-to-spawn: ...").
-Result<RunStart> StartOf(const sim::RunSpec& spec);
+Result<sim::RunStart> StartOf(const sim::RunSpec& spec);
 
 // The number of robots of the spec's swarm, provided that it can be put into the arena at all. Start places
-// are random, so a few seeds from the spec's on are tried, and one that works is enough. Error: as StartOf,
-// of the last try.
+// are random, so a few seeds are tried, and one that works is enough: from the spec's on, or, of a scenario
+// that a plug-in brings, the same ones for all specs, so that one answer does for those that differ in their
+// seed alone. Error: as StartOf, of the last try.
 Result<std::size_t> CountSwarm(const sim::RunSpec& spec);
+
+// Both answers at once, from the scenario's row in this process. Error: as RequirementsOf.
+Result<sim::RunBeginning> BeginningOf(const sim::RunSpec& spec);
 
 }  // namespace gauntlet::controllers

@@ -111,6 +111,7 @@ void ToProto(const sim::RunSpec& spec, v1::RunSpec& message) {
   ToProto(spec.disturbances, message);
   message.set_plugin(spec.plugin);
   message.set_definition(spec.definition);
+  message.set_scenario_plugin(spec.scenario_plugin);
 }
 
 const std::string& Utf8(const std::string& text) {
@@ -456,7 +457,9 @@ Result<sim::RunSpec> DecodeRunSpec(std::string_view bytes) {
   spec.physics = PhysicsOf(wire.physics());
   spec.disturbances = ReadDisturbances(wire, reader);
   spec.plugin = wire.plugin();
-  reader.Require(spec.plugin.empty() || IsSha256(spec.plugin), "a plug-in that is named by no SHA-256");
+  spec.scenario_plugin = wire.scenario_plugin();
+  for (const std::string& plugin : {spec.plugin, spec.scenario_plugin})
+    reader.Require(plugin.empty() || IsSha256(plugin), "a plug-in that is named by no SHA-256");
   spec.definition = wire.definition();
   if (!reader.ok()) return Corrupt(reader.error());
   return spec;

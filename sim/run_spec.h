@@ -20,7 +20,8 @@ enum class PhysicsKind { kBox2d, kRelaxation, kImpulse };
 
 struct RunSpec {
   TestCase test_case;
-  std::string scenario;  // registry name
+  std::string scenario;         // registry name
+  std::string scenario_plugin;  // SHA-256 of the library that brings the scenario, as `plugin` below
   // What the scenario consists of beyond its parameters, in the form that it writes itself; "": it is built
   // in as a whole.
   std::string definition;

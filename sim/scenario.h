@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -16,6 +15,7 @@
 #include "sim/robot/grippers.h"
 #include "sim/robot/surroundings.h"
 #include "sim/run_result.h"
+#include "sim/run_start.h"
 
 namespace gauntlet::sim {
 
@@ -41,15 +41,6 @@ struct Outcome {
   std::vector<Annotation> annotations;
   // Why the run cannot be judged, with the values that are to blame; not empty: all else is meaningless.
   std::string complaint;
-};
-
-// A part of the floor that means something to the swarm.
-struct GroundArea {
-  std::string_view name;             // "nest"
-  Vec2 center = Vec2::Zero();        // m
-  double radius = 0.0;               // m, of a disc; 0: a rectangle
-  Vec2 half_extents = Vec2::Zero();  // m along x and y, of a rectangle
-  double grey = 1.0;                 // of the floor there, 0 = black, 1 = white as elsewhere
 };
 
 // What a scenario sees and moves between physics and sensing.

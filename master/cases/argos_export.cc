@@ -93,10 +93,10 @@ void AppendLights(xml_node arena, const std::vector<sim::Light>& lights) {
   }
 }
 
-void AppendRobots(xml_node arena, const std::vector<controllers::StartingRobot>& robots,
+void AppendRobots(xml_node arena, const std::vector<sim::StartingRobot>& robots,
                   const std::string& controller) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
-    const controllers::StartingRobot& robot = robots[i];
+    const sim::StartingRobot& robot = robots[i];
     xml_node element =
         Append(arena, "foot-bot",
                {{"id", fmt::format("fb{}", i)}, {"rab_range", fmt::format("{}", robot.radio_range)}});
@@ -125,7 +125,7 @@ void AppendPlaceholder(xml_node parent, const char* id, sim::DeviceSet devices) 
   Append(controller, "params");
 }
 
-void AppendControllers(xml_node root, const controllers::RunStart& start, const ArgosControllers* given) {
+void AppendControllers(xml_node root, const sim::RunStart& start, const ArgosControllers* given) {
   xml_node parent = Append(root, "controllers");
   if (given != nullptr) {
     parent.append_buffer(given->sections.data(), given->sections.size());
@@ -172,7 +172,7 @@ std::string AreaText(const sim::GroundArea& area) {
                      grey);
 }
 
-std::vector<std::string> NoticesOf(const sim::RunSpec& spec, const controllers::RunStart& start) {
+std::vector<std::string> NoticesOf(const sim::RunSpec& spec, const sim::RunStart& start) {
   std::vector<std::string> notices;
   const auto any = [](const auto& all, auto&& has) { return std::ranges::any_of(all, has); };
   const sim::Genome& obstacles = spec.test_case.obstacles;
@@ -223,7 +223,7 @@ double ArenaHeight(const std::vector<sim::Light>& lights) {
 
 }  // namespace
 
-ArgosFile WriteArgos(const sim::RunSpec& spec, const controllers::RunStart& start,
+ArgosFile WriteArgos(const sim::RunSpec& spec, const sim::RunStart& start,
                      const ArgosControllers* controllers, const std::string& title) {
   ArgosFile file{"", NoticesOf(spec, start)};
   if (controllers == nullptr) {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "controllers/run_start.h"
 #include "master/cases/argos_controllers.h"
 #include "sim/run_spec.h"
+#include "sim/run_start.h"
 
 namespace gauntlet::master {
 
@@ -20,7 +20,7 @@ struct ArgosFile {
 // spec's test case again. It has the arena, walls, obstacles, lamps, every robot at its start pose, the seed
 // and the length. `title` begins its comment, in words. Without `controllers` the robots get one that does
 // nothing, for which ARGoS must know Lua; devices are those of `start`.
-ArgosFile WriteArgos(const sim::RunSpec& spec, const controllers::RunStart& start,
+ArgosFile WriteArgos(const sim::RunSpec& spec, const sim::RunStart& start,
                      const ArgosControllers* controllers, const std::string& title);
 
 }  // namespace gauntlet::master

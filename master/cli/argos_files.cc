@@ -59,7 +59,7 @@ Result<ArgosFile> FileOf(const StoredCampaign& campaign, RunId id,
     return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", id)};
   const Result<sim::RunSpec> spec = proto::DecodeRunSpec((*stored)->spec);
   if (!spec) return spec.error();
-  const Result<controllers::RunStart> start = controllers::StartOf(*spec);
+  const Result<sim::RunStart> start = controllers::StartOf(*spec);
   if (!start)
     return Error{start.error().kind, fmt::format("run {} cannot begin: {}", id, start.error().message)};
   std::optional<ArgosControllers> own = controllers;

@@ -118,7 +118,7 @@ Result<CorpusReport> ReadReport(CommandContext& context, const CheckOptions& opt
                             .tally = {},
                             .interval = {0.0, 1.0},
                             .message = {}});
-  const std::string_view failing = FailingOf(report.scenario);
+  const std::string_view failing = FailingOf(plan.experiments.front());
   std::optional<Error> damage;
   const Status read = context.campaigns.ForEachRun(plan.directory, [&](const StoredRun& run) {
     const Result<RunOutcome> outcome = OutcomeOf(run, FailingNeedsMetrics(failing));

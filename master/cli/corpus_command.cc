@@ -3,6 +3,7 @@
 #include <cctype>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,8 +43,15 @@ struct CorpusOptions {
 struct Keepsake {
   CorpusCase content;
   std::string picture;               // SVG
-  std::vector<std::string> plugins;  // the one that brings the controller, by its SHA-256, or none
+  std::vector<std::string> plugins;  // those that bring scenario and controller, by their SHA-256
 };
+
+// By their SHA-256, each once; none where all is built in.
+std::vector<std::string> PluginsOf(const Experiment& experiment) {
+  std::set<std::string> hashes = {experiment.plugin, experiment.scenario_plugin};
+  hashes.erase("");
+  return {hashes.begin(), hashes.end()};
+}
 
 // The picture that `minimise` has drawn beside a case's file.
 Result<std::string> PictureBeside(const std::string& file) {
@@ -76,7 +84,7 @@ Result<Keepsake> KeepsakeOfFile(const CorpusOptions& options, const std::string&
   kept.content.found_in =
       fmt::format("{} of {}, by {}", loaded->lineage->parent.name, experiment.name, loaded->lineage->made_by);
   kept.content.settings = SettingsOf(experiment);
-  if (!experiment.plugin.empty()) kept.plugins = {experiment.plugin};
+  kept.plugins = PluginsOf(experiment);
   kept.content.document = {std::move(loaded->test_case), std::move(loaded->lineage)};
   Result<std::string> picture = PictureBeside(file);
   if (!picture) return picture.error();
@@ -130,7 +138,7 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
   kept.picture = analysis::DrawRun(FigureOf(experiment.name, replay->report));
   kept.content.found_in = fmt::format("run {} of {}", run, experiment.name);
   kept.content.settings = SettingsOf(experiment);
-  if (!experiment.plugin.empty()) kept.plugins = {experiment.plugin};
+  kept.plugins = PluginsOf(experiment);
   kept.content.document = {std::move(one.test_case)};
   kept.content.name = options.name.empty() ? fmt::format("run-{}", run) : options.name;
   return kept;

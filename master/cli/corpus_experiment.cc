@@ -60,6 +60,9 @@ Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std:
   const bool other_controller = !controller.empty() && controller != SettingOf(entry.content, "controller");
   const controllers::ControllerInfo* info = controllers::FindController(controller);
   const controllers::ScenarioInfo* tested = controllers::FindScenario(scenario);
+  for (const std::string& plugin : plugins) {
+    if (tested == nullptr) tested = controllers::FindScenario(scenario, plugin);
+  }
   if (info != nullptr && tested != nullptr && !tested->Takes(*info)) {
     return InvalidInput(Printable(
         fmt::format("--set controller={}: it is written for the scenario '{}', the corpus is for '{}' ({})",

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "controllers/registry.h"
+#include "controllers/run_start.h"
 #include "master/cases/case_file.h"
 #include "master/report/verdict_text.h"
 #include "master/search/search_setup.h"
@@ -36,10 +37,11 @@ void AskOnce(CommandContext& context, QuestionedCampaign& questioned) {
 }  // namespace
 
 std::optional<Refusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
-  if (scenario == nullptr) return std::nullopt;
-  const auto requirements = scenario->requirements(experiment.scenario_parameters, test_case);
-  if (const auto violation = sim::CheckValidity(test_case, requirements))
+  if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
+    return std::nullopt;
+  const auto requirements = controllers::RequirementsOf(SpecOf(experiment, test_case, experiment.seed));
+  if (!requirements) return Refusal{"", requirements.error().message};
+  if (const auto violation = sim::CheckValidity(test_case, *requirements))
     return Refusal{std::string(sim::NameOf(violation->rule)), violation->message};
   if (const Status fits = CheckSwarmFits(experiment, test_case); !fits)
     return Refusal{RuleOf(fits.error().message), fits.error().message};

@@ -8,10 +8,11 @@
 
 namespace gauntlet::master {
 
-double CpuLimitSeconds(std::string_view scenario, const sim::Parameters& scenario_parameters) {
+double CpuLimitSeconds(std::string_view scenario, const sim::Parameters& scenario_parameters,
+                       std::string_view plugin) {
   constexpr double kSecondsPerTick = 0.01;
   const double least = DispatchOptions().cpu_limit_seconds;
-  const controllers::ScenarioInfo* info = controllers::FindScenario(scenario);
+  const controllers::ScenarioInfo* info = controllers::FindScenario(scenario, plugin);
   if (info == nullptr) return least;
   return std::max(least, info->TimeLimit(scenario_parameters) * sim::kTicksPerSecond * kSecondsPerTick);
 }

@@ -68,6 +68,7 @@ struct Experiment {
   std::string name;
   std::string description;
   std::string scenario;
+  std::string scenario_plugin;          // SHA-256 of the plug-in that brings the scenario; "": it is built in
   sim::Parameters scenario_parameters;  // resolved
   std::string definition;               // of a scenario that is defined in the experiment, as in sim::RunSpec
   std::string controller;
@@ -87,6 +88,7 @@ inline sim::RunSpec SpecOf(const Experiment& experiment, const sim::TestCase& te
   sim::RunSpec spec;
   spec.test_case = test_case;
   spec.scenario = experiment.scenario;
+  spec.scenario_plugin = experiment.scenario_plugin;
   spec.definition = experiment.definition;
   spec.scenario_parameters = experiment.scenario_parameters;
   spec.controller = experiment.controller;

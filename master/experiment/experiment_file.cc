@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <optional>
 #include <utility>
@@ -18,6 +19,8 @@ namespace gauntlet::master {
 namespace {
 
 constexpr std::string_view kPluginsKey = "plugins";
+// They decide which other keys there are.
+constexpr std::array<std::string_view, 4> kBaseKeys = {"scenario", "scenario_plugin", "controller", "plugin"};
 
 // What the value of an assignment to `key` is (KindOf), closer where the kind alone would puzzle.
 std::string KindFor(const Key& key, const Assignment& assignment) {
@@ -105,6 +108,7 @@ class Reader {
   Result<Experiment> Read() {
     for (Key& key : CommonKeys(catalogue_)) AddWithDefault(std::move(key));
     AddWithDefault(PluginKey());
+    AddWithDefault(ScenarioPluginKey());
     if (Status status = AssignAll(/*base=*/true); !status.ok()) return status.error();
     if (Status status = ResolveNames(); !status.ok()) return status.error();
     if (Status status = AssignAll(/*base=*/false); !status.ok()) return status.error();
@@ -117,11 +121,10 @@ class Reader {
   }
 
  private:
-  // `base`: the keys that decide which other keys there are; else the others.
+  // `base`: kBaseKeys; else the others.
   Status AssignAll(bool base) {
     for (const Assignment& assignment : assignments_) {
-      const bool is_base =
-          assignment.path == "scenario" || assignment.path == "controller" || assignment.path == "plugin";
+      const bool is_base = std::ranges::count(kBaseKeys, assignment.path) > 0;
       if (base != is_base || InDefinition(assignment.path)) continue;
       if (Status status = Assign(assignment); !status.ok()) return status;
     }
@@ -217,13 +220,16 @@ class Reader {
       return InvalidInput(fmt::format("{}: scenario is missing; known: {}", PlaceOf("scenario"),
                                       NamesOf(catalogue_.scenarios)));
     }
-    const controllers::ScenarioInfo* scenario = FindByName(catalogue_.scenarios, experiment_.scenario);
-    if (scenario == nullptr) {
-      return InvalidInput(fmt::format("{}: {}", PlaceOf("scenario"),
-                                      UnknownName("scenario", experiment_.scenario, catalogue_.scenarios)));
-    }
+    const auto named = ResolveRow<controllers::ScenarioInfo>(
+        "scenario", experiment_.scenario, catalogue_.scenarios, &controllers::PluginInfo::scenarios,
+        experiment_.scenario_plugin);
+    if (!named) return named.error();
+    scenario_ = *named;
+    const controllers::ScenarioInfo* scenario = scenario_;
     if (experiment_.controller.empty()) experiment_.controller = scenario->default_controller;
-    const Result<const controllers::ControllerInfo*> found = ResolveController();
+    const auto found =
+        ResolveRow<controllers::ControllerInfo>("controller", experiment_.controller, catalogue_.controllers,
+                                                &controllers::PluginInfo::controllers, experiment_.plugin);
     if (!found) return found.error();
     const controllers::ControllerInfo* controller = *found;
     if (!scenario->Takes(*controller)) {
@@ -238,7 +244,7 @@ class Reader {
 
   // What [generic] says, of the scenario that it is for.
   Status Define() {
-    if (FindByName(catalogue_.scenarios, experiment_.scenario)->check_definition) {
+    if (scenario_->check_definition) {
       Result<std::string> definition = ReadDefinition(assignments_, file_name_);
       if (!definition.ok()) return definition.error();
       experiment_.definition = *std::move(definition);
@@ -250,31 +256,35 @@ class Reader {
                                     stray->path, experiment_.scenario));
   }
 
-  // The controller of that name, and the plug-in that brings it.
-  Result<const controllers::ControllerInfo*> ResolveController() {
-    const std::string plugin = std::exchange(experiment_.plugin, "");
-    std::vector<controllers::ControllerInfo> known(catalogue_.controllers.begin(),
-                                                   catalogue_.controllers.end());
-    if (const auto* built_in = FindByName(catalogue_.controllers, experiment_.controller)) return built_in;
-    if (!plugin.empty() && controllers::FindPlugin(plugin) == nullptr) {
+  // The row of that name, built in or a plug-in's. `what` it is, the key that names it; `rows` of a plug-in.
+  // `plugin`: the hash that was given for it; becomes that of the plug-in that brings the row.
+  template <typename Info>
+  Result<const Info*> ResolveRow(const std::string& what, const std::string& name,
+                                 std::span<const Info> built_in,
+                                 std::vector<Info> controllers::PluginInfo::*rows, std::string& plugin) {
+    const std::string given = std::exchange(plugin, "");
+    if (const Info* row = FindByName(built_in, name)) return row;
+    if (!given.empty() && controllers::FindPlugin(given) == nullptr) {
+      const std::string key = what == "controller" ? "plugin" : "scenario_plugin";
       return InvalidInput(
-          fmt::format("{}: plugin = \"{}\": this library is not here; it stands in plugins/ "
+          fmt::format("{}: {} = \"{}\": this library is not here; it stands in plugins/ "
                       "of the campaign that the experiment is from",
-                      PlaceOf("plugin"), plugin));
+                      PlaceOf(key), key, given));
     }
     std::vector<std::string> plugins = catalogue_.plugins;
-    if (!plugin.empty()) plugins.insert(plugins.begin(), plugin);
+    if (!experiment_.scenario_plugin.empty()) plugins.insert(plugins.begin(), experiment_.scenario_plugin);
+    if (!given.empty()) plugins.insert(plugins.begin(), given);
+    std::vector<Info> known(built_in.begin(), built_in.end());
     for (const std::string& hash : plugins) {
-      if (const auto* controller = controllers::FindController(experiment_.controller, hash)) {
-        experiment_.plugin = hash;
-        return controller;
+      const std::vector<Info>& more = controllers::FindPlugin(hash)->*rows;
+      if (const Info* row = FindByName(more, name)) {
+        plugin = hash;
+        return row;
       }
-      const std::vector<controllers::ControllerInfo>& more = controllers::FindPlugin(hash)->controllers;
       known.insert(known.end(), more.begin(), more.end());
     }
-    return InvalidInput(fmt::format("{}: {}", PlaceOf("controller"),
-                                    UnknownName("controller", experiment_.controller,
-                                                std::span<const controllers::ControllerInfo>(known))));
+    return InvalidInput(
+        fmt::format("{}: {}", PlaceOf(what), UnknownName(what, name, std::span<const Info>(known))));
   }
 
   void AddWithDefault(Key key) {
@@ -291,6 +301,7 @@ class Reader {
   std::string file_name_;
   Catalogue catalogue_;
   Experiment experiment_;
+  const controllers::ScenarioInfo* scenario_ = nullptr;  // the experiment's
   std::vector<Key> keys_;
   std::map<std::string, std::string> places_;  // path -> where it was assigned last
 };
@@ -324,7 +335,8 @@ Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment)
       for (const std::string& name : *other->texts) files.push_back(folder / name);
     }
     const auto* hash = std::get_if<std::string>(&assignment.value);
-    if (assignment.path == "plugin" && hash != nullptr && IsSha256(*hash))
+    const bool names_library = assignment.path == "plugin" || assignment.path == "scenario_plugin";
+    if (names_library && hash != nullptr && IsSha256(*hash))
       files.push_back(folder / "plugins" / (*hash + ".so"));
   }
   return files;
@@ -337,14 +349,18 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
     const auto in_table = [](const Key& key) { return key.path.starts_with("arena."); };
     keys.insert(std::ranges::find_if(keys, in_table), more.begin(), more.end());
   };
-  if (const auto* scenario = FindByName(catalogue.scenarios, experiment.scenario))
-    insert_before_tables(ScenarioParameterKeys(*scenario));
+  const auto* scenario = experiment.scenario_plugin.empty()
+                             ? FindByName(catalogue.scenarios, experiment.scenario)
+                             : controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (scenario != nullptr) insert_before_tables(ScenarioParameterKeys(*scenario));
   const auto* controller = experiment.plugin.empty()
                                ? FindByName(catalogue.controllers, experiment.controller)
                                : controllers::FindController(experiment.controller, experiment.plugin);
   if (controller != nullptr) insert_before_tables(ControllerParameterKeys(*controller));
   if (!experiment.plugin.empty())
     keys.insert(std::ranges::find(keys, "controller", &Key::path) + 1, PluginKey());
+  if (!experiment.scenario_plugin.empty())
+    keys.insert(std::ranges::find(keys, "scenario", &Key::path) + 1, ScenarioPluginKey());
 
   std::string text;
   for (const std::string& line : header) text += line.empty() ? "#\n" : fmt::format("# {}\n", line);

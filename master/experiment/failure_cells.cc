@@ -61,7 +61,8 @@ Result<std::vector<CellAxis>> ParseCells(const std::string& text, const controll
 }
 
 std::vector<CellAxis> CellsOf(const Experiment& experiment) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   if (scenario == nullptr) return {};
   if (!experiment.search.cells.empty()) return ParseCells(experiment.search.cells, *scenario).value();
   std::vector<CellAxis> axes;
@@ -71,7 +72,8 @@ std::vector<CellAxis> CellsOf(const Experiment& experiment) {
 }
 
 std::optional<BrokenRule> CheckCells(const Experiment& experiment) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   if (scenario == nullptr || experiment.search.cells.empty()) return std::nullopt;
   const Result<std::vector<CellAxis>> cells = ParseCells(experiment.search.cells, *scenario);
   if (!cells) return BrokenRule{"search.cells", cells.error().message};

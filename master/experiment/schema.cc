@@ -322,18 +322,31 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   return keys;
 }
 
-Key PluginKey() {
-  Key key = FieldKey<&Experiment::plugin>(
-      "plugin", "SHA-256 of the library that brings the controller, in plugins/ beside this file");
+namespace {
+
+template <auto kMember>
+Key LibraryKey(const char* path, const char* description) {
+  Key key = FieldKey<kMember>(path, description);
   key.default_value = std::string();
-  key.check = [](const KeyValue& v) -> std::optional<std::string> {
+  key.check = [path](const KeyValue& v) -> std::optional<std::string> {
     const auto& text = std::get<std::string>(v);
     if (text.empty() || IsSha256(text)) return std::nullopt;
-    return fmt::format(
-        "plugin = {} is no SHA-256 of 64 hexadecimal digits; name files by plugins = [\"FILE\"]",
-        QuoteToml(text));
+    return fmt::format("{} = {} is no SHA-256 of 64 hexadecimal digits; name files by plugins = [\"FILE\"]",
+                       path, QuoteToml(text));
   };
   return key;
+}
+
+}  // namespace
+
+Key PluginKey() {
+  return LibraryKey<&Experiment::plugin>(
+      "plugin", "SHA-256 of the library that brings the controller, in plugins/ beside this file");
+}
+
+Key ScenarioPluginKey() {
+  return LibraryKey<&Experiment::scenario_plugin>(
+      "scenario_plugin", "SHA-256 of the library that brings the scenario, in plugins/ beside this file");
 }
 
 std::string_view NameOf(KeyType type) {

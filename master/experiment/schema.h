@@ -69,7 +69,7 @@ struct Catalogue {
   std::span<const controllers::ScenarioInfo> scenarios;
   std::span<const controllers::ControllerInfo> controllers;
   std::span<const SearchInfo> searches;
-  std::vector<std::string> plugins = {};  // SHA-256 of those whose controllers may be named too
+  std::vector<std::string> plugins = {};  // SHA-256 of those whose rows may be named too
 };
 
 // Keys of every experiment, those of all searches among them, in the order they are written. Defaults are
@@ -77,6 +77,8 @@ struct Catalogue {
 std::vector<Key> CommonKeys(const Catalogue& catalogue);
 // "plugin": the plug-in that brings the controller. Written only where there is one.
 Key PluginKey();
+// "scenario_plugin": the one that brings the scenario. Likewise.
+Key ScenarioPluginKey();
 // Whether the key is about what is wrong with robots: "faults", "noise.DEVICE.NAME".
 bool IsDisturbance(const Key& key);
 // A parameter's value, or its default when it was not given.

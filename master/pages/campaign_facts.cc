@@ -24,10 +24,10 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// The descriptors of a scenario, nullptr where there are none.
-std::vector<const controllers::MetricInfo*> DescriptorsOf(const std::string& scenario_name) {
+// The descriptors of an experiment's scenario, nullptr where there are none.
+std::vector<const controllers::MetricInfo*> DescriptorsOf(const Experiment& experiment) {
   std::vector<const controllers::MetricInfo*> descriptors;
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(scenario_name);
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   if (scenario == nullptr) return descriptors;
   for (const controllers::MetricInfo& metric : scenario->metrics) {
     if (metric.descriptor) descriptors.push_back(&metric);
@@ -52,7 +52,7 @@ Result<RunFacts> FactsOf(const StoredRun& run,
 }
 
 Status AddRuns(const SearchPlan& plan, SearchId search, ResultStore& store, std::vector<RunFacts>& runs) {
-  const auto descriptors = DescriptorsOf(plan.experiment.scenario);
+  const auto descriptors = DescriptorsOf(plan.experiment);
   Status decoded = Ok{};
   const auto add = [&](const StoredRun& run) {
     if (!decoded) return;

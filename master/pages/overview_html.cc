@@ -41,7 +41,7 @@ std::string Listed(const std::vector<std::string>& texts) {
 // What was tested.
 std::string TestedHtml(const CampaignFacts& facts) {
   const Experiment& experiment = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment.scenario);
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   const auto* controller = controllers::FindController(experiment.controller, experiment.plugin);
   const SearchRow& search = RowOf(experiment);
   const CampaignSummary& summary = facts.summary;

@@ -112,7 +112,8 @@ const std::vector<std::array<std::string, 2>>& CaseColumns() {
 }
 
 Json CasesJson(const CampaignFacts& facts) {
-  const auto* scenario = controllers::FindScenario(facts.plans.front().experiment.scenario);
+  const Experiment& experiment = facts.plans.front().experiment;
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   Json cases = Json::array();
   for (const CaseFacts& one : facts.cases) {
     Json type;

@@ -205,10 +205,12 @@ std::uint64_t LargestCount(const RunMap& map) {
 }
 
 std::vector<RunMap> MapsOf(const CampaignFacts& facts) {
-  const std::string& name = facts.plans.front().experiment.scenario;
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(name);
-  const bool one_scenario = std::ranges::all_of(
-      facts.plans, [&](const SearchPlan& plan) { return plan.experiment.scenario == name; });
+  const Experiment& first = facts.plans.front().experiment;
+  const auto* scenario = controllers::FindScenario(first.scenario, first.scenario_plugin);
+  const bool one_scenario = std::ranges::all_of(facts.plans, [&](const SearchPlan& plan) {
+    return plan.experiment.scenario == first.scenario &&
+           plan.experiment.scenario_plugin == first.scenario_plugin;
+  });
   if (scenario == nullptr || !one_scenario) return {};
   std::vector<RunMap> maps;
   if (!scenario->failure_types.empty()) maps.push_back(FailureMap(facts, *scenario));

@@ -83,7 +83,8 @@ NamedFigure FigureOf(const SetComparison& comparison) {
 
 Result<SetComparisons> CompareSets(const std::vector<std::string>& names) {
   SetComparisons all;
-  std::map<std::string, std::vector<RunSet>> by_scenario;
+  using NameAndPlugin = std::pair<std::string, std::string>;
+  std::map<NameAndPlugin, std::vector<RunSet>> by_scenario;
   for (const std::string& name : names) {
     Result<RunSet> set = ReadRunSet(name, "fitness");
     if (!set) return set.error();
@@ -92,10 +93,11 @@ Result<SetComparisons> CompareSets(const std::vector<std::string>& names) {
       all.notes.push_back(fmt::format("{} has no run with a fitness: it is not compared", name));
       continue;
     }
-    const std::string scenario = set->origins.empty() ? "" : set->origins.front().experiment.scenario;
-    by_scenario[scenario].push_back(*std::move(set));
+    const Experiment experiment = set->origins.empty() ? Experiment() : set->origins.front().experiment;
+    by_scenario[{experiment.scenario, experiment.scenario_plugin}].push_back(*std::move(set));
   }
-  for (auto& [scenario, sets] : by_scenario) {
+  for (auto& [name_and_plugin, sets] : by_scenario) {
+    const std::string& scenario = name_and_plugin.first;
     if (sets.size() < 2) {
       if (names.size() > 1) {
         all.notes.push_back(fmt::format("{} stands alone: no other set is of the scenario {}",

@@ -16,7 +16,8 @@ std::string Percent(double share) {
 
 // "swarm of birds"
 std::string SwarmOf(const CampaignFacts& facts) {
-  const auto* scenario = controllers::FindScenario(facts.plans.front().experiment.scenario);
+  const Experiment& experiment = facts.plans.front().experiment;
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   return scenario == nullptr ? "swarm" : fmt::format("swarm of {}s", scenario->style.member);
 }
 

@@ -48,7 +48,7 @@ void AddWays(const RunOutcome& run, bool failed, Blame& blame) {
 }
 
 Status AddWaysOfRuns(const AnsweredSearch& answered, IndividualId individual, Blame& blame) {
-  const std::string_view failing = FailingOf(answered.experiment.scenario);
+  const std::string_view failing = FailingOf(answered.experiment);
   Status all = Ok{};
   const Status read = answered.store.ForEachRun(answered.id, 0, [&](const StoredRun& stored) {
     if (stored.individual != individual || !all) return;

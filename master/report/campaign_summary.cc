@@ -24,8 +24,8 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // What its scenario declares of failures.
-void TakeFromScenario(const std::string& name, CampaignSummary& summary) {
-  if (const auto* scenario = controllers::FindScenario(name)) {
+void TakeFromScenario(const Experiment& experiment, CampaignSummary& summary) {
+  if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin)) {
     for (const controllers::FailureType& one : scenario->failure_types)
       summary.failure_types.push_back({one.type, one.name});
     summary.untyped = scenario->untyped_failure;
@@ -60,7 +60,7 @@ Result<bool> IsFailing(const StoredRun& run, const Experiment& experiment) {
   const Result<RunOutcome> outcome = OutcomeOf(run, /*with_metrics=*/true);
   if (!outcome) return outcome.error();
   FailureTally tally;
-  tally.Add(*outcome, FailingOf(experiment.scenario));
+  tally.Add(*outcome, FailingOf(experiment));
   return tally.failures > 0;
 }
 
@@ -97,6 +97,10 @@ std::string EncodeExperiment(const Experiment& experiment) {
   if (!experiment.plugin.empty()) {
     encoder.String("plugin");
     encoder.String(experiment.plugin);
+  }
+  if (!experiment.scenario_plugin.empty()) {
+    encoder.String("scenario_plugin");
+    encoder.String(experiment.scenario_plugin);
   }
   if (!experiment.definition.empty()) {
     encoder.String("definition");
@@ -163,7 +167,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.experiment = experiment.name;
   summary.search = experiment.search.algorithm;
   summary.seed = experiment.seed;
-  TakeFromScenario(experiment.scenario, summary);
+  TakeFromScenario(experiment, summary);
 
   const Result<SavedProgress> saved = RestoreSearch(search_id, store, search);
   if (!saved) return saved.error();

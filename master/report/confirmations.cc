@@ -22,9 +22,9 @@ constexpr const char* kFolder = "/confirm";
 // What the runs of one case tell.
 class CaseRuns {
  public:
-  CaseRuns(const Experiment& experiment, const sim::TestCase& test_case)
-      : failing_(FailingOf(experiment.scenario)) {
-    if (const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario)) {
+  CaseRuns(const Experiment& experiment, const sim::TestCase& test_case) : failing_(FailingOf(experiment)) {
+    if (const controllers::ScenarioInfo* scenario =
+            controllers::FindScenario(experiment.scenario, experiment.scenario_plugin)) {
       ways_of_.emplace(*scenario, experiment.scenario_parameters, test_case);
       grid_.emplace(CellsOf(experiment));
     }
@@ -58,7 +58,8 @@ class CaseRuns {
                      .example = {}};
     if (!ways_.empty()) {
       const std::size_t typical = TypicalWay(ways_);
-      one.example = {experiment.scenario, ways_[typical], campaign, failed_[typical]};
+      one.example = {experiment.scenario, ways_[typical], campaign, failed_[typical],
+                     experiment.scenario_plugin};
     }
     return one;
   }
@@ -150,13 +151,14 @@ Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
 
 std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations,
                                               const std::vector<SmallestLayout>& layouts) {
-  std::map<std::string, std::vector<const Confirmation*>> failed;  // by scenario
+  using NameAndPlugin = std::pair<std::string, std::string>;
+  std::map<NameAndPlugin, std::vector<const Confirmation*>> failed;  // by scenario
   for (const Confirmation& one : confirmations) {
-    if (one.example) failed[one.example->scenario].push_back(&one);
+    if (one.example) failed[{one.example->scenario, one.example->scenario_plugin}].push_back(&one);
   }
   std::vector<DistinctFailure> distinct;
   for (auto& [name, cases] : failed) {
-    const controllers::ScenarioInfo* scenario = controllers::FindScenario(name);
+    const controllers::ScenarioInfo* scenario = controllers::FindScenario(name.first, name.second);
     if (scenario == nullptr) continue;
     std::ranges::stable_sort(cases, std::greater(), [](const auto* one) { return ShareOfFailures(*one); });
     std::vector<FailureWay> ways;

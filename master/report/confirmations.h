@@ -32,6 +32,7 @@ struct Confirmation {
     FailureWay way;
     std::string campaign;  // its directory
     RunId run = 0;
+    std::string scenario_plugin = "";  // that brings the scenario, as in Experiment
   };
   std::optional<Example> example;
 };

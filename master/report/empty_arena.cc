@@ -24,7 +24,7 @@ Status CheckEmptyArena(const Experiment& experiment,
     if (!result) return result.error();
     tally.Add(
         {.verdict = result->verdict, .total_failure = result->failure.total, .metrics = result->metrics},
-        FailingOf(experiment.scenario));
+        FailingOf(experiment));
     if (tally.passes + tally.errors > 0) return Ok{};
   }
   return InvalidInput(fmt::format(

@@ -43,7 +43,7 @@ void Name(Minimisation& one, const std::string& name) {
 }
 
 Minimisation Found(const sim::TestCase& original, const CaseMinimiser& minimiser,
-                   const std::string& scenario) {
+                   const Experiment& experiment) {
   Minimisation one;
   one.original = original;
   one.outcome = minimiser.outcome();
@@ -51,14 +51,14 @@ Minimisation Found(const sim::TestCase& original, const CaseMinimiser& minimiser
   one.empty = minimiser.empty();
   one.smallest.test_case = original;
   Name(one, original.name);
-  one.has_place = FailurePlaceOf(scenario) != nullptr;
+  one.has_place = FailurePlaceOf(experiment) != nullptr;
   if (one.outcome != MinimisedTo::kLayout) return one;
   one.steps = minimiser.steps();
   one.verified = minimiser.verification();
   one.interval = FailureInterval(one.verified.tally);
   one.same_way = minimiser.SameFailures(one.verified);
   one.smallest.test_case.obstacles = minimiser.layout().obstacles;
-  one.smallest.lineage = LineageOf(one, FailingOf(scenario));
+  one.smallest.lineage = LineageOf(one, FailingOf(experiment));
   Name(one, original.name);
   return one;
 }
@@ -69,7 +69,7 @@ Status AddAnswersOf(const std::string& directory, std::vector<Minimisation>& all
     const auto& search = dynamic_cast<const MinimisationSearch&>(answered.search);
     for (std::size_t i = 0; i < search.Population().size(); ++i) {
       const sim::TestCase& original = search.Population()[i].test_case;
-      all.push_back(Found(original, search.MinimiserOf(i), answered.experiment.scenario));
+      all.push_back(Found(original, search.MinimiserOf(i), answered.experiment));
       Minimisation& one = all.back();
       one.key = KeyOfCase(answered.experiment, original);
       one.directory = directory;

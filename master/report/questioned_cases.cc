@@ -36,7 +36,7 @@ Result<QuestionedCampaign> CasesOfSubset(const std::string& dir, const std::stri
   ResultStore& store = *opened->campaign.store;
   QuestionedCampaign questioned{opened->plans, {}};
   const auto add = [&](const SubsetSearch& search) -> Status {
-    const std::string failing(FailingOf(search.experiment.scenario));
+    const std::string failing(FailingOf(search.experiment));
     const Result<std::vector<SelectedRun>> runs = SelectRuns(search, store, opened->subset, failing);
     if (!runs) return runs.error();
     std::set<IndividualId> individuals;

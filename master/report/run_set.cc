@@ -121,6 +121,11 @@ std::vector<std::string> WhatDiffers(const RunSet& first, const RunSet& second) 
       differs("scenario", base.experiment.scenario, origin->experiment.scenario);
       continue;
     }
+    if (origin->experiment.scenario_plugin != base.experiment.scenario_plugin) {
+      differs("library of the scenario " + base.experiment.scenario, base.experiment.scenario_plugin,
+              origin->experiment.scenario_plugin);
+      continue;
+    }
     const std::map<std::string, std::string> there = ScenarioSettings(base.experiment);
     const std::map<std::string, std::string> here = ScenarioSettings(origin->experiment);
     for (const auto& [key, value] : there) {

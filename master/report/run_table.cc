@@ -95,7 +95,8 @@ RunTable::RunTable(const std::vector<SearchPlan>& plans, const std::vector<std::
   Append(searches_.columns(), columns_);
   Append(ColumnsOfTheRun(), columns_);
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    const auto* scenario = controllers::FindScenario(plans[i].experiment.scenario);
+    const Experiment& experiment = plans[i].experiment;
+    const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
     untyped_failures_.emplace_back(scenario == nullptr ? "" : scenario->untyped_failure);
     for (const std::string& name : metrics[i]) {
       const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, name);

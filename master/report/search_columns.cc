@@ -16,7 +16,7 @@ namespace {
 std::vector<Key> KeysOf(const Experiment& experiment) {
   std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
   const auto add = [&](std::vector<Key> more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  if (const auto* scenario = controllers::FindScenario(experiment.scenario))
+  if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin))
     add(ScenarioParameterKeys(*scenario));
   if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
     add(ControllerParameterKeys(*controller));

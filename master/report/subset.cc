@@ -65,7 +65,8 @@ std::optional<double> MetricOf(const sim::RunResult& result, const controllers::
 // One value for each stored run of a search, in logical order.
 Result<std::vector<SelectedRun>> LoadValues(const Experiment& experiment, SearchId search, ResultStore& store,
                                             const std::string& metric) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, metric);
   std::vector<SelectedRun> values;
   std::optional<Error> damage;
@@ -235,7 +236,8 @@ Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, c
 }
 
 Status CheckMetric(const Experiment& experiment, const std::string& metric) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   if (IsColumn(metric) || scenario == nullptr || controllers::FindMetric(*scenario, metric) != nullptr) {
     return Ok{};
   }

@@ -111,8 +111,10 @@ ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::Scenar
 }
 
 Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& setup) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(setup.experiment.scenario);
-  GAUNTLET_CHECK(scenario != nullptr, setup.experiment.scenario);
+  const Experiment& experiment = setup.experiment;
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  GAUNTLET_CHECK(scenario != nullptr, experiment.scenario);
   if (CellsOf(setup.experiment).empty()) {
     return InvalidInput(
         fmt::format("scenario {} does not say along which metrics its failures differ, which "

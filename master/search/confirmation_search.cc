@@ -41,7 +41,7 @@ Experiment CheckOf(const Experiment& experiment) {
 
 ConfirmationSearch::ConfirmationSearch(const SearchSetup& setup)
     : PopulationSearch(setup),
-      failing_(FailingOf(setup.experiment.scenario)),
+      failing_(FailingOf(setup.experiment)),
       replicates_(ConfirmationReplicates(setup.experiment)),
       cases_(setup.cases.size()) {
   for (const sim::TestCase& test_case : setup.cases) {

@@ -13,8 +13,8 @@ constexpr int kEnoughPasses = 6;
 
 }  // namespace
 
-std::string_view FailingOf(const std::string& scenario) {
-  const controllers::ScenarioInfo* info = controllers::FindScenario(scenario);
+std::string_view FailingOf(const Experiment& experiment) {
+  const auto* info = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   return info == nullptr ? kTotalFailure : info->failing;
 }
 

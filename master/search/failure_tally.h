@@ -3,12 +3,13 @@
 
 #include <string_view>
 
+#include "master/experiment/experiment.h"
 #include "master/search/search_algorithm.h"
 
 namespace gauntlet::master {
 
-// What a scenario calls failing (controllers::ScenarioInfo::failing).
-std::string_view FailingOf(const std::string& scenario);
+// What the experiment's scenario calls failing (controllers::ScenarioInfo::failing).
+std::string_view FailingOf(const Experiment& experiment);
 // Whether deciding it needs the metrics of runs (RunOutcome::metrics).
 bool FailingNeedsMetrics(std::string_view failing);
 

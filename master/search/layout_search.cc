@@ -28,8 +28,8 @@ std::optional<sim::Vec2> PlaceOfFailure(const RunOutcome& run, const controllers
 
 }  // namespace
 
-const controllers::FailurePlace* FailurePlaceOf(const std::string& scenario) {
-  const controllers::ScenarioInfo* info = controllers::FindScenario(scenario);
+const controllers::FailurePlace* FailurePlaceOf(const Experiment& experiment) {
+  const auto* info = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   return info == nullptr || !info->failure_place ? nullptr : &*info->failure_place;
 }
 
@@ -50,8 +50,8 @@ Experiment LayoutExperiment(const Experiment& experiment, std::string_view algor
 
 LayoutSearch::LayoutSearch(const SearchSetup& setup, std::vector<std::unique_ptr<LayoutQuestion>> questions)
     : PopulationSearch(setup),
-      failing_(FailingOf(setup.experiment.scenario)),
-      failure_place_(FailurePlaceOf(setup.experiment.scenario)),
+      failing_(FailingOf(setup.experiment)),
+      failure_place_(FailurePlaceOf(setup.experiment)),
       cases_(setup.cases.size()) {
   for (std::size_t index = 0; index < setup.cases.size(); ++index) {
     const Individual& original = population_.emplace_back(MakeIndividual(index + 1, setup.cases[index]));

@@ -14,7 +14,7 @@
 namespace gauntlet::master {
 
 // Where the scenario's failures happen; nullptr: they have no place.
-const controllers::FailurePlace* FailurePlaceOf(const std::string& scenario);
+const controllers::FailurePlace* FailurePlaceOf(const Experiment& experiment);
 
 // Waypoints at which the robot was at the obstacle, where it stands at the beginning: its proximity ring saw
 // it.

@@ -18,7 +18,7 @@ Experiment MinimisationOf(const Experiment& experiment, bool shorten) {
 }
 
 Result<std::unique_ptr<MinimisationSearch>> MinimisationSearch::Create(const SearchSetup& setup) {
-  const controllers::FailurePlace* place = FailurePlaceOf(setup.experiment.scenario);
+  const controllers::FailurePlace* place = FailurePlaceOf(setup.experiment);
   const MinimisingRules rules{.same_within = place == nullptr ? 0.0 : place->same_within,
                               .shorten = ValueOf(kParameters[0], setup.experiment.search.parameters) != 0.0};
   std::vector<std::unique_ptr<LayoutQuestion>> minimisers;

@@ -133,7 +133,7 @@ EvaluationRequest PopulationSearch::Request(const Individual& individual, std::u
 }
 
 bool PopulationSearch::WantsMetrics() const {
-  return objective_ != Objective::kFitness && FailingNeedsMetrics(FailingOf(setup_.experiment.scenario));
+  return objective_ != Objective::kFitness && FailingNeedsMetrics(FailingOf(setup_.experiment));
 }
 
 double PopulationSearch::FitnessOf(const EvaluationOutcome& outcome, const sim::Genome& obstacles) const {
@@ -145,7 +145,7 @@ double PopulationSearch::FitnessOf(const EvaluationOutcome& outcome, const sim::
     of_failure /= genome.genes * genome.length_max;
   }
   FailureTally tally;
-  for (const RunOutcome& run : outcome.runs) tally.Add(run, FailingOf(setup_.experiment.scenario));
+  for (const RunOutcome& run : outcome.runs) tally.Add(run, FailingOf(setup_.experiment));
   return (tally.passes + tally.failures * of_failure) / tally.runs();
 }
 

@@ -94,6 +94,8 @@ std::string SearchIdentity(const SearchSetup& setup) {
     for (const auto& [name, value] : parameters) identity += fmt::format("{}.{} = {}\n", table, name, value);
   };
   if (!experiment.plugin.empty()) identity += fmt::format("plugin = {}\n", experiment.plugin);
+  if (!experiment.scenario_plugin.empty())
+    identity += fmt::format("scenario_plugin = {}\n", experiment.scenario_plugin);
   if (!experiment.definition.empty()) identity += fmt::format("definition = {}\n", experiment.definition);
   add("scenario_parameters", experiment.scenario_parameters);
   add("controller_parameters", experiment.controller_parameters);

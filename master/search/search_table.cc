@@ -66,13 +66,13 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment
     return InvalidInput(fmt::format("search.algorithm = \"{}\" needs a list of test cases: use `gauntlet {}`",
                                     row.info.name, row.command));
   }
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment.scenario);
-  if (scenario == nullptr) {
+  if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
     return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};
-  }
   const sim::TestCase empty = EmptyArena(experiment.arena);
-  auto search =
-      row.make({experiment, scenario->requirements(experiment.scenario_parameters, empty), search_id, {}});
+  const Result<sim::ArenaRequirements> requirements =
+      controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed));
+  if (!requirements.ok()) return requirements.error();
+  auto search = row.make({experiment, *requirements, search_id, {}});
   if (!search.ok()) return search;
   // Without this every run of the search would be refused for the same reason.
   if (const Status fits = CheckSwarmFits(experiment, empty); !fits.ok()) {

@@ -35,8 +35,9 @@ DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_sha
   limits.audit_share = audit_share;
   for (const SearchPlan& plan : plans) {
     const Experiment& experiment = plan.experiment;
-    limits.cpu_limit_seconds = std::max(limits.cpu_limit_seconds,
-                                        CpuLimitSeconds(experiment.scenario, experiment.scenario_parameters));
+    limits.cpu_limit_seconds = std::max(
+        limits.cpu_limit_seconds,
+        CpuLimitSeconds(experiment.scenario, experiment.scenario_parameters, experiment.scenario_plugin));
   }
   return limits;
 }

@@ -53,10 +53,13 @@ Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
 }
 
 // The controller whose golden hash says whether a machine computes the experiment's runs as another does. Of
-// a plug-in, whose library is the same everywhere, it is the scenario's own.
+// a plug-in, whose library is the same everywhere, it is the scenario's own; where that is of a plug-in too,
+// any that is built in, for the arithmetic that all share.
 std::string GoldenControllerOf(const Experiment& experiment) {
   if (experiment.plugin.empty()) return experiment.controller;
-  return std::string(controllers::FindScenario(experiment.scenario)->default_controller);
+  if (experiment.scenario_plugin.empty())
+    return std::string(controllers::FindScenario(experiment.scenario)->default_controller);
+  return std::string(controllers::Controllers().front().name);
 }
 
 // Of the controllers that the searches use.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
@@ -33,7 +34,9 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   if (!spec) return spec.error();
   std::string command = fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
                                     context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
-  if (!spec->plugin.empty()) command += fmt::format(" --plugin ../../plugins/{}.so", spec->plugin);
+  for (const std::string& plugin : std::set{spec->plugin, spec->scenario_plugin}) {
+    if (!plugin.empty()) command += fmt::format(" --plugin ../../plugins/{}.so", plugin);
+  }
   const proto::GoldenHashes& known = context.campaign.golden_hashes;
   const auto golden = known.find(spec->controller);
   const std::string readme = fmt::format(

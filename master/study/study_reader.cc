@@ -45,8 +45,9 @@ class Reader {
     if (study_.parts.empty()) return InvalidInput(main_file + ": the study has no parts");
     if (Status whole = CheckAnalyses(); !whole) return whole.error();
     std::erase_if(study_.plugins, [this](const std::string& hash) {
-      return std::ranges::none_of(study_.parts,
-                                  [&](const StudyPart& part) { return part.experiment.plugin == hash; });
+      return std::ranges::none_of(study_.parts, [&](const StudyPart& part) {
+        return part.experiment.plugin == hash || part.experiment.scenario_plugin == hash;
+      });
     });
     if (!study_.changes.experiment.empty()) {
       const std::string& experiment = study_.parts.front().experiment.name;

@@ -14,6 +14,7 @@
 #include <pugixml.hpp>
 
 #include "controllers/registry.h"
+#include "controllers/run_start.h"
 #include "master/cases/case_file.h"
 #include "proto/case_json.h"
 
@@ -157,7 +158,7 @@ TEST_P(ArgosExport, PutsEveryRobotWhereTheRunHasIt) {
   EXPECT_EQ(read->notice, "");
   const std::vector<sim::Pose>& poses = read->test_case.start_poses;
   std::size_t tested = 0;
-  for (const controllers::StartingRobot& robot : start->robots) {
+  for (const sim::StartingRobot& robot : start->robots) {
     if (!robot.under_test) continue;
     ASSERT_LT(tested, poses.size());
     EXPECT_EQ(poses[tested].position, robot.pose.position);
@@ -206,7 +207,7 @@ RC_GTEST_PROP(ArgosExportProperty, IsReadBackToTheBit, ()) {
   }
   if (*rc::gen::arbitrary<bool>())
     written.spawn_area = sim::Rectangle{{number(-9, 0), -1.0}, {1.0, number(2, 9)}};
-  controllers::RunStart start;
+  sim::RunStart start;
   const int robots = *rc::gen::inRange(1, 5);
   for (int i = 0; i < robots; ++i) {
     start.robots.push_back({.pose = {{number(-9, 9), number(-9, 9)}, number(-3.14, 3.14)}});

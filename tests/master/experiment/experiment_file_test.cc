@@ -210,5 +210,56 @@ RC_GTEST_PROP(ExperimentFileTest, WhatIsWrittenReadsBackAsTheSame, ()) {
   RC_ASSERT(WriteExperiment(*read, {"header"}, ToyCatalogue()) == text);
 }
 
+// A plug-in as a master knows it.
+std::string KnowPatrol() {
+  static constexpr std::array kParameters =
+      std::to_array<controllers::ParameterInfo>({{"time_limit", "s", 10, 1, 60, false, "length of a run"}});
+  controllers::PluginInfo plugin{
+      .hash = std::string(64, 'd'), .file = "libpatrol.so", .description = "", .controllers = {}};
+  plugin.controllers = {{"guard", "patrol", "guards", kFastControllerParameters, nullptr}};
+  plugin.scenarios = {{.name = "patrol",
+                       .description = "go everywhere",
+                       .default_controller = "guard",
+                       .parameters = kParameters,
+                       .metrics = {}}};
+  EXPECT_TRUE(controllers::AddPlugin(plugin).ok());
+  return plugin.hash;
+}
+
+TEST(ExperimentFileTest, FindsScenarioAndControllerInAPlugin) {
+  Catalogue catalogue = ToyCatalogue();
+  catalogue.plugins = {KnowPatrol()};
+  const Result<Experiment> experiment = ParseExperiment(
+      "scenario = 'patrol'\n[scenario_parameters]\ntime_limit = 5\n", "toy.toml", {}, catalogue);
+  ASSERT_TRUE(experiment.ok()) << experiment.error().message;
+  EXPECT_EQ(experiment->scenario_plugin, catalogue.plugins.front());
+  EXPECT_EQ(experiment->controller, "guard");
+  EXPECT_EQ(experiment->plugin, catalogue.plugins.front());
+  EXPECT_THAT(experiment->scenario_parameters, ElementsAre(Pair("time_limit", 5.0)));
+
+  const std::string text = WriteExperiment(*experiment, {}, catalogue);
+  EXPECT_THAT(text, HasSubstr("\nscenario_plugin = \"dddd"));
+  const Result<Experiment> read = ParseToy(text);  // the file says in which library they are
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(WriteExperiment(*read, {}, catalogue), text);
+}
+
+TEST(ExperimentFileTest, NamesTheScenarioNearestToAPluginsAndTheLibraryThatIsNotHere) {
+  Catalogue catalogue = ToyCatalogue();
+  catalogue.plugins = {KnowPatrol()};
+  EXPECT_THAT(ParseExperiment("scenario = 'patrols'", "toy.toml", {}, catalogue).error().message,
+              HasSubstr("unknown scenario 'patrols'; did you mean 'patrol'?"));
+  EXPECT_THAT(ErrorOf("scenario = 'patrol'"), HasSubstr("unknown scenario 'patrol'"));
+  const std::string elsewhere = "scenario = 'patrol'\nscenario_plugin = '" + std::string(64, 'e') + "'";
+  EXPECT_THAT(ErrorOf(elsewhere), HasSubstr("toy.toml:2:1: scenario_plugin = \"eeee"));
+  EXPECT_THAT(ErrorOf("scenario = 'patrol'\nscenario_plugin = 'libpatrol.so'"),
+              HasSubstr("scenario_plugin = \"libpatrol.so\" is no SHA-256"));
+}
+
+TEST(ExperimentFileTest, SaysNothingOfAPluginWhereTheScenarioIsBuiltIn) {
+  EXPECT_THAT(WriteExperiment(ParseToy("scenario = 'marching'").value(), {}, ToyCatalogue()),
+              testing::Not(HasSubstr("plugin")));
+}
+
 }  // namespace
 }  // namespace gauntlet::master

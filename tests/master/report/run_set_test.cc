@@ -267,6 +267,16 @@ TEST(WhatDiffersTest, ControllersMayDifferAndNothingElse) {
   EXPECT_THAT(WhatDiffers(base, From(other, "1.0", 7)), ElementsAre(HasSubstr("scenario: ")));
 }
 
+TEST(WhatDiffersTest, ScenariosOfOneNameInTwoLibrariesAreToldApart) {
+  Experiment experiment = SmallExperiment({});
+  experiment.scenario_plugin = std::string(64, 'a');
+  const RunSet base = From(experiment, "1.0", 7);
+  EXPECT_THAT(WhatDiffers(base, base), ElementsAre());
+  experiment.scenario_plugin = std::string(64, 'b');
+  EXPECT_THAT(WhatDiffers(base, From(experiment, "1.0", 7)),
+              ElementsAre(HasSubstr("library of the scenario flocking: c-1.0 has aaaa")));
+}
+
 TEST(WhatDiffersTest, ScenariosThatFilesDefineAreToldApart) {
   const auto gathering = [](const std::vector<std::string>& sets) {
     return From(LoadExperiment("gathering", sets, BuiltInCatalogue()).value(), "1.0", 7);

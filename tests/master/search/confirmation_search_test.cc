@@ -127,11 +127,13 @@ TEST(FailureTallyTest, KeepsTheFourVerdictsApart) {
 }
 
 TEST(FailureTallyTest, ForagingFailsByItsSecondConditionAlone) {
+  Experiment foraging;
+  foraging.scenario = "foraging";
   FailureTally tally;
   tally.Add({.total_failure = true, .metrics = {{"condition_1", 1.0}, {"condition_2", 0.0}}},
-            FailingOf("foraging"));
+            FailingOf(foraging));
   tally.Add({.total_failure = true, .metrics = {{"condition_1", 1.0}, {"condition_2", 1.0}}},
-            FailingOf("foraging"));
+            FailingOf(foraging));
   EXPECT_EQ(tally.failures, 1);
   EXPECT_EQ(tally.passes, 1);
 }
