@@ -7,23 +7,13 @@
 #include <vector>
 
 #include "base/result.h"
+#include "proto/parameter_description.h"
+#include "proto/scenario_description.h"
 
 namespace gauntlet::proto {
 
 // The largest library that is taken.
 inline constexpr std::size_t kMaxPluginBytes = std::size_t{256} << 20;
-
-// As controllers::ParameterInfo.
-struct DescribedParameter {
-  std::string name;
-  std::string unit;
-  double default_value = 0.0;
-  double min = 0.0;
-  double max = 0.0;
-  bool integer = false;
-  std::string description;
-  bool operator==(const DescribedParameter&) const = default;
-};
 
 // As controllers::ControllerInfo.
 struct DescribedController {
@@ -36,11 +26,12 @@ struct DescribedController {
 
 struct PluginDescription {
   std::vector<DescribedController> controllers;
+  std::vector<DescribedScenario> scenarios = {};
   bool operator==(const PluginDescription&) const = default;
 };
 
-// What is wrong with it: no controllers, a name that is none or is given twice, a range that is none or that
-// the default is not in; kInvalidInput.
+// What is wrong with it: neither controllers nor scenarios, a name that is none or is given twice, a range
+// that is none or that the default is not in, or what CheckScenario says; kInvalidInput.
 Status CheckDescription(const PluginDescription& description);
 
 std::string WriteDescription(const PluginDescription& description);

@@ -1,7 +1,13 @@
-// What a plug-in exports: a shared library that brings controllers which this repository does not know.
+// What a plug-in exports: a shared library that brings controllers and scenarios which this repository does
+// not know.
 //
 //   std::vector<gauntlet::controllers::ControllerInfo> MyControllers();  // its rows
 //   GAUNTLET_PLUGIN(MyControllers)
+//
+// or, with scenarios, and nullptr where there are no controllers:
+//
+//   std::vector<gauntlet::controllers::ScenarioInfo> MyScenarios();
+//   GAUNTLET_SCENARIO_PLUGIN(MyControllers, MyScenarios)
 //
 // The classes and tables of the SDK are C++ and pass between the plug-in and the worker as they are, so both
 // must agree on their layout. What the two say about that, kPluginAbi and kPluginFingerprint, is data that a
@@ -17,12 +23,13 @@
 
 #include "controllers/behaviour.h"
 #include "sim/robot/controller.h"
+#include "sim/scenario.h"
 
 namespace gauntlet::sdk {
 
 // Changes whenever a header of the SDK changes what compiled code relies on and the sizes below do not tell:
 // a virtual function, the meaning of a member or of an enumeration's value.
-inline constexpr std::uint32_t kPluginAbi = 1;
+inline constexpr std::uint32_t kPluginAbi = 2;
 
 // The name of the exported symbol.
 inline constexpr const char* kPluginSymbol = "gauntlet_plugin";
@@ -40,9 +47,14 @@ class ConstantText {
   constexpr const char* c_str() const { return text_.data(); }
 
  private:
-  std::array<char, 256> text_{};  // ends with a zero: what does not fit does not compile
+  std::array<char, 512> text_{};  // ends with a zero: what does not fit does not compile
   std::size_t size_ = 0;
 };
+
+template <typename... Types>
+constexpr void AddSizes(ConstantText& text) {
+  (..., (text.Add(" "), text.Add(sizeof(Types))));
+}
 
 // What C++ code of this compiler, standard library and set of headers agrees on.
 inline constexpr ConstantText kPluginFingerprint = [] {
@@ -66,14 +78,14 @@ inline constexpr ConstantText kPluginFingerprint = [] {
   text.Add(" aligned ");
   text.Add(EIGEN_MAX_STATIC_ALIGN_BYTES);
   text.Add(" sizes");
-  for (const std::size_t size :
-       {sizeof(controllers::ControllerInfo), sizeof(controllers::ControllerContext),
-        sizeof(controllers::ControllerFactory), sizeof(controllers::ParameterInfo), sizeof(sim::ControlStep),
-        sizeof(sim::SensorReadings), sizeof(sim::Actuators), sizeof(sim::Blob), sizeof(sim::Message),
-        sizeof(sim::ScannerReading), sizeof(sim::RandomStream)}) {
-    text.Add(" ");
-    text.Add(size);
-  }
+  AddSizes<controllers::ControllerInfo, controllers::ControllerContext, controllers::ControllerFactory,
+           controllers::ParameterInfo, sim::ControlStep, sim::SensorReadings, sim::Actuators, sim::Blob,
+           sim::Message, sim::ScannerReading, sim::RandomStream, controllers::ScenarioInfo,
+           controllers::MetricInfo, controllers::FailureType, controllers::FailureKind,
+           controllers::DescriptorAxis, sim::RunStyle, sim::AnnotationStyle, sim::RunSpec, sim::TestCase,
+           sim::ObstacleGene, sim::ArenaRequirements, sim::Arena, sim::Observer, sim::RobotState,
+           sim::RobotSetup, sim::Light, sim::RadioBeacon, sim::GroundArea, sim::Interaction, sim::Grippers,
+           sim::Outcome, sim::Annotation>(text);
   return text;
 }();
 
@@ -81,14 +93,20 @@ inline constexpr ConstantText kPluginFingerprint = [] {
 struct Plugin {
   std::uint64_t abi;        // kPluginAbi
   const char* fingerprint;  // kPluginFingerprint, as the plug-in was compiled
-  // Its controllers; called once. What the rows refer to lives as long as the library is loaded.
+  // Its controllers and its scenarios, nullptr where it brings none; each is called once. What the rows refer
+  // to lives as long as the library is loaded.
   std::vector<controllers::ControllerInfo> (*controllers)();
+  std::vector<controllers::ScenarioInfo> (*scenarios)();
 };
 
 }  // namespace gauntlet::sdk
 
-// Once in a plug-in, outside any namespace. `controllers`: the function that returns its rows.
-#define GAUNTLET_PLUGIN(controllers)                                                             \
+// Once in a plug-in, outside any namespace. `controllers` and `scenarios`: the functions that return its
+// rows; nullptr: it brings none.
+#define GAUNTLET_SCENARIO_PLUGIN(controllers, scenarios)                                         \
   extern "C" __attribute__((visibility("default"))) const gauntlet::sdk::Plugin gauntlet_plugin; \
-  const gauntlet::sdk::Plugin gauntlet_plugin = {gauntlet::sdk::kPluginAbi,                      \
-                                                 gauntlet::sdk::kPluginFingerprint.c_str(), controllers};
+  const gauntlet::sdk::Plugin gauntlet_plugin = {                                                \
+      gauntlet::sdk::kPluginAbi, gauntlet::sdk::kPluginFingerprint.c_str(), controllers, scenarios};
+
+// The same of a plug-in that brings controllers alone.
+#define GAUNTLET_PLUGIN(controllers) GAUNTLET_SCENARIO_PLUGIN(controllers, nullptr)

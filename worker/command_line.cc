@@ -66,6 +66,7 @@ struct CommandLine {
   std::string directory;
   std::vector<std::string> golden;  // controllers
   std::string described_plugin;
+  std::string begun_spec;
 };
 
 // Options of a worker that serves a master.
@@ -110,9 +111,10 @@ void AddRunSpec(CLI::App& app, SpecOptions& line) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber)
       ->needs(spec);
-  app.add_option("--plugin", line.plugins.file, "With --run-spec: the plug-in that the spec names")
+  app.add_option("--plugin", line.plugins.files,
+                 "With --run-spec and --describe-beginning: a plug-in that the spec names; may be repeated")
       ->type_name("FILE")
-      ->needs(spec);
+      ->allow_extra_args(false);
   app.add_option("--scratch", line.plugins.scratch,
                  "With --run-spec: working directory of a plug-in's run, which keeps what it writes")
       ->type_name("DIR")
@@ -143,8 +145,18 @@ void AddOptions(CLI::App& app, CommandLine& line) {
                        ->type_name("FILE")
                        ->excludes(golden)
                        ->excludes(spec);
+  auto* beginning =
+      app.add_option("--describe-beginning", line.begun_spec,
+                     "Print how the run of one serialized RunSpec (\"-\": from stdin) begins and "
+                     "what it asks of its arena, as JSON, after loading its plug-ins in a process "
+                     "of its own")
+          ->type_name("FILE")
+          ->excludes(golden)
+          ->excludes(spec)
+          ->excludes(describe);
   quiet->excludes(golden);
-  for (CLI::Option* option : serving) option->excludes(golden)->excludes(spec)->excludes(describe);
+  for (CLI::Option* option : serving)
+    option->excludes(golden)->excludes(spec)->excludes(describe)->excludes(beginning);
 }
 
 int PrintGoldenHashes(const proto::GoldenHashes& hashes) {
@@ -170,7 +182,17 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
   if (app.count("--describe-plugin") > 0)
     return PrintDescription(line.described_plugin, functions.describe_plugin);
   line.spec.plugins.load = functions.load_plugin;
+  if (app.count("--describe-beginning") > 0) {
+    const Result<std::string> spec = ReadSpec(line.begun_spec);
+    if (spec) return PrintBeginning(*spec, line.spec.plugins, functions.describe_beginning);
+    fmt::print(stderr, "gauntlet-worker: {}\n", spec.error().message);
+    return kExitRefused;
+  }
   line.worker.plugins.load = functions.load_plugin;
+  if (app.count("--plugin") > 0 && app.count("--run-spec") == 0) {
+    fmt::print(stderr, "gauntlet-worker: --plugin is for --run-spec and --describe-beginning\n");
+    return kExitRefused;
+  }
   if (app.count("--run-spec") > 0) {
     line.spec.parent = line.worker.parent;
     line.spec.quiet = line.worker.quiet;

@@ -11,6 +11,7 @@ struct WorkerFunctions {
   GoldenHashFunction golden_hashes;
   LoadPluginFunction load_plugin = {};  // without: it is never given a plug-in, as the next
   DescribePluginFunction describe_plugin = {};
+  DescribeBeginningFunction describe_beginning = {};
 };
 
 // The exit code. To be called from main(), before any thread exists.

@@ -10,5 +10,6 @@ int main(int argc, char** argv) {
                                       {.run = worker::Run,
                                        .golden_hashes = worker::GoldenHashes,
                                        .load_plugin = worker::LoadPlugin,
-                                       .describe_plugin = worker::DescribePlugin});
+                                       .describe_plugin = worker::DescribePlugin,
+                                       .describe_beginning = worker::DescribeBeginning});
 }

@@ -4,9 +4,11 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "base/system/unique_fd.h"
+#include "sim/run_spec.h"
 
 namespace gauntlet::worker {
 
@@ -17,14 +19,14 @@ struct PluginFile {
   std::string hash;  // 64 hexadecimal digits
 };
 
-// Makes the controllers of a library known to the run function. Called in a process that is there for one
+// Makes what a library brings known to the run function. Called in a process that is there for one
 // run.
 using LoadPluginFunction = std::function<Status(const PluginFile& file)>;
 
 // Where a runner finds plug-ins, and what it does with them.
 struct PluginSettings {
-  std::string folder = "";   // holds HASH.so
-  std::string file = "";     // this library instead, if it has the hash
+  std::string folder = "";              // holds HASH.so
+  std::vector<std::string> files = {};  // these libraries instead, if one has the hash
   std::string scratch = "";  // working directory of a run, which stays; "": one that is removed after the run
   LoadPluginFunction load = nullptr;
 };
@@ -38,6 +40,8 @@ class PluginFiles {
   // What is loaded is what was hashed, whatever happens to the file later: it is copied into memory. Error:
   // there is no such file, it cannot be read, or its hash is another one.
   Result<PluginFile> Open(const std::string& hash);
+  // Those that bring the spec's controller and its scenario; none of what is built in. Error: as Open.
+  Result<std::vector<PluginFile>> Of(const sim::RunSpec& spec);
 
  private:
   struct Copy {

@@ -8,13 +8,16 @@
 #include <vector>
 
 #include "controllers/registry.h"
-#include "proto/plugin_description.h"
+#include "controllers/run_start.h"
+#include "proto/run_beginning.h"
 #include "sdk/plugin.h"
+#include "worker/plugin_rows.h"
 
 namespace gauntlet::worker {
 namespace {
 
 using controllers::ControllerInfo;
+using controllers::ScenarioInfo;
 
 Error Refusal(const std::string& file, const std::string& why) {
   return InvalidInput(fmt::format("the plug-in {}: {}", file, why));
@@ -52,40 +55,59 @@ Result<const sdk::Plugin*> Open(const PluginFile& file) {
   return plugin;
 }
 
-proto::DescribedController DescriptionOf(const ControllerInfo& row) {
-  proto::DescribedController controller = {.name = std::string(row.name),
-                                           .scenario = std::string(row.scenario),
-                                           .description = std::string(row.description),
-                                           .parameters = {}};
-  for (const controllers::ParameterInfo& info : row.parameters) {
-    controller.parameters.push_back({.name = std::string(info.name),
-                                     .unit = std::string(info.unit),
-                                     .default_value = info.default_value,
-                                     .min = info.min,
-                                     .max = info.max,
-                                     .integer = info.integer,
-                                     .description = std::string(info.description)});
-  }
-  return controller;
-}
-
 struct Loaded {
-  std::vector<ControllerInfo> rows;
+  std::vector<ControllerInfo> controllers;
+  std::vector<ScenarioInfo> scenarios;
   proto::PluginDescription description;
 };
+
+// What a master would have to ask for, or cannot do without.
+Status CheckScenarioRow(const ScenarioInfo& row) {
+  if (!row.create || !row.requirements) {
+    return InvalidInput(fmt::format("scenario '{}' has no {}: ScenarioRow(...) puts a whole row together",
+                                    row.name, row.create ? "requirements" : "create"));
+  }
+  if (row.passages || row.check_definition) {
+    return InvalidInput(
+        fmt::format("scenario '{}' has {}, which is for built-in scenarios alone: leave it out", row.name,
+                    row.passages ? "passages" : "check_definition"));
+  }
+  return Ok{};
+}
+
+// Obstacles are no business of what a scenario demands of its arenas: whatever case a master asks with, the
+// runs of the search have the same answer.
+void AskWithoutObstacles(ScenarioInfo& row) {
+  row.requirements = [asked = std::move(row.requirements)](const sim::Parameters& parameters,
+                                                           const sim::TestCase& test_case) {
+    sim::TestCase empty = test_case;
+    empty.obstacles.clear();
+    return asked(parameters, empty);
+  };
+}
 
 Result<Loaded> Load(const PluginFile& file) {
   const Result<const sdk::Plugin*> plugin = Open(file);
   if (!plugin) return plugin.error();
   Loaded loaded;
   try {
-    loaded.rows = (*plugin)->controllers();
+    if ((*plugin)->controllers != nullptr) loaded.controllers = (*plugin)->controllers();
   } catch (const std::exception& error) {
     return Refusal(file.name, fmt::format("its list of controllers throws: {}", error.what()));
   }
-  for (const ControllerInfo& row : loaded.rows) {
+  try {
+    if ((*plugin)->scenarios != nullptr) loaded.scenarios = (*plugin)->scenarios();
+  } catch (const std::exception& error) {
+    return Refusal(file.name, fmt::format("its list of scenarios throws: {}", error.what()));
+  }
+  for (const ControllerInfo& row : loaded.controllers) {
     loaded.description.controllers.push_back(DescriptionOf(row));
     if (!row.make) return Refusal(file.name, fmt::format("controller '{}' has no factory", row.name));
+  }
+  for (ScenarioInfo& row : loaded.scenarios) {
+    loaded.description.scenarios.push_back(DescriptionOf(row));
+    if (const Status right = CheckScenarioRow(row); !right) return Refusal(file.name, right.error().message);
+    AskWithoutObstacles(row);
   }
   if (const Status right = proto::CheckDescription(loaded.description); !right)
     return Refusal(file.name, right.error().message);
@@ -97,13 +119,25 @@ Result<Loaded> Load(const PluginFile& file) {
 Status LoadPlugin(const PluginFile& file) {
   Result<Loaded> loaded = Load(file);
   if (!loaded) return loaded.error();
-  return controllers::AddPlugin({file.hash, file.name, "", std::move(loaded->rows)});
+  return controllers::AddPlugin(
+      {file.hash, file.name, "", std::move(loaded->controllers), std::move(loaded->scenarios)});
 }
 
 Result<std::string> DescribePlugin(const PluginFile& file) {
   const Result<Loaded> loaded = Load(file);
   if (!loaded) return loaded.error();
   return proto::WriteDescription(loaded->description);
+}
+
+Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {
+  const Result<sim::RunBeginning> beginning = controllers::BeginningOf(spec);
+  if (!beginning) return beginning.error();
+  if (const Status right = proto::CheckBeginning(*beginning); !right) {
+    const controllers::PluginInfo* plugin = controllers::FindPlugin(spec.scenario_plugin);
+    return Refusal(plugin == nullptr ? "" : plugin->file,
+                   fmt::format("scenario '{}': {}", spec.scenario, right.error().message));
+  }
+  return proto::WriteBeginning(*beginning);
 }
 
 }  // namespace gauntlet::worker

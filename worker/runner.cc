@@ -100,8 +100,8 @@ class PluginRuns {
   PluginRuns(const PluginSettings& settings, const RunFunction& run) : files_(settings), run_(run) {}
 
   // The report of the run. Ends this process as that of the run when that one ended without a result.
-  std::string Execute(const RunnerJob& job, const std::string& plugin) {
-    PreparedProcess& process = ProcessOf(plugin);
+  std::string Execute(const RunnerJob& job, const sim::RunSpec& spec) {
+    PreparedProcess& process = ProcessOf(spec);
     const Result<SeparateOutcome> outcome =
         process.Call(EncodeJob(job), {.cpu_limit_seconds = job.cpu_limit_seconds,
                                       .memory_limit_bytes = kMemoryLimitWorks ? job.memory_limit_bytes : 0,
@@ -119,26 +119,31 @@ class PluginRuns {
   }
 
  private:
-  // The process that has loaded the plug-in and runs nothing.
-  PreparedProcess& ProcessOf(const std::string& plugin) {
-    const auto found = processes_.find(plugin);
+  using ControllersAndScenarios = std::pair<std::string, std::string>;
+
+  // The process that has loaded the spec's plug-ins and runs nothing.
+  PreparedProcess& ProcessOf(const sim::RunSpec& spec) {
+    const ControllersAndScenarios plugins(spec.plugin, spec.scenario_plugin);
+    const auto found = processes_.find(plugins);
     if (found != processes_.end()) return found->second;
-    const Result<PluginFile> file = files_.Open(plugin);
-    if (!file) EndWithoutPlugin(file.error());
-    const auto load = [this, file = *file] {
-      if (const Status loaded = files_.settings().load(file); !loaded) EndWithoutPlugin(loaded.error());
+    const Result<std::vector<PluginFile>> files = files_.Of(spec);
+    if (!files) EndWithoutPlugin(files.error());
+    const auto load = [this, files = *files] {
+      for (const PluginFile& file : files) {
+        if (const Status loaded = files_.settings().load(file); !loaded) EndWithoutPlugin(loaded.error());
+      }
     };
     const auto work = [this](const std::string& bytes) {
       const std::optional<RunnerJob> job = DecodeJob(bytes);
       GAUNTLET_CHECK(job.has_value(), "a job that does not decode");
       return EncodeReport(worker::Execute(*job, proto::DecodeRunSpec(job->spec), run_));
     };
-    return processes_.try_emplace(plugin, load, work).first->second;
+    return processes_.try_emplace(plugins, load, work).first->second;
   }
 
   PluginFiles files_;
   const RunFunction& run_;
-  std::map<std::string, PreparedProcess> processes_;  // by the plug-in's hash
+  std::map<ControllersAndScenarios, PreparedProcess> processes_;  // by the plug-ins' hashes
 };
 
 bool OnlyOthersSend(int signal) {
@@ -228,7 +233,8 @@ void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugins)
     limits.Set(*job, SecondsOf(CLOCK_PROCESS_CPUTIME_ID));
     const std::string report = CallOrEnd([&] {
       const Result<sim::RunSpec> spec = proto::DecodeRunSpec(job->spec);
-      if (spec.ok() && !spec->plugin.empty()) return plugin_runs.Execute(*job, spec->plugin);
+      const bool of_plugins = spec.ok() && !(spec->plugin.empty() && spec->scenario_plugin.empty());
+      if (of_plugins) return plugin_runs.Execute(*job, *spec);
       return EncodeReport(Execute(*job, spec, run));
     });
     if (!WriteFrame(pipe, report)) _exit(0);

@@ -116,13 +116,6 @@ std::uint64_t RandomId() {
   return std::uniform_int_distribution<std::uint64_t>(1)(device);
 }
 
-Result<std::string> ReadSpec(const std::string& file) {
-  const UniqueFd opened(file == "-" ? dup(STDIN_FILENO) : open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  const std::string place = file == "-" ? "stdin" : file;
-  if (!opened.valid()) return Error{ErrorKind::kIo, fmt::format("{}: {}", place, std::strerror(errno))};
-  return ReadAll(opened.get(), place, kMaxMessageBytes);
-}
-
 bool WriteToStdout(std::string_view bytes) {
   return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size() && std::fflush(stdout) == 0;
 }
@@ -237,6 +230,13 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
   return Supervise(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());
+}
+
+Result<std::string> ReadSpec(const std::string& file) {
+  const UniqueFd opened(file == "-" ? dup(STDIN_FILENO) : open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  const std::string place = file == "-" ? "stdin" : file;
+  if (!opened.valid()) return Error{ErrorKind::kIo, fmt::format("{}: {}", place, std::strerror(errno))};
+  return ReadAll(opened.get(), place, kMaxMessageBytes);
 }
 
 int RunOneSpec(const SpecOptions& options, const RunFunction& run) {

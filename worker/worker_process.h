@@ -55,6 +55,9 @@ struct SpecOptions {
   PluginSettings plugins = {};
 };
 
+// The bytes of a serialized RunSpec; "-": of stdin. Error: they cannot be read.
+Result<std::string> ReadSpec(const std::string& file);
+
 // Simulates one spec in a runner, under limits, and writes the serialized RunResult to stdout. A run that
 // ends its runner gives a result too, with the verdict and message of proto/README.md; what it printed goes
 // to stderr. Exit code 0 when a result was written, 2 when the spec could not be read or its plug-in cannot

@@ -119,9 +119,9 @@ std::string ExperimentsText() {
   return "Experiments (gauntlet evolve NAME)\n" + table.ToText();
 }
 
-std::string ScenariosText() {
-  std::string text = "Scenarios (--set scenario=NAME, --set scenario_parameters.PARAMETER=VALUE)\n";
-  for (const controllers::ScenarioInfo& scenario : controllers::Scenarios()) {
+std::string RowsText(std::span<const controllers::ScenarioInfo> rows) {
+  std::string text;
+  for (const controllers::ScenarioInfo& scenario : rows) {
     text +=
         "\n  " + Wrapped(fmt::format("{}: {}", scenario.name, scenario.description), kTextWidth, 4) + "\n";
     text += fmt::format("    controller unless another is named: {}\n\n", scenario.default_controller);
@@ -129,6 +129,11 @@ std::string ScenariosText() {
             FailureTable(scenario.failure_types);
   }
   return text;
+}
+
+std::string ScenariosText() {
+  return "Scenarios (--set scenario=NAME, --set scenario_parameters.PARAMETER=VALUE)\n" +
+         RowsText(controllers::Scenarios());
 }
 
 std::string RowsText(std::span<const controllers::ControllerInfo> rows) {
@@ -150,9 +155,16 @@ std::string ControllersText() {
 }
 
 std::string PluginText(const controllers::PluginInfo& plugin) {
-  return fmt::format("Controllers of {} (--plugin {} --set controller=NAME), SHA-256 {}\n", plugin.file,
-                     PastedPath(plugin.file), plugin.hash) +
-         RowsText(plugin.controllers);
+  std::string text;
+  const auto add = [&](std::string_view what, std::string_view key, const std::string& rows) {
+    if (rows.empty()) return;
+    text += fmt::format("{}{} of {} (--plugin {} --set {}=NAME), SHA-256 {}\n", text.empty() ? "" : "\n",
+                        what, plugin.file, PastedPath(plugin.file), key, plugin.hash) +
+            rows;
+  };
+  add("Scenarios", "scenario", RowsText(plugin.scenarios));
+  add("Controllers", "controller", RowsText(plugin.controllers));
+  return text;
 }
 
 std::string SearchesText() {
@@ -248,6 +260,7 @@ Json ControllerJson(const controllers::ControllerInfo& controller) {
 Json PluginJson(const controllers::PluginInfo& plugin) {
   return {{"file", plugin.file},
           {"sha256", plugin.hash},
+          {"scenarios", JsonOf(plugin.scenarios, ScenarioJson)},
           {"controllers", JsonOf(plugin.controllers, ControllerJson)}};
 }
 

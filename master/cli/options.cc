@@ -92,7 +92,8 @@ void AddExperimentOptions(CLI::App& command, ExperimentOptions& options) {
 
 void AddPluginOption(CLI::App& command, std::vector<std::string>& plugins) {
   AddValue(command, "--plugin", "LIB.so", plugins,
-           "a library of yours whose controllers may be named too, e.g. --set controller=mine; repeatable");
+           "a library of yours whose controllers and scenarios may be named too, e.g. --set controller=mine; "
+           "repeatable");
 }
 
 void AddSizeOptions(CLI::App& command, SizeOptions& options) {

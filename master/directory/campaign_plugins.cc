@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 
@@ -11,6 +12,7 @@
 #include "base/system/sha256.h"
 #include "controllers/registry.h"
 #include "master/directory/plugins.h"
+#include "proto/json_text.h"
 #include "proto/plugin_description.h"
 
 namespace gauntlet::master {
@@ -18,6 +20,7 @@ namespace {
 
 constexpr const char* kLibrary = ".so";
 constexpr const char* kDescription = ".json";
+constexpr const char* kBeginnings = ".beginnings.json";
 
 std::string PathOf(const std::string& folder, const std::string& hash, const char* ending) {
   return fmt::format("{}/{}{}", folder, hash, ending);
@@ -26,7 +29,8 @@ std::string PathOf(const std::string& folder, const std::string& hash, const cha
 // Without the empty one, which stands for no plug-in.
 std::set<std::string> PluginsOf(const std::vector<SearchPlan>& plans) {
   std::set<std::string> hashes;
-  for (const SearchPlan& plan : plans) hashes.insert(plan.experiment.plugin);
+  for (const SearchPlan& plan : plans)
+    hashes.insert({plan.experiment.plugin, plan.experiment.scenario_plugin});
   hashes.erase("");
   return hashes;
 }
@@ -40,6 +44,28 @@ Result<std::string> ReadPlugin(const std::string& path, const std::string& hash)
         "{} is another plug-in now: its SHA-256 is {}, the searches were begun with {}", path, found, hash));
   }
   return bytes;
+}
+
+// What the plug-in has answered to how runs begin: a campaign that is only looked at is not to load it for
+// what is known.
+Status KeepAnswers(const std::string& folder, const std::string& hash) {
+  const nlohmann::ordered_json answers = AnswersOf(hash);
+  if (answers.empty()) return Ok{};
+  return WriteFileAtomically(PathOf(folder, hash, kBeginnings), JsonText(answers), kReadableByAll);
+}
+
+// Without the file nothing is known; an answer that does not read back is asked for again.
+Status KnowAnswers(const std::string& path, const std::string& hash) {
+  std::error_code missing;
+  if (!std::filesystem::exists(path, missing)) return Ok{};
+  const Result<std::string> text = ReadRegularFile(path);
+  if (!text) return text.error();
+  const Result<nlohmann::json> answers = ParseJson(*text, path);
+  if (!answers) return answers.error();
+  for (const auto& [spec, answer] : answers->items()) {
+    if (IsSha256(spec) && answer.is_string()) AddAnswer(hash, spec, answer.get<std::string>());
+  }
+  return Ok{};
 }
 
 }  // namespace
@@ -56,6 +82,7 @@ Status KeepPlugins(const std::string& folder, const std::vector<SearchPlan>& pla
       if (Status kept = WriteFileAtomically(PathOf(folder, hash, ending), content, kReadableByAll); !kept)
         return kept;
     }
+    if (Status kept = KeepAnswers(folder, hash); !kept) return kept;
   }
   return Ok{};
 }
@@ -73,6 +100,7 @@ Status KnowPlugins(const std::string& folder) {
     const Status known =
         AddDescribedPlugin(hash, PathOf(folder, hash, kLibrary), *description, path.string());
     if (!known) return known;
+    if (Status answers = KnowAnswers(PathOf(folder, hash, kBeginnings), hash); !answers) return answers;
   }
   return Ok{};
 }

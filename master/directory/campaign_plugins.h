@@ -1,5 +1,6 @@
 // The plug-ins of a campaign: plugins/HASH.so, a copy of the library, from which its workers take it, and
 // plugins/HASH.json, what it brings, from which whoever reads the campaign knows it.
+// plugins/HASH.beginnings.json, where it brings the scenario, is what it has answered to how runs begin.
 #pragma once
 
 #include <string>

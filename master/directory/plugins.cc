@@ -2,56 +2,71 @@
 
 #include <fmt/format.h>
 
-#include <deque>
 #include <map>
-#include <memory>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include "base/system/atomic_file.h"
 #include "base/system/sha256.h"
 #include "controllers/registry.h"
+#include "master/directory/plugin_rows.h"
 #include "master/dispatch/worker_program.h"
 #include "proto/plugin_description.h"
+#include "proto/run_beginning.h"
+#include "proto/run_codec.h"
 
 namespace gauntlet::master {
 namespace {
 
-using controllers::ControllerContext;
-using controllers::ControllerFactory;
 using controllers::ControllerInfo;
-using controllers::ParameterInfo;
 
-// Stands where a runner has the plug-in's controller: a master only counts the robots of a swarm.
-class AbsentController : public sim::Controller {
+// Answers of plug-ins to how runs begin, by the plug-in and by the SHA-256 of the spec that was asked about.
+class Answers {
  public:
-  sim::DeviceSet Devices() const override { return {}; }
-  void Step(const sim::ControlStep&) override {}
+  std::optional<std::string> Find(const std::string& plugin, const std::string& spec) {
+    const std::lock_guard lock(mutex_);
+    const auto found = by_plugin_[plugin].find(spec);
+    return found == by_plugin_[plugin].end() ? std::nullopt : std::optional(found->second);
+  }
+  void Add(const std::string& plugin, const std::string& spec, std::string answer) {
+    const std::lock_guard lock(mutex_);
+    by_plugin_[plugin].insert_or_assign(spec, std::move(answer));
+  }
+  std::map<std::string, std::string> Of(const std::string& plugin) {
+    const std::lock_guard lock(mutex_);
+    return by_plugin_[plugin];
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::map<std::string, std::string>> by_plugin_;
 };
 
-ControllerFactory MakeAbsent(const sim::Parameters&) {
-  return {[](const ControllerContext&) { return std::make_unique<AbsentController>(); }};
+Answers& AllAnswers() {
+  static Answers answers;
+  return answers;
 }
 
-// A row and the texts that it refers to.
-struct DescribedRow {
-  proto::DescribedController text;
-  std::vector<ParameterInfo> parameters;
-};
+// Asks a process, once for each spec.
+Result<sim::RunBeginning> Begin(const sim::RunSpec& spec) {
+  const std::string key = Sha256(proto::EncodeRunSpec(spec));
+  const std::string& file = controllers::FindPlugin(spec.scenario_plugin)->file;
+  if (const auto known = AllAnswers().Find(spec.scenario_plugin, key))
+    return proto::ReadBeginning(*known, "the plug-in " + file);
+  const Result<std::string> answer = DescribeBeginning(spec);
+  if (!answer) return answer.error();
+  Result<sim::RunBeginning> beginning = proto::ReadBeginning(*answer, "the plug-in " + file);
+  if (beginning) AllAnswers().Add(spec.scenario_plugin, key, *answer);
+  return beginning;
+}
 
-// Rows are referred to as long as this process lives, and stay where they are.
-ControllerInfo RowOf(proto::DescribedController described) {
-  static std::deque<DescribedRow> rows;
-  DescribedRow& row = rows.emplace_back(std::move(described));
-  for (const proto::DescribedParameter& one : row.text.parameters) {
-    row.parameters.push_back({.name = one.name,
-                              .unit = one.unit,
-                              .default_value = one.default_value,
-                              .min = one.min,
-                              .max = one.max,
-                              .integer = one.integer,
-                              .description = one.description});
-  }
-  return {row.text.name, row.text.scenario, row.text.description, row.parameters, MakeAbsent};
+Error TakenTwice(const std::string& first, const std::string& second, std::string_view what,
+                 std::string_view name) {
+  return InvalidInput(
+      fmt::format("the plug-ins {} and {} both bring a {} '{}': give one of them "
+                  "another name, or leave one plug-in out",
+                  first, second, what, name));
 }
 
 }  // namespace
@@ -69,18 +84,19 @@ Result<std::string> AddPluginFile(const std::string& file) {
 
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files) {
   std::vector<std::string> hashes;
-  std::map<std::string_view, std::string> owners;  // of names, by file
+  std::map<std::string_view, std::string> owners;  // of controllers' names, by file
+  std::map<std::string_view, std::string> scenario_owners;
   for (const std::string& file : files) {
     Result<std::string> hash = AddPluginFile(file);
     if (!hash) return hash.error();
     if (std::ranges::count(hashes, *hash) > 0) continue;
     for (const ControllerInfo& controller : controllers::FindPlugin(*hash)->controllers) {
       const auto [owner, is_new] = owners.emplace(controller.name, file);
-      if (is_new) continue;
-      return InvalidInput(
-          fmt::format("the plug-ins {} and {} both bring a controller '{}': give one of them "
-                      "another name, or leave one plug-in out",
-                      owner->second, file, controller.name));
+      if (!is_new) return TakenTwice(owner->second, file, "controller", controller.name);
+    }
+    for (const controllers::ScenarioInfo& scenario : controllers::FindPlugin(*hash)->scenarios) {
+      const auto [owner, is_new] = scenario_owners.emplace(scenario.name, file);
+      if (!is_new) return TakenTwice(owner->second, file, "scenario", scenario.name);
     }
     hashes.push_back(*std::move(hash));
   }
@@ -95,7 +111,18 @@ Status AddDescribedPlugin(const std::string& hash, const std::string& file, cons
   controllers::PluginInfo plugin{.hash = hash, .file = file, .description = description, .controllers = {}};
   for (proto::DescribedController& controller : read->controllers)
     plugin.controllers.push_back(RowOf(std::move(controller)));
+  for (proto::DescribedScenario& scenario : read->scenarios)
+    plugin.scenarios.push_back(RowOf(std::move(scenario)));
+  if (!plugin.scenarios.empty()) plugin.begin = Begin;
   return controllers::AddPlugin(std::move(plugin));
+}
+
+std::map<std::string, std::string> AnswersOf(const std::string& hash) {
+  return AllAnswers().Of(hash);
+}
+
+void AddAnswer(const std::string& hash, const std::string& spec, std::string answer) {
+  AllAnswers().Add(hash, spec, std::move(answer));
 }
 
 }  // namespace gauntlet::master

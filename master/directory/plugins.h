@@ -1,7 +1,9 @@
 // The plug-ins that a master was told of. It loads none itself: it asks gauntlet-worker what a library
-// brings, and knows names, parameters and ranges from then on (controllers/registry.h).
+// brings, and knows names, parameters and ranges from then on (controllers/registry.h). How a run of a
+// plug-in's scenario begins it asks gauntlet-worker too, and remembers the answer.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,16 +11,22 @@
 
 namespace gauntlet::master {
 
-// Makes the library's controllers known; its SHA-256. Error: it cannot be read, or why gauntlet-worker
-// refuses it; a built-in controller has the name of one.
+// Makes the library's controllers and scenarios known; its SHA-256. Error: it cannot be read, or why
+// gauntlet-worker refuses it; what is built in has the name of one.
 Result<std::string> AddPluginFile(const std::string& file);
 
-// The same of several files, in their order. Error: also that two of them bring controllers of one name.
+// The same of several files, in their order. Error: also that two of them bring controllers, or
+// scenarios, of one name.
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files);
 
 // The same of a library that was described before: `description` as proto/plugin_description.h writes it,
 // which is called `place` in errors.
 Status AddDescribedPlugin(const std::string& hash, const std::string& file, const std::string& description,
                           const std::string& place);
+
+// What the plug-in has answered to how runs begin (proto/run_beginning.h), by the SHA-256 of the serialized
+// spec, so that it need not be asked again.
+std::map<std::string, std::string> AnswersOf(const std::string& hash);
+void AddAnswer(const std::string& hash, const std::string& spec, std::string answer);
 
 }  // namespace gauntlet::master

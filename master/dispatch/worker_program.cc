@@ -5,6 +5,7 @@
 #include <array>
 #include <csignal>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -50,15 +51,41 @@ Status CheckPluginIsOurs(const std::string& file) {
   return CheckOnlyWeWrite(path.parent_path(), std::array<std::string_view, 1>{name});
 }
 
+// Names the libraries that the run needs.
+Status AddPlugins(const sim::RunSpec& spec, std::vector<std::string>& arguments) {
+  for (const std::string& hash : std::set{spec.plugin, spec.scenario_plugin}) {
+    const auto* plugin = controllers::FindPlugin(hash);
+    if (plugin == nullptr) continue;
+    if (Status ours = CheckPluginIsOurs(plugin->file); !ours) return ours;
+    arguments.insert(arguments.end(), {"--plugin", plugin->file});
+  }
+  return Ok{};
+}
+
+// What gauntlet-worker prints with these arguments, which ask something of the library.
+Result<std::string> AskPlugin(std::vector<std::string> arguments, std::string_view input,
+                              const std::string& library) {
+  // The worker has limits of its own; this one is for a worker that is stuck.
+  const CallOptions options{.deadline = std::chrono::seconds(60)};
+  arguments.insert(arguments.begin(), WorkerProgramPath());
+  const Result<CallOutput> output = CallProcess(arguments, input, options);
+  if (!output) return output.error();
+  if (output->exit_code == 0) return output->out;
+  std::string_view why = output->err;
+  constexpr std::string_view kWho = "gauntlet-worker: ";
+  if (why.starts_with(kWho)) why.remove_prefix(kWho.size());
+  while (why.ends_with('\n')) why.remove_suffix(1);
+  return InvalidInput(why.empty() ? fmt::format("the plug-in {} gives no answer", library)
+                                  : std::string(why));
+}
+
 }  // namespace
 
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch) {
-  const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters));
+  const std::string cpu_limit =
+      fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters, spec.scenario_plugin));
   std::vector<std::string> arguments = {"--run-spec", "-", "--cpu-limit", cpu_limit, "--quiet"};
-  if (const auto* plugin = controllers::FindPlugin(spec.plugin); plugin != nullptr) {
-    if (const Status ours = CheckPluginIsOurs(plugin->file); !ours) return ours.error();
-    arguments.insert(arguments.end(), {"--plugin", plugin->file});
-  }
+  if (const Status added = AddPlugins(spec, arguments); !added) return added.error();
   if (!scratch.empty()) arguments.insert(arguments.end(), {"--scratch", scratch});
   Result<std::string> output = RunWorkerProgram(std::move(arguments), proto::EncodeRunSpec(spec));
   if (!output) return output.error();
@@ -67,18 +94,14 @@ Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::str
 
 Result<std::string> DescribePlugin(const std::string& file) {
   if (const Status ours = CheckPluginIsOurs(file); !ours) return ours.error();
-  // The worker has limits of its own; this one is for a worker that is stuck.
-  const CallOptions options{.deadline = std::chrono::seconds(60)};
-  const Result<CallOutput> output =
-      CallProcess({WorkerProgramPath(), "--describe-plugin", file}, {}, options);
-  if (!output) return output.error();
-  if (output->exit_code == 0) return output->out;
-  std::string_view why = output->err;
-  constexpr std::string_view kWho = "gauntlet-worker: ";
-  if (why.starts_with(kWho)) why.remove_prefix(kWho.size());
-  while (why.ends_with('\n')) why.remove_suffix(1);
-  return InvalidInput(why.empty() ? fmt::format("the plug-in {} cannot be described", file)
-                                  : std::string(why));
+  return AskPlugin({"--describe-plugin", file}, {}, file);
+}
+
+Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {
+  std::vector<std::string> arguments = {"--describe-beginning", "-"};
+  if (const Status added = AddPlugins(spec, arguments); !added) return added.error();
+  return AskPlugin(std::move(arguments), proto::EncodeRunSpec(spec),
+                   controllers::FindPlugin(spec.scenario_plugin)->file);
 }
 
 Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers) {

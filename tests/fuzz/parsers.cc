@@ -13,6 +13,8 @@
 #include "proto/access_file.h"
 #include "proto/case_json.h"
 #include "proto/message_codec.h"
+#include "proto/plugin_description.h"
+#include "proto/run_beginning.h"
 #include "proto/run_codec.h"
 
 namespace gauntlet::fuzz {
@@ -130,17 +132,38 @@ void ReadAccessFile(std::string_view bytes) {
   GAUNTLET_CHECK(!read->endpoints.empty(), "an access.json without an endpoint");
 }
 
+// What a library says of itself comes with a campaign.
+void ReadPlugin(std::string_view bytes) {
+  const Result<proto::PluginDescription> read = proto::ReadDescription(bytes, "plugin.json");
+  if (!read) return ExpectAGoodError(read);
+  const std::string written = proto::WriteDescription(*read);
+  const Result<proto::PluginDescription> again = proto::ReadDescription(written, "again.json");
+  GAUNTLET_CHECK(again.ok() && proto::WriteDescription(*again) == written,
+                 "a plug-in's description does not survive:\n" + written);
+}
+
+void ReadBeginning(std::string_view bytes) {
+  const Result<sim::RunBeginning> read = proto::ReadBeginning(bytes, "beginning.json");
+  if (!read) return ExpectAGoodError(read);
+  const std::string written = proto::WriteBeginning(*read);
+  const Result<sim::RunBeginning> again = proto::ReadBeginning(written, "again.json");
+  GAUNTLET_CHECK(again.ok() && proto::WriteBeginning(*again) == written,
+                 "the beginning of a run does not survive:\n" + written);
+}
+
 }  // namespace
 
 std::span<const Parser> Parsers() {
-  static const std::array<Parser, 8> parsers{{{"wire", ReadWire},
-                                              {"run", ReadRun},
-                                              {"case_json", ReadCaseJson},
-                                              {"corpus_case", ReadCorpusCase},
-                                              {"argos", ReadArgos},
-                                              {"experiment", ReadExperiment},
-                                              {"definition", ReadDefinition},
-                                              {"access", ReadAccessFile}}};
+  static const std::array<Parser, 10> parsers{{{"wire", ReadWire},
+                                               {"run", ReadRun},
+                                               {"case_json", ReadCaseJson},
+                                               {"corpus_case", ReadCorpusCase},
+                                               {"argos", ReadArgos},
+                                               {"experiment", ReadExperiment},
+                                               {"definition", ReadDefinition},
+                                               {"access", ReadAccessFile},
+                                               {"plugin", ReadPlugin},
+                                               {"beginning", ReadBeginning}}};
   return parsers;
 }
 
