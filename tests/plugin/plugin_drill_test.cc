@@ -45,6 +45,15 @@ TEST_F(PluginDrill, KilledMasterResumesToTheSameStateHash) {
   EXPECT_EQ(StateHash(scratch_ / "c"), StateHash(scratch_ / "undisturbed"));
 }
 
+TEST_F(PluginDrill, KilledMasterResumesWithAScenarioOfAPlugin) {
+  std::filesystem::copy_file(PluginPath("of_patrol"), scratch_ / "patrol.so");
+  campaign_.experiment = scratch_ / "patrol.toml";
+  std::ofstream(campaign_.experiment) << "scenario = 'my-patrol'\nplugins = ['patrol.so']\n";
+  ASSERT_EQ(Gauntlet(EvolveArguments(campaign_, scratch_ / "undisturbed", 2)).exit_code, 0);
+  EvolveThroughMasterKills(campaign_, scratch_ / "c", 2, 3, 1, std::chrono::milliseconds(900));
+  EXPECT_EQ(StateHash(scratch_ / "c"), StateHash(scratch_ / "undisturbed"));
+}
+
 TEST_F(PluginDrill, KilledWorkersAndRunnersDoNotChangeTheStateHash) {
   ASSERT_EQ(Gauntlet(EvolveArguments(campaign_, scratch_ / "undisturbed", 2)).exit_code, 0);
   EvolveThroughWorkerKills(campaign_, scratch_ / "c", 2, 6, 2, std::chrono::milliseconds(200));
