@@ -43,7 +43,7 @@ class MeasuredRunner {
     if (child == 0) {
       if (!worker::DieWithParent(parent)) _exit(0);
       pipe.first.Reset();
-      worker::RunnerMain(pipe.second.get(), worker::Run, {.file = library, .load = worker::LoadPlugin});
+      worker::RunnerMain(pipe.second.get(), worker::Run, {.files = {library}, .load = worker::LoadPlugin});
     }
     pipe_ = std::move(pipe.first);
   }
