@@ -117,7 +117,7 @@ TEST_F(BuildController, NamesWhatIsWrong) {
   ExpectRefusal({broken, "-o", library, "--argos", File("cut.argos", "<argos-configuration>")},
                 "cut.argos:1:");
   const std::string idle = File("idle.cpp", "int Idle() { return 1; }\n");
-  ExpectRefusal({idle, "-o", library}, "it brings no controller");
+  ExpectRefusal({idle, "-o", library}, "it brings neither a controller nor a scenario");
   ExpectRefusal({idle, "-o", library, "--sdk", folder_}, "the SDK is not there");
   ExpectRefusal({broken, "-o", library, "-I", folder_ / "absent"}, "there is no such folder");
 }
