@@ -48,15 +48,16 @@ Answers& AllAnswers() {
   return answers;
 }
 
-// Asks a process, once for each spec.
+// Asks a process, once for each spec; again when what was kept of its answer does not read back.
 Result<sim::RunBeginning> Begin(const sim::RunSpec& spec) {
   const std::string key = Sha256(proto::EncodeRunSpec(spec));
-  const std::string& file = controllers::FindPlugin(spec.scenario_plugin)->file;
-  if (const auto known = AllAnswers().Find(spec.scenario_plugin, key))
-    return proto::ReadBeginning(*known, "the plug-in " + file);
+  const std::string place = "the plug-in " + controllers::FindPlugin(spec.scenario_plugin)->file;
+  if (const auto known = AllAnswers().Find(spec.scenario_plugin, key)) {
+    if (Result<sim::RunBeginning> beginning = proto::ReadBeginning(*known, place)) return beginning;
+  }
   const Result<std::string> answer = DescribeBeginning(spec);
   if (!answer) return answer.error();
-  Result<sim::RunBeginning> beginning = proto::ReadBeginning(*answer, "the plug-in " + file);
+  Result<sim::RunBeginning> beginning = proto::ReadBeginning(*answer, place);
   if (beginning) AllAnswers().Add(spec.scenario_plugin, key, *answer);
   return beginning;
 }

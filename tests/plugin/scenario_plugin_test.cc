@@ -89,6 +89,19 @@ TEST_F(ScenarioPlugin, IsLookedAtButNotReplayedWhenOthersMayWriteItsLibrary) {
   EXPECT_THAT(result.err, HasSubstr("other users may write it"));
 }
 
+TEST_F(ScenarioPlugin, IsAskedAgainWhenItsAnswersAreGoneOrDoNotReadBack) {
+  ASSERT_EQ(Evolve(dir_, 2).exit_code, 0);
+  const std::string hash = StateHash(dir_);
+  const std::string answers =
+      dir_ + "/plugins/" + Sha256(ReadFile(PluginPath("of_patrol"))) + ".beginnings.json";
+  nlohmann::json damaged = nlohmann::json::parse(ReadFile(answers));
+  for (nlohmann::json& answer : damaged) answer = "{}";
+  std::ofstream(answers) << damaged;
+  EXPECT_EQ(StateHash(dir_), hash);
+  fs::remove(answers);
+  EXPECT_EQ(StateHash(dir_), hash);
+}
+
 TEST_F(ScenarioPlugin, TakesControllersThatAreBuiltInAndOfOtherPlugins) {
   for (const std::string controller : {"light-flocking", "chatty"}) {
     SCOPED_TRACE(controller);
