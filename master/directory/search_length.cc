@@ -9,6 +9,7 @@
 
 #include "base/check.h"
 #include "master/experiment/experiment_file.h"
+#include "master/search/search_setup.h"
 #include "master/search/search_table.h"
 
 namespace gauntlet::master {
@@ -78,6 +79,18 @@ Result<std::vector<SearchPlan>> WithLength(const std::vector<SearchPlan>& plans,
                                     own.back(), LengthKeyOf(plan), ToToml(before)));
   }
   return longer;
+}
+
+bool AreSameSearches(const std::vector<SearchPlan>& some, const std::vector<SearchPlan>& others) {
+  const auto course = [](const SearchPlan& plan) {
+    SearchSetup setup;
+    setup.experiment = plan.experiment;
+    return SearchIdentity(setup);
+  };
+  const auto same = [&](const SearchPlan& one, const SearchPlan& other) {
+    return one.settings == other.settings && course(one) == course(other);
+  };
+  return std::ranges::equal(some, others, same) && DescribeLengths(some, others).empty();
 }
 
 std::string DescribeLengths(const std::vector<SearchPlan>& before, const std::vector<SearchPlan>& after) {

@@ -16,6 +16,10 @@ namespace gauntlet::master {
 Result<std::vector<SearchPlan>> WithLength(const std::vector<SearchPlan>& plans,
                                            const std::vector<std::string>& sets);
 
+// Whether both are the same searches of the same length, their cases aside. Keys that a search does not read
+// may differ: those that came after a campaign was stored have their defaults.
+bool AreSameSearches(const std::vector<SearchPlan>& some, const std::vector<SearchPlan>& others);
+
 // "search.generations from 50 to 80"; "" when nothing differs.
 std::string DescribeLengths(const std::vector<SearchPlan>& before, const std::vector<SearchPlan>& after);
 

@@ -14,6 +14,7 @@
 #include "base/system/trusted_path.h"
 #include "controllers/registry.h"
 #include "master/directory/campaign_plugins.h"
+#include "master/directory/search_length.h"
 #include "master/report/campaign_summary.h"
 #include "master/report/case_set.h"
 #include "master/search/population_search.h"
@@ -259,7 +260,7 @@ Result<StageState> LookAtStage(const Study& study, const std::string& dir, Study
   if (!plans) return plans.error();
   std::vector<SearchPlan> expected = ExpectedPlans(study, stage);
   if (expected.size() == 1) expected.front().settings.clear();
-  if (WriteSearchPlans(*plans) != WriteSearchPlans(expected)) {
+  if (!AreSameSearches(*plans, expected)) {
     return InvalidInput(fmt::format(
         "{} was begun with other parts or settings than the study has now: name another --dir", campaign));
   }

@@ -50,6 +50,20 @@ TEST(SearchLengthTest, EverySearchOfASweepTakesTheKeyThatItGoesBy) {
   EXPECT_EQ(DescribeLengths(plans, *both), "search.cases from 7 to 8, search.generations from 5 to 9");
 }
 
+TEST(SearchLengthTest, SearchesAreTheSameWhateverStandsInKeysThatTheyDoNotRead) {
+  const std::vector<SearchPlan> plans = {PlanOf("one", {})};
+  const auto same = [&](const std::string& settings, const std::vector<std::string>& sets) {
+    return AreSameSearches(plans, {PlanOf(settings, sets)});
+  };
+  EXPECT_TRUE(same("one", {}));
+  EXPECT_TRUE(same("one", {"search.cases=7", "search.slots=5"}));
+  EXPECT_FALSE(same("two", {}));
+  EXPECT_FALSE(same("one", {"search.population=9"}));
+  EXPECT_FALSE(same("one", {"search.generations=9"}));
+  EXPECT_FALSE(same("one", {"scenario_parameters.time_limit=70"}));
+  EXPECT_FALSE(AreSameSearches(plans, {plans.front(), plans.front()}));
+}
+
 TEST(SearchLengthTest, WhatWouldMakeAnotherSearchIsRefused) {
   const std::vector<SearchPlan> genetic = {PlanOf("", {"search.generations=5"})};
   EXPECT_THAT(Refusal(genetic, {"search.generations=4"}),
