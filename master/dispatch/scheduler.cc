@@ -457,6 +457,7 @@ SchedulerOrders Scheduler::Decide(TimePoint now) {
   }
   for (const RunId run : std::exchange(unjudged_, {})) Judge(run);
   Assign();
+  MoveWaiting();
   AssignAudits();
   return std::exchange(orders_, {});
 }

@@ -8,8 +8,9 @@
 //   answered   its result was accepted and waits to be stored (Acknowledge)
 // so that no answer is ever refused for being late, and no run is finished twice.
 //
-// When no run waits, idle workers get a second lease of runs that take unusually long (copy_after), or of
-// finished runs that are to be audited; a finished run is remembered until its audit has been answered.
+// When the queue is empty, idle workers take over the leases that wait at others behind the run they are at,
+// and get a second lease of runs that take unusually long (copy_after), or of finished runs that are to be
+// audited; a finished run is remembered until its audit has been answered.
 //
 // No worker is believed alone while there are others. A run that failed goes to workers that have not failed
 // it, on other hosts first, and becomes a verdict when enough of those that have shown that they can work
@@ -128,6 +129,7 @@ class Scheduler {
   void Assign();
   void AssignAudits();
   void AssignCopies();
+  void MoveWaiting();
   bool Alone(InstanceId worker) const;  // there is no other worker
 
   // scheduler_verdicts.cc.

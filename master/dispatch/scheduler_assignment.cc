@@ -84,6 +84,35 @@ void Scheduler::Assign() {
   }
 }
 
+void Scheduler::MoveWaiting() {
+  // A shorter one has begun before the message arrives.
+  constexpr double kWorthMoving = 0.002;  // s
+  if (!leasing_ || !queue_.empty() || predicted_seconds_ < kWorthMoving) return;
+  while (!available_.empty() && available_.begin()->first == 0) {
+    std::optional<Place> first;
+    Fence moved = 0;
+    for (const auto& [id, worker] : workers_) {
+      // It works on them in the order in which it got them.
+      for (std::size_t i = worker.slots; i < worker.live.size(); ++i) {
+        const RunId run_id = leases_.at(worker.live[i]).run;
+        const Run& run = runs_.at(run_id);
+        if (run.finished || run.live != 1 || !run.attempts.empty() ||
+            (first && !(PlaceOf(run_id, run) < *first)))
+          continue;
+        first = PlaceOf(run_id, run);
+        moved = worker.live[i];
+      }
+    }
+    if (!first) return;
+    Lease& lease = leases_.at(moved);
+    const std::optional<InstanceId> idle = HelperFor(runs_.at(first->run), lease.worker);
+    if (!idle) return;
+    orders_.cancels.push_back({lease.worker, moved});
+    Loosen(moved, lease, LeaseState::kCancelled);
+    Grant(*idle, first->run);
+  }
+}
+
 bool Scheduler::Alone(InstanceId worker) const {
   return std::none_of(workers_.begin(), workers_.end(), [worker](const auto& other) {
     return other.first != worker && Standing(other.second);

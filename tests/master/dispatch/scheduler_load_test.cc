@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "tests/master/dispatch/scheduler_fixture.h"
 
@@ -75,6 +76,41 @@ TEST_F(SchedulerTest, WorkerWithManyShortRunsIsGivenMoreWhenHalfOfThemAreDone) {
   }
   scheduler_.Completed(10, leases[9].lease.fence, leases[9].lease.run_id, 111);
   EXPECT_THAT(Decide().leases, SizeIs(10));
+}
+
+// Two runs at worker 10 and two at worker 11, which then finishes both.
+TEST_F(SchedulerTest, AnIdleWorkerTakesOverWhatWaitsBehindAnothersRun) {
+  for (const double seconds : {0.0015, 0.02}) {
+    SCOPED_TRACE(seconds);
+    scheduler_ = Scheduler(LeaseOptions(2), kFirstFence);
+    for (int i = 0; i < 200; ++i) scheduler_.RunTook(seconds);
+    SubmitRuns(1, 4);
+    Join(10);
+    Join(11);
+    std::map<RunId, LeaseOrder> given;
+    for (const LeaseOrder& order : Decide().leases) given[order.lease.run_id] = order;
+    ASSERT_THAT(given, SizeIs(4));
+    const InstanceId busy = given[1].worker;
+    const InstanceId idle = given[2].worker;
+    ASSERT_EQ(given[3].worker, busy);
+    ASSERT_EQ(given[4].worker, idle);
+    scheduler_.Completed(idle, given[2].lease.fence, 2, 111);
+    EXPECT_THAT(Decide().leases, IsEmpty()) << "it has another run";
+    scheduler_.Completed(idle, given[4].lease.fence, 4, 111);
+    const SchedulerOrders orders = Decide();
+    if (seconds < 0.002) {
+      EXPECT_THAT(orders.leases, IsEmpty()) << "not worth a message";
+      continue;
+    }
+    ASSERT_THAT(RunsOf(orders), ElementsAre(3));
+    EXPECT_EQ(orders.leases[0].worker, idle);
+    EXPECT_THAT(FencesOf(orders.cancels), ElementsAre(given[3].lease.fence));
+    EXPECT_THAT(Decide().leases, IsEmpty()) << "run 1 has begun and stays";
+    // The one who had it was faster than the message: its answer counts, and the other's is a duplicate.
+    EXPECT_EQ(scheduler_.Completed(busy, given[3].lease.fence, 3, 111), Answer::kAccepted);
+    EXPECT_EQ(scheduler_.Completed(idle, orders.leases[0].lease.fence, 3, 111), Answer::kDuplicate);
+    EXPECT_EQ(scheduler_.Statistics().nondeterministic, 0U);
+  }
 }
 
 TEST_F(SchedulerTest, TheLongestRunsOfABatchGoFirstButNoBatchOvertakesAnother) {
