@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array kParameters = std::to_array<controllers::ParameterInfo>({
     {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: simulations in all"},
-    {"slots", "", 32, 1, 10000, true,
+    {"slots", "", 40, 1, 10000, true,
      "archive and random-deletion only: layouts under test at a time; workers it can keep busy"},
     {"keep_out", "m", 0, 0, 10, false,
      "archive and random-deletion only: no obstacle nearer than this to where the swarm starts and arrives"},
@@ -66,7 +66,8 @@ constexpr std::array<std::pair<std::ptrdiff_t, std::size_t>, 6> kFirstTried = {
 // To take the place of an elite of as many obstacles: of many that are tried some fail three times by luck.
 constexpr int kFailuresToShorten = 5;
 constexpr int kMaxRuns = 8;                   // of an elite; then it is known well enough
-constexpr double kReliable = 0.6;             // of its runs an elite has to fail
+constexpr double kReliable = 0.6;             // of its runs an elite has to be expected to fail
+constexpr double kBeyondDoubt = 0.8;          // with less it is run again before anything new begins
 constexpr std::ptrdiff_t kMostElsewhere = 1;  // failures of a layout outside its cell, when it is admitted
 constexpr std::ptrdiff_t kEnoughWithOneElsewhere = 5;
 constexpr std::uint32_t kMostAcross = 3;  // obstacles in a row across the way
@@ -79,10 +80,6 @@ Race Judge(const FailureTally& tally) {
   if (tally.failures == 0 || passes >= 2) return Race::kDrop;
   if ((tally.failures >= kFewestFailures && passes == 0) || tally.failures >= 4) return Race::kAdmit;
   return Race::kOpen;
-}
-
-double FailureShare(const FailureTally& tally) {
-  return static_cast<double>(tally.failures) / (tally.runs() + tally.errors);
 }
 
 }  // namespace
@@ -202,6 +199,9 @@ void ArchiveSearch::Told(const EvaluationOutcome& outcome) {
   waiting_.pop_front();
   --asked_;
   Slot& slot = slots_[index];
+  FailureTally told;
+  for (const RunOutcome& run : outcome.runs) told.Add(run, failing_);
+  prior_.Learn(slot.finding.tally, told);
   Count(outcome, slot.finding);
   ++accounts_[static_cast<std::size_t>(slot.emitter)].runs;
   Continue(slot);
@@ -259,7 +259,7 @@ Race ArchiveSearch::JudgePlace(const Finding& finding) const {
 }
 
 void ArchiveSearch::Rechecked(Slot& slot) {
-  if (FailureShare(slot.finding.tally) >= kReliable) archive_.Add(std::move(slot.finding));
+  if (prior_.Expected(slot.finding.tally) >= kReliable) archive_.Add(std::move(slot.finding));
   UpdatePopulation();
 }
 
@@ -289,6 +289,7 @@ bool ArchiveSearch::BeginPlanned(Slot& slot) {
 void ArchiveSearch::BeginAnew(Slot& slot) {
   slot.plan.clear();
   slot.root.reset();
+  if (!only_deletion_ && BeginRecheck(slot, kBeyondDoubt)) return;
   if (places_ && BeginMirrored(slot)) return;
   sim::RandomStream random(search_seed_, sim::StreamPurpose::kVariation,
                            static_cast<std::uint32_t>(evaluations_done_),
@@ -305,7 +306,7 @@ bool ArchiveSearch::BeginDrawn(Slot& slot, sim::RandomStream& random) {
   const double recheck = jittered + Get(e, kRecheckShare);
   if (draw < across) return BeginAcross(slot, random);
   if (draw >= recheck || archive_.shelves().empty()) return false;
-  return draw < jittered ? BeginJittered(slot, random) : BeginRecheck(slot);
+  return draw < jittered ? BeginJittered(slot, random) : BeginRecheck(slot, 1.0);
 }
 
 void ArchiveSearch::BeginRandom(Slot& slot, sim::RandomStream& random) {
@@ -402,16 +403,18 @@ bool ArchiveSearch::BeginJittered(Slot& slot, sim::RandomStream& random) {
   return false;
 }
 
-bool ArchiveSearch::BeginRecheck(Slot& slot) {
-  const Finding* least = nullptr;
+bool ArchiveSearch::BeginRecheck(Slot& slot, double below) {
+  const Finding* worst = nullptr;
+  double least = below;
   for (const std::vector<Finding>& shelf : std::views::values(archive_.shelves())) {
     const Finding& elite = shelf.front();
-    if (elite.tally.runs() < kMaxRuns && (least == nullptr || elite.tally.runs() < least->tally.runs())) {
-      least = &elite;
-    }
+    const double expected = prior_.Expected(elite.tally);
+    if (elite.tally.runs() >= kMaxRuns || expected >= least) continue;
+    least = expected;
+    worst = &elite;
   }
-  if (least == nullptr) return false;
-  slot.finding = archive_.Take(least->individual.id);
+  if (worst == nullptr) return false;
+  slot.finding = archive_.Take(worst->individual.id);
   slot.emitter = Emitter::kRecheck;
   ++accounts_[static_cast<std::size_t>(Emitter::kRecheck)].layouts;
   return true;

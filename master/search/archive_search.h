@@ -13,6 +13,7 @@
 
 #include "master/search/archive_emitters.h"
 #include "master/search/failure_archive.h"
+#include "master/search/failure_prior.h"
 #include "master/search/population_search.h"
 #include "master/search/search_table.h"
 
@@ -38,8 +39,9 @@ enum class Race { kOpen, kAdmit, kDrop };
 // when 3 of 3 or 4 of 5 runs fail. A layout that was admitted is followed by those with one obstacle less; a
 // random case that fails, by its obstacles nearest to where it failed: 1, 2, 3, 4 of them, and then itself.
 // When nothing follows, a slot goes on with a random case, obstacles across the way, an elite moved to
-// another cell, a changed elite, or one more run of an elite, which leaves the archive when less than 60 % of
-// its runs fail.
+// another cell, a changed elite, or one more run of an elite. Elites of which fewer than 80 % of further runs
+// are expected to fail (FailurePrior) are run again before anything new begins, and leave the archive when
+// fewer than 60 % are.
 //
 // As "random-deletion", the baseline, it knows nothing of cells: random cases alone, each run until it is
 // admitted or dropped and then shortened by one obstacle, the farthest from the way first, as long as what is
@@ -99,14 +101,15 @@ class ArchiveSearch : public PopulationSearch {
   bool BeginMirrored(Slot& slot);
   bool BeginAcross(Slot& slot, sim::RandomStream& random);
   bool BeginJittered(Slot& slot, sim::RandomStream& random);
-  bool BeginRecheck(Slot& slot);
+  // Of the elite that is expected to fail least, if that is less than `below`.
+  bool BeginRecheck(Slot& slot, double below);
   void PlanNearest(Slot& slot);
   void PlanWithout(Slot& slot, const Finding& found);
   // Whether it is worth knowing that a layout of this size fails in the cell.
   bool Matters(std::size_t cell, const LayoutSize& size) const;
-  // Whether a layout that fails often enough does so in one cell.
   // Whether it would take the place of an elite of as many obstacles.
   bool OnlyShortens(const Finding& finding) const;
+  // Whether a layout that fails often enough does so in one cell.
   Race JudgePlace(const Finding& finding) const;
   void Rechecked(Slot& slot);
   // The obstacles in the order in which they are probably needed.
@@ -124,6 +127,7 @@ class ArchiveSearch : public PopulationSearch {
   const Way way_;
   bool places_ = false;  // the axes are the coordinates of a place
   FailureArchive archive_;
+  FailurePrior prior_;
   std::vector<Slot> slots_;
   std::deque<std::size_t> waiting_;  // slots whose run is asked for or about to be, in order
   std::size_t asked_ = 0;            // of waiting_, from its front

@@ -93,6 +93,7 @@ void ArchiveSearch::SaveRest(CanonicalEncoder& encoder) const {
     encoder.Uint(account.layouts);
     encoder.Uint(account.elites);
   }
+  prior_.Save(encoder);
   encoder.Uint(archive_.shelves().size());
   for (const auto& [cell, shelf] : archive_.shelves()) {
     encoder.Uint(cell);
@@ -110,6 +111,7 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
     account.layouts = decoder.Uint();
     account.elites = decoder.Uint();
   }
+  prior_.Restore(decoder);
   FailureArchive::Shelves shelves;
   for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
     std::vector<Finding>& shelf = shelves[decoder.Uint()];
