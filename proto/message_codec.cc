@@ -44,6 +44,7 @@ struct ToWire {
     wire.set_epoch(welcome.epoch);
     wire.set_cpu_limit_seconds(welcome.cpu_limit_seconds);
     wire.set_memory_limit_bytes(welcome.memory_limit_bytes);
+    wire.set_without_ways(welcome.without_ways);
   }
   void operator()(const Refused& refused) const { envelope.mutable_refused()->set_reason(refused.reason); }
   void operator()(const Lease& lease) const {
@@ -102,7 +103,8 @@ Result<MasterMessage> FromWire(const v1::Welcome& wire) {
   return MasterMessage(Welcome{.heartbeat = std::chrono::milliseconds(wire.heartbeat_ms()),
                                .epoch = wire.epoch(),
                                .cpu_limit_seconds = wire.cpu_limit_seconds(),
-                               .memory_limit_bytes = wire.memory_limit_bytes()});
+                               .memory_limit_bytes = wire.memory_limit_bytes(),
+                               .without_ways = wire.without_ways()});
 }
 
 Hello FromWire(v1::Hello& wire) {

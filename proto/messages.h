@@ -52,6 +52,7 @@ struct Welcome {
   std::uint64_t epoch = 0;               // number of the master's start
   double cpu_limit_seconds = 0.0;        // CPU time of one run; 0 = no limit
   std::uint64_t memory_limit_bytes = 0;  // address space of one runner; 0 = no limit
+  bool without_ways = false;             // results may be those of EncodeWithoutWays (run_codec.h)
 };
 
 struct Refused {

@@ -320,7 +320,12 @@ Status TrajectoryFromProto(const v1::Trajectory& message, sim::RunResult& result
 
 enum class Ways { kLeaveOut, kInclude };
 
-// Without the trajectory; waypoints and annotations as asked for.
+bool HasWays(const sim::RunResult& result) {
+  return !result.annotations.empty() ||
+         std::ranges::any_of(result.robots, [](const auto& robot) { return !robot.waypoints.empty(); });
+}
+
+// Without the trajectory; waypoints and annotations as asked for, if they are there.
 void ToProto(const sim::RunResult& result, Ways ways, v1::RunResult& wire) {
   wire.set_verdict(static_cast<v1::Verdict>(result.verdict));
   wire.set_message(Utf8(result.message));
@@ -355,10 +360,22 @@ void ToProto(const sim::RunResult& result, Ways ways, v1::RunResult& wire) {
   wire.set_trajectory_hash(result.trajectory_hash);
   wire.set_hash(result.hash);
   wire.set_cpu_seconds(result.cpu_seconds);
+  if (!result.without_ways && (ways == Ways::kInclude || !HasWays(result))) return;
+  wire.set_without_ways(true);
+  wire.set_hash_without_ways(result.hash_without_ways);
 }
 
-// `ways`: kLeaveOut takes a result without its waypoints and annotations too, whose hash cannot be checked.
-Result<sim::RunResult> Decode(std::string_view bytes, Ways ways) {
+enum class Trust { kGuarded, kAnyone };
+
+// Whether the content is that of the result's hashes.
+Status CheckHash(const sim::RunResult& result) {
+  const std::uint64_t said = result.without_ways ? result.hash_without_ways : result.hash;
+  const std::uint64_t hash = result.without_ways ? sim::HashWithoutWays(result) : sim::HashOf(result);
+  if (hash == said) return Ok{};
+  return Corrupt(fmt::format("the run result's hash is {:016x}, its content's hash is {:016x}", said, hash));
+}
+
+Result<sim::RunResult> Decode(std::string_view bytes, Trust trust) {
   const google::protobuf::LogSilencer silencer;  // the error says enough
   v1::RunResult message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
@@ -405,11 +422,12 @@ Result<sim::RunResult> Decode(std::string_view bytes, Ways ways) {
     if (Status read = TrajectoryFromProto(message.trajectory(), result); !read) return read.error();
   }
   result.cpu_seconds = message.cpu_seconds();
-  if (ways == Ways::kLeaveOut && message.without_ways()) return result;
-  if (const std::uint64_t hash = sim::HashOf(result); hash != result.hash) {
-    return Corrupt(
-        fmt::format("the run result's hash is {:016x}, its content's hash is {:016x}", result.hash, hash));
-  }
+  result.without_ways = message.without_ways();
+  result.hash_without_ways = message.hash_without_ways();
+  if (result.without_ways && HasWays(result))
+    return Corrupt("the run result has ways that it is said to be without");
+  if (trust == Trust::kGuarded && result.without_ways) return result;
+  if (const Status right = CheckHash(result); !right) return right.error();
   return result;
 }
 
@@ -475,20 +493,16 @@ std::string EncodeRunResult(const sim::RunResult& result, TrajectoryEncoding tra
 }
 
 std::string EncodeWithoutWays(const sim::RunResult& result) {
-  const bool has_ways =
-      !result.annotations.empty() ||
-      std::ranges::any_of(result.robots, [](const auto& robot) { return !robot.waypoints.empty(); });
   v1::RunResult wire;
   ToProto(result, Ways::kLeaveOut, wire);
-  if (has_ways) wire.set_without_ways(true);
   return wire.SerializeAsString();
 }
 
 Result<sim::RunResult> DecodeRunResult(std::string_view bytes) {
-  return Decode(bytes, Ways::kInclude);
+  return Decode(bytes, Trust::kAnyone);
 }
 
 Result<sim::RunResult> DecodeStoredResult(std::string_view bytes) {
-  return Decode(bytes, Ways::kLeaveOut);
+  return Decode(bytes, Trust::kGuarded);
 }
 }  // namespace gauntlet::proto

@@ -50,16 +50,15 @@ enum class TrajectoryEncoding { kLeaveOut, kInclude };
 std::string EncodeRunResult(const sim::RunResult& result,
                             TrajectoryEncoding trajectory = TrajectoryEncoding::kInclude);
 
-// Error (kCorrupt): not a RunResult, or its hash is not that of its content.
-Result<sim::RunResult> DecodeRunResult(std::string_view bytes);
-
-// For the store: without the robots' waypoints and the annotations, which are most of the bytes and which a
-// replay gives back bit for bit. The hash stays that of the whole result.
+// Without the robots' waypoints and the annotations, which are most of the bytes and which a replay gives
+// back bit for bit. The hash stays that of the whole result; what is left has one of its own.
 std::string EncodeWithoutWays(const sim::RunResult& result);
 
-// Reads what EncodeWithoutWays or EncodeRunResult wrote. Errors: those of DecodeRunResult; but the hash of a
-// result whose ways were left out cannot be held against its content: the store guards its bytes by a
-// checksum.
+// What either of them wrote. Error (kCorrupt): not a RunResult, or its hash is not that of its content.
+Result<sim::RunResult> DecodeRunResult(std::string_view bytes);
+
+// The same for bytes from the store, which guards them by a checksum: of a result without ways no hash is
+// held against its content.
 Result<sim::RunResult> DecodeStoredResult(std::string_view bytes);
 
 }  // namespace gauntlet::proto

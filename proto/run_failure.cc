@@ -29,7 +29,7 @@ sim::RunResult ResultOf(const RunnerFailure& failure) {
                    : failure.kind == FailureKind::kOutOfMemory ? sim::Verdict::kOutOfMemory
                                                                : sim::Verdict::kCrashed;
   result.message = Describe(failure);
-  result.hash = sim::HashOf(result);
+  sim::SetHashes(result);
   return result;
 }
 

@@ -20,12 +20,12 @@ void Encode(const std::vector<Vec2>& points, CanonicalEncoder& encoder) {
   for (const Vec2& point : points) Encode(point, encoder);
 }
 
-void Encode(const RobotSummary& robot, CanonicalEncoder& encoder) {
+void Encode(const RobotSummary& robot, bool with_ways, CanonicalEncoder& encoder) {
   Encode(robot.start, encoder);
   Encode(robot.end, encoder);
   encoder.Double(robot.path_length);
   encoder.Bool(robot.lost);
-  Encode(robot.waypoints, encoder);
+  if (with_ways) Encode(robot.waypoints, encoder);
 }
 
 void Encode(const Annotation& annotation, CanonicalEncoder& encoder) {
@@ -38,9 +38,7 @@ void Encode(const Annotation& annotation, CanonicalEncoder& encoder) {
   for (const RobotIndex robot : annotation.robots) encoder.Int(robot);
 }
 
-}  // namespace
-
-std::uint64_t HashOf(const RunResult& result) {
+std::uint64_t Hash(const RunResult& result, bool with_ways) {
   CanonicalEncoder encoder;
   encoder.Int(static_cast<int>(result.verdict));
   encoder.String(result.message);
@@ -55,14 +53,32 @@ std::uint64_t HashOf(const RunResult& result) {
   encoder.String(result.failure.label);
   encoder.Int(result.ticks);
   encoder.Uint(result.robots.size());
-  for (const RobotSummary& robot : result.robots) Encode(robot, encoder);
-  encoder.Uint(result.annotations.size());
-  for (const Annotation& annotation : result.annotations) Encode(annotation, encoder);
+  for (const RobotSummary& robot : result.robots) Encode(robot, with_ways, encoder);
+  if (with_ways) {
+    encoder.Uint(result.annotations.size());
+    for (const Annotation& annotation : result.annotations) Encode(annotation, encoder);
+  }
   encoder.Uint(result.trajectory_hash);
+  if (!with_ways) encoder.Uint(result.hash);
 
   Fnv1a64 hash;
   hash.AddBytes(encoder.bytes());
   return hash.value();
+}
+
+}  // namespace
+
+std::uint64_t HashOf(const RunResult& result) {
+  return Hash(result, /*with_ways=*/true);
+}
+
+std::uint64_t HashWithoutWays(const RunResult& result) {
+  return Hash(result, /*with_ways=*/false);
+}
+
+void SetHashes(RunResult& result) {
+  result.hash = HashOf(result);
+  result.hash_without_ways = HashWithoutWays(result);
 }
 
 }  // namespace gauntlet::sim

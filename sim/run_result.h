@@ -64,11 +64,17 @@ struct RunResult {
   std::uint64_t hash = 0;             // HashOf(*this)
 
   // Not part of the hash:
+  bool without_ways = false;  // the robots' waypoints and the annotations are not here; the hash covers them
+  std::uint64_t hash_without_ways = 0;              // HashWithoutWays(*this); 0: nobody has computed it
   std::vector<std::vector<RobotState>> trajectory;  // [tick][robot], only when record_trajectory
   double cpu_seconds = 0.0;                         // user CPU of the simulation, filled by whoever measures
 };
 
 // Hash of the canonical encoding of all fields above the "not part of the hash" line but `hash` itself.
 std::uint64_t HashOf(const RunResult& result);
+// The same of all but the waypoints and annotations, and of `hash`, which tells them.
+std::uint64_t HashWithoutWays(const RunResult& result);
+// Sets both.
+void SetHashes(RunResult& result);
 
 }  // namespace gauntlet::sim

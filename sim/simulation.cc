@@ -21,7 +21,7 @@ RunResult Refusal(std::string message) {
   RunResult result;
   result.verdict = Verdict::kRefused;
   result.message = std::move(message);
-  result.hash = HashOf(result);
+  SetHashes(result);
   return result;
 }
 
@@ -361,7 +361,7 @@ RunResult Simulate(Scenario& scenario, std::uint64_t seed, bool record_trajector
   result.ticks = observer.last_tick();
   result.robots = Summarize(observer, outcome.lost);
   result.trajectory_hash = loop.trajectory_hash();
-  result.hash = HashOf(result);
+  SetHashes(result);
   if (record_trajectory) result.trajectory = TrajectoryOf(observer);
   return result;
 }

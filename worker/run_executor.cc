@@ -11,7 +11,7 @@ sim::RunResult Run(const sim::RunSpec& spec) {
     sim::RunResult refused;
     refused.verdict = sim::Verdict::kRefused;
     refused.message = scenario.error().message;
-    refused.hash = sim::HashOf(refused);
+    sim::SetHashes(refused);
     return refused;
   }
   return sim::Simulate(*scenario.value(), spec.seed, spec.record_trajectory,

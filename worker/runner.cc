@@ -67,7 +67,7 @@ sim::RunResult Refuse(const Error& error) {
   sim::RunResult refused;
   refused.verdict = sim::Verdict::kRefused;
   refused.message = "spec: " + error.message;
-  refused.hash = sim::HashOf(refused);
+  sim::SetHashes(refused);
   return refused;
 }
 
@@ -78,8 +78,10 @@ RunnerReport Execute(const RunnerJob& job, const Result<sim::RunSpec>& spec, con
   report.cpu_seconds = SecondsOf(CLOCK_THREAD_CPUTIME_ID) - start;
   result.cpu_seconds = report.cpu_seconds;
   const bool record = spec.ok() && spec->record_trajectory;
-  report.result = proto::EncodeRunResult(
-      result, record ? proto::TrajectoryEncoding::kInclude : proto::TrajectoryEncoding::kLeaveOut);
+  report.result = job.without_ways && !record
+                      ? proto::EncodeWithoutWays(result)
+                      : proto::EncodeRunResult(result, record ? proto::TrajectoryEncoding::kInclude
+                                                              : proto::TrajectoryEncoding::kLeaveOut);
   if (job.max_result_bytes > 0 && report.result.size() > job.max_result_bytes) {
     report.result = proto::EncodeRunResult(result, proto::TrajectoryEncoding::kLeaveOut);
   }
@@ -160,6 +162,7 @@ std::string EncodeJob(const RunnerJob& job) {
   encoder.Double(job.cpu_limit_seconds);
   encoder.Uint(job.memory_limit_bytes);
   encoder.Uint(job.max_result_bytes);
+  encoder.Bool(job.without_ways);
   encoder.String(job.spec);
   return encoder.Take();
 }
@@ -170,6 +173,7 @@ std::optional<RunnerJob> DecodeJob(std::string_view bytes) {
   job.cpu_limit_seconds = decoder.Double();
   job.memory_limit_bytes = decoder.Uint();
   job.max_result_bytes = decoder.Uint();
+  job.without_ways = decoder.Bool();
   job.spec = decoder.String();
   if (!decoder.ok() || !decoder.AtEnd()) return std::nullopt;
   return job;

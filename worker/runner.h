@@ -38,6 +38,7 @@ struct RunnerJob {
   double cpu_limit_seconds = 0.0;        // 0 = no limit; rounded up to the next whole second of the process
   std::uint64_t memory_limit_bytes = 0;  // address space; 0 = no limit
   std::uint64_t max_result_bytes = 0;    // a larger result is sent without its trajectory; 0 = no limit
+  bool without_ways = false;             // nobody wants them (proto::EncodeWithoutWays)
 };
 
 // Runner -> supervisor.

@@ -351,7 +351,8 @@ void WorkerState::StartNext(std::size_t index) {
                {.spec = slot.runs.back().lease.spec,
                 .cpu_limit_seconds = welcome_.cpu_limit_seconds,
                 .memory_limit_bytes = welcome_.memory_limit_bytes,
-                .max_result_bytes = kMaxResultBytes}});
+                .max_result_bytes = kMaxResultBytes,
+                .without_ways = welcome_.without_ways}});
 }
 
 void WorkerState::StartWaitingRuns() {

@@ -31,6 +31,8 @@ struct DispatchOptions {
   // long runs (run_limits.h).
   double cpu_limit_seconds = 60.0;
   std::uint64_t memory_limit_bytes = 2ULL << 30;  // address space of one runner; 0 = no limit
+  // Workers leave out the robots' waypoints and the annotations, which are most of a result's bytes.
+  bool without_ways = false;
   // How long a vanished worker is remembered: its late results are still taken. Longer than the time for
   // which workers look for a lost master (10 min).
   std::chrono::milliseconds forget_after{15 * 60 * 1000};

@@ -220,9 +220,9 @@ void RemoteBackend::OnHello(const PeerId& peer, const proto::Hello& hello, TimeP
   const WorkerConnections::Arrival arrival = workers_.Accept(peer, hello);
   // What was leased since a repeated hello is on its way, not lost.
   const bool repeated = arrival == WorkerConnections::Arrival::kRepeated;
-  transport_.Send(peer, proto::EncodeMasterMessage(proto::Welcome{options_.heartbeat, identity_.epoch,
-                                                                  options_.cpu_limit_seconds,
-                                                                  options_.memory_limit_bytes}));
+  transport_.Send(peer, proto::EncodeMasterMessage(
+                            proto::Welcome{options_.heartbeat, identity_.epoch, options_.cpu_limit_seconds,
+                                           options_.memory_limit_bytes, options_.without_ways}));
   if (!repeated || !scheduler_.WorkerHeartbeat(hello.instance_id, hello.held_leases, now)) {
     scheduler_.WorkerJoined(hello.instance_id, hello.slots, hello.held_leases, now, hello.process.host);
   }
@@ -246,6 +246,10 @@ void RemoteBackend::OnResult(InstanceId worker, proto::LeaseResult message) {
   Result<sim::RunResult> result = proto::DecodeRunResult(message.result);
   if (!result) {
     OnUnreadable(worker, message, result.error().message);
+    return;
+  }
+  if (result->without_ways && !options_.without_ways) {
+    OnUnreadable(worker, message, "its waypoints and annotations are left out");
     return;
   }
   const Answer answer = scheduler_.Completed(worker, message.fence, message.run_id, result->hash);

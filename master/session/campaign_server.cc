@@ -33,6 +33,8 @@ constexpr std::chrono::milliseconds kStatusEvery{1000};
 DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_share) {
   DispatchOptions limits;
   limits.audit_share = audit_share;
+  limits.without_ways =
+      std::ranges::none_of(plans, [](const SearchPlan& plan) { return plan.experiment.store.trajectories; });
   for (const SearchPlan& plan : plans) {
     const Experiment& experiment = plan.experiment;
     limits.cpu_limit_seconds = std::max(

@@ -94,7 +94,7 @@ proto::LeaseResult ScriptedWorker::Answer(const proto::Lease& lease) {
 proto::LeaseResult ScriptedWorker::WrongAnswer(const proto::Lease& lease) {
   sim::RunResult result = Simulate(lease);
   result.fitness += 1e-9;
-  result.hash = sim::HashOf(result);
+  sim::SetHashes(result);
   return ToMessage(lease, result);
 }
 

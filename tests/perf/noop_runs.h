@@ -15,7 +15,7 @@ inline const proto::GoldenHashes kNoopGoldenHashes = {{"flocking", 0x6e6f6f70}};
 inline sim::RunResult NoopResult(std::uint64_t seed) {
   sim::RunResult result;
   result.fitness = static_cast<double>(seed % 1000) / 1000.0;
-  result.hash = sim::HashOf(result);
+  sim::SetHashes(result);
   return result;
 }
 

@@ -82,9 +82,11 @@ TEST(MessageCodecTest, DecodesWhatMastersSend) {
 
   envelope.mutable_welcome()->set_heartbeat_ms(250);
   envelope.mutable_welcome()->set_memory_limit_bytes(1 << 20);
+  envelope.mutable_welcome()->set_without_ways(true);
   const auto welcome = DecodeMasterMessage(envelope.SerializeAsString());
   ASSERT_TRUE(welcome.ok());
   EXPECT_EQ(std::get<Welcome>(*welcome).heartbeat, std::chrono::milliseconds(250));
+  EXPECT_TRUE(std::get<Welcome>(*welcome).without_ways);
 
   envelope.mutable_acknowledge()->add_fences(8);
   EXPECT_THAT(std::get<Acknowledge>(*DecodeMasterMessage(envelope.SerializeAsString())).fences,

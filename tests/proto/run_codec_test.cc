@@ -125,7 +125,7 @@ TEST(RunCodecTest, ARefusedRunMayHaveATrajectoryOfNoRobots) {
   sim::RunResult refused;
   refused.verdict = sim::Verdict::kRefused;
   refused.message = "no-room-to-spawn: 3 of 100 robots placed";
-  refused.hash = sim::HashOf(refused);
+  sim::SetHashes(refused);
   const std::string empty_trajectory("\x5a\x00", 2);  // field 11, no bytes
   const Result<sim::RunResult> decoded = DecodeRunResult(EncodeRunResult(refused) + empty_trajectory);
   ASSERT_TRUE(decoded.ok()) << decoded.error().message;
@@ -133,26 +133,39 @@ TEST(RunCodecTest, ARefusedRunMayHaveATrajectoryOfNoRobots) {
   EXPECT_TRUE(decoded->trajectory.empty());
 }
 
-TEST(RunCodecTest, AStoredResultMayLackItsWaysButNeverAWorkersAnswer) {
+TEST(RunCodecTest, AResultMayLackItsWays) {
   const sim::RunResult result = SampleResult(0.5);
   const std::string bytes = EncodeWithoutWays(result);
   EXPECT_LT(bytes.size(), EncodeRunResult(result, TrajectoryEncoding::kLeaveOut).size());
-  const Result<sim::RunResult> stored = DecodeStoredResult(bytes);
-  ASSERT_TRUE(stored.ok()) << stored.error().message;
-  EXPECT_EQ(stored->hash, result.hash);
-  EXPECT_EQ(stored->metrics, result.metrics);
-  EXPECT_EQ(stored->robots.at(1).path_length, result.robots.at(1).path_length);
-  EXPECT_TRUE(stored->robots.at(1).waypoints.empty());
-  EXPECT_TRUE(stored->annotations.empty());
-  const Result<sim::RunResult> answer = DecodeRunResult(bytes);
-  ASSERT_FALSE(answer.ok());
-  EXPECT_THAT(answer.error().message, HasSubstr("hash"));
+  for (const Result<sim::RunResult>& decoded : {DecodeStoredResult(bytes), DecodeRunResult(bytes)}) {
+    ASSERT_TRUE(decoded.ok()) << decoded.error().message;
+    EXPECT_TRUE(decoded->without_ways);
+    EXPECT_EQ(decoded->hash, result.hash);
+    EXPECT_EQ(decoded->metrics, result.metrics);
+    EXPECT_EQ(decoded->robots.at(1).path_length, result.robots.at(1).path_length);
+    EXPECT_TRUE(decoded->robots.at(1).waypoints.empty());
+    EXPECT_TRUE(decoded->annotations.empty());
+    EXPECT_EQ(EncodeWithoutWays(*decoded), bytes);
+    EXPECT_EQ(EncodeRunResult(*decoded, TrajectoryEncoding::kLeaveOut), bytes) << "they do not come back";
+  }
+}
+
+TEST(RunCodecTest, AResultWithoutWaysHasAHashOfItsOwn) {
+  sim::RunResult result = SampleResult(0.5);
+  result.fitness = 0.25;
+  const std::string changed = EncodeWithoutWays(result);
+  EXPECT_THAT(DecodeRunResult(changed).error().message, HasSubstr("hash"));
+  EXPECT_TRUE(DecodeStoredResult(changed).ok()) << "the store's checksum guards it";
+  result = SampleResult(0.5);
+  result.without_ways = true;
+  EXPECT_THAT(DecodeRunResult(EncodeRunResult(result)).error().message,
+              HasSubstr("has ways that it is said to be without"));
 }
 
 TEST(RunCodecTest, AStoredResultWithoutAnyWaysIsHeldAgainstItsHash) {
   sim::RunResult result;
   result.fitness = 0.5;
-  result.hash = sim::HashOf(result);
+  sim::SetHashes(result);
   EXPECT_TRUE(DecodeStoredResult(EncodeWithoutWays(result)).ok());
   EXPECT_TRUE(DecodeStoredResult(EncodeRunResult(SampleResult(0.5))).ok()) << "whole ones are read, too";
   result.fitness = 0.25;
@@ -166,13 +179,14 @@ TEST(RunCodecTest, UnreadableBytesAreCorrupt) {
 }
 
 RC_GTEST_PROP(RunCodecProperty, DamagedResultsAreNeverTakenForGood, ()) {
-  const std::string good = EncodeRunResult(SampleResult(0.5));
-  std::string bytes = good;
+  const sim::RunResult result = SampleResult(0.5);
+  const bool with_ways = *rc::gen::arbitrary<bool>();
+  std::string bytes = with_ways ? EncodeRunResult(result) : EncodeWithoutWays(result);
   const auto at = *rc::gen::inRange<std::size_t>(0, bytes.size());
   bytes[at] = static_cast<char>(bytes[at] ^ *rc::gen::inRange(1, 256));
   const Result<sim::RunResult> decoded = DecodeRunResult(bytes);
   // A changed bit either does not decode or lies in what the hash does not cover.
-  if (decoded.ok()) RC_ASSERT(decoded->hash == SampleResult(0.5).hash);
+  if (decoded.ok()) RC_ASSERT(decoded->hash == result.hash);
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ class FakeBackend final : public master::EvaluationBackend {
     master::FinishedRun finished;
     finished.id = run.id;
     finished.result = simulate_(*spec);
-    finished.result.hash = sim::HashOf(finished.result);
+    sim::SetHashes(finished.result);
     finished.worker = "fake";
     return finished;
   }

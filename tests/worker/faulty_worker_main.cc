@@ -72,7 +72,7 @@ sim::RunResult FaultyRunFunction(const sim::RunSpec& spec) {
   }
   sim::RunResult result;
   result.fitness = 0.5;
-  result.hash = sim::HashOf(result);
+  sim::SetHashes(result);
   if (spec.record_trajectory) result.trajectory.assign(20'000, std::vector<sim::RobotState>(50));
   return result;
 }

@@ -69,12 +69,13 @@ TEST(DescribeTest, SaysWhatHappenedTheSameWayEveryTime) {
 
 RC_GTEST_PROP(RunnerProtocolProperty, JobsAndReportsComeBackAsTheyWere,
               (const std::string& bytes, std::uint64_t memory, std::uint16_t cpu)) {
-  const auto job = DecodeJob(EncodeJob({bytes, cpu / 8.0, memory, 7}));
+  const auto job = DecodeJob(EncodeJob({bytes, cpu / 8.0, memory, 7, memory % 2 == 0}));
   RC_ASSERT(job.has_value());
   RC_ASSERT(job->spec == bytes);
   RC_ASSERT(job->cpu_limit_seconds == cpu / 8.0);
   RC_ASSERT(job->memory_limit_bytes == memory);
   RC_ASSERT(job->max_result_bytes == 7u);
+  RC_ASSERT(job->without_ways == (memory % 2 == 0));
   const auto report = DecodeReport(EncodeReport({bytes, 0.5, cpu / 8.0}));
   RC_ASSERT(report.has_value());
   RC_ASSERT(report->result == bytes);

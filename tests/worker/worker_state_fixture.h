@@ -60,7 +60,8 @@ class Worker {
     Hear(worker::Welcome{.heartbeat = std::chrono::milliseconds(1000),
                          .epoch = epoch,
                          .cpu_limit_seconds = 60.0,
-                         .memory_limit_bytes = 1 << 30});
+                         .memory_limit_bytes = 1 << 30,
+                         .without_ways = true});
   }
   void Ready() {
     for (int slot = 0; slot < static_cast<int>(slots_); ++slot) Do(SlotBecameReady{slot});

@@ -75,6 +75,7 @@ TEST(WorkerStateTest, StartsALeaseWithTheMastersLimits) {
   EXPECT_EQ(starts[0].job.spec, "spec5");
   EXPECT_EQ(starts[0].job.cpu_limit_seconds, 60.0);
   EXPECT_EQ(starts[0].job.memory_limit_bytes, 1u << 30);
+  EXPECT_TRUE(starts[0].job.without_ways);
 }
 
 TEST(WorkerStateTest, ARunThatOnlyWaitsIsEndedAfterTwentyTimesItsCpuTime) {

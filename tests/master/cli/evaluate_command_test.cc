@@ -22,7 +22,7 @@ TEST_F(CommandLine, EvaluateRefusesByRuleAndSimulatesTheRest) {
   const std::string broken = Write("broken.json", "{\"obstacles\": [}");
   sim::RunResult result;
   result.fitness = 0.75;
-  result.hash = HashOf(result);
+  SetHashes(result);
   campaigns_.stored.resize(2);
   for (std::size_t i = 0; i < 2; ++i) {
     campaigns_.stored[i].id = i + 1;

@@ -77,7 +77,7 @@ class DryRun : public SearchCommands {
     SearchCommands::SetUp();
     sim::RunResult result;
     result.cpu_seconds = 0.5;
-    result.hash = sim::HashOf(result);
+    sim::SetHashes(result);
     const std::string answer = Write("answer", proto::EncodeRunResult(result));
     const std::string worker = Write("worker", "#!/bin/sh\ncat > /dev/null\ncat '" + answer + "'\n");
     std::filesystem::permissions(worker, std::filesystem::perms::owner_all);

@@ -90,6 +90,20 @@ TEST_F(RemoteBackendTest, AnUnreadableOrForgedResultIsItsWorkersFaultAndNeverAVe
   EXPECT_THAT(Poll(), SizeIs(1)) << "the run is done by another";
 }
 
+TEST_F(RemoteBackendTest, AResultWithoutWaysIsUnreadableWhereTheyAreWanted) {
+  const std::string result = proto::EncodeWithoutWays(SampleResult(0.5));
+  for (const bool without_ways : {false, true}) {
+    Connect(nullptr, without_ways);
+    backend_->Submit({{1, "spec"}});
+    const PeerId peer = without_ways ? "p" : "q";
+    SayHello(peer, HelloOf(kAnna));
+    Poll();
+    SendResult(peer, LeasesSentTo(peer).at(0), result);
+    EXPECT_THAT(Poll(), SizeIs(without_ways ? 1 : 0));
+    EXPECT_EQ(EventsOf("rejected-message").find("are left out") != std::string::npos, !without_ways);
+  }
+}
+
 TEST_F(RemoteBackendTest, AVerdictOfOneWorkerSaysSo) {
   EXPECT_EQ(FailRun1([this](const v1::Lease& lease, int) {
               SendFailure("p", lease, v1::RunnerFailure::KIND_CRASHED, 11, "");

@@ -59,11 +59,12 @@ class RemoteBackendTest : public testing::Test {
  protected:
   RemoteBackendTest() { Connect(nullptr); }
 
-  void Connect(WorkerPool* pool) {
+  void Connect(WorkerPool* pool, bool without_ways = false) {
     DispatchOptions options;
     options.credit = 1;
     options.cpu_limit_seconds = 75.0;
     options.memory_limit_bytes = 123456789;
+    options.without_ways = without_ways;
     backend_.emplace(CampaignIdentity{"campaign-1", 5, "1.2.3", {{"first", 0xfeed}, {"second", 0xf00d}}},
                      options, transport_, clock_, pool);
   }

@@ -45,7 +45,7 @@ inline sim::RunResult SampleResult(double fitness) {
   result.trajectory_hash = 0x123456789abcdef0ULL;
   result.trajectory = {{{1, 2, 0.1, 0.2}, {3, 4, 0.3, 0.4}}, {{5, 6, 0.5, 0.6}, {7, 8, 0.7, 0.8}}};
   result.cpu_seconds = 0.015;
-  result.hash = sim::HashOf(result);
+  sim::SetHashes(result);
   return result;
 }
 

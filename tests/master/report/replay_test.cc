@@ -35,7 +35,7 @@ class ReplayTest : public testing::Test {
     std::ofstream(scratch_ / name, std::ios::binary) << bytes;
   }
   void Answer(sim::RunResult result) const {
-    result.hash = sim::HashOf(result);
+    sim::SetHashes(result);
     Write("answer", proto::EncodeRunResult(result));
   }
 

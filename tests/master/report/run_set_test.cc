@@ -34,7 +34,7 @@ sim::RunResult SmallRun(const sim::RunSpec& spec) {
   result.metrics = {{"birds_left", std::floor(10.0 * result.fitness)},
                     {"split_time", result.fitness < 0.3 ? 1.0 : -1.0}};
   if (result.fitness > 0.9) result.verdict = sim::Verdict::kCrashed;
-  result.hash = HashOf(result);
+  SetHashes(result);
   return result;
 }
 

@@ -37,7 +37,7 @@ sim::RunResult SmallRun(const sim::RunSpec& spec) {
     result.message = "it fell over";
     result.metrics.clear();
   }
-  result.hash = HashOf(result);
+  SetHashes(result);
   return result;
 }
 

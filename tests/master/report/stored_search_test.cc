@@ -47,7 +47,7 @@ StoredRun RunNumber(std::uint64_t number) {
   result.metrics = {{"first_path_time", 10.0 * static_cast<double>(number)}, {"trapped", 2.0}};
   result.failure = {.total = number == 2, .type = number == 2 ? 7 : -1, .label = number == 2 ? "jam" : ""};
   if (number == 4) result.verdict = sim::Verdict::kCrashed;
-  result.hash = HashOf(result);
+  SetHashes(result);
   StoredRun run;
   run.id = RunIdOf(1, number);
   run.search = 1;
