@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::array kParameters = std::to_array<controllers::ParameterInfo>({
     {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: simulations in all"},
-    {"slots", "", 40, 1, 10000, true,
+    {"slots", "", 36, 1, 10000, true,
      "archive and random-deletion only: layouts under test at a time; workers it can keep busy"},
     {"keep_out", "m", 0, 0, 10, false,
      "archive and random-deletion only: no obstacle nearer than this to where the swarm starts and arrives"},

@@ -208,11 +208,11 @@ TEST(ArchiveSearchTest, ABudgetThatCannotFillACellIsRefused) {
     all.insert(all.end(), settings.begin(), settings.end());
     return LoadExperiment("flocking", all, BuiltInCatalogue());
   };
-  const auto few = load({"search.runs=80"});
+  const auto few = load({"search.runs=72"});
   ASSERT_FALSE(few.ok());
-  EXPECT_THAT(few.error().message, HasSubstr("search.runs = 80 cannot fill a cell"));
-  EXPECT_THAT(few.error().message, HasSubstr("use 81 runs or more"));
-  EXPECT_TRUE(load({"search.runs=81"}).ok());
+  EXPECT_THAT(few.error().message, HasSubstr("search.runs = 72 cannot fill a cell"));
+  EXPECT_THAT(few.error().message, HasSubstr("use 73 runs or more"));
+  EXPECT_TRUE(load({"search.runs=73"}).ok());
   EXPECT_TRUE(load({"search.runs=5", "search.slots=2"}).ok());
   EXPECT_FALSE(load({"search.runs=4", "search.slots=2"}).ok());
 }
