@@ -178,6 +178,21 @@ sim::Vec2 Area::HalfExtents() const {
   return radius > 0.0 ? sim::Vec2(radius, radius) : sim::Vec2(length / 2.0, width / 2.0);
 }
 
+std::vector<DefinitionKey> DefinitionKeys() {
+  std::vector<DefinitionKey> keys;
+  for (const FormulaKey& formula : kFormulas)
+    keys.push_back({.path = std::string(formula.name), .required = formula.required});
+  for (const ElementTable& table : Tables()) {
+    for (const ParameterInfo& key : table.keys) {
+      keys.push_back({.path = std::string(table.name).append(".1.").append(key.name),
+                      .number = &key,
+                      .names = key.name == kColor ? std::span<const std::string_view>(sim::kColorNames)
+                                                  : std::span<const std::string_view>()});
+    }
+  }
+  return keys;
+}
+
 Status DefinitionReader::Set(std::string_view path, const DefinitionValue& value) {
   if (path.find('.') != std::string_view::npos) return SetInElement(path, value);
   const FormulaKey* key = FindByName(kFormulas, path);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,6 +46,16 @@ inline constexpr int kMostElements = 100;  // lights, or areas of a kind
 // Every value is a number, but for formulas and colours.
 using DefinitionValue = std::variant<double, std::string>;
 using DefinitionEntry = std::pair<std::string, DefinitionValue>;
+
+// What can be defined, for who lists it.
+struct DefinitionKey {
+  std::string path;                       // "fitness"; of an element of a list "light.1.x"
+  const ParameterInfo* number = nullptr;  // nullptr: a formula
+  // What stands for the numbers 0, 1, ...; empty where a number is given.
+  std::span<const std::string_view> names = {};
+  bool required = false;
+};
+std::vector<DefinitionKey> DefinitionKeys();
 
 // Takes the values of a definition one by one; of those of one path the last counts.
 class DefinitionReader {

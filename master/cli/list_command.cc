@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,7 @@
 #include "master/cli/options.h"
 #include "master/cli/table.h"
 #include "master/directory/plugins.h"
+#include "master/experiment/definition_table.h"
 #include "master/experiment/experiment_file.h"
 #include "master/experiment/schema.h"
 #include "master/search/search_table.h"
@@ -91,6 +93,14 @@ std::string KeyTable(const std::vector<Key>& keys, std::size_t indent) {
   return table.ToText(indent);
 }
 
+// What an experiment may define of a scenario that is defined by it.
+std::string DefinitionText() {
+  return "\n" + KeyTable(DefinitionKeys(), 4) +
+         "\n    Formulas are over the metrics below. Of light, ground, source and nest there may be "
+         "several:\n"
+         "    generic.light.2.x, or in a file one [[generic.light]] after the other.\n";
+}
+
 std::string MetricTable(std::span<const controllers::MetricInfo> metrics) {
   Table table({"metric", "unit", ""});
   for (const controllers::MetricInfo& info : metrics) {
@@ -125,8 +135,8 @@ std::string RowsText(std::span<const controllers::ScenarioInfo> rows) {
     text +=
         "\n  " + Wrapped(fmt::format("{}: {}", scenario.name, scenario.description), kTextWidth, 4) + "\n";
     text += fmt::format("    controller unless another is named: {}\n\n", scenario.default_controller);
-    text += ParameterTable(scenario.parameters) + "\n" + MetricTable(scenario.metrics) +
-            FailureTable(scenario.failure_types);
+    text += ParameterTable(scenario.parameters) + (scenario.check_definition ? DefinitionText() : "") + "\n" +
+            MetricTable(scenario.metrics) + FailureTable(scenario.failure_types);
   }
   return text;
 }

@@ -44,6 +44,29 @@ Status Set(const Assignment& assignment, DefinitionReader& reader) {
 
 }  // namespace
 
+std::vector<Key> DefinitionKeys() {
+  std::vector<Key> keys;
+  for (const controllers::generic::DefinitionKey& one : controllers::generic::DefinitionKeys()) {
+    Key& key = keys.emplace_back();
+    key.path = std::string(kBegin) + one.path;
+    if (one.number == nullptr) {
+      key.type = KeyType::kText;
+      key.description = one.required ? "formula; must be given" : "formula";
+      continue;
+    }
+    key.unit = one.number->unit;
+    key.min = one.number->min;
+    key.max = one.number->max;
+    key.description = one.number->description;
+    key.default_value = one.number->default_value;
+    if (one.names.empty()) continue;
+    key.type = KeyType::kChoice;
+    key.choices.assign(one.names.begin(), one.names.end());
+    key.default_value = key.choices.front();
+  }
+  return keys;
+}
+
 bool InDefinition(std::string_view path) {
   return path == kTable || path.starts_with(kBegin);
 }

@@ -9,9 +9,13 @@
 #include <vector>
 
 #include "base/result.h"
+#include "master/experiment/schema.h"
 #include "master/experiment/toml_text.h"
 
 namespace gauntlet::master {
+
+// What it may hold, for who lists it; of a list its first element, "generic.light.1.x". Formulas are texts.
+std::vector<Key> DefinitionKeys();
 
 // Whether the path is in that table.
 bool InDefinition(std::string_view path);

@@ -25,6 +25,16 @@ std::string ErrorOf(const std::vector<DefinitionEntry>& entries) {
   return definition.ok() ? "" : definition.error().message;
 }
 
+TEST(DefinitionTest, EveryKeyThatIsListedIsTaken) {
+  DefinitionReader reader;
+  for (const DefinitionKey& key : DefinitionKeys()) {
+    const DefinitionValue number = key.number == nullptr ? 0.0 : key.number->default_value;
+    const DefinitionValue text = key.names.empty() ? "robots" : std::string(key.names.back());
+    const Status set = reader.Set(key.path, key.number == nullptr || !key.names.empty() ? text : number);
+    EXPECT_TRUE(set.ok()) << key.path << ": " << set.error().message;
+  }
+}
+
 TEST(Definition, IsReadAndWrittenInOneForm) {
   const Result<Definition> definition = ParseDefinition(kText);
   ASSERT_TRUE(definition.ok()) << definition.error().message;

@@ -58,7 +58,7 @@ TEST(SearchLengthTest, SearchesAreTheSameWhateverStandsInKeysThatTheyDoNotRead) 
   EXPECT_TRUE(same("one", {}));
   EXPECT_TRUE(same("one", {"search.cases=7", "search.slots=5"}));
   EXPECT_FALSE(same("two", {}));
-  EXPECT_FALSE(same("one", {"search.population=9"}));
+  EXPECT_FALSE(same("one", {"search.population=8"}));
   EXPECT_FALSE(same("one", {"search.generations=9"}));
   EXPECT_FALSE(same("one", {"scenario_parameters.time_limit=70"}));
   EXPECT_FALSE(AreSameSearches(plans, {plans.front(), plans.front()}));
