@@ -142,6 +142,7 @@ TEST(ConfirmTest, EndsAsUndisturbedWhenItIsKilled) {
   const nlohmann::json whole = Json(ConfirmAll(scratch / "whole", 2));
   const ProcessResult killed =
       AskThroughKills(ConfirmAll(scratch / "killed", 2), scratch / "killed/confirm", 3);
+  ASSERT_EQ(killed.exit_code, 0) << killed.err;
   EXPECT_EQ(nlohmann::json::parse(killed.out), whole) << killed.err;
   EXPECT_EQ(StateHashesIn(scratch / "killed/confirm"), StateHashesIn(scratch / "whole/confirm"));
 }

@@ -23,6 +23,17 @@ bool HasCampaignWith(const std::string& folder, const std::string& entry) {
   });
 }
 
+// When the access file of a campaign in `folder` was last written; min(): there is none.
+std::filesystem::file_time_type LastServed(const std::string& folder) {
+  auto last = std::filesystem::file_time_type::min();
+  std::error_code none;
+  for (const auto& campaign : std::filesystem::directory_iterator(folder, none)) {
+    const auto written = std::filesystem::last_write_time(campaign.path() / "access.json", none);
+    if (!none) last = std::max(last, written);
+  }
+  return last;
+}
+
 }  // namespace
 
 std::vector<std::string> StateHashesIn(const std::string& folder) {
@@ -46,9 +57,11 @@ ProcessResult AskThroughKills(const std::vector<std::string>& command, const std
     master->Signal(SIGKILL);
     master->Wait();
   }
+  // Before it serves workers, whom it has started are no workers, and it cannot do without them.
+  const auto served_before = LastServed(folder);
   const std::unique_ptr<Process> master = StartGauntlet(command, slowly);
   EXPECT_TRUE(
-      Eventually([&] { return HasCampaignWith(folder, "access.json") || !master->Running(); }, kPatience));
+      Eventually([&] { return LastServed(folder) != served_before || !master->Running(); }, kPatience));
   sim::RandomStream random(1, sim::StreamPurpose::kTest);
   int hits = 0;
   while (hits < worker_kills && !Eventually([&] { return !master->Running(); },
