@@ -93,7 +93,6 @@ void ArchiveSearch::SaveRest(CanonicalEncoder& encoder) const {
     encoder.Uint(account.layouts);
     encoder.Uint(account.elites);
   }
-  prior_.Save(encoder);
   encoder.Uint(archive_.shelves().size());
   for (const auto& [cell, shelf] : archive_.shelves()) {
     encoder.Uint(cell);
@@ -102,6 +101,7 @@ void ArchiveSearch::SaveRest(CanonicalEncoder& encoder) const {
   }
   for (const Slot& slot : slots_) SaveSlot(slot, encoder);
   for (const std::size_t slot : waiting_) encoder.Uint(slot);
+  prior_.Save(encoder);
 }
 
 Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*history*/) {
@@ -111,7 +111,6 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
     account.layouts = decoder.Uint();
     account.elites = decoder.Uint();
   }
-  prior_.Restore(decoder);
   FailureArchive::Shelves shelves;
   for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
     std::vector<Finding>& shelf = shelves[decoder.Uint()];
@@ -133,6 +132,7 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
     slot = decoder.Uint();
     if (slot >= slots_.size()) return Damaged(fmt::format("slot {} waits", slot));
   }
+  if (!decoder.AtEnd()) prior_.Restore(decoder);  // states of earlier versions end here
   if (std::set<std::size_t>(waiting_.begin(), waiting_.end()).size() != slots_.size()) {
     return Damaged("a slot does not wait");
   }
