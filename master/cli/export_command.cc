@@ -166,7 +166,8 @@ ExitCode RunExport(CommandContext& context, const ExportCommandOptions& options)
     for (const auto& [notice, of_files] : argos_files.notices)
       PrintMessage(context,
                    of_files == *files ? notice : fmt::format("{} of {} files: {}", of_files, *files, notice));
-    PrintMessage(context, fmt::format("wrote {} case files into {}", FormatCount(*files), options.out));
+    PrintMessage(context, fmt::format("wrote {} case {} into {}", FormatCount(*files),
+                                      *files == 1 ? "file" : "files", options.out));
     return kExitDone;
   }
   const Result<ExportReport> report =

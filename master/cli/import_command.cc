@@ -83,7 +83,8 @@ ExitCode RunImport(CommandContext& context, const ImportOptions& options) {
   const Result<std::uint64_t> written = WriteOutputDirectory(
       "--dir", options.directory, [&](const std::string& draft) { return WriteCases(*cases, draft); });
   if (!written) return Fail(context, written.error());
-  PrintMessage(context, fmt::format("wrote {} case files into {}", *written, Printable(options.directory)));
+  PrintMessage(context, fmt::format("wrote {} case {} into {}", *written, *written == 1 ? "file" : "files",
+                                    Printable(options.directory)));
   return kExitDone;
 }
 

@@ -91,6 +91,15 @@ Result<ExperimentText> ReadExperimentText(const std::string& name_or_path) {
     return read(name_or_path);
   const std::map<std::string, fs::path> files = ShippedFiles();
   if (const auto found = files.find(name_or_path); found != files.end()) return read(found->second);
+  if (files.empty()) {
+    std::vector<std::string> places;
+    for (const fs::path& directory : ExperimentDirectories()) places.push_back(directory.string());
+    return Error{
+        ErrorKind::kNotFound,
+        fmt::format("there is no experiment '{}', because none can be read in {}: the program has to stand "
+                    "where it was installed or built, or GAUNTLET_EXPERIMENTS_DIR name their folder",
+                    name_or_path, fmt::join(places, " or "))};
+  }
   std::vector<std::string_view> names;
   for (const auto& [name, path] : files) names.push_back(name);
   const std::string nearest = NearestName(name_or_path, names);

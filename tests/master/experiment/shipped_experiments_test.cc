@@ -131,6 +131,9 @@ TEST_F(ShippedExperimentsTest, UnknownNameSuggestsTheNearest) {
               StartsWith("unknown experiment 'floking'; did you mean 'flocking'?"));
   EXPECT_THAT(LoadExperiment("quux", {}, BuiltInCatalogue()).error().message,
               HasSubstr("shipped: flocking, flocking-improved"));
+  setenv("GAUNTLET_EXPERIMENTS_DIR", "no-such-folder", 1);
+  EXPECT_THAT(LoadExperiment("flocking", {}, BuiltInCatalogue()).error().message,
+              StartsWith("there is no experiment 'flocking', because none can be read in no-such-folder"));
 }
 
 TEST_F(ShippedExperimentsTest, FilesAreReadByPathAndMessagesCarryIt) {
