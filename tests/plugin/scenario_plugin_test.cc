@@ -166,6 +166,12 @@ void PrintTo(const Refusal& refusal, std::ostream* os) {
   *os << refusal.scenario;
 }
 
+std::string NameOfTest(const testing::TestParamInfo<Refusal>& parameter) {
+  std::string name = parameter.param.scenario;
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
 class RefusedScenario : public ScenarioPlugin, public testing::WithParamInterface<Refusal> {};
 
 TEST_P(RefusedScenario, BeginsNothing) {
@@ -189,11 +195,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"throw-in-swarm", "uncaught exception: not today"},
                     Refusal{"without-robots", "its swarm has no robots"},
                     Refusal{"start-outside", "what it asks of an arena is wrong: its start is at"}),
-    [](const testing::TestParamInfo<Refusal>& parameter) {
-      std::string name = parameter.param.scenario;
-      std::ranges::replace(name, '-', '_');
-      return name;
-    });
+    NameOfTest);
 
 // What goes wrong later costs the run.
 class FaultyScenario : public ScenarioPlugin, public testing::WithParamInterface<Refusal> {};
@@ -221,11 +223,7 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, FaultyScenario,
                                          Refusal{"exit-in-evaluate", "crashed with exit code 89"},
                                          Refusal{"spin-in-evaluate", "exceeded its CPU time"},
                                          Refusal{"throw-in-evaluate", "crashed with exit code 87"}),
-                         [](const testing::TestParamInfo<Refusal>& parameter) {
-                           std::string name = parameter.param.scenario;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+                         NameOfTest);
 
 TEST_F(ScenarioPlugin, FaultyRunsAreResultsThatSaySo) {
   if (kSanitized) GTEST_SKIP() << "sanitizers end such processes in their own way";

@@ -43,7 +43,7 @@ class PreparedProcessTest : public testing::Test {
 
   void SetUp() override {
     // The sanitizers' own threads and descriptors look like those of a library.
-    if (testing_support::kSanitized) GTEST_SKIP();
+    if (testing_support::kSanitized) GTEST_SKIP() << "threads and descriptors of the sanitizers";
   }
 
   // Prepares the statics and then what else is asked for; a call gives what it finds, and changes it.
