@@ -53,6 +53,7 @@ struct ToWire {
     wire.set_run_id(lease.run_id);
     wire.set_spec(lease.spec);
     wire.set_attempt(lease.attempt);
+    wire.set_result_wait_ms(static_cast<std::uint32_t>(lease.result_wait.count()));
   }
   void operator()(const LeaseResult& result) const {
     v1::LeaseResult& wire = *envelope.mutable_lease_result();
@@ -185,7 +186,8 @@ Result<MasterMessage> DecodeMasterMessage(std::string_view frame) {
       return MasterMessage(Lease{.fence = wire.fence(),
                                  .run_id = wire.run_id(),
                                  .spec = std::move(*wire.mutable_spec()),
-                                 .attempt = wire.attempt()});
+                                 .attempt = wire.attempt(),
+                                 .result_wait = std::chrono::milliseconds(wire.result_wait_ms())});
     }
     case v1::Envelope::kAcknowledge: {
       const auto& fences = envelope.acknowledge().fences();

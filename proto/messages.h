@@ -64,6 +64,8 @@ struct Lease {
   RunId run_id = 0;
   EncodedSpec spec;
   std::uint32_t attempt = 1;  // 1 = the run's first lease
+  // So long the result may wait at the worker for others, while more leases wait there than results do.
+  std::chrono::milliseconds result_wait{0};
 };
 
 // How a runner ended that gave no result. The numbers are the wire's.

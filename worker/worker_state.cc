@@ -54,6 +54,7 @@ std::vector<WorkerAction> WorkerState::Handle(WorkerEvent event, TimePoint now) 
   now_ = std::max(now_, now);
   std::visit([this](auto& concrete) { On(concrete); }, event);
   if (phase_ != Phase::kExited) StartWaitingRuns();
+  SendHeldBackIfDue();
   if (phase_ != Phase::kExited && drain_) ContinueDrain();
   return std::exchange(actions_, {});
 }
@@ -63,6 +64,7 @@ TimePoint WorkerState::NextTick() const {
                                               : last_heartbeat_ + welcome_.heartbeat;
   if (drain_ && drain_->drop_at && RunningCount() > 0) next = std::min(next, *drain_->drop_at);
   if (drain_ && drain_->leave_at) next = std::min(next, *drain_->leave_at);
+  if (!held_back_.empty() && phase_ == Phase::kWelcomed) next = std::min(next, send_held_back_at_);
   return next;
 }
 
@@ -104,6 +106,7 @@ void WorkerState::On(const Welcome& welcome) {
   if (phase_ != Phase::kWelcomed) {  // otherwise the answer to a repeated Hello
     phase_ = Phase::kWelcomed;
     last_heartbeat_ = now_;
+    held_back_.clear();
     for (auto& [fence, finished] : finished_) {
       finished.sent = now_;
       Act(Send{finished.result});
@@ -311,7 +314,10 @@ bool WorkerState::Holds(Fence fence) const {
 }
 
 void WorkerState::Forget(Fence fence) {
-  if (finished_.erase(fence) > 0) return;
+  if (finished_.erase(fence) > 0) {
+    std::erase(held_back_, fence);
+    return;
+  }
   std::erase_if(waiting_, [&](const Lease& lease) { return lease.fence == fence; });
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     Slot& slot = slots_[i];
@@ -389,8 +395,29 @@ Duration WorkerState::Nap() const {
 void WorkerState::HandIn(const Lease& lease, LeaseResult result) {
   result.fence = lease.fence;
   result.run_id = lease.run_id;
-  if (phase_ == Phase::kWelcomed) Act(Send{result});
+  const bool hold_back = lease.result_wait.count() > 0 && !result.failure;
+  if (hold_back) {
+    const TimePoint until = now_ + lease.result_wait;
+    send_held_back_at_ = held_back_.empty() ? until : std::min(send_held_back_at_, until);
+    held_back_.push_back(lease.fence);
+  } else if (phase_ == Phase::kWelcomed) {
+    Act(Send{result});
+  }
   finished_.insert_or_assign(lease.fence, Finished{std::move(result), now_});
+}
+
+void WorkerState::SendHeldBackIfDue() {
+  if (held_back_.empty() || phase_ != Phase::kWelcomed) return;
+  const bool more_to_come = waiting_.size() > held_back_.size() && !drain_;
+  if (!more_to_come || now_ >= send_held_back_at_) SendHeldBack();
+}
+
+void WorkerState::SendHeldBack() {
+  for (const Fence fence : std::exchange(held_back_, {})) {
+    Finished& finished = finished_.at(fence);
+    finished.sent = now_;
+    Act(Send{finished.result});
+  }
 }
 
 void WorkerState::GiveBack(const Lease& lease, const std::string& why) {

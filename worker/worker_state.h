@@ -11,6 +11,10 @@
 // or this process ends; every held lease stands in Hello and in every heartbeat; a finished result is sent
 // after every Welcome and again after ten heartbeats without an acknowledgement.
 //
+// A result whose lease says so (Lease::result_wait) is held back and sent with those that follow it, so that
+// they wake the master once: until fewer leases wait here than results do, or the first of them has waited
+// long enough, or this worker leaves.
+//
 // A runner has one run at a time, except when runs are very short: then about a millisecond of them is handed
 // to it ahead, because waking each other for every single one costs more than such runs. What did not begin
 // when the runner ends begins elsewhere. A run that was leased before goes alone, so that what a runner
@@ -90,7 +94,7 @@ class WorkerState {
   };
   struct Finished {
     LeaseResult result;
-    TimePoint sent;
+    TimePoint sent;  // or held back
   };
   struct DrainPlan {
     std::string reason;
@@ -132,6 +136,8 @@ class WorkerState {
   void EndRuns(Slot& slot);       // all but the first wait again
   // The lease's result, whose other members are given.
   void HandIn(const Lease& lease, LeaseResult result);
+  void SendHeldBack();
+  void SendHeldBackIfDue();
   void GiveBack(const Lease& lease, const std::string& why);
   void GiveBackRuns(Slot& slot, const std::string& why);
   void DropRunning(const std::string& why);
@@ -157,6 +163,8 @@ class WorkerState {
   std::deque<Lease> waiting_;
   double lately_longest_ = -1.0;  // CPU time of recent runs, s; negative: none has ended
   std::map<Fence, Finished> finished_;
+  std::vector<Fence> held_back_;  // of finished_, in the order in which they ended
+  TimePoint send_held_back_at_;   // when there are any
   std::optional<DrainPlan> drain_;
   std::vector<WorkerAction> actions_;
 };

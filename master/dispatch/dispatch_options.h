@@ -22,6 +22,11 @@ struct DispatchOptions {
   // runs): round trips and commits then cost many of them at once.
   std::chrono::milliseconds work_ahead{10};
   std::uint32_t most_credit = 256;
+  // While at least so many runs wait unleased for each slot, no search waits for a single result: up to this
+  // much work is leased ahead then, but never more than waits, and results may come together.
+  std::uint32_t many_waiting = 8;
+  std::chrono::milliseconds most_work_ahead{1000};
+  std::chrono::milliseconds result_wait{500};  // proto::Lease::result_wait
   // When no run waits, an idle worker gets a copy of a run that has taken this many times the predicted time
   // on another; the first answer counts. 0 = never.
   double copy_after = 2.0;

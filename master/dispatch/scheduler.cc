@@ -67,13 +67,6 @@ void Scheduler::RunTook(double seconds) {
                            : predicted_seconds_ + kPredictionGain * (seconds - predicted_seconds_);
 }
 
-std::uint32_t Scheduler::Credit() const {
-  const double ahead = std::chrono::duration<double>(options_.work_ahead).count();
-  if (predicted_seconds_ < 0.0 || predicted_seconds_ * options_.credit >= ahead) return options_.credit;
-  const double most = std::max(options_.credit, options_.most_credit);
-  return static_cast<std::uint32_t>(std::min(most, ahead / std::max(predicted_seconds_, 1e-6)));
-}
-
 void Scheduler::Submit(RunRequest request) {
   const auto [run, added] = runs_.try_emplace(request.id);
   GAUNTLET_CHECK(added, "run " + std::to_string(request.id) + " submitted twice");
@@ -239,10 +232,18 @@ void Scheduler::Unlist(InstanceId id, Worker& worker) {
   worker.listed = false;
 }
 
+void Scheduler::EraseLive(Worker& worker, Fence fence) {
+  const auto found = std::find(worker.live.begin(), worker.live.end(), fence);
+  const bool had_begun = found - worker.live.begin() < std::ptrdiff_t{worker.slots};
+  if (found != worker.live.end()) worker.live.erase(found);
+  if (had_begun && worker.live.size() >= worker.slots)
+    leases_.at(worker.live[worker.slots - 1]).begun = listening_;
+}
+
 void Scheduler::Loosen(Fence fence, Lease& lease, LeaseState state) {
   Worker& worker = workers_.at(lease.worker);
   lease.state = state;
-  Erase(worker.live, fence);
+  EraseLive(worker, fence);
   worker.loose.push_back(fence);
   --runs_.at(lease.run).live;
   List(lease.worker, worker);
@@ -254,9 +255,13 @@ void Scheduler::EndLease(Fence fence) {
   leases_.erase(found);
   Run& run = runs_.at(lease.run);
   Erase(run.fences, fence);
-  if (lease.state == LeaseState::kLive) --run.live;
   Worker& worker = workers_.at(lease.worker);
-  Erase(lease.state == LeaseState::kLive ? worker.live : worker.loose, fence);
+  if (lease.state == LeaseState::kLive) {
+    --run.live;
+    EraseLive(worker, fence);
+  } else {
+    Erase(worker.loose, fence);
+  }
   List(lease.worker, worker);
 }
 

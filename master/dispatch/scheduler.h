@@ -80,6 +80,7 @@ class Scheduler {
   SchedulerOrders Decide(TimePoint now);
 
   bool Known(InstanceId worker) const { return workers_.contains(worker); }
+  bool Connected(InstanceId worker) const;  // known and not lost
   bool Works(InstanceId worker) const;      // has a lease that it has not answered
   std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown runs
   std::size_t queued() const;               // runs that nobody has
@@ -108,10 +109,12 @@ class Scheduler {
 
   void Advance(TimePoint now);
   std::uint32_t Credit() const;  // leases per slot, by the predicted length of a run
+  bool ManyWait() const;         // so many that nobody waits for a single one of them
   void Heard(InstanceId id, Worker& worker);
   void Reconcile(InstanceId id, Worker& worker, const std::vector<Fence>& held, Duration grace);
-  void List(InstanceId id, Worker& worker);    // puts it where it belongs in available_
-  void Unlist(InstanceId id, Worker& worker);  // takes it out of available_
+  void List(InstanceId id, Worker& worker);     // puts it where it belongs in available_
+  void Unlist(InstanceId id, Worker& worker);   // takes it out of available_
+  void EraseLive(Worker& worker, Fence fence);  // the next in line begins
   void Loosen(Fence fence, Lease& lease, LeaseState state);
   void EndLease(Fence fence);
   bool Requeue(RunId id, Run& run);
@@ -130,7 +133,8 @@ class Scheduler {
   void AssignAudits();
   void AssignCopies();
   void MoveWaiting();
-  bool Alone(InstanceId worker) const;  // there is no other worker
+  std::size_t FirstWaiting(const Worker& worker) const;  // in its live leases: certainly not begun
+  bool Alone(InstanceId worker) const;                   // there is no other worker
 
   // scheduler_verdicts.cc.
   static bool Standing(const Worker& worker) {

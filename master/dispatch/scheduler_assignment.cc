@@ -5,18 +5,39 @@
 
 namespace gauntlet::master {
 
+std::uint32_t Scheduler::Credit() const {
+  if (predicted_seconds_ < 0.0) return options_.credit;
+  const auto runs_of = [this](std::chrono::milliseconds work) {
+    const double runs = std::chrono::duration<double>(work).count() / std::max(predicted_seconds_, 1e-6);
+    return static_cast<std::uint32_t>(std::min<double>(options_.most_credit, runs));
+  };
+  std::uint32_t credit = std::max(options_.credit, runs_of(options_.work_ahead));
+  if (ManyWait()) {
+    const auto waiting =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(queue_.size() / slots_, options_.most_credit));
+    credit = std::max(credit, std::min(waiting, runs_of(options_.most_work_ahead)));
+  }
+  return credit;
+}
+
+bool Scheduler::ManyWait() const {
+  return slots_ > 0 && queue_.size() >= options_.many_waiting * slots_;
+}
+
 void Scheduler::Grant(InstanceId worker_id, RunId id) {
   Worker& worker = workers_.at(worker_id);
   Run& run = runs_.at(id);
   const Fence fence = next_fence_++;
-  leases_.emplace(fence, Lease{id, worker_id, LeaseState::kLive, listening_});
+  const bool result_may_wait = ManyWait();
+  leases_.emplace(fence, Lease{id, worker_id, LeaseState::kLive, listening_, listening_, result_may_wait});
   run.fences.push_back(fence);
   ++run.live;
   ++run.leases;
   worker.live.push_back(fence);
   worker.slowed_until = listening_ + Duration(options_.heartbeat);
   List(worker_id, worker);
-  orders_.leases.push_back({worker_id, {fence, id, run.spec, run.leases}});
+  const auto result_wait = result_may_wait ? options_.result_wait : std::chrono::milliseconds(0);
+  orders_.leases.push_back({worker_id, {fence, id, run.spec, run.leases, result_wait}});
 }
 
 // A run that failed goes to who has not failed it, even if that one is busy now; to another host first.
@@ -84,6 +105,15 @@ void Scheduler::Assign() {
   }
 }
 
+std::size_t Scheduler::FirstWaiting(const Worker& worker) const {
+  if (worker.live.size() <= worker.slots) return worker.live.size();
+  // The first ones may have ended: a worker holds back fewer results than leases wait there.
+  const std::size_t behind = worker.live.size() - worker.slots;
+  const auto may_wait = static_cast<std::size_t>(
+      std::ranges::count_if(worker.live, [this](Fence fence) { return leases_.at(fence).result_may_wait; }));
+  return worker.slots + std::min(may_wait, (behind - 1) / 2);
+}
+
 void Scheduler::MoveWaiting() {
   // A shorter one has begun before the message arrives.
   constexpr double kWorthMoving = 0.002;  // s
@@ -92,8 +122,7 @@ void Scheduler::MoveWaiting() {
     std::optional<Place> first;
     Fence moved = 0;
     for (const auto& [id, worker] : workers_) {
-      // It works on them in the order in which it got them.
-      for (std::size_t i = worker.slots; i < worker.live.size(); ++i) {
+      for (std::size_t i = FirstWaiting(worker); i < worker.live.size(); ++i) {
         const RunId run_id = leases_.at(worker.live[i]).run;
         const Run& run = runs_.at(run_id);
         if (run.finished || run.live != 1 || !run.attempts.empty() ||
@@ -139,7 +168,7 @@ void Scheduler::AssignCopies() {
       std::max(options_.copy_after * predicted_seconds_,
                std::chrono::duration<double>(options_.heartbeat).count() / kChecksPerHeartbeat);
   struct Slow {
-    Duration granted;
+    Duration begun;
     RunId run;
     InstanceId owner;
   };
@@ -148,13 +177,13 @@ void Scheduler::AssignCopies() {
     for (const Fence fence : worker.live) {
       const Lease& lease = leases_.at(fence);
       const Run& run = runs_.at(lease.run);
-      const double seconds = std::chrono::duration<double>(listening_ - lease.granted).count();
-      if (!run.finished && run.live == 1 && seconds > late) slow.push_back({lease.granted, lease.run, id});
+      const double seconds = std::chrono::duration<double>(listening_ - lease.begun).count();
+      if (!run.finished && run.live == 1 && seconds > late) slow.push_back({lease.begun, lease.run, id});
     }
   }
   // What has taken longest gets help first.
   std::sort(slow.begin(), slow.end(), [](const Slow& a, const Slow& b) {
-    return a.granted != b.granted ? a.granted < b.granted : a.run < b.run;
+    return a.begun != b.begun ? a.begun < b.begun : a.run < b.run;
   });
   for (const Slow& one : slow) {
     if (available_.empty()) return;

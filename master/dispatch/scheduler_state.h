@@ -19,6 +19,8 @@ struct Lease {
   InstanceId worker = 0;
   LeaseState state = LeaseState::kLive;
   Duration granted{};
+  Duration begun{};  // at the earliest: when it came to be among as many as the worker has slots
+  bool result_may_wait = false;
 };
 struct Place {  // in the queue
   std::uint64_t batch = 0;
@@ -54,7 +56,7 @@ struct Run {
 };
 struct Worker {
   std::uint32_t slots = 1;
-  std::vector<Fence> live;
+  std::vector<Fence> live;   // in the order in which they were given, which is that of its work
   std::vector<Fence> loose;  // orphaned and cancelled
   Duration heard{};
   Duration excused{};  // value of listening_ at the last excuse

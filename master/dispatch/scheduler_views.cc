@@ -30,6 +30,11 @@ std::vector<std::pair<InstanceId, WorkerView>> Scheduler::DescribeWorkers() cons
   return views;
 }
 
+bool Scheduler::Connected(InstanceId worker) const {
+  const auto found = workers_.find(worker);
+  return found != workers_.end() && !found->second.lost;
+}
+
 std::size_t Scheduler::queued() const {
   const auto waits = [this](const Place& place) { return runs_.at(place.run).live == 0; };
   return queue_.size() + static_cast<std::size_t>(std::ranges::count_if(failing_, waits));

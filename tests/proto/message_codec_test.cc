@@ -75,10 +75,12 @@ TEST(MessageCodecTest, DecodesWhatMastersSend) {
   envelope.mutable_lease()->set_run_id(4);
   envelope.mutable_lease()->set_spec(std::string("a\0b", 3));
   envelope.mutable_lease()->set_attempt(2);
+  envelope.mutable_lease()->set_result_wait_ms(500);
   const auto lease = DecodeMasterMessage(envelope.SerializeAsString());
   ASSERT_TRUE(lease.ok());
   EXPECT_EQ(std::get<Lease>(*lease).spec, std::string("a\0b", 3));
   EXPECT_EQ(std::get<Lease>(*lease).attempt, 2u);
+  EXPECT_EQ(std::get<Lease>(*lease).result_wait, std::chrono::milliseconds(500));
 
   envelope.mutable_welcome()->set_heartbeat_ms(250);
   envelope.mutable_welcome()->set_memory_limit_bytes(1 << 20);

@@ -66,9 +66,13 @@ class Worker {
   void Ready() {
     for (int slot = 0; slot < static_cast<int>(slots_); ++slot) Do(SlotBecameReady{slot});
   }
-  std::vector<WorkerAction> Lease(Fence fence, std::uint32_t attempt = 1) {
-    return Hear(worker::Lease{
-        .fence = fence, .run_id = fence + 1000, .spec = "spec" + std::to_string(fence), .attempt = attempt});
+  std::vector<WorkerAction> Lease(Fence fence, std::uint32_t attempt = 1,
+                                  std::chrono::milliseconds result_wait = {}) {
+    return Hear(worker::Lease{.fence = fence,
+                              .run_id = fence + 1000,
+                              .spec = "spec" + std::to_string(fence),
+                              .attempt = attempt,
+                              .result_wait = result_wait});
   }
   std::vector<WorkerAction> Finish(int slot, std::string result = "result", double cpu_seconds = 0.5) {
     return Do(RunFinished{slot, std::move(result), cpu_seconds});

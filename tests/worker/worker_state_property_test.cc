@@ -52,7 +52,8 @@ RC_GTEST_PROP(WorkerStateProperty, NoLeaseIsLostAndNoneRunsTwice, ()) {
       case 8:
         if (worker.state().welcomed()) taken.insert(next);
         if (*rc::gen::inRange(0, 4) == 0) repeated.insert("spec" + std::to_string(next));
-        note(worker.Lease(next, repeated.contains("spec" + std::to_string(next)) ? 2 : 1));
+        note(worker.Lease(next, repeated.contains("spec" + std::to_string(next)) ? 2 : 1,
+                          *rc::gen::element(milliseconds(0), milliseconds(500))));
         ++next;
         break;
       case 1:

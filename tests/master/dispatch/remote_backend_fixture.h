@@ -62,6 +62,7 @@ class RemoteBackendTest : public testing::Test {
   void Connect(WorkerPool* pool, bool without_ways = false) {
     DispatchOptions options;
     options.credit = 1;
+    options.many_waiting = 1'000'000;  // never so many: leases are given one by one
     options.cpu_limit_seconds = 75.0;
     options.memory_limit_bytes = 123456789;
     options.without_ways = without_ways;

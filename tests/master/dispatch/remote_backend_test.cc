@@ -233,7 +233,7 @@ TEST_F(RemoteBackendTest, DifferentDuplicatesAreShownWithBothWorkers) {
   Poll();
   const v1::Lease first = LeasesSentTo("a").at(0);
   pool.ended = {1000 + static_cast<pid_t>(kAnna)};
-  Poll(milliseconds(350));
+  Poll(milliseconds(450));
   SendResult("b", LeasesSentTo("b").at(0), result_);
   Poll();
   SendResult("a", first, proto::EncodeRunResult(SampleResult(0.25)));

@@ -15,6 +15,7 @@ inline constexpr Fence kFirstFence = 7ULL << 32;
 inline DispatchOptions LeaseOptions(std::uint32_t credit = 1) {
   DispatchOptions options;
   options.credit = credit;
+  options.many_waiting = 1'000'000;  // never so many: nothing is batched
   return options;
 }
 

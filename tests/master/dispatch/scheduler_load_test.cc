@@ -78,6 +78,70 @@ TEST_F(SchedulerTest, WorkerWithManyShortRunsIsGivenMoreWhenHalfOfThemAreDone) {
   EXPECT_THAT(Decide().leases, SizeIs(10));
 }
 
+// Runs of 50 ms; 20 are a second of work.
+class BatchedSchedulerTest : public SchedulerTest {
+ protected:
+  BatchedSchedulerTest() {
+    DispatchOptions options = LeaseOptions();
+    options.many_waiting = DispatchOptions().many_waiting;
+    scheduler_ = Scheduler(options, kFirstFence);
+    for (int i = 0; i < 200; ++i) scheduler_.RunTook(0.05);
+  }
+  // Worker 10, which has shown that it can work, and what it gets of so many runs.
+  std::vector<LeaseOrder> LeasesOf(RunId runs) {
+    Join(10);
+    BringAResult(10);
+    SubmitRuns(1, runs);
+    return Decide().leases;
+  }
+};
+
+TEST_F(BatchedSchedulerTest, WhileManyRunsWaitASecondOfThemIsLeasedAndTheirResultsMayComeTogether) {
+  const std::vector<LeaseOrder> leases = LeasesOf(100);
+  ASSERT_THAT(leases, SizeIs(20));
+  for (const LeaseOrder& order : leases) EXPECT_EQ(order.lease.result_wait, DispatchOptions().result_wait);
+}
+
+TEST_F(BatchedSchedulerTest, NeverMoreIsLeasedThanWaitsAndTheLastResultsComeAtOnce) {
+  std::size_t waiting = 60;
+  std::size_t at_once = 0;
+  for (std::vector<LeaseOrder> leases = LeasesOf(60); !leases.empty(); leases = Decide().leases) {
+    EXPECT_LE(leases.size(), std::max<std::size_t>(1, waiting / 2 + 1));
+    for (const LeaseOrder& order : leases) {
+      --waiting;
+      EXPECT_EQ(order.lease.result_wait.count() == 0, waiting < DispatchOptions().many_waiting) << waiting;
+      if (order.lease.result_wait.count() == 0) ++at_once;
+      scheduler_.Completed(10, order.lease.fence, order.lease.run_id, 111);
+    }
+  }
+  EXPECT_EQ(waiting, 0U);
+  EXPECT_EQ(at_once, DispatchOptions().many_waiting);
+}
+
+TEST_F(BatchedSchedulerTest, AnIdleWorkerTakesOverNothingWhoseResultMayBeHeldBack) {
+  ASSERT_THAT(LeasesOf(20), SizeIs(10)) << "as many wait";
+  Join(11, 10);
+  const std::vector<LeaseOrder> others = Decide().leases;
+  ASSERT_THAT(others, SizeIs(10));
+  scheduler_.Completed(11, others[0].lease.fence, others[0].lease.run_id, 111);
+  EXPECT_THAT(RunsOf(Decide()), ElementsAre(6))
+      << "1 runs; at most 4 of 9 others have ended and are kept back";
+}
+
+TEST_F(SchedulerTest, HowLongARunTakesIsCountedFromWhenItsTurnCame) {
+  scheduler_ = Scheduler(LeaseOptions(2), kFirstFence);
+  scheduler_.RunTook(1.0);
+  Join(1);
+  SubmitRuns(1, 2);
+  const std::vector<LeaseOrder> leases = Decide().leases;
+  ASSERT_THAT(leases, SizeIs(2));
+  PassTime(milliseconds(2000), {1});
+  scheduler_.Completed(1, leases[0].lease.fence, leases[0].lease.run_id, 111);
+  Join(2);
+  EXPECT_THAT(PassTime(milliseconds(2000), {1, 2}).leases, IsEmpty()) << "run 2 has run for two seconds";
+  EXPECT_THAT(RunsOf(PassTime(milliseconds(500), {1, 2})), ElementsAre(2));
+}
+
 // Two runs at worker 10 and two at worker 11, which then finishes both.
 TEST_F(SchedulerTest, AnIdleWorkerTakesOverWhatWaitsBehindAnothersRun) {
   for (const double seconds : {0.0015, 0.02}) {
