@@ -1,5 +1,6 @@
 // The half of run_codec.h that speaks of results.
 #include <fmt/format.h>
+#include <google/protobuf/arena.h>
 #include <google/protobuf/stubs/logging.h>
 
 #include <algorithm>
@@ -128,7 +129,8 @@ Status CheckHash(const sim::RunResult& result) {
 
 Result<sim::RunResult> Decode(std::string_view bytes, Trust trust) {
   const google::protobuf::LogSilencer silencer;  // the error says enough
-  v1::RunResult message;
+  google::protobuf::Arena arena;                 // a result has some hundred parts
+  v1::RunResult& message = *google::protobuf::Arena::CreateMessage<v1::RunResult>(&arena);
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
     return Corrupt(fmt::format("the {} bytes of the run result do not parse", bytes.size()));
   }

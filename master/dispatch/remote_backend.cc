@@ -16,9 +16,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::size_t kBatch = 512;        // messages taken from the socket at once
-constexpr int kBatchesPerStep = 8;         // then leases and heartbeats get their turn
-constexpr milliseconds kLongestWait{100};  // so that silence and pool deaths are noticed
+constexpr std::size_t kBatch = 512;           // messages taken from the socket at once
+constexpr int kBatchesPerStep = 8;            // then leases and heartbeats get their turn
+constexpr milliseconds kLongestWait{200};     // so that silence is noticed
+constexpr milliseconds kSuperviseEvery{100};  // at most; deaths in the pool are heard of at once
 // Deaths and connections that ask to be admitted are heard of while waiting; with results without pause, so
 // often too.
 constexpr milliseconds kLookEvery{50};
@@ -103,7 +104,7 @@ Status RemoteBackend::Step() {
 
 Status RemoteBackend::SupervisePool(TimePoint now) {
   if (pool_ == nullptr || now < next_supervision_) return Ok{};
-  next_supervision_ = now + kLongestWait;
+  next_supervision_ = now + kSuperviseEvery;
   pool_->Observe(ViewForPool(), now);
   Result<std::vector<pid_t>> ended = pool_->Supervise(now);
   for (DispatchEvent& event : pool_->TakeEvents()) log_.Report(std::move(event.kind), event.text);
@@ -150,11 +151,8 @@ void RemoteBackend::BuryEnded(TimePoint now) {
 PoolView RemoteBackend::ViewForPool() const {
   PoolView view;
   view.unfinished_runs = shutting_down_ ? 0 : static_cast<int>(scheduler_.unfinished());
-  for (const auto& [worker, described] : scheduler_.DescribeWorkers()) {
-    const WorkerConnections::Worker* known = workers_.Find(worker);
-    if (known != nullptr && !described.lost) {
-      view.workers.push_back({known->allocation, !described.leases.empty()});
-    }
+  for (const auto& [id, worker] : workers_.all()) {
+    if (scheduler_.Connected(id)) view.workers.push_back({worker.allocation, scheduler_.Works(id)});
   }
   return view;
 }

@@ -9,7 +9,7 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr std::chrono::milliseconds kPollTime{100};
+constexpr std::chrono::milliseconds kPollTime{200};
 constexpr std::chrono::seconds kRateWindow{5};
 // While workers have this many runs each before them, a commit may wait for more results, because a commit
 // for every result is most of what the master costs. With fewer, the search is soon to be told.

@@ -36,7 +36,7 @@ class SearchLoop {
   Status Restore();
 
   // Until all searches have finished and the backend's audits are done, `stop` answers kNow, or it has
-  // answered kAfterRuns and what was running has ended. `on_progress` is called about ten times a second.
+  // answered kAfterRuns and what was running has ended. `on_progress` is called about five times a second.
   // Error: the store or the backend failed; whatever was acknowledged is stored.
   Result<CampaignEnd> Run(const std::function<StopWish()>& stop,
                           const std::function<void(const CampaignProgress&)>& on_progress);

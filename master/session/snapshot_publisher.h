@@ -19,8 +19,8 @@ struct SnapshotOptions {
   // Counts what has been committed: nothing is copied when nothing is new.
   std::function<std::uint64_t()> commits;
   std::chrono::milliseconds first_after{1000};
-  std::chrono::milliseconds at_least_every{5000};  // between two copies
-  int pause_per_copy = 100;                        // as many times as long as the copy took: 1 % of the time
+  std::chrono::milliseconds at_least_every{10'000};  // between two copies
+  int pause_per_copy = 100;  // as many times as long as the copy took: 1 % of the time
 };
 
 // Copies on a thread of its own from construction to destruction, which ends a copy that is under way. A copy

@@ -29,7 +29,7 @@ namespace gauntlet::master {
 // every ResultStore. The store must not be open twice.
 class SqliteStore final : public ResultStore {
  public:
-  static constexpr std::chrono::milliseconds kLongestWait{200};
+  static constexpr std::chrono::milliseconds kLongestWait{1000};
   static constexpr std::size_t kLargestGroup = 512;  // runs
   // Records that may wait for a commit; then adding blocks.
   static constexpr std::size_t kLargestQueue = 4096;
