@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -11,6 +12,8 @@
 #include <cerrno>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
+#include <cstdlib>
 #include <exception>
 #include <new>
 
@@ -60,12 +63,34 @@ std::optional<std::string> ReadResult(int fd) {
   return bytes;
 }
 
+// Lets what the process allocates from here on lie on pages of 2 MB where the system has them. Every page
+// that a new process touches first costs it: on a virtual machine 1.7 us for one of 4 kB, of which a run
+// takes hundreds, and 50 us for one of 2 MB. Malloc takes what is new from the end of its heap.
+void UseLargePages() {
+  constexpr std::uintptr_t kPage = 4096;                          // bytes
+  constexpr std::uintptr_t kLargePage = std::uintptr_t{2} << 20;  // bytes, of x86-64
+  constexpr std::uintptr_t kAdvised = 2 * kLargePage;             // more than most runs need
+  constexpr int kMostOfHeap = 32 << 20;                           // the largest block that comes from it
+  mallopt(M_MMAP_THRESHOLD, kMostOfHeap);
+  mallopt(M_TRIM_THRESHOLD, kMostOfHeap);
+  mallopt(M_TOP_PAD, static_cast<int>(kAdvised + kLargePage));
+  // What lies before the first large page is skipped: allocated and, but for its first byte, never touched.
+  const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0));
+  const std::uintptr_t first = (end + 2 * kPage + kLargePage - 1) / kLargePage * kLargePage;
+  auto* const skipped = static_cast<volatile char*>(std::malloc(first - end - kPage));
+  if (skipped == nullptr) return;
+  *skipped = 0;  // or else the compiler leaves the allocation out
+  // A wish: where it is not granted, the memory is as good.
+  madvise(reinterpret_cast<void*>(first), kAdvised, MADV_HUGEPAGE);
+}
+
 [[noreturn]] void LiveSeparately(const std::function<std::string()>& work, const SeparateOptions& options,
                                  pid_t parent, const std::string& folder, int result) {
   setpgid(0, 0);
   if (!DieWithParent(parent)) _exit(0);
   if (!MoveInto(folder)) _exit(kExitWithoutPlugin);
   Confine(options);
+  UseLargePages();
   const std::string bytes = CallOrEnd(work);
   if (!WriteResult(result, bytes)) OutOfMemory();
   _exit(0);

@@ -1,6 +1,8 @@
 #include "sim/geometry/directions.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "sim/geometry/series.h"
 #include "sim/geometry/trigonometry.h"
@@ -12,39 +14,63 @@ Directions::Lanes Directions::LanesHere() {
   return lanes;
 }
 
-void Directions::MakeRoom(std::size_t places) {
-  blocks_.resize(places / kBlock + 1);
-  places_.resize(kBlock * blocks_.size(), Vec2::UnitX());
+inline Vec2 Directions::Places::Position(std::size_t i) const {
+  std::array<double, 2> coordinates;
+  std::memcpy(coordinates.data(), position + i * step, sizeof coordinates);
+  return {coordinates[0], coordinates[1]};
 }
 
-void Directions::WorkOut(std::size_t count) {
-  const std::size_t blocks = (count + kBlock - 1) / kBlock;
-  if (lanes_ == Lanes::kFour ? WorkOutByFour(blocks) : WorkOutByTwo(blocks)) return;
-  for (std::size_t i = 0; i < kBlock * blocks; ++i) {
-    Block& block = blocks_[i / kBlock];
-    const double angle = AngleOf(places_[i]);
+inline double Directions::Places::Range(std::size_t i) const {
+  double length;
+  std::memcpy(&length, range + i * step, sizeof length);
+  return length;
+}
+
+namespace {
+
+// So near or far that a step of an arctangent may overflow or underflow.
+bool Extreme(const Vec2& position) {
+  const double larger = position.cwiseAbs().maxCoeff();
+  return !(larger > series::kShortest && larger < series::kLongest);
+}
+
+}  // namespace
+
+void Directions::WorkOut(const Places& places) {
+  if (places.count > kBlock * blocks_.size()) MakeRoom(2 * places.count);
+  if (lanes_ == Lanes::kFour ? WorkOutByFour(places) : WorkOutByTwo(places)) return;
+  for (std::size_t i = 0; i < places.count; ++i) {
+    const Vec2 position = places.Position(i);
+    const double angle = AngleOf(position);
     const SinCos both = SineCosine(angle);
+    const bool extreme = Extreme(position);
+    Block& block = blocks_[i / kBlock];
     block.angle[i % kBlock] = angle;
-    block.sine[i % kBlock] = both.sin;
-    block.cosine[i % kBlock] = both.cos;
+    block.sine[i % kBlock] = extreme ? both.sin : position.y() / places.Range(i);
+    block.cosine[i % kBlock] = extreme ? both.cos : position.x() / places.Range(i);
   }
 }
 
-// Atan2 and SineCosine step by step, with choices that are made for all of a block at once. (Compiled without
+// Atan2 step by step, with choices that are made for all of a block at once. (Compiled without
 // -ftrapping-math, which lets GCC do so.)
-[[gnu::always_inline]] inline bool Directions::WorkOutBlocks(std::size_t count) {
+[[gnu::always_inline]] inline bool Directions::WorkOutBlocks(const Places& places) {
   constexpr auto& kBase = series::kArctangentOfQuarters;
   std::array<double, kBlock> extreme{};
-  const Vec2* place = places_.data();
-  for (Block& block : std::span(blocks_).first(count)) {
+  for (std::size_t first = 0; first < places.count; first += kBlock) {
+    Block& block = blocks_[first / kBlock];
     std::array<double, kBlock> x;
     std::array<double, kBlock> y;
+    std::array<double, kBlock> range;
     for (std::size_t i = 0; i < kBlock; ++i) {
-      x[i] = place[i].x();
-      y[i] = place[i].y();
+      const std::size_t place = std::min(first + i, places.count - 1);
+      x[i] = places.Position(place).x();
+      y[i] = places.Position(place).y();
+      range[i] = places.Range(place);
     }
-    place += kBlock;
     for (std::size_t i = 0; i < kBlock; ++i) {
+      block.cosine[i] = x[i] / range[i];
+      block.sine[i] = y[i] / range[i];
+
       const double opposite = std::fabs(y[i]);
       const double adjacent = std::fabs(x[i]);
       const double larger = opposite > adjacent ? opposite : adjacent;
@@ -64,27 +90,18 @@ void Directions::WorkOut(std::size_t count) {
       angle = opposite > adjacent ? 0.5 * kPi - angle : angle;
       angle = x[i] < 0.0 ? kPi - angle : angle;
       const double below = angle < kPi ? -angle : angle;  // -pi is the same direction as pi
-      angle = y[i] < 0.0 ? below : angle;
-      block.angle[i] = angle;
-
-      const series::Reduced reduced = series::ReduceToOctant(angle);
-      const double s = series::Sine(reduced.remainder);
-      const double k = series::Cosine(reduced.remainder);
-      const double quadrant = reduced.quadrant;  // -2 to 2
-      const bool odd = std::fabs(quadrant) == 1.0;
-      block.sine[i] = (odd ? k : s) * (std::fabs(quadrant - 0.5) < 1.0 ? 1.0 : -1.0);
-      block.cosine[i] = (odd ? s : k) * (std::fabs(quadrant + 0.5) < 1.0 ? 1.0 : -1.0);
+      block.angle[i] = y[i] < 0.0 ? below : angle;
     }
   }
   return extreme[0] + extreme[1] + extreme[2] + extreme[3] == 0.0;
 }
 
-bool Directions::WorkOutByTwo(std::size_t count) {
-  return WorkOutBlocks(count);
+bool Directions::WorkOutByTwo(const Places& places) {
+  return WorkOutBlocks(places);
 }
 
-[[gnu::target("avx2")]] bool Directions::WorkOutByFour(std::size_t count) {
-  return WorkOutBlocks(count);
+[[gnu::target("avx2")]] bool Directions::WorkOutByFour(const Places& places) {
+  return WorkOutBlocks(places);
 }
 
 }  // namespace gauntlet::sim

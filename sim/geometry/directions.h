@@ -1,5 +1,7 @@
-// The directions of many places at once, to the last bit as AngleOf and SineCosine give them one by one, in a
-// fraction of the time: several are worked out by each instruction.
+// The directions of many places at once, in a fraction of the time that one after the other takes: several
+// are worked out by each instruction. An angle is to the last bit that of AngleOf; its sine and cosine are
+// the place divided by its distance, which needs no angle first and is nearer to them than those of the
+// rounded angle.
 #pragma once
 
 #include <array>
@@ -20,12 +22,15 @@ class Directions {
   // Allocates nothing for up to `room` places.
   explicit Directions(std::size_t room, Lanes lanes = LanesHere()) : lanes_(lanes) { MakeRoom(room); }
 
-  // Of the members `position` of what was seen, any finite ones.
+  // Of the members `position` of what was seen, any finite ones, whose length is `range`. Of no length: angle
+  // and sine 0.
   template <typename Seen>
   void WorkOut(std::span<const Seen> all) {
-    if (all.size() > places_.size()) MakeRoom(2 * all.size());
-    for (std::size_t i = 0; i < all.size(); ++i) places_[i] = all[i].position;
-    WorkOut(all.size());
+    if (all.empty()) return;
+    WorkOut({.position = reinterpret_cast<const std::byte*>(&all.front().position),
+             .range = reinterpret_cast<const std::byte*>(&all.front().range),
+             .step = sizeof(Seen),
+             .count = all.size()});
   }
 
   // Of one of those.
@@ -42,16 +47,26 @@ class Directions {
     std::array<double, kBlock> cosine{};
   };
 
+  // Where the positions and ranges lie in memory, the next one `step` bytes further.
+  struct Places {
+    const std::byte* position = nullptr;
+    const std::byte* range = nullptr;
+    std::size_t step = 0;
+    std::size_t count = 0;
+
+    Vec2 Position(std::size_t i) const;
+    double Range(std::size_t i) const;
+  };
+
   const Block& BlockOf(std::size_t i) const { return blocks_[i / kBlock]; }
-  void MakeRoom(std::size_t places);
-  void WorkOut(std::size_t count);
-  // The first blocks. False when a place is so near or far that a step overflows or underflows.
-  bool WorkOutBlocks(std::size_t count);
-  bool WorkOutByTwo(std::size_t count);
-  bool WorkOutByFour(std::size_t count);
+  void MakeRoom(std::size_t places) { blocks_.resize(places / kBlock + 1); }
+  void WorkOut(const Places& places);
+  // False when a place is so near or far that a step overflows or underflows.
+  bool WorkOutBlocks(const Places& places);
+  bool WorkOutByTwo(const Places& places);
+  bool WorkOutByFour(const Places& places);
 
   Lanes lanes_;
-  std::vector<Vec2> places_;
   std::vector<Block> blocks_;
 };
 

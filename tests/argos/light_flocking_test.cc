@@ -57,7 +57,7 @@ class CentimetreFlocker final : public sim::Controller {
     for (const sim::Blob& blob : blobs) {
       const double distance = blob.range * 100.0;
       if (blob.color != kFlockmateColor || distance >= 1.8 * kTargetDistance) continue;
-      if (distance > 0.0) sum += Attraction(distance) * sim::UnitVector(blob.Bearing());
+      if (distance > 0.0) sum += Attraction(distance) * Vec2(blob.position / blob.range);
       ++count;
     }
     if (count == 0) return Vec2::Zero();
