@@ -131,6 +131,14 @@ TEST_F(BuildController, SaysWhatToDoInsteadOfWhatCannotBe) {
                       "REGISTER_LOOP_FUNCTIONS(CLoop, \"loop\")\n"),
                  "-o", library},
                 "let a scenario judge the swarm");
+  for (const std::string kind : {"actuator", "sensor"}) {
+    const std::string upper = kind == "sensor" ? "SENSOR" : "ACTUATOR";
+    ExpectRefusal(
+        {File("device.cpp", "#include <argos3/core/simulator/" + kind + ".h>\nREGISTER_" + upper +
+                                "(int, \"radio\", \"default\", \"\", \"1.0\", \"\", \"\", \"Usable\")\n"),
+         "-o", library},
+        "radio: Gauntlet's foot-bot has the devices of ARGoS' foot-bot");
+  }
   ExpectRefusal({File("window.cpp",
                       "#include <argos3/plugins/simulator/visualizations/qt-opengl/"
                       "qtopengl_user_functions.h>\n"),
