@@ -39,6 +39,10 @@ std::optional<sim::Genome> Mirrored(const sim::Genome& obstacles, const Way& way
 std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& way, const GenomeSpec& spec,
                                   const GenomeGenerator& generator, sim::RandomStream& random);
 
+// Every obstacle as long as any may be, or nearly, and turned a little. Nothing when the layout is not valid.
+std::optional<sim::Genome> Longest(const sim::Genome& obstacles, const GenomeSpec& spec,
+                                   const GenomeGenerator& generator, sim::RandomStream& random);
+
 // Every obstacle moved, stretched and turned a little. Nothing when the layout is not valid.
 std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeSpec& spec,
                                     const GenomeGenerator& generator, sim::RandomStream& random);

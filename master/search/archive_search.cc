@@ -5,15 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <ranges>
-#include <set>
 
 #include "base/check.h"
 #include "base/number_text.h"
 #include "master/experiment/failure_cells.h"
-#include "master/search/archive_emitters.h"
-#include "sim/arena/arena.h"
 #include "sim/arena/genome.h"
-#include "sim/arena/path_planner.h"
 
 namespace gauntlet::master {
 namespace {
@@ -60,9 +56,6 @@ std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
                   Get(experiment, kRuns), kFewestFailures, Get(experiment, kSlots), needed)};
 }
 
-// Obstacles of a random case that are tried alone: so many nearest to the failure and so many in the way.
-constexpr std::array<std::pair<std::ptrdiff_t, std::size_t>, 6> kFirstTried = {
-    {{1, 0}, {2, 0}, {2, 1}, {3, 0}, {3, 1}, {4, 1}}};
 // To take the place of an elite of as many obstacles: of many that are tried some fail three times by luck.
 constexpr int kFailuresToShorten = 5;
 constexpr int kMaxRuns = 8;                   // of an elite; then it is known well enough
@@ -70,10 +63,6 @@ constexpr double kReliable = 0.6;             // of its runs an elite has to be 
 constexpr double kBeyondDoubt = 0.8;          // with less it is run again before anything new begins
 constexpr std::ptrdiff_t kMostElsewhere = 1;  // failures of a layout outside its cell, when it is admitted
 constexpr std::ptrdiff_t kEnoughWithOneElsewhere = 5;
-constexpr std::uint32_t kMostAcross = 3;  // obstacles in a row across the way
-constexpr int kTries = 20;                // to make a layout that is valid
-constexpr int kDraws = 4;                 // random cases of which the most promising one is simulated
-constexpr double kPathStep = 0.2;         // m, between the points of a path that are looked at
 
 Race Judge(const FailureTally& tally) {
   const int passes = tally.passes + tally.errors;
@@ -226,9 +215,7 @@ void ArchiveSearch::Continue(Slot& slot) {
     race = Race::kDrop;
   }
   if (race == Race::kAdmit) race = JudgePlace(finding);
-  if (race == Race::kAdmit && !only_deletion_ && OnlyShortens(finding) &&
-      finding.tally.failures < kFailuresToShorten)
-    race = Race::kOpen;
+  if (race == Race::kAdmit && !only_deletion_) race = JudgeShortening(finding);
   if (race == Race::kOpen) return;
   if (race == Race::kAdmit) {
     slot.plan.clear();
@@ -244,9 +231,12 @@ bool ArchiveSearch::Matters(std::size_t cell, const LayoutSize& size) const {
   return only_deletion_ || archive_.WouldWin(cell, size);
 }
 
-bool ArchiveSearch::OnlyShortens(const Finding& finding) const {
+Race ArchiveSearch::JudgeShortening(const Finding& finding) const {
   const Finding* elite = archive_.EliteOf(archive_.grid().CellOf(finding.Middle()));
-  return elite != nullptr && elite->size().obstacles == finding.size().obstacles;
+  if (elite == nullptr || elite->size().obstacles != finding.size().obstacles) return Race::kAdmit;
+  if (finding.tally.failures < kFailuresToShorten) return Race::kOpen;
+  if (!Late() || prior_.Expected(finding.tally) >= prior_.Expected(elite->tally)) return Race::kAdmit;
+  return finding.tally.runs() + finding.tally.errors < kMaxRuns ? Race::kOpen : Race::kDrop;
 }
 
 Race ArchiveSearch::JudgePlace(const Finding& finding) const {
@@ -259,7 +249,13 @@ Race ArchiveSearch::JudgePlace(const Finding& finding) const {
 }
 
 void ArchiveSearch::Rechecked(Slot& slot) {
-  if (prior_.Expected(slot.finding.tally) >= kReliable) archive_.Add(std::move(slot.finding));
+  Finding& elite = slot.finding;
+  const double expected = prior_.Expected(elite.tally);
+  const Finding* next = archive_.EliteOf(archive_.grid().CellOf(elite.Middle()));
+  const bool gives_way = Late() && next != nullptr && next->size().obstacles <= elite.size().obstacles &&
+                         expected < kBeyondDoubt && expected < prior_.Expected(next->tally);
+  if (Late()) elite.mirrored = false;
+  if (expected >= kReliable && !gives_way) archive_.Add(std::move(elite));
   UpdatePopulation();
 }
 
@@ -309,100 +305,6 @@ bool ArchiveSearch::BeginDrawn(Slot& slot, sim::RandomStream& random) {
   return draw < jittered ? BeginJittered(slot, random) : BeginRecheck(slot, 1.0);
 }
 
-void ArchiveSearch::BeginRandom(Slot& slot, sim::RandomStream& random) {
-  std::optional<sim::TestCase> best;
-  double most = -1.0;
-  const int draws = places_ && !archive_.shelves().empty() ? kDraws : 1;
-  for (int drawn = 0; drawn < draws;) {
-    Result<sim::TestCase> test_case = generator_.RandomTestCase(random);
-    if (!test_case.ok()) continue;  // Create has found that there are some
-    ++drawn;
-    const double promise = draws == 1 ? 0.0 : Promise(*test_case);
-    if (promise <= most) continue;
-    most = promise;
-    best = *std::move(test_case);
-  }
-  Begin(slot, Emitter::kRandom, std::move(best->obstacles), 0);
-}
-
-double ArchiveSearch::Promise(const sim::TestCase& test_case) const {
-  const sim::OccupancyGrid grid(sim::Arena(test_case), requirements_.inflation);
-  std::set<std::size_t> cells;
-  const std::vector<sim::Vec2> path = sim::PlanPath(grid, way_.start, way_.goal);
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    const double length = (path[i] - path[i - 1]).norm();
-    const int points = 1 + static_cast<int>(length / kPathStep);
-    for (int k = 0; k <= points; ++k) {
-      const sim::Vec2 point = path[i - 1] + (path[i] - path[i - 1]) * (static_cast<double>(k) / points);
-      cells.insert(archive_.grid().CellOf({point.x(), point.y()}));
-    }
-  }
-  double promise = 0.0;
-  for (const std::size_t cell : cells) {
-    const Finding* elite = archive_.EliteOf(cell);
-    const std::size_t obstacles = elite == nullptr
-                                      ? 2 * static_cast<std::size_t>(setup_.experiment.genome.genes)
-                                      : elite->size().obstacles;
-    promise += static_cast<double>(obstacles - 1);
-  }
-  return promise;
-}
-
-const Finding& ArchiveSearch::DrawElite(sim::RandomStream& random) const {
-  const auto index = random.Below(static_cast<std::uint32_t>(archive_.shelves().size()));
-  return std::next(archive_.shelves().begin(), index)->second.front();
-}
-
-bool ArchiveSearch::BeginMirrored(Slot& slot) {
-  for (const auto& [cell, shelf] : archive_.shelves()) {
-    const Finding& elite = shelf.front();
-    if (elite.mirrored) continue;
-    const Descriptor middle = elite.Middle();
-    const sim::Vec2 target = Mirrored({middle[0], middle[1]}, way_);
-    const std::size_t target_cell = archive_.grid().CellOf({target.x(), target.y()});
-    if (!archive_.WouldWin(target_cell, elite.size())) continue;
-    archive_.SetMirrored(cell);
-    std::optional<sim::Genome> mirrored =
-        Mirrored(elite.individual.test_case.obstacles, way_, setup_.experiment.genome, generator_);
-    if (!mirrored) continue;
-    slot.cell = target_cell;
-    Begin(slot, Emitter::kMirrored, *std::move(mirrored), elite.individual.id);
-    return true;
-  }
-  return false;
-}
-
-bool ArchiveSearch::BeginAcross(Slot& slot, sim::RandomStream& random) {
-  for (int i = 0; i < kTries; ++i) {
-    const sim::Vec2 place = way_.start + (way_.goal - way_.start) * random.Uniform();
-    const auto count = static_cast<int>(1 + random.Below(kMostAcross));
-    // One obstacle breaks a swarm where it stands, if anywhere.
-    const Finding* elite =
-        places_ && count == 1 ? archive_.EliteOf(archive_.grid().CellOf({place.x(), place.y()})) : nullptr;
-    if (elite != nullptr && elite->size().obstacles == 1) continue;
-    std::optional<sim::Genome> row = Across(place, count, way_, setup_.experiment.genome, generator_, random);
-    if (!row) continue;
-    Begin(slot, Emitter::kAcross, *std::move(row), 0);
-    return true;
-  }
-  return false;
-}
-
-bool ArchiveSearch::BeginJittered(Slot& slot, sim::RandomStream& random) {
-  for (int i = 0; i < kTries; ++i) {
-    const Finding& elite = DrawElite(random);
-    sim::Genome obstacles = elite.individual.test_case.obstacles;
-    if (obstacles.size() < 2) continue;
-    obstacles = Without(obstacles, random.Below(static_cast<std::uint32_t>(obstacles.size())));
-    std::optional<sim::Genome> jittered = Jittered(obstacles, setup_.experiment.genome, generator_, random);
-    if (!jittered) continue;
-    slot.cell = archive_.grid().CellOf(elite.Middle());
-    Begin(slot, Emitter::kJittered, *std::move(jittered), elite.individual.id);
-    return true;
-  }
-  return false;
-}
-
 bool ArchiveSearch::BeginRecheck(Slot& slot, double below) {
   const Finding* worst = nullptr;
   double least = below;
@@ -418,44 +320,6 @@ bool ArchiveSearch::BeginRecheck(Slot& slot, double below) {
   slot.emitter = Emitter::kRecheck;
   ++accounts_[static_cast<std::size_t>(Emitter::kRecheck)].layouts;
   return true;
-}
-
-std::vector<std::size_t> ArchiveSearch::Order(const sim::Genome& obstacles, const Descriptor& failure) const {
-  if (places_) return ByDistance(obstacles, {failure[0], failure[1]});
-  return ByDistanceToWay(obstacles, way_);
-}
-
-void ArchiveSearch::PlanNearest(Slot& slot) {
-  const sim::Genome& obstacles = slot.finding.individual.test_case.obstacles;
-  const Descriptor& failure = slot.finding.failures.front();
-  slot.cell = archive_.grid().CellOf(failure);
-  slot.parent = slot.finding.individual.id;
-  const std::vector<std::size_t> nearest = Order(obstacles, failure);
-  const std::vector<std::size_t> in_the_way = ByDistanceToWay(obstacles, way_);
-  for (const auto& [near, on_way] : kFirstTried) {
-    std::vector<std::size_t> kept(nearest.begin(), nearest.begin() + std::min(near, std::ssize(nearest)));
-    std::size_t missing = on_way;
-    for (const std::size_t index : in_the_way) {
-      if (missing == 0 || std::ranges::find(kept, index) != kept.end()) continue;
-      kept.push_back(index);
-      --missing;
-    }
-    if (kept.size() >= obstacles.size()) break;
-    slot.plan.push_back({Emitter::kNearest, Keep(obstacles, std::move(kept))});
-  }
-  slot.root = std::move(slot.finding);
-}
-
-void ArchiveSearch::PlanWithout(Slot& slot, const Finding& found) {
-  const sim::Genome& obstacles = found.individual.test_case.obstacles;
-  slot.cell = archive_.grid().CellOf(found.Middle());
-  slot.parent = found.individual.id;
-  if (obstacles.size() < 2 || slot.emitter == Emitter::kMirrored) return;
-  std::vector<std::size_t> order = Order(obstacles, found.Middle());
-  std::ranges::reverse(order);
-  for (const std::size_t index : order) {
-    slot.plan.push_back({Emitter::kWithout, Without(obstacles, index)});
-  }
 }
 
 void ArchiveSearch::UpdatePopulation() {

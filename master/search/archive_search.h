@@ -41,7 +41,8 @@ enum class Race { kOpen, kAdmit, kDrop };
 // When nothing follows, a slot goes on with a random case, obstacles across the way, an elite moved to
 // another cell, a changed elite, or one more run of an elite. Elites of which fewer than 80 % of further runs
 // are expected to fail (FailurePrior) are run again before anything new begins, and leave the archive when
-// fewer than 60 % are.
+// fewer than 60 % are, or when the next of their cell has as few obstacles and is expected to fail more
+// often. What is only shorter than an elite is admitted when it is expected to fail as often.
 //
 // As "random-deletion", the baseline, it knows nothing of cells: random cases alone, each run until it is
 // admitted or dropped and then shortened by one obstacle, the farthest from the way first, as long as what is
@@ -62,6 +63,9 @@ class ArchiveSearch : public PopulationSearch {
   bool AtBoundary() const override;
 
   static constexpr std::uint64_t kSaveInterval = 100;
+  // Evaluations after which it is late. Chosen: of flocking's cells most hold one or two obstacles then, and
+  // few are left that rows of up to three would win.
+  static constexpr std::uint64_t kEarly = 1000;
 
  private:
   struct Step {
@@ -85,6 +89,7 @@ class ArchiveSearch : public PopulationSearch {
   Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
 
   std::uint64_t Planned() const;
+  bool Late() const { return evaluations_done_ > kEarly; }
   // What the outcome says of the finding.
   void Count(const EvaluationOutcome& outcome, Finding& finding) const;
   // Makes the slot's next layout, when what it has is decided.
@@ -100,6 +105,11 @@ class ArchiveSearch : public PopulationSearch {
   double Promise(const sim::TestCase& test_case) const;
   bool BeginMirrored(Slot& slot);
   bool BeginAcross(Slot& slot, sim::RandomStream& random);
+  // With no more obstacles in a row than win a cell; one alone is nearly as long as any may be.
+  bool BeginNeeded(Slot& slot, sim::RandomStream& random);
+  // The most obstacles that would win a cell, which is drawn from those that hold none or more than one. 0:
+  // there is none.
+  std::uint32_t DrawMostAcross(sim::RandomStream& random) const;
   bool BeginJittered(Slot& slot, sim::RandomStream& random);
   // Of the elite that is expected to fail least, if that is less than `below`.
   bool BeginRecheck(Slot& slot, double below);
@@ -107,14 +117,16 @@ class ArchiveSearch : public PopulationSearch {
   void PlanWithout(Slot& slot, const Finding& found);
   // Whether it is worth knowing that a layout of this size fails in the cell.
   bool Matters(std::size_t cell, const LayoutSize& size) const;
-  // Whether it would take the place of an elite of as many obstacles.
-  bool OnlyShortens(const Finding& finding) const;
+  // Of what is to be admitted: when it has as many obstacles as the elite of its cell, it has to be as
+  // reliable.
+  Race JudgeShortening(const Finding& finding) const;
   // Whether a layout that fails often enough does so in one cell.
   Race JudgePlace(const Finding& finding) const;
   void Rechecked(Slot& slot);
   // The obstacles in the order in which they are probably needed.
   std::vector<std::size_t> Order(const sim::Genome& obstacles, const Descriptor& failure) const;
   const Finding& DrawElite(sim::RandomStream& random) const;
+  const Finding* DrawEliteOfOne(sim::RandomStream& random) const;  // nullptr: there is none
   void UpdatePopulation();
   static void SaveFinding(const Finding& finding, CanonicalEncoder& encoder);
   Result<Finding> RestoreFinding(CanonicalDecoder& decoder) const;

@@ -77,6 +77,29 @@ TEST(ArchiveEmittersTest, WhatIsDrawnIsValidAndOnTheGridOfTheGenome) {
   EXPECT_GT(valid, 100);
 }
 
+TEST(ArchiveEmittersTest, TheLongestStandsWhereItWasAndIsTurnedALittle) {
+  const SearchSetup setup = ToySetup();
+  const GenomeSpec& spec = setup.experiment.genome;
+  const GenomeGenerator generator = MakeGenerator(setup);
+  const sim::ObstacleGene gene = {.x = 0.3, .y = -0.4, .length = 0.5, .width = 0.2, .orientation_deg = 90.0};
+  sim::RandomStream random = GenomeStream(1, 1);
+  double turn = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    const auto longest = Longest({gene}, spec, generator, random);
+    ASSERT_TRUE(longest.has_value());
+    const sim::ObstacleGene& made = longest->front();
+    EXPECT_EQ(made.x, gene.x);
+    EXPECT_EQ(made.y, gene.y);
+    EXPECT_GE(made.length, 1.8);
+    EXPECT_LE(made.length, spec.length_max);
+    turn = std::max(turn, std::abs(made.orientation_deg - gene.orientation_deg));
+  }
+  EXPECT_GT(turn, 20.0);
+  EXPECT_LT(turn, 90.0);
+  EXPECT_EQ(Longest({{.x = 2.5, .y = 2.5}}, spec, generator, random), std::nullopt)
+      << "where the swarm starts";
+}
+
 TEST(ArchiveEmittersTest, ARowLiesAcrossTheWay) {
   const SearchSetup setup = ToySetup();
   const GenomeGenerator generator = MakeGenerator(setup);

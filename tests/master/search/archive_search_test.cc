@@ -117,6 +117,55 @@ TEST(ArchiveSearchTest, AnEliteThatStopsFailingLeaves) {
   EXPECT_GT(StatisticOf(*search, "recheck_runs"), 0.0);
 }
 
+// All failures are of one kind.
+SearchSetup OneCell(int runs) {
+  SearchSetup setup = ArchiveSetup(runs);
+  setup.experiment.search.cells = "split_x:-3:3:1 split_y:-3:3:1";
+  return setup;
+}
+
+TEST(ArchiveSearchTest, RowsThatCannotBecomeTheSmallestAreNoLongerTried) {
+  const auto search = MakeArchive(OneCell(1400));
+  const std::vector<EvaluationRequest> asked = Drive(*search, 1, BreaksAtTraps);
+  const auto rows = [&](std::size_t from, std::size_t to) {
+    return std::count_if(asked.begin() + static_cast<std::ptrdiff_t>(from),
+                         asked.begin() + static_cast<std::ptrdiff_t>(to),
+                         [](const EvaluationRequest& request) {
+                           const std::size_t obstacles = request.test_case.obstacles.size();
+                           return request.parents.empty() && (obstacles == 2 || obstacles == 3);
+                         });
+  };
+  EXPECT_GT(rows(0, 400), 50);
+  ASSERT_EQ(StatisticOf(*search, "cells_with_up_to_1"), 1.0);
+  EXPECT_LE(rows(1040, 1400), 5) << "while the elite is run again the cell is open";
+}
+
+TEST(ArchiveSearchTest, LateWhatIsShorterHasToBeAsReliable) {
+  const auto search = MakeArchive(OneCell(1300));
+  Drive(*search, 1, [&](const EvaluationRequest& request) {
+    if (!BreaksAtTraps(request)) return false;
+    if (SizeOf(request.test_case.obstacles).length > 1.5) return true;
+    return search->Progress().evaluations_done > ArchiveSearch::kEarly && request.evaluation != 3;
+  });
+  ASSERT_EQ(search->Population().size(), 1U);
+  const LayoutSize size = SizeOf(search->Population().front().test_case.obstacles);
+  EXPECT_EQ(size.obstacles, 1U);
+  EXPECT_GT(size.length, 1.5) << "shorter ones fail in 7 of 8 runs";
+}
+
+TEST(ArchiveSearchTest, ElitesOfOneObstacleAreMovedToWhereMoreAreNeeded) {
+  const auto search = MakeArchive(ArchiveSetup(2000));
+  std::map<IndividualId, std::size_t> sizes;
+  int moved = 0;
+  for (const EvaluationRequest& request : Drive(*search, 1, BreaksAtTraps)) {
+    const sim::Genome& obstacles = request.test_case.obstacles;
+    const bool is_new = sizes.emplace(request.individual, obstacles.size()).second;
+    if (!is_new || obstacles.size() != 1 || request.parents.empty()) continue;
+    if (sizes.at(request.parents.front()) == 1 && obstacles.front().length >= 1.8) ++moved;
+  }
+  EXPECT_GT(moved, 20);
+}
+
 TEST(ArchiveSearchTest, WhatFailsByLuckLeavesWhereLayoutsFailNowAndThen) {
   std::size_t elites = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
