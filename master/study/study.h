@@ -109,7 +109,8 @@ struct Study {
 // A shipped study by its name, or a file by its path (with a '/' or ending in ".toml"). Files that it
 // includes or takes published figures from stand beside it. Errors begin with the place and name what would
 // be right. Published figures of a tuning are left out when experiment or settings are changed: they are of
-// another one. `plugins`: the SHA-256 of those that may bring controllers, which are known.
+// another one. `plugins`: the SHA-256 of those that may bring controllers, which are known; those that the
+// files of its experiments name (PluginFilesOf) are made known and taken, too.
 Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes = {},
                         const std::vector<std::string>& plugins = {});
 // The same of texts that were read before.

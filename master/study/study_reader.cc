@@ -13,6 +13,7 @@
 #include "base/nearest_name.h"
 #include "base/parse_number.h"
 #include "base/system/atomic_file.h"
+#include "master/directory/plugins.h"
 #include "master/experiment/experiment_file.h"
 #include "master/experiment/seed_list.h"
 #include "master/report/csv_column.h"
@@ -32,7 +33,11 @@ constexpr std::size_t kMostSearches = 1000;
 
 class Reader {
  public:
-  Reader(ReadText read, TuningChanges changes, std::vector<std::string> plugins) : read_(std::move(read)) {
+  // Whose libraries its experiments may take: those that were given, or also those that their files name.
+  enum class Libraries { kGiven, kGivenAndNamed };
+
+  Reader(ReadText read, TuningChanges changes, std::vector<std::string> plugins, Libraries libraries)
+      : read_(std::move(read)), libraries_(libraries) {
     study_.changes = std::move(changes);
     study_.plugins = std::move(plugins);
     catalogue_.plugins = study_.plugins;
@@ -192,6 +197,7 @@ class Reader {
       });
       sets.emplace_back("search.algorithm=cases");
     }
+    if (const Status added = AddLibrariesOf(name); !added) return added;
     Result<Experiment> experiment = LoadExperiment(name, sets, catalogue_);
     if (!experiment) {
       return Error{experiment.error().kind,
@@ -207,6 +213,25 @@ class Reader {
     return Ok{};
   }
 
+  // Makes known what the experiment's file asks for by its key plugins. What is wrong with the file itself is
+  // said by who reads it next.
+  Status AddLibrariesOf(const std::string& experiment) {
+    if (libraries_ == Libraries::kGiven) return Ok{};
+    const Result<ExperimentText> text = ReadExperimentText(experiment);
+    if (!text) return Ok{};
+    const Result<std::vector<std::string>> files = PluginFilesOf(*text);
+    if (!files) return Ok{};
+    for (const std::string& file : *files) {
+      if (!named_libraries_.insert(file).second) continue;
+      const Result<std::string> hash = AddPluginFile(file);
+      if (!hash) return hash.error();
+      if (std::ranges::count(study_.plugins, *hash) > 0) continue;
+      study_.plugins.push_back(*hash);
+      catalogue_.plugins.push_back(*hash);
+    }
+    return Ok{};
+  }
+
   Status AddAnalysis(const StudyFileTable& table) {
     if (std::ranges::count(study_.analyses, table.name, &StudyAnalysis::name) > 0) {
       return InvalidInput(fmt::format("{}: there is an analysis '{}' already", table.where, table.name));
@@ -217,6 +242,9 @@ class Reader {
     analysis.where = table.where;
     analysis.keys.insert(table.keys.begin(), table.keys.end());
     if (analysis.kind != "tune") return Ok{};
+    const std::string& experiment =
+        study_.changes.experiment.empty() ? table.Key("experiment") : study_.changes.experiment;
+    if (const Status added = AddLibrariesOf(experiment); !added) return added;
     Result<ExpandedTuning> expanded = ExpandTuning(table, study_.changes, catalogue_);
     if (!expanded) return expanded.error();
     analysis.tuning = std::move(expanded->tuning);
@@ -289,6 +317,8 @@ class Reader {
 
   ReadText read_;
   Study study_;
+  Libraries libraries_;
+  std::set<std::string> named_libraries_;  // files that are known
   Catalogue catalogue_ = BuiltInCatalogue();
   std::map<std::string, std::pair<std::string, std::vector<std::string>>> sources_;  // by part
 };
@@ -354,7 +384,7 @@ Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& ch
     return Error{ErrorKind::kNotFound,
                  fmt::format("there is no study file '{}'", (path->parent_path() / file).string())};
   };
-  return Reader(read, changes, plugins).Read(path->filename().string());
+  return Reader(read, changes, plugins, Reader::Libraries::kGivenAndNamed).Read(path->filename().string());
 }
 
 Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file,
@@ -364,7 +394,7 @@ Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const s
     if (found != texts.end()) return found->second;
     return Error{ErrorKind::kCorrupt, fmt::format("the study's file '{}' is missing", file)};
   };
-  return Reader(read, changes, plugins).Read(main_file);
+  return Reader(read, changes, plugins, Reader::Libraries::kGiven).Read(main_file);
 }
 
 }  // namespace gauntlet::master

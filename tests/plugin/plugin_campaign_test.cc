@@ -181,6 +181,47 @@ candidates.genome.genes = "1, 8"
   }
 }
 
+TEST_F(PluginCampaign, StudiesAndTuningsTakeThePluginsOfTheirExperiments) {
+  const std::string library = scratch_ / "libtwin.so";
+  fs::copy_file(PluginPath("of_twins"), library);
+  std::ofstream(experiment_) << "scenario = 'light-flocking'\ncontroller = 'twin'\nplugins = ['libtwin.so']\n"
+                             << "[scenario_parameters]\ntime_limit = 3\n";
+  const std::string study = scratch_ / "small.toml";
+  std::ofstream(study) << "name = 'small'\n[part.some]\nkind = 'random'\ncases = 2\nseeds = '1'\n"
+                       << "experiment = '" << experiment_ << "'\n";
+  const std::string candidates = scratch_ / "candidates.toml";
+  std::ofstream(candidates) << R"(name = "small"
+[tune.small]
+title = "a small tuning"
+experiment = "flocking"
+repeats = 1
+sizes = "1, 5"
+set.search.population = 4
+set.search.generations = 1
+candidates.genome.genes = "1, 8"
+)";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"study", study},
+        std::vector<std::string>{"tune", experiment_, "--candidates", candidates}}) {
+    SCOPED_TRACE(command[0]);
+    const std::string dir = scratch_ / command[0];
+    std::vector<std::string> arguments = command;
+    arguments.insert(arguments.end(), {"--dir", dir, "--workers", "1", "--quiet"});
+    fs::rename(library, scratch_ / "away.so");
+    const ProcessResult without = Gauntlet(arguments);
+    EXPECT_EQ(without.exit_code, 2);
+    EXPECT_THAT(without.err, HasSubstr("libtwin.so"));
+    fs::rename(scratch_ / "away.so", library);
+    const ProcessResult whole = Gauntlet(arguments);
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    EXPECT_EQ(Show(dir + "/searches")["runs_failed"], 0);
+    fs::rename(library, scratch_ / "away.so");
+    const ProcessResult resumed = Gauntlet({"resume", dir, "--quiet"});
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    fs::rename(scratch_ / "away.so", library);
+  }
+}
+
 TEST_F(PluginCampaign, FaultyRunsAreResultsThatSaySo) {
   const ProcessResult result =
       Random("flocking", {"--plugin", PluginPath("of_faults"), "--set", "controller=throw"});
