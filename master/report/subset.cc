@@ -199,6 +199,11 @@ Result<std::vector<SetPart>> SplitSet(const std::string& text) {
   for (const std::string& one : fs::exists(text, error) ? std::vector{text} : Split(text, ',')) {
     Result<SetPart> part = SplitPart(one);
     if (!part) return part.error();
+    const auto same = [&](const SetPart& other) {
+      return other.rest == part->rest && fs::equivalent(other.path, part->path, error);
+    };
+    if (std::ranges::any_of(parts, same))
+      return InvalidInput(fmt::format("{} is in the set '{}' twice: its runs would count twice", one, text));
     parts.push_back(*std::move(part));
   }
   return parts;

@@ -36,7 +36,7 @@ struct SetPart {
   std::string path;  // of a campaign or a CSV file; the longest beginning that exists, so it may hold colons
   std::string rest;  // behind the colon
 };
-// kNotFound when there is nothing of such a name.
+// kNotFound when there is nothing of such a name, kInvalidInput when one is named twice.
 Result<std::vector<SetPart>> SplitSet(const std::string& text);
 
 struct OpenedSubset {

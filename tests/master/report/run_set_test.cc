@@ -77,6 +77,19 @@ TEST(ParseSubsetTest, KnowsEverySubsetAndRefusesOthers) {
   }
 }
 
+TEST(SplitSetTest, RefusesWhatIsNamedTwice) {
+  const testing_support::TemporaryDirectory folder;
+  const std::string file = folder / "runs.csv";
+  std::ofstream(file) << "a,b\n1,2\n";
+  const auto two = SplitSet(file + ":a," + file + ":b");
+  ASSERT_TRUE(two.ok()) << two.error().message;
+  EXPECT_EQ(two->size(), 2u);
+  const auto twice = SplitSet(file + ":a," + (folder / "./runs.csv") + ":a");
+  ASSERT_FALSE(twice.ok());
+  EXPECT_EQ(twice.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_THAT(twice.error().message, HasSubstr("./runs.csv:a is in the set"));
+}
+
 TEST(AddRunsTest, AnEvolutionIsOneUnitAndItsFinalRunsAreTheNewestOfItsMembers) {
   const std::vector<Experiment> experiments = {SmallExperiment({"search.replicates=2"})};
   MemoryStore store = Campaign(experiments);
