@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "base/nearest_name.h"
 #include "base/system/atomic_file.h"
 #include "base/system/sha256.h"
 #include "controllers/registry.h"
@@ -83,23 +85,30 @@ Result<std::string> AddPluginFile(const std::string& file) {
   return hash;
 }
 
+Status AddPluginFile(const std::string& file, std::vector<std::string>& hashes) {
+  const Result<std::string> hash = AddPluginFile(file);
+  if (!hash) return hash.error();
+  if (std::ranges::count(hashes, *hash) > 0) return Ok{};
+  const controllers::PluginInfo& added = *controllers::FindPlugin(*hash);
+  for (const std::string& other : hashes) {
+    const controllers::PluginInfo& known = *controllers::FindPlugin(other);
+    for (const ControllerInfo& controller : added.controllers) {
+      if (FindByName(known.controllers, controller.name) != nullptr)
+        return TakenTwice(known.file, file, "controller", controller.name);
+    }
+    for (const controllers::ScenarioInfo& scenario : added.scenarios) {
+      if (FindByName(known.scenarios, scenario.name) != nullptr)
+        return TakenTwice(known.file, file, "scenario", scenario.name);
+    }
+  }
+  hashes.push_back(*hash);
+  return Ok{};
+}
+
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files) {
   std::vector<std::string> hashes;
-  std::map<std::string_view, std::string> owners;  // of controllers' names, by file
-  std::map<std::string_view, std::string> scenario_owners;
   for (const std::string& file : files) {
-    Result<std::string> hash = AddPluginFile(file);
-    if (!hash) return hash.error();
-    if (std::ranges::count(hashes, *hash) > 0) continue;
-    for (const ControllerInfo& controller : controllers::FindPlugin(*hash)->controllers) {
-      const auto [owner, is_new] = owners.emplace(controller.name, file);
-      if (!is_new) return TakenTwice(owner->second, file, "controller", controller.name);
-    }
-    for (const controllers::ScenarioInfo& scenario : controllers::FindPlugin(*hash)->scenarios) {
-      const auto [owner, is_new] = scenario_owners.emplace(scenario.name, file);
-      if (!is_new) return TakenTwice(owner->second, file, "scenario", scenario.name);
-    }
-    hashes.push_back(*std::move(hash));
+    if (const Status added = AddPluginFile(file, hashes); !added) return added.error();
   }
   return hashes;
 }

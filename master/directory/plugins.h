@@ -15,8 +15,11 @@ namespace gauntlet::master {
 // gauntlet-worker refuses it; what is built in has the name of one.
 Result<std::string> AddPluginFile(const std::string& file);
 
-// The same of several files, in their order. Error: also that two of them bring controllers, or
-// scenarios, of one name.
+// The same, and adds it to those of `hashes`, which are known. Error: also that one of them brings a
+// controller, or a scenario, of one name.
+Status AddPluginFile(const std::string& file, std::vector<std::string>& hashes);
+
+// The same of several files, in their order.
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files);
 
 // The same of a library that was described before: `description` as proto/plugin_description.h writes it,

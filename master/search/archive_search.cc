@@ -107,6 +107,12 @@ Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& 
                     "search.algorithm = \"{}\" needs: search.cells does",
                     scenario->name, setup.experiment.search.algorithm));
   }
+  if (experiment.genome.genes < 1) {
+    return InvalidInput(
+        fmt::format("genome.genes = {}: search.algorithm = \"{}\" looks for obstacles that break the swarm; "
+                    "allow 1 or more",
+                    experiment.genome.genes, experiment.search.algorithm));
+  }
   SearchSetup kept_out = setup;
   double& clearance = kept_out.requirements.clearance;
   clearance = std::max(clearance, Get(setup.experiment, kKeepOut));

@@ -107,6 +107,7 @@ class ArchiveSearch : public PopulationSearch {
   bool BeginAcross(Slot& slot, sim::RandomStream& random);
   // With no more obstacles in a row than win a cell; one alone is nearly as long as any may be.
   bool BeginNeeded(Slot& slot, sim::RandomStream& random);
+  std::uint32_t MostAcross() const;  // obstacles in a row
   // The most obstacles that would win a cell, which is drawn from those that hold none or more than one. 0:
   // there is none.
   std::uint32_t DrawMostAcross(sim::RandomStream& random) const;

@@ -81,23 +81,27 @@ bool ArchiveSearch::BeginMirrored(Slot& slot) {
   return false;
 }
 
+std::uint32_t ArchiveSearch::MostAcross() const {
+  return std::min(kMostAcross, static_cast<std::uint32_t>(setup_.experiment.genome.genes));
+}
+
 std::uint32_t ArchiveSearch::DrawMostAcross(sim::RandomStream& random) const {
   std::vector<std::uint32_t> most;
   for (const std::vector<Finding>& shelf : std::views::values(archive_.shelves())) {
     const auto fewer = static_cast<std::uint32_t>(shelf.front().size().obstacles - 1);
-    if (fewer > 0) most.push_back(std::min(fewer, kMostAcross));
+    if (fewer > 0) most.push_back(std::min(fewer, MostAcross()));
   }
   const std::size_t empty = archive_.grid().cells() - archive_.shelves().size();
   if (empty + most.size() == 0) return 0;
   const std::uint32_t cell = random.Below(static_cast<std::uint32_t>(empty + most.size()));
-  return cell < empty ? kMostAcross : most[cell - empty];
+  return cell < empty ? MostAcross() : most[cell - empty];
 }
 
 bool ArchiveSearch::BeginAcross(Slot& slot, sim::RandomStream& random) {
   if (places_ && Late()) return BeginNeeded(slot, random);
   for (int i = 0; i < kTries; ++i) {
     const sim::Vec2 place = way_.start + (way_.goal - way_.start) * random.Uniform();
-    const auto count = static_cast<int>(1 + random.Below(kMostAcross));
+    const auto count = static_cast<int>(1 + random.Below(MostAcross()));
     // One obstacle breaks a swarm where it stands, if anywhere.
     const Finding* elite =
         places_ && count == 1 ? archive_.EliteOf(archive_.grid().CellOf({place.x(), place.y()})) : nullptr;

@@ -223,12 +223,9 @@ class Reader {
     if (!files) return Ok{};
     for (const std::string& file : *files) {
       if (!named_libraries_.insert(file).second) continue;
-      const Result<std::string> hash = AddPluginFile(file);
-      if (!hash) return hash.error();
-      if (std::ranges::count(study_.plugins, *hash) > 0) continue;
-      study_.plugins.push_back(*hash);
-      catalogue_.plugins.push_back(*hash);
+      if (const Status added = AddPluginFile(file, study_.plugins); !added) return added;
     }
+    catalogue_.plugins = study_.plugins;
     return Ok{};
   }
 

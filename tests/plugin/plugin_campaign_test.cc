@@ -222,6 +222,31 @@ candidates.genome.genes = "1, 8"
   }
 }
 
+// Whichever were taken, the parts of the other would be simulated with the wrong controller.
+TEST_F(PluginCampaign, StudiesAndTuningsRefuseTwoLibrariesThatBringOneName) {
+  const std::string library = scratch_ / "libtwin.so";
+  fs::copy_file(PluginPath("of_twins"), library);
+  fs::copy_file(library, scratch_ / "libother.so");
+  std::ofstream(scratch_ / "libother.so", std::ios::app) << "another one";
+  const std::string other = scratch_ / "other.toml";
+  const std::string settings = "scenario = 'light-flocking'\ncontroller = 'twin'\n";
+  std::ofstream(experiment_) << settings << "plugins = ['libtwin.so']\n";
+  std::ofstream(other) << settings << "plugins = ['libother.so']\n";
+  const std::string study = scratch_ / "two.toml";
+  std::ofstream(study) << "name = 'two'\n[part.one]\nkind = 'random'\ncases = 2\nseeds = '1'\nexperiment = '"
+                       << experiment_
+                       << "'\n[part.two]\nkind = 'random'\ncases = 2\nseeds = '1'\nexperiment = '" << other
+                       << "'\n";
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"study", study},
+        std::vector<std::string>{"tune", other, "--plugin", library}}) {
+    SCOPED_TRACE(command[0]);
+    const ProcessResult refused = Gauntlet(command);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("libother.so both bring a controller 'twin'"));
+  }
+}
+
 TEST_F(PluginCampaign, FaultyRunsAreResultsThatSaySo) {
   const ProcessResult result =
       Random("flocking", {"--plugin", PluginPath("of_faults"), "--set", "controller=throw"});

@@ -102,6 +102,22 @@ TEST(ArchiveSearchTest, ALongerSearchBeginsLikeAShorterOne) {
   EXPECT_EQ(StateOf(*extended), StateOf(*longer));
 }
 
+TEST(ArchiveSearchTest, NoLayoutHasMoreObstaclesThanAllowed) {
+  for (const int genes : {1, 2}) {
+    SearchSetup setup = ArchiveSetup(1400);
+    setup.experiment.genome.genes = genes;
+    const auto search = MakeArchive(setup);
+    for (const EvaluationRequest& request : Drive(*search, 7, BreaksAtTraps))
+      EXPECT_LE(request.test_case.obstacles.size(), static_cast<std::size_t>(genes));
+    EXPECT_TRUE(RestoreState(*MakeArchive(setup), StateOf(*search)).ok());
+  }
+  SearchSetup setup = ArchiveSetup(200);
+  setup.experiment.genome.genes = 0;
+  const auto without = ArchiveSearch::Create(setup);
+  ASSERT_FALSE(without.ok());
+  EXPECT_THAT(without.error().message, HasSubstr("genome.genes = 0"));
+}
+
 TEST(ArchiveSearchTest, WhatFailsEveryOtherTimeIsNotAdmitted) {
   const auto search = MakeArchive(ArchiveSetup(600));
   Drive(*search, 1, [](const EvaluationRequest& request) { return request.evaluation % 2 == 0; });
