@@ -141,12 +141,7 @@ TEST_F(PluginCampaign, GivesItsFailingCasesToACorpus) {
   EXPECT_EQ(Gauntlet({"check", corpus, "--quiet"}).exit_code, 2) << "without the library";
 }
 
-// The whole study knows its plug-in from its own directory.
-TEST_F(PluginCampaign, StudiesAndTuningsGoOnWithoutTheOriginalLibrary) {
-  const std::string library = scratch_ / "libtwin.so";
-  fs::copy_file(PluginPath("of_twins"), library);
-  const std::string study = scratch_ / "small.toml";
-  std::ofstream(study) << R"(name = "small"
+constexpr const char* kSmallTuning = R"(name = "small"
 [tune.small]
 title = "a small tuning"
 experiment = "flocking"
@@ -154,10 +149,17 @@ repeats = 1
 sizes = "1, 5"
 set.search.population = 4
 set.search.generations = 1
-set.scenario = "light-flocking"
+candidates.genome.genes = "1, 8"
+)";
+
+// The whole study knows its plug-in from its own directory.
+TEST_F(PluginCampaign, StudiesAndTuningsGoOnWithoutTheOriginalLibrary) {
+  const std::string library = scratch_ / "libtwin.so";
+  fs::copy_file(PluginPath("of_twins"), library);
+  const std::string study = scratch_ / "small.toml";
+  std::ofstream(study) << kSmallTuning << R"(set.scenario = "light-flocking"
 set.controller = "twin"
 set.scenario_parameters.time_limit = 3
-candidates.genome.genes = "1, 8"
 )";
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"study", study},
@@ -190,16 +192,7 @@ TEST_F(PluginCampaign, StudiesAndTuningsTakeThePluginsOfTheirExperiments) {
   std::ofstream(study) << "name = 'small'\n[part.some]\nkind = 'random'\ncases = 2\nseeds = '1'\n"
                        << "experiment = '" << experiment_ << "'\n";
   const std::string candidates = scratch_ / "candidates.toml";
-  std::ofstream(candidates) << R"(name = "small"
-[tune.small]
-title = "a small tuning"
-experiment = "flocking"
-repeats = 1
-sizes = "1, 5"
-set.search.population = 4
-set.search.generations = 1
-candidates.genome.genes = "1, 8"
-)";
+  std::ofstream(candidates) << kSmallTuning;
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{"study", study},
         std::vector<std::string>{"tune", experiment_, "--candidates", candidates}}) {
