@@ -43,7 +43,8 @@ class MeasuredRunner {
     if (child == 0) {
       if (!worker::DieWithParent(parent)) _exit(0);
       pipe.first.Reset();
-      worker::RunnerMain(pipe.second.get(), worker::Run, {.files = {library}, .load = worker::LoadPlugin});
+      worker::RunnerMain(pipe.second.get(), worker::Run,
+                         {.files = {library}, .load = worker::LoadPlugin, .rehearse = worker::Rehearse});
     }
     pipe_ = std::move(pipe.first);
   }

@@ -42,5 +42,6 @@ int main(int argc, char** argv) {
                                        .golden_hashes = worker::GoldenHashes,
                                        .load_plugin = worker::LoadPlugin,
                                        .describe_plugin = worker::DescribePlugin,
-                                       .describe_beginning = worker::DescribeBeginning});
+                                       .describe_beginning = worker::DescribeBeginning,
+                                       .rehearse = worker::Rehearse});
 }
