@@ -17,7 +17,7 @@
 namespace gauntlet::proto {
 namespace {
 
-constexpr int kFormat = 1;
+constexpr int kAccessFormat = 1;
 constexpr std::size_t kKeyCharacters = 40;
 constexpr std::size_t kMaxBytes = 1U << 20;
 constexpr mode_t kWritableByOthers = 022;
@@ -53,9 +53,9 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
 
   const nlohmann::json format = member("format");
   if (!format.is_number_integer()) return wrong("\"format\" must be a whole number");
-  if (format != kFormat) {
-    return Error{ErrorKind::kVersion,
-                 fmt::format("{}: format {}, this version reads format {}", place, format.dump(), kFormat)};
+  if (format != kAccessFormat) {
+    return Error{ErrorKind::kVersion, fmt::format("{}: format {}, this version reads format {}", place,
+                                                  format.dump(), kAccessFormat)};
   }
   Access access;
   const nlohmann::json campaign = member("campaign");
@@ -134,7 +134,7 @@ Result<Access> ReadAccess(const std::string& path) {
 }
 
 Status WriteAccess(const std::string& path, const Access& access) {
-  nlohmann::ordered_json json = {{"format", kFormat},
+  nlohmann::ordered_json json = {{"format", kAccessFormat},
                                  {"campaign", access.campaign_id},
                                  {"epoch", access.epoch},
                                  {"endpoints", access.endpoints}};

@@ -19,7 +19,7 @@
 namespace gauntlet::proto {
 namespace {
 
-using nlohmann::json;
+using Json = nlohmann::json;
 
 // "orientationDeg" of "orientation_deg".
 std::string CamelCase(std::string_view name) {
@@ -36,7 +36,7 @@ class CaseReader {
  public:
   const std::optional<std::string>& complaint() const { return complaint_; }
 
-  void Read(const json& document, CaseDocument& into) {
+  void Read(const Json& document, CaseDocument& into) {
     std::vector<Key> keys = KeysOf(into.test_case);
     keys.push_back({"lineage", Into(into.lineage)});
     Object(keys)(document, "");
@@ -44,7 +44,7 @@ class CaseReader {
 
  private:
   // Reads a value that stands at this path of the document.
-  using Reader = std::function<void(const json& value, const std::string& path)>;
+  using Reader = std::function<void(const Json& value, const std::string& path)>;
   struct Key {
     std::string_view name;
     Reader read;
@@ -53,14 +53,14 @@ class CaseReader {
   void Complain(const std::string& what) {
     if (!complaint_) complaint_ = what;
   }
-  void Want(const std::string& wanted, const json& value, const std::string& path) {
+  void Want(const std::string& wanted, const Json& value, const std::string& path) {
     std::string found = value.is_array() ? "a list" : value.is_object() ? "an object" : value.dump();
     if (value.is_string()) found = fmt::format("the text \"{}\"", value.get_ref<const std::string&>());
     Complain(fmt::format("{} must be {}, not {}", path.empty() ? "the document" : path, wanted, found));
   }
 
   Reader Object(const std::vector<Key>& keys) {
-    return [this, keys](const json& value, const std::string& path) {
+    return [this, keys](const Json& value, const std::string& path) {
       if (!value.is_object()) return Want("an object { ... }", value, path);
       std::set<std::string_view> given;
       for (const auto& [name, member] : value.items()) {
@@ -77,7 +77,7 @@ class CaseReader {
     };
   }
 
-  static double NumberIn(const json& value) {
+  static double NumberIn(const Json& value) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     if (value.is_number()) return value.get<double>();
     if (!value.is_string()) return kNone;
@@ -88,14 +88,14 @@ class CaseReader {
   }
 
   Reader Into(double& target) {
-    return [this, &target](const json& value, const std::string& path) {
+    return [this, &target](const Json& value, const std::string& path) {
       target = NumberIn(value);
       if (!std::isfinite(target)) Want("a finite number", value, path);
     };
   }
 
   Reader Into(int& target) {
-    return [this, &target](const json& value, const std::string& path) {
+    return [this, &target](const Json& value, const std::string& path) {
       constexpr int kMost = std::numeric_limits<int>::max();
       const double number = NumberIn(value);
       if (std::floor(number) != number || std::fabs(number) > kMost) {
@@ -106,7 +106,7 @@ class CaseReader {
   }
 
   Reader Into(std::string& target) {
-    return [this, &target](const json& value, const std::string& path) {
+    return [this, &target](const Json& value, const std::string& path) {
       if (!value.is_string()) return Want("a text in double quotes", value, path);
       target = value.get<std::string>();
       if (target.size() > kMaxNameBytes) {
@@ -116,7 +116,7 @@ class CaseReader {
   }
 
   Reader Into(sim::Color& target) {
-    return [this, &target](const json& value, const std::string& path) {
+    return [this, &target](const Json& value, const std::string& path) {
       if (!value.is_string()) return Want("a text in double quotes", value, path);
       const std::string& name = value.get_ref<const std::string&>();
       const std::optional<sim::Color> light = sim::ColorNamed(name);
@@ -130,12 +130,12 @@ class CaseReader {
   template <typename Value>
   Reader Into(std::optional<Value>& target) {
     return
-        [this, &target](const json& value, const std::string& path) { Into(target.emplace())(value, path); };
+        [this, &target](const Json& value, const std::string& path) { Into(target.emplace())(value, path); };
   }
 
   template <typename Value>
   Reader Into(std::vector<Value>& target) {
-    return [this, &target](const json& value, const std::string& path) {
+    return [this, &target](const Json& value, const std::string& path) {
       if (!value.is_array()) return Want("a list [ ... ]", value, path);
       for (std::size_t i = 0; i < value.size() && !complaint_; ++i)
         Into(target.emplace_back())(value[i], fmt::format("{}[{}]", path, i));
@@ -143,7 +143,7 @@ class CaseReader {
   }
 
   Reader Into(std::array<double, 2>& pair) {
-    return [this, &pair](const json& value, const std::string& path) {
+    return [this, &pair](const Json& value, const std::string& path) {
       if (!value.is_array() || value.size() != 2) return Want("a list of two numbers", value, path);
       for (std::size_t i = 0; i < 2; ++i) Into(pair[i])(value[i], fmt::format("{}[{}]", path, i));
     };
@@ -264,7 +264,7 @@ nlohmann::ordered_json JsonOf(const CaseLineage& lineage) {
 }  // namespace
 
 Result<CaseDocument> ParseCaseDocument(const std::string& text, const std::string& file_name) {
-  const Result<json> json = ParseJson(text, file_name);
+  const Result<Json> json = ParseJson(text, file_name);
   if (!json) return json.error();
   CaseDocument document;
   CaseReader reader;

@@ -10,7 +10,7 @@
 namespace gauntlet::proto {
 namespace {
 
-constexpr int kFormat = 1;
+constexpr int kDescriptionFormat = 1;
 
 Status CheckController(const DescribedController& controller) {
   if (!IsName(controller.name)) return WrongName("controller", controller.name);
@@ -51,7 +51,7 @@ std::string WriteDescription(const PluginDescription& description) {
                            {"description", controller.description},
                            {"parameters", ParametersJson(controller.parameters)}});
   }
-  nlohmann::ordered_json json = {{"format", kFormat}, {"controllers", std::move(controllers)}};
+  nlohmann::ordered_json json = {{"format", kDescriptionFormat}, {"controllers", std::move(controllers)}};
   // Left out where there are none, so that campaigns with controllers alone keep the bytes of their files.
   for (const DescribedScenario& scenario : description.scenarios)
     json["scenarios"].push_back(ScenarioJson(scenario));
@@ -63,8 +63,9 @@ Result<PluginDescription> ReadDescription(std::string_view text, const std::stri
   if (!json) return json.error();
   PluginDescription description;
   try {
-    if (json->at("format") != kFormat)
-      return InvalidInput(fmt::format("{}: no description of a plug-in in format {}", place, kFormat));
+    if (json->at("format") != kDescriptionFormat)
+      return InvalidInput(
+          fmt::format("{}: no description of a plug-in in format {}", place, kDescriptionFormat));
     for (const nlohmann::json& controller : json->at("controllers")) {
       description.controllers.push_back({.name = controller.at("name"),
                                          .scenario = controller.at("scenario"),

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr int kFormat = 1;
+constexpr int kBeginningFormat = 1;
 // m, around start and goal and around bodies: beyond the largest arena.
 constexpr double kMaxDistance = sim::kMaxArenaSide;
 
@@ -136,7 +136,7 @@ Status CheckBeginning(const sim::RunBeginning& beginning) {
 
 std::string WriteBeginning(const sim::RunBeginning& beginning) {
   const sim::ArenaRequirements& asked = beginning.requirements;
-  OrderedJson json = {{"format", kFormat},
+  OrderedJson json = {{"format", kBeginningFormat},
                       {"requirements",
                        {{"start", PointJson(asked.start)},
                         {"goal", PointJson(asked.goal)},
@@ -155,8 +155,8 @@ Result<sim::RunBeginning> ReadBeginning(std::string_view text, const std::string
   if (!json) return json.error();
   sim::RunBeginning beginning{{}, InvalidInput("")};
   try {
-    if (json->at("format") != kFormat)
-      return InvalidInput(fmt::format("{}: no beginning of a run in format {}", place, kFormat));
+    if (json->at("format") != kBeginningFormat)
+      return InvalidInput(fmt::format("{}: no beginning of a run in format {}", place, kBeginningFormat));
     const Json& asked = json->at("requirements");
     beginning.requirements = {.start = PointOf(asked.at("start")),
                               .goal = PointOf(asked.at("goal")),

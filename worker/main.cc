@@ -2,6 +2,7 @@
 #include "worker/command_line.h"
 #include "worker/golden_hash.h"
 #include "worker/plugin_library.h"
+#include "worker/rehearsal.h"
 #include "worker/run_executor.h"
 
 int main(int argc, char** argv) {

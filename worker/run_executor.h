@@ -10,8 +10,4 @@ namespace gauntlet::worker {
 // the broken rule.
 sim::RunResult Run(const sim::RunSpec& spec);
 
-// Runs and sends a second of what is built in. What a process sets up in its first run, the registry's tables
-// and the addresses of functions in libraries, is then there in every process that is forked from this one.
-sim::RunResult Rehearse();
-
 }  // namespace gauntlet::worker

@@ -52,13 +52,13 @@ int WithoutParent(pid_t parent) {
 }
 
 // A runner's pipe and output.
-constexpr rlim_t kDescriptorsPerSlot = 2;
+constexpr rlim_t kOpenFilesPerSlot = 2;
 // Everything else: sockets, logs, ZeroMQ, and what we inherited.
 constexpr rlim_t kOtherDescriptors = 128;
 
 // Error: so many slots need more open files than are allowed.
 Status AllowDescriptors(int slots) {
-  Status allowed = AllowOpenFiles(kDescriptorsPerSlot * static_cast<rlim_t>(slots) + kOtherDescriptors,
+  Status allowed = AllowOpenFiles(kOpenFilesPerSlot * static_cast<rlim_t>(slots) + kOtherDescriptors,
                                   fmt::format("{} slots", slots));
   if (allowed) return allowed;
   return Error{allowed.error().kind,

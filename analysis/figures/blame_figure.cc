@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kCell = 0.2;  // m
 
-std::string StyleSheet() {
+std::string BlameStyleSheet() {
   return fmt::format(R"({}.stuck {{ fill: {}; }}
 .blamed {{ fill: {}; stroke: none; }}
 .line {{ font-size: 13px; fill: {}; white-space: pre; }}
@@ -46,7 +46,7 @@ void DrawStuck(SvgCanvas& canvas, const FigureFrame& frame, const std::vector<si
 std::string DrawBlame(const BlameFigure& figure) {
   const FigureFrame frame(figure.test_case);
   const sim::Arena arena(figure.test_case);
-  SvgCanvas canvas(frame.page_width() + 120, frame.page_height(), figure.title, StyleSheet());
+  SvgCanvas canvas(frame.page_width() + 120, frame.page_height(), figure.title, BlameStyleSheet());
   canvas.Text({FigureFrame::kLeft, 34}, figure.title, "class=\"title\"");
   for (std::size_t i = 0; i < figure.sentences.size(); ++i)
     canvas.Text({FigureFrame::kLeft, 58 + 18 * static_cast<double>(i)}, figure.sentences[i],

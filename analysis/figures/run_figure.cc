@@ -20,7 +20,7 @@
 namespace gauntlet::analysis {
 namespace {
 
-std::string StyleSheet() {
+std::string RunStyleSheet() {
   return fmt::format(
       R"(.name {{ font-size: 12px; fill: {soft}; }}
 .value {{ font-size: 12px; text-anchor: end; }}
@@ -214,7 +214,7 @@ std::string DrawRun(const RunFigure& figure) {
 
   SvgCanvas canvas(frame.page_width(), frame.page_height(),
                    fmt::format("{}, {}: {}", figure.experiment, figure.run, DescribeOutcome(figure)),
-                   StyleSheet());
+                   RunStyleSheet());
   DrawFloor(canvas, frame, arena);
   DrawPlaces(canvas, figure, frame);
   DrawObstacles(canvas, frame, arena);

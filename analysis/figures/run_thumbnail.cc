@@ -16,7 +16,7 @@
 namespace gauntlet::analysis {
 namespace {
 
-constexpr double kLeastStep = 7.0;  // between points of a way, in pixels of the whole picture
+constexpr double kLeastThumbnailStep = 7.0;  // between points of a way, in pixels of the whole picture
 
 constexpr std::string_view kStyle =
     R"(.floor { fill: #fdfcf9; }
@@ -32,7 +32,7 @@ constexpr std::string_view kStyle =
 std::vector<Pixel> Thinned(const std::vector<Pixel>& points) {
   std::vector<Pixel> some;
   for (const Pixel& p : points) {
-    if (some.empty() || std::hypot(p.x - some.back().x, p.y - some.back().y) >= kLeastStep)
+    if (some.empty() || std::hypot(p.x - some.back().x, p.y - some.back().y) >= kLeastThumbnailStep)
       some.push_back({std::round(p.x), std::round(p.y)});
   }
   return some;

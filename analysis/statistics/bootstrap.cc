@@ -47,10 +47,6 @@ double CountedA(const std::vector<std::uint32_t>& first, const std::vector<std::
   return u2 / (2.0 * size1 * size2);
 }
 
-void CheckConfidence(double confidence) {
-  GAUNTLET_CHECK(confidence > 0.0 && confidence < 1.0, "a confidence lies between 0 and 1");
-}
-
 double VarianceOfMean(std::span<const double> values) {
   const double sd = Describe(values).sd.value();
   return sd * sd / static_cast<double>(values.size());

@@ -16,10 +16,6 @@ void CheckCounts(std::uint32_t hits, std::uint32_t trials) {
   GAUNTLET_CHECK(trials > 0 && hits <= trials, "a share needs trials, and at most as many hits");
 }
 
-void CheckConfidence(double confidence) {
-  GAUNTLET_CHECK(confidence > 0.0 && confidence < 1.0, "a confidence lies between 0 and 1");
-}
-
 }  // namespace
 
 Interval WilsonInterval(std::uint32_t hits, std::uint32_t trials, double confidence) {

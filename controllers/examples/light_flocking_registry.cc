@@ -10,13 +10,13 @@ namespace {
 using sim::kDegree;
 using sim::kPi;
 
-constexpr std::array kMetrics = std::to_array<MetricInfo>({
+constexpr std::array kLightFlockingMetrics = std::to_array<MetricInfo>({
     {"light_distance", "m", {}, "mean distance of the robots to the light at the end"},
     {"stopped", "", {}, "share of the robots that moved less than 2 cm in the last 30 s", true},
     {"clusters", "", {}, "groups of robots that are linked by line of sight at the end", true},
 });
 
-constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+constexpr std::array kLightFlockingAnnotations = std::to_array<sim::AnnotationStyle>({
     {"area", "", sim::Mark::kArea, "area the swarm starts in"},
     {"disc", "light", sim::Mark::kGoal, ""},
 });
@@ -83,8 +83,8 @@ const ScenarioInfo& LightFlockingScenarioInfo() {
           .name = "light-flocking",
           .description = "example: robots flock from corner to corner, to a light (ARGoS' sample behaviour)",
           .default_controller = "light-flocking",
-          .style = {.annotations = kAnnotations},
-          .metrics = kMetrics,
+          .style = {.annotations = kLightFlockingAnnotations},
+          .metrics = kLightFlockingMetrics,
       });
   return info;
 }

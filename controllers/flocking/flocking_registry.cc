@@ -11,7 +11,7 @@ namespace {
 using sim::kDegree;
 using sim::kPi;
 
-constexpr std::array kMetrics = std::to_array<MetricInfo>({
+constexpr std::array kFlockingMetrics = std::to_array<MetricInfo>({
     {"angular_order", "", {}, "agreement of the headings of the birds left, 0 to 1 (thesis 4.5.1)"},
     {"birds_left", "", {}, "birds in the prey's cluster at the end"},
     {"proportion_left", "", {}, "the same as a share of the birds"},
@@ -27,12 +27,12 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"split_y", "m", kNowhere, "where the last split happened: mean of those who left", true},
 });
 
-constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
+constexpr std::array kFlockingDescriptorAxes = std::to_array<DescriptorAxis>({
     {"split_x", -3.0, 3.0, 5},
     {"split_y", -3.0, 3.0, 5},
 });
 
-constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+constexpr std::array kFlockingAnnotations = std::to_array<sim::AnnotationStyle>({
     {"area", "", sim::Mark::kArea, "area the swarm starts in"},
     {"path", "", sim::Mark::kPlan, "planned path"},
     {"disc", "", sim::Mark::kGoal, ""},
@@ -142,8 +142,8 @@ const ScenarioInfo& FlockingScenarioInfo() {
           .name = "flocking",
           .description = "birds follow a prey from corner to corner without losing anyone (thesis chapter 4)",
           .default_controller = "flocking",
-          .style = {.member = "bird", .guide = "prey", .annotations = kAnnotations},
-          .metrics = kMetrics,
+          .style = {.member = "bird", .guide = "prey", .annotations = kFlockingAnnotations},
+          .metrics = kFlockingMetrics,
           .failure_types = FailureTypes(),
           .failure_axes = {.columns = "degrees between the headings of the two groups at the last split",
                            .rows = "their speeds"},
@@ -156,7 +156,7 @@ const ScenarioInfo& FlockingScenarioInfo() {
           .failure_note = "types do not tell failures apart: two failed runs of one case have the same type "
                           "in 15 % of all "
                           "pairs, of two cases in 11 %; where they fail does, in 93 % and 10 %",
-          .descriptor_axes = kDescriptorAxes,
+          .descriptor_axes = kFlockingDescriptorAxes,
       });
   return info;
 }

@@ -12,7 +12,7 @@ namespace {
 using sim::kDegree;
 using sim::kPi;
 
-constexpr std::array kMetrics = std::to_array<MetricInfo>({
+constexpr std::array kForagingMetrics = std::to_array<MetricInfo>({
     {"food_taken", "", {}, "items taken from the food", true},
     {"food_carried", "", {}, "items in the robots' hands at the end"},
     {"food_lost", "", {}, "items that a robot lost on its way"},
@@ -38,12 +38,12 @@ constexpr std::array kFailureKinds = std::to_array<FailureKind>({
     {"condition_1", 1.0, "never a path of beacons"},
 });
 
-constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
+constexpr std::array kForagingDescriptorAxes = std::to_array<DescriptorAxis>({
     {"mean_robots_beacon", 0.0, 10.0, 5},
     {"spread_x", 0.5, 2.0, 5},
 });
 
-constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+constexpr std::array kForagingAnnotations = std::to_array<sim::AnnotationStyle>({
     {"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
     {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
     {"chain", "", sim::Mark::kChain, ""},
@@ -207,15 +207,15 @@ const ScenarioInfo& ForagingScenarioInfo() {
           .name = "foraging",
           .description = "robots bring items from a source of food to the nest (thesis chapter 5)",
           .default_controller = "foraging",
-          .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
-          .metrics = kMetrics,
+          .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kForagingAnnotations},
+          .metrics = kForagingMetrics,
           .failure_types = ForagingFailureTypes(),
           .failing = "condition_2",  // condition 1 alone holds in 30 % of empty arenas
           .failure_kinds = kFailureKinds,
           .failure_note =
               "condition 1 alone says little: it holds in 30 % of runs in an empty arena, condition 2 in "
               "none of 200",
-          .descriptor_axes = kDescriptorAxes,
+          .descriptor_axes = kForagingDescriptorAxes,
       });
   return info;
 }

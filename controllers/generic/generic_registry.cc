@@ -11,12 +11,12 @@ namespace {
 
 using sim::kPi;
 
-constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
+constexpr std::array kGenericDescriptorAxes = std::to_array<DescriptorAxis>({
     {"center_x", -3.0, 3.0, 5},
     {"center_y", -3.0, 3.0, 5},
 });
 
-constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+constexpr std::array kGenericAnnotations = std::to_array<sim::AnnotationStyle>({
     {"area", "start of the robots", sim::Mark::kArea, "area the swarm starts in"},
     {"area", "ground", sim::Mark::kArea, ""},
     {"area", "source", sim::Mark::kArea, ""},
@@ -76,7 +76,7 @@ const ScenarioInfo& GenericScenarioInfo() {
           "any swarm, defined in the experiment file: lights, floor, items, and formulas that say "
           "how well it did and whether it failed (docs/generic-scenario.md)",
       .default_controller = "light-flocking",
-      .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
+      .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kGenericAnnotations},
       .parameters = GenericParameters().infos(),
       .metrics = Metrics(),
       .failure_place = FailurePlace{"center_x", "center_y", 0.6},
@@ -86,7 +86,7 @@ const ScenarioInfo& GenericScenarioInfo() {
         if (!parsed.ok()) return parsed.error();
         return Ok{};
       },
-      .descriptor_axes = kDescriptorAxes,
+      .descriptor_axes = kGenericDescriptorAxes,
       .requirements =
           [](const sim::Parameters& parameters, const sim::TestCase& test_case) {
             return GenericParameters().Read(parameters).Requirements(test_case);

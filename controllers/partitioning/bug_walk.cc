@@ -10,7 +10,7 @@ namespace gauntlet::controllers {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-constexpr double kDegree = sim::kDegree;
+using sim::kDegree;
 // The side on which the obstacle is kept.
 constexpr double kSideFrom = -130.0 * kDegree;
 constexpr double kSideTo = -15.0 * kDegree;

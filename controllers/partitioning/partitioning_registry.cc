@@ -14,7 +14,7 @@ using sim::kPi;
 
 constexpr double kPickupMargin = 0.025;  // m: an item is handed out 0.36 m from the source's centre
 
-constexpr std::array kMetrics = std::to_array<MetricInfo>({
+constexpr std::array kPartitioningMetrics = std::to_array<MetricInfo>({
     {"food_taken", "", {}, "items taken from the source", true},
     {"food_carried", "", {}, "items in the robots' hands at the end"},
     {"food_lost", "", {}, "items that a robot lost on its way"},
@@ -39,12 +39,12 @@ constexpr std::array kMetrics = std::to_array<MetricInfo>({
     {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
 });
 
-constexpr std::array kDescriptorAxes = std::to_array<DescriptorAxis>({
+constexpr std::array kPartitioningDescriptorAxes = std::to_array<DescriptorAxis>({
     {"median_x", -1.5, 1.5, 5},
     {"median_y", -2.5, 2.5, 5},
 });
 
-constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+constexpr std::array kPartitioningAnnotations = std::to_array<sim::AnnotationStyle>({
     {"transfer", "", sim::Mark::kTransfer, "transfer"},
     {"disc", "nest", sim::Mark::kNest, ""},
     {"disc", "food", sim::Mark::kFood, ""},
@@ -272,11 +272,11 @@ const ScenarioInfo& PartitioningScenarioInfo() {
           .name = "task-partitioning",
           .description = "robots bring items to the nest and hand them over on the way (thesis chapter 6)",
           .default_controller = "task-partitioning",
-          .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kAnnotations},
-          .metrics = kMetrics,
+          .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kPartitioningAnnotations},
+          .metrics = kPartitioningMetrics,
           .failure_types = PartitioningFailureTypes(),
           .failure_place = FailurePlace{"median_x", "median_y", 0.6},  // chosen: a tenth of the arena
-          .descriptor_axes = kDescriptorAxes,
+          .descriptor_axes = kPartitioningDescriptorAxes,
       });
   return info;
 }

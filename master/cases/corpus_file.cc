@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostBytes = 16U << 20;
+constexpr std::size_t kMostCorpusBytes = 16U << 20;
 constexpr std::array<std::string_view, 7> kKeys = {"format", "name",       "expected", "found_in",
                                                    "found",  "experiment", "case"};
 
@@ -175,7 +175,7 @@ Result<std::vector<CorpusEntry>> ReadCorpus(const std::string& directory) {
   std::vector<CorpusEntry> corpus;
   std::map<std::string, std::string> file_of;
   for (const std::string& file : files) {
-    const Result<std::string> text = ReadSmallFile(file, kMostBytes);
+    const Result<std::string> text = ReadSmallFile(file, kMostCorpusBytes);
     if (!text) return text.error();
     Result<CorpusCase> one = ParseCorpusCase(*text, file);
     if (!one) return one.error();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analysis/statistics/comparison.h"
 #include "analysis/statistics/proportions.h"
 #include "base/shell_quoted.h"
 #include "master/cli/table.h"
@@ -15,8 +16,6 @@ namespace gauntlet::master {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kConfidence = 0.95;
 
 // The second axis upwards, the first one to the right.
 std::string Map(const CampaignSummary& summary) {
@@ -108,8 +107,9 @@ Json ArchiveJson(const CampaignSummary& summary) {
   Json elites = Json::array();
   for (const ArchivedFailure& failure : archive.failures) {
     const PopulationMember& member = MemberOf(summary, failure);
-    const auto interval = analysis::WilsonInterval(static_cast<std::uint32_t>(failure.failures),
-                                                   static_cast<std::uint32_t>(failure.runs), kConfidence);
+    const auto interval =
+        analysis::WilsonInterval(static_cast<std::uint32_t>(failure.failures),
+                                 static_cast<std::uint32_t>(failure.runs), analysis::kConfidence);
     elites.push_back({{"cell", failure.cell},
                       {"individual", failure.individual},
                       {"obstacles", member.genome.size()},

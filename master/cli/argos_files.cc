@@ -16,7 +16,7 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr std::size_t kMostBytes = 16U << 20;  // of a controller file
+constexpr std::size_t kMostControllerBytes = 16U << 20;  // of a controller file
 
 struct NamedRun {
   std::string file;
@@ -26,7 +26,7 @@ struct NamedRun {
 Result<std::optional<ArgosControllers>> ControllersOf(const ArgosFilesOptions& options) {
   std::optional<ArgosControllers> controllers;
   if (options.controller_file.empty()) return controllers;
-  const Result<std::string> text = ReadSmallFile(options.controller_file, kMostBytes);
+  const Result<std::string> text = ReadSmallFile(options.controller_file, kMostControllerBytes);
   if (!text) return InvalidInput(fmt::format("--controller-file {}", text.error().message));
   Result<ArgosControllers> read = ReadArgosControllers(*text, options.controller_file, options.controller);
   if (!read) return read.error();

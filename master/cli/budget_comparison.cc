@@ -8,6 +8,7 @@
 #include <optional>
 #include <string_view>
 
+#include "analysis/statistics/comparison.h"
 #include "analysis/statistics/multiple_tests.h"
 #include "analysis/statistics/rank_test.h"
 #include "analysis/statistics/sample.h"
@@ -19,7 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kConfidence = 0.95;
 constexpr std::size_t kAnySize = std::numeric_limits<std::size_t>::max();
 
 constexpr std::string_view kReading =
@@ -87,14 +87,14 @@ std::vector<double> PValues(const std::vector<YieldSet>& sets, const Measure& me
   return analysis::HolmAdjusted(p);
 }
 
-std::string Number(double value) {
+std::string YieldNumber(double value) {
   return fmt::format("{:.4g}", value);
 }
 
 std::string MedianText(const YieldSet& set, const Measure& measure) {
   const Values values = ValuesOf(set, measure);
   const double median = analysis::Describe(values.all).median;
-  return median < values.never ? Number(median) : "never";
+  return median < values.never ? YieldNumber(median) : "never";
 }
 
 std::string MeanText(const YieldSet& set, const Measure& measure) {
@@ -103,7 +103,7 @@ std::string MeanText(const YieldSet& set, const Measure& measure) {
   const double mean = analysis::Describe(values.all).mean;
   const int decimals = mean < 100.0 ? 1 : 0;
   if (values.all.size() < 2) return fmt::format("{:.{}f}", mean, decimals);
-  const analysis::Interval interval = analysis::MeanInterval(values.all, kConfidence);
+  const analysis::Interval interval = analysis::MeanInterval(values.all, analysis::kConfidence);
   return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", mean, decimals, interval.low, decimals, interval.high,
                      decimals);
 }
@@ -168,7 +168,7 @@ std::string Tests(const std::vector<YieldSet>& sets) {
 
 Json IntervalJson(const Values& values) {
   if (!values.reached || values.all.size() < 2) return {};
-  const analysis::Interval interval = analysis::MeanInterval(values.all, kConfidence);
+  const analysis::Interval interval = analysis::MeanInterval(values.all, analysis::kConfidence);
   return {interval.low, interval.high};
 }
 

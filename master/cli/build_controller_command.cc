@@ -114,7 +114,7 @@ Result<std::string> ReadTable(const std::string& argos) {
   return ArgosControllerTable(*text, argos);
 }
 
-Status CheckOptions(const BuildControllerOptions& options) {
+Status CheckBuildOptions(const BuildControllerOptions& options) {
   if (!options.table.empty()) {
     return options.argos.empty() ? InvalidInput("--table needs the file that it is made of: --argos FILE")
                                  : Status(Ok{});
@@ -171,7 +171,7 @@ Status Build(CommandContext& context, const BuildControllerOptions& options, con
 }
 
 ExitCode RunBuildController(CommandContext& context, const BuildControllerOptions& options) {
-  if (const Status checked = CheckOptions(options); !checked) return Fail(context, checked.error());
+  if (const Status checked = CheckBuildOptions(options); !checked) return Fail(context, checked.error());
   std::string table;
   if (!options.argos.empty()) {
     Result<std::string> read = ReadTable(options.argos);

@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostBytes = 64U << 20;  // of a picture
+constexpr std::size_t kMostPictureBytes = 64U << 20;  // of a picture
 
 struct CorpusOptions {
   std::string action;
@@ -55,7 +55,7 @@ std::vector<std::string> PluginsOf(const Experiment& experiment) {
 
 // The picture that `minimise` has drawn beside a case's file.
 Result<std::string> PictureBeside(const std::string& file) {
-  return ReadSmallFile(fs::path(file).replace_extension(".svg").string(), kMostBytes);
+  return ReadSmallFile(fs::path(file).replace_extension(".svg").string(), kMostPictureBytes);
 }
 
 Status CheckFails(const std::string& what, const proto::CaseFailures& found) {

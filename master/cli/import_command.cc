@@ -26,7 +26,7 @@ struct ImportOptions {
   std::string directory;
 };
 
-Status CheckOptions(const ImportOptions& options) {
+Status CheckImportOptions(const ImportOptions& options) {
   if (options.files.empty()) return InvalidInput("which files? gauntlet import FILE.argos... --dir DIR");
   if (options.out.empty() == options.directory.empty())
     return InvalidInput("where to? Either --out CASE.json, of one file, or --dir DIR, of any number");
@@ -71,7 +71,7 @@ Result<std::uint64_t> WriteCases(const std::vector<CaseFile>& cases, const std::
 }
 
 ExitCode RunImport(CommandContext& context, const ImportOptions& options) {
-  if (const Status checked = CheckOptions(options); !checked) return Fail(context, checked.error());
+  if (const Status checked = CheckImportOptions(options); !checked) return Fail(context, checked.error());
   const Result<std::vector<CaseFile>> cases = ReadCases(context, options.files);
   if (!cases) return Fail(context, cases.error());
   if (!options.out.empty()) {

@@ -150,7 +150,7 @@ Json OneSearch(const CampaignSummary& summary, const std::string& directory) {
           {"finished", summary.finished}};
 }
 
-Json Sweep(const CampaignSummary& summary, const std::string& directory) {
+Json SweepJson(const CampaignSummary& summary, const std::string& directory) {
   Json searches = Json::array();
   for (std::size_t i = 0; i < summary.searches.size(); ++i) {
     Json search = {{"number", i + 1}, {"settings", summary.searches[i].settings}};
@@ -172,7 +172,7 @@ Json Sweep(const CampaignSummary& summary, const std::string& directory) {
 }  // namespace
 
 std::string SummaryJson(const CampaignSummary& summary, const std::string& directory) {
-  Json json = summary.searches.empty() ? OneSearch(summary, directory) : Sweep(summary, directory);
+  Json json = summary.searches.empty() ? OneSearch(summary, directory) : SweepJson(summary, directory);
   json["confirmed"] = ConfirmationsJson(summary.confirmations);
   json["distinct_failures"] = DistinctFailuresJson(summary);
   return JsonText(json);

@@ -24,7 +24,6 @@ constexpr milliseconds kSuperviseEvery{100};  // at most; deaths in the pool are
 // often too.
 constexpr milliseconds kLookEvery{50};
 constexpr std::size_t kLongestHello = 1U << 20;  // bytes; what is longer is not even parsed for a stranger
-constexpr std::uint32_t kMaxSlots = 4096;        // of a worker
 // What a process said just before its end, its goodbye above all, is heard first.
 constexpr milliseconds kLastWords{200};
 

@@ -21,7 +21,7 @@ constexpr std::string_view kTable = "generic";
 constexpr std::string_view kBegin = "generic.";
 
 // Nothing of what no value of a definition is.
-std::optional<DefinitionValue> ValueOf(const TomlValue& value) {
+std::optional<DefinitionValue> DefinitionOf(const TomlValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
@@ -32,7 +32,7 @@ Status Set(const Assignment& assignment, DefinitionReader& reader) {
   const std::string_view path = std::string_view(assignment.path).substr(kBegin.size());
   const auto* other = std::get_if<OtherToml>(&assignment.value);
   const bool begins = other != nullptr && other->kind == kListOfTables;
-  const std::optional<DefinitionValue> value = begins ? DefinitionValue(0.0) : ValueOf(assignment.value);
+  const std::optional<DefinitionValue> value = begins ? DefinitionValue(0.0) : DefinitionOf(assignment.value);
   if (!value) {
     return InvalidInput(fmt::format("{}: {} is {}, expected a number or text", assignment.where,
                                     assignment.path, KindOf(assignment.value)));

@@ -22,7 +22,7 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 
 // The descriptors of an experiment's scenario, nullptr where there are none.
 std::vector<const controllers::MetricInfo*> DescriptorsOf(const Experiment& experiment) {
@@ -38,7 +38,7 @@ std::vector<const controllers::MetricInfo*> DescriptorsOf(const Experiment& expe
 Result<RunFacts> FactsOf(const StoredRun& run,
                          const std::vector<const controllers::MetricInfo*>& descriptors) {
   RunFacts facts = FactsOfRow(run);
-  facts.descriptors.assign(descriptors.size(), kNone);
+  facts.descriptors.assign(descriptors.size(), kNotMeasured);
   if (!facts.completed || descriptors.empty()) return facts;
   const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
   if (!result) return Error{result.error().kind, fmt::format("run {}: {}", run.id, result.error().message)};
@@ -46,7 +46,7 @@ Result<RunFacts> FactsOf(const StoredRun& run,
     const auto metric =
         std::ranges::find(result->metrics, descriptors[i]->name, &std::pair<std::string, double>::first);
     if (metric == result->metrics.end()) continue;
-    facts.descriptors[i] = MeasuredValue(descriptors[i], metric->second).value_or(kNone);
+    facts.descriptors[i] = MeasuredValue(descriptors[i], metric->second).value_or(kNotMeasured);
   }
   return facts;
 }
@@ -103,7 +103,7 @@ Result<std::vector<CaseFacts>> CasesOf(const CampaignFacts& facts, ResultStore& 
       one.name = individual.test_case.name;
       one.born = individual.birth_generation;
       one.obstacles = individual.test_case.obstacles.size();
-      if (one.completed == 0) one.mean_fitness = kNone;
+      if (one.completed == 0) one.mean_fitness = kNotMeasured;
     }
   }
   std::ranges::stable_sort(all, [](const CaseFacts& a, const CaseFacts& b) {

@@ -12,7 +12,7 @@ namespace gauntlet::master {
 namespace {
 
 constexpr double kThumbnailPixels = 220.0;
-constexpr std::size_t kMostRows = 50;  // of the table of cases, where no script makes a whole one
+constexpr std::size_t kMostCases = 50;  // of the table of cases, where no script makes a whole one
 
 std::string CellHtml(const CampaignPages& pages, std::size_t number, const MapCell& cell,
                      std::uint64_t largest) {
@@ -73,7 +73,7 @@ std::string CasesTable(const CampaignPages& pages, std::size_t number) {
   const CampaignFacts& facts = pages.facts;
   std::vector<std::vector<std::string>> rows;
   for (const CaseFacts& one : facts.cases) {
-    if (rows.size() == kMostRows) break;
+    if (rows.size() == kMostCases) break;
     std::string run = one.toughest == 0 ? "-" : fmt::format("{}", one.toughest);
     if (pages.HasPage(one.toughest))
       run = fmt::format("<a href=\"#{}\">{}</a>", IdOfRun(number, one.toughest), run);

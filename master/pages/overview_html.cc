@@ -19,7 +19,7 @@ namespace gauntlet::master {
 namespace {
 
 constexpr std::size_t kCoursesAtOnce = 3;
-constexpr std::size_t kMostRows = 12;  // of a search's course
+constexpr std::size_t kMostBlocks = 12;  // of a search's course
 
 std::string Fitness(double value) {
   return std::isfinite(value) ? fmt::format("{:.3f}", value) : "-";
@@ -113,7 +113,7 @@ std::string CourseTable(const SearchCourse& course) {
   for (std::size_t repeat = 0; repeat < course.repeats.size() && repeat < 1; ++repeat) {
     const std::vector<CourseBlock>& blocks = course.repeats[repeat];
     const std::size_t gaps = blocks.size() - 1;
-    const std::size_t shown = std::min(gaps, kMostRows - 1);
+    const std::size_t shown = std::min(gaps, kMostBlocks - 1);
     for (std::size_t i = 0; i <= shown; ++i) {
       const CourseBlock& block = blocks[shown == 0 ? 0 : (i * gaps + shown / 2) / shown];
       rows.push_back({FormatCount(block.runs), Fitness(block.best), Fitness(block.mean),

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/statistics/comparison.h"
 #include "analysis/statistics/proportions.h"
 #include "master/directory/campaign_ownership.h"
 #include "master/directory/search_plans.h"
@@ -13,8 +14,6 @@
 
 namespace gauntlet::master {
 namespace {
-
-constexpr double kConfidence = 0.95;
 
 std::string FirstMessage(ResultStore& store, SearchId search, IndividualId individual) {
   std::string message;
@@ -66,7 +65,7 @@ std::string OutOf(const FailureTally& tally) {
 analysis::Interval FailureInterval(const FailureTally& tally) {
   if (tally.runs() == 0) return {0.0, 1.0};
   return analysis::WilsonInterval(static_cast<std::uint32_t>(tally.failures),
-                                  static_cast<std::uint32_t>(tally.runs()), kConfidence);
+                                  static_cast<std::uint32_t>(tally.runs()), analysis::kConfidence);
 }
 
 }  // namespace gauntlet::master

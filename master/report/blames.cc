@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "analysis/statistics/comparison.h"
 #include "analysis/statistics/proportions.h"
 #include "master/report/answered_calls.h"
 #include "master/report/stored_search.h"
@@ -12,7 +13,6 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr double kConfidence = 0.95;
 constexpr double kStays = 0.05;  // m: a robot that drives covers five times as much between two waypoints
 
 BlamedPart PartOf(const CaseBlame::Part& part, const FailureTally& whole) {
@@ -25,7 +25,7 @@ BlamedPart PartOf(const CaseBlame::Part& part, const FailureTally& whole) {
                   static_cast<double>(blamed.without.failures) / blamed.without.runs();
   blamed.interval =
       analysis::DifferenceInterval(count(whole.failures), count(whole.runs()), count(blamed.without.failures),
-                                   count(blamed.without.runs()), kConfidence);
+                                   count(blamed.without.runs()), analysis::kConfidence);
   blamed.to_blame = ClearlyLess(blamed.without, whole);
   return blamed;
 }

@@ -34,7 +34,7 @@ std::vector<std::string> CellsOf(std::string_view line) {
   return cells;
 }
 
-struct Column {
+struct ReadColumn {
   std::string name;
 };
 
@@ -78,7 +78,7 @@ Result<CsvColumn> ReadCsvColumn(const std::string& path, const std::string& colu
   if (!text) return text.error();
   const Result<std::vector<Line>> lines = LinesOf(*text, path);
   if (!lines) return lines.error();
-  std::vector<Column> columns;
+  std::vector<ReadColumn> columns;
   for (const std::string& cell : lines->front().cells) columns.push_back({Printable(cell)});
   const auto found = std::ranges::find(lines->front().cells, column);
   if (found == lines->front().cells.end()) {

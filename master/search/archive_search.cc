@@ -14,7 +14,7 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr std::array kParameters = std::to_array<controllers::ParameterInfo>({
+constexpr std::array kArchiveParameters = std::to_array<controllers::ParameterInfo>({
     {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: simulations in all"},
     {"slots", "", 36, 1, 10000, true,
      "archive and random-deletion only: layouts under test at a time; workers it can keep busy"},
@@ -30,7 +30,7 @@ constexpr std::array kParameters = std::to_array<controllers::ParameterInfo>({
 enum Parameter : std::size_t { kRuns, kSlots, kKeepOut, kAcrossShare, kJitteredShare, kRecheckShare };
 
 double Get(const Experiment& experiment, Parameter parameter) {
-  return ValueOf(kParameters[parameter], experiment.search.parameters);
+  return ValueOf(kArchiveParameters[parameter], experiment.search.parameters);
 }
 
 constexpr std::string_view kRandomDeletion = "random-deletion";
@@ -339,7 +339,7 @@ SearchRow ArchiveRow() {
   return {.info = {.name = "archive",
                    .description = "many different failures, each with as few obstacles as possible",
                    .keys = {"search.replicates", "search.cells", "genome."},
-                   .parameters = kParameters,
+                   .parameters = kArchiveParameters,
                    .length = "search.runs",
                    .check = CheckArchive},
           .number = 8,

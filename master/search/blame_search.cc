@@ -8,18 +8,18 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr std::array<controllers::ParameterInfo, 1> kParameters = {
+constexpr std::array<controllers::ParameterInfo, 1> kBlameParameters = {
     {{"part_runs", "", 30, 2, 10000, true, "runs of the case, and of it without each obstacle"}}};
 
 int PartRuns(const Experiment& experiment) {
-  return static_cast<int>(ValueOf(kParameters[0], experiment.search.parameters));
+  return static_cast<int>(ValueOf(kBlameParameters[0], experiment.search.parameters));
 }
 
 }  // namespace
 
 Experiment BlameExperiment(const Experiment& experiment, int replicates) {
   Experiment blame = LayoutExperiment(experiment, "blame");
-  blame.search.parameters[std::string(kParameters[0].name)] = replicates;
+  blame.search.parameters[std::string(kBlameParameters[0].name)] = replicates;
   return blame;
 }
 
@@ -33,7 +33,7 @@ Result<std::unique_ptr<BlameSearch>> BlameSearch::Create(const SearchSetup& setu
 SearchRow BlameRow() {
   return {.info = {.name = "blame",
                    .description = "what each obstacle of given cases contributes to failures: gauntlet blame",
-                   .parameters = kParameters},
+                   .parameters = kBlameParameters},
           .number = 6,
           .title = "blame of obstacles",
           .members = "cases",

@@ -8,7 +8,7 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr std::array<controllers::ParameterInfo, 1> kParameters = {
+constexpr std::array<controllers::ParameterInfo, 1> kConfirmationParameters = {
     {{"confirmations", "", 0, 0, 100000, true, "runs of each case; 0 = until there is a verdict"}}};
 
 std::string Plan(const Experiment& experiment) {
@@ -19,7 +19,7 @@ std::string Plan(const Experiment& experiment) {
 }  // namespace
 
 int ConfirmationReplicates(const Experiment& experiment) {
-  return static_cast<int>(ValueOf(kParameters[0], experiment.search.parameters));
+  return static_cast<int>(ValueOf(kConfirmationParameters[0], experiment.search.parameters));
 }
 
 Experiment ConfirmationOf(const Experiment& experiment, int replicates) {
@@ -27,7 +27,7 @@ Experiment ConfirmationOf(const Experiment& experiment, int replicates) {
   confirmation.search = SearchSpec{};
   confirmation.search.cells = experiment.search.cells;
   confirmation.search.algorithm = "confirmation";
-  confirmation.search.parameters[std::string(kParameters[0].name)] = replicates;
+  confirmation.search.parameters[std::string(kConfirmationParameters[0].name)] = replicates;
   return confirmation;
 }
 
@@ -107,7 +107,7 @@ SearchRow ConfirmationRow() {
   return {.info = {.name = "confirmation",
                    .description = "how often given cases fail with fresh seeds: gauntlet confirm",
                    .keys = {"search.cells"},
-                   .parameters = kParameters},
+                   .parameters = kConfirmationParameters},
           .number = 4,
           .title = "confirmation of cases",
           .members = "cases",

@@ -5,9 +5,9 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr double kRunsBefore = 3.0;  // that count before there are any
-constexpr double kFewestRuns = 0.1;  // that the distribution is worth, beside those of a layout
-constexpr double kMostRuns = 10.0;
+constexpr double kRunsBefore = 3.0;       // that count before there are any
+constexpr double kFewestPriorRuns = 0.1;  // that the distribution is worth, beside those of a layout
+constexpr double kMostPriorRuns = 10.0;
 
 int RunsOf(const FailureTally& tally) {
   return tally.runs() + tally.errors;
@@ -33,8 +33,9 @@ double FailurePrior::Expected(const FailureTally& tally) const {
   const double mean = first_.Share(1.0);
   const double again = second_.Share(2.0);
   // Beta(mean n, (1 - mean) n), whose mean after one failure is (mean n + 1) / (n + 1) = again.
-  const double runs =
-      again > mean ? std::clamp((1.0 - again) / (again - mean), kFewestRuns, kMostRuns) : kMostRuns;
+  const double runs = again > mean
+                          ? std::clamp((1.0 - again) / (again - mean), kFewestPriorRuns, kMostPriorRuns)
+                          : kMostPriorRuns;
   return (mean * runs + tally.failures) / (runs + RunsOf(tally));
 }
 

@@ -11,11 +11,11 @@ namespace {
 // Cases drawn before the search starts, to find ranges that leave no room.
 constexpr std::uint64_t kTrialCases = 20;
 
-constexpr std::array<controllers::ParameterInfo, 1> kParameters = {
+constexpr std::array<controllers::ParameterInfo, 1> kRandomParameters = {
     {{"cases", "", 1000, 1, 1e8, true, "test cases of random search"}}};
 
 std::uint64_t PlannedCases(const Experiment& experiment) {
-  return static_cast<std::uint64_t>(ValueOf(kParameters[0], experiment.search.parameters));
+  return static_cast<std::uint64_t>(ValueOf(kRandomParameters[0], experiment.search.parameters));
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ SearchRow RandomRow() {
   return {.info = {.name = "random",
                    .description = "independent random test cases, the baseline: gauntlet random",
                    .keys = {"search.replicates", "search.objective", "genome."},
-                   .parameters = kParameters,
+                   .parameters = kRandomParameters,
                    .length = "search.cases",
                    .check = CheckObjective},
           .number = 1,

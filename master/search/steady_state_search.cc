@@ -12,7 +12,7 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr std::array<controllers::ParameterInfo, 1> kParameters = {
+constexpr std::array<controllers::ParameterInfo, 1> kSteadyStateParameters = {
     {{"lag", "", 0, 0, 9999, true,
       "steady-state only: a child knows all results but the last so many; workers it can keep busy; 0 = "
       "population "
@@ -20,7 +20,7 @@ constexpr std::array<controllers::ParameterInfo, 1> kParameters = {
 
 // search.lag. 0 stands for the largest possible, which is no more than a generation waits on average.
 int LagOf(const SearchSpec& spec) {
-  const auto lag = static_cast<int>(ValueOf(kParameters[0], spec.parameters));
+  const auto lag = static_cast<int>(ValueOf(kSteadyStateParameters[0], spec.parameters));
   return lag > 0 ? lag : spec.population - 1;
 }
 
@@ -136,7 +136,7 @@ SearchRow SteadyStateRow() {
   return {.info = {.name = "steady-state",
                    .description = "the genetic search child after child, without waiting for a generation",
                    .keys = BreedingKeys(),
-                   .parameters = kParameters,
+                   .parameters = kSteadyStateParameters,
                    .length = "search.generations",
                    .check = CheckSteadyState},
           .number = 0,  // the first population is that of the genetic search

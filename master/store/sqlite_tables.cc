@@ -140,7 +140,7 @@ std::uint64_t ChecksumOf(SearchId search, IndividualId id, std::uint32_t birth_g
       .value();
 }
 
-Error Damaged(const std::string& what) {
+Error DamagedDatabase(const std::string& what) {
   return {ErrorKind::kCorrupt, "the campaign's database was changed or is damaged: " + what};
 }
 
@@ -342,7 +342,7 @@ Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
     Result<std::string> unpacked = specs_.Unpack(test_case);
     if (unpacked) test_case = *std::move(unpacked);
     if (checksum != ChecksumOf(search, individual.id, individual.birth_generation, parents, test_case)) {
-      return Damaged(
+      return DamagedDatabase(
           fmt::format("individual {} of search {} was changed: its checksum differs", individual.id, search));
     }
     if (DecodeParents(parents, individual) && DecodeTestCase(test_case, individual.test_case)) return Ok{};
@@ -397,15 +397,15 @@ Result<StoredRun> SqliteTables::ReadRun(const SqliteStatement& row, bool whole) 
   }
   run.fitness = std::bit_cast<double>(fitness_bits);
   if (checksum != ChecksumOf(run, record_hash))
-    return Damaged(fmt::format("the row of run {} was changed: its checksum differs", run.id));
+    return DamagedDatabase(fmt::format("the row of run {} was changed: its checksum differs", run.id));
   if (!whole) return run;
   if (record_hash != RecordHash(spec, result))
-    return Damaged(
+    return DamagedDatabase(
         fmt::format("the spec or the result of run {} was changed: their checksum differs", run.id));
   for (const auto& [packing, packed, into] :
        {std::tuple(&specs_, &spec, &run.spec), std::tuple(&results_, &result, &run.result)}) {
     Result<std::string> bytes = packing->Unpack(*packed);
-    if (!bytes) return Damaged(fmt::format("run {}: {}", run.id, bytes.error().message));
+    if (!bytes) return DamagedDatabase(fmt::format("run {}: {}", run.id, bytes.error().message));
     *into = *std::move(bytes);
   }
   return run;

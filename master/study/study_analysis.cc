@@ -16,8 +16,6 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr double kLevel = 0.01;  // thesis 4.6.2
-
 // What an analysis is computed with.
 struct Desk {
   const StudyAnalysis& analysis;
@@ -48,10 +46,6 @@ std::vector<double> ValuesOf(const RunSet& set) {
   std::vector<double> values;
   for (const auto& cluster : set.values.clusters) values.insert(values.end(), cluster.begin(), cluster.end());
   return values;
-}
-
-std::string Decimal(double value) {
-  return fmt::format("{:.3f}", value);
 }
 
 std::string Interval(const std::optional<analysis::Interval>& interval) {
@@ -160,7 +154,7 @@ Status Compare(const Desk& desk) {
   desk.AddNotes(*first);
   desk.AddNotes(*second);
   if (!expect.empty()) {
-    bool holds = p < kLevel;
+    bool holds = p < kThesisLevel;
     if (const auto effect = ParseNumber<double>(desk.analysis.Key("effect"))) {
       const auto& interval = c.cluster_interval ? c.cluster_interval : c.interval;
       holds = holds && interval && (less ? 1.0 - interval->high : interval->low) > *effect;
@@ -234,7 +228,7 @@ Status Count(const Desk& desk) {
   desk.Add("p", p, fmt::format("{:.2g}", p));
   desk.section.sentences.push_back(
       fmt::format("Fisher's exact test, one-tailed (first {}): p {:.2g}.", less ? "less" : "greater", p));
-  if (!desk.analysis.Key("expect").empty()) desk.Claim(p < kLevel);
+  if (!desk.analysis.Key("expect").empty()) desk.Claim(p < kThesisLevel);
   return Ok{};
 }
 
@@ -409,6 +403,10 @@ constexpr AnalysisKind kKinds[] = {
     {"compare", Compare}, {"count", Count}, {"types", Types}, {"peak", Peak}, {"windows", Windows}};
 
 }  // namespace
+
+std::string Decimal(double value) {
+  return fmt::format("{:.3f}", value);
+}
 
 Result<StudySection> Analyse(const StudyAnalysis& analysis, StudyRuns& runs, StudyFigures& figures) {
   if (analysis.tuning) return AnalyseTuning(analysis, runs, figures);

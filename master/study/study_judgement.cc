@@ -11,7 +11,6 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr double kLevel = 0.01;       // thesis 4.6.2
 constexpr double kMostSdRatio = 1.5;  // where standard deviations differ at a glance
 
 std::vector<std::string> Words(const std::string& text) {
@@ -74,7 +73,7 @@ std::optional<bool> MeanAgrees(const Compared& c) {
   const auto sd = c.Sibling("sd");
   const auto n = c.Sibling("n");
   if (!c.published || !c.ours || !sd || !n || c.arguments.size() != 2) return std::nullopt;
-  return WelchP(*c.published, c.arguments[0], c.arguments[1], *c.ours, *sd, *n) >= kLevel;
+  return WelchP(*c.published, c.arguments[0], c.arguments[1], *c.ours, *sd, *n) >= kThesisLevel;
 }
 
 std::optional<bool> SpreadAgrees(const Compared& c) {
@@ -93,19 +92,20 @@ std::optional<bool> EffectAgrees(const Compared& c) {
 
 std::optional<bool> SignificanceAgrees(const Compared& c) {
   if (!c.published || !c.ours) return std::nullopt;
-  return (*c.published < kLevel) == (*c.ours < kLevel);
+  return (*c.published < kThesisLevel) == (*c.ours < kThesisLevel);
 }
 
 std::optional<bool> CountAgrees(const Compared& c) {
   const auto of = c.Sibling("of");
   if (!c.published || !c.ours || !of || c.arguments.size() != 1) return std::nullopt;
-  return SharesP(*c.published, c.arguments[0], *c.ours, *of) >= kLevel;
+  return SharesP(*c.published, c.arguments[0], *c.ours, *of) >= kThesisLevel;
 }
 
 std::optional<bool> PercentAgrees(const Compared& c) {
   const auto of = c.Sibling("of");
   if (!c.published || !c.ours || !of || c.arguments.size() != 1) return std::nullopt;
-  return SharesP(*c.published * c.arguments[0] / 100.0, c.arguments[0], *c.ours * *of / 100.0, *of) >= kLevel;
+  return SharesP(*c.published * c.arguments[0] / 100.0, c.arguments[0], *c.ours * *of / 100.0, *of) >=
+         kThesisLevel;
 }
 
 std::optional<bool> LiesBetween(const Compared& c) {

@@ -15,6 +15,12 @@
 
 namespace gauntlet::master {
 
+// The significance level of the thesis' tests (4.6.2).
+inline constexpr double kThesisLevel = 0.01;
+
+// As tables print a mean or a deviation: "0.123".
+std::string Decimal(double value);
+
 struct StudyFigure {
   std::optional<double> number;  // none of a word, "never"
   std::string text;              // as it is printed

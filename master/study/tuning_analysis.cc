@@ -9,13 +9,9 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr double kLevel = 0.05;               // over all values together (Holm)
+constexpr double kHolmLevel = 0.05;           // over all values together (Holm)
 constexpr std::size_t kSets = 20;             // of each size (Spartan's manual)
 constexpr std::size_t kFewestEvolutions = 5;  // from which sets are drawn
-
-std::string Decimal(double value) {
-  return fmt::format("{:.3f}", value);
-}
 
 // What came of a part: one value for each evolution.
 struct Evolutions {
@@ -113,7 +109,7 @@ void Recommend(TriedParameter& parameter) {
   std::vector<const TriedValue*> uncertain;
   for (const TriedValue& value : parameter.values) {
     if (value.is_baseline || !value.exceeds) continue;
-    if (value.p_holm >= kLevel) {
+    if (value.p_holm >= kHolmLevel) {
       uncertain.push_back(&value);
       continue;
     }

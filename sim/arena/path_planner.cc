@@ -13,7 +13,6 @@ namespace gauntlet::sim {
 namespace {
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class ThetaStar {
  public:
@@ -43,7 +42,7 @@ class ThetaStar {
 
  private:
   struct Node {
-    double length = kInfinity;  // m, of the best known path from the start
+    double length = std::numeric_limits<double>::infinity();  // m, of the best known path from the start
     std::size_t parent = kNone;
     bool closed = false;
   };

@@ -17,7 +17,7 @@ bool AllFinite(std::initializer_list<double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
 
-std::string PointText(const Vec2& p) {
+std::string PlaceText(const Vec2& p) {
   return gauntlet::PointText(p.x(), p.y());
 }
 
@@ -56,7 +56,7 @@ std::optional<Violation> JudgeArenaNumbers(const TestCase& test_case) {
 std::optional<Violation> JudgeSwarmNumbers(const TestCase& test_case) {
   if (test_case.spawn_area) {
     const auto& [min, max] = *test_case.spawn_area;
-    const std::string area = "the spawn area from " + PointText(min) + " to " + PointText(max) + " m ";
+    const std::string area = "the spawn area from " + PlaceText(min) + " to " + PlaceText(max) + " m ";
     if (!(min.allFinite() && max.allFinite())) {
       return Violation{kFiniteNumbers, -1, area + "has a number that is not finite"};
     }
@@ -82,7 +82,7 @@ std::optional<Violation> JudgeSwarmNumbers(const TestCase& test_case) {
   for (const Pose& pose : test_case.start_poses) {
     if (pose.position.allFinite() && std::abs(pose.heading) <= kPi) continue;
     return Violation{kLimits, -1,
-                     "the start pose at " + PointText(pose.position) + " m has the heading " +
+                     "the start pose at " + PlaceText(pose.position) + " m has the heading " +
                          NumberText(pose.heading) + "; want finite numbers, the heading from -pi to pi"};
   }
   if (test_case.obstacles.size() > kMaxObstacles) {
@@ -144,7 +144,7 @@ std::optional<Violation> JudgeGeneNumbers(const ObstacleGene& gene, std::size_t 
   }
   for (const Vec2& point : gene.path) {
     if (point.cwiseAbs().maxCoeff() <= kMaxCoordinate) continue;
-    return broken(kLimits, "moves to " + PointText(point) + " m; want paths within " +
+    return broken(kLimits, "moves to " + PlaceText(point) + " m; want paths within " +
                                NumberText(kMaxCoordinate) + " m of the origin");
   }
   return std::nullopt;
@@ -194,17 +194,17 @@ std::optional<Violation> JudgeEnds(const OccupancyGrid& grid, const ArenaRequire
       "; a robot's centre needs " + NumberText(requirements.inflation) + " m of room there";
   if (!start_free) {
     return Violation{kStartBlocked, gene,
-                     culprit() + " blocks the start " + PointText(requirements.start) + room};
+                     culprit() + " blocks the start " + PlaceText(requirements.start) + room};
   }
-  return Violation{kGoalBlocked, gene, culprit() + " blocks the goal " + PointText(requirements.goal) + room};
+  return Violation{kGoalBlocked, gene, culprit() + " blocks the goal " + PlaceText(requirements.goal) + room};
 }
 
 std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequirements& requirements, int gene,
                                    const auto& culprit) {
   if (LeavesPathIn(grid, requirements)) return std::nullopt;
   return Violation{kNoPath, gene,
-                   culprit() + " leaves no path from " + PointText(requirements.start) + " to " +
-                       PointText(requirements.goal) + " for a robot's body"};
+                   culprit() + " leaves no path from " + PlaceText(requirements.start) + " to " +
+                       PlaceText(requirements.goal) + " for a robot's body"};
 }
 
 }  // namespace
@@ -288,7 +288,7 @@ std::optional<Violation> IncrementalValidity::JudgeGene(const ObstacleGene& gene
     const double distance = LeastDistance(gene, place);
     if (distance >= requirements_.clearance) continue;
     return BrokenByGene(kClearance, gene, index,
-                        "is " + NumberText(distance) + " m from the " + name + " " + PointText(place) +
+                        "is " + NumberText(distance) + " m from the " + name + " " + PlaceText(place) +
                             "; want at least " + NumberText(requirements_.clearance) + " m");
   }
   candidate_ = grid_;

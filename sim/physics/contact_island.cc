@@ -6,9 +6,8 @@
 namespace gauntlet::sim {
 namespace {
 
-constexpr int kIterations = 10;                                                 // as ARGoS
-constexpr double kSubstep = kTickSeconds / foot_bot::kSubstepsPerTick;          // s
-constexpr double kMaxDrive = foot_bot::kMaxForce * kSubstep / foot_bot::kMass;  // m/s
+constexpr int kIterations = 10;                                                           // as ARGoS
+constexpr double kMaxDrive = foot_bot::kMaxForce * foot_bot::kSubstep / foot_bot::kMass;  // m/s
 // ARGoS multiplies the frictions of a pair.
 constexpr double kRobotFriction = foot_bot::kFriction * foot_bot::kFriction;
 constexpr double kBoxFriction = foot_bot::kFriction * foot_bot::kStaticFriction;
@@ -174,13 +173,13 @@ bool ContactsStay(const ContactIsland& island, double seconds) {
 void Advance(const ContactIsland& island) {
   for (std::size_t substep = 0; substep < foot_bot::kSubstepsPerTick; ++substep) {
     for (Mover& mover : island.movers) {
-      mover.position += kSubstep * mover.velocity;
+      mover.position += foot_bot::kSubstep * mover.velocity;
       mover.before = mover.velocity;
     }
     for (PairContact& contact : island.pairs) Detect(contact);
     for (BoxContact& contact : island.boxes) Detect(contact, substep);
     if (!SolveVelocities(island)) continue;
-    const double rest = kSubstep * static_cast<double>(foot_bot::kSubstepsPerTick - 1 - substep);
+    const double rest = foot_bot::kSubstep * static_cast<double>(foot_bot::kSubstepsPerTick - 1 - substep);
     if (!ContactsStay(island, rest)) continue;
     for (Mover& mover : island.movers) mover.position += rest * mover.velocity;
     return;

@@ -5,8 +5,7 @@
 namespace gauntlet::sim {
 namespace {
 
-constexpr double kSubstep = kTickSeconds / foot_bot::kSubstepsPerTick;                   // s
-constexpr double kMaxVelocityChange = foot_bot::kMaxForce * kSubstep / foot_bot::kMass;  // m/s
+constexpr double kMaxVelocityChange = foot_bot::kMaxForce * foot_bot::kSubstep / foot_bot::kMass;  // m/s
 constexpr int kSubstepsPerHalf = foot_bot::kSubstepsPerTick / 2;
 
 }  // namespace
@@ -21,16 +20,16 @@ DriveMotion Drive(const DriveState& start, const WheelSpeeds& command, const Vec
     Vec2 displacement = Vec2::Zero();
     int substep = 0;
     for (; substep < kSubstepsPerHalf && velocity != target; ++substep) {
-      displacement += velocity * kSubstep;
+      displacement += velocity * foot_bot::kSubstep;
       const Vec2 missing = target - velocity;
       const double distance = std::sqrt(missing.squaredNorm());
       velocity =
           distance > kMaxVelocityChange ? Vec2(velocity + missing * (kMaxVelocityChange / distance)) : target;
     }
-    displacement += velocity * (kSubstep * (kSubstepsPerHalf - substep));
+    displacement += velocity * (foot_bot::kSubstep * (kSubstepsPerHalf - substep));
     motion.halves[static_cast<std::size_t>(half)] = displacement;
   }
-  motion.turn = start.turn_rate * kSubstep + target_rate * (kTickSeconds - kSubstep);
+  motion.turn = start.turn_rate * foot_bot::kSubstep + target_rate * (kTickSeconds - foot_bot::kSubstep);
   motion.end = {velocity, target_rate};
   return motion;
 }

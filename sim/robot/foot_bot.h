@@ -29,9 +29,10 @@ inline constexpr double kMaxForce = 15.0;       // N, drive force limit of dynam
 inline constexpr double kMaxWheelSpeed =
     1.0;                                  // m/s; ours: far beyond the robot, within the physics' accuracy
 inline constexpr double kFriction = 0.7;  // contact friction; of a pair: the product
-inline constexpr double kStaticFriction = 0.1;         // of walls and fixed obstacles
-inline constexpr int kSubstepsPerTick = 10;            // of ARGoS' physics: 0.01 s each
-inline constexpr double kProximityRange = 0.10;        // m beyond the body
+inline constexpr double kStaticFriction = 0.1;                       // of walls and fixed obstacles
+inline constexpr int kSubstepsPerTick = 10;                          // of ARGoS' physics
+inline constexpr double kSubstep = kTickSeconds / kSubstepsPerTick;  // s
+inline constexpr double kProximityRange = 0.10;                      // m beyond the body
 inline constexpr int kProximitySensors = 24;           // sensor i at (i + 1/2) * 15 degrees from the heading
 inline constexpr double kCameraHeight = 0.288699733;   // m
 inline constexpr double kBeaconHeight = 0.174249733;   // m

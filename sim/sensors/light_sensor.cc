@@ -6,7 +6,7 @@
 namespace gauntlet::sim {
 namespace {
 
-constexpr double kReach = 2.5;  // of distance / intensity
+constexpr double kLightReach = 2.5;  // of distance / intensity
 constexpr double kSpacing = 2.0 * kPi / foot_bot::kLightSensors;
 
 void Shine(double brightness, double bearing, LightReadings& readings) {
@@ -39,7 +39,7 @@ LightReadings SenseLight(std::span<const BodyFrame> robots, RobotIndex self, std
     if (!(light.intensity > 0.0)) continue;
     const Vec2 offset = light.position - frame.position;
     const double distance = std::sqrt(offset.squaredNorm() + light.height * light.height) / light.intensity;
-    if (distance > kReach) continue;
+    if (distance > kLightReach) continue;
     if (light.occludable) {
       const Point3 foot = {frame.position, 0.0};
       const Point3 lamp = {light.position, light.height};

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kManyMessages = 64;
 // Up to this many robots, what is known of bodies between them is kept.
-constexpr std::size_t kFewRobots = 100;
-constexpr double kRounding = 1e-6;  // m, more than sums of a run's ways lose
+constexpr std::size_t kFewSenders = 100;
+constexpr double kWaysRounding = 1e-6;  // m, more than sums of a run's ways lose
 
 Point3 AntennaAt(const Vec2& position) {
   return {position, foot_bot::kRangeAndBearingHeight};
@@ -25,7 +25,7 @@ class Radios final : public Sensor {
       : radios_(robots.begin(), robots.end()),
         messages_(robots.size(), robots.size() * std::min(robots.size() + 1, kManyMessages)) {
     for (const RobotSensors& robot : robots) reaches_.push_back(robot.RadioReach());
-    if (robots.size() <= kFewRobots) lines_.resize(robots.size() * robots.size());
+    if (robots.size() <= kFewSenders) lines_.resize(robots.size() * robots.size());
   }
 
   void Prepare(const Scene& scene) override;
@@ -106,7 +106,7 @@ bool Radios::BodyHides(const Scene& scene, std::size_t listener, std::size_t sen
     const double room = BodyRoom(scene.positions, from, to, self, other);
     line.hidden = room < 0.0;
     // The line moves as far as its ends at most, and a body may come as far towards it.
-    line.until = driven + 0.5 * std::abs(room) - kRounding;
+    line.until = driven + 0.5 * std::abs(room) - kWaysRounding;
     if (driven < line.until) return line.hidden;
   }
   return BodyBetween(scene.robots, AntennaAt(from), AntennaAt(to), self, other);

@@ -13,7 +13,7 @@ constexpr std::size_t kManyNeighbours = 64;
 constexpr std::size_t kFewRobots = 40;
 constexpr double kEverywhere = 1e6;  // m
 // m; a list of pairs holds for two seconds of driving or more.
-constexpr double kSlack = 0.4;
+constexpr double kPairSlack = 0.4;
 constexpr double kRounding = 1e-6;  // m, more than sums of a run's ways lose
 constexpr double kDue = -std::numeric_limits<double>::infinity();
 
@@ -34,7 +34,7 @@ double LargestReach(std::span<const RobotSensors> robots) {
 
 RobotPairs::RobotPairs(std::span<const RobotSensors> robots, std::span<const OrientedBox> fixed_boxes)
     : largest_reach_(LargestReach(robots)),
-      near_(robots.size() <= kFewRobots ? kEverywhere : kSlack),
+      near_(robots.size() <= kFewRobots ? kEverywhere : kPairSlack),
       boxes_(largest_reach_ + Occluders::kLongest),
       driven_(robots.size()),
       was_lit_(robots.size()),

@@ -11,18 +11,19 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr sim::AnnotationStyle kStyles[] = {{"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
-                                            {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
-                                            {"chain", "", sim::Mark::kChain, ""},
-                                            {"disc", "nest", sim::Mark::kNest, ""},
-                                            {"disc", "food", sim::Mark::kFood, ""}};
+constexpr sim::AnnotationStyle kTimelineStyles[] = {
+    {"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
+    {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
+    {"chain", "", sim::Mark::kChain, ""},
+    {"disc", "nest", sim::Mark::kNest, ""},
+    {"disc", "food", sim::Mark::kFood, ""}};
 
 // Two robots, 100 s: one goes home twice for one second each, one stands as a beacon and is trapped later.
 RunFigure TwoForagers() {
   RunFigure figure;
   figure.experiment = "foraging";
   figure.run = "run 7";
-  figure.style = {.lost = "trapped", .annotations = kStyles};
+  figure.style = {.lost = "trapped", .annotations = kTimelineStyles};
   figure.result.ticks = 1000;
   figure.result.robots.resize(2);
   figure.result.robots[1].lost = true;

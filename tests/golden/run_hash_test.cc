@@ -1,4 +1,4 @@
-// The same runs, bit for bit, whatever the optimisation and the compiler. No expected number stands here: the
+// The same runs, bit for bit, whatever the compiler. No expected number stands here: the
 // builds are compared with each other.
 #include <array>
 #include <cstdio>
@@ -47,10 +47,6 @@ TEST(GoldenHash, EveryControllerHasItsOwn) {
 
 TEST(GoldenHash, IsTheSameInEveryCall) {
   EXPECT_EQ(GoldenText(), GoldenText());
-}
-
-TEST(GoldenHash, IsTheSameWithAndWithoutOptimisation) {
-  EXPECT_EQ(OutputOf(GAUNTLET_GOLDEN_OTHER_OPTIMISATION), GoldenText());
 }
 
 TEST(GoldenHash, IsTheSameFromAnotherCompiler) {

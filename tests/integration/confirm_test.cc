@@ -27,13 +27,13 @@ std::vector<std::string> ConfirmAll(const std::string& dir, int workers) {
 }
 
 // Some of its cases fail.
-void MakeCampaign(const std::string& dir) {
+void MakeCampaignToConfirm(const std::string& dir) {
   ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "60", "--dir", dir, "--quiet"}).exit_code, 0);
 }
 
 TEST(ConfirmTest, TheSameForAnyNumberOfWorkersAndTheCampaignStaysAsItWas) {
   const TemporaryDirectory scratch;
-  MakeCampaign(scratch / "a");
+  MakeCampaignToConfirm(scratch / "a");
   std::filesystem::copy(scratch / "a", scratch / "b", std::filesystem::copy_options::recursive);
   const nlohmann::json before = Json({"show", scratch / "a", "--json"});
   EXPECT_TRUE(before["confirmed"].empty());
@@ -123,7 +123,7 @@ TEST(ConfirmTest, BudgetsAreComparedByWhatWasConfirmed) {
 
 TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
   const TemporaryDirectory scratch;
-  MakeCampaign(scratch / "c");
+  MakeCampaignToConfirm(scratch / "c");
   const nlohmann::json all = Json(ConfirmAll(scratch / "c", 2));
   const std::string run = all["cases"][0]["run"].dump();
   const ProcessResult again = Gauntlet({"confirm", scratch / "c", run, "--json"});
@@ -137,7 +137,7 @@ TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
 
 TEST(ConfirmTest, EndsAsUndisturbedWhenItIsKilled) {
   const TemporaryDirectory scratch;
-  MakeCampaign(scratch / "whole");
+  MakeCampaignToConfirm(scratch / "whole");
   std::filesystem::copy(scratch / "whole", scratch / "killed", std::filesystem::copy_options::recursive);
   const nlohmann::json whole = Json(ConfirmAll(scratch / "whole", 2));
   const ProcessResult killed =
@@ -149,7 +149,7 @@ TEST(ConfirmTest, EndsAsUndisturbedWhenItIsKilled) {
 
 TEST(ConfirmTest, SaysWhatIsWrong) {
   const TemporaryDirectory scratch;
-  MakeCampaign(scratch / "c");
+  MakeCampaignToConfirm(scratch / "c");
   const auto refused = [&](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"confirm", scratch / "c"});
     const ProcessResult result = Gauntlet(arguments);

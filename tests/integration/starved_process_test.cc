@@ -15,7 +15,7 @@
 namespace gauntlet::testing_support {
 namespace {
 
-constexpr std::chrono::seconds kSoon{20};
+constexpr std::chrono::seconds kStarvedSoon{20};
 
 struct Famine {
   std::string limit;               // an option of prlimit(1)
@@ -37,7 +37,7 @@ class StarvedProcessTest : public testing::TestWithParam<Famine> {
     }
     whole.insert(whole.end(), command.begin(), command.end());
     Process process(whole, {"TMPDIR=/tmp"});
-    return process.Wait(kSoon);
+    return process.Wait(kStarvedSoon);
   }
   // Nobody else's, so that nobody else's processes count.
   static uid_t User() { return 60000 + static_cast<uid_t>(getpid()) % 5000; }

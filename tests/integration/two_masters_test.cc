@@ -13,11 +13,11 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kGenerations = 6;
+constexpr int kMastersGenerations = 6;
 
 SmallCampaign Campaign() {
   SmallCampaign campaign;
-  campaign.generations = kGenerations;
+  campaign.generations = kMastersGenerations;
   return campaign;
 }
 

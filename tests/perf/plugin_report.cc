@@ -22,6 +22,7 @@
 #include "worker/fork_server.h"
 #include "worker/pipe.h"
 #include "worker/plugin_library.h"
+#include "worker/rehearsal.h"
 #include "worker/run_executor.h"
 #include "worker/runner.h"
 

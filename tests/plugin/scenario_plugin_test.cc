@@ -158,21 +158,21 @@ TEST_F(ScenarioPlugin, RefusesACaseThatBreaksARule) {
 }
 
 // What goes wrong before there is a run is a refusal that names the library.
-struct Refusal {
+struct ScenarioRefusal {
   std::string scenario;
   std::string why;
 };
-void PrintTo(const Refusal& refusal, std::ostream* os) {
+void PrintTo(const ScenarioRefusal& refusal, std::ostream* os) {
   *os << refusal.scenario;
 }
 
-std::string NameOfTest(const testing::TestParamInfo<Refusal>& parameter) {
+std::string NameOfTest(const testing::TestParamInfo<ScenarioRefusal>& parameter) {
   std::string name = parameter.param.scenario;
   std::ranges::replace(name, '-', '_');
   return name;
 }
 
-class RefusedScenario : public ScenarioPlugin, public testing::WithParamInterface<Refusal> {};
+class RefusedScenario : public ScenarioPlugin, public testing::WithParamInterface<ScenarioRefusal> {};
 
 TEST_P(RefusedScenario, BeginsNothing) {
   if (kSanitized) GTEST_SKIP() << "sanitizers end such processes in their own way";
@@ -185,20 +185,20 @@ TEST_P(RefusedScenario, BeginsNothing) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenarios, RefusedScenario,
-    testing::Values(Refusal{"crash-in-constructor",
-                            "crashed with signal 11 when it was asked how a run begins"},
-                    Refusal{"exit-in-constructor", "called exit(0) when it was asked how a run begins"},
-                    Refusal{"throw-in-requirements", "uncaught exception: not today"},
-                    // By its CPU time, or by the clock on a crowded machine.
-                    Refusal{"spin-in-requirements", "when it was asked how a run begins"},
-                    Refusal{"crash-in-swarm", "crashed with signal 11"},
-                    Refusal{"throw-in-swarm", "uncaught exception: not today"},
-                    Refusal{"without-robots", "its swarm has no robots"},
-                    Refusal{"start-outside", "what it asks of an arena is wrong: its start is at"}),
+    testing::Values(
+        ScenarioRefusal{"crash-in-constructor", "crashed with signal 11 when it was asked how a run begins"},
+        ScenarioRefusal{"exit-in-constructor", "called exit(0) when it was asked how a run begins"},
+        ScenarioRefusal{"throw-in-requirements", "uncaught exception: not today"},
+        // By its CPU time, or by the clock on a crowded machine.
+        ScenarioRefusal{"spin-in-requirements", "when it was asked how a run begins"},
+        ScenarioRefusal{"crash-in-swarm", "crashed with signal 11"},
+        ScenarioRefusal{"throw-in-swarm", "uncaught exception: not today"},
+        ScenarioRefusal{"without-robots", "its swarm has no robots"},
+        ScenarioRefusal{"start-outside", "what it asks of an arena is wrong: its start is at"}),
     NameOfTest);
 
 // What goes wrong later costs the run.
-class FaultyScenario : public ScenarioPlugin, public testing::WithParamInterface<Refusal> {};
+class FaultyScenario : public ScenarioPlugin, public testing::WithParamInterface<ScenarioRefusal> {};
 
 TEST_P(FaultyScenario, CostsTheRun) {
   if (kSanitized) GTEST_SKIP() << "sanitizers end such processes in their own way";
@@ -217,12 +217,12 @@ TEST_P(FaultyScenario, CostsTheRun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, FaultyScenario,
-                         testing::Values(Refusal{"sound", ""},
-                                         Refusal{"throw-in-tick", "crashed with exit code 87"},
-                                         Refusal{"crash-in-evaluate", "crashed with signal 11"},
-                                         Refusal{"exit-in-evaluate", "crashed with exit code 89"},
-                                         Refusal{"spin-in-evaluate", "exceeded its CPU time"},
-                                         Refusal{"throw-in-evaluate", "crashed with exit code 87"}),
+                         testing::Values(ScenarioRefusal{"sound", ""},
+                                         ScenarioRefusal{"throw-in-tick", "crashed with exit code 87"},
+                                         ScenarioRefusal{"crash-in-evaluate", "crashed with signal 11"},
+                                         ScenarioRefusal{"exit-in-evaluate", "crashed with exit code 89"},
+                                         ScenarioRefusal{"spin-in-evaluate", "exceeded its CPU time"},
+                                         ScenarioRefusal{"throw-in-evaluate", "crashed with exit code 87"}),
                          NameOfTest);
 
 TEST_F(ScenarioPlugin, FaultyRunsAreResultsThatSaySo) {

@@ -21,6 +21,7 @@
 #include "tests/support/process.h"
 #include "tests/support/sanitizer.h"
 #include "worker/pipe.h"
+#include "worker/rehearsal.h"
 #include "worker/run_executor.h"
 #include "worker/runner.h"
 

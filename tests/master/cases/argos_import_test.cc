@@ -39,7 +39,7 @@ std::string Document(const std::string& arena_content,
          arena_content + "\n  </arena>\n  <media/>\n</argos-configuration>\n";
 }
 
-std::string ErrorOf(const std::string& text) {
+std::string ImportError(const std::string& text) {
   const Result<LoadedCase> imported = ParseArgos(text, "case.argos");
   return imported.ok() ? "imported" : imported.error().message;
 }
@@ -145,7 +145,7 @@ TEST(ArgosImport, FootBotsThatStandByThemselvesStartThere) {
   EXPECT_EQ(poses[1].heading, 0.0);
   EXPECT_THAT(imported->notice, Not(HasSubstr("foot-bots")));
 
-  const auto in = [](const std::string& robot) { return ErrorOf(Document("\n" + robot)); };
+  const auto in = [](const std::string& robot) { return ImportError(Document("\n" + robot)); };
   EXPECT_THAT(in("<foot-bot id='a'/>"), HasSubstr("case.argos:5:2: <foot-bot id=\"a\"> has no <body>"));
   EXPECT_THAT(in("<foot-bot id='a'><body position='1,nan,0'/></foot-bot>"),
               HasSubstr("<foot-bot id=\"a\"> has position=\"1,nan,0\": 'nan' is not a number"));
@@ -156,11 +156,11 @@ TEST(ArgosImport, HostileFilesAreRefusedAtOnce) {
   std::string bomb = "<?xml version=\"1.0\"?><!DOCTYPE a [<!ENTITY a \"1,1\">";
   for (char c = 'b'; c < 'z'; ++c)
     bomb += fmt::format("<!ENTITY {0} \"&{1};&{1};&{1};&{1};\">", c, static_cast<char>(c - 1));
-  EXPECT_THAT(ErrorOf(bomb + "]><argos-configuration><arena size=\"&y;\"/></argos-configuration>"),
+  EXPECT_THAT(ImportError(bomb + "]><argos-configuration><arena size=\"&y;\"/></argos-configuration>"),
               HasSubstr("'&y;' is not a number"));
   std::string deep = "<argos-configuration>";
   for (int i = 0; i < 1'000'000; ++i) deep += "<a>";
-  EXPECT_THAT(ErrorOf(deep), HasSubstr("malformed XML"));
+  EXPECT_THAT(ImportError(deep), HasSubstr("malformed XML"));
 }
 
 TEST(ArgosImport, ReadsWhatOnlyWeSay) {
@@ -175,10 +175,11 @@ TEST(ArgosImport, ReadsWhatOnlyWeSay) {
   EXPECT_THAT(obstacle.path, testing::ElementsAre(sim::Vec2(1, 2), sim::Vec2(3, -1)));
   EXPECT_EQ(obstacle.speed, 0.02);
   EXPECT_EQ(obstacle.light, sim::Color::kRed);
-  EXPECT_THAT(ErrorOf(own(R"(<obstacle id="c" path="" speed="0" light="red"/>)")),
+  EXPECT_THAT(ImportError(own(R"(<obstacle id="c" path="" speed="0" light="red"/>)")),
               HasSubstr("<obstacle id=\"c\"> of <gauntlet> is no box of the arena"));
-  EXPECT_THAT(ErrorOf(own(R"(<obstacle id="b" path="1" speed="0" light="red"/>)")), HasSubstr("path=\"1\""));
-  EXPECT_THAT(ErrorOf(own(R"(<obstacle id="b" path="" speed="0" light="mauve"/>)")),
+  EXPECT_THAT(ImportError(own(R"(<obstacle id="b" path="1" speed="0" light="red"/>)")),
+              HasSubstr("path=\"1\""));
+  EXPECT_THAT(ImportError(own(R"(<obstacle id="b" path="" speed="0" light="mauve"/>)")),
               HasSubstr("light=\"mauve\", expected one of black, red"));
 }
 
@@ -201,42 +202,43 @@ TEST(ArgosImport, MovableAndLowBoxesAreNoticed) {
 
 TEST(ArgosImport, MalformedXmlIsNamedWithLineAndColumn) {
   const std::string message =
-      ErrorOf("<argos-configuration>\n  <arena size=\"6,6,1\">\n  </aren>\n</argos-configuration>");
+      ImportError("<argos-configuration>\n  <arena size=\"6,6,1\">\n  </aren>\n</argos-configuration>");
   EXPECT_THAT(message, StartsWith("case.argos:3:"));
   EXPECT_THAT(message, HasSubstr("malformed XML"));
-  EXPECT_THAT(ErrorOf(""), StartsWith("case.argos:1:1: malformed XML"));
+  EXPECT_THAT(ImportError(""), StartsWith("case.argos:1:1: malformed XML"));
 }
 
 TEST(ArgosImport, ErrorsPointAtTheElement) {
   // <body> stands in line 5, after 13 characters.
   const std::string message =
-      ErrorOf(Document("\n    <box id=\"Wall3\" movable=\"false\" size=\"1,0.1,1\">\n            <body "
-                       "position=\"0,abc,0\"/></box>"));
+      ImportError(Document("\n    <box id=\"Wall3\" movable=\"false\" size=\"1,0.1,1\">\n            <body "
+                           "position=\"0,abc,0\"/></box>"));
   EXPECT_EQ(message,
             "case.argos:6:14: <box id=\"Wall3\"> has position=\"0,abc,0\": 'abc' is not a number, expected "
             "\"x,y,z in m\"");
 }
 
 TEST(ArgosImport, RefusesWhatItCannotRepresent) {
-  EXPECT_THAT(ErrorOf("<lua/>"), HasSubstr("the root element is <lua>, expected <argos-configuration>"));
-  EXPECT_THAT(ErrorOf("<argos-configuration><framework/></argos-configuration>"),
+  EXPECT_THAT(ImportError("<lua/>"), HasSubstr("the root element is <lua>, expected <argos-configuration>"));
+  EXPECT_THAT(ImportError("<argos-configuration><framework/></argos-configuration>"),
               HasSubstr("has no <arena>"));
-  EXPECT_THAT(ErrorOf(Document("", "")), HasSubstr("<arena> has no size"));
-  EXPECT_THAT(ErrorOf(Document("", R"(size="6,6")")), HasSubstr("size=\"6,6\": 2 numbers"));
-  EXPECT_THAT(ErrorOf(Document("", R"(size="6,nan,1")")), HasSubstr("'nan' is not a number"));
-  EXPECT_THAT(ErrorOf(Document(R"(<cylinder id="c7" radius="1" height="1"/>)")),
+  EXPECT_THAT(ImportError(Document("", "")), HasSubstr("<arena> has no size"));
+  EXPECT_THAT(ImportError(Document("", R"(size="6,6")")), HasSubstr("size=\"6,6\": 2 numbers"));
+  EXPECT_THAT(ImportError(Document("", R"(size="6,nan,1")")), HasSubstr("'nan' is not a number"));
+  EXPECT_THAT(ImportError(Document(R"(<cylinder id="c7" radius="1" height="1"/>)")),
               HasSubstr("<cylinder id=\"c7\"> is round: obstacles must be boxes"));
-  EXPECT_THAT(
-      ErrorOf(Document(R"(<box id="t" size="1,1,1"><body position="0,0,0" orientation="0,15,0"/></box>)")),
-      HasSubstr("<box id=\"t\"> has orientation=\"0,15,0\": boxes may be rotated about z only"));
-  EXPECT_THAT(ErrorOf(Document(R"(<box id="t" size="1,1,1"/>)")), HasSubstr("<box id=\"t\"> has no <body>"));
-  EXPECT_THAT(ErrorOf(Document(R"(<distribute><position method="uniform" min="2,2,0" max="3,3,0"/>
+  EXPECT_THAT(ImportError(Document(
+                  R"(<box id="t" size="1,1,1"><body position="0,0,0" orientation="0,15,0"/></box>)")),
+              HasSubstr("<box id=\"t\"> has orientation=\"0,15,0\": boxes may be rotated about z only"));
+  EXPECT_THAT(ImportError(Document(R"(<box id="t" size="1,1,1"/>)")),
+              HasSubstr("<box id=\"t\"> has no <body>"));
+  EXPECT_THAT(ImportError(Document(R"(<distribute><position method="uniform" min="2,2,0" max="3,3,0"/>
       <entity quantity="ten"><foot-bot id="f"/></entity></distribute>)")),
               HasSubstr("<entity> of <foot-bot id=\"f\"> has quantity=\"ten\", expected a whole number"));
-  EXPECT_THAT(ErrorOf(Document(R"(<distribute><position method="uniform" min="4,2,0" max="3,3,0"/>
+  EXPECT_THAT(ImportError(Document(R"(<distribute><position method="uniform" min="4,2,0" max="3,3,0"/>
       <entity quantity="2"><foot-bot id="f"/></entity></distribute>)")),
               HasSubstr("beyond max=\"3,3,0\""));
-  EXPECT_THAT(ErrorOf(Document(R"(<distribute><entity quantity="2000000000"><foot-bot id="f"/></entity>
+  EXPECT_THAT(ImportError(Document(R"(<distribute><entity quantity="2000000000"><foot-bot id="f"/></entity>
       <entity quantity="2000000000"><foot-bot id="g"/></entity></distribute>)")),
               HasSubstr("4000000000 foot-bots"));
 }
@@ -287,8 +289,8 @@ TEST_F(CaseFile, AnEndlessFileIsReadToTheLimitOnly) {
 TEST(ArgosImport, NoFootBotsAreNotTenAndOneDocumentIsEnough) {
   std::string none = kTenRobots;
   none.replace(none.find("\"10\""), 4, "\"0\"");
-  EXPECT_THAT(ErrorOf(Document(none)), HasSubstr("quantity=\"0\", expected a whole number from 1 on"));
-  EXPECT_THAT(ErrorOf(Document("") + "<argos-configuration/>"),
+  EXPECT_THAT(ImportError(Document(none)), HasSubstr("quantity=\"0\", expected a whole number from 1 on"));
+  EXPECT_THAT(ImportError(Document("") + "<argos-configuration/>"),
               HasSubstr("follows the end of <argos-configuration>"));
 }
 

@@ -36,7 +36,7 @@ std::string Replaced(std::string text, const std::string& what, const std::strin
   return text.replace(at, what.size(), with);
 }
 
-std::string ErrorOf(const std::string& text) {
+std::string CorpusError(const std::string& text) {
   const Result<CorpusCase> one = ParseCorpusCase(text, "a.json");
   EXPECT_FALSE(one.ok());
   return one ? "" : one.error().message;
@@ -66,25 +66,26 @@ TEST(CorpusFileTest, IsACaseFileToo) {
 
 TEST(CorpusFileTest, SaysWhatIsWrong) {
   const std::string good = WriteCorpusCase(Sample("run-812"));
-  EXPECT_THAT(ErrorOf("{}"), HasSubstr("\"format\""));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"format\": 1", "\"format\": 2")),
+  EXPECT_THAT(CorpusError("{}"), HasSubstr("\"format\""));
+  EXPECT_THAT(CorpusError(Replaced(good, "\"format\": 1", "\"format\": 2")),
               HasSubstr("a.json: format = 2 is that of a newer version"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"expected\": \"fail\"", "\"expected\": \"passes\"")),
+  EXPECT_THAT(CorpusError(Replaced(good, "\"expected\": \"fail\"", "\"expected\": \"passes\"")),
               HasSubstr("expected = 'passes': one of fail, flaky, pass"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"expected\":", "\"expcted\":")),
+  EXPECT_THAT(CorpusError(Replaced(good, "\"expected\":", "\"expcted\":")),
               HasSubstr("did you mean 'expected'?"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"scenario\":", "\"scenarios\":")),
+  EXPECT_THAT(CorpusError(Replaced(good, "\"scenario\":", "\"scenarios\":")),
               HasSubstr("experiment.scenario is missing"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"length\":", "\"lenght\":")), HasSubstr("did you mean 'length'?"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"k\": 5", "\"k\": 7")),
+  EXPECT_THAT(CorpusError(Replaced(good, "\"length\":", "\"lenght\":")), HasSubstr("did you mean 'length'?"));
+  EXPECT_THAT(CorpusError(Replaced(good, "\"k\": 5", "\"k\": 7")),
               HasSubstr("'found' needs k failures of n runs"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"run-812\"", "\"../x\"")), HasSubstr("name = '../x'"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"run-812\"", "\"a\\nb\"")), HasSubstr("that can name a file"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "\"run 812 of flocking\"", "812")), HasSubstr("found_in is no text"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "0.44", "0.94")), HasSubstr("found.interval = [0.94, 0.97]"));
-  EXPECT_THAT(ErrorOf(Replaced(good, "0.055", "\"0.055\"")),
+  EXPECT_THAT(CorpusError(Replaced(good, "\"run-812\"", "\"../x\"")), HasSubstr("name = '../x'"));
+  EXPECT_THAT(CorpusError(Replaced(good, "\"run-812\"", "\"a\\nb\"")), HasSubstr("that can name a file"));
+  EXPECT_THAT(CorpusError(Replaced(good, "\"run 812 of flocking\"", "812")),
+              HasSubstr("found_in is no text"));
+  EXPECT_THAT(CorpusError(Replaced(good, "0.44", "0.94")), HasSubstr("found.interval = [0.94, 0.97]"));
+  EXPECT_THAT(CorpusError(Replaced(good, "0.055", "\"0.055\"")),
               HasSubstr("experiment.controller_parameters.bird_speed = \"0.055\": a number stands without"));
-  EXPECT_THAT(ErrorOf("{\"format\": 1"), HasSubstr("a.json:1:"));
+  EXPECT_THAT(CorpusError("{\"format\": 1"), HasSubstr("a.json:1:"));
 }
 
 class CorpusTest : public testing::Test {

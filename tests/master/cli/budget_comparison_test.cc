@@ -8,7 +8,7 @@ namespace gauntlet::master {
 namespace {
 
 using ::testing::HasSubstr;
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 // Searches of 1,000 runs that found confirmed cases of two obstacles in 1, 2, 3, ... cells, one every ten
 // runs.
@@ -24,12 +24,12 @@ YieldSet Growing(const std::string& name, std::size_t searches, std::size_t firs
 }
 
 TEST(BudgetComparisonTest, GivesMediansMeansAndTheTestAgainstTheFirst) {
-  const Json json = BudgetJson({Growing("many", 4, 5), Growing("few", 4, 1)});
-  const Json& many = json["sets"][0];
+  const OrderedJson json = BudgetJson({Growing("many", 4, 5), Growing("few", 4, 1)});
+  const OrderedJson& many = json["sets"][0];
   EXPECT_EQ(json["runs"], 1000);
   EXPECT_EQ(many["cases"], 30);
   EXPECT_EQ(many["confirmed"], 26);
-  EXPECT_EQ(many["cells"]["values"], Json({5, 6, 7, 8}));
+  EXPECT_EQ(many["cells"]["values"], OrderedJson({5, 6, 7, 8}));
   EXPECT_EQ(many["cells"]["median"], 6.5);
   EXPECT_EQ(many["cells_with_up_to_2"]["mean"], 6.5);
   EXPECT_EQ(many["cells_with_1"]["mean"], 0.0);
@@ -41,14 +41,14 @@ TEST(BudgetComparisonTest, GivesMediansMeansAndTheTestAgainstTheFirst) {
 }
 
 TEST(BudgetComparisonTest, SeveralTestsAreAdjusted) {
-  const Json json = BudgetJson({Growing("many", 4, 5), Growing("few", 4, 1), Growing("too", 4, 1)});
+  const OrderedJson json = BudgetJson({Growing("many", 4, 5), Growing("few", 4, 1), Growing("too", 4, 1)});
   EXPECT_NEAR(json["sets"][1]["cells"]["p"].get<double>(), 2 * 2.0 / 70, 1e-12);
 }
 
 TEST(BudgetComparisonTest, WhatWasNeverReachedHasNoMean) {
-  const Json json = BudgetJson({Growing("few", 3, 4)});  // 4, 5 and 6 cells
-  const Json& runs = json["sets"][0]["runs_until_5_cells_with_up_to_3"];
-  EXPECT_EQ(runs["values"], Json({nullptr, 50, 50}));
+  const OrderedJson json = BudgetJson({Growing("few", 3, 4)});  // 4, 5 and 6 cells
+  const OrderedJson& runs = json["sets"][0]["runs_until_5_cells_with_up_to_3"];
+  EXPECT_EQ(runs["values"], OrderedJson({nullptr, 50, 50}));
   EXPECT_EQ(runs["median"], 50);
   EXPECT_TRUE(runs["mean"].is_null());
   EXPECT_TRUE(json["sets"][0]["runs_until_10_cells_with_up_to_3"]["median"].is_null());

@@ -144,10 +144,10 @@ TEST_F(SchedulerTest, HowLongARunTakesIsCountedFromWhenItsTurnCame) {
 
 // Two runs at worker 10 and two at worker 11, which then finishes both.
 TEST_F(SchedulerTest, AnIdleWorkerTakesOverWhatWaitsBehindAnothersRun) {
-  for (const double seconds : {0.0015, 0.02}) {
-    SCOPED_TRACE(seconds);
+  for (const double run_seconds : {0.0015, 0.02}) {
+    SCOPED_TRACE(run_seconds);
     scheduler_ = Scheduler(LeaseOptions(2), kFirstFence);
-    for (int i = 0; i < 200; ++i) scheduler_.RunTook(seconds);
+    for (int i = 0; i < 200; ++i) scheduler_.RunTook(run_seconds);
     SubmitRuns(1, 4);
     Join(10);
     Join(11);
@@ -162,7 +162,7 @@ TEST_F(SchedulerTest, AnIdleWorkerTakesOverWhatWaitsBehindAnothersRun) {
     EXPECT_THAT(Decide().leases, IsEmpty()) << "it has another run";
     scheduler_.Completed(idle, given[4].lease.fence, 4, 111);
     const SchedulerOrders orders = Decide();
-    if (seconds < 0.002) {
+    if (run_seconds < 0.002) {
       EXPECT_THAT(orders.leases, IsEmpty()) << "not worth a message";
       continue;
     }

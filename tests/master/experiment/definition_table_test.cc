@@ -27,7 +27,7 @@ Result<Experiment> Read(const std::string& text, const std::vector<std::string>&
   return ParseExperiment(text, "gather.toml", sets, BuiltInCatalogue());
 }
 
-std::string ErrorOf(const std::string& text, const std::vector<std::string>& sets = {}) {
+std::string TableError(const std::string& text, const std::vector<std::string>& sets = {}) {
   const Result<Experiment> experiment = Read(text, sets);
   return experiment.ok() ? "" : experiment.error().message;
 }
@@ -74,18 +74,18 @@ TEST(DefinitionTable, IsTheSameFromItsSettings) {
 TEST(DefinitionTable, ErrorsNameThePlace) {
   const std::string text = kGathering;
   EXPECT_EQ(
-      ErrorOf(text, {"generic.failure=largest_clutser < 3"}),
+      TableError(text, {"generic.failure=largest_clutser < 3"}),
       "--set generic.failure=largest_clutser < 3: failure = \"largest_clutser < 3\": character 1: unknown "
       "measure 'largest_clutser'; did you mean 'largest_cluster'?");
-  EXPECT_EQ(ErrorOf(text + "grey = 2\n"),
+  EXPECT_EQ(TableError(text + "grey = 2\n"),
             "gather.toml:11:1: ground.1: parameter 'grey' = 2 is out of range: from 0 to 1");
-  EXPECT_EQ(ErrorOf(text + "[[generic.lihgt]]\n"),
+  EXPECT_EQ(TableError(text + "[[generic.lihgt]]\n"),
             "gather.toml:11:1: [generic]: unknown key 'lihgt'; did you mean 'light'?");
-  EXPECT_EQ(ErrorOf(text + "x = [1]\n"),
+  EXPECT_EQ(TableError(text + "x = [1]\n"),
             "gather.toml:11:1: generic.ground.1.x is an array, expected a number or text");
-  EXPECT_EQ(ErrorOf("scenario = \"generic\"\n"),
+  EXPECT_EQ(TableError("scenario = \"generic\"\n"),
             "gather.toml: [generic] fitness is missing: a formula such as \"largest_cluster / robots\"");
-  EXPECT_EQ(ErrorOf("scenario = \"flocking\"\n[generic]\nfitness = \"1\"\n"),
+  EXPECT_EQ(TableError("scenario = \"flocking\"\n[generic]\nfitness = \"1\"\n"),
             "gather.toml:3:1: generic.fitness defines the scenario 'generic', and this is 'flocking'");
 }
 

@@ -20,7 +20,7 @@ Result<Experiment> FlockingWith(const std::string& cells) {
                          BuiltInCatalogue());
 }
 
-std::string ErrorOf(const std::string& cells) {
+std::string ErrorOfCells(const std::string& cells) {
   const Result<Experiment> experiment = FlockingWith(cells);
   EXPECT_FALSE(experiment.ok());
   return experiment ? "" : experiment.error().message;
@@ -44,16 +44,18 @@ TEST(FailureCellsTest, OfAFamilyOfMetricsOneMayBeNamed) {
 }
 
 TEST(FailureCellsTest, SayWhatIsWrong) {
-  EXPECT_THAT(ErrorOf("split_z:-3:3:5"), HasSubstr("flocking does not report it: unknown metric 'split_z'"));
-  EXPECT_THAT(ErrorOf("split_x:3:3:5"), HasSubstr("the range from 3 to 3 is empty"));
-  EXPECT_THAT(ErrorOf("split_x:3:-3:5"), HasSubstr("the range from 3 to -3 is empty"));
-  EXPECT_THAT(ErrorOf("split_x:a:3:5"), HasSubstr("a to 3 are no two numbers"));
-  EXPECT_THAT(ErrorOf("split_x:-inf:3:5"), HasSubstr("are no two numbers"));
-  EXPECT_THAT(ErrorOf("split_x:-3:3:0"), HasSubstr("0 parts: a whole number from 1 to 10000"));
-  EXPECT_THAT(ErrorOf("split_x"), HasSubstr("METRIC:FROM:TO:PARTS is needed"));
-  EXPECT_THAT(ErrorOf("split_x:-3:3:5 split_x:0:1:2"), HasSubstr("'split_x' stands twice"));
-  EXPECT_THAT(ErrorOf("split_x:-3:3:500 split_y:-3:3:500"), HasSubstr("250000 cells; 10000 are the most"));
-  EXPECT_THAT(ErrorOf(" "), HasSubstr("names no metric"));
+  EXPECT_THAT(ErrorOfCells("split_z:-3:3:5"),
+              HasSubstr("flocking does not report it: unknown metric 'split_z'"));
+  EXPECT_THAT(ErrorOfCells("split_x:3:3:5"), HasSubstr("the range from 3 to 3 is empty"));
+  EXPECT_THAT(ErrorOfCells("split_x:3:-3:5"), HasSubstr("the range from 3 to -3 is empty"));
+  EXPECT_THAT(ErrorOfCells("split_x:a:3:5"), HasSubstr("a to 3 are no two numbers"));
+  EXPECT_THAT(ErrorOfCells("split_x:-inf:3:5"), HasSubstr("are no two numbers"));
+  EXPECT_THAT(ErrorOfCells("split_x:-3:3:0"), HasSubstr("0 parts: a whole number from 1 to 10000"));
+  EXPECT_THAT(ErrorOfCells("split_x"), HasSubstr("METRIC:FROM:TO:PARTS is needed"));
+  EXPECT_THAT(ErrorOfCells("split_x:-3:3:5 split_x:0:1:2"), HasSubstr("'split_x' stands twice"));
+  EXPECT_THAT(ErrorOfCells("split_x:-3:3:500 split_y:-3:3:500"),
+              HasSubstr("250000 cells; 10000 are the most"));
+  EXPECT_THAT(ErrorOfCells(" "), HasSubstr("names no metric"));
 }
 
 }  // namespace

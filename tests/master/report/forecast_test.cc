@@ -17,7 +17,7 @@ Experiment Flocking(const std::vector<std::string>& sets) {
 }
 
 // Answers every run at once, and notes which were asked.
-struct Simulator {
+struct TimedSimulator {
   double seconds = 0.25;
   std::vector<sim::RunSpec> asked;
 
@@ -32,7 +32,7 @@ struct Simulator {
 };
 
 TEST(Forecast, CountsTheRunsAndCasesOfAnEvolution) {
-  Simulator simulator;
+  TimedSimulator simulator;
   const auto forecast = simulator.Of({{"", Flocking({"search.generations=5", "search.replicates=2"})}});
   ASSERT_TRUE(forecast.ok()) << forecast.error().message;
   EXPECT_EQ(forecast->runs, 20U * 5 * 2);
@@ -48,7 +48,7 @@ TEST(Forecast, RandomCasesAreExactWhenEverySearchHasASeedOfItsOwn) {
   const auto plan = [](const std::string& seed) {
     return SearchPlan{"", Flocking({"search.algorithm=random", "search.cases=30", "seed=" + seed})};
   };
-  Simulator simulator;
+  TimedSimulator simulator;
   const auto different = simulator.Of({plan("1"), plan("2"), plan("3")});
   ASSERT_TRUE(different.ok());
   EXPECT_EQ(different->cases, 90U);
@@ -62,7 +62,7 @@ TEST(Forecast, MeasuresRunsOfSearchesThatAreSpreadOverThemAll) {
     plans.push_back({"", Flocking({"scenario_parameters.birds=" + std::to_string(birds),
                                    "scenario_parameters.min_swarm=2"})});
   }
-  Simulator simulator;
+  TimedSimulator simulator;
   EXPECT_EQ(simulator.Of(plans)->measured_runs, 12U);
   std::set<double> birds;
   for (const sim::RunSpec& spec : simulator.asked) birds.insert(spec.scenario_parameters.at("birds"));
@@ -87,14 +87,14 @@ TEST(Forecast, TellsOfRunsWithoutAResult) {
 }
 
 TEST(Forecast, StopsMeasuringLongRuns) {
-  Simulator simulator;
+  TimedSimulator simulator;
   simulator.seconds = 60.0;
   EXPECT_EQ(simulator.Of({{"", Flocking({})}})->measured_runs, 2U);
 }
 
 TEST(Forecast, OneGivenCaseIsMeasuredOnceForEachReplicate) {
   const Experiment experiment = Flocking({"search.algorithm=cases", "search.replicates=3"});
-  Simulator simulator;
+  TimedSimulator simulator;
   const auto forecast = simulator.Of({{"", experiment, {EmptyArena(experiment.arena)}}});
   ASSERT_TRUE(forecast.ok()) << forecast.error().message;
   EXPECT_EQ(forecast->runs, 3U);
@@ -104,7 +104,7 @@ TEST(Forecast, OneGivenCaseIsMeasuredOnceForEachReplicate) {
 }
 
 TEST(Forecast, ASearchThatCannotBeginIsAnError) {
-  Simulator simulator;
+  TimedSimulator simulator;
   EXPECT_FALSE(simulator.Of({{"", Flocking({"search.algorithm=cases"})}}).ok());
   EXPECT_TRUE(simulator.asked.empty());
 }

@@ -27,7 +27,7 @@ SearchPlan Plan(const std::string& settings, const std::vector<std::string>& set
   return {settings, *LoadExperiment("flocking", all, BuiltInCatalogue())};
 }
 
-sim::RunResult SmallRun(const sim::RunSpec& spec) {
+sim::RunResult TableRun(const sim::RunSpec& spec) {
   sim::RunResult result = ToyRun(spec);
   result.failure.label = result.failure.total ? "apart" : "";
   if (result.failure.type == 0) result.failure = {true, -1, ""};
@@ -45,7 +45,7 @@ MemoryStore Campaign(const std::vector<SearchPlan>& plans) {
   std::vector<Experiment> experiments;
   for (const SearchPlan& plan : plans) experiments.push_back(plan.experiment);
   MemoryStore store;
-  ToySession session(experiments, store, SmallRun,
+  ToySession session(experiments, store, TableRun,
                      [](const Experiment& experiment) { return *MakeSearch(experiment, kOnlySearch); });
   EXPECT_TRUE(session.Run().ok());
   return store;

@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Experiment Flocking(const std::vector<std::string>& settings) {
+Experiment SmallFlocking(const std::vector<std::string>& settings) {
   return LoadExperiment("flocking", settings, BuiltInCatalogue()).value();
 }
 
@@ -20,7 +20,7 @@ SearchYield Yield(const Experiment& experiment, std::uint64_t runs) {
 }
 
 TEST(SearchYieldTest, ACellCountsOnceByItsSmallestCase) {
-  SearchYield yield = Yield(Flocking({}), 1000);
+  SearchYield yield = Yield(SmallFlocking({}), 1000);
   EXPECT_EQ(CellsWith(yield, 8), 0U);
   yield.confirmed = {{.cell = 3, .obstacles = 8, .found = 10},
                      {.cell = 3, .obstacles = 2, .found = 50},
@@ -32,7 +32,7 @@ TEST(SearchYieldTest, ACellCountsOnceByItsSmallestCase) {
 }
 
 TEST(SearchYieldTest, TheRunsUntilSoManyCellsAreThoseOfTheirFirstCases) {
-  SearchYield yield = Yield(Flocking({}), 1000);
+  SearchYield yield = Yield(SmallFlocking({}), 1000);
   EXPECT_EQ(RunsUntil(yield, 1, 8), std::nullopt);
   yield.confirmed = {{.cell = 3, .obstacles = 2, .found = 50},
                      {.cell = 3, .obstacles = 8, .found = 10},
@@ -44,14 +44,14 @@ TEST(SearchYieldTest, TheRunsUntilSoManyCellsAreThoseOfTheirFirstCases) {
 }
 
 TEST(SearchYieldTest, OnlyEqualBudgetsOfTheSameTestAreCompared) {
-  const Experiment genetic = Flocking({});
-  const Experiment archive = Flocking({"search.algorithm=archive", "seed=7"});
+  const Experiment genetic = SmallFlocking({});
+  const Experiment archive = SmallFlocking({"search.algorithm=archive", "seed=7"});
   const YieldSet first{"first", "genetic search", {Yield(genetic, 1000)}};
   EXPECT_TRUE(CheckSameBudget({first, {"second", "archive search", {Yield(archive, 1000)}}}).ok())
       << "seeds and searches may differ";
   EXPECT_THAT(CheckSameBudget({first, {"second", "archive search", {Yield(archive, 999)}}}).error().message,
               HasSubstr("has 1000 runs and campaign has 999"));
-  const Experiment other = Flocking({"controller=flocking-improved"});
+  const Experiment other = SmallFlocking({"controller=flocking-improved"});
   EXPECT_THAT(CheckSameBudget({first, {"second", "genetic search", {Yield(other, 1000)}}}).error().message,
               HasSubstr("flocking-improved"));
 }

@@ -18,13 +18,13 @@ using Kept = std::vector<std::size_t>;
 // The probability that a layout breaks the swarm.
 using Truth = std::function<double(const Kept&)>;
 
-bool Has(const Kept& layout, std::size_t obstacle) {
+bool Holds(const Kept& layout, std::size_t obstacle) {
   return std::ranges::count(layout, obstacle) > 0;
 }
 
 // Three walls, 1, 4 and 6, are a trap together.
 double Trap(const Kept& layout) {
-  return Has(layout, 1) && Has(layout, 4) && Has(layout, 6) ? 1.0 : 0.0;
+  return Holds(layout, 1) && Holds(layout, 4) && Holds(layout, 6) ? 1.0 : 0.0;
 }
 
 sim::Genome Boxes(std::size_t count) {
@@ -74,7 +74,7 @@ TEST(CaseMinimiserTest, FindsItFromItsPlaceToo) {
 }
 
 TEST(CaseMinimiserTest, APlaceSavesRuns) {
-  const Truth corner = [](const Kept& layout) { return Has(layout, 7) ? 1.0 : 0.0; };
+  const Truth corner = [](const Kept& layout) { return Holds(layout, 7) ? 1.0 : 0.0; };
   CaseMinimiser with(Boxes(12), kRules);
   CaseMinimiser without(Boxes(12), kRules);
   const Minimised from_place = Minimise(with, corner, sim::Vec2(7.0, 0.0));
@@ -124,7 +124,7 @@ TEST(CaseMinimiserTest, TakesBackWhatWasLuckAndGoesOnWithOneObstacleMore) {
   while (minimiser.runs() > 0) {
     const Kept& layout = minimiser.layout().kept;
     const bool lucky = layout == Kept{0} && of_one < 10;
-    const bool fails = lucky || (Has(layout, 0) && Has(layout, 1));
+    const bool fails = lucky || (Holds(layout, 0) && Holds(layout, 1));
     if (layout == Kept{0}) of_one += minimiser.runs();
     seen = seen || (layout == Kept{0} && !lucky);
     LayoutRuns told;
@@ -148,12 +148,12 @@ TEST(CaseMinimiserTest, AFailureElsewhereIsNotTheSameOne) {
     LayoutRuns told;
     (layout.empty() ? told.tally.passes : told.tally.failures) = minimiser.runs();
     // All together fail between both, so that the nearest is obstacle 2.
-    const double place = layout.size() == 6 ? 2.0 : Has(layout, 5) ? 2.5 : 9.0;
+    const double place = layout.size() == 6 ? 2.0 : Holds(layout, 5) ? 2.5 : 9.0;
     if (told.tally.failures > 0) told.places.assign(static_cast<std::size_t>(minimiser.runs()), {place, 0.0});
     minimiser.Tell(told);
   }
   EXPECT_EQ(minimiser.outcome(), MinimisedTo::kLayout);
-  EXPECT_TRUE(Has(minimiser.layout().kept, 5));
+  EXPECT_TRUE(Holds(minimiser.layout().kept, 5));
   EXPECT_TRUE(minimiser.SameFailures(minimiser.verification()));
 }
 
@@ -164,7 +164,7 @@ TEST(CaseMinimiserTest, TakesAwayFirstWhatRobotsVisitedLeast) {
     const Kept& layout = minimiser.layout().kept;
     if (layout.size() == 3 && taken_away_first.empty()) taken_away_first = layout;
     LayoutRuns told;
-    (Has(layout, 2) ? told.tally.failures : told.tally.passes) = minimiser.runs();
+    (Holds(layout, 2) ? told.tally.failures : told.tally.passes) = minimiser.runs();
     if (layout.size() == 4) told.visits = {5, 0, 7, 3};
     minimiser.Tell(told);
   }
@@ -182,7 +182,7 @@ TEST(CaseMinimiserTest, ShortensWhatIsLeftWhenAskedTo) {
   CaseMinimiser minimiser(obstacles, {.shorten = true});
   while (minimiser.runs() > 0) {
     const Layout& layout = minimiser.layout();
-    const bool fails = Has(layout.kept, 0) && layout.obstacles[0].length > 0.5;
+    const bool fails = Holds(layout.kept, 0) && layout.obstacles[0].length > 0.5;
     LayoutRuns told;
     (fails ? told.tally.failures : told.tally.passes) = minimiser.runs();
     minimiser.Tell(told);

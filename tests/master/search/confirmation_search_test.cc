@@ -11,7 +11,7 @@
 namespace gauntlet::master {
 namespace {
 
-SearchSetup SetupOf(std::size_t cases, int replicates = 0) {
+SearchSetup SetupOfCases(std::size_t cases, int replicates = 0) {
   SearchSetup setup = ToySetup();
   setup.experiment = ConfirmationOf(setup.experiment, replicates);
   for (std::size_t i = 0; i < cases; ++i) {
@@ -20,12 +20,12 @@ SearchSetup SetupOf(std::size_t cases, int replicates = 0) {
   return setup;
 }
 
-std::unique_ptr<ConfirmationSearch> Make(const SearchSetup& setup) {
+std::unique_ptr<ConfirmationSearch> MakeConfirmation(const SearchSetup& setup) {
   return std::move(ConfirmationSearch::Create(setup)).value();
 }
 
-EvaluationOutcome Outcome(const EvaluationRequest& request, bool failed,
-                          sim::Verdict verdict = sim::Verdict::kCompleted) {
+EvaluationOutcome Confirmed(const EvaluationRequest& request, bool failed,
+                            sim::Verdict verdict = sim::Verdict::kCompleted) {
   return OutcomeOfRuns(
       request.individual, request.evaluation,
       {{.verdict = verdict, .fitness = failed ? 0.0 : 1.0, .total_failure = failed, .metrics = {}}});
@@ -45,7 +45,7 @@ std::vector<EvaluationRequest> Drive(ConfirmationSearch& search, std::size_t at_
     std::ranges::move(search.Ask(), std::back_inserter(all));
     if (told == all.size()) break;
     for (std::size_t i = 0; i < at_once && told < all.size(); ++i, ++told) {
-      search.Tell(Outcome(all[told], Fails(all[told])));
+      search.Tell(Confirmed(all[told], Fails(all[told])));
     }
   }
   return all;
@@ -58,19 +58,19 @@ std::map<IndividualId, int> RunsByCase(const std::vector<EvaluationRequest>& req
 }
 
 TEST(ConfirmationSearchTest, StopsAsSoonAsACaseIsDecided) {
-  const auto search = Make(SetupOf(3));
+  const auto search = MakeConfirmation(SetupOfCases(3));
   EXPECT_THAT(RunsByCase(Drive(*search, 100)),
               testing::ElementsAre(testing::Pair(1, 5), testing::Pair(2, 6), testing::Pair(3, 9)));
 }
 
 TEST(ConfirmationSearchTest, AsksTheSameHoweverManyOutcomesComeBetweenTwoAsks) {
-  const auto one = Make(SetupOf(3));
-  const auto many = Make(SetupOf(3));
+  const auto one = MakeConfirmation(SetupOfCases(3));
+  const auto many = MakeConfirmation(SetupOfCases(3));
   EXPECT_TRUE(SameRequests(Drive(*one, 1), Drive(*many, 7)));
 }
 
 TEST(ConfirmationSearchTest, GivesEveryRunOfACaseAnEvaluationOfItsOwn) {
-  const auto search = Make(SetupOf(3));
+  const auto search = MakeConfirmation(SetupOfCases(3));
   std::set<std::pair<IndividualId, std::uint32_t>> seen;
   for (const EvaluationRequest& request : Drive(*search, 2)) {
     EXPECT_EQ(request.replicates, 1U);
@@ -79,27 +79,28 @@ TEST(ConfirmationSearchTest, GivesEveryRunOfACaseAnEvaluationOfItsOwn) {
 }
 
 TEST(ConfirmationSearchTest, RunsExactlyAsOftenAsWasAsked) {
-  const auto search = Make(SetupOf(3, 12));
+  const auto search = MakeConfirmation(SetupOfCases(3, 12));
   EXPECT_THAT(RunsByCase(Drive(*search, 4)),
               testing::ElementsAre(testing::Pair(1, 12), testing::Pair(2, 12), testing::Pair(3, 12)));
 }
 
 TEST(ConfirmationSearchTest, ARunWithoutAResultEndsItsCase) {
-  const auto search = Make(SetupOf(1));
+  const auto search = MakeConfirmation(SetupOfCases(1));
   for (const EvaluationRequest& request : search->Ask()) {
-    search->Tell(Outcome(request, false, sim::Verdict::kCrashed));
+    search->Tell(Confirmed(request, false, sim::Verdict::kCrashed));
   }
   EXPECT_TRUE(search->Ask().empty());
   EXPECT_TRUE(search->Progress().finished);
 }
 
 TEST(ConfirmationSearchTest, IsFinishedAgainWhenItsStateIsRestored) {
-  const SearchSetup setup = SetupOf(3);
-  const auto search = Make(setup);
+  const SearchSetup setup = SetupOfCases(3);
+  const auto search = MakeConfirmation(setup);
   std::vector<EvaluationOutcome> told;
-  for (const EvaluationRequest& request : Drive(*search, 3)) told.push_back(Outcome(request, Fails(request)));
+  for (const EvaluationRequest& request : Drive(*search, 3))
+    told.push_back(Confirmed(request, Fails(request)));
   ASSERT_TRUE(search->AtBoundary());
-  const auto again = Make(setup);
+  const auto again = MakeConfirmation(setup);
   ASSERT_TRUE(RestoreState(*again, StateOf(*search), told));
   EXPECT_TRUE(again->Progress().finished);
   EXPECT_TRUE(again->Ask().empty());
@@ -107,7 +108,7 @@ TEST(ConfirmationSearchTest, IsFinishedAgainWhenItsStateIsRestored) {
 }
 
 TEST(ConfirmationSearchTest, SeedsAreThoseOfTheCaseAndNoSearchHasThem) {
-  const SearchSetup setup = SetupOf(2);
+  const SearchSetup setup = SetupOfCases(2);
   const sim::TestCase& one = setup.cases[0];
   EXPECT_EQ(RunSeed(setup.experiment, 1, one, 0, 0), RunSeed(setup.experiment, 2, one, 0, 0));
   EXPECT_NE(RunSeed(setup.experiment, 1, one, 0, 0), RunSeed(setup.experiment, 1, setup.cases[1], 0, 0));

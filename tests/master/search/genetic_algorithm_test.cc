@@ -24,7 +24,7 @@ SearchSetup SetupOf(ParentSelection selection, int population = 20, int generati
   return setup;
 }
 
-std::unique_ptr<GeneticAlgorithm> Make(const SearchSetup& setup) {
+std::unique_ptr<GeneticAlgorithm> MakeGenetic(const SearchSetup& setup) {
   return std::move(GeneticAlgorithm::Create(setup)).value();
 }
 
@@ -59,7 +59,7 @@ Accounts AccountsOf(const std::vector<EvaluationRequest>& requests) {
 TEST(GeneticAlgorithmTest, TwoParentSchemesSimulateEverybodyInEveryGeneration) {
   for (const ParentSelection selection :
        {ParentSelection::kTwoBestParentsTwoWorseAway, ParentSelection::kTwoRandomParentsTwoWorseAway}) {
-    const auto search = Make(SetupOf(selection));
+    const auto search = MakeGenetic(SetupOf(selection));
     EXPECT_EQ(search->Progress().evaluations_planned, 1000U);
     const std::vector<EvaluationRequest> requests = RunToEnd(*search, Noise);
     EXPECT_EQ(requests.size(), 1000U);  // 20 x 50
@@ -76,7 +76,7 @@ TEST(GeneticAlgorithmTest, TwoParentSchemesSimulateEverybodyInEveryGeneration) {
 }
 
 TEST(GeneticAlgorithmTest, AllParentBestHalfSimulatesOnlyChildrenAfterTheFirstGeneration) {
-  const auto search = Make(SetupOf(ParentSelection::kAllParentBestHalf, 20, 30));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kAllParentBestHalf, 20, 30));
   EXPECT_EQ(search->Progress().evaluations_planned, 600U);
   const std::vector<EvaluationRequest> requests = RunToEnd(*search, Noise);
   EXPECT_EQ(requests.size(), 600U);  // 20 + 29 x 20
@@ -89,25 +89,25 @@ TEST(GeneticAlgorithmTest, AllParentBestHalfSimulatesOnlyChildrenAfterTheFirstGe
 TEST(GeneticAlgorithmTest, ReevaluationModeOverridesTheScheme) {
   SearchSetup setup = SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway);
   setup.experiment.search.reevaluation = Reevaluation::kChildren;
-  auto search = Make(setup);
+  auto search = MakeGenetic(setup);
   EXPECT_EQ(search->Progress().evaluations_planned, 118U);
   EXPECT_EQ(RunToEnd(*search, Noise).size(), 118U);  // 20 + 49 x 2
 
   setup = SetupOf(ParentSelection::kAllParentBestHalf, 20, 30);
   setup.experiment.search.reevaluation = Reevaluation::kPopulation;
-  search = Make(setup);
+  search = MakeGenetic(setup);
   EXPECT_EQ(search->Progress().evaluations_planned, 1180U);
   EXPECT_EQ(RunToEnd(*search, Noise).size(), 1180U);  // 20 + 29 x 40
 }
 
 TEST(GeneticAlgorithmTest, OneGenerationIsTheInitialPopulation) {
-  const auto search = Make(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 1));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 1));
   EXPECT_EQ(RunToEnd(*search, Noise).size(), 4U);
   EXPECT_THAT(Ids(search->Population()), ElementsAre(1, 2, 3, 4));
 }
 
 TEST(GeneticAlgorithmTest, TwoBestMakeTwoChildrenThatReplaceTheTwoWorst) {
-  const auto search = Make(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 6, 2));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 6, 2));
   const std::map<IndividualId, double> fitness = {{1, 0.9}, {2, 0.2}, {3, 0.5}, {4, 0.8}, {5, 0.1}, {6, 0.6}};
   RunOneAsk(*search, [&](const EvaluationRequest& r) { return fitness.at(r.individual); });
   EXPECT_EQ(search->TakeNewborns().size(), 6U);
@@ -123,7 +123,7 @@ TEST(GeneticAlgorithmTest, TwoBestMakeTwoChildrenThatReplaceTheTwoWorst) {
 }
 
 TEST(GeneticAlgorithmTest, AllParentBestHalfKeepsTheFitterHalfOfParentsAndChildren) {
-  const auto search = Make(SetupOf(ParentSelection::kAllParentBestHalf, 4, 2));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kAllParentBestHalf, 4, 2));
   // Children 5 to 8; the fittest four are 2, 6, 7, and 8, which ties with 1 and is younger.
   const std::map<IndividualId, double> fitness = {{1, 0.5}, {2, 0.1}, {3, 0.9}, {4, 0.8},
                                                   {5, 0.7}, {6, 0.2}, {7, 0.3}, {8, 0.5}};
@@ -132,7 +132,7 @@ TEST(GeneticAlgorithmTest, AllParentBestHalfKeepsTheFitterHalfOfParentsAndChildr
 }
 
 TEST(GeneticAlgorithmTest, EveryParentBreedsOnceInAllParentBestHalf) {
-  const auto search = Make(SetupOf(ParentSelection::kAllParentBestHalf, 10, 2));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kAllParentBestHalf, 10, 2));
   RunOneAsk(*search, Noise);
   search->TakeNewborns();
   search->Ask();
@@ -153,7 +153,7 @@ TEST(GeneticAlgorithmTest, FitnessIsTheMeanOrTheLastOfAllEvaluations) {
   for (const FitnessAggregation aggregation : {FitnessAggregation::kMean, FitnessAggregation::kLast}) {
     SearchSetup setup = SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2);
     setup.experiment.search.aggregation = aggregation;
-    const auto search = Make(setup);
+    const auto search = MakeGenetic(setup);
     RunToEnd(*search, fitness);
     const Individual third = search->Population().front();
     ASSERT_EQ(third.id, 3U);
@@ -164,7 +164,7 @@ TEST(GeneticAlgorithmTest, FitnessIsTheMeanOrTheLastOfAllEvaluations) {
 }
 
 TEST(GeneticAlgorithmTest, FailedEvaluationsDoNotCountInTheFitness) {
-  const auto search = Make(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2));
   for (int generation = 1; generation <= 2; ++generation) {
     for (const EvaluationRequest& request : search->Ask()) {
       EvaluationOutcome outcome = OutcomeOf(request, 0.5);
@@ -183,7 +183,7 @@ TEST(GeneticAlgorithmTest, FailedEvaluationsDoNotCountInTheFitness) {
 }
 
 TEST(GeneticAlgorithmTest, EvaluationNumbersGoOnAfterAFailedOne) {
-  const auto search = Make(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2));
   for (const EvaluationRequest& request : search->Ask()) {
     EvaluationOutcome outcome = OutcomeOf(request, 0.5);
     outcome.completed = false;
@@ -200,7 +200,7 @@ TEST(GeneticAlgorithmTest, AboutSixtyPercentOfChildrenAreClonesWithTheThesisPara
   double clones = 0.0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     setup.experiment.seed = seed;
-    const auto search = Make(setup);
+    const auto search = MakeGenetic(setup);
     std::vector<Individual> born;
     while (!RunOneAsk(*search, Noise).empty()) {
       const std::vector<Individual> newborns = search->TakeNewborns();
@@ -223,7 +223,7 @@ TEST(GeneticAlgorithmTest, AboutSixtyPercentOfChildrenAreClonesWithTheThesisPara
 TEST(GeneticAlgorithmTest, ConvergesOnAToyFitness) {
   for (const ParentSelection selection :
        {ParentSelection::kAllParentBestHalf, ParentSelection::kTwoBestParentsTwoWorseAway}) {
-    const auto search = Make(SetupOf(selection));
+    const auto search = MakeGenetic(SetupOf(selection));
     RunOneAsk(*search, SumOfX);
     const double initial = MeanFitness(*search);
     RunToEnd(*search, SumOfX);
@@ -234,22 +234,23 @@ TEST(GeneticAlgorithmTest, ConvergesOnAToyFitness) {
 
 TEST(GeneticAlgorithmTest, SameSeedSameRequestsOtherSeedOrSearchOthers) {
   SearchSetup setup = SetupOf(ParentSelection::kTwoRandomParentsTwoWorseAway, 10, 10);
-  const std::vector<EvaluationRequest> requests = RunToEnd(*Make(setup), Noise);
-  EXPECT_TRUE(SameRequests(RunToEnd(*Make(setup), Noise), requests));
+  const std::vector<EvaluationRequest> requests = RunToEnd(*MakeGenetic(setup), Noise);
+  EXPECT_TRUE(SameRequests(RunToEnd(*MakeGenetic(setup), Noise), requests));
   SearchSetup other_search = setup;
   other_search.search_id = 2;
-  EXPECT_NE(Make(other_search)->Population().front().test_case.obstacles,
+  EXPECT_NE(MakeGenetic(other_search)->Population().front().test_case.obstacles,
             requests.front().test_case.obstacles);
   SearchSetup other_seed = setup;
   other_seed.experiment.seed = 8;
-  EXPECT_NE(Make(other_seed)->Population().front().test_case.obstacles, requests.front().test_case.obstacles);
+  EXPECT_NE(MakeGenetic(other_seed)->Population().front().test_case.obstacles,
+            requests.front().test_case.obstacles);
 }
 
 TEST(GeneticAlgorithmTest, RequestsCarryReplicatesAndTheArena) {
   SearchSetup setup = SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 1);
   setup.experiment.search.replicates = 3;
   setup.experiment.arena = {.side = 7.0, .wall_thickness = 0.2};
-  for (const EvaluationRequest& request : Make(setup)->Ask()) {
+  for (const EvaluationRequest& request : MakeGenetic(setup)->Ask()) {
     EXPECT_EQ(request.replicates, 3U);
     EXPECT_EQ(request.test_case.side_x, 7.0);
     EXPECT_EQ(request.test_case.side_y, 7.0);
@@ -259,7 +260,7 @@ TEST(GeneticAlgorithmTest, RequestsCarryReplicatesAndTheArena) {
 }
 
 TEST(GeneticAlgorithmTest, AsksNothingWhileItWaitsForOutcomes) {
-  const auto search = Make(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2));
   EXPECT_TRUE(search->AtBoundary());
   const std::vector<EvaluationRequest> requests = search->Ask();
   EXPECT_FALSE(search->AtBoundary());
@@ -270,7 +271,7 @@ TEST(GeneticAlgorithmTest, AsksNothingWhileItWaitsForOutcomes) {
 }
 
 TEST(GeneticAlgorithmDeathTest, OutcomesOutOfOrderAreADefect) {
-  const auto search = Make(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2));
+  const auto search = MakeGenetic(SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway, 4, 2));
   const std::vector<EvaluationRequest> requests = search->Ask();
   EXPECT_DEATH(search->Tell(OutcomeOf(requests[1], 0.5)),
                "told individual 2 evaluation 0, expected 1 evaluation 0");

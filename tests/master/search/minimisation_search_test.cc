@@ -13,7 +13,7 @@ namespace {
 using testing::ElementsAre;
 
 // Obstacles are told apart by their x.
-SearchSetup SetupOf(std::size_t cases) {
+SearchSetup SetupToShorten(std::size_t cases) {
   SearchSetup setup = ToySetup();
   setup.experiment = MinimisationOf(setup.experiment, false);
   for (std::size_t i = 0; i < cases; ++i) {
@@ -24,7 +24,7 @@ SearchSetup SetupOf(std::size_t cases) {
   return setup;
 }
 
-std::unique_ptr<MinimisationSearch> Make(const SearchSetup& setup) {
+std::unique_ptr<MinimisationSearch> MakeMinimisation(const SearchSetup& setup) {
   return std::move(MinimisationSearch::Create(setup)).value();
 }
 
@@ -55,8 +55,8 @@ std::vector<EvaluationRequest> Drive(MinimisationSearch& search, std::size_t at_
 }
 
 TEST(MinimisationSearchTest, FindsWhatIsNeededOfEveryCase) {
-  const SearchSetup setup = SetupOf(2);
-  const auto search = Make(setup);
+  const SearchSetup setup = SetupToShorten(2);
+  const auto search = MakeMinimisation(setup);
   const std::vector<EvaluationRequest> asked = Drive(*search, 5);
   EXPECT_THAT(search->MinimiserOf(0).layout().kept, ElementsAre(2, 5));
   EXPECT_THAT(search->MinimiserOf(1).layout().kept, ElementsAre(0));
@@ -67,7 +67,7 @@ TEST(MinimisationSearchTest, FindsWhatIsNeededOfEveryCase) {
 
 // Robots stay at the right end, where obstacle 7 alone stands: it is not the first that is taken away.
 TEST(MinimisationSearchTest, CountsWhereRobotsWere) {
-  const auto search = Make(SetupOf(1));
+  const auto search = MakeMinimisation(SetupToShorten(1));
   std::vector<EvaluationRequest> asked;
   while (!search->Progress().finished) {
     for (const EvaluationRequest& request : search->Ask()) {
@@ -88,15 +88,15 @@ TEST(MinimisationSearchTest, CountsWhereRobotsWere) {
 }
 
 TEST(MinimisationSearchTest, AsksTheSameHoweverManyOutcomesComeBetweenTwoAsks) {
-  const auto one = Make(SetupOf(2));
-  const auto many = Make(SetupOf(2));
+  const auto one = MakeMinimisation(SetupToShorten(2));
+  const auto many = MakeMinimisation(SetupToShorten(2));
   EXPECT_TRUE(SameRequests(Drive(*one, 1), Drive(*many, 9)));
 }
 
 TEST(MinimisationSearchTest, NoTwoRunsHaveTheSameSeed) {
-  const SearchSetup setup = SetupOf(1);
+  const SearchSetup setup = SetupToShorten(1);
   std::set<std::uint64_t> seeds;
-  for (const EvaluationRequest& request : Drive(*Make(setup), 3)) {
+  for (const EvaluationRequest& request : Drive(*MakeMinimisation(setup), 3)) {
     const std::uint64_t seed =
         RunSeed(setup.experiment, request.individual, request.test_case, request.evaluation, 0);
     EXPECT_TRUE(seeds.insert(seed).second);
@@ -104,7 +104,7 @@ TEST(MinimisationSearchTest, NoTwoRunsHaveTheSameSeed) {
 }
 
 TEST(MinimisationSearchTest, LayoutsAreChildrenOfTheirCase) {
-  const auto search = Make(SetupOf(2));
+  const auto search = MakeMinimisation(SetupToShorten(2));
   Drive(*search, 4);
   const std::vector<Individual> born = search->TakeNewborns();
   ASSERT_GT(born.size(), 2U);
@@ -117,17 +117,17 @@ TEST(MinimisationSearchTest, LayoutsAreChildrenOfTheirCase) {
 }
 
 TEST(MinimisationSearchTest, KnowsItsResultsAgainWhenItsStateIsRestored) {
-  const SearchSetup setup = SetupOf(2);
-  const auto search = Make(setup);
+  const SearchSetup setup = SetupToShorten(2);
+  const auto search = MakeMinimisation(setup);
   std::vector<EvaluationOutcome> told;
   for (const EvaluationRequest& request : Drive(*search, 3)) told.push_back(Answer(request));
   ASSERT_TRUE(search->AtBoundary());
-  const auto again = Make(setup);
+  const auto again = MakeMinimisation(setup);
   ASSERT_TRUE(RestoreState(*again, StateOf(*search), told));
   EXPECT_TRUE(again->Progress().finished);
   EXPECT_EQ(again->MinimiserOf(0).layout(), search->MinimiserOf(0).layout());
   told.pop_back();
-  const auto cut_off = Make(setup);
+  const auto cut_off = MakeMinimisation(setup);
   EXPECT_FALSE(RestoreState(*cut_off, StateOf(*search), told));
 }
 

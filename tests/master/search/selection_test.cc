@@ -23,7 +23,7 @@ std::vector<Individual> WithFitness(const std::vector<double>& values) {
   return individuals;
 }
 
-std::vector<IndividualId> Ids(const std::vector<Individual>& individuals) {
+std::vector<IndividualId> IdsOf(const std::vector<Individual>& individuals) {
   std::vector<IndividualId> ids;
   for (const Individual& one : individuals) ids.push_back(one.id);
   return ids;
@@ -33,20 +33,20 @@ TEST(SelectionTest, LowerFitnessIsFitter) {
   std::vector<Individual> individuals = WithFitness({0.9, 0.1, 0.5, 0.3});
   EXPECT_THAT(TwoFittest(individuals), ElementsAre(1, 3));
   KeepFittest(individuals, 2);
-  EXPECT_THAT(Ids(individuals), ElementsAre(2, 4));
+  EXPECT_THAT(IdsOf(individuals), ElementsAre(2, 4));
 }
 
 TEST(SelectionTest, TheYoungerOfEqualsStaysAndBecomesAParent) {
   std::vector<Individual> individuals = WithFitness({0.5, 0.5, 0.5, 0.5});
   EXPECT_THAT(TwoFittest(individuals), ElementsAre(3, 2));
   KeepFittest(individuals, 3);
-  EXPECT_THAT(Ids(individuals), ElementsAre(2, 3, 4));
+  EXPECT_THAT(IdsOf(individuals), ElementsAre(2, 3, 4));
 }
 
 TEST(SelectionTest, IndividualsWithoutFitnessGoFirst) {
   std::vector<Individual> individuals = WithFitness({0.9, std::numeric_limits<double>::infinity(), 0.5});
   KeepFittest(individuals, 2);
-  EXPECT_THAT(Ids(individuals), ElementsAre(1, 3));
+  EXPECT_THAT(IdsOf(individuals), ElementsAre(1, 3));
 }
 
 TEST(SelectionTest, TwoAtRandomAreDifferentAndEveryPairIsEquallyLikely) {

@@ -110,7 +110,7 @@ TEST(PathPlannerTest, NeverLeavesFreeCellsAndIsNeverLongerThanTheGridPath) {
   RandomStream random(61, StreamPurpose::kTest);
   const ArenaRequirements requirements = testing::CornerToCorner();
   int bent = 0;
-  for (int i = 0; i < 120; ++i) {
+  for (int i = 0; i < 40; ++i) {
     const int obstacles = 4 + static_cast<int>(random.Below(20));
     const OccupancyGrid grid(Arena(testing::ValidTestCase(random, obstacles, requirements, 3.0)), 0.1);
     const std::vector<Vec2> path = PlanPath(grid, kStart, kGoal);
@@ -131,7 +131,7 @@ TEST(PathPlannerTest, NeverLeavesFreeCellsAndIsNeverLongerThanTheGridPath) {
     ASSERT_GE(LengthOf(path), straight - 1e-12);
     ASSERT_LE(LengthOf(path), GridPathLength(grid, kStart, kGoal) + 1e-9) << "arena " << i;
   }
-  EXPECT_GT(bent, 60);
+  EXPECT_GT(bent, 20);
 }
 
 TEST(PathPlannerTest, TheWayBackIsAboutAsLongAndPlanningIsRepeatable) {

@@ -22,21 +22,21 @@ using testing::Each;
 
 constexpr double kGapStep = 0.001;  // m, of both sweeps
 
-BodyFrame FrameAt(double x, double y, double heading_deg) {
+BodyFrame FrameFacing(double x, double y, double heading_deg) {
   return BodyFrame(Pose{{x, y}, WrapAngle(heading_deg * kDegree)});
 }
 
 ProximityReadings BeforeWall(double gap, double heading_deg) {
-  const BodyFrame self = FrameAt(-foot_bot::kRadius - gap, 0.0, heading_deg);
+  const BodyFrame self = FrameFacing(-foot_bot::kRadius - gap, 0.0, heading_deg);
   ProximityRing ring(self);
   ring.See(MakeBox({0.1, 0.0}, 0.2, 6.0, 0.0));
   return ReadingsOf(ring);
 }
 
 ProximityReadings BeforeRobot(double gap, double heading_deg, double other_heading_deg) {
-  const BodyFrame self = FrameAt(0.0, 0.0, heading_deg);
+  const BodyFrame self = FrameFacing(0.0, 0.0, heading_deg);
   ProximityRing ring(self);
-  ring.See(FrameAt(2.0 * foot_bot::kRadius + gap, 0.0, other_heading_deg));
+  ring.See(FrameFacing(2.0 * foot_bot::kRadius + gap, 0.0, other_heading_deg));
   return ReadingsOf(ring);
 }
 
@@ -103,41 +103,43 @@ TEST(ProximityRing, MatchesArgosBeforeARobot) {
 }
 
 TEST(ProximityRing, SeesNothingInTheOpen) {
-  const BodyFrame self = FrameAt(0.0, 0.0, 30.0);
+  const BodyFrame self = FrameFacing(0.0, 0.0, 30.0);
   ProximityRing ring(self);
   ring.See(MakeBox({0.5, 0.0}, 0.2, 6.0, 0.0));
-  ring.See(FrameAt(0.0, 0.29, 0.0));
+  ring.See(FrameFacing(0.0, 0.29, 0.0));
   EXPECT_EQ(ring.hits(), 0u);
   EXPECT_THAT(ReadingsOf(ring), Each(0.0));
 }
 
 TEST(ProximityRing, ReadsOneWhereABodyIsTouchedOrOverlapped) {
-  const BodyFrame self = FrameAt(0.0, 0.0, -7.5);  // sensor 0 looks along +x
+  const BodyFrame self = FrameFacing(0.0, 0.0, -7.5);  // sensor 0 looks along +x
   ProximityRing ring(self);
-  ring.See(FrameAt(2.0 * foot_bot::kRadius - 0.005, 0.0, 0.0));
+  ring.See(FrameFacing(2.0 * foot_bot::kRadius - 0.005, 0.0, 0.0));
   EXPECT_NE(ring.hits(), 0u);
   EXPECT_EQ(ReadingsOf(ring)[0], 1.0);
   EXPECT_EQ(ReadingsOf(ring)[12], 0.0);
 }
 
 TEST(ProximityRing, SeesTheFrontOfAnotherRobotOneCentimetreEarlier) {
-  const BodyFrame self = FrameAt(0.0, 0.0, -7.5);
+  const BodyFrame self = FrameFacing(0.0, 0.0, -7.5);
   const double distance = 2.0 * foot_bot::kRadius + 0.105;
   ProximityRing facing(self);
-  facing.See(FrameAt(distance, 0.0, 180.0));
+  facing.See(FrameFacing(distance, 0.0, 180.0));
   EXPECT_NEAR(ReadingsOf(facing)[0], ProximityReading(0.095), 1e-9);
   ProximityRing averted(self);
-  averted.See(FrameAt(distance, 0.0, 0.0));
+  averted.See(FrameFacing(distance, 0.0, 0.0));
   EXPECT_EQ(averted.hits(), 0u);
 }
 
 // The ring culls and shares work between rays; the plain ray cast of each sensor is its oracle.
 RC_GTEST_PROP(ProximityRing, AgreesWithPlainRays, ()) {
   const auto number = [](int low, int high, double unit) { return *rc::gen::inRange(low, high + 1) * unit; };
-  const BodyFrame self = FrameAt(number(-100, 100, 1e-3), number(-100, 100, 1e-3), number(-1800, 1800, 0.1));
+  const BodyFrame self =
+      FrameFacing(number(-100, 100, 1e-3), number(-100, 100, 1e-3), number(-1800, 1800, 0.1));
   const OrientedBox box = MakeBox({number(-400, 400, 1e-3), number(-400, 400, 1e-3)}, number(1, 500, 1e-3),
                                   number(1, 500, 1e-3), number(-314, 314, 0.01));
-  const BodyFrame robot = FrameAt(number(-300, 300, 1e-3), number(-300, 300, 1e-3), number(-1800, 1800, 0.1));
+  const BodyFrame robot =
+      FrameFacing(number(-300, 300, 1e-3), number(-300, 300, 1e-3), number(-1800, 1800, 0.1));
   ProximityRing ring(self);
   ring.See(box);
   ring.See(robot);
