@@ -40,7 +40,7 @@ struct CaseList {
 
 // Whether the experiment's swarm can be put into the case; what speaks against it is noted.
 bool CanBeSimulated(const Experiment& experiment, const sim::TestCase& test_case, EvaluatedCase& evaluated) {
-  const std::optional<Refusal> refusal = RefusalOf(experiment, test_case);
+  const std::optional<CaseRefusal> refusal = RefusalOf(experiment, test_case);
   if (!refusal) return true;
   evaluated.refused_rule = refusal->rule;
   evaluated.error = refusal->message;

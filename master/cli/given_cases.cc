@@ -36,15 +36,15 @@ void AskOnce(CommandContext& context, QuestionedCampaign& questioned) {
 
 }  // namespace
 
-std::optional<Refusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case) {
+std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case) {
   if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
     return std::nullopt;
   const auto requirements = controllers::RequirementsOf(SpecOf(experiment, test_case, experiment.seed));
-  if (!requirements) return Refusal{"", requirements.error().message};
+  if (!requirements) return CaseRefusal{"", requirements.error().message};
   if (const auto violation = sim::CheckValidity(test_case, *requirements))
-    return Refusal{std::string(sim::NameOf(violation->rule)), violation->message};
+    return CaseRefusal{std::string(sim::NameOf(violation->rule)), violation->message};
   if (const Status fits = CheckSwarmFits(experiment, test_case); !fits)
-    return Refusal{RuleOf(fits.error().message), fits.error().message};
+    return CaseRefusal{RuleOf(fits.error().message), fits.error().message};
   return std::nullopt;
 }
 

@@ -13,11 +13,11 @@
 namespace gauntlet::master {
 
 // Why the experiment's swarm cannot be put into a case.
-struct Refusal {
+struct CaseRefusal {
   std::string rule;  // "no-path"; "" when it is none of a name
   std::string message;
 };
-std::optional<Refusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case);
+std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case);
 
 // The cases of a campaign's runs, by their numbers, and of files, each different one once: of those that are
 // given again, under whatever name, it is said. Error: one is not there or breaks a rule, a file could belong
