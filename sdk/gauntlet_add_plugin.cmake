@@ -8,5 +8,6 @@ function(gauntlet_add_plugin name)
   add_library(${name} MODULE ${plugin_SOURCES})
   target_link_libraries(${name} PRIVATE Gauntlet::gauntlet_sdk)
   target_link_options(${name} PRIVATE -Wl,--exclude-libs,ALL -Wl,--no-undefined -Wl,--gc-sections)
+  # Without a definition of its own name, plug-ins can share a precompiled header.
   set_target_properties(${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON DEFINE_SYMBOL "")
 endfunction()

@@ -22,7 +22,7 @@ using sim::Vec2;
 constexpr double kBodyMiss = 0.10;          // m from the ray to the beacon
 constexpr double kBodyDistance = 0.30;      // m from centre to centre
 constexpr double kCosFrontOfCatchUp = 0.5;  // of 60 degrees
-constexpr double kNoSum = 1e-3;             // a shorter sum of unit vectors or of readings points nowhere
+constexpr double kShortestSum = 1e-3;       // a shorter sum of unit vectors or of readings points nowhere
 
 bool IsRobot(const sim::Blob& blob) {
   return blob.color == kBirdColor || blob.color == kPreyColor;
@@ -110,9 +110,9 @@ ObstaclePush FindObstacles(const sim::SensorReadings& readings, double least_rea
 
 Vec2 WayPastObstacles(const Vec2& away_sum, const Goal& goal) {
   const double length = std::sqrt(away_sum.dot(away_sum));
-  const Vec2 away = length > kNoSum ? Vec2(away_sum / length) : Vec2(Vec2::Zero());
+  const Vec2 away = length > kShortestSum ? Vec2(away_sum / length) : Vec2(Vec2::Zero());
   const Vec2 sum = goal.Direction() + away;
-  return sum.dot(sum) < kNoSum * kNoSum ? sim::LeftOf(away) : sum;
+  return sum.dot(sum) < kShortestSum * kShortestSum ? sim::LeftOf(away) : sum;
 }
 
 // The nearest robot in front and on the side of the goal that is closer than the separation distance.

@@ -1,5 +1,5 @@
-// The same runs, bit for bit, whatever the compiler. No expected number stands here: the
-// builds are compared with each other.
+// The same runs, bit for bit, whatever the compiler. No expected number stands here: the builds are compared
+// with each other. (compare_builds does so for the optimisation.)
 #include <array>
 #include <cstdio>
 #include <set>
