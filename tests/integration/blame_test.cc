@@ -23,8 +23,16 @@ void MakeCampaign(const std::string& dir) {
   ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "2", "--dir", dir, "--quiet"}).exit_code, 0);
 }
 
-std::vector<std::string> BlameTrap(const std::string& dir, int workers) {
-  return {"blame", dir, kTrap, "--workers", std::to_string(workers), "--json", "--quiet"};
+std::vector<std::string> BlameTrap(const std::string& dir, int workers, int replicates = 30) {
+  return {"blame",
+          dir,
+          kTrap,
+          "--workers",
+          std::to_string(workers),
+          "--replicates",
+          std::to_string(replicates),
+          "--json",
+          "--quiet"};
 }
 
 nlohmann::json Found(const std::vector<std::string>& arguments) {
@@ -61,9 +69,9 @@ TEST(BlameTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
   const TemporaryDirectory scratch;
   MakeCampaign(scratch / "one");
   std::filesystem::copy(scratch / "one", scratch / "killed", std::filesystem::copy_options::recursive);
-  const nlohmann::json one = Found(BlameTrap(scratch / "one", 1));
-  AskThroughKills(BlameTrap(scratch / "killed", 2), scratch / "killed/blame", 3);
-  EXPECT_EQ(Found(BlameTrap(scratch / "killed", 3)), one);
+  const nlohmann::json one = Found(BlameTrap(scratch / "one", 1, 8));
+  AskThroughKills(BlameTrap(scratch / "killed", 2, 8), scratch / "killed/blame", 3);
+  EXPECT_EQ(Found(BlameTrap(scratch / "killed", 3, 8)), one);
   EXPECT_EQ(StateHashesIn(scratch / "killed/blame"), StateHashesIn(scratch / "one/blame"));
 }
 

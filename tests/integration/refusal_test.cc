@@ -116,8 +116,8 @@ TEST(FullDiskTest, StopsWithExit3AndResumesWhenThereIsSpace) {
   // A file system of its own in a mount namespace of its own; everything happens inside one shell, and ends
   // with it.
   const std::string script = fmt::format(
-      "mount -t tmpfs -o size=600k none {0} || exit 77\n"
-      "{1} evolve flocking --dir {0}/c --workers 2 --population 20 --generations 30 --quiet 2> "
+      "mount -t tmpfs -o size=350k none {0} || exit 77\n"
+      "{1} evolve flocking --dir {0}/c --workers 2 --population 20 --generations 12 --quiet 2> "
       "{2}/first.err; echo first $?\n"
       "mount -o remount,size=64m {0}\n"
       "{1} resume {0}/c --workers 2 --quiet; echo resumed $?\n"
@@ -132,7 +132,7 @@ TEST(FullDiskTest, StopsWithExit3AndResumesWhenThereIsSpace) {
   EXPECT_THAT(ReadFile(scratch / "first.err"), HasSubstr("disk"));
   const TemporaryDirectory undisturbed;
   ASSERT_EQ(Gauntlet({"evolve", "flocking", "--dir", undisturbed / "c", "--workers", "2", "--population",
-                      "20", "--generations", "30", "--quiet"})
+                      "20", "--generations", "12", "--quiet"})
                 .exit_code,
             0);
   const json shown = json::parse(ReadFile(scratch / "show.json"), nullptr, false);
@@ -177,7 +177,7 @@ TEST(RefusalTest, AMasterWhoseDirectoryIsMovedAwaySaysSoAndStops) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(LongerCampaign(), dir, 2));
-  ASSERT_TRUE(Serves(dir)) << master->Err();
+  ASSERT_TRUE(RunsDone(dir, 1)) << master->Err();
   std::filesystem::rename(dir, scratch / "moved");
   std::filesystem::create_directories(dir + "/log");  // as a worker that starts then does
   const ProcessResult stopped = master->Wait();

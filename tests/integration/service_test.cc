@@ -27,7 +27,7 @@ mode_t ModeOf(const std::string& path) {
 TEST(ServiceTest, WorkersOutliveAKilledMasterAndServeTheNext) {
   const TemporaryDirectory scratch;
   SmallCampaign campaign;
-  campaign.generations = 40;
+  campaign.generations = 15;
   const std::string undisturbed = scratch / "undisturbed";
   ASSERT_EQ(Gauntlet(EvolveArguments(campaign, undisturbed, 2)).exit_code, 0);
 
