@@ -21,7 +21,7 @@ namespace gauntlet::worker {
 namespace {
 
 // Of the time in which a library is loaded and answers, which takes milliseconds.
-constexpr double kCpuSeconds = 10.0;
+constexpr double kCpuSeconds = 5.0;
 constexpr unsigned kWallSeconds = 30;
 constexpr std::uint64_t kMemoryBytes = kMemoryLimitWorks ? std::uint64_t{2} << 30 : 0;  // as runners have
 

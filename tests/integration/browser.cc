@@ -43,7 +43,8 @@ std::string Decoded(const std::string& text) {
 
 std::string BrowserPath() {
   if (const char* chosen = std::getenv("GAUNTLET_BROWSER")) return chosen;
-  for (const char* path : {"/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"}) {
+  for (const char* path : {"/usr/bin/chromium-headless-shell", "/usr/bin/chromium",
+                           "/usr/bin/chromium-browser", "/usr/bin/google-chrome"}) {
     if (std::filesystem::exists(path)) return path;
   }
   return "";

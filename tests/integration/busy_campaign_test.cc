@@ -73,7 +73,7 @@ TEST_F(BusyCampaignTest, AnAnswerToAPageThatAsksEverySecondIsSmall) {
 }
 
 TEST_F(BusyCampaignTest, PagesShowAFewRowsAndAnswerClicks) {
-  if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium)";
+  if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium-headless-shell)";
   const Ui ui(dir_);
   Browser browser;
   browser.Open(ui.address() + "#live");

@@ -89,7 +89,7 @@ SmallCampaign SmallArchive() {
   campaign.name = "archive";
   campaign.population = campaign.generations = 0;
   campaign.settings = {"search.algorithm=archive", "search.slots=6",
-                       kSanitized ? "search.runs=60" : "search.runs=150"};
+                       kSanitized ? "search.runs=60" : "search.runs=120"};
   return campaign;
 }
 
@@ -97,7 +97,7 @@ SmallCampaign SmallRandom() {
   SmallCampaign campaign;
   campaign.name = "random";
   campaign.population = campaign.generations = 0;
-  campaign.settings = {"search.algorithm=random", kSanitized ? "search.cases=300" : "search.cases=1200",
+  campaign.settings = {"search.algorithm=random", kSanitized ? "search.cases=300" : "search.cases=1050",
                        "scenario_parameters.time_limit=5"};
   return campaign;
 }

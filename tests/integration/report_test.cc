@@ -179,7 +179,7 @@ TEST(ReportTest, SetsOfOneScenarioAreComparedAndThoseOfOthersNamed) {
 class ReportInBrowserTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium)";
+    if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium-headless-shell)";
     browser_ = std::make_unique<Browser>();
   }
   std::unique_ptr<Browser> browser_;

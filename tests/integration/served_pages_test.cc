@@ -77,7 +77,7 @@ TEST(ServedPagesTest, BadInputIsNamedAndSignalsEndIt) {
 class ServedPagesInBrowserTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium)";
+    if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium-headless-shell)";
     browser_ = std::make_unique<Browser>();
   }
   std::string Live() { return browser_->Evaluate("document.getElementById('live').innerText"); }

@@ -131,7 +131,7 @@ TEST(StudyReportTest, AStudyThatHasNotFinishedSaysSo) {
 class StudyReportInBrowserTest : public testing::Test {
  protected:
   void SetUp() override {
-    if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium)";
+    if (BrowserPath().empty()) GTEST_SKIP() << "there is no Chromium here (package chromium-headless-shell)";
     browser_ = std::make_unique<Browser>();
   }
   std::string Text(const std::string& page) {

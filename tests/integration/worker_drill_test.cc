@@ -262,7 +262,7 @@ TEST_F(WorkerDrill, MessagesOfAnEarlierMasterChangeNothing) {
 
 // The long form, with 64 workers for ten minutes, is a LongDrill.
 TEST_F(WorkerDrill, ACrowdOfWorkersUnderFullLoadIsNeverTakenForLost) {
-  const CrowdReport report = WatchACrowd(dir_, 24, std::chrono::seconds(5));
+  const CrowdReport report = WatchACrowd(dir_, 24, std::chrono::seconds(4));
   fmt::print("{} workers, load {:.1f}: {} runs\n", report.joined, report.load, report.runs);
   EXPECT_EQ(report.joined, 24);
   EXPECT_EQ(report.lost, 0);
