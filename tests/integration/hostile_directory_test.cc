@@ -292,13 +292,15 @@ TEST_P(DeletedUnderOurFeetTest, TheMasterSaysSoAndStops) {
   std::unique_ptr<Process> master = StartGauntlet(EvolveArguments(campaign, dir, 1));
   ASSERT_TRUE(RunsDone(dir, 4)) << master->Err();
   const std::string path = GetParam().file.empty() ? dir : dir + "/" + GetParam().file;
+  // A living master may write its status between two looks into the directory.
+  std::error_code error;
   if (GetParam().replaced) {
-    fs::copy(path, scratch / "other", fs::copy_options::recursive);
+    const auto options = fs::copy_options::recursive | fs::copy_options::overwrite_existing;
+    EXPECT_TRUE(
+        Eventually([&] { return fs::copy(path, scratch / "other", options, error), !error; }, kPatience));
     fs::rename(path, scratch / "away");
     fs::rename(scratch / "other", path);
   } else {
-    // A living master may write its status between two looks into the directory.
-    std::error_code error;
     EXPECT_TRUE(Eventually([&] { return fs::remove_all(path, error), !fs::exists(path); }, kPatience));
   }
   const ProcessResult stopped = master->Wait(kPatience);
