@@ -31,9 +31,16 @@ class CFactory {
     return found->second();
   }
   static TTypeMap& GetTypeMap() {
-    static TTypeMap types;
-    return types;
+    static Types types;
+    return types.map;
   }
+
+ private:
+  // A std::map of strings itself would get a symbol of which g++ and clang have different names
+  // ([abi:cxx11]).
+  struct Types {
+    TTypeMap map;
+  };
 };
 
 }  // namespace argos
