@@ -111,8 +111,10 @@ std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& 
   const sim::Vec2 across(-along.y(), along.x());
   const double turn = sim::AngleOf(across) / sim::kDegree;
   const double shortest = spec.length_max - kLongest * (spec.length_max - spec.length_min);
-  const sim::Vec2 middle =
-      place + kPlaceNoise * random.Gaussian() * along + kRowNoise * random.Gaussian() * across;
+  // One draw to a statement: compilers differ in the order in which they compute the two sides of a sum.
+  const double aside = kRowNoise * random.Gaussian();
+  const double onward = kPlaceNoise * random.Gaussian();
+  const sim::Vec2 middle = place + onward * along + aside * across;
   const double lean = kLeanNoise * random.Gaussian();
   sim::Genome row;
   for (int i = 0; i < count; ++i) {

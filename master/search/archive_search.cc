@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "base/check.h"
 #include "base/number_text.h"
@@ -314,7 +313,7 @@ bool ArchiveSearch::BeginDrawn(Slot& slot, sim::RandomStream& random) {
 bool ArchiveSearch::BeginRecheck(Slot& slot, double below) {
   const Finding* worst = nullptr;
   double least = below;
-  for (const std::vector<Finding>& shelf : std::views::values(archive_.shelves())) {
+  for (const auto& [size, shelf] : archive_.shelves()) {
     const Finding& elite = shelf.front();
     const double expected = prior_.Expected(elite.tally);
     if (elite.tally.runs() >= kMaxRuns || expected >= least) continue;
@@ -330,7 +329,7 @@ bool ArchiveSearch::BeginRecheck(Slot& slot, double below) {
 
 void ArchiveSearch::UpdatePopulation() {
   population_.clear();
-  for (const std::vector<Finding>& shelf : std::views::values(archive_.shelves())) {
+  for (const auto& [size, shelf] : archive_.shelves()) {
     population_.push_back(shelf.front().individual);
   }
 }

@@ -1,7 +1,6 @@
 // Where the lines of layouts of an archive search begin, and how they go on.
 #include <algorithm>
 #include <iterator>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -87,7 +86,7 @@ std::uint32_t ArchiveSearch::MostAcross() const {
 
 std::uint32_t ArchiveSearch::DrawMostAcross(sim::RandomStream& random) const {
   std::vector<std::uint32_t> most;
-  for (const std::vector<Finding>& shelf : std::views::values(archive_.shelves())) {
+  for (const auto& [size, shelf] : archive_.shelves()) {
     const auto fewer = static_cast<std::uint32_t>(shelf.front().size().obstacles - 1);
     if (fewer > 0) most.push_back(std::min(fewer, MostAcross()));
   }
@@ -136,7 +135,7 @@ bool ArchiveSearch::BeginNeeded(Slot& slot, sim::RandomStream& random) {
 
 const Finding* ArchiveSearch::DrawEliteOfOne(sim::RandomStream& random) const {
   std::vector<const Finding*> elites;
-  for (const std::vector<Finding>& shelf : std::views::values(archive_.shelves())) {
+  for (const auto& [size, shelf] : archive_.shelves()) {
     if (shelf.front().size().obstacles == 1) elites.push_back(&shelf.front());
   }
   return elites.empty() ? nullptr : elites[random.Below(static_cast<std::uint32_t>(elites.size()))];
