@@ -121,7 +121,7 @@ BoxPlot MakeBoxPlot(std::span<const double> values, BoxRule rule) {
   box.upper_quartile = upper;
   const double length = upper - lower;
   const auto inside = [&](double value) {
-    return value >= lower - 1.5 * length && value <= upper + 1.5 * length;
+    return value >= box.lower_quartile - 1.5 * length && value <= box.upper_quartile + 1.5 * length;
   };
   box.lower_whisker = *std::find_if(sorted.begin(), sorted.end(), inside);
   box.upper_whisker = *std::find_if(sorted.rbegin(), sorted.rend(), inside);

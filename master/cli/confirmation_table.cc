@@ -1,7 +1,7 @@
 #include "master/cli/confirmation_table.h"
 
 #include <algorithm>
-#include <ranges>
+#include <span>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -35,7 +35,7 @@ nlohmann::ordered_json SmallestJson(const SmallestLayout* smallest) {
 
 std::string ConfirmationsText(const std::vector<Confirmation>& confirmations, std::size_t most) {
   Table table({"case", ">failed", "probability (95 %)", "verdict", ""});
-  for (const Confirmation& one : confirmations | std::views::take(static_cast<std::ptrdiff_t>(most))) {
+  for (const Confirmation& one : std::span(confirmations).first(std::min(most, confirmations.size()))) {
     table.AddRow({Printable(one.name), fmt::format("{} of {}", one.tally.failures, one.tally.runs()),
                   fmt::format("{:3.0f} to {:3.0f} %", 100.0 * one.interval.low, 100.0 * one.interval.high),
                   std::string(NameOf(one.verdict)), Printable(one.message)});
@@ -89,7 +89,7 @@ std::string DistinctFailuresText(const CampaignSummary& summary, const std::stri
                               PastedPath(toughest.example->campaign), toughest.example->run, i + 1)});
   }
   text += table.ToText();
-  for (const DistinctFailure& failure : failures | std::views::take(static_cast<std::ptrdiff_t>(most))) {
+  for (const DistinctFailure& failure : std::span(failures).first(std::min(most, failures.size()))) {
     if (failure.smallest != nullptr)
       text +=
           fmt::format("  {}: {}\n", DescribeSmallest(*failure.smallest), PastedPath(failure.smallest->file));

@@ -38,7 +38,8 @@ struct ListOptions {
 std::vector<Key> KeysOf(const SearchInfo& search) {
   std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
   std::erase_if(keys, [&](const Key& key) { return !Reads(search, key.path); });
-  std::ranges::stable_partition(keys, [](const Key& key) { return key.path.starts_with("search."); });
+  std::stable_partition(keys.begin(), keys.end(),
+                        [](const Key& key) { return key.path.starts_with("search."); });
   return keys;
 }
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
-#include <ranges>
 #include <set>
 #include <string>
 #include <string_view>
 
 #include <fmt/format.h>
 
+#include "base/split.h"
 #include "master/experiment/schema.h"
 #include "master/experiment/seed_list.h"
 #include "master/search/search_table.h"
@@ -26,9 +26,8 @@ struct Sweep {
 
 // "a,b,c"; none of them may be empty.
 std::optional<std::vector<std::string>> SplitList(std::string_view text) {
-  std::vector<std::string> items;
-  for (const auto item : std::views::split(text, ',')) items.emplace_back(item.begin(), item.end());
-  if (items.empty() || std::ranges::count(items, "") > 0) return std::nullopt;
+  std::vector<std::string> items = Split(text, ',');
+  if (std::ranges::count(items, "") > 0) return std::nullopt;
   return items;
 }
 

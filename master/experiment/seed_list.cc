@@ -1,9 +1,7 @@
 #include "master/experiment/seed_list.h"
 
-#include <ranges>
-#include <string_view>
-
 #include "base/parse_number.h"
+#include "base/split.h"
 
 namespace gauntlet::master {
 
@@ -16,8 +14,8 @@ std::optional<std::vector<std::uint64_t>> ParseSeedList(const std::string& text,
     for (std::uint64_t i = 0; i <= *last - *first; ++i) seeds.push_back(*first + i);
     return seeds;
   }
-  for (const auto item : std::views::split(text, ',')) {
-    const auto seed = ParseNumber<std::uint64_t>(std::string_view(item.begin(), item.end()));
+  for (const std::string& item : Split(text, ',')) {
+    const auto seed = ParseNumber<std::uint64_t>(item);
     if (!seed || seeds.size() == most) return std::nullopt;
     seeds.push_back(*seed);
   }

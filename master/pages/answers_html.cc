@@ -1,7 +1,7 @@
 #include "master/pages/answers_html.h"
 
 #include <algorithm>
-#include <ranges>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -14,8 +14,8 @@
 namespace gauntlet::master {
 namespace {
 
-constexpr std::size_t kMostFailures = 12;      // that are listed
-constexpr std::ptrdiff_t kMostMinimised = 24;  // that are drawn
+constexpr std::size_t kMostFailures = 12;   // that are listed
+constexpr std::size_t kMostMinimised = 24;  // that are drawn
 
 std::string Counted(std::size_t count, const char* what) {
   return fmt::format("{} {}{}", FormatCount(count), what, count == 1 ? "" : "s");
@@ -138,7 +138,7 @@ std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {
       "<h3>The few obstacles that do it</h3>\n<p>Cases beside the smallest part of them that still breaks "
       "the "
       "swarm in the same way; what was taken away stands faintly.</p>\n<ul class=\"thumbs pairs\">\n";
-  for (const SmallestLayout& one : layouts | std::views::take(kMostMinimised)) {
+  for (const SmallestLayout& one : std::span(layouts).first(std::min(kMostMinimised, layouts.size()))) {
     html += fmt::format("<li><img loading=\"lazy\" alt=\"\" src=\"{}\">{}: {} of {} are left</li>\n",
                         DataUri(DrawSteps(one, /*every_step=*/false)),
                         CaseLink(pages, number, fmt::format("run {}", one.run), one.run),

@@ -9,6 +9,7 @@
 
 #include "base/nearest_name.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 #include "controllers/registry.h"
 #include "master/report/stored_campaign.h"
 #include "master/report/stored_search.h"
@@ -27,18 +28,6 @@ constexpr const char* kFailureType = "failure_type";
 
 bool IsColumn(const std::string& metric) {
   return metric == kFitness || metric == kTotalFailure || metric == kFailureType;
-}
-
-std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts(1);
-  for (const char c : text) {
-    if (c == separator) {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
 }
 
 // The metrics that can be compared, for messages.

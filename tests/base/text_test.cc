@@ -3,10 +3,12 @@
 #include <rapidcheck/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "base/parse_number.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
+#include "base/split.h"
 #include "base/utf8.h"
 
 namespace gauntlet {
@@ -26,6 +28,12 @@ RC_GTEST_PROP(Utf8Property, TheResultIsAlwaysUtf8AndNoLonger, (const std::string
   const std::string clean = ToUtf8(bytes);
   RC_ASSERT(IsUtf8(clean));
   RC_ASSERT(clean.size() == bytes.size());
+}
+
+TEST(Split, KeepsEmptyParts) {
+  EXPECT_EQ(Split("a,b;c", ','), (std::vector<std::string>{"a", "b;c"}));
+  EXPECT_EQ(Split(",a,", ','), (std::vector<std::string>{"", "a", ""}));
+  EXPECT_EQ(Split("", ','), std::vector<std::string>{""});
 }
 
 TEST(Printable, EscapesWhatATerminalWouldObey) {

@@ -54,11 +54,12 @@ class FakeSlurm {
   class Client final : public slurm::SlurmClient {
    public:
     explicit Client(FakeSlurm& cluster) : cluster_(cluster) {}
-    Result<std::string> Submit(const std::string& script, const std::vector<std::string>& options) override {
+    Result<std::string> Submit(const std::string& script,
+                               const std::vector<std::string>& arguments) override {
       const std::lock_guard lock(cluster_.mutex_);
       if (!cluster_.refusal.empty()) return InvalidInput(cluster_.refusal);
       cluster_.submitted.push_back(script);
-      cluster_.options.push_back(options);
+      cluster_.options.push_back(arguments);
       const std::string id = std::to_string(cluster_.next_id++);
       const std::string name = After(script, "--job-name=");
       const std::string array = After(script, "--array=1-");
