@@ -4,7 +4,6 @@
 // rounded angle.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -34,19 +33,11 @@ class Directions {
   }
 
   // Of one of those.
-  double Angle(std::size_t i) const { return BlockOf(i).angle[i % kBlock]; }  // rad in (-pi, pi]
-  double Sine(std::size_t i) const { return BlockOf(i).sine[i % kBlock]; }
-  double Cosine(std::size_t i) const { return BlockOf(i).cosine[i % kBlock]; }
+  double Angle(std::size_t i) const { return angle_[i]; }  // rad in (-pi, pi]
+  double Sine(std::size_t i) const { return sine_[i]; }
+  double Cosine(std::size_t i) const { return cosine_[i]; }
 
  private:
-  static constexpr std::size_t kBlock = 4;
-
-  struct Block {
-    alignas(kBlock * sizeof(double)) std::array<double, kBlock> angle{};
-    std::array<double, kBlock> sine{};
-    std::array<double, kBlock> cosine{};
-  };
-
   // Where the positions and ranges lie in memory, the next one `step` bytes further.
   struct Places {
     const std::byte* position = nullptr;
@@ -58,16 +49,20 @@ class Directions {
     double Range(std::size_t i) const;
   };
 
-  const Block& BlockOf(std::size_t i) const { return blocks_[i / kBlock]; }
-  void MakeRoom(std::size_t places) { blocks_.resize(places / kBlock + 1); }
+  void MakeRoom(std::size_t places);
   void WorkOut(const Places& places);
-  // False when a place is so near or far that a step overflows or underflows.
-  bool WorkOutBlocks(const Places& places);
-  bool WorkOutByTwo(const Places& places);
-  bool WorkOutByFour(const Places& places);
+  // Of the first `count` places, a whole number of fours.
+  void StepByTwo(std::size_t count);
+  void StepByFour(std::size_t count);
 
   Lanes lanes_;
-  std::vector<Block> blocks_;
+  std::vector<double> x_;
+  std::vector<double> y_;
+  std::vector<double> range_;
+  std::vector<double> angle_;
+  std::vector<double> sine_;
+  std::vector<double> cosine_;
+  std::vector<double> larger_;  // of the two coordinates
 };
 
 }  // namespace gauntlet::sim
