@@ -161,6 +161,10 @@ int PrintBaseline() {
 int Guard(const std::string& file) {
   std::map<std::string, double> baseline;
   std::ifstream lines(file);
+  if (!lines) {
+    fmt::print(stderr, "{}: cannot be read\n", file);
+    return 2;
+  }
   std::string name;
   for (double kernels = 0.0; lines >> name >> kernels;) baseline[name] = kernels;
   int slower = 0;
