@@ -27,10 +27,10 @@ inline constexpr double kWheelDistance = 0.14;  // m, FOOTBOT_INTERWHEEL_DISTANC
 inline constexpr double kMass = 1.68;           // kg, body 1.6 + turret 0.08 accelerate together
 inline constexpr double kMaxForce = 15.0;       // N, drive force limit of dynamics2d
 inline constexpr double kMaxWheelSpeed =
-    1.0;                                  // m/s; ours: far beyond the robot, within the physics' accuracy
-inline constexpr double kFriction = 0.7;  // contact friction; of a pair: the product
-inline constexpr double kStaticFriction = 0.1;                       // of walls and fixed obstacles
-inline constexpr int kSubstepsPerTick = 10;                          // of ARGoS' physics
+    1.0;  // m/s; ours: far beyond the robot; jams then sink into themselves (docs/validation.md)
+inline constexpr double kFriction = 0.7;        // contact friction; of a pair: the product
+inline constexpr double kStaticFriction = 0.1;  // of walls and fixed obstacles
+inline constexpr int kSubstepsPerTick = 10;     // of ARGoS' physics
 inline constexpr double kSubstep = kTickSeconds / kSubstepsPerTick;  // s
 inline constexpr double kProximityRange = 0.10;                      // m beyond the body
 inline constexpr int kProximitySensors = 24;           // sensor i at (i + 1/2) * 15 degrees from the heading
