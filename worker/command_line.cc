@@ -115,8 +115,12 @@ void AddRunSpec(CLI::App& app, SpecOptions& line) {
                  "With --run-spec and --describe-beginning: a plug-in that the spec names; may be repeated")
       ->type_name("FILE")
       ->allow_extra_args(false);
-  app.add_option("--scratch", line.plugins.scratch,
-                 "With --run-spec: working directory of a plug-in's run, which keeps what it writes")
+  const auto keep = [&line](const std::string& folder) {  // a run is made in a folder of its own
+    line.plugins.scratch = folder.empty() ? "" : std::filesystem::absolute(folder).string();
+  };
+  app.add_option_function<std::string>(
+         "--scratch", keep,
+         "With --run-spec: working directory of a plug-in's run, which keeps what it writes")
       ->type_name("DIR")
       ->needs(spec);
 }

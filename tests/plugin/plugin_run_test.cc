@@ -119,7 +119,8 @@ TEST_F(PluginRun, WritesIntoAFolderOfTheRunThatIsRemoved) {
 
 TEST_F(PluginRun, KeepsTheFolderOnRequest) {
   const std::string scratch = directory_ / "scratch";
-  const Ended ended = Run(SpecOf("of_faults", "chatty"), PluginPath("of_faults"), {"--scratch", scratch});
+  const Ended ended = Run(SpecOf("of_faults", "chatty"), PluginPath("of_faults"),
+                          {"--scratch", std::filesystem::relative(scratch)});
   EXPECT_EQ(ended.result.verdict, sim::Verdict::kCompleted) << ended.process.err;
   EXPECT_EQ(ReadFile(scratch + "/notes.txt"), "in a file\n");
   EXPECT_THAT(ReadFile(scratch + "/output.txt"), HasSubstr("on stdout\n"));
