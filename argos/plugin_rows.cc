@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -63,7 +64,7 @@ std::vector<std::string> TagsIn(Lines section, std::string_view group) {
   return tags;
 }
 
-// Walks the attributes below <params> with their paths.
+// Walks the attributes below <params> with their paths; the texts of its elements are in the nodes then.
 template <typename Use>
 void ForEachAttribute(Lines element, const std::string& path, argos::TConfigurationNode& node,
                       const Use& use) {
@@ -72,6 +73,10 @@ void ForEachAttribute(Lines element, const std::string& path, argos::TConfigurat
   for (std::size_t i = 1; i < element.size(); ++i) {
     const ConfigurationLine& line = element[i];
     if (line.depth != depth) continue;
+    if (line.value != nullptr && *line.name == '\0') {
+      node.SetText(line.value);
+      continue;
+    }
     if (line.value != nullptr) {
       use(path + line.name, line, node);
       continue;
@@ -155,13 +160,41 @@ controllers::ControllerFactory FactoryOf(const Configured& configured, const sim
           .traits = {.link_range = resolved.at(std::string(kLinkRange))}};
 }
 
+template <typename Names>
+std::string Listed(const Names& names) {
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
+  return list;
+}
+
+// A file whose controllers are all of other sources is the wrong file.
+void CheckThatTheyMeet(Lines lines, const argos::CFactory<argos::CCI_Controller>::TTypeMap& creators) {
+  std::set<std::string> there;
+  for (const Lines section : Elements(lines, 0)) there.insert(section[0].name);
+  if (there.empty() || creators.empty()) return;
+  std::set<std::string> labels;
+  for (const auto& [label, creator] : creators) {
+    if (there.count(label) > 0) return;
+    labels.insert(label);
+  }
+  throw std::runtime_error("<controllers> of the .argos file has " + Listed(there) +
+                           ", but the sources register " + Listed(labels) +
+                           " (REGISTER_CONTROLLER): they belong to different experiments");
+}
+
 }  // namespace
 
 std::vector<controllers::ControllerInfo> ControllerRows(Lines lines) {
+  using Factory = argos::CFactory<argos::CCI_Controller>;
+  if (const auto& repeated = Factory::GetRepeatedLabels(); !repeated.empty()) {
+    throw std::runtime_error("several classes are registered by one name: " + Listed(repeated) +
+                             " (REGISTER_CONTROLLER); give each its own, or build each source alone");
+  }
+  CheckThatTheyMeet(lines, Factory::GetTypeMap());
   static std::deque<Configured> all;
   std::set<std::string> taken;
   const std::size_t first = all.size();
-  for (const auto& [label, creator] : argos::CFactory<argos::CCI_Controller>::GetTypeMap()) {
+  for (const auto& [label, creator] : Factory::GetTypeMap()) {
     std::vector<Lines> sections;
     for (const Lines section : Elements(lines, 0)) {
       if (section[0].name == label) sections.push_back(section);

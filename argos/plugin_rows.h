@@ -8,8 +8,8 @@
 
 namespace gauntlet::argos_form {
 
-// A line of an .argos file's <controllers>: an element, or an attribute of the last element. Children of
-// <controllers> have the depth 0.
+// A line of an .argos file's <controllers>: an element, or an attribute of the last element, or its text,
+// which has the name "". Children of <controllers> have the depth 0.
 struct ConfigurationLine {
   int depth = 0;
   const char* name = nullptr;
@@ -20,7 +20,8 @@ struct ConfigurationLine {
 // several sections of the file are for it, those after the first are called by their ids. Each numeric
 // attribute below <params> is a parameter, called by its path (`wheel_turning.max_speed`; `obstacle-2.x` of
 // the second <obstacle>), whose default is the file's. `lines` live as long as the library, and so do the
-// rows.
+// rows. Throws std::runtime_error when two classes are registered by one name, and when there are sections
+// but none is for a controller of the library.
 std::vector<controllers::ControllerInfo> ControllerRows(std::span<const ConfigurationLine> lines);
 
 }  // namespace gauntlet::argos_form

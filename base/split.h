@@ -1,4 +1,4 @@
-// Lists in text: "a,b,c".
+// Lists in text: "a,b,c", and what stands around their parts.
 #pragma once
 
 #include <string>
@@ -9,5 +9,8 @@ namespace gauntlet {
 
 // The parts of the text between the separators, empty ones included: one more than there are separators.
 std::vector<std::string> Split(std::string_view text, char separator);
+
+// The text without the blanks, tabs and line ends around it.
+std::string_view Trimmed(std::string_view text);
 
 }  // namespace gauntlet

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <iterator>
 #include <system_error>
@@ -158,6 +159,7 @@ void PreparedProcess::Live(UniqueFd pipe, pid_t parent, const SeparateOptions& o
     prepare_();
     return std::string();
   });
+  std::fflush(nullptr);
   const bool fit =
       EntriesIn("/proc/self/fd") == descriptors && EntriesIn("/proc/self/task") == 1 && !HasChildren();
   // What is free in the heap, a call touches first, which costs less than a copy of it; and what the call

@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -150,13 +149,6 @@ class PluginRuns {
   const RunFunction& run_;
   std::map<ControllersAndScenarios, PreparedProcess> processes_;  // by the plug-ins' hashes
 };
-
-bool OnlyOthersSend(int signal) {
-  // SIGPIPE: the supervisor has closed the pipe.
-  constexpr std::array kSignals = {SIGKILL, SIGTERM, SIGINT,  SIGHUP, SIGQUIT,
-                                   SIGPIPE, SIGUSR1, SIGUSR2, SIGPWR};
-  return std::ranges::find(kSignals, signal) != kSignals.end();
-}
 
 }  // namespace
 

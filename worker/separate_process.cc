@@ -3,17 +3,21 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
+#include <stdio_ext.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <new>
 
@@ -33,6 +37,11 @@ constexpr std::size_t kMostResultBytes = std::size_t{1} << 30;
 void WriteToStderr(std::string_view text) {
   // Best effort: there is nobody else to tell.
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+}
+
+// What C code has printed and not yet written.
+void FlushOutput() {
+  std::fflush(nullptr);
 }
 
 [[noreturn]] void OutOfMemory() {
@@ -92,11 +101,22 @@ void UseLargePages() {
   Confine(options);
   UseLargePages();
   const std::string bytes = CallOrEnd(work);
-  if (!WriteResult(result, bytes)) OutOfMemory();
+  FlushOutput();
+  if (!WriteResult(result, bytes)) {
+    if (errno == EBADF) _exit(kExitUnheard);
+    OutOfMemory();
+  }
   _exit(0);
 }
 
 }  // namespace
+
+bool OnlyOthersSend(int signal) {
+  // SIGPIPE: the supervisor has closed the pipe.
+  constexpr std::array kSignals = {SIGKILL, SIGTERM, SIGINT,  SIGHUP, SIGQUIT,
+                                   SIGPIPE, SIGUSR1, SIGUSR2, SIGPWR};
+  return std::ranges::find(kSignals, signal) != kSignals.end();
+}
 
 void Confine(const SeparateOptions& options) {
   SetLimit(RLIMIT_CORE, 0);
@@ -108,12 +128,14 @@ void Confine(const SeparateOptions& options) {
 }
 
 bool MoveInto(const std::string& folder) {
+  __fpurge(stdout);  // what this process' parent had not yet written is not this one's to say
   if (chdir(folder.c_str()) != 0) return false;
   const UniqueFd output(
       open(kOutputFile, O_WRONLY | O_CREAT | O_APPEND | O_TRUNC | O_CLOEXEC, kReadableByAll));
   const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
   return output.valid() && nothing.valid() && dup2(nothing.get(), STDIN_FILENO) >= 0 &&
-         dup2(output.get(), STDOUT_FILENO) >= 0 && dup2(output.get(), STDERR_FILENO) >= 0;
+         dup2(output.get(), STDOUT_FILENO) >= 0 && dup2(output.get(), STDERR_FILENO) >= 0 &&
+         setvbuf(stdout, nullptr, _IOLBF, 0) == 0;
 }
 
 int WaitForGroup(pid_t child) {
@@ -149,8 +171,10 @@ std::string CallOrEnd(const std::function<std::string()>& work) {
   } catch (const std::bad_alloc&) {
     OutOfMemory();
   } catch (const std::exception& error) {
+    FlushOutput();
     WriteToStderr(fmt::format("uncaught exception: {}\n", error.what()));
   } catch (...) {
+    FlushOutput();
     WriteToStderr("uncaught exception of an unknown type\n");
   }
   _exit(kExitException);
@@ -178,6 +202,11 @@ void EndAs(const SeparateOutcome& outcome) {
   WriteToStderr(outcome.output_tail);
   if (WIFSIGNALED(outcome.wait_status)) {
     const int number = WTERMSIG(outcome.wait_status);
+    if (OnlyOthersSend(number) && number != SIGKILL) {
+      WriteToStderr(
+          fmt::format("the plug-in ended its process by signal {} ({})\n", number, strsignal(number)));
+      _exit(kExitSignalled + number);
+    }
     SetLimit(RLIMIT_CORE, 0);
     signal(number, SIG_DFL);
     sigset_t only;
@@ -187,6 +216,8 @@ void EndAs(const SeparateOutcome& outcome) {
     raise(number);
   }
   const int code = WEXITSTATUS(outcome.wait_status);
+  if (code == kExitUnheard)
+    WriteToStderr("the plug-in closed files that are not its own, among them the run's result\n");
   if (code == 0) WriteToStderr("exit(0) was called before the run had a result\n");
   _exit(code == 0 ? kExitWithoutResult : code);
 }

@@ -14,10 +14,16 @@
 namespace gauntlet::worker {
 
 // Exit codes by which a process says why it gave up. Outside the range that programs commonly use.
+inline constexpr int kExitUnheard = 85;  // its result could not be handed over: it closed our files
 inline constexpr int kExitOutOfMemory = 86;
 inline constexpr int kExitException = 87;
 inline constexpr int kExitWithoutPlugin = 88;  // the plug-in that it needs cannot be had here
 inline constexpr int kExitWithoutResult = 89;  // somebody called exit(0) before there was a result
+// And so much more than the number of a signal that a plug-in sent to itself, as a shell says it.
+inline constexpr int kExitSignalled = 128;
+
+// Whether a signal that ended a process was somebody else's: SIGKILL, SIGTERM and the like.
+bool OnlyOthersSend(int signal);
 
 // Calls `work`. What it throws ends this process, with words on stderr; so does a lack of memory, also in
 // `work`'s callees and for the rest of the process' life.
@@ -47,8 +53,8 @@ Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>
 
 // What such a process prints, in its folder.
 inline constexpr const char* kOutputFile = "output.txt";
-// This process gets that working directory and prints into it from now on, and reads nothing. False: it
-// cannot.
+// This process gets that working directory and prints into it from now on, line by line, and reads nothing.
+// False: it cannot.
 bool MoveInto(const std::string& folder);
 // Limits this process, and forbids it core dumps and files of more than 64 MiB.
 void Confine(const SeparateOptions& options);
@@ -60,7 +66,9 @@ std::string OutputTail(const std::string& folder);
 double SecondsWithChildren();
 
 // Ends this process in the way in which a separate one ended without a result, after saying on stderr what
-// that one printed last.
+// that one printed last. A signal as SIGTERM or SIGUSR1 that met that process alone came from what runs in
+// it, so this one exits with kExitSignalled and its number; but SIGKILL, by which the kernel ends a process
+// when memory is short, stays somebody else's.
 [[noreturn]] void EndAs(const SeparateOutcome& outcome);
 
 }  // namespace gauntlet::worker

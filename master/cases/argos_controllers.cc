@@ -12,6 +12,7 @@
 
 #include "base/parse_number.h"
 #include "base/printable.h"
+#include "base/split.h"
 #include "base/utf8.h"
 
 namespace gauntlet::master {
@@ -38,6 +39,8 @@ bool AppendLines(const pugi::xml_node& element, int depth, std::string& lines) {
     lines += fmt::format("    {{{}, {}, {}}},\n", depth + 1, Literal(attribute.name()),
                          Literal(attribute.value()));
   }
+  if (const std::string_view text = Trimmed(element.text().get()); !text.empty())
+    lines += fmt::format("    {{{}, \"\", {}}},\n", depth + 1, Literal(text));
   for (const pugi::xml_node child : element.children()) {
     if (child.type() == pugi::node_element && !AppendLines(child, depth + 1, lines)) return false;
   }

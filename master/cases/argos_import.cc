@@ -15,6 +15,7 @@
 
 #include "base/parse_number.h"
 #include "base/printable.h"
+#include "base/split.h"
 #include "base/utf8.h"
 #include "master/cases/argos_controllers.h"
 #include "master/cases/argos_form.h"
@@ -27,12 +28,6 @@ constexpr double kWallTolerance = 0.01;  // m
 constexpr int kMostRobots = 10000;       // more is a slip of the pen
 // A foot-bot's camera looks from 0.289 m above the floor: ARGoS lets it see over lower boxes, we do not.
 constexpr double kCameraHeight = 0.29;  // m
-
-std::string_view Trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
 
 template <typename Number>
 std::optional<Number> ReadNumber(std::string_view text) {

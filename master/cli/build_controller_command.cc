@@ -167,7 +167,10 @@ Status Build(CommandContext& context, const BuildControllerOptions& options, con
   }
   if (Status built = RunCMake(context, {"cmake", "--build", build}); !built) return built;
   const Result<std::string> usable = AddPluginFile(options.output);
-  return usable ? Status(Ok{}) : usable.error();
+  if (usable) return Ok{};
+  std::error_code ignored;
+  fs::remove(options.output, ignored);
+  return usable.error();
 }
 
 ExitCode RunBuildController(CommandContext& context, const BuildControllerOptions& options) {

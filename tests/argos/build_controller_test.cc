@@ -122,6 +122,23 @@ TEST_F(BuildController, NamesWhatIsWrong) {
   ExpectRefusal({broken, "-o", library, "-I", folder_ / "absent"}, "there is no such folder");
 }
 
+TEST_F(BuildController, TakesNoSourcesThatContradictEachOtherOrTheFile) {
+  const std::string library = folder_ / "libbad.so";
+  const auto source = [this](const std::string& file, const std::string& label) {
+    return File(file,
+                "#include <argos3/core/control_interface/ci_controller.h>\n"
+                "namespace { class CIdle : public argos::CCI_Controller {}; }\n"
+                "REGISTER_CONTROLLER(CIdle, \"" +
+                    label + "\")\n");
+  };
+  const std::string first = source("first.cpp", "idle");
+  ExpectRefusal({first, source("second.cpp", "idle"), "-o", library},
+                "several classes are registered by one name: idle");
+  EXPECT_FALSE(fs::exists(library));
+  ExpectRefusal({first, "-o", library, "--argos", kExample + ".argos"},
+                "has light_flocking_controller, but the sources register idle");
+}
+
 TEST_F(BuildController, SaysWhatToDoInsteadOfWhatCannotBe) {
   const std::string library = folder_ / "libloop.so";
   ExpectRefusal({File("loop.cpp",

@@ -36,6 +36,12 @@ TEST(Split, KeepsEmptyParts) {
   EXPECT_EQ(Split("", ','), std::vector<std::string>{""});
 }
 
+TEST(Trimmed, LosesWhatStandsAround) {
+  EXPECT_EQ(Trimmed("\r\n\ta b \n"), "a b");
+  EXPECT_EQ(Trimmed(" \t"), "");
+  EXPECT_EQ(Trimmed(""), "");
+}
+
 TEST(Printable, EscapesWhatATerminalWouldObey) {
   EXPECT_EQ(Printable("plain \u00fcber"), "plain \u00fcber");
   EXPECT_EQ(Printable("a\nb\tc\x1b[31m\x7f"), "a\\nb\\tc\\x1b[31m\\x7f");

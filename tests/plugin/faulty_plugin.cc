@@ -1,5 +1,5 @@
 // Controllers that misbehave, for any scenario; `chatty` and `counting` do not.
-#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -9,6 +9,8 @@
 #include <string>
 #include <thread>
 #include <vector>
+
+#include <unistd.h>
 
 #include "sdk/plugin.h"
 
@@ -35,6 +37,12 @@ void Exit() {
 void ExitThree() {
   std::exit(3);
 }
+void Terminate() {
+  kill(getpid(), SIGTERM);
+}
+void CloseAll() {
+  for (int file = 0; file < 1024; ++file) close(file);
+}
 void Spin() {
   for (volatile bool on = true; on;) continue;
 }
@@ -52,6 +60,9 @@ void Talk() {
   std::cout << "on stdout\n";
   std::cerr << "on stderr\n";
   std::ofstream("notes.txt") << "in a file\n";
+}
+void Print() {
+  std::printf("without the end of a line");
 }
 void Nothing() {}
 
@@ -114,11 +125,14 @@ std::vector<ControllerInfo> Rows() {
   return {Row<Crash>("crash"),
           Row<Exit>("exit"),
           Row<ExitThree>("exit-three"),
+          Row<Terminate>("terminate"),
+          Row<CloseAll>("close-all"),
           Row<Spin>("spin"),
           Row<Allocate>("allocate"),
           Row<Throw>("throw"),
           Row<ThrowInThread>("throw-in-thread"),
           Row<Talk>("chatty"),
+          Row<Print>("printing"),
           RowThatThrows("throw-in-factory", true),
           RowThatThrows("throw-in-constructor", false),
           CountingRow()};

@@ -96,6 +96,10 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"crash", sim::Verdict::kCrashed, "crashed with signal 11", ""},
         Fault{"exit", sim::Verdict::kCrashed, "crashed with exit code 89", "exit(0) was called before"},
         Fault{"exit-three", sim::Verdict::kCrashed, "crashed with exit code 3", ""},
+        Fault{"terminate", sim::Verdict::kCrashed, "crashed with exit code 143",
+              "the plug-in ended its process by signal 15"},
+        Fault{"close-all", sim::Verdict::kCrashed, "crashed with exit code 85",
+              "closed files that are not its own"},
         Fault{"spin", sim::Verdict::kHung, "exceeded its CPU time", ""},
         Fault{"allocate", sim::Verdict::kOutOfMemory, "exceeded its memory", "out of memory"},
         Fault{"throw", sim::Verdict::kCrashed, "crashed with exit code 87",
@@ -125,6 +129,12 @@ TEST_F(PluginRun, KeepsTheFolderOnRequest) {
   EXPECT_EQ(ReadFile(scratch + "/notes.txt"), "in a file\n");
   EXPECT_THAT(ReadFile(scratch + "/output.txt"), HasSubstr("on stdout\n"));
   EXPECT_THAT(ReadFile(scratch + "/output.txt"), HasSubstr("on stderr\n"));
+}
+
+TEST_F(PluginRun, KeepsWhatWasPrintedWithoutAFlush) {
+  const std::string scratch = directory_ / "scratch";
+  Run(SpecOf("of_faults", "printing"), PluginPath("of_faults"), {"--scratch", scratch});
+  EXPECT_THAT(ReadFile(scratch + "/output.txt"), HasSubstr("without the end of a line"));
 }
 
 TEST_F(PluginRun, HasWhatItsLibraryPrintsWhenLoaded) {

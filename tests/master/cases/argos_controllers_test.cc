@@ -18,7 +18,8 @@ std::string ErrorOf(const std::string& text) {
 TEST(ArgosControllerTable, HoldsEveryElementAndAttribute) {
   const auto table = ArgosControllerTable(
       R"(<argos-configuration><controllers>
-           <walker id="w"><sensors><positioning/></sensors><params speed="2.5" say="a &quot;?\"/></walker>
+           <walker id="w"><sensors><positioning/></sensors><params speed="2.5" say="a &quot;?\"> b
+           </params></walker>
          </controllers></argos-configuration>)",
       "mine.argos");
   ASSERT_TRUE(table.ok()) << table.error().message;
@@ -29,6 +30,7 @@ TEST(ArgosControllerTable, HoldsEveryElementAndAttribute) {
     {1, "params", nullptr},
     {2, "speed", "2.5"},
     {2, "say", "a \042\077\134"},
+    {2, "", "b"},
 )"));
 }
 
