@@ -2,15 +2,46 @@
 
 #include <fmt/format.h>
 
+#include <csignal>
+#include <cstring>
+#include <optional>
+
 #include "base/check.h"
+#include "base/parse_number.h"
 
 namespace gauntlet::proto {
+namespace {
+
+constexpr std::string_view kWithSignal = "crashed with signal ";
+constexpr std::string_view kWithExitCode = "crashed with exit code ";
+
+std::string SignalName(int number) {
+  const char* name = sigabbrev_np(number);
+  return name == nullptr ? "" : fmt::format("SIG{}", name);
+}
+
+std::string MeaningOfExit(int code) {
+  switch (code) {
+    case kExitUnheard:
+      return "the controller closed files that are not its own";
+    case kExitException:
+      return "an exception that nobody caught";
+    case kExitWithoutResult:
+      return "exit was called before the run's end";
+    default:
+      break;
+  }
+  const std::string signal = code > kExitSignalled ? SignalName(code - kExitSignalled) : "";
+  return signal.empty() ? "exit was called before the run's end" : signal + ", which its own process sent";
+}
+
+}  // namespace
 
 std::string Describe(const RunnerFailure& failure) {
   switch (failure.kind) {
     case FailureKind::kCrashed:
-      return failure.signal != 0 ? fmt::format("crashed with signal {}", failure.signal)
-                                 : fmt::format("crashed with exit code {}", failure.exit_code);
+      return failure.signal != 0 ? fmt::format("{}{}", kWithSignal, failure.signal)
+                                 : fmt::format("{}{}", kWithExitCode, failure.exit_code);
     case FailureKind::kHung:
       return "exceeded its CPU time";
     case FailureKind::kOutOfMemory:
@@ -20,6 +51,16 @@ std::string Describe(const RunnerFailure& failure) {
                                  : "was given back";
   }
   GAUNTLET_CHECK(false, "unknown kind of failure");
+}
+
+std::string Explained(std::string_view message) {
+  const auto number_after = [message](std::string_view words) {
+    return message.starts_with(words) ? ParseNumber<int>(message.substr(words.size())) : std::nullopt;
+  };
+  std::string meaning;
+  if (const std::optional<int> signal = number_after(kWithSignal)) meaning = SignalName(*signal);
+  if (const std::optional<int> code = number_after(kWithExitCode)) meaning = MeaningOfExit(*code);
+  return meaning.empty() ? std::string(message) : fmt::format("{} ({})", message, meaning);
 }
 
 sim::RunResult ResultOf(const RunnerFailure& failure) {

@@ -10,17 +10,16 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "proto/run_failure.h"
 
 namespace gauntlet::worker {
 
-// Exit codes by which a process says why it gave up. Outside the range that programs commonly use.
-inline constexpr int kExitUnheard = 85;  // its result could not be handed over: it closed our files
-inline constexpr int kExitOutOfMemory = 86;
-inline constexpr int kExitException = 87;
-inline constexpr int kExitWithoutPlugin = 88;  // the plug-in that it needs cannot be had here
-inline constexpr int kExitWithoutResult = 89;  // somebody called exit(0) before there was a result
-// And so much more than the number of a signal that a plug-in sent to itself, as a shell says it.
-inline constexpr int kExitSignalled = 128;
+using proto::kExitException;
+using proto::kExitOutOfMemory;
+using proto::kExitSignalled;
+using proto::kExitUnheard;
+using proto::kExitWithoutPlugin;
+using proto::kExitWithoutResult;
 
 // Whether a signal that ended a process was somebody else's: SIGKILL, SIGTERM and the like.
 bool OnlyOthersSend(int signal);

@@ -10,6 +10,7 @@
 #include "master/cases/corpus_file.h"
 #include "master/cli/table.h"
 #include "proto/json_text.h"
+#include "proto/run_failure.h"
 
 namespace gauntlet::master {
 namespace {
@@ -20,7 +21,7 @@ std::ptrdiff_t Badness(std::string_view verdict) {
 }
 
 std::string Remark(const CheckedCase& one) {
-  if (one.verdict == FailureVerdict::kError) return "NO RESULT: " + Printable(one.message);
+  if (one.verdict == FailureVerdict::kError) return "NO RESULT: " + Printable(proto::Explained(one.message));
   switch (OutcomeOf(one)) {
     case CheckOutcome::kAsExpected:
       return "";

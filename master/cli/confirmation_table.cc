@@ -9,6 +9,7 @@
 #include "base/printable.h"
 #include "base/shell_quoted.h"
 #include "master/cli/table.h"
+#include "proto/run_failure.h"
 
 namespace gauntlet::master {
 namespace {
@@ -38,7 +39,7 @@ std::string ConfirmationsText(const std::vector<Confirmation>& confirmations, st
   for (const Confirmation& one : std::span(confirmations).first(std::min(most, confirmations.size()))) {
     table.AddRow({Printable(one.name), fmt::format("{} of {}", one.tally.failures, one.tally.runs()),
                   fmt::format("{:3.0f} to {:3.0f} %", 100.0 * one.interval.low, 100.0 * one.interval.high),
-                  std::string(NameOf(one.verdict)), Printable(one.message)});
+                  std::string(NameOf(one.verdict)), Printable(proto::Explained(one.message))});
   }
   const auto confirmed = std::ranges::count(confirmations, FailureVerdict::kFail, &Confirmation::verdict);
   std::string text = table.ToText();

@@ -20,6 +20,7 @@
 #include "master/report/minimisations.h"
 #include "master/report/smallest_layouts.h"
 #include "proto/json_text.h"
+#include "proto/run_failure.h"
 
 namespace gauntlet::master {
 namespace {
@@ -40,7 +41,7 @@ std::string Remark(const Minimisation& one) {
     case MinimisedTo::kNoFailure:
       return "not minimised: it does not fail often enough";
     case MinimisedTo::kError:
-      return "not minimised: a run of it ended without a result: " + Printable(one.message);
+      return "not minimised: a run of it ended without a result: " + Printable(proto::Explained(one.message));
     case MinimisedTo::kEmpty:
       return fmt::format("not minimised: the EMPTY ARENA FAILS TOO, in {} runs", OutOf(one.empty));
     case MinimisedTo::kLayout:

@@ -14,6 +14,7 @@
 #include "master/search/search_table.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_server.h"
+#include "proto/run_failure.h"
 
 namespace gauntlet::master {
 namespace {
@@ -136,10 +137,15 @@ ExitCode Conclude(CommandContext& context, const CampaignRun& campaign, const Se
   const SearchRow* search = FindSearch(summary.search);
   const bool given_cases = search != nullptr && search->given_cases;
   if (!given_cases && summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
-    const std::string why =
-        summary.runs_without_result.empty() ? "" : ", most often: " + summary.runs_without_result[0].message;
+    const std::string why = summary.runs_without_result.empty()
+                                ? ""
+                                : ", most often: " + proto::Explained(summary.runs_without_result[0].message);
     PrintMessage(context,
                  fmt::format("none of the {} runs gave a result{}", FormatCount(summary.runs_done), why));
+    return kExitNegative;
+  }
+  if (report.workers.audits > 0 && report.workers.nondeterministic > 0) {
+    if (!summary.plugin_controllers.empty()) PrintMessage(context, WhyNotReproducible(summary));
     return kExitNegative;
   }
   return kExitDone;

@@ -34,6 +34,9 @@ struct HintContext {
   std::string directory;
 };
 
+// A sentence on the plug-ins' controllers whose runs ended differently when they were repeated.
+std::string WhyNotReproducible(const CampaignSummary& summary);
+
 // Ends with the next commands to try.
 std::string SummaryText(const CampaignSummary& summary, const HintContext& context);
 std::string EvaluationText(const std::vector<EvaluatedCase>& cases, const HintContext& context);

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "base/printable.h"
 #include "base/shell_quoted.h"
@@ -13,6 +14,7 @@
 #include "master/report/verdict_text.h"
 #include "master/search/search_table.h"
 #include "master/session/reproduction_bundle.h"
+#include "proto/run_failure.h"
 
 namespace gauntlet::master {
 namespace {
@@ -92,7 +94,7 @@ std::string RunsWithoutAResult(const CampaignSummary& summary, const std::string
   std::string text = "\nRuns without a result\n";
   for (std::size_t i = 0; i < std::min(kMostGroups, groups.size()); ++i) {
     text += fmt::format("  {} of {} {}: {}\n", FormatCount(groups[i].runs), FormatCount(summary.runs_done),
-                        NameOf(groups[i].verdict), Printable(groups[i].message));
+                        NameOf(groups[i].verdict), Printable(proto::Explained(groups[i].message)));
     if (LeavesBundle(groups[i].verdict))
       text += fmt::format(
           "    to see {} again: {}\n", groups[i].runs == 1 ? "it" : "the first",
@@ -165,9 +167,14 @@ std::string ReplayHint(const HintContext& context, RunId run, std::string_view w
                      what, number);
 }
 
-constexpr const char* kNotReproducible =
-    "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
-    "figures.\n\n";
+// "" when every repeated run ended as before.
+std::string NotReproducible(const CampaignSummary& summary) {
+  if (summary.nondeterministic == 0) return "";
+  return fmt::format(
+      "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
+      "figures.\n{}\n",
+      summary.plugin_controllers.empty() ? "" : WhyNotReproducible(summary) + "\n");
+}
 
 // What a broken machine alone may have made up; "" when there is nothing of the kind.
 std::string LoneVerdicts(const CampaignSummary& summary) {
@@ -184,7 +191,7 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
   std::string text = fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
                                  Printable(summary.experiment), summary.searches.size(), finished,
                                  FormatCount(summary.runs_done), FormatCount(summary.total_failures));
-  if (summary.nondeterministic > 0) text += kNotReproducible;
+  text += NotReproducible(summary);
   text += LoneVerdicts(summary);
   Table table(
       {">search", "settings", ">generation", ">runs", ">best", ">mean", ">total failures", "state hash"});
@@ -207,13 +214,20 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
 
 }  // namespace
 
+std::string WhyNotReproducible(const CampaignSummary& summary) {
+  return fmt::format(
+      "The controller '{}' of the plug-in is not reproducible: it uses the time, addresses, or chance that the "
+      "run does not seed.",
+      Printable(fmt::format("{}", fmt::join(summary.plugin_controllers, "' or '"))));
+}
+
 std::string SummaryText(const CampaignSummary& summary, const HintContext& context) {
   if (!summary.searches.empty()) return SweepText(summary, context);
   const SearchRow* search = FindSearch(summary.search);
   std::string text = fmt::format("{}: {}, seed {}, {}\n\n", Printable(summary.experiment),
                                  search == nullptr ? summary.search : std::string(search->title),
                                  summary.seed, summary.finished ? "finished" : "not finished");
-  if (summary.nondeterministic > 0) text += kNotReproducible;
+  text += NotReproducible(summary);
   text += LoneVerdicts(summary);
   if (summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",

@@ -136,6 +136,7 @@ CampaignSummary TotalsOf(const std::vector<CampaignSummary>& searches) {
     totals.distinct_individuals += one.distinct_individuals;
     Add(one.progress, totals.progress);
     totals.finished = totals.finished && one.finished;
+    totals.plugin_controllers.insert(one.plugin_controllers.begin(), one.plugin_controllers.end());
     totals.nondeterministic = std::max(totals.nondeterministic, one.nondeterministic);  // each has all
     totals.lone_verdicts = std::max(totals.lone_verdicts, one.lone_verdicts);           // likewise
     totals.best_fitness = std::fmin(totals.best_fitness, one.best_fitness);
@@ -227,6 +228,7 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
   if (!nondeterministic) return nondeterministic.error();
   summary.nondeterministic = *nondeterministic;
+  if (!experiment.plugin.empty()) summary.plugin_controllers.insert(experiment.controller);
   const Result<std::uint64_t> lone_verdicts = CountLoneVerdicts(store);
   if (!lone_verdicts) return lone_verdicts.error();
   summary.lone_verdicts = *lone_verdicts;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -78,7 +79,9 @@ struct CampaignSummary {
   ArchiveView archive = {};  // without axes when the search keeps none
   std::string state_hash;
   std::uint64_t nondeterministic = 0;  // second results of a spec that differed from the first
-  std::uint64_t lone_verdicts = 0;     // runs that were given up on the word of a single worker
+  // The controller when a plug-in brings it: what is to blame when results differ.
+  std::set<std::string> plugin_controllers = {};
+  std::uint64_t lone_verdicts = 0;  // runs that were given up on the word of a single worker
   bool finished = false;
   std::string as_of = "";  // CampaignView::as_of
   // What is known of cases of the campaign, by CampaignService::Read.

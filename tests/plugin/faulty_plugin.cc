@@ -1,7 +1,8 @@
-// Controllers that misbehave, for any scenario; `chatty` and `counting` do not.
+// Controllers that misbehave, for any scenario; `chatty`, `printing` and `counting` do not.
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <iostream>
 #include <memory>
@@ -107,6 +108,24 @@ ControllerInfo RowThatThrows(const char* name, bool in_factory) {
   return row;
 }
 
+// Drives as fast as the time tells it, in whole seconds.
+class ClockedRobot : public sim::Controller {
+ public:
+  sim::DeviceSet Devices() const override { return sim::Device::kWheels; }
+  void Step(const sim::ControlStep& step) override { step.actuators.Drive(speed_, speed_); }
+
+ private:
+  double speed_ = 1e-4 * static_cast<double>(std::time(nullptr) % 1000);
+};
+
+ControllerInfo ClockedRow() {
+  ControllerInfo row = Row<Nothing>("clocked");
+  row.make = [](const sim::Parameters&) -> ControllerFactory {
+    return {[](const ControllerContext&) { return std::make_unique<ClockedRobot>(); }};
+  };
+  return row;
+}
+
 // The robots of a run are counted by one static.
 int robots = 0;
 
@@ -135,7 +154,8 @@ std::vector<ControllerInfo> Rows() {
           Row<Print>("printing"),
           RowThatThrows("throw-in-factory", true),
           RowThatThrows("throw-in-constructor", false),
-          CountingRow()};
+          CountingRow(),
+          ClockedRow()};
 }
 
 }  // namespace

@@ -50,6 +50,15 @@ TEST_F(PluginCampaign, GivesTheFitnessOfTheBuiltInController) {
     EXPECT_EQ(twins["population"][i]["fitness"], built_in["population"][i]["fitness"]);
 }
 
+// Also when a run and its repetition fall into one second.
+TEST_F(PluginCampaign, NamesAControllerThatLooksAtTheClockWhenItIsAudited) {
+  const ProcessResult audited = Random(
+      experiment_, {"--plugin", PluginPath("of_faults"), "--set", "controller=clocked", "--audit", "1"});
+  EXPECT_EQ(audited.exit_code, 1);
+  EXPECT_THAT(audited.err, HasSubstr("'clocked' of the plug-in is not reproducible"));
+  EXPECT_THAT(audited.out, HasSubstr("'clocked' of the plug-in is not reproducible"));
+}
+
 // The scenario takes controllers that are written for others.
 TEST_F(PluginCampaign, RunsInAScenarioThatTheFileDefines) {
   const std::string defined =

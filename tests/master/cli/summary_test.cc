@@ -170,6 +170,9 @@ TEST(SummaryText, NondeterminismIsShouted) {
   summary.nondeterministic = 1;
   EXPECT_THAT(SummaryText(summary, {"gauntlet", "d"}),
               HasSubstr("WARNING: the same run gave different results"));
+  summary.plugin_controllers = {"mine"};
+  EXPECT_THAT(SummaryText(summary, {"gauntlet", "d"}),
+              HasSubstr("The controller 'mine' of the plug-in is not reproducible"));
 }
 
 std::vector<EvaluatedCase> Evaluated() {
