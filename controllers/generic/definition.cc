@@ -87,6 +87,12 @@ std::string Quoted(std::string_view text) {
   return std::string("\"").append(text).append("\"");
 }
 
+// As much of a text as fits into a message.
+std::string Beginning(const std::string& text) {
+  constexpr std::size_t kMost = 200;
+  return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
+}
+
 struct Name {
   std::string_view name;
 };
@@ -202,7 +208,8 @@ Status DefinitionReader::Set(std::string_view path, const DefinitionValue& value
   if (key->required || !text.empty()) {
     const Result<Formula> formula = Formula::Compile(text, key->names());
     if (!formula.ok())
-      return InvalidInput(std::string(path) + " = " + Quoted(text) + ": " + formula.error().message);
+      return InvalidInput(std::string(path) + " = " + Quoted(Beginning(text)) + ": " +
+                          formula.error().message);
   }
   formulas_.insert_or_assign(std::string(path), std::move(text));
   return Ok{};

@@ -75,6 +75,31 @@ std::string TextOf(const std::vector<pugi::xml_node>& sections) {
   return text.str();
 }
 
+pugi::xml_node ChosenOf(const ArgosControllers& controllers, pugi::xml_document& document) {
+  document.load_string(controllers.sections.c_str(), pugi::parse_default | pugi::parse_fragment);
+  return document.find_child_by_attribute("id", controllers.id.c_str());
+}
+
+// The child of a step of a path: `port-2` is the second <port>.
+pugi::xml_node ChildAt(const pugi::xml_node& parent, const std::string& step) {
+  if (const pugi::xml_node child = parent.child(step.c_str())) return child;
+  const std::size_t dash = step.rfind('-');
+  if (dash == std::string::npos) return {};
+  int number = ParseNumber<int>(std::string_view(step).substr(dash + 1)).value_or(0);
+  const std::string name = step.substr(0, dash);
+  for (const pugi::xml_node& child : parent.children(name.c_str()))
+    if (--number == 0) return child;
+  return {};
+}
+
+// The attribute of a parameter, as argos/plugin_rows.h calls them; an empty one when it is not there.
+pugi::xml_attribute AttributeAt(const pugi::xml_node& controller, const std::string& path) {
+  const std::vector<std::string> steps = Split(path, '.');
+  pugi::xml_node element = controller.child("params");
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i) element = ChildAt(element, steps[i]);
+  return element.attribute(steps.back().c_str());
+}
+
 Status Parse(const std::string& text, const std::string& file_name, pugi::xml_document& document) {
   const pugi::xml_parse_result parsed = document.load_buffer(text.data(), text.size());
   if (parsed) return Ok{};
@@ -159,21 +184,29 @@ Result<ArgosControllers> ReadArgosControllers(const std::string& text, const std
 
 ArgosControllers WithParameters(ArgosControllers controllers, const sim::Parameters& parameters) {
   pugi::xml_document document;
-  document.load_string(controllers.sections.c_str(), pugi::parse_default | pugi::parse_fragment);
-  const pugi::xml_node chosen = document.find_child_by_attribute("id", controllers.id.c_str());
+  const pugi::xml_node chosen = ChosenOf(controllers, document);
   for (const auto& [path, value] : parameters) {
-    const std::size_t dot = path.rfind('.');
-    std::string elements = path.substr(0, dot == std::string::npos ? 0 : dot);
-    std::ranges::replace(elements, '.', '/');
-    pugi::xml_attribute attribute =
-        chosen.child("params")
-            .first_element_by_path(elements.c_str())
-            .attribute(path.substr(dot == std::string::npos ? 0 : dot + 1).c_str());
+    pugi::xml_attribute attribute = AttributeAt(chosen, path);
     const std::optional<double> there = ParseNumber<double>(attribute.value());
     if (there && *there != value) attribute.set_value(fmt::format("{}", value).c_str());
   }
   controllers.sections = TextOf(ElementsOf(document));
   return controllers;
+}
+
+std::string UnlikenessTo(const ArgosControllers& controllers, const std::string& controller,
+                         const std::vector<std::string>& parameters) {
+  pugi::xml_document document;
+  const pugi::xml_node chosen = ChosenOf(controllers, document);
+  std::vector<std::string> unlike;
+  if (controller != chosen.name() && controller != controllers.id)
+    unlike.push_back(fmt::format("it is a <{}>", chosen.name()));
+  std::vector<std::string> missing;
+  for (const std::string& path : parameters) {
+    if (!AttributeAt(chosen, path)) missing.push_back(path);
+  }
+  if (!missing.empty()) unlike.push_back(fmt::format("it has no {}", fmt::join(missing, ", ")));
+  return Printable(fmt::format("{}", fmt::join(unlike, ", and ")));
 }
 
 }  // namespace gauntlet::master

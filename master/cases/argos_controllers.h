@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "sim/run_spec.h"
@@ -32,5 +33,10 @@ Result<ArgosControllers> ReadArgosControllers(const std::string& text, const std
 // The same with the values of a plug-in's parameters, "flocking.target_distance", where the chosen
 // controller's <params> have a number of that path.
 ArgosControllers WithParameters(ArgosControllers controllers, const sim::Parameters& parameters);
+
+// Why the chosen controller does not look like the source of a plug-in's `controller` with these parameters,
+// "it is a <walker>, and it has no flocking.gain"; "" when it does.
+std::string UnlikenessTo(const ArgosControllers& controllers, const std::string& controller,
+                         const std::vector<std::string>& parameters);
 
 }  // namespace gauntlet::master

@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::size_t kMostControllerBytes = 16U << 20;  // of a controller file
 
+constexpr std::string_view kLinkRange = "link_range";  // a parameter of ours, which no .argos file has
+
 struct NamedRun {
   std::string file;
   RunId run = 0;
@@ -51,6 +53,17 @@ Result<std::vector<NamedRun>> FirstRuns(const StoredCampaign& campaign) {
   return runs;
 }
 
+// A notice when the file's controller seems to be another than the run's; "" when not.
+std::string Unlikeness(const ArgosControllers& own, const sim::RunSpec& spec) {
+  std::vector<std::string> parameters;
+  for (const auto& [name, value] : spec.controller_parameters)
+    if (name != kLinkRange) parameters.push_back(name);
+  const std::string unlike = UnlikenessTo(own, spec.controller, parameters);
+  if (unlike.empty()) return "";
+  return fmt::format("The controller '{}' of --controller-file may not be the '{}' that was simulated: {}.",
+                     own.id, spec.controller, unlike);
+}
+
 Result<ArgosFile> FileOf(const StoredCampaign& campaign, RunId id,
                          const std::optional<ArgosControllers>& controllers) {
   const Result<std::optional<StoredRun>> stored = campaign.view.store->LoadRun(id);
@@ -63,11 +76,14 @@ Result<ArgosFile> FileOf(const StoredCampaign& campaign, RunId id,
   if (!start)
     return Error{start.error().kind, fmt::format("run {} cannot begin: {}", id, start.error().message)};
   std::optional<ArgosControllers> own = controllers;
+  const std::string unlike = own && !spec->plugin.empty() ? Unlikeness(*own, *spec) : "";
   if (own && !spec->plugin.empty()) own = WithParameters(std::move(*own), spec->controller_parameters);
   const std::string title = fmt::format("Run {} of {}, test case {}, scenario {}, controller {}.", id,
                                         campaign.plans[(*stored)->search - 1].experiment.name,
                                         (*stored)->individual, spec->scenario, spec->controller);
-  return WriteArgos(*spec, *start, own ? &*own : nullptr, title);
+  ArgosFile file = WriteArgos(*spec, *start, own ? &*own : nullptr, title);
+  if (!unlike.empty()) file.notices.push_back(unlike);
+  return file;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "base/system/process_call.h"
 #include "base/system/program_path.h"
 #include "master/cases/argos_controllers.h"
+#include "master/cli/build_errors.h"
 #include "master/cli/commands.h"
 #include "master/cli/options.h"
 #include "master/cli/output_file.h"
@@ -24,7 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFile = std::size_t{16} << 20;  // bytes of an .argos file
-constexpr std::size_t kShownErrors = 20;                  // lines of the compiler
 
 struct BuildControllerOptions {
   std::vector<std::string> sources;
@@ -77,23 +77,6 @@ set_target_properties(controller PROPERTIES PREFIX "" SUFFIX "" OUTPUT_NAME [==[
                      Quoted(output.parent_path()));
 }
 
-// The first lines that tell of errors; all of them when none does.
-std::string ErrorsIn(const std::string& output) {
-  std::string errors;
-  std::size_t count = 0;
-  for (std::size_t begin = 0; begin < output.size() && count < kShownErrors;) {
-    const std::size_t end = std::min(output.find('\n', begin), output.size());
-    const std::string line = output.substr(begin, end - begin);
-    if (line.find("rror:") != std::string::npos || line.find("undefined") != std::string::npos ||
-        line.find("CMake Error") != std::string::npos) {
-      errors += "  " + Printable(line) + "\n";
-      ++count;
-    }
-    begin = end + 1;
-  }
-  return errors.empty() ? output : errors;
-}
-
 Status RunCMake(CommandContext& context, const std::vector<std::string>& arguments) {
   // Without any, as in some batch jobs, CMake does not find its own files.
   setenv("PATH", "/usr/local/bin:/usr/bin:/bin", /*overwrite=*/0);
@@ -104,7 +87,7 @@ Status RunCMake(CommandContext& context, const std::vector<std::string>& argumen
   }
   if (!done) return done.error();
   if (done->exit_code == 0) return Ok{};
-  context.err << ErrorsIn(done->out + done->err) << std::flush;
+  context.err << BuildErrors(done->out + done->err) << std::flush;
   return InvalidInput("the plug-in could not be built: see above");
 }
 

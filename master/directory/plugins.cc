@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -75,6 +76,9 @@ Error TakenTwice(const std::string& first, const std::string& second, std::strin
 }  // namespace
 
 Result<std::string> AddPluginFile(const std::string& file) {
+  std::error_code missing;
+  if (std::filesystem::exists(file, missing) && !std::filesystem::is_regular_file(file, missing))
+    return InvalidInput(fmt::format("plug-in: {} is no regular file", file));
   const Result<std::string> bytes = ReadSmallFile(file, proto::kMaxPluginBytes);
   if (!bytes) return InvalidInput("plug-in: " + bytes.error().message);
   std::string hash = Sha256(*bytes);

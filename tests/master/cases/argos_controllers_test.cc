@@ -85,5 +85,24 @@ TEST(ReadArgosControllers, GivesParametersOfTheCampaign) {
   EXPECT_THAT(WithParameters(*read, {{"turning.speed", 2.5}}).sections, testing::Eq(read->sections));
 }
 
+TEST(WithParameters, TellsElementsOfOneNameApart) {
+  const auto read = ReadArgosControllers(
+      R"(<controllers><a id="a"><actuators/><sensors/><params><port n="1"/><port n="2"/></params></a></controllers>)",
+      "a.xml", "");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  const ArgosControllers changed = WithParameters(*read, {{"port.n", 3}, {"port-2.n", 4}, {"port-3.n", 5}});
+  EXPECT_THAT(changed.sections,
+              testing::ContainsRegex("<port n=\"3\" />[ \n]*<port n=\"4\" />[ \n]*</params>"));
+}
+
+TEST(UnlikenessTo, SaysWhatIsOfAnotherController) {
+  const auto read = ReadArgosControllers(kTwo, "mine.argos", "w");
+  ASSERT_TRUE(read.ok());
+  EXPECT_EQ(UnlikenessTo(*read, "walker", {"turning.speed"}), "");
+  EXPECT_EQ(UnlikenessTo(*read, "w", {}), "");
+  EXPECT_EQ(UnlikenessTo(*read, "flocker", {"turning.speed", "turning.gain", "size"}),
+            "it is a <walker>, and it has no turning.gain, size");
+}
+
 }  // namespace
 }  // namespace gauntlet::master
