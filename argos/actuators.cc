@@ -6,6 +6,7 @@
 #include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_gripper_actuator.h>
 #include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_turret_actuator.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_actuator.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_gripper_actuator.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_leds_actuator.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_range_and_bearing_actuator.h>
 
@@ -58,6 +59,12 @@ class Gripper final : public argos::CCI_FootBotGripperActuator, public ActuatorL
   }
 };
 
+class SimpleGripper final : public argos::CCI_GripperActuator, public ActuatorLink {
+ public:
+  explicit SimpleGripper(RobotParts& /*parts*/) {}
+  void Give(sim::Actuators& actuators) override { actuators.gripper_closed = m_fLockState > 0.5; }
+};
+
 class Turret final : public argos::CCI_FootBotTurretActuator, public ActuatorLink {
  public:
   explicit Turret(RobotParts& parts) : parts_(parts) {}
@@ -97,7 +104,8 @@ std::span<const ActuatorRow> ActuatorRows() {
       {"differential_steering", Device::kWheels, Make<Wheels>},
       {"footbot_distance_scanner", Device::kDistanceScanner, Make<Scanner>},
       {"footbot_gripper", Device::kGripper, Make<Gripper>},
-      {"footbot_turret", std::nullopt, Make<Turret>},
+      {"footbot_turret", {}, Make<Turret>},
+      {"gripper", Device::kGripper, Make<SimpleGripper>},
       {"leds", Device::kLeds, Make<Leds>},
       {"range_and_bearing", Device::kRangeAndBearing, Make<Radio>},
   };

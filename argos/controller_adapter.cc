@@ -54,7 +54,7 @@ ControllerAdapter::ControllerAdapter(const ControllerSection& section, const Rob
         section.devices ? nullptr : &controller_->ActuatorsAskedFor());
   Equip(sensors_, controller_->GetAllSensors(), section.devices ? nullptr : &controller_->SensorsAskedFor());
   for (const auto& sensor : sensors_) {
-    if (sensor.device == sim::Device::kOmnidirectionalCamera) camera_ = sensor.face;
+    if (sensor.devices == sim::Device::kOmnidirectionalCamera) camera_ = sensor.face;
   }
 }
 
@@ -72,15 +72,15 @@ void ControllerAdapter::AddDevices(const ControllerSection& section) {
   for (const ActuatorRow& row : ActuatorRows()) {
     if (section.devices && !Has(section.devices->actuators, row.tag)) continue;
     const LinkedActuator made = row.make(parts_);
-    actuators_.push_back({row.tag.data(), row.device, made.actuator, made.link});
+    actuators_.push_back({row.tag.data(), row.devices, made.actuator, made.link});
     controller_->AddActuator(row.tag.data(), made.actuator);
   }
   for (const SensorRow& row : SensorRows()) {
     if (section.devices && !Has(section.devices->sensors, row.tag)) continue;
     const LinkedSensor made = row.make(parts_);
-    sensors_.push_back({row.tag.data(), row.device, made.sensor, made.link});
+    sensors_.push_back({row.tag.data(), row.devices, made.sensor, made.link});
     controller_->AddSensor(row.tag.data(), made.sensor);
-    if (row.device != sim::Device::kOmnidirectionalCamera) made.sensor->Enable();
+    if (row.devices != sim::Device::kOmnidirectionalCamera) made.sensor->Enable();
   }
 }
 
@@ -93,10 +93,9 @@ void ControllerAdapter::Equip(Parts& parts, Map& map, const std::vector<std::str
     return true;
   });
   for (const auto& part : parts) {
-    if (!part.device) continue;
-    devices_ = devices_ | *part.device;
-    if (*part.device == sim::Device::kOmnidirectionalCamera) continue;
-    devices_without_camera_ = devices_without_camera_ | *part.device;
+    devices_ = devices_ | part.devices;
+    if (part.devices == sim::Device::kOmnidirectionalCamera) continue;
+    devices_without_camera_ = devices_without_camera_ | part.devices;
   }
 }
 

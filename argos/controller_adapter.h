@@ -55,7 +55,7 @@ class ControllerAdapter final : public sim::Controller {
   template <typename Face, typename Link>
   struct Part {
     const char* tag;
-    std::optional<sim::Device> device;
+    sim::DeviceSet devices;
     Face* face;
     Link* link;
   };

@@ -2,7 +2,6 @@
 // it was told into our commands. None allocates memory once it has held as much before.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string_view>
 
@@ -55,12 +54,12 @@ struct LinkedActuator {
 
 struct SensorRow {
   std::string_view tag;
-  std::optional<sim::Device> device;  // that it reads, if any
+  sim::DeviceSet devices;  // that it reads
   LinkedSensor (*make)(RobotParts& parts);
 };
 struct ActuatorRow {
   std::string_view tag;
-  std::optional<sim::Device> device;  // that it drives, if any
+  sim::DeviceSet devices;  // that it drives
   LinkedActuator (*make)(RobotParts& parts);
 };
 

@@ -85,4 +85,34 @@ CVector3& CVector3::Rotate(const CQuaternion& rotation) {
   return Set(turned.GetX(), turned.GetY(), turned.GetZ());
 }
 
+void CRotationMatrix3::SetFromAngles(const CRadians& z, const CRadians& y, const CRadians& x) {
+  Real sx = 0.0, cx = 0.0, sy = 0.0, cy = 0.0, sz = 0.0, cz = 0.0;
+  SinCos(x, sx, cx);
+  SinCos(y, sy, cy);
+  SinCos(z, sz, cz);
+  SetFromValues(cz * cy, cz * sy * sx - cx * sz, sz * sx + cz * cx * sy,  //
+                cy * sz, cz * cx + sz * sy * sx, cx * sz * sy - cz * sx,  //
+                -sy, cy * sx, cy * cx);
+}
+
+// From the largest part, so that nothing is divided by little.
+CRotationMatrix3::operator CQuaternion() const {
+  const CMatrix<3, 3>& m = *this;
+  constexpr Real kLittle = 1e-5;
+  if (const Real trace = 1.0 + m(0) + m(4) + m(8); trace > kLittle) {
+    const Real s = 2.0 * std::sqrt(trace);
+    return {s / 4.0, (m(7) - m(5)) / s, (m(2) - m(6)) / s, (m(3) - m(1)) / s};
+  }
+  if (m(0) > m(4) && m(0) > m(8)) {
+    const Real s = 2.0 * std::sqrt(1.0 + m(0) - m(4) - m(8));
+    return {(m(7) - m(5)) / s, s / 4.0, (m(3) + m(1)) / s, (m(2) + m(6)) / s};
+  }
+  if (m(4) > m(8)) {
+    const Real s = 2.0 * std::sqrt(1.0 + m(4) - m(0) - m(8));
+    return {(m(2) - m(6)) / s, (m(3) + m(1)) / s, s / 4.0, (m(7) + m(5)) / s};
+  }
+  const Real s = 2.0 * std::sqrt(1.0 + m(8) - m(0) - m(4));
+  return {(m(3) - m(1)) / s, (m(2) + m(6)) / s, (m(7) + m(5)) / s, s / 4.0};
+}
+
 }  // namespace argos

@@ -14,6 +14,7 @@
 #include <argos3/plugins/robots/generic/control_interface/ci_battery_sensor.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_colored_blob_omnidirectional_camera_sensor.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_ground_sensor.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_positioning_sensor.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_range_and_bearing_sensor.h>
 
@@ -68,6 +69,16 @@ class BaseGround final : public argos::CCI_FootBotBaseGroundSensor, public Senso
  public:
   explicit BaseGround(RobotParts& /*parts*/) {}
   void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.base_ground); }
+};
+
+class Ground final : public argos::CCI_GroundSensor, public SensorLink {
+ public:
+  explicit Ground(RobotParts& /*parts*/) {}
+  void Take(const sim::SensorReadings& readings) override {
+    const auto next =
+        std::copy(readings.motor_ground.begin(), readings.motor_ground.end(), m_tReadings.begin());
+    std::copy(readings.base_ground.begin(), readings.base_ground.end(), next);
+  }
 };
 
 class Camera final : public argos::CCI_ColoredBlobOmnidirectionalCameraSensor, public SensorLink {
@@ -225,7 +236,7 @@ LinkedSensor Make(RobotParts& parts) {
 
 std::span<const SensorRow> SensorRows() {
   static constexpr SensorRow kRows[] = {
-      {"battery", std::nullopt, Make<Battery>},
+      {"battery", {}, Make<Battery>},
       {"colored_blob_omnidirectional_camera", Device::kOmnidirectionalCamera, Make<Camera>},
       {"differential_steering", Device::kWheelEncoders, Make<WheelEncoders>},
       {"footbot_base_ground", Device::kBaseGround, Make<BaseGround>},
@@ -233,8 +244,9 @@ std::span<const SensorRow> SensorRows() {
       {"footbot_light", Device::kLight, Make<Light>},
       {"footbot_motor_ground", Device::kMotorGround, Make<MotorGround>},
       {"footbot_proximity", Device::kProximity, Make<Proximity>},
-      {"footbot_turret_encoder", std::nullopt, Make<TurretEncoder>},
+      {"footbot_turret_encoder", {}, Make<TurretEncoder>},
       {"footbot_wheel_speed", Device::kWheelEncoders, Make<WheelSpeed>},
+      {"ground", Device::kMotorGround | Device::kBaseGround, Make<Ground>},
       {"positioning", Device::kPositioning, Make<Positioning>},
       {"range_and_bearing", Device::kRangeAndBearing, Make<Radio>},
   };

@@ -24,6 +24,8 @@
 #include <argos3/plugins/robots/generic/control_interface/ci_colored_blob_omnidirectional_camera_sensor.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_actuator.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_sensor.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_gripper_actuator.h>
+#include <argos3/plugins/robots/generic/control_interface/ci_ground_sensor.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_leds_actuator.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_positioning_sensor.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_range_and_bearing_actuator.h>
@@ -97,6 +99,7 @@ TEST_F(Adapter, GivesReadingsInTheUnitsOfArgos) {
         ->Enable();
     robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing");
     robot.GetSensor<argos::CCI_FootBotMotorGroundSensor>("footbot_motor_ground");
+    robot.GetSensor<argos::CCI_GroundSensor>("ground");
     robot.GetActuator<argos::CCI_LEDsActuator>("leds")->SetSingleColor(12, argos::CColor(10, 20, 30));
     auto* const radio = robot.GetActuator<argos::CCI_RangeAndBearingActuator>("range_and_bearing");
     radio->SetData(0, 42);
@@ -132,6 +135,8 @@ TEST_F(Adapter, GivesReadingsInTheUnitsOfArgos) {
         robot.GetSensor<argos::CCI_FootBotMotorGroundSensor>("footbot_motor_ground")->GetReadings();
     EXPECT_EQ(ground[1].Value, 0.25);
     EXPECT_EQ(ground[1].Offset, argos::CVector2(-6.3, 1.16));
+    EXPECT_THAT(robot.GetSensor<argos::CCI_GroundSensor>("ground")->GetReadings(),
+                ElementsAre(0.25, 0.25, 0.25, 0.25, 0, 0, 0, 0, 0, 0, 0, 0));
   };
   Run({{{-0.5, 0}, 0}, {{-0.5, 0.3}, 0}}, 3);
   EXPECT_EQ(looked, 1);
@@ -255,6 +260,23 @@ TEST_F(Adapter, ClosesTheGripperBeyondHalfOfItsAperture) {
   EXPECT_FALSE(closed(0.7));
   EXPECT_TRUE(closed(-0.8));
   EXPECT_TRUE(closed(1.5));
+}
+
+TEST_F(Adapter, LocksTheSimpleGripper) {
+  argos::CCI_GripperActuator* gripper = nullptr;
+  CScripted::init = [&](CScripted& robot, argos::TConfigurationNode&) {
+    gripper = robot.GetActuator<argos::CCI_GripperActuator>("gripper");
+  };
+  ControllerAdapter adapter(section, {});
+  EXPECT_EQ(adapter.Devices(), sim::Device::kGripper);
+  sim::SensorReadings readings;
+  sim::Actuators actuators;
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  for (const bool locked : {true, false}) {
+    locked ? gripper->Lock() : gripper->Unlock();
+    adapter.Step({.tick = 1, .readings = readings, .actuators = actuators, .random = random});
+    EXPECT_EQ(actuators.gripper_closed, locked);
+  }
 }
 
 TEST_F(Adapter, RefusesAControllerThatNobodyRegistered) {

@@ -1,6 +1,7 @@
 // Parameters as a tree of elements with attributes. A node is a handle: copies stand for the same element.
 #pragma once
 
+#include <cassert>
 #include <iostream>
 #include <memory>
 #include <sstream>
@@ -155,4 +156,6 @@ void GetNodeTextOrDefault(const TConfigurationNode& node, T& value, const T& oth
 // The name of the library that ARGoS reads XML with, which a few sources use.
 namespace ticpp {
 using Element = argos::TConfigurationNode;
+// A whole file; reading one is left to Init's parameters.
+class Document {};
 }  // namespace ticpp

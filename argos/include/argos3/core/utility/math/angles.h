@@ -159,6 +159,14 @@ CRadians NormalizedDifference(const CRadians& one, const CRadians& other);
 CDegrees NormalizedDifference(const CDegrees& one, const CDegrees& other);
 
 // The same bits on every x86-64 processor.
+// By these names sources mean the C library's.
+#define ARGOS_SIN ::sin
+#define ARGOS_ASIN ::asin
+#define ARGOS_COS ::cos
+#define ARGOS_ACOS ::acos
+#define ARGOS_TAN ::tan
+#define ARGOS_ATAN2 ::atan2
+
 Real Sin(const CRadians& angle);
 Real Cos(const CRadians& angle);
 Real Tan(const CRadians& angle);

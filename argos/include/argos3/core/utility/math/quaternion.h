@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 
+#include <argos3/core/utility/math/matrix/rotationmatrix3.h>
 #include <argos3/core/utility/math/vector3.h>
 
 namespace argos {

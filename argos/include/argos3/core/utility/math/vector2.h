@@ -8,6 +8,7 @@
 #include <argos3/core/utility/math/angles.h>
 #include <argos3/core/utility/math/bearing.h>
 #include <argos3/core/utility/math/general.h>
+#include <argos3/core/utility/math/matrix/matrix.h>
 
 namespace argos {
 

@@ -1,0 +1,4 @@
+// Another robot.
+#pragma once
+
+#error "Gauntlet's robots are foot-bots: leave controllers of the e-puck out"

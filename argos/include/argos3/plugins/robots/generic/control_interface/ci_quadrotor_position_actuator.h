@@ -1,0 +1,4 @@
+// How flying robots move.
+#pragma once
+
+#error "Gauntlet's robots are foot-bots, which do not fly: leave controllers of the eye-bot out"
