@@ -216,7 +216,8 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
 
 std::string WhyNotReproducible(const CampaignSummary& summary) {
   return fmt::format(
-      "The controller '{}' of the plug-in is not reproducible: it uses the time, addresses, or chance that the "
+      "The controller '{}' of the plug-in is not reproducible: it uses the time, addresses, or chance that "
+      "the "
       "run does not seed.",
       Printable(fmt::format("{}", fmt::join(summary.plugin_controllers, "' or '"))));
 }
