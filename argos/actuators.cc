@@ -45,10 +45,18 @@ class Leds final : public argos::CCI_LEDsActuator, public ActuatorLink {
 
 class Radio final : public argos::CCI_RangeAndBearingActuator, public ActuatorLink {
  public:
-  explicit Radio(RobotParts& /*parts*/) : CCI_RangeAndBearingActuator(sim::Payload().size()) {}
+  explicit Radio(RobotParts& parts) : CCI_RangeAndBearingActuator(parts.message_bytes), parts_(parts) {}
   void Give(sim::Actuators& actuators) override {
-    std::copy_n(m_cData.ToCArray(), actuators.message.size(), actuators.message.begin());
+    const std::span<const argos::UInt8> bytes(m_cData.ToCArray(), m_cData.Size());
+    if (bytes.size() > actuators.message.size()) {
+      actuators.message = parts_.mailbox.Put(parts_.robot, bytes);
+    } else {
+      std::ranges::copy(bytes, actuators.message.begin());
+    }
   }
+
+ private:
+  const RobotParts& parts_;
 };
 
 class Gripper final : public argos::CCI_FootBotGripperActuator, public ActuatorLink {

@@ -44,9 +44,14 @@ void RefuseUnknown(const std::vector<std::string>& tags, const Rows& rows, const
 
 ControllerAdapter::ControllerAdapter(const ControllerSection& section, const Robot& robot)
     : run_(JoinRun(robot.seed)),
-      parts_{.palette = run_->palette, .directions = run_->directions, .start = robot.start},
+      parts_{.palette = run_->palette,
+             .mailbox = run_->mailbox,
+             .directions = run_->directions,
+             .robot = robot.number,
+             .message_bytes = section.message_bytes,
+             .start = robot.start},
       controller_(argos::CFactory<argos::CCI_Controller>::New(section.label)) {
-  controller_->SetId("fb" + std::to_string(robot.number));
+  controller_->SetId(section.robots + std::to_string(robot.number));
   AddDevices(section);
   argos::TConfigurationNode parameters = section.parameters;
   controller_->Init(parameters);

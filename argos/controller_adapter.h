@@ -26,13 +26,15 @@ struct ControllerSection {
   };
   std::optional<Devices> devices = {};
   argos::TConfigurationNode parameters = argos::TConfigurationNode("params");
+  std::string robots = "fb";                          // what their ids begin with; their numbers follow
+  std::size_t message_bytes = sim::Payload().size();  // rab_data_size: of a message of range_and_bearing
 };
 
 class ControllerAdapter final : public sim::Controller {
  public:
   struct Robot {
-    sim::RobotIndex number = 0;  // it is called fb and this
-    std::uint64_t seed = 0;      // of the run
+    sim::RobotIndex number = 0;
+    std::uint64_t seed = 0;  // of the run
     sim::Pose start;
   };
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "argos/mailbox.h"
 #include "argos/palette.h"
 #include "sim/geometry/directions.h"
 #include "sim/robot/controller.h"
@@ -19,13 +20,17 @@ struct RunParts {
   static constexpr std::size_t kRoom = 128;  // places without more memory
 
   Palette palette;
+  Mailbox mailbox;
   sim::Directions directions = sim::Directions(kRoom);
 };
 
 // What the devices of one robot share.
 struct RobotParts {
   Palette& palette;
+  Mailbox& mailbox;
   sim::Directions& directions;  // for whoever needs some at the moment
+  sim::RobotIndex robot = 0;
+  std::size_t message_bytes = sim::Payload().size();
   sim::Pose start;
   double turret = 0.0;  // rad, counter-clockwise from the heading
 };

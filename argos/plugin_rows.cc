@@ -97,6 +97,13 @@ struct Configured {
   std::vector<controllers::ParameterInfo> parameters = {};
   std::string description = "";
 
+  // An attribute of the section itself; nothing when it is not there.
+  std::optional<std::string> Attribute(std::string_view wanted) const {
+    for (const ConfigurationLine& line : section) {
+      if (line.depth == 1 && line.value != nullptr && line.name == wanted) return line.value;
+    }
+    return std::nullopt;
+  }
   Lines Parameters() const {
     for (const Lines element : Elements(section, 1)) {
       if (std::string_view(element[0].name) == "params") return element;
@@ -137,6 +144,9 @@ void Configured::Describe() {
 ControllerSection Configured::SectionWith(const sim::Parameters& resolved) const {
   ControllerSection made = {.label = label};
   if (section.empty()) return made;
+  if (const auto robots = Attribute(kRobotsLine)) made.robots = *robots;
+  if (const auto bytes = Attribute(kMessageLine))
+    made.message_bytes = static_cast<std::size_t>(NumberIn(*bytes).value_or(0.0));
   made.devices = ControllerSection::Devices{.actuators = TagsIn(section, "actuators"),
                                             .sensors = TagsIn(section, "sensors")};
   if (Parameters().empty()) return made;

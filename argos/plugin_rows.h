@@ -9,12 +9,17 @@
 namespace gauntlet::argos_form {
 
 // A line of an .argos file's <controllers>: an element, or an attribute of the last element, or its text,
-// which has the name "". Children of <controllers> have the depth 0.
+// which has the name "". Children of <controllers> have the depth 0. Two attributes of theirs are of the
+// robots that have the controller, and have names that no attribute has.
 struct ConfigurationLine {
   int depth = 0;
   const char* name = nullptr;
   const char* value = nullptr;  // null: an element
 };
+
+inline constexpr const char* kRobotsLine = " robots";  // what the robots' ids begin with
+inline constexpr const char* kMessageLine =
+    " rab_data_size";  // bytes of their messages, when the file says it
 
 // A row for every controller that the library's sources register. It is called as it is registered; when
 // several sections of the file are for it, those after the first are called by their ids. Each numeric

@@ -111,8 +111,8 @@ class Camera final : public argos::CCI_ColoredBlobOmnidirectionalCameraSensor, p
 
 class Radio final : public argos::CCI_RangeAndBearingSensor, public SensorLink {
  public:
-  explicit Radio(RobotParts& parts) : directions_(parts.directions), spare_(kRoom) {
-    for (SPacket& packet : spare_) packet.Data.Resize(sim::Payload().size());
+  explicit Radio(RobotParts& parts) : parts_(parts), directions_(parts.directions), spare_(kRoom) {
+    for (SPacket& packet : spare_) packet.Data.Resize(parts.message_bytes);
     m_tReadings.reserve(kRoom);
   }
   void Take(const sim::SensorReadings& readings) override {
@@ -123,12 +123,20 @@ class Radio final : public argos::CCI_RangeAndBearingSensor, public SensorLink {
       SPacket& packet = m_tReadings[i];
       packet.Range = message.range * kCentimetres;
       packet.HorizontalBearing = BearingOf(directions_, i);
-      packet.Data.Resize(message.payload.size());
-      std::copy(message.payload.begin(), message.payload.end(), packet.Data.ToCArray());
+      Fill(packet.Data, message.payload);
     }
   }
 
  private:
+  void Fill(argos::CByteArray& data, const sim::Payload& message) const {
+    data.Resize(parts_.message_bytes);
+    std::span<const std::uint8_t> bytes = message;
+    if (data.Size() > message.size()) {
+      data.Zero();
+      if (const auto kept = parts_.mailbox.Get(message); !kept.empty()) bytes = kept;
+    }
+    std::copy_n(bytes.begin(), std::min(bytes.size(), data.Size()), data.ToCArray());
+  }
   // Packets that are not needed wait with their memory.
   void Resize(std::size_t size) {
     for (; m_tReadings.size() > size; m_tReadings.pop_back()) spare_.push_back(std::move(m_tReadings.back()));
@@ -140,6 +148,7 @@ class Radio final : public argos::CCI_RangeAndBearingSensor, public SensorLink {
 
   static constexpr std::size_t kRoom = 32;  // packets that it hears without more memory
 
+  const RobotParts& parts_;
   sim::Directions& directions_;
   std::vector<SPacket> spare_;
 };

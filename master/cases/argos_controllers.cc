@@ -18,6 +18,8 @@
 namespace gauntlet::master {
 namespace {
 
+constexpr int kMostMessageBytes = 65536;
+
 constexpr int kMostDepth = 32;  // real files have 4
 
 // As a C++ literal, whatever bytes it holds.
@@ -67,6 +69,32 @@ std::string MissingIn(const pugi::xml_node& section) {
   for (const char* child : {"actuators", "sensors", "params"})
     if (!section.child(child)) return fmt::format("<{}>, which ARGoS wants even when it is empty", child);
   return "";
+}
+
+// What the file says of the robots that have a controller.
+struct RobotsOf {
+  std::optional<std::string> ids;  // what they begin with
+  std::optional<int> message_bytes;
+};
+
+Result<RobotsOf> ReadRobots(const pugi::xml_node& root, const std::string& controller) {
+  const pugi::xml_node robot = root.child("arena").find_node([&](const pugi::xml_node& node) {
+    return std::string_view(node.name()) == "foot-bot" &&
+           node.child("controller").attribute("config").value() == controller;
+  });
+  if (!robot) return RobotsOf{};
+  // In <distribute> ARGoS appends numbers; elsewhere the file itself has.
+  std::string ids = robot.attribute("id").value();
+  if (std::string_view(robot.parent().name()) != "entity") ids.erase(ids.find_last_not_of("0123456789") + 1);
+  RobotsOf robots{.ids = ids, .message_bytes = {}};
+  const pugi::xml_attribute bytes = robot.attribute("rab_data_size");
+  if (!bytes) return robots;
+  robots.message_bytes = ParseNumber<int>(Trimmed(bytes.value()));
+  if (robots.message_bytes && *robots.message_bytes >= 1 && *robots.message_bytes <= kMostMessageBytes)
+    return robots;
+  return InvalidInput(
+      fmt::format("<foot-bot id=\"{}\"> has rab_data_size=\"{}\", expected bytes from 1 to {}",
+                  robot.attribute("id").value(), bytes.value(), kMostMessageBytes));
 }
 
 std::string TextOf(const std::vector<pugi::xml_node>& sections) {
@@ -126,6 +154,11 @@ Result<std::string> ArgosControllerTable(const std::string& text, const std::str
       return fail(section.offset_debug(),
                   fmt::format("<{}> is nested deeper than {} elements", section.name(), kMostDepth));
     }
+    const Result<RobotsOf> robots = ReadRobots(root, section.attribute("id").value());
+    if (!robots) return fail(section.offset_debug(), robots.error().message);
+    if (robots->ids) lines += fmt::format("    {{1, \" robots\", {}}},\n", Literal(*robots->ids));
+    if (robots->message_bytes)
+      lines += fmt::format("    {{1, \" rab_data_size\", \"{}\"}},\n", *robots->message_bytes);
   }
   if (lines.empty()) {
     return fail(root.offset_debug(),
@@ -172,8 +205,14 @@ Result<ArgosControllers> ReadArgosControllers(const std::string& text, const std
     others.erase(kScenarioController);
     return others;
   }();
-  if (id.empty() ? tested.size() == 1 : ids.contains(id))
-    return ArgosControllers{TextOf(sections), id.empty() ? *tested.begin() : id};
+  if (id.empty() ? tested.size() == 1 : ids.contains(id)) {
+    ArgosControllers read{.sections = TextOf(sections), .id = id.empty() ? *tested.begin() : id};
+    const Result<RobotsOf> robots = ReadRobots(root, read.id);
+    if (!robots) return fail(root.offset_debug(), robots.error().message);
+    read.robots = robots->ids;
+    read.message_bytes = robots->message_bytes;
+    return read;
+  }
   const std::string there = fmt::format("{}", fmt::join(ids, ", "));
   if (!id.empty())
     return InvalidInput(

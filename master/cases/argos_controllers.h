@@ -1,6 +1,7 @@
 // The controllers of ARGoS3 experiment files.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,14 +14,18 @@ namespace gauntlet::master {
 inline constexpr const char* kScenarioController = "scenario";
 
 // C++ source of a plug-in's table of controllers that holds every section of <controllers>: tags of devices,
-// parameters and ids. `file_name` stands in messages. Error "FILE:LINE:COLUMN: ..." for malformed XML,
-// another root than <argos-configuration>, and no <controllers> with at least one element.
+// parameters and ids; of the first foot-bot that has a controller, also how the robots' ids begin and how
+// many bytes their messages have. `file_name` stands in messages. Error "FILE:LINE:COLUMN: ..." for malformed
+// XML, another root than <argos-configuration>, and no <controllers> with at least one element.
 Result<std::string> ArgosControllerTable(const std::string& text, const std::string& file_name);
 
 // Controllers for the robots of another file.
 struct ArgosControllers {
   std::string sections;  // XML: the elements below <controllers>
   std::string id;        // of the one that the robots under test get
+  // As the file's robots with that controller have it; nothing: no robot of the file has it, or says so.
+  std::optional<std::string> robots = {};  // what their ids begin with; their numbers follow
+  std::optional<int> message_bytes = {};   // rab_data_size
 };
 
 // Out of an .argos file, or an XML file whose root is <controllers>. `id` chooses a controller; "" takes the

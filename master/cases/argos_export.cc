@@ -14,6 +14,7 @@
 #include <pugixml.hpp>
 
 #include "base/printable.h"
+#include "base/utf8.h"
 #include "master/cases/argos_form.h"
 
 namespace gauntlet::master {
@@ -94,12 +95,17 @@ void AppendLights(xml_node arena, const std::vector<sim::Light>& lights) {
 }
 
 void AppendRobots(xml_node arena, const std::vector<sim::StartingRobot>& robots,
-                  const std::string& controller) {
+                  const ArgosControllers* given) {
+  constexpr const char* kIds = "fb";
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const sim::StartingRobot& robot = robots[i];
-    xml_node element =
-        Append(arena, "foot-bot",
-               {{"id", fmt::format("fb{}", i)}, {"rab_range", fmt::format("{}", robot.radio_range)}});
+    xml_node element = Append(
+        arena, "foot-bot",
+        {{"id",
+          fmt::format("{}{}", robot.under_test && given != nullptr ? given->robots.value_or(kIds) : kIds, i)},
+         {"rab_range", fmt::format("{}", robot.radio_range)}});
+    if (given != nullptr && given->message_bytes)
+      element.append_attribute("rab_data_size") = *given->message_bytes;
     if (robot.camera_range > 0.0) {
       const double aperture = std::atan(robot.camera_range / sim::foot_bot::kCameraHeight);
       element.append_attribute("omnidirectional_camera_aperture") = DegreesText(aperture).c_str();
@@ -107,7 +113,10 @@ void AppendRobots(xml_node arena, const std::vector<sim::StartingRobot>& robots,
     Append(element, "body",
            {{"position", fmt::format("{},{},0", robot.pose.position.x(), robot.pose.position.y())},
             {"orientation", fmt::format("{},0,0", DegreesText(robot.pose.heading))}});
-    Append(element, "controller", {{"config", robot.under_test ? controller : kScenarioController}});
+    Append(element, "controller",
+           {{"config", !robot.under_test  ? kScenarioController
+                       : given == nullptr ? kPlaceholder
+                                          : given->id}});
   }
 }
 
@@ -140,10 +149,17 @@ void AppendControllers(xml_node root, const sim::RunStart& start, const ArgosCon
     AppendPlaceholder(parent, kScenarioController, {});
 }
 
+bool IsControlCharacter(char c) {
+  return (c >= 0 && c < ' ') || c == 0x7f;
+}
+
 // What ARGoS has no words for, so that reading the file gives the very same case.
 void AppendOwn(xml_node root, const sim::RunSpec& spec) {
   const sim::TestCase& test_case = spec.test_case;
   xml_node own = Append(root, kOwnElement, {{"seed", fmt::format("{}", spec.seed)}});
+  // XML has no words for some bytes; a case with such a name gets that of the file.
+  if (IsUtf8(test_case.name) && std::ranges::none_of(test_case.name, IsControlCharacter))
+    own.append_attribute("name") = test_case.name.c_str();
   if (const auto& area = test_case.spawn_area) {
     own.append_attribute("spawn_area") =
         fmt::format("{},{},{},{}", area->min.x(), area->min.y(), area->max.x(), area->max.y()).c_str();
@@ -255,7 +271,7 @@ ArgosFile WriteArgos(const sim::RunSpec& spec, const sim::RunStart& start,
   Append(arena, "floor", {{"id", "floor"}, {"source", "loop_functions"}, {"pixels_per_meter", "50"}});
   AppendBoxes(arena, test_case);
   AppendLights(arena, start.lights);
-  AppendRobots(arena, start.robots, controllers == nullptr ? kPlaceholder : controllers->id);
+  AppendRobots(arena, start.robots, controllers);
 
   Append(Append(root, "physics_engines"), "dynamics2d", {{"id", "dyn2d"}});
   const xml_node media = Append(root, "media");

@@ -318,6 +318,7 @@ class Importer {
 
   // What ARGoS has no words for, of files that we wrote.
   Status ReadOwn(const pugi::xml_node& own) {
+    if (const pugi::xml_attribute name = own.attribute("name")) test_case_.name = name.value();
     if (own.attribute("spawn_area")) {
       const auto area = ReadNumbers<4>(own, "spawn_area", "min x,min y,max x,max y in m", own);
       if (!area) return area.error();

@@ -142,6 +142,51 @@ TEST_F(Adapter, GivesReadingsInTheUnitsOfArgos) {
   EXPECT_EQ(looked, 1);
 }
 
+// More bytes than a simulated message has: what a robot hears is what the other one said in the tick before,
+// whichever of them steps first.
+TEST_F(Adapter, SendsMessagesOfTheSizeThatTheFileSays) {
+  section.message_bytes = 24;
+  section.robots = "f-";
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing");
+    EXPECT_EQ(robot.GetActuator<argos::CCI_RangeAndBearingActuator>("range_and_bearing")->GetSize(), 24u);
+  };
+  std::vector<std::string> heard;
+  CScripted::step = [&](CScripted& robot) {
+    const auto tick = argos::CSimulator::GetInstance().GetSpace().GetSimulationClock();
+    for (const auto& packet :
+         robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing")->GetReadings()) {
+      ASSERT_EQ(packet.Data.Size(), 24u);
+      heard.push_back(robot.GetId() + " " + std::to_string(packet.Data[0]) + " " +
+                      std::to_string(packet.Data[23]));
+    }
+    auto* const radio = robot.GetActuator<argos::CCI_RangeAndBearingActuator>("range_and_bearing");
+    radio->SetData(0, static_cast<argos::UInt8>(tick));
+    radio->SetData(23, robot.GetId() == "f-0" ? 100 : 200);
+  };
+  Run({{{-0.5, 0}, 0}, {{-0.5, 0.3}, 0}}, 4);
+  EXPECT_THAT(heard, ElementsAre("f-0 0 0", "f-1 0 0", "f-0 1 200", "f-1 1 100", "f-0 2 200", "f-1 2 100",
+                                 "f-0 3 200", "f-1 3 100"));
+}
+
+TEST_F(Adapter, HearsAsManyBytesAsAShortMessageHas) {
+  section.message_bytes = 4;
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing");
+    robot.GetActuator<argos::CCI_RangeAndBearingActuator>("range_and_bearing")->SetData(3, 7);
+  };
+  int looked = 0;
+  CScripted::step = [&](CScripted& robot) {
+    for (const auto& packet :
+         robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing")->GetReadings()) {
+      EXPECT_EQ(packet.Data.Size(), 4u);
+      looked += packet.Data[3] == 7;
+    }
+  };
+  Run({{{-0.5, 0}, 0}, {{-0.5, 0.3}, 0}}, 2);
+  EXPECT_EQ(looked, 2);
+}
+
 TEST_F(Adapter, DrivesInCentimetresAndTellsWhatTheWheelsDo) {
   std::vector<double> speeds;
   CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {

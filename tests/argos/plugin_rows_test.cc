@@ -16,12 +16,14 @@ class CReader : public argos::CCI_Controller {
   inline static double speed = 0.0;
   inline static std::vector<int> ports;
   inline static std::string name;
+  inline static std::string id;
   inline static std::string wish;
   inline static double limit = 0.0;
 
   void Init(argos::TConfigurationNode& parameters) override {
     argos::GetNodeAttribute(argos::GetNode(parameters, "wheels"), "speed", speed);
     argos::GetNodeAttribute(parameters, "name", name);
+    id = GetId();
     argos::GetNodeText(argos::GetNode(parameters, "wheels"), wish);
     argos::GetNodeTextOrDefault(argos::GetNode(parameters, "limit"), limit, 3.0);
     ports.clear();
@@ -43,11 +45,15 @@ using controllers::ControllerInfo;
 using testing::ElementsAre;
 
 constexpr ConfigurationLine kLines[] = {
-    {0, "somebody_else"}, {1, "id", "x"},        {0, "reader"},        {1, "id", "first"}, {1, "actuators"},
-    {2, "leds"},          {3, "medium", "leds"}, {1, "sensors"},       {2, "positioning"}, {1, "params"},
-    {2, "name", "seven"}, {2, "wheels"},         {3, "speed", "2.50"}, {3, "", "a wish"},  {2, "limit"},
-    {3, "", "2.5"},       {2, "port"},           {3, "number", "1"},   {2, "port"},        {3, "number", "2"},
-    {0, "reader"},        {1, "id", "second"},   {1, "params"},        {2, "name", "8"},   {2, "wheels"},
+    {0, "somebody_else"}, {1, "id", "x"},        {0, "reader"},
+    {1, "id", "first"},   {1, " robots", "F0-"}, {1, " rab_data_size", "24"},
+    {1, "actuators"},     {2, "leds"},           {3, "medium", "leds"},
+    {1, "sensors"},       {2, "positioning"},    {1, "params"},
+    {2, "name", "seven"}, {2, "wheels"},         {3, "speed", "2.50"},
+    {3, "", "a wish"},    {2, "limit"},          {3, "", "2.5"},
+    {2, "port"},          {3, "number", "1"},    {2, "port"},
+    {3, "number", "2"},   {0, "reader"},         {1, "id", "second"},
+    {1, "params"},        {2, "name", "8"},      {2, "wheels"},
     {3, "speed", "9"},    {3, "", "another"},    {2, "limit"},
 };
 
@@ -86,6 +92,7 @@ TEST(ControllerRows, HandTheValuesToInit) {
   EXPECT_EQ(CReader::name, "seven");
   EXPECT_EQ(CReader::wish, "a wish");
   EXPECT_EQ(CReader::limit, 2.5);
+  EXPECT_EQ(CReader::id, "F0-0");
   EXPECT_THAT(CReader::ports, ElementsAre(1, 6));
   EXPECT_EQ(robot->Devices(), sim::Device::kLeds | sim::Device::kPositioning);
 }
@@ -97,6 +104,7 @@ TEST(ControllerRows, CallSectionsAfterTheFirstByTheirIds) {
   EXPECT_EQ(CReader::speed, 9.0);
   EXPECT_EQ(CReader::name, "8");
   EXPECT_EQ(CReader::limit, 3.0);
+  EXPECT_EQ(CReader::id, "fb0");
 }
 
 TEST(ControllerRows, NameWhatInitMisses) {

@@ -55,6 +55,32 @@ std::string RefusalOf(const std::string& text, const std::string& id = "") {
   return read.ok() ? "no error" : read.error().message;
 }
 
+TEST(ReadArgosControllers, KnowsWhatTheFileSaysOfTheRobots) {
+  const auto with_arena = [](const std::string& arena) {
+    std::string text = kTwo;
+    return text.insert(text.find("</argos"), "<arena>" + arena + "</arena>");
+  };
+  const std::string distributed = R"(<foot-bot id="x"><controller config="s"/></foot-bot><distribute><entity>
+      <foot-bot id="F0-" rab_data_size="24"><controller config="w"/></foot-bot></entity></distribute>)";
+  const auto read = ReadArgosControllers(with_arena(distributed), "mine.argos", "w");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->robots, "F0-");
+  EXPECT_EQ(read->message_bytes, 24);
+  const auto numbered = ReadArgosControllers(
+      with_arena(R"(<foot-bot id="30"><controller config="w"/></foot-bot>)"), "mine.argos", "w");
+  ASSERT_TRUE(numbered.ok()) << numbered.error().message;
+  EXPECT_EQ(numbered->robots, "");
+  EXPECT_EQ(numbered->message_bytes, std::nullopt);
+  EXPECT_EQ(ReadArgosControllers(with_arena(distributed), "mine.argos", "s")->robots, "x");
+  EXPECT_EQ(ReadArgosControllers(kTwo, "mine.argos", "w")->robots, std::nullopt);
+  EXPECT_THAT(
+      ErrorOf(with_arena(R"(<foot-bot id="f" rab_data_size="many"><controller config="w"/></foot-bot>)")),
+      HasSubstr(R"(<foot-bot id="f"> has rab_data_size="many", expected bytes from 1 to 65536)"));
+  const auto table = ArgosControllerTable(with_arena(distributed), "mine.argos");
+  ASSERT_TRUE(table.ok()) << table.error().message;
+  EXPECT_THAT(*table, HasSubstr("    {1, \" robots\", \"F0-\"},\n    {1, \" rab_data_size\", \"24\"},\n"));
+}
+
 TEST(ReadArgosControllers, TakesAllAndChoosesOne) {
   const auto read = ReadArgosControllers(kTwo, "mine.argos", "s");
   ASSERT_TRUE(read.ok()) << read.error().message;

@@ -15,7 +15,14 @@ class CCI_RangeAndBearingActuator : public CCI_Actuator {
 
   std::size_t GetSize() const { return m_cData.Size(); }
   // Throws when there is no such byte.
-  virtual void SetData(std::size_t index, UInt8 value) { m_cData[index] = value; }
+  virtual void SetData(std::size_t index, UInt8 value) {
+    if (index >= m_cData.Size()) {
+      THROW_ARGOSEXCEPTION("range_and_bearing: byte " << index << " of a message of " << m_cData.Size()
+                                                      << "; rab_data_size of the foot-bots in the .argos "
+                                                         "file says how many there are");
+    }
+    m_cData[index] = value;
+  }
   // Throws when it has another size.
   virtual void SetData(const CByteArray& data) {
     if (data.Size() != m_cData.Size()) {
