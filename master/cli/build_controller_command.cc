@@ -29,6 +29,7 @@ constexpr std::size_t kMostFile = std::size_t{16} << 20;  // bytes of an .argos 
 struct BuildControllerOptions {
   std::vector<std::string> sources;
   std::vector<std::string> include_folders;
+  std::vector<std::string> definitions;
   std::string argos;
   std::string output;
   std::string table;
@@ -55,15 +56,20 @@ class ScratchFolder {
 };
 
 // As an argument of CMake, whatever bytes it holds.
+std::string Quoted(const std::string& text) {
+  return fmt::format("[==[{}]==]", text);
+}
 std::string Quoted(const fs::path& path) {
-  return fmt::format("[==[{}]==]", fs::absolute(path).lexically_normal().string());
+  return Quoted(fs::absolute(path).lexically_normal().string());
 }
 
 std::string ProjectText(const BuildControllerOptions& options, bool with_table) {
   std::string sources;
-  for (const std::string& source : options.sources) sources += " " + Quoted(source);
+  for (const std::string& source : options.sources) sources += " " + Quoted(fs::path(source));
   std::string folders;
-  for (const std::string& folder : options.include_folders) folders += " " + Quoted(folder);
+  for (const std::string& folder : options.include_folders) folders += " " + Quoted(fs::path(folder));
+  std::string definitions;
+  for (const std::string& definition : options.definitions) definitions += " " + Quoted(definition);
   const fs::path output = fs::absolute(options.output);
   return fmt::format(R"(cmake_minimum_required(VERSION 3.25)
 project(controller LANGUAGES CXX)
@@ -71,10 +77,11 @@ set(CMAKE_BUILD_TYPE Release)
 find_package(Gauntlet REQUIRED)
 gauntlet_add_argos_plugin(controller SOURCES{}{})
 target_include_directories(controller PRIVATE{})
+target_compile_definitions(controller PRIVATE{})
 set_target_properties(controller PROPERTIES PREFIX "" SUFFIX "" OUTPUT_NAME [==[{}]==] LIBRARY_OUTPUT_DIRECTORY {})
 )",
-                     sources, with_table ? " TABLE table.cc" : "", folders, output.filename().string(),
-                     Quoted(output.parent_path()));
+                     sources, with_table ? " TABLE table.cc" : "", folders, definitions,
+                     output.filename().string(), Quoted(output.parent_path()));
 }
 
 Status RunCMake(CommandContext& context, const std::vector<std::string>& arguments) {
@@ -182,6 +189,8 @@ void AddBuildController(CommandParser& parser) {
            "take devices and parameters from the <controllers> of this file");
   AddValue(command, "-o,--output", "F", options.output, "where the plug-in goes, such as libmine.so");
   AddValue(command, "-I,--include", "DIR", options.include_folders, "folder of headers; may be repeated");
+  AddValue(command, "-D,--define", "NAME[=VALUE]", options.definitions,
+           "a macro that the sources' own build defines, such as GIT_BRANCH='\"main\"'; may be repeated");
   AddValue(command, "--sdk", "DIR", options.sdk,
            "where the SDK was installed (default: where this program was)");
   AddValue(command, "--table", "F", options.table,

@@ -61,16 +61,26 @@ std::string BuildErrors(const std::string& output) {
   // As g++ and clang say it.
   static const std::regex missing(
       R"(fatal error: (?:'([^']+)' file not found|([^:]+): No such file or directory).*)");
+  // A macro, by its letters.
+  static const std::regex undeclared(
+      R"re(error: (?:use of undeclared identifier '|‘|')([A-Z][A-Z0-9_]+)(?:’|')(?: was not declared.*)?$)re");
   std::vector<std::string> lines;
   std::set<std::string> said;
   std::vector<std::string> advice;
   for (const std::string& line : Split(output, '\n')) {
     if (!TellsOfAnError(line) || !said.insert(line).second) continue;
     lines.push_back(line);
-    std::smatch header;
-    if (!std::regex_search(line, header, missing)) continue;
-    const std::string one = AdviceOn(header[1].matched ? header[1] : header[2]);
-    if (said.insert(one).second) advice.push_back(one);
+    std::smatch found;
+    std::string one;
+    if (std::regex_search(line, found, missing)) one = AdviceOn(found[1].matched ? found[1] : found[2]);
+    if (std::regex_search(line, found, undeclared)) {
+      one = fmt::format("{0} may be a macro that the sources' own build defines: say -D {0}=VALUE",
+                        found[1].str());
+    }
+    if (line.find("undefined reference") != std::string::npos ||
+        line.find("undefined symbol") != std::string::npos)
+      one = "what is undefined is in a source that was not named: name all that the controller consists of";
+    if (!one.empty() && said.insert(one).second) advice.push_back(one);
   }
   if (lines.empty()) return output;
   lines.resize(std::min(lines.size(), kShownErrors));

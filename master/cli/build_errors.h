@@ -6,8 +6,8 @@
 namespace gauntlet::master {
 
 // The lines of the output of CMake and the compiler that tell of errors, the first twenty, each once; then,
-// for every header that was not found, what it belongs to and what to do. All of the output when no line
-// tells of an error.
+// of every header that was not found, what it belongs to and what to do, and of a macro how to define it. All
+// of the output when no line tells of an error.
 std::string BuildErrors(const std::string& output);
 
 }  // namespace gauntlet::master

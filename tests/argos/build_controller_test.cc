@@ -122,6 +122,18 @@ TEST_F(BuildController, NamesWhatIsWrong) {
   ExpectRefusal({broken, "-o", library, "-I", folder_ / "absent"}, "there is no such folder");
 }
 
+TEST_F(BuildController, DefinesTheMacrosThatItIsGiven) {
+  const std::string source = File("macro.cpp",
+                                  "#include <argos3/core/control_interface/ci_controller.h>\n"
+                                  "class CIdle : public argos::CCI_Controller {};\n"
+                                  "static_assert(sizeof(GIT_BRANCH) == 4 && SIZE == 3);\n"
+                                  "REGISTER_CONTROLLER(CIdle, \"idle\")\n");
+  const ProcessResult built =
+      Run({source, "-o", folder_ / "libmacro.so", "-D", "GIT_BRANCH=\"a b\"", "-DSIZE=3"});
+  EXPECT_EQ(built.exit_code, 0) << built.err;
+  ExpectRefusal({source, "-o", folder_ / "libmacro.so", "-DSIZE=3"}, "say -D GIT_BRANCH=VALUE");
+}
+
 TEST_F(BuildController, TakesNoSourcesThatContradictEachOtherOrTheFile) {
   const std::string library = folder_ / "libbad.so";
   const auto source = [this](const std::string& file, const std::string& label) {

@@ -21,6 +21,8 @@ TEST(BuildErrors, AreTheLinesThatTellOfErrorsEachOnce) {
                 "[1/2] building\na.cpp:1:9: error: no\n  int x = ;\na.cpp:1:9: error: no\nld: undefined x\n"),
             "  a.cpp:1:9: error: no\n  ld: undefined x\n");
   EXPECT_EQ(BuildErrors("it broke\n"), "it broke\n");
+  EXPECT_THAT(BuildErrors("a.cpp:(.text+0x8): undefined reference to `CNet::CNet()'\n"),
+              HasSubstr("name all that the controller consists of"));
 }
 
 TEST(BuildErrors, SayWhereAMissingHeaderBelongs) {
@@ -35,6 +37,13 @@ TEST(BuildErrors, SayWhereAMissingHeaderBelongs) {
   EXPECT_THAT(OfMissing("QtGui/QWidget"), HasSubstr("is for windows"));
   EXPECT_THAT(OfMissing("my/net.h"),
               HasSubstr("<my/net.h> was not found: name the folder that it is in by -I"));
+}
+
+TEST(BuildErrors, SayHowToDefineAMacro) {
+  for (const char* line : {"a.cpp:6:2: error: ‘GIT_BRANCH’ was not declared in this scope",
+                           "a.cpp:6:2: error: use of undeclared identifier 'GIT_BRANCH'"})
+    EXPECT_THAT(BuildErrors(line), HasSubstr("say -D GIT_BRANCH=VALUE")) << line;
+  EXPECT_THAT(BuildErrors("a.cpp:6:2: error: use of undeclared identifier 'speed'"), Not(HasSubstr("-D")));
 }
 
 TEST(BuildErrors, ReadClangToo) {
