@@ -108,6 +108,10 @@ sim::DeviceSet ControllerAdapter::Attention(bool /*holding_item*/) const {
   return camera_ != nullptr && camera_->IsEnabled() ? devices_ : devices_without_camera_;
 }
 
+void ControllerAdapter::Begin(sim::Actuators& actuators) {
+  for (const auto& actuator : actuators_) actuator.link->Give(actuators);
+}
+
 void ControllerAdapter::Step(const sim::ControlStep& step) {
   argos::CSimulator::GetInstance().GetSpace().SetSimulationClock(static_cast<argos::UInt32>(step.tick));
   for (const auto& sensor : sensors_) {

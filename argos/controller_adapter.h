@@ -47,6 +47,8 @@ class ControllerAdapter final : public sim::Controller {
 
   sim::DeviceSet Devices() const override { return devices_; }
   sim::DeviceSet Attention(bool holding_item) const override;
+  // What Init has commanded.
+  void Begin(sim::Actuators& actuators) override;
   // Throws what ControlStep throws.
   void Step(const sim::ControlStep& step) override;
 

@@ -29,7 +29,7 @@ namespace gauntlet::sdk {
 
 // Changes whenever a header of the SDK changes what compiled code relies on and the sizes below do not tell:
 // a virtual function, the meaning of a member or of an enumeration's value.
-inline constexpr std::uint32_t kPluginAbi = 2;
+inline constexpr std::uint32_t kPluginAbi = 3;
 
 // The name of the exported symbol.
 inline constexpr const char* kPluginSymbol = "gauntlet_plugin";

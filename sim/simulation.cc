@@ -136,6 +136,7 @@ Loop::Loop(Scenario& scenario, std::vector<RobotSetup> swarm, std::uint64_t seed
     devices_.push_back(swarm_[i].controller->Devices());
     signals_.push_back({.beacon = swarm_[i].beacon});
     actuators_[i].beacon = swarm_[i].beacon;
+    swarm_[i].controller->Begin(actuators_[i]);
     poses_[i] = swarm_[i].pose;
   }
   if (!options.disturbances.None()) disturber_.emplace(options.disturbances, seed, swarm_.size());

@@ -177,6 +177,12 @@ Result<std::string> ArgosControllerTable(const std::string& text, const std::str
          "GAUNTLET_PLUGIN(Controllers)\n";
 }
 
+bool HasLoopFunctions(const std::string& text) {
+  pugi::xml_document document;
+  return document.load_buffer(text.data(), text.size()) &&
+         document.document_element().child("loop_functions");
+}
+
 Result<ArgosControllers> ReadArgosControllers(const std::string& text, const std::string& file_name,
                                               const std::string& id) {
   const auto fail = [&](std::ptrdiff_t offset, std::string_view message) {

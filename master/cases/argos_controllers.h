@@ -19,6 +19,9 @@ inline constexpr const char* kScenarioController = "scenario";
 // XML, another root than <argos-configuration>, and no <controllers> with at least one element.
 Result<std::string> ArgosControllerTable(const std::string& text, const std::string& file_name);
 
+// Whether an .argos file that parses has loop functions, which Gauntlet does not run.
+bool HasLoopFunctions(const std::string& text);
+
 // Controllers for the robots of another file.
 struct ArgosControllers {
   std::string sections;  // XML: the elements below <controllers>

@@ -98,10 +98,17 @@ Status RunCMake(CommandContext& context, const std::vector<std::string>& argumen
   return InvalidInput("the plug-in could not be built: see above");
 }
 
-Result<std::string> ReadTable(const std::string& argos) {
+Result<std::string> ReadTable(CommandContext& context, const std::string& argos) {
   const Result<std::string> text = ReadSmallFile(argos, kMostFile);
   if (!text) return text.error();
-  return ArgosControllerTable(*text, argos);
+  Result<std::string> table = ArgosControllerTable(*text, argos);
+  if (table && HasLoopFunctions(*text)) {
+    PrintMessage(context,
+                 fmt::format("{} has loop functions, which Gauntlet does not run: a controller that gets "
+                             "something from them, such as a pointer or a target, goes without",
+                             Printable(argos)));
+  }
+  return table;
 }
 
 Status CheckBuildOptions(const BuildControllerOptions& options) {
@@ -167,7 +174,7 @@ ExitCode RunBuildController(CommandContext& context, const BuildControllerOption
   if (const Status checked = CheckBuildOptions(options); !checked) return Fail(context, checked.error());
   std::string table;
   if (!options.argos.empty()) {
-    Result<std::string> read = ReadTable(options.argos);
+    Result<std::string> read = ReadTable(context, options.argos);
     if (!read) return Fail(context, read.error());
     table = *std::move(read);
   }

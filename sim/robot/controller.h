@@ -127,6 +127,10 @@ class Controller {
   virtual DeviceSet Attention(bool /*holding_item*/) const { return Devices(); }
   // m between centres: it uses no message from farther off. Without noise of range-and-bearing it gets none.
   virtual double ListeningRange() const { return std::numeric_limits<double>::infinity(); }
+
+  // Called once, before the first tick: what is commanded here acts in it. The beacon is as the scenario
+  // lights it.
+  virtual void Begin(Actuators& /*actuators*/) {}
 };
 
 // Bearing of proximity sensor i, rad in (-pi, pi].

@@ -144,6 +144,14 @@ TEST_F(BuildController, TakesNoSourcesThatContradictEachOtherOrTheFile) {
                     label + "\")\n");
   };
   const std::string first = source("first.cpp", "idle");
+  const ProcessResult with_loop_functions =
+      Run({first, "-o", library, "--argos",
+           File("loop.argos", R"(<argos-configuration><controllers><idle id="i"/></controllers>
+                                 <loop_functions/></argos-configuration>)")});
+  EXPECT_EQ(with_loop_functions.exit_code, 0);
+  EXPECT_THAT(with_loop_functions.err,
+              HasSubstr("loop.argos has loop functions, which Gauntlet does not run"));
+  fs::remove(library);
   ExpectRefusal({first, source("second.cpp", "idle"), "-o", library},
                 "several classes are registered by one name: idle");
   EXPECT_FALSE(fs::exists(library));

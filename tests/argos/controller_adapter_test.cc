@@ -76,7 +76,8 @@ class Adapter : public testing::Test {
       robots.push_back({.pose = start,
                         .behaviour = [adapter](const sim::ControlStep& step) { adapter->Step(step); },
                         .devices = adapter->Devices(),
-                        .beacon = sim::Color::kBlack});
+                        .beacon = sim::Color::kBlack,
+                        .beginning = [adapter](sim::Actuators& actuators) { adapter->Begin(actuators); }});
     }
     sim::ToyScenario scenario(sim::TestCase{}, robots, ticks);
     scenario.floor = [](const sim::Vec2& point) { return point.x() < 0.0 ? 0.25 : 1.0; };
@@ -184,7 +185,40 @@ TEST_F(Adapter, HearsAsManyBytesAsAShortMessageHas) {
     }
   };
   Run({{{-0.5, 0}, 0}, {{-0.5, 0.3}, 0}}, 2);
-  EXPECT_EQ(looked, 2);
+  EXPECT_EQ(looked, 4);
+}
+
+// ARGoS lets actuators act at the beginning of a tick, also of the first.
+TEST_F(Adapter, ActsInTheFirstTickOnWhatInitHasCommanded) {
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetSensor<argos::CCI_ColoredBlobOmnidirectionalCameraSensor>("colored_blob_omnidirectional_camera")
+        ->Enable();
+    robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing");
+    robot.GetSensor<argos::CCI_PositioningSensor>("positioning");
+    robot.GetActuator<argos::CCI_LEDsActuator>("leds")->SetSingleColor(12, argos::CColor::RED);
+    robot.GetActuator<argos::CCI_RangeAndBearingActuator>("range_and_bearing")->SetData(0, 42);
+    robot.GetActuator<argos::CCI_DifferentialSteeringActuator>("differential_steering")
+        ->SetLinearVelocity(10.0, 10.0);
+  };
+  int looked = 0;
+  CScripted::step = [&](CScripted& robot) {
+    if (robot.GetId() != "fb0") return;
+    ++looked;
+    const auto& packets =
+        robot.GetSensor<argos::CCI_RangeAndBearingSensor>("range_and_bearing")->GetReadings();
+    ASSERT_EQ(packets.size(), 1u);
+    EXPECT_EQ(packets[0].Data[0], 42);
+    EXPECT_EQ(robot
+                  .GetSensor<argos::CCI_ColoredBlobOmnidirectionalCameraSensor>(
+                      "colored_blob_omnidirectional_camera")
+                  ->GetReadings()
+                  .BlobList.size(),
+              1u);
+    EXPECT_GT(robot.GetSensor<argos::CCI_PositioningSensor>("positioning")->GetReading().Position.GetX(),
+              -0.495);
+  };
+  Run({{{-0.5, 0}, 0}, {{-0.5, 0.3}, 0}}, 1);
+  EXPECT_EQ(looked, 1);
 }
 
 TEST_F(Adapter, DrivesInCentimetresAndTellsWhatTheWheelsDo) {
@@ -201,10 +235,9 @@ TEST_F(Adapter, DrivesInCentimetresAndTellsWhatTheWheelsDo) {
     EXPECT_EQ(reading.CoveredDistanceLeftWheel, reading.VelocityLeftWheel * 0.1);
     EXPECT_EQ(reading.WheelAxisLength, 14.0);
   };
-  const sim::RunResult result = Run({{{0, 0}, 0}}, 11);
-  ASSERT_EQ(speeds.size(), 11u);
-  EXPECT_EQ(speeds[0], 0.0);
-  EXPECT_EQ(speeds[1], 10.0);
+  const sim::RunResult result = Run({{{0, 0}, 0}}, 10);
+  ASSERT_EQ(speeds.size(), 10u);
+  EXPECT_EQ(speeds[0], 10.0);
   EXPECT_NEAR(result.robots[0].path_length, 0.075, 0.002);
 }
 

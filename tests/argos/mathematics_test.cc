@@ -1,6 +1,8 @@
 // Angles, ranges, vectors and rotations against what ARGoS computes.
 #include <argos3/core/utility/math/bearing.h>
 #include <argos3/core/utility/math/quaternion.h>
+#include <argos3/core/utility/math/ray2.h>
+#include <argos3/core/utility/math/ray3.h>
 
 #include <gtest/gtest.h>
 
@@ -31,6 +33,20 @@ TEST(Angles, KeepBothEndsWhenTheyAreNormalised) {
   EXPECT_EQ(NormalizedDifference(CRadians::PI, -CRadians::PI).GetValue(), 0.0);
   EXPECT_EQ(NormalizedDifference(-CRadians::PI_OVER_TWO, CRadians::PI_OVER_TWO), -CRadians::PI);
   EXPECT_EQ(NormalizedDifference(CDegrees(10.0), CDegrees(350.0)).GetValue(), 20.0);
+}
+
+TEST(Ray, GoesFromItsStartToItsEnd) {
+  CRay3 ray(CVector3(1.0, 0.0, 0.0), CVector3::Z, 4.0);
+  EXPECT_EQ(ray.GetEnd(), CVector3(1.0, 0.0, 4.0));
+  CVector3 point;
+  ray.GetPoint(point, 0.25);
+  EXPECT_EQ(point, CVector3(1.0, 0.0, 1.0));
+  EXPECT_EQ(ray.GetDistance(0.25), 1.0);
+  ray.GetInverseDirection(point);
+  EXPECT_EQ(point, CVector3(0.0, 0.0, -1.0));
+  CRay2 flat(CVector2(0.0, 0.0), CVector2(3.0, 4.0));
+  flat.SetLength(10.0);
+  EXPECT_NEAR((flat.GetEnd() - CVector2(6.0, 8.0)).Length(), 0.0, 1e-14);
 }
 
 TEST(Angles, Convert) {

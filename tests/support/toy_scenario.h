@@ -15,17 +15,20 @@
 namespace gauntlet::sim {
 
 using Behaviour = std::function<void(const ControlStep&)>;
+using Beginning = std::function<void(Actuators&)>;
 
 class ToyController final : public Controller {
  public:
-  ToyController(DeviceSet devices, Behaviour behaviour)
-      : devices_(devices), behaviour_(std::move(behaviour)) {}
+  ToyController(DeviceSet devices, Behaviour behaviour, Beginning beginning)
+      : devices_(devices), behaviour_(std::move(behaviour)), beginning_(std::move(beginning)) {}
   DeviceSet Devices() const override { return devices_; }
+  void Begin(Actuators& actuators) override { beginning_(actuators); }
   void Step(const ControlStep& step) override { behaviour_(step); }
 
  private:
   DeviceSet devices_;
   Behaviour behaviour_;
+  Beginning beginning_;
 };
 
 inline constexpr DeviceSet kToyDevices =
@@ -40,6 +43,7 @@ struct ToyRobot {
   double radio_range = foot_bot::kRangeAndBearingRange;
   bool bodies_block_radio = true;
   DeviceSet equipment = kAllDevices;
+  Beginning beginning = [](Actuators&) {};
 };
 
 // Ends at the tick limit, or after the tick at which `finished` says so. Fitness: mean distance of the robots
@@ -62,13 +66,14 @@ class ToyScenario final : public Scenario {
   Result<std::vector<RobotSetup>> CreateSwarm(const Headquarters&) override {
     std::vector<RobotSetup> swarm;
     for (const ToyRobot& robot : robots_) {
-      swarm.push_back({.pose = robot.pose,
-                       .beacon = robot.beacon,
-                       .camera_range = robot.camera_range,
-                       .controller = std::make_unique<ToyController>(robot.devices, robot.behaviour),
-                       .radio_range = robot.radio_range,
-                       .bodies_block_radio = robot.bodies_block_radio,
-                       .equipment = robot.equipment});
+      swarm.push_back(
+          {.pose = robot.pose,
+           .beacon = robot.beacon,
+           .camera_range = robot.camera_range,
+           .controller = std::make_unique<ToyController>(robot.devices, robot.behaviour, robot.beginning),
+           .radio_range = robot.radio_range,
+           .bodies_block_radio = robot.bodies_block_radio,
+           .equipment = robot.equipment});
     }
     return swarm;
   }

@@ -1,13 +1,18 @@
 // A robot's controller, as ARGoS has it, and the macro that registers one.
 #pragma once
 
+#include <unistd.h>
+
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <sstream>
 #include <string>
 #include <typeinfo>
+#include <unordered_map>
 #include <vector>
 
 #include <argos3/core/control_interface/ci_actuator.h>

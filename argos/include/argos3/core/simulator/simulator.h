@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <argos3/core/simulator/loop_functions.h>
 #include <argos3/core/simulator/physics_engine/physics_engine.h>
@@ -22,6 +23,16 @@ class CSimulator {
 
   ARGOS_UNAVAILABLE(CLoopFunctions&, GetLoopFunctions,
                     "Gauntlet runs no loop functions; a controller gets what it needs by its sensors")
+  ARGOS_UNAVAILABLE(UInt32, GetMaxSimulationClock,
+                    "a controller of Gauntlet is not told when the run ends; make it a parameter")
+  ARGOS_UNAVAILABLE(bool, IsExperimentFinished,
+                    "a controller of Gauntlet is not asked any more when the run is over")
+  ARGOS_UNAVAILABLE(std::string, GetExperimentFileName, "there is no experiment file in a run of Gauntlet")
+  ARGOS_UNAVAILABLE(TConfigurationNode&, GetConfigurationRoot,
+                    "a controller of Gauntlet has the parameters that Init gets; what it needs belongs there")
+  ARGOS_UNAVAILABLE(std::vector<CPhysicsEngine*>&, GetPhysicsEngines,
+                    "a controller of Gauntlet does not reach physics; the tick is "
+                    "CPhysicsEngine::GetSimulationClockTick()")
   ARGOS_UNAVAILABLE(CRandom::CRNG*, GetRNG, "use CRandom::CreateRNG(\"argos\")")
   ARGOS_UNAVAILABLE(void, Terminate, "a controller of Gauntlet does not end the run; its scenario does")
 

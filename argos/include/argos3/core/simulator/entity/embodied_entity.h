@@ -6,10 +6,16 @@
 
 namespace argos {
 
+// Where a part of it is.
+struct SAnchor {
+  CVector3 Position;
+  CQuaternion Orientation;
+};
+
 class CEmbodiedEntity : public CEntity {
  public:
   ARGOS_UNAVAILABLE(
-      const CVector3&, GetOriginAnchor,
+      const SAnchor&, GetOriginAnchor,
       "a controller of Gauntlet sees no other bodies; its own place is read by the positioning sensor")
 };
 

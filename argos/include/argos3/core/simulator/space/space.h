@@ -23,6 +23,12 @@ class CSpace {
   ARGOS_UNAVAILABLE(
       TMapPerType&, GetEntitiesByType,
       "a controller of Gauntlet does not reach other robots; let them speak by range_and_bearing")
+  ARGOS_UNAVAILABLE(TMapPerType&, GetEntityMapPerTypePerId,
+                    "a controller of Gauntlet does not reach what else is in the arena")
+  ARGOS_UNAVAILABLE(std::vector<CEntity*>&, GetRootEntityVector,
+                    "a controller of Gauntlet does not reach what else is in the arena")
+  ARGOS_UNAVAILABLE(const CRange<CVector3>&, GetArenaLimits,
+                    "a controller of Gauntlet is not told; make it a parameter")
   ARGOS_UNAVAILABLE(CEntity&, GetEntity, "a controller of Gauntlet does not reach what else is in the arena")
   ARGOS_UNAVAILABLE(CFloorEntity&, GetFloorEntity,
                     "the scenario paints the floor; read it by a ground sensor")

@@ -158,4 +158,6 @@ namespace ticpp {
 using Element = argos::TConfigurationNode;
 // A whole file; reading one is left to Init's parameters.
 class Document {};
+template <typename Node>
+using Iterator = argos::TConfigurationNodeIterator;
 }  // namespace ticpp

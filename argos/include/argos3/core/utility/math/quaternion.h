@@ -36,6 +36,9 @@ class CQuaternion {
   // The axis has the length 1.
   CQuaternion& FromAngleAxis(const CRadians& angle, const CVector3& axis);
   void ToAngleAxis(CRadians& angle, CVector3& axis) const;
+  CQuaternion& BetweenTwoVectors(const CVector3& from, const CVector3& to) {
+    return *this = CQuaternion(from, to);
+  }
   // About the robot's z (yaw), y (pitch) and x (roll): Rx * Ry * Rz. On the plane z is the heading in [-pi,
   // pi].
   CQuaternion& FromEulerAngles(const CRadians& z, const CRadians& y, const CRadians& x);
@@ -45,6 +48,14 @@ class CQuaternion {
     return w_ == other.w_ && x_ == other.x_ && y_ == other.y_ && z_ == other.z_;
   }
   bool operator!=(const CQuaternion& other) const { return !(*this == other); }
+  CQuaternion& operator+=(const CQuaternion& other) {
+    return *this = {w_ + other.w_, x_ + other.x_, y_ + other.y_, z_ + other.z_};
+  }
+  CQuaternion& operator-=(const CQuaternion& other) {
+    return *this = {w_ - other.w_, x_ - other.x_, y_ - other.y_, z_ - other.z_};
+  }
+  CQuaternion operator+(const CQuaternion& other) const { return CQuaternion(*this) += other; }
+  CQuaternion operator-(const CQuaternion& other) const { return CQuaternion(*this) -= other; }
   CQuaternion operator*(const CQuaternion& other) const;
   CQuaternion& operator*=(const CQuaternion& other) { return *this = *this * other; }
 

@@ -4,11 +4,15 @@
 #include <argos3/core/control_interface/ci_actuator.h>
 #include <argos3/core/utility/datatypes/datatypes.h>
 #include <argos3/core/utility/math/angles.h>
+#include <argos3/core/utility/math/range.h>
 
 namespace argos {
 
 class CCI_FootBotTurretActuator : public CCI_Actuator {
  public:
+  static constexpr CRange<SInt32> SPEED_RANGE{-4, 4};
+  static constexpr CRange<Real> NORMALIZED_SPEED_RANGE{-1.0, 1.0};
+
   enum ETurretModes { MODE_OFF, MODE_PASSIVE, MODE_SPEED_CONTROL, MODE_POSITION_CONTROL };
 
   virtual void SetRotation(const CRadians& rotation) { m_cRotation = rotation; }

@@ -9,6 +9,8 @@ namespace argos {
 
 class CCI_FootBotTurretEncoderSensor : public CCI_Sensor {
  public:
+  static constexpr CRange<CRadians> ANGULAR_RANGE{CRadians(-ARGOS_PI), CRadians(ARGOS_PI)};
+
   const CRadians& GetRotation() const { return m_cRotation; }
 
  protected:
