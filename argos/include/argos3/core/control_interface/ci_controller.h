@@ -1,8 +1,6 @@
 // A robot's controller, as ARGoS has it, and the macro that registers one.
 #pragma once
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
