@@ -109,8 +109,8 @@ void UseLargePages() {
   const std::string bytes = CallOrEnd(work);
   FlushOutput();
   if (!WriteResult(result, bytes)) {
-    if (errno == EBADF) _exit(kExitUnheard);
-    OutOfMemory();
+    if (errno == ENOSPC || errno == ENOMEM) OutOfMemory();
+    _exit(kExitUnheard);
   }
   _exit(0);
 }
@@ -223,7 +223,7 @@ void EndAs(const SeparateOutcome& outcome) {
   }
   const int code = WEXITSTATUS(outcome.wait_status);
   if (code == kExitUnheard)
-    WriteToStderr("the plug-in closed files that are not its own, among them the run's result\n");
+    WriteToStderr("the plug-in closed or limited files that are not its own, among them the run's result\n");
   if (code == 0) WriteToStderr("exit(0) was called before the run had a result\n");
   _exit(code == 0 ? kExitWithoutResult : code);
 }

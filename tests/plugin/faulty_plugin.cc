@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "sdk/plugin.h"
@@ -43,6 +44,10 @@ void Terminate() {
 }
 void CloseAll() {
   for (int file = 0; file < 1024; ++file) close(file);
+}
+void LimitFiles() {
+  constexpr rlimit kOneByte{.rlim_cur = 1, .rlim_max = 1};
+  setrlimit(RLIMIT_FSIZE, &kOneByte);
 }
 void Spin() {
   for (volatile bool on = true; on;) continue;
@@ -146,6 +151,7 @@ std::vector<ControllerInfo> Rows() {
           Row<ExitThree>("exit-three"),
           Row<Terminate>("terminate"),
           Row<CloseAll>("close-all"),
+          Row<LimitFiles>("limit-files"),
           Row<Spin>("spin"),
           Row<Allocate>("allocate"),
           Row<Throw>("throw"),
