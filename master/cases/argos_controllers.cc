@@ -19,7 +19,6 @@ namespace gauntlet::master {
 namespace {
 
 constexpr int kMostMessageBytes = 65536;
-
 constexpr int kMostDepth = 32;  // real files have 4
 
 // As a C++ literal, whatever bytes it holds.
@@ -82,7 +81,7 @@ Result<RobotsOf> ReadRobots(const pugi::xml_node& root, const std::string& contr
     return std::string_view(node.name()) == "foot-bot" &&
            node.child("controller").attribute("config").value() == controller;
   });
-  if (!robot) return RobotsOf{};
+  if (!robot || controller.empty()) return RobotsOf{};
   // In <distribute> ARGoS appends numbers; elsewhere the file itself has.
   std::string ids = robot.attribute("id").value();
   if (std::string_view(robot.parent().name()) != "entity") ids.erase(ids.find_last_not_of("0123456789") + 1);
@@ -156,9 +155,11 @@ Result<std::string> ArgosControllerTable(const std::string& text, const std::str
     }
     const Result<RobotsOf> robots = ReadRobots(root, section.attribute("id").value());
     if (!robots) return fail(section.offset_debug(), robots.error().message);
-    if (robots->ids) lines += fmt::format("    {{1, \" robots\", {}}},\n", Literal(*robots->ids));
+    if (robots->ids)
+      lines += fmt::format("    {{1, gauntlet::argos_form::kRobotsLine, {}}},\n", Literal(*robots->ids));
     if (robots->message_bytes)
-      lines += fmt::format("    {{1, \" rab_data_size\", \"{}\"}},\n", *robots->message_bytes);
+      lines +=
+          fmt::format("    {{1, gauntlet::argos_form::kMessageLine, \"{}\"}},\n", *robots->message_bytes);
   }
   if (lines.empty()) {
     return fail(root.offset_debug(),

@@ -96,14 +96,15 @@ void AppendLights(xml_node arena, const std::vector<sim::Light>& lights) {
 
 void AppendRobots(xml_node arena, const std::vector<sim::StartingRobot>& robots,
                   const ArgosControllers* given) {
+  // Of the robots under test; the scenario's own have the others.
   constexpr const char* kIds = "fb";
+  const std::string ids = given == nullptr ? kIds : given->robots.value_or(kIds);
+  const std::string controller = given == nullptr ? kPlaceholder : given->id;
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const sim::StartingRobot& robot = robots[i];
-    xml_node element = Append(
-        arena, "foot-bot",
-        {{"id",
-          fmt::format("{}{}", robot.under_test && given != nullptr ? given->robots.value_or(kIds) : kIds, i)},
-         {"rab_range", fmt::format("{}", robot.radio_range)}});
+    xml_node element = Append(arena, "foot-bot",
+                              {{"id", fmt::format("{}{}", robot.under_test ? ids : kIds, i)},
+                               {"rab_range", fmt::format("{}", robot.radio_range)}});
     if (given != nullptr && given->message_bytes)
       element.append_attribute("rab_data_size") = *given->message_bytes;
     if (robot.camera_range > 0.0) {
@@ -113,10 +114,7 @@ void AppendRobots(xml_node arena, const std::vector<sim::StartingRobot>& robots,
     Append(element, "body",
            {{"position", fmt::format("{},{},0", robot.pose.position.x(), robot.pose.position.y())},
             {"orientation", fmt::format("{},0,0", DegreesText(robot.pose.heading))}});
-    Append(element, "controller",
-           {{"config", !robot.under_test  ? kScenarioController
-                       : given == nullptr ? kPlaceholder
-                                          : given->id}});
+    Append(element, "controller", {{"config", robot.under_test ? controller : kScenarioController}});
   }
 }
 

@@ -78,7 +78,8 @@ TEST(ReadArgosControllers, KnowsWhatTheFileSaysOfTheRobots) {
       HasSubstr(R"(<foot-bot id="f"> has rab_data_size="many", expected bytes from 1 to 65536)"));
   const auto table = ArgosControllerTable(with_arena(distributed), "mine.argos");
   ASSERT_TRUE(table.ok()) << table.error().message;
-  EXPECT_THAT(*table, HasSubstr("    {1, \" robots\", \"F0-\"},\n    {1, \" rab_data_size\", \"24\"},\n"));
+  EXPECT_THAT(*table, HasSubstr("    {1, gauntlet::argos_form::kRobotsLine, \"F0-\"},\n"
+                                "    {1, gauntlet::argos_form::kMessageLine, \"24\"},\n"));
 }
 
 TEST(ReadArgosControllers, TakesAllAndChoosesOne) {
