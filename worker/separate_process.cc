@@ -44,11 +44,6 @@ void WriteToStderr(std::string_view text) {
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
 }
 
-// What C code has printed and not yet written.
-void FlushOutput() {
-  std::fflush(nullptr);
-}
-
 [[noreturn]] void OutOfMemory() {
   WriteToStderr("out of memory\n");
   _exit(kExitOutOfMemory);
@@ -107,7 +102,7 @@ void UseLargePages() {
   ShiftTimeOfDay(std::chrono::seconds(getpid() % kMostShift));
   UseLargePages();
   const std::string bytes = CallOrEnd(work);
-  FlushOutput();
+  std::fflush(nullptr);
   if (!WriteResult(result, bytes)) {
     if (errno == ENOSPC || errno == ENOMEM) OutOfMemory();
     _exit(kExitUnheard);
@@ -177,10 +172,10 @@ std::string CallOrEnd(const std::function<std::string()>& work) {
   } catch (const std::bad_alloc&) {
     OutOfMemory();
   } catch (const std::exception& error) {
-    FlushOutput();
+    std::fflush(nullptr);
     WriteToStderr(fmt::format("uncaught exception: {}\n", error.what()));
   } catch (...) {
-    FlushOutput();
+    std::fflush(nullptr);
     WriteToStderr("uncaught exception of an unknown type\n");
   }
   _exit(kExitException);

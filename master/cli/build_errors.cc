@@ -1,7 +1,6 @@
 #include "master/cli/build_errors.h"
 
 #include <algorithm>
-#include <iterator>
 #include <regex>
 #include <set>
 #include <vector>
@@ -32,12 +31,10 @@ constexpr Origin kOrigins[] = {
      "is for windows, and Gauntlet shows none: leave that source out; `gauntlet replay` draws runs"},
     {R"(argos3/.*)",
      "is of ARGoS' simulator, and a controller in Gauntlet has its interface alone: leave out what needs it; "
-     "a "
-     "scenario does what loop functions did (docs/generic-scenario.md)"},
+     "a scenario does what loop functions did (docs/generic-scenario.md)"},
     {R"((ros|rclcpp|tf2?|\w+_msgs|\w+_srvs)/.*)",
      "is of ROS, which no run in Gauntlet has: build the part of the controller that decides, and leave out "
-     "its "
-     "nodes and messages"},
+     "its nodes and messages"},
     {R"(buzz/.*|kilolib\.h)",
      "is of another robot's programs; Gauntlet compiles controllers in C++ for foot-bots"},
     {R"(.*)", "was not found: name the folder that it is in by -I DIR; libraries have to be installed"},

@@ -217,8 +217,7 @@ std::string SweepText(const CampaignSummary& summary, const HintContext& context
 std::string WhyNotReproducible(const CampaignSummary& summary) {
   return fmt::format(
       "The controller '{}' of the plug-in is not reproducible: it uses the time, addresses, or chance that "
-      "the "
-      "run does not seed.",
+      "the run does not seed. Or else a worker is broken: log/master.log names those that disagree.",
       Printable(fmt::format("{}", fmt::join(summary.plugin_controllers, "' or '"))));
 }
 
