@@ -58,9 +58,13 @@ class [[nodiscard]] Result {
   const T* operator->() const { return &value(); }
   T* operator->() { return &value(); }
 
-  const Error& error() const {
+  const Error& error() const& {
     GAUNTLET_CHECK(!ok(), "Result::error() called on a value");
     return error_;
+  }
+  Error&& error() && {
+    GAUNTLET_CHECK(!ok(), "Result::error() called on a value");
+    return std::move(error_);
   }
 
  private:
@@ -74,3 +78,20 @@ struct Ok {};
 using Status = Result<Ok>;
 
 }  // namespace gauntlet
+
+// Passes the error of a Result on to the caller, in a function that returns a Result:
+//   TRY(Flush());                   returns its error, if it has one
+//   TRY(const auto rows, Read());   otherwise declares `rows` with the value; Read() may hold commas
+//   TRY(rows, Read());              or assigns it
+// A statement for a block in braces: as the only statement of an `if` or a loop without them it does not
+// compile.
+#define TRY(first, ...) GAUNTLET_TRY_##__VA_OPT__(VALUE)(__LINE__, first __VA_OPT__(, ) __VA_ARGS__)
+#define GAUNTLET_TRY_(line, result) GAUNTLET_TRY_RESULT(line, result)
+#define GAUNTLET_TRY_VALUE(line, target, ...) \
+  GAUNTLET_TRY_RESULT(line, __VA_ARGS__);     \
+  target = *std::move(GAUNTLET_TRIED(line))
+#define GAUNTLET_TRY_RESULT(line, ...)       \
+  auto GAUNTLET_TRIED(line) = (__VA_ARGS__); \
+  if (!GAUNTLET_TRIED(line).ok()) return std::move(GAUNTLET_TRIED(line)).error()
+#define GAUNTLET_TRIED(line) GAUNTLET_TRIED_LINE(line)
+#define GAUNTLET_TRIED_LINE(line) tried_##line
