@@ -120,7 +120,7 @@ Status SlurmCampaign::MakeScripts() {
   return Ok{};
 }
 
-std::unique_ptr<master::WorkerPool> SlurmCampaign::MakePool(std::unique_ptr<SlurmClient> client) const {
+std::unique_ptr<WorkerPool> SlurmCampaign::MakePool(std::unique_ptr<SlurmClient> client) const {
   SlurmPoolOptions options;
   options.limits = settings_.pool;
   options.request = settings_.worker_job;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/dispatch/worker_pool.h"
+#include "master/dispatch/pool/worker_pool.h"
 #include "slurm/slurm_client.h"
 #include "slurm/slurm_settings.h"
 
@@ -36,7 +36,7 @@ class SlurmCampaign {
   // Cancels what Slurm still has of the campaign; the answer is the ids of what was cancelled.
   Result<std::vector<std::string>> CancelJobs(SlurmClient& client) const;
   // The pool of the campaign's workers.
-  std::unique_ptr<master::WorkerPool> MakePool(std::unique_ptr<SlurmClient> client) const;
+  std::unique_ptr<WorkerPool> MakePool(std::unique_ptr<SlurmClient> client) const;
 
  private:
   SlurmCampaign(SlurmSettings settings, std::string directory);

@@ -189,12 +189,12 @@ void SlurmPool::OnQueue(const std::vector<JobStatus>& jobs, TimePoint now) {
   policy_.Observed(jobs, now);
 }
 
-void SlurmPool::Observe(const master::PoolView& view, TimePoint now) {
+void SlurmPool::Observe(const PoolView& view, TimePoint now) {
   demand_.unfinished_runs = view.unfinished_runs;
   for (const Allocation& allocation : policy_.allocations()) {
     int connected = 0;
     int busy = 0;
-    for (const master::PoolView::Worker& worker : view.workers) {
+    for (const PoolView::Worker& worker : view.workers) {
       // "job:restart:node", as slurm/worker.sbatch passes it.
       if (worker.allocation.substr(0, worker.allocation.find(':')) != allocation.job) continue;
       ++connected;
@@ -209,8 +209,8 @@ std::string SlurmPool::Trouble(TimePoint now) const {
   return trouble.empty() ? "" : trouble + NextStep(trouble);
 }
 
-std::vector<master::AllocationView> SlurmPool::Allocations() const {
-  std::vector<master::AllocationView> views;
+std::vector<AllocationView> SlurmPool::Allocations() const {
+  std::vector<AllocationView> views;
   for (const Allocation& allocation : policy_.allocations()) {
     views.push_back({allocation.job, allocation.state, allocation.reason, allocation.nodes,
                      allocation.workers, allocation.cancelled});

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "master/dispatch/worker_pool.h"
+#include "master/dispatch/pool/worker_pool.h"
 #include "slurm/job_script.h"
 #include "slurm/pool_policy.h"
 #include "slurm/slurm_client.h"
@@ -32,7 +32,7 @@ struct SlurmPoolOptions {
 // Slurm's commands take from milliseconds to many seconds, so a thread of the pool's own calls them; all
 // methods return at once and belong to one thread. Jobs with the campaign's name that this pool did not
 // submit (of an earlier master, or of a submission whose answer was lost) are adopted.
-class SlurmPool final : public master::WorkerPool {
+class SlurmPool final : public WorkerPool {
  public:
   // `job` and `job_template` have given a script once: that they do is checked when a campaign begins.
   SlurmPool(SlurmPoolOptions options, std::unique_ptr<SlurmClient> client);
@@ -49,10 +49,10 @@ class SlurmPool final : public master::WorkerPool {
   void StopReplacing() override { stopped_growing_ = true; }
   // Any signal: cancels all allocations; Slurm sends SIGTERM, then SIGKILL.
   void SignalAll(int signal) override;
-  std::vector<master::DispatchEvent> TakeEvents() override { return std::exchange(events_, {}); }
-  void Observe(const master::PoolView& view, TimePoint now) override;
+  std::vector<DispatchEvent> TakeEvents() override { return std::exchange(events_, {}); }
+  void Observe(const PoolView& view, TimePoint now) override;
   std::string Trouble(TimePoint now) const override;
-  std::vector<master::AllocationView> Allocations() const override;
+  std::vector<AllocationView> Allocations() const override;
   // Nothing is submitted or cancelled any more.
   bool Release() override { return released_ = true; }
 
@@ -68,7 +68,7 @@ class SlurmPool final : public master::WorkerPool {
   void PostCancelAll();
   void PostCancel(const std::vector<std::string>& jobs);
   void OnQueue(const std::vector<JobStatus>& jobs, TimePoint now);
-  void Report(std::string text) { events_.push_back({master::event::kSlurm, std::move(text)}); }
+  void Report(std::string text) { events_.push_back({event::kSlurm, std::move(text)}); }
 
   SlurmPoolOptions options_;
   std::unique_ptr<SlurmClient> client_;  // of the calling thread alone
@@ -83,7 +83,7 @@ class SlurmPool final : public master::WorkerPool {
   std::uint64_t next_number_ = 1;
   std::vector<std::string> cancelled_;  // still shown by Slurm for a while
   std::string reported_trouble_;
-  std::vector<master::DispatchEvent> events_;
+  std::vector<DispatchEvent> events_;
 
   mutable std::mutex mutex_;
   std::condition_variable work_;

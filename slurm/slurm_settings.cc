@@ -7,12 +7,10 @@
 #include <type_traits>
 
 #include "base/nearest_name.h"
-#include "master/experiment/toml_text.h"
+#include "search/experiment/toml_text.h"
 
 namespace gauntlet::slurm {
 namespace {
-
-using master::Assignment;
 
 struct SlurmKey {
   std::string_view name;
@@ -179,7 +177,7 @@ Result<SlurmSettings> ReadSlurmSettings(const std::vector<SlurmSource>& files,
   constexpr std::string_view kTable = "slurm.";
   SlurmSettings settings;
   for (const SlurmSource& file : files) {
-    const Result<std::vector<Assignment>> assignments = master::ReadToml(file.text, file.name);
+    const Result<std::vector<Assignment>> assignments = ReadToml(file.text, file.name);
     if (!assignments) return assignments.error();
     for (const Assignment& assignment : *assignments) {
       std::string_view name = assignment.path;
@@ -191,7 +189,7 @@ Result<SlurmSettings> ReadSlurmSettings(const std::vector<SlurmSource>& files,
     }
   }
   for (const std::string& set : sets) {
-    Result<Assignment> assignment = master::ReadSet(set);
+    Result<Assignment> assignment = ReadSet(set);
     if (!assignment) return assignment.error();
     assignment->where = "--slurm " + set;
     if (const Status assigned = Assign(settings, *assignment, assignment->path); !assigned)
@@ -204,8 +202,7 @@ std::string WriteSlurmSettings(const SlurmSettings& settings) {
   std::string text = "# How this campaign uses Slurm; `gauntlet resume` reads it.\n";
   for (const SlurmKey& key : Keys()) {
     const std::string value = key.get(settings);
-    text += fmt::format("{} = {}  # {}\n", key.name, key.is_text ? master::QuoteToml(value) : value,
-                        key.description);
+    text += fmt::format("{} = {}  # {}\n", key.name, key.is_text ? QuoteToml(value) : value, key.description);
   }
   return text;
 }

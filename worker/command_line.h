@@ -1,7 +1,7 @@
 // The command line of gauntlet-worker, for any program that brings a run function.
 #pragma once
 
-#include "worker/describe_plugin.h"
+#include "worker/plugin/describe_plugin.h"
 #include "worker/worker_process.h"
 
 namespace gauntlet::worker {

@@ -1,9 +1,9 @@
 // gauntlet-worker: simulates runs for a master.
 #include "worker/command_line.h"
 #include "worker/golden_hash.h"
-#include "worker/plugin_library.h"
-#include "worker/rehearsal.h"
+#include "worker/plugin/plugin_library.h"
 #include "worker/run_executor.h"
+#include "worker/runner/rehearsal.h"
 
 int main(int argc, char** argv) {
   namespace worker = gauntlet::worker;

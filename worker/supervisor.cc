@@ -19,7 +19,7 @@
 #include "proto/message_codec.h"
 #include "proto/run_failure.h"
 #include "worker/connection.h"
-#include "worker/runner_pool.h"
+#include "worker/runner/runner_pool.h"
 
 namespace gauntlet::worker {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "proto/access_file.h"
-#include "worker/fork_server.h"
+#include "worker/runner/fork_server.h"
 #include "worker/worker_state.h"
 
 namespace gauntlet::worker {

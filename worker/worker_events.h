@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "proto/messages.h"
-#include "worker/runner.h"
+#include "worker/runner/runner.h"
 
 namespace gauntlet::worker {
 

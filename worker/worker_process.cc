@@ -27,8 +27,8 @@
 #include "proto/access_file.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
-#include "worker/fork_server.h"
-#include "worker/runner_pool.h"
+#include "worker/runner/fork_server.h"
+#include "worker/runner/runner_pool.h"
 #include "worker/supervisor.h"
 
 namespace gauntlet::worker {

@@ -12,7 +12,7 @@
 
 #include "base/result.h"
 #include "proto/golden_hashes.h"
-#include "worker/runner.h"
+#include "worker/runner/runner.h"
 
 namespace gauntlet::worker {
 

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/figure_frame.h"
-#include "analysis/figures/run_annotations.h"
-#include "analysis/figures/run_figure.h"
-#include "analysis/figures/run_panel.h"
+#include "analysis/figures/run/run_annotations.h"
+#include "analysis/figures/run/run_figure.h"
+#include "analysis/figures/run/run_panel.h"
 #include "analysis/figures/svg_canvas.h"
 #include "analysis/figures/value_axis.h"
 

@@ -31,8 +31,8 @@ class StateLog {
   sim::Tick ticks() const { return static_cast<sim::Tick>(states_.size() / robots_); }
   // mean_robots_NAME for each state: how many robots were in it, mean over all ticks.
   void AddMeans(std::vector<std::pair<std::string, double>>& metrics) const;
-  // A robot's annotation "states" (analysis/figures/run_annotations.h): changes of state, looked at once per
-  // second. A second in which `brief` occurred counts as that state, however short it was.
+  // A robot's annotation "states" (analysis/figures/run/run_annotations.h): changes of state, looked at once
+  // per second. A second in which `brief` occurred counts as that state, however short it was.
   sim::Annotation Line(sim::RobotIndex robot, std::optional<std::uint8_t> brief) const;
 
  private:

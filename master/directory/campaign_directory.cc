@@ -16,7 +16,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/trusted_path.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 namespace fs = std::filesystem;
@@ -221,4 +221,4 @@ std::string NewCampaignId() {
   return fmt::format("{:08x}{:08x}{:08x}{:08x}", device(), device(), device(), device());
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

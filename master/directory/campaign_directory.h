@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "base/system/regular_file.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Which content a file has, by what can be asked without opening it.
 struct FileVersion {
@@ -79,4 +79,4 @@ class CampaignDirectory {
 // 128 random bits as 32 hex digits.
 std::string NewCampaignId();
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

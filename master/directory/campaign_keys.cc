@@ -10,7 +10,7 @@
 #include "proto/access_file.h"
 #include "proto/json_text.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr int kKeysFormat = 1;
@@ -59,4 +59,4 @@ Result<CampaignKeys> LoadOrMakeKeys(const std::string& path) {
   return keys;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "base/result.h"
-#include "master/dispatch/curve_keys.h"
+#include "master/dispatch/wire/curve_keys.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 struct CampaignKeys {
   CurveKeyPair master;
@@ -17,4 +17,4 @@ struct CampaignKeys {
 // than its owner may read it, kCorrupt when it does not hold keys. No message repeats a key.
 Result<CampaignKeys> LoadOrMakeKeys(const std::string& path);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

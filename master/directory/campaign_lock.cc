@@ -16,7 +16,7 @@
 #include "base/system/unique_fd.h"
 #include "proto/json_text.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr int kLockFormat = 1;
@@ -248,4 +248,4 @@ void CampaignLock::HeartbeatLoop() {
   }
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

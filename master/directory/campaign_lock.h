@@ -16,7 +16,7 @@
 #include "base/system/process_identity.h"
 #include "base/system/unique_fd.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 struct LockOptions {
   std::function<std::int64_t()> unix_time = [] { return UnixMilliseconds() / 1000; };  // s
@@ -90,4 +90,4 @@ class CampaignLock {
   std::thread heartbeat_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

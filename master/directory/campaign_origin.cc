@@ -13,7 +13,7 @@
 #include "base/system/regular_file.h"
 #include "proto/json_text.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr int kOriginFormat = 1;
@@ -98,4 +98,4 @@ bool IsUntakenCopy(const CampaignDirectory& directory) {
   return recorded && inodes && recorded->inodes != *inodes;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

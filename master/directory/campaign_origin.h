@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "master/directory/campaign_directory.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 struct CampaignOrigin {
   std::string campaign_id;
@@ -26,4 +26,4 @@ Result<CampaignOrigin> ConfirmOrigin(const CampaignDirectory& directory, const s
 // missing or does not read back. Changes nothing.
 bool IsUntakenCopy(const CampaignDirectory& directory);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -18,7 +18,7 @@
 #include "master/directory/opened_files.h"
 #include "master/store/event_kinds.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 // A master waits so long for those who read. `show` of a large campaign takes its time, and `status` may come
@@ -203,4 +203,4 @@ Result<CampaignView> ViewCampaign(const std::string& dir, Checked what) {
   }
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -12,7 +12,7 @@
 #include "master/directory/campaign_origin.h"
 #include "master/store/sqlite_store.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // What a master holds while it serves a campaign. Destroying it commits what still waits, closes the store
 // and releases the lock, in this order.
@@ -71,4 +71,4 @@ struct CampaignView {
 // ends, or when one on another machine has published no snapshot yet.
 Result<CampaignView> ViewCampaign(const std::string& dir, Checked what = Checked::kEverything);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

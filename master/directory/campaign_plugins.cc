@@ -15,7 +15,7 @@
 #include "proto/json_text.h"
 #include "proto/plugin_description.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr const char* kLibrary = ".so";
@@ -113,4 +113,4 @@ Status CheckPlugins(const std::string& folder, const std::vector<SearchPlan>& pl
   return Ok{};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

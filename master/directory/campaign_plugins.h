@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "master/directory/search_plans.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // `folder` is plugins_path() of a campaign, or plugins/ of a study, and made when it is needed.
 
@@ -23,4 +23,4 @@ Status KnowPlugins(const std::string& folder);
 // is missing, or its hash is another one.
 Status CheckPlugins(const std::string& folder, const std::vector<SearchPlan>& plans);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -8,7 +8,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 KeptFiles::KeptFiles(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) files_.push_back({.path = path, .text = ""});
@@ -41,4 +41,4 @@ Status KeptFiles::Restore() {
   return Ok{};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

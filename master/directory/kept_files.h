@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Remembers each file as it is, a change by its owner included. Thread-safe.
 class KeptFiles {
@@ -32,4 +32,4 @@ class KeptFiles {
   std::vector<File> files_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -9,7 +9,7 @@
 
 #include "base/shell_quoted.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 // The directory itself, whatever link a user named it by.
@@ -60,4 +60,4 @@ Status OpenedFiles::Check() const {
   return Ok{};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -8,7 +8,7 @@
 #include "base/system/regular_file.h"
 #include "master/directory/campaign_directory.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // What is written into a file that somebody has deleted or replaced is lost, and no write says so. Files are
 // known by device and inode, which a move keeps: the old place of a directory that was moved is empty.
@@ -35,4 +35,4 @@ class OpenedFiles {
   std::vector<File> files_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

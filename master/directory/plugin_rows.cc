@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using controllers::ControllerContext;
@@ -107,4 +107,4 @@ controllers::ScenarioInfo RowOf(proto::DescribedScenario described) {
   return info;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -4,7 +4,7 @@
 #include "controllers/registry.h"
 #include "proto/plugin_description.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // The texts that rows refer to live as long as this process. Robots of a described controller do nothing: a
 // master only counts them. A described scenario has neither `requirements` nor `create`
@@ -12,4 +12,4 @@ namespace gauntlet::master {
 controllers::ControllerInfo RowOf(proto::DescribedController described);
 controllers::ScenarioInfo RowOf(proto::DescribedScenario described);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -14,12 +14,12 @@
 #include "base/system/sha256.h"
 #include "controllers/registry.h"
 #include "master/directory/plugin_rows.h"
-#include "master/dispatch/worker_program.h"
+#include "master/dispatch/pool/worker_program.h"
 #include "proto/plugin_description.h"
 #include "proto/run_beginning.h"
 #include "proto/run_codec.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using controllers::ControllerInfo;
@@ -139,4 +139,4 @@ void AddAnswer(const std::string& hash, const std::string& spec, std::string ans
   AllAnswers().Add(hash, spec, std::move(answer));
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

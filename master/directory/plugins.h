@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Makes the library's controllers and scenarios known; its SHA-256. Error: it cannot be read, or why
 // gauntlet-worker refuses it; what is built in has the name of one.
@@ -32,4 +32,4 @@ Status AddDescribedPlugin(const std::string& hash, const std::string& file, cons
 std::map<std::string, std::string> AnswersOf(const std::string& hash);
 void AddAnswer(const std::string& hash, const std::string& spec, std::string answer);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

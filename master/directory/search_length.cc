@@ -8,11 +8,11 @@
 #include <string_view>
 
 #include "base/check.h"
-#include "master/experiment/experiment_file.h"
-#include "master/search/search_setup.h"
-#include "master/search/search_table.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_setup.h"
+#include "search/search_table.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 std::string KeyOf(const std::string& set) {
@@ -103,4 +103,4 @@ std::string DescribeLengths(const std::vector<SearchPlan>& before, const std::ve
   return fmt::format("{}", fmt::join(changes, ", "));
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

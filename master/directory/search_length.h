@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "master/directory/search_plans.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // The searches with the lengths that `sets` ("key=value") give them. Each search takes those of its own key
 // (SearchInfo::length); those of a sweep that go by another key stay as they are. Error: kInvalidInput, which
@@ -23,4 +23,4 @@ bool AreSameSearches(const std::vector<SearchPlan>& some, const std::vector<Sear
 // "search.generations from 50 to 80"; "" when nothing differs.
 std::string DescribeLengths(const std::vector<SearchPlan>& before, const std::vector<SearchPlan>& after);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

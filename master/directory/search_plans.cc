@@ -7,10 +7,10 @@
 
 #include "base/system/regular_file.h"
 #include "master/directory/campaign_plugins.h"
-#include "master/experiment/experiment_file.h"
-#include "master/search/search_table.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr int kListFormat = 1;
@@ -76,4 +76,4 @@ Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store) {
   return Ok{};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -6,10 +6,10 @@
 
 #include "base/result.h"
 #include "master/directory/campaign_directory.h"
-#include "master/experiment/experiment.h"
 #include "master/store/result_store.h"
+#include "search/experiment/experiment.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 struct SearchPlan {
   // What tells it from the others, "search.population=20, seed 3"; "" for an only search.
@@ -29,4 +29,4 @@ Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directo
 // Adds the searches that the store does not know yet.
 Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

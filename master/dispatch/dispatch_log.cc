@@ -6,7 +6,7 @@
 
 #include "base/printable.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr std::size_t kShownBytes = 300;  // of a text that came from a worker
@@ -56,4 +56,4 @@ void DispatchLog::Refuse(const std::string& label, const std::string& reason, Ti
                   untold == 0 ? "" : fmt::format(" (and {} others since the last that was told)", untold)));
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -12,7 +12,7 @@
 #include "base/system/clock.h"
 #include "master/dispatch/evaluation_backend.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // The end of a text that came from a worker, fit for a line of a log or a terminal.
 std::string Shorten(std::string_view text);
@@ -43,4 +43,4 @@ class DispatchLog {
   std::uint64_t refusals_untold_ = 0;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

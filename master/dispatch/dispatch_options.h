@@ -7,7 +7,7 @@
 
 #include "proto/golden_hashes.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 struct DispatchOptions {
   std::chrono::milliseconds heartbeat{1000};  // both ways
@@ -51,4 +51,4 @@ struct CampaignIdentity {
   proto::GoldenHashes golden_hashes;  // of the controllers that the campaign uses
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

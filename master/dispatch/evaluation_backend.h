@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/dispatch/worker_record.h"
+#include "master/dispatch/leases/worker_record.h"
 #include "master/store/event_kinds.h"
 #include "proto/messages.h"
 #include "sim/run_result.h"
 #include "sim/run_spec.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 using proto::RunId;
 
@@ -121,4 +121,4 @@ class EvaluationBackend {
   virtual std::vector<DispatchEvent> TakeEvents() { return {}; }
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

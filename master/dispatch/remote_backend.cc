@@ -6,12 +6,12 @@
 #include <csignal>
 
 #include "base/check.h"
-#include "master/dispatch/admission.h"
+#include "master/dispatch/wire/admission.h"
 #include "proto/message_codec.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -457,4 +457,4 @@ BackendView RemoteBackend::Describe() const {
   return view;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -10,13 +10,13 @@
 #include "master/dispatch/dispatch_log.h"
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
-#include "master/dispatch/scheduler.h"
-#include "master/dispatch/transport.h"
-#include "master/dispatch/worker_connections.h"
-#include "master/dispatch/worker_pool.h"
+#include "master/dispatch/leases/scheduler.h"
+#include "master/dispatch/pool/worker_pool.h"
+#include "master/dispatch/wire/transport.h"
+#include "master/dispatch/wire/worker_connections.h"
 #include "proto/messages.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Single-threaded: all input and output happens inside Poll and Shutdown.
 class RemoteBackend final : public EvaluationBackend {
@@ -84,4 +84,4 @@ class RemoteBackend final : public EvaluationBackend {
   std::vector<int> wait_fds_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -14,9 +14,9 @@
 #include <string_view>
 
 #include "base/parse_number.h"
-#include "master/dispatch/zmq_transport.h"
+#include "master/dispatch/wire/zmq_transport.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr std::string_view kTcpScheme = "tcp://";
@@ -115,4 +115,4 @@ std::vector<std::string> ReachableEndpoints(const std::string& bound) {
   return endpoints;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

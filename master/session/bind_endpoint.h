@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 enum class ListenOn { kThisMachine, kAnotherMachine };
 
@@ -25,4 +25,4 @@ Status TryToListen(const std::string& endpoint);
 // other, then one with its host name; anything else stays as it is.
 std::vector<std::string> ReachableEndpoints(const std::string& bound);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

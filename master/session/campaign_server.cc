@@ -12,18 +12,18 @@
 
 #include "base/system/atomic_file.h"
 #include "base/system/process_identity.h"
+#include "master/campaign/stored_search.h"
 #include "master/directory/campaign_keys.h"
-#include "master/dispatch/local_pool.h"
-#include "master/dispatch/run_limits.h"
-#include "master/report/metrics_text.h"
-#include "master/report/stored_search.h"
+#include "master/dispatch/leases/run_limits.h"
+#include "master/dispatch/pool/local_pool.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/master_log.h"
 #include "master/session/metrics_server.h"
+#include "master/session/metrics_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/access_file.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr std::chrono::milliseconds kShutdownTime{2000};
@@ -293,4 +293,4 @@ void CampaignServer::NoteEvent(const std::string& kind, const std::string& text)
   campaign_.store->AddEvent({UnixMilliseconds(), kind, text});
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

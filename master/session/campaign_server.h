@@ -13,14 +13,14 @@
 #include "base/system/clock.h"
 #include "master/directory/campaign_ownership.h"
 #include "master/dispatch/remote_backend.h"
-#include "master/dispatch/zmq_transport.h"
-#include "master/search/search_algorithm.h"
+#include "master/dispatch/wire/zmq_transport.h"
 #include "master/session/campaign_service.h"
 #include "master/session/search_driver.h"
 #include "master/session/search_loop.h"
 #include "master/session/snapshot_publisher.h"
+#include "search/search_algorithm.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Thread-safety: one thread, the main one (LocalPool wants it).
 class CampaignServer {
@@ -82,4 +82,4 @@ class CampaignServer {
   std::optional<SnapshotPublisher> snapshots_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -10,21 +10,21 @@
 #include "base/system/clock.h"
 #include "base/system/regular_file.h"
 #include "controllers/registry.h"
+#include "master/campaign/stored_campaign.h"
+#include "master/campaign/stored_check.h"
 #include "master/directory/campaign_ownership.h"
 #include "master/directory/campaign_plugins.h"
 #include "master/directory/search_length.h"
-#include "master/dispatch/worker_program.h"
-#include "master/experiment/experiment_file.h"
-#include "master/report/stored_campaign.h"
-#include "master/report/stored_check.h"
-#include "master/search/search_table.h"
+#include "master/dispatch/pool/worker_program.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/campaign_server.h"
 #include "master/store/event_kinds.h"
 #include "master/store/run_numbers.h"
 #include "proto/json_text.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using nlohmann::ordered_json;
@@ -213,12 +213,6 @@ class Campaigns final : public CampaignService {
     Result<CampaignSummary> summary = Summarise(campaign->plans, *campaign->view.store);
     if (!summary) return summary;
     summary->as_of = campaign->view.as_of;
-    Result<std::vector<Confirmation>> confirmations = ReadConfirmations(dir);
-    if (!confirmations) return confirmations.error();
-    summary->confirmations = *std::move(confirmations);
-    Result<std::vector<SmallestLayout>> smallest = ReadSmallestLayouts(dir);
-    if (!smallest) return smallest.error();
-    summary->smallest_layouts = *std::move(smallest);
     return summary;
   }
 
@@ -326,4 +320,4 @@ CampaignService& CampaignsOnDisk() {
   return campaigns;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

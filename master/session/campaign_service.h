@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "base/result.h"
+#include "master/campaign/campaign_status.h"
+#include "master/campaign/campaign_summary.h"
+#include "master/campaign/replay.h"
 #include "master/directory/search_plans.h"
-#include "master/dispatch/worker_pool.h"
-#include "master/report/campaign_status.h"
-#include "master/report/campaign_summary.h"
-#include "master/report/replay.h"
+#include "master/dispatch/pool/worker_pool.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 class MetricsServer;
 
@@ -78,7 +78,7 @@ class CampaignService {
   virtual Result<CampaignSummary> Read(const std::string& dir) = 0;
   // The runs of a campaign in logical order, search by search.
   virtual Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) = 0;
-  // `scratch`: as SimulateInRunner has it (master/dispatch/worker_program.h).
+  // `scratch`: as SimulateInRunner has it (master/dispatch/pool/worker_program.h).
   virtual Result<CampaignReplay> Replay(const std::string& dir, RunId run, const std::string& scratch) = 0;
 
   // status.json of a living master (with "state": "running" or "stopping", and "status_age_seconds"); else
@@ -94,4 +94,4 @@ class CampaignService {
 // The real one.
 CampaignService& CampaignsOnDisk();
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

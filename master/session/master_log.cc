@@ -8,7 +8,7 @@
 
 #include "base/system/regular_file.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 Status OpenMasterLog(const std::string& path, const LogLimits& limits) {
   for (const Status& usable :
@@ -26,4 +26,4 @@ Status OpenMasterLog(const std::string& path, const LogLimits& limits) {
   return Ok{};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 struct LogLimits {
   std::size_t bytes = 16U << 20;  // a file that would grow beyond becomes master.1.log
@@ -19,4 +19,4 @@ struct LogLimits {
 // knows what would be written to.
 Status OpenMasterLog(const std::string& path, const LogLimits& limits = {});
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -18,7 +18,7 @@
 
 #include "base/system/atomic_file.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using RequestClock = std::chrono::steady_clock;
@@ -186,4 +186,4 @@ std::string MetricsServer::AnswerTo(std::string_view request) {
                        : Response("200 OK", text_);
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

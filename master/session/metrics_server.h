@@ -13,7 +13,7 @@
 #include "base/result.h"
 #include "base/system/unique_fd.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // One thread serves all connections side by side: at most 4 KiB of a request, at most a second for a
 // connection, at most kMostConnections of them. When one more comes, the oldest that has not asked for
@@ -51,4 +51,4 @@ class MetricsServer {
   std::thread thread_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -7,13 +7,13 @@
 
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
-#include "master/experiment/experiment_file.h"
-#include "master/report/verdict_text.h"
-#include "master/search/search_table.h"
+#include "master/campaign/verdict_text.h"
 #include "proto/case_json.h"
 #include "proto/run_codec.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 bool LeavesBundle(sim::Verdict verdict) {
   return verdict == sim::Verdict::kCrashed || verdict == sim::Verdict::kHung ||
@@ -63,4 +63,4 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   return Ok{};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

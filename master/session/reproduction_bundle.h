@@ -7,10 +7,10 @@
 #include "base/result.h"
 #include "master/dispatch/dispatch_options.h"
 #include "master/dispatch/evaluation_backend.h"
-#include "master/experiment/experiment.h"
 #include "master/store/result_store.h"
+#include "search/experiment/experiment.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Whether runs with this verdict leave a bundle.
 bool LeavesBundle(sim::Verdict verdict);
@@ -30,4 +30,4 @@ struct BundleContext {
 Status WriteBundle(const BundleContext& context, const Experiment& experiment, const StoredRun& run,
                    const FinishedRun& finished);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <utility>
 
-#include "master/report/stored_search.h"
-#include "master/search/search_setup.h"
+#include "master/campaign/stored_search.h"
 #include "proto/run_codec.h"
+#include "search/search_setup.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 // As the campaign's only search would have it.
@@ -217,4 +217,4 @@ std::uint64_t SearchDriver::runs_planned() const {
          static_cast<std::uint64_t>(parts_.experiment.search.replicates);
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

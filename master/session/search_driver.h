@@ -10,14 +10,14 @@
 #include <map>
 #include <vector>
 
+#include "master/campaign/state_digest.h"
 #include "master/dispatch/evaluation_backend.h"
-#include "master/experiment/experiment.h"
-#include "master/report/state_digest.h"
-#include "master/search/search_algorithm.h"
 #include "master/store/result_store.h"
 #include "master/store/run_numbers.h"
+#include "search/experiment/experiment.h"
+#include "search/search_algorithm.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 class SearchDriver {
  public:
@@ -104,4 +104,4 @@ class SearchDriver {
   double mean_fitness_ = kNone;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr std::chrono::milliseconds kPollTime{200};
@@ -166,4 +166,4 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
   return CampaignEnd::kFinished;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

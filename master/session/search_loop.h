@@ -8,12 +8,12 @@
 
 #include "base/result.h"
 #include "base/system/clock.h"
+#include "master/campaign/campaign_status.h"
 #include "master/dispatch/evaluation_backend.h"
-#include "master/report/campaign_status.h"
 #include "master/session/search_driver.h"
 #include "master/store/result_store.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 enum class StopWish {
   kNone,
@@ -60,4 +60,4 @@ class SearchLoop {
   std::deque<std::pair<TimePoint, std::uint64_t>> rate_samples_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

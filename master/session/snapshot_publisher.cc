@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 // The disk must hold so many more copies, or none is made: the results come first.
@@ -60,4 +60,4 @@ void SnapshotPublisher::Publish() {
   }
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -11,7 +11,7 @@
 
 #include "master/store/database_copy.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 struct SnapshotOptions {
   std::string database;  // campaign.db, which this process writes
@@ -46,4 +46,4 @@ class SnapshotPublisher {
   std::thread thread_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -8,7 +8,7 @@
 
 #include "base/hash.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Of a row's values, in their order. Stored: do not change.
 class RowChecksum {
@@ -34,4 +34,4 @@ class RowChecksum {
   WordHash64 hash_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -9,7 +9,7 @@
 
 #include "base/system/atomic_file.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 Status DatabaseCopy::Make(const std::string& from, const std::string& to) {
   const std::string draft = to + ".new";
@@ -50,4 +50,4 @@ void DatabaseCopy::Cancel() {
   if (connection_) connection_->Interrupt();
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

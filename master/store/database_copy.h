@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "master/store/sqlite_connection.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Thread-safety: Make on one thread at a time, Cancel on any.
 class DatabaseCopy {
@@ -28,4 +28,4 @@ class DatabaseCopy {
   std::optional<SqliteConnection> connection_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -2,7 +2,7 @@
 // DispatchEvent::kind).
 #pragma once
 
-namespace gauntlet::master::event {
+namespace gauntlet::event {
 
 // Of a session of the master.
 inline constexpr const char* kStart = "start";
@@ -32,4 +32,4 @@ inline constexpr const char* kRunGivenUp = "run-given-up";             // failed
 inline constexpr const char* kRunGivenUpAlone = "run-given-up-alone";  // likewise, all on one worker
 inline constexpr const char* kNondeterministic = "nondeterministic";
 
-}  // namespace gauntlet::master::event
+}  // namespace gauntlet::event

@@ -7,7 +7,7 @@
 
 #include "base/check.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 // How the bytes behind it are packed; the first byte of everything packed. Stored: do not change.
@@ -91,4 +91,4 @@ Result<std::string> Packing::Unpack(std::string_view packed) {
   return bytes;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

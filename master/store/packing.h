@@ -13,7 +13,7 @@ struct ZSTD_DCtx_s;
 struct ZSTD_CDict_s;
 struct ZSTD_DDict_s;
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Packs and unpacks byte strings of one kind. Not thread-safe.
 class Packing {
@@ -43,4 +43,4 @@ class Packing {
   std::unique_ptr<ZSTD_DDict_s, Freer> decompress_with_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/search/search_algorithm.h"
 #include "proto/messages.h"
+#include "search/search_algorithm.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 using proto::RunId;
 using SearchId = std::uint32_t;  // 1, 2, ... within a campaign
@@ -124,4 +124,4 @@ class ResultStore {
   virtual Result<std::vector<StoredEvent>> LoadEvents() = 0;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -7,7 +7,7 @@
 #include "base/hash.h"
 #include "master/store/result_store.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Random numbers and state hash of a search are those it would have as the only one of a campaign, whatever
 // its number is.
@@ -35,4 +35,4 @@ inline std::uint64_t SpecHash(std::string_view spec) {
   return hash.value();
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -10,7 +10,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/resource_limits.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 ErrorKind KindOf(int code, int system_errno) {
@@ -182,4 +182,4 @@ std::string SqliteUri(const std::string& path, std::string_view parameters) {
   return uri + "?" + std::string(parameters);
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

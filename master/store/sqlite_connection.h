@@ -12,7 +12,7 @@
 struct sqlite3;
 struct sqlite3_stmt;
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Bytes for a column that is no text.
 struct Blob {
@@ -134,4 +134,4 @@ class SqliteConnection {
 // A `file:` URI of a path, for query parameters such as "immutable=1".
 std::string SqliteUri(const std::string& path, std::string_view parameters);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -17,7 +17,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr int kPageSize = 8192;
@@ -360,4 +360,4 @@ Result<CampaignMeta> ReadMeta(SqliteConnection& connection) {
   return meta;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

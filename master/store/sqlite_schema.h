@@ -10,7 +10,7 @@
 #include "master/store/result_store.h"
 #include "master/store/sqlite_connection.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // What a campaign is told apart by; stored once, when it is made.
 struct CampaignMeta {
@@ -54,4 +54,4 @@ Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const st
 
 Result<CampaignMeta> ReadMeta(SqliteConnection& connection);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

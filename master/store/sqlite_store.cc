@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 Result<std::unique_ptr<SqliteStore>> SqliteStore::Open(const std::string& path, Options options) {
   Result<SqliteConnection> connection = OpenCheckedForWriting(path, options.vfs, options.checkpoint_pages);
@@ -214,4 +214,4 @@ Error SqliteStore::WithPath(const Error& error) const {
   return {error.kind, fmt::format("{}: {}", path_, error.message)};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

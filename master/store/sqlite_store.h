@@ -20,7 +20,7 @@
 #include "master/store/sqlite_schema.h"
 #include "master/store/sqlite_tables.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // A commit begins kLongestWait after its first record was handed over, or earlier by Flush, CommitWithin or
 // when kLargestGroup runs wait, which is as many as a group holds. One commit costs one fsync. When writing
@@ -151,4 +151,4 @@ class SqliteStore final : public ResultStore {
   std::thread writer_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -15,7 +15,7 @@
 #include "sim/arena/genome.h"
 #include "sim/run_result.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr std::string_view kRunColumns =
@@ -465,4 +465,4 @@ Result<std::vector<StoredEvent>> SqliteTables::LoadEvents() {
   return events;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

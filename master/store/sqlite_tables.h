@@ -13,7 +13,7 @@
 #include "master/store/sqlite_connection.h"
 #include "master/store/totals_table.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Individuals of one search that were born together.
 struct Newborns {
@@ -89,4 +89,4 @@ class SqliteTables {
   SqliteStatement select_individual_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -7,7 +7,7 @@
 
 #include "master/store/checksums.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 std::uint64_t ChecksumOf(SearchId search, const Totals& totals) {
@@ -101,4 +101,4 @@ Status TotalsTable::Check(Checked what) const {
   return Ok{};
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -10,7 +10,7 @@
 #include "master/store/result_store.h"
 #include "master/store/sqlite_connection.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Rows of every table that belong to a search; of search 0 those that belong to none.
 struct Totals : SearchTotals {
@@ -47,4 +47,4 @@ class TotalsTable {
   std::set<SearchId> changed_;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -6,7 +6,7 @@
 #include <limits>
 #include <pugixml.hpp>
 
-#include "analysis/figures/swarm_motion.h"
+#include "analysis/figures/run/swarm_motion.h"
 #include "analysis/figures/value_axis.h"
 
 namespace gauntlet::analysis {

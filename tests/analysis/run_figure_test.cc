@@ -1,4 +1,4 @@
-#include "analysis/figures/run_figure.h"
+#include "analysis/figures/run/run_figure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 #include <pugixml.hpp>
 
+#include "analysis/figures/run/trajectory_csv.h"
 #include "analysis/figures/svg_canvas.h"
-#include "analysis/figures/trajectory_csv.h"
 
 namespace gauntlet::analysis {
 namespace {

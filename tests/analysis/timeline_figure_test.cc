@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <pugixml.hpp>
 
-#include "analysis/figures/run_annotations.h"
+#include "analysis/figures/run/run_annotations.h"
 
 namespace gauntlet::analysis {
 namespace {

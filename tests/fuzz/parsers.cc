@@ -5,17 +5,17 @@
 
 #include "base/check.h"
 #include "controllers/generic/definition.h"
-#include "master/cases/argos_controllers.h"
-#include "master/cases/case_file.h"
-#include "master/cases/corpus_file.h"
-#include "master/experiment/experiment_file.h"
-#include "master/search/search_table.h"
 #include "proto/access_file.h"
 #include "proto/case_json.h"
 #include "proto/message_codec.h"
 #include "proto/plugin_description.h"
 #include "proto/run_beginning.h"
 #include "proto/run_codec.h"
+#include "search/cases/argos_controllers.h"
+#include "search/cases/case_file.h"
+#include "search/cases/corpus_file.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
 
 namespace gauntlet::fuzz {
 namespace {
@@ -91,18 +91,18 @@ void ReadCaseJson(std::string_view bytes) {
 }
 
 void ReadCorpusCase(std::string_view bytes) {
-  const Result<master::CorpusCase> read = master::ParseCorpusCase(std::string(bytes), "case.json");
+  const Result<CorpusCase> read = ParseCorpusCase(std::string(bytes), "case.json");
   if (!read) return ExpectAGoodError(read);
-  const std::string written = master::WriteCorpusCase(*read);
-  const Result<master::CorpusCase> again = master::ParseCorpusCase(written, "again.json");
-  GAUNTLET_CHECK(again.ok() && master::WriteCorpusCase(*again) == written,
+  const std::string written = WriteCorpusCase(*read);
+  const Result<CorpusCase> again = ParseCorpusCase(written, "again.json");
+  GAUNTLET_CHECK(again.ok() && WriteCorpusCase(*again) == written,
                  "a case of a corpus does not survive:\n" + written);
 }
 
 void ReadArgos(std::string_view bytes) {
-  const auto controllers = master::ReadArgosControllers(std::string(bytes), "case.argos", "");
+  const auto controllers = ReadArgosControllers(std::string(bytes), "case.argos", "");
   if (!controllers) ExpectAGoodError(controllers);
-  const Result<master::LoadedCase> read = master::ParseArgos(std::string(bytes), "case.argos");
+  const Result<LoadedCase> read = ParseArgos(std::string(bytes), "case.argos");
   if (!read) return ExpectAGoodError(read);
   for (const sim::ObstacleGene& obstacle : read->test_case.obstacles) {
     GAUNTLET_CHECK(std::isfinite(obstacle.x) && std::isfinite(obstacle.y) && std::isfinite(obstacle.length) &&
@@ -116,13 +116,11 @@ void ReadArgos(std::string_view bytes) {
 }
 
 void ReadExperiment(std::string_view bytes) {
-  const Result<master::Experiment> read =
-      master::ParseExperiment(bytes, "experiment.toml", {}, master::BuiltInCatalogue());
+  const Result<Experiment> read = ParseExperiment(bytes, "experiment.toml", {}, BuiltInCatalogue());
   if (!read) return ExpectAGoodError(read);
-  const std::string written = master::WriteExperiment(*read, {}, master::BuiltInCatalogue());
-  const Result<master::Experiment> again =
-      master::ParseExperiment(written, "again.toml", {}, master::BuiltInCatalogue());
-  GAUNTLET_CHECK(again.ok() && master::WriteExperiment(*again, {}, master::BuiltInCatalogue()) == written,
+  const std::string written = WriteExperiment(*read, {}, BuiltInCatalogue());
+  const Result<Experiment> again = ParseExperiment(written, "again.toml", {}, BuiltInCatalogue());
+  GAUNTLET_CHECK(again.ok() && WriteExperiment(*again, {}, BuiltInCatalogue()) == written,
                  "an experiment does not survive:\n" + written);
 }
 

@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "master/campaign/campaign_status.h"
 #include "master/directory/campaign_lock.h"
-#include "master/report/campaign_status.h"
 #include "tests/integration/browser.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/ui_driver.h"
@@ -27,23 +27,23 @@ constexpr std::size_t kMostBytesBeside = 20'000;
 
 // What a master with so many workers says.
 std::string StatusOfACrowd() {
-  master::MasterView view;
+  MasterView view;
   view.campaign_id = "c";
   view.host = "node7";
   view.now_unix_ms = std::chrono::duration_cast<std::chrono::milliseconds>(
                          std::chrono::system_clock::now().time_since_epoch())
                          .count();
-  master::CampaignProgress progress;
+  CampaignProgress progress;
   progress.runs_done = kRuns;
   progress.runs_planned = 2 * kRuns;
-  master::BackendView backend;
+  BackendView backend;
   for (std::size_t i = 0; i < kWorkers; ++i) {
-    master::WorkerView& worker = backend.workers.emplace_back();
+    WorkerView& worker = backend.workers.emplace_back();
     worker.label = "1cfc97e775e2ec" + std::to_string(i) + "@node" + std::to_string(i / 16);
     worker.record.finished = 20;
     worker.leases = {{.run = 2 * i + 1, .fence = 1, .seconds = 4.2}, {.run = 2 * i + 2, .waits = true}};
   }
-  return master::StatusJson(view, progress, backend);
+  return StatusJson(view, progress, backend);
 }
 
 class BusyCampaignTest : public testing::Test {
@@ -54,7 +54,7 @@ class BusyCampaignTest : public testing::Test {
         StartGauntlet({"random", "flocking", "--cases", std::to_string(kRuns), "--dir", dir_, "--quiet"},
                       {"GAUNTLET_WORKER=" GAUNTLET_BINARY_DIR "/gauntlet-worker-noop"});
     ASSERT_EQ(search->Wait().exit_code, 0) << search->Err();
-    auto lock = master::CampaignLock::Acquire(dir_ + "/lock", dir_);
+    auto lock = CampaignLock::Acquire(dir_ + "/lock", dir_);
     ASSERT_TRUE(lock) << lock.error().message;
     lock_ = *std::move(lock);
     std::ofstream(dir_ + "/status.json") << StatusOfACrowd();
@@ -62,7 +62,7 @@ class BusyCampaignTest : public testing::Test {
 
   TemporaryDirectory scratch_;
   std::string dir_ = scratch_ / "busy";
-  std::unique_ptr<master::CampaignLock> lock_;
+  std::unique_ptr<CampaignLock> lock_;
 };
 
 TEST_F(BusyCampaignTest, AnAnswerToAPageThatAsksEverySecondIsSmall) {

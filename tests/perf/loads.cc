@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "controllers/registry.h"
-#include "master/cases/case_file.h"
+#include "search/cases/case_file.h"
 #include "tests/support/paths.h"
 #include "tests/support/toy_scenario.h"
 
@@ -17,7 +17,7 @@ using sim::Device;
 using sim::Vec2;
 
 sim::TestCase CaseIn(const fs::path& file) {
-  auto loaded = master::LoadCase(file);
+  auto loaded = LoadCase(file);
   GAUNTLET_CHECK(loaded.ok(), loaded.ok() ? "" : loaded.error().message);
   return loaded->test_case;
 }

@@ -19,12 +19,12 @@
 #include "tests/perf/cpu_cost.h"
 #include "tests/support/paths.h"
 #include "tests/support/process.h"
-#include "worker/fork_server.h"
-#include "worker/pipe.h"
-#include "worker/plugin_library.h"
-#include "worker/rehearsal.h"
+#include "worker/plugin/plugin_library.h"
 #include "worker/run_executor.h"
-#include "worker/runner.h"
+#include "worker/runner/fork_server.h"
+#include "worker/runner/pipe.h"
+#include "worker/runner/rehearsal.h"
+#include "worker/runner/runner.h"
 
 namespace gauntlet::perf {
 namespace {

@@ -36,7 +36,7 @@ class SlurmPoolTest : public testing::Test {
       now_ += seconds(1);
       pool_->Observe(view_, now_);
       ASSERT_TRUE(pool_->Supervise(now_).ok());
-      for (master::DispatchEvent& event : pool_->TakeEvents()) events_ += event.text + "\n";
+      for (DispatchEvent& event : pool_->TakeEvents()) events_ += event.text + "\n";
       std::vector<int> fds;
       pool_->AppendWaitFds(fds);
       pollfd waiting{fds.at(0), POLLIN, 0};
@@ -51,7 +51,7 @@ class SlurmPoolTest : public testing::Test {
   }
 
   testing_support::FakeSlurm cluster_;
-  master::PoolView view_;
+  PoolView view_;
   TimePoint now_ = TimePoint{} + std::chrono::hours(1);
   std::string events_;
   std::unique_ptr<SlurmPool> pool_;

@@ -17,7 +17,7 @@
 namespace gauntlet::testing_support {
 
 // Thread-safety: one thread. Waiting advances the clock.
-class FakeBackend final : public master::EvaluationBackend {
+class FakeBackend final : public EvaluationBackend {
  public:
   using Simulate = std::function<sim::RunResult(const sim::RunSpec&)>;
   FakeBackend(FakeClock& clock, Simulate simulate) : clock_(clock), simulate_(std::move(simulate)) {}
@@ -27,23 +27,23 @@ class FakeBackend final : public master::EvaluationBackend {
   // Which of `running` runs, in the order of their beginnings, ends next.
   std::function<std::size_t(std::size_t running)> next = [](std::size_t) { return std::size_t{0}; };
   std::optional<Error> failure;  // of every Poll from now on
-  master::WorkerStatistics statistics;
-  std::vector<master::DispatchEvent> events;  // that TakeEvents gives away
+  WorkerStatistics statistics;
+  std::vector<DispatchEvent> events;  // that TakeEvents gives away
 
-  std::vector<master::RunId> submitted;
-  std::vector<master::RunId> acknowledged;
+  std::vector<RunId> submitted;
+  std::vector<RunId> acknowledged;
   bool stopped_leasing = false;
 
-  void Submit(std::vector<master::RunRequest> runs) override {
-    for (master::RunRequest& run : runs) {
+  void Submit(std::vector<RunRequest> runs) override {
+    for (RunRequest& run : runs) {
       submitted.push_back(run.id);
       waiting_.push_back(std::move(run));
     }
   }
-  Result<std::vector<master::FinishedRun>> Poll(std::chrono::milliseconds timeout) override {
+  Result<std::vector<FinishedRun>> Poll(std::chrono::milliseconds timeout) override {
     if (failure) return *failure;
     clock_.Advance(timeout);
-    std::vector<master::FinishedRun> finished;
+    std::vector<FinishedRun> finished;
     for (std::size_t i = 0; i < per_poll; ++i) {
       while (!stopped_leasing && running_.size() < slots && !waiting_.empty()) {
         running_.push_back(std::move(waiting_.front()));
@@ -59,23 +59,23 @@ class FakeBackend final : public master::EvaluationBackend {
     GAUNTLET_CHECK(idle_polls_ < kMostIdlePolls, "the campaign waits for runs that nobody has asked for");
     return finished;
   }
-  void Acknowledge(const std::vector<master::RunId>& runs) override {
+  void Acknowledge(const std::vector<RunId>& runs) override {
     acknowledged.insert(acknowledged.end(), runs.begin(), runs.end());
   }
   void Shutdown(std::chrono::milliseconds) override {}
-  master::WorkerStatistics Statistics() const override {
-    master::WorkerStatistics now = statistics;
+  WorkerStatistics Statistics() const override {
+    WorkerStatistics now = statistics;
     now.busy = static_cast<int>(running_.size());
     return now;
   }
   void StopLeasing() override { stopped_leasing = true; }
-  std::vector<master::DispatchEvent> TakeEvents() override { return std::exchange(events, {}); }
+  std::vector<DispatchEvent> TakeEvents() override { return std::exchange(events, {}); }
 
  private:
-  master::FinishedRun Finish(const master::RunRequest& run) const {
+  FinishedRun Finish(const RunRequest& run) const {
     const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
     GAUNTLET_CHECK(spec.ok(), "a run that was submitted does not decode");
-    master::FinishedRun finished;
+    FinishedRun finished;
     finished.id = run.id;
     finished.result = simulate_(*spec);
     sim::SetHashes(finished.result);
@@ -85,8 +85,8 @@ class FakeBackend final : public master::EvaluationBackend {
 
   FakeClock& clock_;
   Simulate simulate_;
-  std::deque<master::RunRequest> waiting_;
-  std::vector<master::RunRequest> running_;
+  std::deque<RunRequest> waiting_;
+  std::vector<RunRequest> running_;
   int idle_polls_ = 0;
 };
 

@@ -13,42 +13,42 @@
 
 namespace gauntlet::testing_support {
 
-class FakeCampaigns : public master::CampaignService {
+class FakeCampaigns : public CampaignService {
  public:
   // What is answered; an error to all that can fail for another reason than a wrong directory.
-  master::SessionReport report;
-  std::vector<master::StoredRun> stored;
-  master::CampaignReplay replay;
+  SessionReport report;
+  std::vector<StoredRun> stored;
+  CampaignReplay replay;
   std::string status;
   std::string change = "search.generations from 50 to 80";  // of what is extended
   int lives = 0;                                            // how often a master is found alive
   std::optional<Error> error;
   // Called while a session runs.
-  std::function<void(const master::SessionOptions&)> during;
+  std::function<void(const SessionOptions&)> during;
 
   // What was asked.
   int starts = 0;
   int resumes = 0;
   std::vector<std::string> extended;
-  std::string directory;                     // of the newest session
-  std::vector<master::SearchPlan> searches;  // the searches of the newest campaign that was started
-  master::Experiment experiment;             // of the first of them
-  std::vector<sim::TestCase> cases;          // and its cases
+  std::string directory;             // of the newest session
+  std::vector<SearchPlan> searches;  // the searches of the newest campaign that was started
+  Experiment experiment;             // of the first of them
+  std::vector<sim::TestCase> cases;  // and its cases
   int workers = 0;
-  std::vector<master::SearchPlan> prepared;
+  std::vector<SearchPlan> prepared;
   std::string slurm;
   std::string stopped;
-  master::RunId replayed_run = 0;
+  RunId replayed_run = 0;
 
-  Result<master::SessionReport> Start(const std::string& dir, const std::vector<master::SearchPlan>& wanted,
-                                      const master::SessionOptions& options) override {
+  Result<SessionReport> Start(const std::string& dir, const std::vector<SearchPlan>& wanted,
+                              const SessionOptions& options) override {
     ++starts;
     searches = wanted;
     experiment = wanted.front().experiment;
     cases = wanted.front().cases;
     return Serve(dir, options);
   }
-  Status Prepare(const std::string& dir, const std::vector<master::SearchPlan>& wanted,
+  Status Prepare(const std::string& dir, const std::vector<SearchPlan>& wanted,
                  const std::string& text) override {
     prepared = wanted;
     slurm = text;
@@ -61,19 +61,17 @@ class FakeCampaigns : public master::CampaignService {
     extended = sets;
     return Answer(change);
   }
-  Result<master::SessionReport> Resume(const std::string& dir,
-                                       const master::SessionOptions& options) override {
+  Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) override {
     ++resumes;
     return Serve(dir, options);
   }
-  Result<master::CampaignSummary> Read(const std::string& /*dir*/) override { return Answer(report.summary); }
-  Status ForEachRun(const std::string& /*dir*/,
-                    const std::function<void(const master::StoredRun&)>& visit) override {
+  Result<CampaignSummary> Read(const std::string& /*dir*/) override { return Answer(report.summary); }
+  Status ForEachRun(const std::string& /*dir*/, const std::function<void(const StoredRun&)>& visit) override {
     std::ranges::for_each(stored, visit);
     return Ok{};
   }
-  Result<master::CampaignReplay> Replay(const std::string& /*dir*/, master::RunId run,
-                                        const std::string& /*scratch*/) override {
+  Result<CampaignReplay> Replay(const std::string& /*dir*/, RunId run,
+                                const std::string& /*scratch*/) override {
     replayed_run = run;
     return Answer(replay);
   }
@@ -89,7 +87,7 @@ class FakeCampaigns : public master::CampaignService {
   Result<Value> Answer(const Value& value) const {
     return error ? Result<Value>(*error) : Result<Value>(value);
   }
-  Result<master::SessionReport> Serve(const std::string& dir, const master::SessionOptions& options) {
+  Result<SessionReport> Serve(const std::string& dir, const SessionOptions& options) {
     directory = dir;
     workers = options.workers;
     if (during) during(options);

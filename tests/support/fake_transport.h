@@ -9,43 +9,41 @@
 #include <utility>
 #include <vector>
 
-#include "master/dispatch/transport.h"
+#include "master/dispatch/wire/transport.h"
 #include "tests/support/fake_clock.h"
 
 namespace gauntlet::testing_support {
 
-class FakeTransport final : public master::Transport {
+class FakeTransport final : public Transport {
  public:
   explicit FakeTransport(FakeClock& clock) : clock_(clock) {}
 
   // What peers do.
-  void Deliver(const master::PeerId& peer, std::string bytes) { inbox_.push_back({peer, std::move(bytes)}); }
+  void Deliver(const PeerId& peer, std::string bytes) { inbox_.push_back({peer, std::move(bytes)}); }
   // Takes what was sent to the peer.
-  std::vector<std::string> TakeSentTo(const master::PeerId& peer) { return std::exchange(outbox_[peer], {}); }
-  void SetUnreachable(const master::PeerId& peer) { unreachable_.insert(peer); }
-  void SetFull(const master::PeerId& peer, bool full) {
-    full ? (void)full_.insert(peer) : (void)full_.erase(peer);
-  }
+  std::vector<std::string> TakeSentTo(const PeerId& peer) { return std::exchange(outbox_[peer], {}); }
+  void SetUnreachable(const PeerId& peer) { unreachable_.insert(peer); }
+  void SetFull(const PeerId& peer, bool full) { full ? (void)full_.insert(peer) : (void)full_.erase(peer); }
   // Called in every Wait, after the clock has moved: fake workers live here.
   std::function<void()> on_wait;
   std::vector<int> ready_fds;  // what the next Wait answers, as far as it was asked for
-  master::TransportRejections rejections;
+  TransportRejections rejections;
   bool knows_its_peers = true;
 
-  master::SendOutcome Send(const master::PeerId& peer, std::string_view bytes) override {
-    if (unreachable_.contains(peer)) return master::SendOutcome::kUnreachable;
-    if (full_.contains(peer)) return master::SendOutcome::kFull;
+  SendOutcome Send(const PeerId& peer, std::string_view bytes) override {
+    if (unreachable_.contains(peer)) return SendOutcome::kUnreachable;
+    if (full_.contains(peer)) return SendOutcome::kFull;
     outbox_[peer].emplace_back(bytes);
-    return master::SendOutcome::kSent;
+    return SendOutcome::kSent;
   }
-  void Receive(std::size_t limit, std::vector<master::PeerMessage>& messages) override {
+  void Receive(std::size_t limit, std::vector<PeerMessage>& messages) override {
     for (; limit > 0 && !inbox_.empty(); --limit) {
       messages.push_back(std::move(inbox_.front()));
       inbox_.pop_front();
     }
   }
-  master::WaitOutcome Wait(std::chrono::milliseconds timeout, std::span<const int> fds) override {
-    master::WaitOutcome outcome;
+  WaitOutcome Wait(std::chrono::milliseconds timeout, std::span<const int> fds) override {
+    WaitOutcome outcome;
     for (const int fd : fds) {
       for (const int ready : ready_fds) {
         if (fd == ready) outcome.ready_fds.push_back(fd);
@@ -58,15 +56,15 @@ class FakeTransport final : public master::Transport {
     return outcome;
   }
   void WakeUp() override { woken_ = true; }
-  master::TransportRejections Rejections() const override { return rejections; }
+  TransportRejections Rejections() const override { return rejections; }
   bool KnowsItsPeers() const override { return knows_its_peers; }
 
  private:
   FakeClock& clock_;
-  std::deque<master::PeerMessage> inbox_;
-  std::map<master::PeerId, std::vector<std::string>> outbox_;
-  std::set<master::PeerId> unreachable_;
-  std::set<master::PeerId> full_;
+  std::deque<PeerMessage> inbox_;
+  std::map<PeerId, std::vector<std::string>> outbox_;
+  std::set<PeerId> unreachable_;
+  std::set<PeerId> full_;
   bool woken_ = false;
 };
 

@@ -14,7 +14,7 @@
 
 namespace gauntlet::testing_support {
 
-class MemoryStore final : public master::ResultStore {
+class MemoryStore final : public ResultStore {
  public:
   // Records wait until CommitAll when this is false.
   bool commits_by_itself = true;
@@ -22,11 +22,11 @@ class MemoryStore final : public master::ResultStore {
   std::optional<Error> failure;
 
   // What is durable; tests may change it.
-  std::vector<master::StoredSearch> searches;
-  std::map<master::SearchId, std::vector<master::Individual>> individuals;
-  std::map<master::RunId, master::StoredRun> runs;
-  std::map<master::SearchId, std::vector<master::SavedState>> states;  // the newest last
-  std::vector<master::StoredEvent> events;
+  std::vector<StoredSearch> searches;
+  std::map<SearchId, std::vector<Individual>> individuals;
+  std::map<RunId, StoredRun> runs;
+  std::map<SearchId, std::vector<SavedState>> states;  // the newest last
+  std::vector<StoredEvent> events;
   std::vector<std::chrono::milliseconds> commits_wanted_within;
 
   void CommitAll() {
@@ -38,39 +38,39 @@ class MemoryStore final : public master::ResultStore {
     committed_.clear();
   }
 
-  void AddSearch(const master::StoredSearch& search) override {
+  void AddSearch(const StoredSearch& search) override {
     waiting_.push_back([this, search] { searches.push_back(search); });
   }
-  void AddIndividuals(master::SearchId search, const std::vector<master::Individual>& born) override {
+  void AddIndividuals(SearchId search, const std::vector<Individual>& born) override {
     waiting_.push_back([this, search, born] {
-      std::vector<master::Individual>& all = individuals[search];
+      std::vector<Individual>& all = individuals[search];
       all.insert(all.end(), born.begin(), born.end());
     });
   }
-  void AddRun(master::StoredRun run) override {
+  void AddRun(StoredRun run) override {
     waiting_.push_back([this, run] {
       committed_.push_back(run.id);
       runs[run.id] = run;
     });
   }
-  void SaveState(const master::SavedState& state) override {
+  void SaveState(const SavedState& state) override {
     waiting_.push_back([this, state] { states[state.search].push_back(state); });
   }
-  void MarkFinished(master::SearchId search, master::RunId last_run) override {
+  void MarkFinished(SearchId search, RunId last_run) override {
     waiting_.push_back([this, search, last_run] {
-      for (master::StoredSearch& one : searches)
+      for (StoredSearch& one : searches)
         if (one.id == search) one.finished_with = std::max(one.finished_with, last_run);
     });
   }
-  void AddEvent(const master::StoredEvent& event) override {
+  void AddEvent(const StoredEvent& event) override {
     waiting_.push_back([this, event] { events.push_back(event); });
   }
 
-  Result<std::vector<master::RunId>> Committed() override {
+  Result<std::vector<RunId>> Committed() override {
     if (commits_by_itself && !failure) CommitAll();
     if (!committed_.empty()) return std::exchange(committed_, {});
     if (failure) return *failure;
-    return std::vector<master::RunId>();
+    return std::vector<RunId>();
   }
   Status Flush() override {
     if (failure) return *failure;
@@ -80,11 +80,11 @@ class MemoryStore final : public master::ResultStore {
   void CommitWithin(std::chrono::milliseconds time) override { commits_wanted_within.push_back(time); }
   int CommitNotifier() const override { return -1; }
 
-  Result<std::vector<master::StoredSearch>> LoadSearches() override { return searches; }
-  Result<std::vector<master::SearchTotals>> LoadTotals() override {
-    std::vector<master::SearchTotals> all;
-    for (const master::StoredSearch& search : searches) {
-      master::SearchTotals& totals = all.emplace_back();
+  Result<std::vector<StoredSearch>> LoadSearches() override { return searches; }
+  Result<std::vector<SearchTotals>> LoadTotals() override {
+    std::vector<SearchTotals> all;
+    for (const StoredSearch& search : searches) {
+      SearchTotals& totals = all.emplace_back();
       totals.search = search.id;
       totals.finished = search.finished_with > 0 ? 1 : 0;
       totals.individuals = individuals[search.id].size();
@@ -97,37 +97,35 @@ class MemoryStore final : public master::ResultStore {
     }
     return all;
   }
-  Result<std::vector<master::Individual>> LoadIndividuals(master::SearchId search) override {
-    return individuals[search];
+  Result<std::vector<Individual>> LoadIndividuals(SearchId search) override { return individuals[search]; }
+  Result<std::optional<SavedState>> LoadNewestState(SearchId search) override {
+    const std::vector<SavedState>& all = states[search];
+    return all.empty() ? std::optional<SavedState>() : all.back();
   }
-  Result<std::optional<master::SavedState>> LoadNewestState(master::SearchId search) override {
-    const std::vector<master::SavedState>& all = states[search];
-    return all.empty() ? std::optional<master::SavedState>() : all.back();
-  }
-  Status ForEachRun(master::SearchId search, master::RunId after,
-                    const std::function<void(const master::StoredRun&)>& visit) override {
+  Status ForEachRun(SearchId search, RunId after,
+                    const std::function<void(const StoredRun&)>& visit) override {
     for (auto run = runs.upper_bound(after); run != runs.end(); ++run) {
       if (run->second.search == search) visit(run->second);
     }
     return Ok{};
   }
-  Status ForEachRow(master::SearchId search, master::RunId after,
-                    const std::function<void(const master::StoredRun&)>& visit) override {
-    return ForEachRun(search, after, [&visit](master::StoredRun run) {
+  Status ForEachRow(SearchId search, RunId after,
+                    const std::function<void(const StoredRun&)>& visit) override {
+    return ForEachRun(search, after, [&visit](StoredRun run) {
       run.spec.clear();
       run.result.clear();
       visit(run);
     });
   }
-  Result<std::optional<master::StoredRun>> LoadRun(master::RunId run) override {
+  Result<std::optional<StoredRun>> LoadRun(RunId run) override {
     const auto found = runs.find(run);
-    return found == runs.end() ? std::optional<master::StoredRun>() : found->second;
+    return found == runs.end() ? std::optional<StoredRun>() : found->second;
   }
-  Result<std::vector<master::StoredEvent>> LoadEvents() override { return events; }
+  Result<std::vector<StoredEvent>> LoadEvents() override { return events; }
 
  private:
   std::vector<std::function<void()>> waiting_;
-  std::vector<master::RunId> committed_;  // not reported yet
+  std::vector<RunId> committed_;  // not reported yet
 };
 
 }  // namespace gauntlet::testing_support

@@ -1,5 +1,5 @@
 // Calls in processes that are forked from a prepared one.
-#include "worker/prepared_process.h"
+#include "worker/runner/prepared_process.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,10 +20,10 @@
 #include "proto/run_codec.h"
 #include "tests/support/process.h"
 #include "tests/support/sanitizer.h"
-#include "worker/pipe.h"
-#include "worker/rehearsal.h"
 #include "worker/run_executor.h"
-#include "worker/runner.h"
+#include "worker/runner/pipe.h"
+#include "worker/runner/rehearsal.h"
+#include "worker/runner/runner.h"
 
 namespace gauntlet::worker {
 namespace {

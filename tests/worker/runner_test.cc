@@ -1,5 +1,5 @@
 // Parts of runners that need no process: what an exit means, the frames of the pipe.
-#include "worker/runner.h"
+#include "worker/runner/runner.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <csignal>
 
 #include "proto/run_failure.h"
-#include "worker/pipe.h"
+#include "worker/runner/pipe.h"
 
 namespace gauntlet::worker {
 

@@ -14,7 +14,7 @@
 #include "tests/support/process.h"
 #include "tests/worker/fake_master.h"
 #include "tests/worker/faulty_runs.h"
-#include "worker/runner.h"
+#include "worker/runner/runner.h"
 
 namespace gauntlet::worker {
 namespace {

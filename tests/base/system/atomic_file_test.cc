@@ -10,7 +10,7 @@
 
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -107,4 +107,4 @@ TEST(ReadSmallFileTest, RefusesWhatIsTooLong) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

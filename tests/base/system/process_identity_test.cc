@@ -5,7 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 TEST(ProcessIdentityTest, ThisProcessIsAlive) {
@@ -58,4 +58,4 @@ TEST(ProcessIdentityTest, NothingIsKnownOfAnotherBootOrNamespace) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

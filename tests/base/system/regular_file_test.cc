@@ -13,7 +13,7 @@
 
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ TEST_F(RegularFileTest, AFileIsKnownAgainWhereverItIsMovedAndItsSuccessorIsAnoth
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

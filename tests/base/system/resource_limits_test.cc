@@ -18,7 +18,7 @@
 #include "base/system/atomic_file.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::AllOf;
@@ -114,4 +114,4 @@ TEST(ResourceLimitsDeathTest, AnAbortOfALibraryIsASentenceAndOneOfOursIsAnAbort)
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

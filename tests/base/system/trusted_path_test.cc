@@ -11,7 +11,7 @@
 
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::AllOf;
@@ -82,4 +82,4 @@ TEST_F(TrustedPathTest, ALinkAmongTheFilesHasNoModeOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -13,7 +13,7 @@
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/examples/light_flocking_scenario.h"
 #include "controllers/registry.h"
-#include "master/cases/case_file.h"
+#include "search/cases/case_file.h"
 #include "sim/simulation.h"
 #include "tests/support/paths.h"
 
@@ -118,7 +118,7 @@ Result<std::vector<SwarmCase>> LoadSwarmCases(const fs::path& recorded, const fs
     if (!fs::exists(layout)) {
       return Error{ErrorKind::kNotFound, "no layout of " + name + " in " + layouts.string()};
     }
-    auto loaded = master::LoadCase(layout);
+    auto loaded = LoadCase(layout);
     if (!loaded.ok()) return loaded.error();
     auto poses = ReadPoses(file);
     if (!poses.ok()) return poses.error();

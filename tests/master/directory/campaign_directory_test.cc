@@ -9,7 +9,7 @@
 
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 namespace fs = std::filesystem;
@@ -197,4 +197,4 @@ TEST(CampaignIdTest, IsNewEveryTime) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

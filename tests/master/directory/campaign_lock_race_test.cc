@@ -12,7 +12,7 @@
 #include "master/directory/campaign_lock.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 constexpr int kWon = 10;
@@ -98,4 +98,4 @@ TEST(CampaignLockRace, AFrozenOwnerKeepsIt) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

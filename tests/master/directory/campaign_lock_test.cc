@@ -16,7 +16,7 @@
 #include "tests/master/store/store_records.h"
 #include "tests/support/process.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using nlohmann::json;
@@ -305,4 +305,4 @@ TEST_F(CampaignLockTest, AMissingDirectoryIsAnErrorWithItsPath) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -8,7 +8,7 @@
 
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ TEST_F(CampaignOriginTest, AFileThatDoesNotReadBackIsReported) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -14,7 +14,7 @@
 
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -286,4 +286,4 @@ TEST_F(CampaignOwnershipTest, ACampaignCanBeMoved) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -20,7 +20,7 @@
 #include "master/store/database_copy.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -207,4 +207,4 @@ TEST_F(CampaignViewTest, TheNextMasterRemovesASnapshotThatIsLeft) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "worker/plugin_rows.h"
+#include "worker/plugin/plugin_rows.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using controllers::ScenarioInfo;
@@ -118,4 +118,4 @@ TEST(PluginRowsTest, ControllersComeBackAndDoNothing) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "master/experiment/experiment_file.h"
-#include "master/search/search_table.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST(SearchLengthTest, WhatWouldMakeAnotherSearchIsRefused) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

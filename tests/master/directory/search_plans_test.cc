@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "master/experiment/experiment_file.h"
-#include "master/search/search_table.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -70,4 +70,4 @@ TEST_F(SearchPlansTest, ADamagedListIsNamed) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -17,12 +17,12 @@
 #include <zmq.hpp>
 
 #include "master/dispatch/remote_backend.h"
-#include "master/dispatch/zmq_transport.h"
+#include "master/dispatch/wire/zmq_transport.h"
 #include "proto/protocol.pb.h"
 #include "proto/run_codec.h"
 #include "tests/master/dispatch/sample_runs.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -129,7 +129,7 @@ int Run(std::size_t runs, int workers, std::uint32_t credit, milliseconds durati
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet
 
 int main(int argc, char** argv) {
   const auto number = [&](int index, int fallback) {
@@ -141,5 +141,5 @@ int main(int argc, char** argv) {
   const std::chrono::milliseconds duration(number(4, 0));
   fmt::print("{} runs of {} ms, {} workers, credit {}\n", runs, duration.count(), workers, credit);
   std::fflush(stdout);
-  return gauntlet::master::Run(runs, workers, credit, duration);
+  return gauntlet::Run(runs, workers, credit, duration);
 }

@@ -1,5 +1,5 @@
 // Real processes: small shell scripts in place of gauntlet-worker.
-#include "master/dispatch/local_pool.h"
+#include "master/dispatch/pool/local_pool.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@
 
 #include "tests/support/fake_clock.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -262,4 +262,4 @@ TEST_F(LocalPoolTest, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

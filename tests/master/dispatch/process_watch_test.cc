@@ -1,4 +1,4 @@
-#include "master/dispatch/process_watch.h"
+#include "master/dispatch/pool/process_watch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include <filesystem>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::ElementsAre;
@@ -120,4 +120,4 @@ TEST_F(ProcessWatchTest, HasABound) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

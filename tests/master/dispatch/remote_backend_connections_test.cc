@@ -8,7 +8,7 @@
 #include "base/utf8.h"
 #include "tests/master/dispatch/remote_backend_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -149,4 +149,4 @@ TEST_F(RemoteBackendTest, StrangersCannotFillTheLog) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

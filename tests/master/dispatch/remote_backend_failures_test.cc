@@ -5,7 +5,7 @@
 
 #include "tests/master/dispatch/remote_backend_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -215,4 +215,4 @@ TEST_F(RemoteBackendTest, OfALongOutputTheEndIsKept) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

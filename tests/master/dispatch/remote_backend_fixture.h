@@ -19,7 +19,7 @@
 #include "tests/support/fake_clock.h"
 #include "tests/support/fake_transport.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 inline constexpr InstanceId kAnna = 0xa;
 inline constexpr InstanceId kBert = 0xb;
@@ -182,4 +182,4 @@ class RemoteBackendTest : public testing::Test {
   const std::string result_ = proto::EncodeRunResult(SampleResult(0.5));
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -7,7 +7,7 @@
 
 #include "tests/master/dispatch/remote_backend_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -145,4 +145,4 @@ TEST_F(RemoteBackendTest, ShutdownTakesHarsherMeansAgainstAPoolThatStays) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

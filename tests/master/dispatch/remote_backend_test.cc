@@ -4,7 +4,7 @@
 
 #include "tests/master/dispatch/remote_backend_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -246,4 +246,4 @@ TEST_F(RemoteBackendTest, DifferentDuplicatesAreShownWithBothWorkers) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -1,8 +1,8 @@
-#include "master/dispatch/run_limits.h"
+#include "master/dispatch/leases/run_limits.h"
 
 #include <gtest/gtest.h>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 TEST(RunLimitsTest, CpuTimeGrowsWithTheTimeThatARunMaySimulate) {
@@ -14,4 +14,4 @@ TEST(RunLimitsTest, CpuTimeGrowsWithTheTimeThatARunMaySimulate) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

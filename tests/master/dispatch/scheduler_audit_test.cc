@@ -4,7 +4,7 @@
 
 #include "tests/master/dispatch/scheduler_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::UnorderedElementsAre;
@@ -137,4 +137,4 @@ TEST_F(SchedulerTest, AuditsTheShareThatWasAskedFor) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

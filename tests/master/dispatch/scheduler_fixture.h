@@ -5,10 +5,10 @@
 
 #include <vector>
 
-#include "master/dispatch/scheduler.h"
+#include "master/dispatch/leases/scheduler.h"
 #include "tests/support/fake_clock.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 inline constexpr Fence kFirstFence = 7ULL << 32;
 
@@ -82,4 +82,4 @@ class SchedulerTest : public testing::Test {
   RunId next_proof_ = 1'000'000;
 };
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

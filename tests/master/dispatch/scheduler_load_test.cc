@@ -8,7 +8,7 @@
 
 #include "tests/master/dispatch/scheduler_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -249,4 +249,4 @@ TEST_F(SchedulerTest, FiveHundredWorkersAreAllLeasedAtOnce) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -4,7 +4,7 @@
 
 #include "tests/master/dispatch/scheduler_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -203,4 +203,4 @@ TEST_F(SchedulerTest, VanishedWorkersAndUnansweredLeasesAreForgottenInTime) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

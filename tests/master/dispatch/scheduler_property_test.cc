@@ -10,10 +10,10 @@
 #include <set>
 #include <vector>
 
-#include "master/dispatch/scheduler.h"
+#include "master/dispatch/leases/scheduler.h"
 #include "tests/support/fake_clock.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -356,4 +356,4 @@ RC_GTEST_PROP(SchedulerProperty, NoRunIsLostNoneEndsTwiceAndAllEnd, ()) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -4,7 +4,7 @@
 
 #include "tests/master/dispatch/scheduler_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::ElementsAre;
@@ -147,4 +147,4 @@ TEST_F(SchedulerTest, StopLeasingLeavesRunsInTheQueue) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

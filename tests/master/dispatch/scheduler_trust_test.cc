@@ -8,7 +8,7 @@
 
 #include "tests/master/dispatch/scheduler_fixture.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -300,4 +300,4 @@ TEST_F(SchedulerTrustTest, ManyShortRunsAreLeasedAheadOnlyToWhoHasFinishedSome) 
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

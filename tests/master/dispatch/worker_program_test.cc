@@ -1,4 +1,4 @@
-#include "master/dispatch/worker_program.h"
+#include "master/dispatch/pool/worker_program.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -48,4 +48,4 @@ TEST_F(WorkerProgramTest, GivesUpOnOneThatIsAlwaysKilled) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

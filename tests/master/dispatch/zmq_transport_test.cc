@@ -1,5 +1,5 @@
 // Real sockets on the loopback interface; every wait ends with its condition or at a deadline.
-#include "master/dispatch/zmq_transport.h"
+#include "master/dispatch/wire/zmq_transport.h"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@
 #include "proto/access_file.h"
 #include "tests/support/process.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -409,4 +409,4 @@ TEST_F(ZmqTransportTest, SaysWhyItCannotListen) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -5,7 +5,7 @@
 
 #include "tests/support/local_socket.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::AllOf;
@@ -76,4 +76,4 @@ TEST(BindEndpoint, WhatTheSystemRefusesIsSaid) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

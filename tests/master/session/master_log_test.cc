@@ -12,7 +12,7 @@
 
 #include "tests/support/process.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 class MasterLogTest : public testing::Test {
@@ -78,4 +78,4 @@ TEST_F(MasterLogTest, TakesAtMost80Mebibytes) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

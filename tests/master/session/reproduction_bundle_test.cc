@@ -5,13 +5,13 @@
 
 #include <filesystem>
 
-#include "master/experiment/experiment_file.h"
-#include "master/search/search_table.h"
 #include "proto/case_json.h"
 #include "proto/run_codec.h"
+#include "search/experiment/experiment_file.h"
+#include "search/search_table.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::AllOf;
@@ -97,4 +97,4 @@ TEST(LeavesBundleTest, WhatFailedOfItselfButNoRefusal) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

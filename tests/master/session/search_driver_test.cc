@@ -9,7 +9,7 @@
 #include "proto/run_codec.h"
 #include "tests/master/session/toy_campaign.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::ElementsAreArray;
@@ -143,4 +143,4 @@ INSTANTIATE_TEST_SUITE_P(Searches, SearchDriverTest,
                                           testing::Bool()));
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

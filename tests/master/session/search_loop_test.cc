@@ -8,12 +8,12 @@
 #include <random>
 #include <set>
 
-#include "master/report/campaign_summary.h"
-#include "master/search/search_setup.h"
+#include "master/campaign/campaign_summary.h"
 #include "proto/run_codec.h"
+#include "search/search_setup.h"
 #include "tests/master/session/toy_campaign.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -326,4 +326,4 @@ TEST(SearchLoopTest, ProgressEndsWhereTheCampaignDoes) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

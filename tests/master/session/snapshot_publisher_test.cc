@@ -9,7 +9,7 @@
 #include "tests/master/store/store_records.h"
 #include "tests/support/process.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using std::chrono::milliseconds;
@@ -63,4 +63,4 @@ TEST(SnapshotPublisherTest, EndsAtOnceWhateverItIsWaitingFor) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -11,16 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "master/search/search_setup.h"
-#include "master/search/search_table.h"
 #include "master/session/search_driver.h"
 #include "master/session/search_loop.h"
+#include "search/search_setup.h"
+#include "search/search_table.h"
 #include "sim/random/random_stream.h"
 #include "tests/support/fake_backend.h"
 #include "tests/support/fake_clock.h"
 #include "tests/support/memory_store.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // The toy's simulation: completed, and a fitness, a length and a failure that depend on the spec alone.
 inline sim::RunResult ToyRun(const sim::RunSpec& spec) {
@@ -103,4 +103,4 @@ inline testing_support::MemoryStore FinishedToyCampaign(const std::vector<Experi
   return store;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -13,7 +13,7 @@
 #include "master/store/sqlite_store.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 void Acknowledge(SqliteStore& store, int out, RunId& waiting) {
@@ -120,4 +120,4 @@ TEST(CrashDrill, KilledAtRandomMomentsItKeepsEveryAcknowledgedRunExactlyOnce) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

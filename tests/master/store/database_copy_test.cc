@@ -8,7 +8,7 @@
 
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 class DatabaseCopyTest : public testing::Test {
@@ -70,4 +70,4 @@ TEST_F(DatabaseCopyTest, WhatCannotBeMadeLeavesTheFormerOneAndNoDraft) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -8,7 +8,7 @@
 
 #include "base/check.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // What SQLite allocates per open file: ours, then the real VFS's.
 struct FaultFile {
@@ -214,4 +214,4 @@ std::string AfterPowerLoss(const std::vector<FaultVfs::Operation>& operations, s
   return content;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

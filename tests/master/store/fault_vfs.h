@@ -12,7 +12,7 @@
 
 struct sqlite3_vfs;
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 enum class Fault {
   kNone,
@@ -71,4 +71,4 @@ std::string AfterPowerLoss(const std::vector<FaultVfs::Operation>& operations, s
                            const std::string& file, std::string content,
                            const std::function<bool()>& survives);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

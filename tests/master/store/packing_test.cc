@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -78,4 +78,4 @@ RC_GTEST_PROP(PackingTest, DamagedBytesNeverCrash, ()) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

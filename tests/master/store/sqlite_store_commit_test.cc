@@ -12,7 +12,7 @@
 #include "tests/master/store/fault_vfs.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -234,4 +234,4 @@ TEST_F(StoreCommitTest, ClosingAsksTheGuardToo) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -10,7 +10,7 @@
 #include "master/store/sqlite_store.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -197,4 +197,4 @@ TEST(ReadOnlyStoreTest, AddingIsABrokenInvariant) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -11,7 +11,7 @@
 #include "master/store/run_numbers.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -272,4 +272,4 @@ TEST(SearchOf, IsTheSearchOfItsRunIds) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

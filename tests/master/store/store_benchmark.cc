@@ -9,7 +9,7 @@
 #include "master/store/sqlite_store.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 double CpuSeconds() {
@@ -93,4 +93,4 @@ void BM_OpenReadOnly(benchmark::State& state) {
 BENCHMARK(BM_OpenReadOnly)->Arg(1000)->Arg(100000)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -13,7 +13,7 @@
 #include "tests/master/store/fault_vfs.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -203,4 +203,4 @@ TEST(PowerLossTest, LeavesWhatWasAcknowledgedAndNothingByHalves) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

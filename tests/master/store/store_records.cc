@@ -10,7 +10,7 @@
 #include <limits>
 #include <set>
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 // Bytes of every value, zero included; no two ids share them.
@@ -155,4 +155,4 @@ std::vector<StoredRun> RunsOf(ResultStore& store, SearchId search) {
   return runs;
 }
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -7,7 +7,7 @@
 
 #include "master/store/sqlite_store.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 
 // Every field differs from run to run; every eighth fitness is special (NaN, -0.0, infinity).
 StoredRun MakeRun(RunId id, std::size_t result_size = 900);
@@ -47,4 +47,4 @@ std::string ContentOf(const std::string& directory);
 void CreateStoreWithSearch(const std::string& path);
 std::vector<StoredRun> RunsOf(ResultStore& store, SearchId search = 1);
 
-}  // namespace gauntlet::master
+}  // namespace gauntlet

@@ -9,7 +9,7 @@
 #include "master/store/sqlite_store.h"
 #include "tests/master/store/store_records.h"
 
-namespace gauntlet::master {
+namespace gauntlet {
 namespace {
 
 using testing::HasSubstr;
@@ -158,4 +158,4 @@ TEST_F(StoredRowsTest, EveryColumnOfARunIsGuarded) {
 }
 
 }  // namespace
-}  // namespace gauntlet::master
+}  // namespace gauntlet

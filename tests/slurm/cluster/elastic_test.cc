@@ -39,9 +39,9 @@ class ElasticPool : public SlurmTest {
   }
   // Every allocation that runs has a worker, which is busy while there is work.
   void Step(int unfinished_runs) {
-    master::PoolView view;
+    PoolView view;
     view.unfinished_runs = unfinished_runs;
-    for (const master::AllocationView& allocation : pool_->Allocations()) {
+    for (const AllocationView& allocation : pool_->Allocations()) {
       if (allocation.state == "RUNNING" && !allocation.cancelled)
         view.workers.push_back({allocation.job + ":0:node", unfinished_runs > 0});
     }

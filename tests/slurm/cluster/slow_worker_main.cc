@@ -11,9 +11,9 @@
 
 #include "worker/command_line.h"
 #include "worker/golden_hash.h"
-#include "worker/plugin_library.h"
-#include "worker/rehearsal.h"
+#include "worker/plugin/plugin_library.h"
 #include "worker/run_executor.h"
+#include "worker/runner/rehearsal.h"
 
 namespace {
 

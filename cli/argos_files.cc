@@ -1,0 +1,118 @@
+#include "cli/argos_files.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "base/system/atomic_file.h"
+#include "cli/output/output_file.h"
+#include "controllers/run_start.h"
+#include "proto/run_codec.h"
+#include "search/cases/argos_controllers.h"
+#include "search/cases/argos_export.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr std::size_t kMostControllerBytes = 16U << 20;  // of a controller file
+
+constexpr std::string_view kLinkRange = "link_range";  // a parameter of ours, which no .argos file has
+
+struct NamedRun {
+  std::string file;
+  RunId run = 0;
+};
+
+Result<std::optional<ArgosControllers>> ControllersOf(const ArgosFilesOptions& options) {
+  std::optional<ArgosControllers> controllers;
+  if (options.controller_file.empty()) return controllers;
+  const Result<std::string> text = ReadSmallFile(options.controller_file, kMostControllerBytes);
+  if (!text) return InvalidInput(fmt::format("--controller-file {}", text.error().message));
+  Result<ArgosControllers> read = ReadArgosControllers(*text, options.controller_file, options.controller);
+  if (!read) return read.error();
+  controllers = std::move(*read);
+  return controllers;
+}
+
+// The first run of each test case, in which it was found.
+Result<std::vector<NamedRun>> FirstRuns(const StoredCampaign& campaign) {
+  std::vector<NamedRun> runs;
+  for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
+    std::map<IndividualId, RunId> first;
+    const Status read = campaign.view.store->ForEachRow(
+        search, 0, [&](const StoredRun& run) { first.try_emplace(run.individual, run.id); });
+    if (!read) return read.error();
+    const std::string of_search = campaign.plans.size() > 1 ? fmt::format("search-{}-", search) : "";
+    // As many digits for all, so that files sort by number.
+    const std::size_t digits = first.empty() ? 1 : fmt::formatted_size("{}", first.rbegin()->first);
+    for (const auto& [individual, run] : first)
+      runs.push_back({fmt::format("{}case-{:0{}}.argos", of_search, individual, digits), run});
+  }
+  return runs;
+}
+
+// A notice when the file's controller seems to be another than the run's; "" when not.
+std::string Unlikeness(const ArgosControllers& own, const sim::RunSpec& spec) {
+  std::vector<std::string> parameters;
+  for (const auto& [name, value] : spec.controller_parameters)
+    if (name != kLinkRange) parameters.push_back(name);
+  const std::string unlike = UnlikenessTo(own, spec.controller, parameters);
+  if (unlike.empty()) return "";
+  return fmt::format("The controller '{}' of --controller-file may not be the '{}' that was simulated: {}.",
+                     own.id, spec.controller, unlike);
+}
+
+Result<ArgosFile> FileOf(const StoredCampaign& campaign, RunId id,
+                         const std::optional<ArgosControllers>& controllers) {
+  const Result<std::optional<StoredRun>> stored = campaign.view.store->LoadRun(id);
+  if (!stored) return stored.error();
+  if (!stored->has_value())
+    return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", id)};
+  const Result<sim::RunSpec> spec = proto::DecodeRunSpec((*stored)->spec);
+  if (!spec) return spec.error();
+  const Result<sim::RunStart> start = controllers::StartOf(*spec);
+  if (!start)
+    return Error{start.error().kind, fmt::format("run {} cannot begin: {}", id, start.error().message)};
+  std::optional<ArgosControllers> own = controllers;
+  const std::string unlike = own && !spec->plugin.empty() ? Unlikeness(*own, *spec) : "";
+  if (own && !spec->plugin.empty()) own = WithParameters(std::move(*own), spec->controller_parameters);
+  const std::string title = fmt::format("Run {} of {}, test case {}, scenario {}, controller {}.", id,
+                                        campaign.plans[(*stored)->search - 1].experiment.name,
+                                        (*stored)->individual, spec->scenario, spec->controller);
+  ArgosFile file = WriteArgos(*spec, *start, own ? &*own : nullptr, title);
+  if (!unlike.empty()) file.notices.push_back(unlike);
+  return file;
+}
+
+}  // namespace
+
+Result<ArgosFilesReport> WriteArgosFiles(const StoredCampaign& campaign, const ArgosFilesOptions& options,
+                                         const std::filesystem::path& directory) {
+  const Result<std::optional<ArgosControllers>> controllers = ControllersOf(options);
+  if (!controllers) return controllers.error();
+  std::vector<NamedRun> runs;
+  for (const RunId run : options.runs) runs.push_back({fmt::format("run-{}.argos", run), run});
+  if (runs.empty()) {
+    Result<std::vector<NamedRun>> first = FirstRuns(campaign);
+    if (!first) return first.error();
+    runs = std::move(*first);
+  }
+  ArgosFilesReport report;
+  for (const NamedRun& one : runs) {
+    const Result<ArgosFile> file = FileOf(campaign, one.run, *controllers);
+    if (!file && options.runs.empty() && file.error().kind == ErrorKind::kInvalidInput) {
+      ++report.notices[fmt::format("There is no {}: {}.", one.file, file.error().message)];
+      continue;
+    }
+    if (!file) return file.error();
+    const Status written = WriteOutputFile(directory / one.file, file->text);
+    if (!written) return written.error();
+    ++report.files;
+    for (const std::string& notice : file->notices) ++report.notices[notice];
+  }
+  return report;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,218 @@
+// gauntlet build-controller: sources of controllers that were written for ARGoS become a plug-in.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "base/printable.h"
+#include "base/system/atomic_file.h"
+#include "base/system/process_call.h"
+#include "base/system/program_path.h"
+#include "cli/build_errors.h"
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/output/output_file.h"
+#include "master/directory/plugins.h"
+#include "search/cases/argos_controllers.h"
+
+namespace gauntlet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFile = std::size_t{16} << 20;  // bytes of an .argos file
+
+struct BuildControllerOptions {
+  std::vector<std::string> sources;
+  std::vector<std::string> include_folders;
+  std::vector<std::string> definitions;
+  std::string argos;
+  std::string output;
+  std::string table;
+  std::string sdk;
+};
+
+// A folder for the build that is gone afterwards.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "gauntlet-build-XXXXXX").string();
+    if (mkdtemp(name.data()) != nullptr) path_ = name;
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code error;
+    if (!path_.empty()) fs::remove_all(path_, error);
+  }
+  const std::string& path() const { return path_; }  // "": none could be made
+
+ private:
+  std::string path_;
+};
+
+// As an argument of CMake, whatever bytes it holds.
+std::string Quoted(const std::string& text) {
+  return fmt::format("[==[{}]==]", text);
+}
+std::string Quoted(const fs::path& path) {
+  return Quoted(fs::absolute(path).lexically_normal().string());
+}
+
+std::string ProjectText(const BuildControllerOptions& options, bool with_table) {
+  std::string sources;
+  for (const std::string& source : options.sources) sources += " " + Quoted(fs::path(source));
+  std::string folders;
+  for (const std::string& folder : options.include_folders) folders += " " + Quoted(fs::path(folder));
+  std::string definitions;
+  for (const std::string& definition : options.definitions) definitions += " " + Quoted(definition);
+  const fs::path output = fs::absolute(options.output);
+  return fmt::format(R"(cmake_minimum_required(VERSION 3.25)
+project(controller LANGUAGES CXX)
+set(CMAKE_BUILD_TYPE Release)
+find_package(Gauntlet REQUIRED)
+gauntlet_add_argos_plugin(controller SOURCES{}{})
+target_include_directories(controller PRIVATE{})
+target_compile_definitions(controller PRIVATE{})
+set_target_properties(controller PROPERTIES PREFIX "" SUFFIX "" OUTPUT_NAME [==[{}]==] LIBRARY_OUTPUT_DIRECTORY {})
+)",
+                     sources, with_table ? " TABLE table.cc" : "", folders, definitions,
+                     output.filename().string(), Quoted(output.parent_path()));
+}
+
+Status RunCMake(CommandContext& context, const std::vector<std::string>& arguments) {
+  // Without any, as in some batch jobs, CMake does not find its own files.
+  setenv("PATH", "/usr/local/bin:/usr/bin:/bin", /*overwrite=*/0);
+  Result<CallOutput> done = CallProcess(arguments, "", {});
+  if (!done && done.error().kind == ErrorKind::kNotFound) {
+    return InvalidInput(
+        "there is no cmake in PATH, which plug-ins are built with: install CMake 3.25 or later");
+  }
+  if (!done) return done.error();
+  if (done->exit_code == 0) return Ok{};
+  context.err << BuildErrors(done->out + done->err) << std::flush;
+  return InvalidInput("the plug-in could not be built: see above");
+}
+
+Result<std::string> ReadTable(CommandContext& context, const std::string& argos) {
+  const Result<std::string> text = ReadSmallFile(argos, kMostFile);
+  if (!text) return text.error();
+  Result<std::string> table = ArgosControllerTable(*text, argos);
+  if (table && HasLoopFunctions(*text)) {
+    PrintMessage(context,
+                 fmt::format("{} has loop functions, which Gauntlet does not run: a controller that gets "
+                             "something from them, such as a pointer or a target, goes without",
+                             Printable(argos)));
+  }
+  return table;
+}
+
+Status CheckBuildOptions(const BuildControllerOptions& options) {
+  if (!options.table.empty()) {
+    return options.argos.empty() ? InvalidInput("--table needs the file that it is made of: --argos FILE")
+                                 : Status(Ok{});
+  }
+  if (options.sources.empty()) return InvalidInput("which sources? name one or more C++ files");
+  if (options.output.empty()) return InvalidInput("where to? say -o libNAME.so");
+  std::error_code error;
+  for (const std::string& source : options.sources) {
+    if (!fs::is_regular_file(source, error)) {
+      return InvalidInput(fmt::format("{}: there is no such source file", Printable(source)));
+    }
+  }
+  for (const std::string& folder : options.include_folders) {
+    if (!fs::is_directory(folder, error))
+      return InvalidInput(fmt::format("{}: there is no such folder", Printable(folder)));
+  }
+  return Ok{};
+}
+
+Status FindSdk(const fs::path& prefix) {
+  std::error_code error;
+  for (const char* libraries : {"lib", "lib64"}) {
+    if (fs::exists(prefix / libraries / "cmake/Gauntlet/GauntletConfig.cmake", error)) return Ok{};
+  }
+  return InvalidInput(
+      fmt::format("{}: the SDK is not there: install it with 'cmake --install BUILD --prefix DIR --component "
+                  "sdk' and say --sdk DIR",
+                  Printable(prefix.string())));
+}
+
+Status Build(CommandContext& context, const BuildControllerOptions& options, const std::string& table) {
+  const ScratchFolder scratch;
+  if (scratch.path().empty()) return Error{ErrorKind::kIo, "no folder can be made in $TMPDIR or /tmp"};
+  if (!table.empty()) {
+    if (Status written = WriteOutputFile(scratch.path() + "/table.cc", table); !written) return written;
+  }
+  if (Status written =
+          WriteOutputFile(scratch.path() + "/CMakeLists.txt", ProjectText(options, !table.empty()));
+      !written) {
+    return written;
+  }
+  const std::string prefix =
+      options.sdk.empty() ? fs::path(MasterProgramPath()).parent_path().parent_path().string() : options.sdk;
+  if (Status there = FindSdk(prefix); !there) return there;
+  const std::string build = scratch.path() + "/build";
+  if (Status configured = RunCMake(context, {"cmake", "-S", scratch.path(), "-B", build,
+                                             "-DCMAKE_PREFIX_PATH=" + fs::absolute(prefix).string()});
+      !configured) {
+    return configured;
+  }
+  if (Status built = RunCMake(context, {"cmake", "--build", build}); !built) return built;
+  const Result<std::string> usable = AddPluginFile(options.output);
+  if (usable) return Ok{};
+  std::error_code ignored;
+  fs::remove(options.output, ignored);
+  return usable.error();
+}
+
+ExitCode RunBuildController(CommandContext& context, const BuildControllerOptions& options) {
+  if (const Status checked = CheckBuildOptions(options); !checked) return Fail(context, checked.error());
+  std::string table;
+  if (!options.argos.empty()) {
+    Result<std::string> read = ReadTable(context, options.argos);
+    if (!read) return Fail(context, read.error());
+    table = *std::move(read);
+  }
+  const std::string& written = options.table.empty() ? options.output : options.table;
+  const Status made =
+      options.table.empty() ? Build(context, options, table) : WriteOutputFile(options.table, table);
+  if (!made) return Fail(context, made.error());
+  PrintMessage(context, fmt::format("wrote {}", Printable(written)));
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddBuildController(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("build-controller", "make a plug-in of controllers written for ARGoS", RunBuildController);
+  command.add_option("SOURCE", options.sources, "C++ sources of foot-bot controllers, as they are");
+  AddValue(command, "--argos", "F", options.argos,
+           "take devices and parameters from the <controllers> of this file");
+  AddValue(command, "-o,--output", "F", options.output, "where the plug-in goes, such as libmine.so");
+  AddValue(command, "-I,--include", "DIR", options.include_folders, "folder of headers; may be repeated");
+  AddValue(command, "-D,--define", "NAME[=VALUE]", options.definitions,
+           "a macro that the sources' own build defines, such as GIT_BRANCH='\"main\"'; may be repeated");
+  AddValue(command, "--sdk", "DIR", options.sdk,
+           "where the SDK was installed (default: where this program was)");
+  AddValue(command, "--table", "F", options.table,
+           "build nothing; write C++ of the file's parameters, for CMake");
+  command.footer(
+      R"(Headers of our own stand in for ARGoS' (argos/README.md says what there is, and what cannot be). With --argos
+every numeric attribute below <params> is a parameter, called by its path, whose default is the file's; without
+it the controllers get no parameters, and the devices that they ask for in Init. Needs a C++ compiler, CMake
+and Eigen; where Gauntlet was unpacked from its package, Eigen is in it.
+
+Examples:
+  gauntlet build-controller footbot.cpp --argos experiment.argos -o libmine.so
+  gauntlet list --plugin libmine.so
+  gauntlet evolve flocking --set scenario=light-flocking --plugin libmine.so --set controller=my_controller
+      --set controller_parameters.wheel_turning.max_speed=8)");
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,269 @@
+// gauntlet compare: two sets of runs, by the statistics that the thesis uses and by those that it lacks; or
+// what searches give for the same number of runs.
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "analysis/figures/box_figure.h"
+#include "analysis/statistics/comparison.h"
+#include "base/printable.h"
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/output/budget_comparison.h"
+#include "cli/output/output_file.h"
+#include "cli/output/table.h"
+#include "controllers/registry.h"
+#include "proto/json_text.h"
+#include "study/questions/search_yield.h"
+#include "study/sets/run_set.h"
+
+namespace gauntlet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct CompareOptions {
+  std::vector<std::string> sets;
+  bool budget = false;
+  std::string metric = "fitness";
+  std::string svg;
+  bool mixed = false;
+  bool json = false;
+};
+
+struct Outcome {
+  RunSet first;
+  RunSet second;
+  std::vector<std::string> notes;  // of both, and what differs where that was asked for
+  analysis::Comparison comparison;
+  std::string words;
+};
+
+Json IntervalJson(const std::optional<analysis::Interval>& interval) {
+  return interval ? Json::array({interval->low, interval->high}) : Json();
+}
+
+Json OptionalJson(const std::optional<double>& value) {
+  return value ? Json(*value) : Json();
+}
+
+Json BoxJson(const analysis::BoxPlot& box) {
+  return {{"rule", analysis::NameOf(box.rule)},   {"lower_whisker", box.lower_whisker},
+          {"lower_quartile", box.lower_quartile}, {"median", box.median},
+          {"upper_quartile", box.upper_quartile}, {"upper_whisker", box.upper_whisker},
+          {"outliers", box.outliers.size()}};
+}
+
+Json SetJson(const RunSet& set, const analysis::BoxPlot& box) {
+  Json origins = Json::array();
+  for (const RunOrigin& origin : set.origins) {
+    origins.push_back({{"campaign", origin.place},
+                       {"experiment", origin.experiment.name},
+                       {"controller", origin.experiment.controller},
+                       {"version", origin.software_version}});
+  }
+  return {{"set", set.values.name},
+          {"unit", set.unit},
+          {"units", set.values.clusters.size()},
+          {"origins", std::move(origins)},
+          {"box", BoxJson(box)}};
+}
+
+std::string ComparisonJson(const Outcome& outcome, const std::string& metric) {
+  const analysis::Comparison& c = outcome.comparison;
+  const auto exact = [&](double analysis::ExactRankTest::*p) {
+    return c.exact ? Json((*c.exact).*p) : Json();
+  };
+  return JsonText({{"metric", metric},
+                   {"n1", c.first.n},
+                   {"n2", c.second.n},
+                   {"mean", {c.first.mean, c.second.mean}},
+                   {"sd", {OptionalJson(c.first.sd), OptionalJson(c.second.sd)}},
+                   {"median", {c.first.median, c.second.median}},
+                   {"rank_sum1", c.test.rank_sum1},
+                   {"rank_sum2", c.test.rank_sum2},
+                   {"u1", c.test.u1},
+                   {"u2", c.test.u2},
+                   {"a", c.test.a},
+                   {"a_interval", IntervalJson(c.interval)},
+                   {"a_interval_method", c.interval_method},
+                   {"a_cluster_interval", IntervalJson(c.cluster_interval)},
+                   {"a_cluster_interval_method", c.cluster_method},
+                   {"p_less", c.test.p_less},
+                   {"p_greater", c.test.p_greater},
+                   {"p_two_sided", c.test.p_two_sided},
+                   {"p_exact_less", exact(&analysis::ExactRankTest::p_less)},
+                   {"p_exact_greater", exact(&analysis::ExactRankTest::p_greater)},
+                   {"method", c.method},
+                   {"effect", c.effect},
+                   {"verdict", outcome.words},
+                   {"sets", {SetJson(outcome.first, c.first_box), SetJson(outcome.second, c.second_box)}},
+                   {"notes", outcome.notes}});
+}
+
+std::string IntervalText(const std::optional<analysis::Interval>& interval, const std::string& method) {
+  return interval ? fmt::format("{:.3f} to {:.3f} ({})", interval->low, interval->high, method) : method;
+}
+
+std::string ComparisonText(const Outcome& outcome, const std::string& metric) {
+  const analysis::Comparison& c = outcome.comparison;
+  Table sets({"", "set", ">n", ">units", ">mean", ">sd", ">median", ">quartiles", ">rank sum", ">U"});
+  const auto add = [&](const char* number, const RunSet& set, const analysis::Description& d,
+                       const analysis::BoxPlot& box, double rank_sum, double u) {
+    sets.AddRow({number, Printable(set.values.name), fmt::format("{}", d.n),
+                 fmt::format("{} ({})", set.values.clusters.size(), set.unit), FormatFitness(d.mean),
+                 d.sd ? FormatFitness(*d.sd) : "-", FormatFitness(d.median),
+                 fmt::format("{:.3f} {:.3f}", box.lower_quartile, box.upper_quartile),
+                 fmt::format("{:.1f}", rank_sum), fmt::format("{:.1f}", u)});
+  };
+  add("1", outcome.first, c.first, c.first_box, c.test.rank_sum1, c.test.u1);
+  add("2", outcome.second, c.second, c.second_box, c.test.rank_sum2, c.test.u2);
+
+  Table figures({"", ""});
+  figures.AddRow({"A (1 exceeds 2)", fmt::format("{:.4f}, effect: {} (0.56 small, 0.64 medium, 0.71 large)",
+                                                 c.test.a, c.effect)});
+  figures.AddRow({"its interval", IntervalText(c.interval, c.interval_method)});
+  figures.AddRow({"of whole units", IntervalText(c.cluster_interval, c.cluster_method)});
+  figures.AddRow({"p, 1 less", fmt::format("{:.4g}", c.test.p_less)});
+  figures.AddRow({"p, 1 greater", fmt::format("{:.4g}", c.test.p_greater)});
+  figures.AddRow({"p, two-sided", fmt::format("{:.4g}", c.test.p_two_sided)});
+  figures.AddRow({"by", std::string(c.test.method)});
+  if (c.exact) {
+    figures.AddRow(
+        {"exact p", fmt::format("less {:.4g}, greater {:.4g}", c.exact->p_less, c.exact->p_greater)});
+  }
+  std::string text = fmt::format("{}\n\n{}\n{}\n  {}\n", Printable(metric), sets.ToText(), figures.ToText(),
+                                 Wrapped(outcome.words, 110, 2));
+  for (const std::string& note : outcome.notes) {
+    text += fmt::format("  note: {}\n", Wrapped(Printable(note), 110, 2));
+  }
+  return text;
+}
+
+Result<Outcome> Compute(const CompareOptions& options) {
+  if (options.sets.size() != 2) {
+    return InvalidInput(fmt::format(
+        "{} sets of runs were named, two are compared: A and B (--budget takes any number of searches)",
+        options.sets.size()));
+  }
+  Result<RunSet> first = ReadRunSet(options.sets[0], options.metric);
+  if (!first) return first.error();
+  Result<RunSet> second = ReadRunSet(options.sets[1], options.metric);
+  if (!second) return second.error();
+  const std::vector<std::string> differences = WhatDiffers(*first, *second);
+  if (!differences.empty() && !options.mixed) {
+    return InvalidInput(fmt::format(
+        "{}: not like for like{}; --mixed compares them nevertheless", differences.front(),
+        differences.size() > 1 ? fmt::format(" (and {} more differences)", differences.size() - 1) : ""));
+  }
+  Result<analysis::Comparison> comparison = analysis::Compare(first->values, second->values);
+  if (!comparison) return comparison.error();
+  Outcome outcome{*std::move(first), *std::move(second), {}, *std::move(comparison), ""};
+  for (const std::string& difference : differences) {
+    outcome.notes.push_back("not like for like: " + difference);
+  }
+  for (const RunSet* set : {&outcome.first, &outcome.second}) {
+    outcome.notes.insert(outcome.notes.end(), set->notes.begin(), set->notes.end());
+  }
+  if (outcome.first.origins.empty() != outcome.second.origins.empty()) {
+    outcome.notes.emplace_back(
+        "a CSV file does not say what its runs are of: nobody has checked that they are like for like");
+  }
+  outcome.words = analysis::InWords(outcome.comparison, "set 1", "set 2");
+  return outcome;
+}
+
+std::string AxisName(const Outcome& outcome, const std::string& metric) {
+  if (outcome.first.origins.empty()) return metric;
+  const Experiment& experiment = outcome.first.origins.front().experiment;
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, metric);
+  return info == nullptr || info->unit.empty() ? metric : fmt::format("{}, {}", metric, info->unit);
+}
+
+std::string Drawing(const Outcome& outcome, const std::string& metric) {
+  const analysis::Comparison& c = outcome.comparison;
+  return analysis::DrawBoxes(
+      {.title = fmt::format("{}: set 1 against set 2", metric),
+       .outcome = fmt::format("A = {:.3f} ({}), two-sided p = {:.3g} ({})", c.test.a, c.effect, c.p_two_sided,
+                              c.p_by),
+       .axis_name = AxisName(outcome, metric),
+       .boxes = {{"1: " + outcome.first.values.name, c.first_box, c.first.mean, c.first.n},
+                 {"2: " + outcome.second.values.name, c.second_box, c.second.mean, c.second.n}}});
+}
+
+ExitCode CompareBudgets(CommandContext& context, const CompareOptions& options) {
+  std::vector<YieldSet> sets;
+  for (const std::string& text : options.sets) {
+    Result<YieldSet> set = ReadYields(text);
+    if (!set) return Fail(context, set.error());
+    sets.push_back(*std::move(set));
+  }
+  if (Status same = CheckSameBudget(sets); !same) return Fail(context, same.error());
+  context.out << (options.json ? JsonText(BudgetJson(sets)) : BudgetText(sets)) << std::flush;
+  return kExitDone;
+}
+
+ExitCode RunCompare(CommandContext& context, const CompareOptions& options) {
+  if (options.budget) return CompareBudgets(context, options);
+  const Result<Outcome> outcome = Compute(options);
+  if (!outcome) return Fail(context, outcome.error());
+  if (!options.svg.empty()) {
+    const Status written = WriteOutputFile(options.svg, Drawing(*outcome, options.metric));
+    if (!written) return Fail(context, written.error());
+    PrintMessage(context, fmt::format("wrote {}", options.svg));
+  }
+  context.out << (options.json ? ComparisonJson(*outcome, options.metric)
+                               : ComparisonText(*outcome, options.metric))
+              << std::flush;
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddCompare(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("compare", "two sets of runs: is one worse than the other, and by how much?", RunCompare);
+  command
+      .add_option("SET", options.sets,
+                  "two sets of runs, A and B: DIR[:SUBSET] or FILE.csv[:COLUMN]; several with commas")
+      ->required();
+  CLI::Option* budget = command.add_flag(
+      "--budget", options.budget, "instead: campaigns, by the different failures that their searches found");
+  AddValue(command, "--metric", "NAME", options.metric,
+           "what is compared: fitness (the default), total_failure, failure_type or a metric of the scenario "
+           "('gauntlet list')")
+      ->excludes(budget);
+  AddValue(command, "--svg", "F", options.svg, "write a picture: box plots of both")->excludes(budget);
+  command
+      .add_flag("--mixed", options.mixed,
+                "compare runs of different scenarios, parameters of them or versions too, and say so")
+      ->excludes(budget);
+  command.add_flag("--json", options.json, "the result as one JSON document");
+  command.footer(
+      R"(Subsets of a campaign, one value for each run:
+  final       the newest evaluation of every member of the population (the default; of 'random' and
+              'evaluate' these are all cases). What selection has seen is too good to be true: simulate
+              chosen cases again with fresh seeds ('gauntlet evaluate').
+  all         every run
+  random:N    N of all, drawn at random, the same ones every time
+  worst:N     the N of lowest fitness, of equal ones the earlier
+  search:K    in front of one of these: search K of a sweep only
+
+Mann-Whitney's U with the normal approximation (ties and continuity corrected), the exact test up to
+10,000 pairs, and Vargha and Delaney's A: the probability that a run of the first set exceeds one of the
+second. Lower fitness = tougher. Runs of one evolution, or of one case, are relatives: a second interval of A draws whole ones.
+
+--budget holds searches of as many runs against each other: any number of campaigns, each a search with
+several seeds (or DIR,DIR,... of one seed each). It counts cells, as an archive search does, in which a case
+failed in at least half of its runs with fresh seeds, which 'gauntlet confirm' has to have simulated before:
+'--elites' of an archive search, '--all-failing' of any other. The first campaign is tested against each other.
+
+Examples:
+  gauntlet compare --budget campaigns/archive campaigns/random-deletion campaigns/random
+  gauntlet compare campaigns/random:random:100 campaigns/evolved-1,campaigns/evolved-2
+  gauntlet compare DIR:all results.csv:fitness --json
+  gauntlet compare before after --metric food_delivered --svg boxes.svg)");
+}
+
+}  // namespace gauntlet

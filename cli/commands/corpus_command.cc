@@ -1,0 +1,264 @@
+// gauntlet corpus add: keep cases that break a controller, for `gauntlet check`.
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "analysis/figures/run/run_figure.h"
+#include "base/shell_quoted.h"
+#include "base/system/atomic_file.h"
+#include "cli/commands.h"
+#include "cli/corpus_experiment.h"
+#include "cli/options/options.h"
+#include "cli/output/output_file.h"
+#include "report/figures/replayed_figure.h"
+#include "search/cases/case_file.h"
+#include "search/search_setup.h"
+#include "study/questions/confirmations.h"
+#include "study/questions/smallest_layouts.h"
+
+namespace gauntlet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostPictureBytes = 64U << 20;  // of a picture
+
+struct CorpusOptions {
+  std::string action;
+  std::string directory;
+  std::vector<std::string> cases;
+  std::string corpus;
+  std::string name;
+};
+
+// A case that is to be kept.
+struct Keepsake {
+  CorpusCase content;
+  std::string picture;               // SVG
+  std::vector<std::string> plugins;  // those that bring scenario and controller, by their SHA-256
+};
+
+// By their SHA-256, each once; none where all is built in.
+std::vector<std::string> PluginsOf(const Experiment& experiment) {
+  std::set<std::string> hashes = {experiment.plugin, experiment.scenario_plugin};
+  hashes.erase("");
+  return {hashes.begin(), hashes.end()};
+}
+
+// The picture that `minimise` has drawn beside a case's file.
+Result<std::string> PictureBeside(const std::string& file) {
+  return ReadSmallFile(fs::path(file).replace_extension(".svg").string(), kMostPictureBytes);
+}
+
+Status CheckFails(const std::string& what, const proto::CaseFailures& found) {
+  if (found.runs > 0 && 2 * found.failures >= found.runs) return Ok{};
+  return InvalidInput(
+      fmt::format("{} failed in {} of {} runs with fresh seeds: a corpus keeps what fails in at "
+                  "least half",
+                  what, found.failures, found.runs));
+}
+
+// A case that was made out of another one, or any other file.
+Result<Keepsake> KeepsakeOfFile(const CorpusOptions& options, const std::string& file,
+                                const Experiment& experiment) {
+  Result<LoadedCase> loaded = LoadCase(file);
+  if (!loaded) return loaded.error();
+  if (!loaded->lineage) {
+    return InvalidInput(
+        fmt::format("{}: nothing in it says how often it fails. Name the run that it comes from, or a file "
+                    "that `gauntlet "
+                    "minimise` has made",
+                    file));
+  }
+  Keepsake kept;
+  kept.content.found = loaded->lineage->verified;
+  if (const Status fails = CheckFails(file, kept.content.found); !fails) return fails.error();
+  kept.content.found_in =
+      fmt::format("{} of {}, by {}", loaded->lineage->parent.name, experiment.name, loaded->lineage->made_by);
+  kept.content.settings = SettingsOf(experiment);
+  kept.plugins = PluginsOf(experiment);
+  kept.content.document = {std::move(loaded->test_case), std::move(loaded->lineage)};
+  Result<std::string> picture = PictureBeside(file);
+  if (!picture) return picture.error();
+  kept.picture = *std::move(picture);
+  kept.content.name = options.name.empty() ? fs::path(file).stem().string() : options.name;
+  return kept;
+}
+
+// What is left of the run's case, whose clone may have been minimised as another run's.
+std::vector<SmallestLayout>::const_iterator LeftOf(const std::vector<SmallestLayout>& layouts,
+                                                   const QuestionedCampaign& questioned, RunId run) {
+  const auto own = std::ranges::find(layouts, run, &SmallestLayout::run);
+  if (own != layouts.end() || questioned.plans.size() > 1) return own;  // clones in other searches are others
+  const std::uint64_t test_case = CaseHash(questioned.cases.front().test_case);
+  return std::ranges::find_if(layouts, [test_case](const SmallestLayout& one) {
+    return CaseHash(one.document.lineage->parent) == test_case;
+  });
+}
+
+Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& options, RunId run) {
+  Result<QuestionedCampaign> questioned = CasesOfRuns(options.directory, {run});
+  if (!questioned) return questioned.error();
+  CaseInQuestion& one = questioned->cases.front();
+  const Experiment& experiment = questioned->plans[one.search].experiment;
+  const Result<std::vector<SmallestLayout>> smallest = ReadSmallestLayouts(options.directory);
+  if (!smallest) return smallest.error();
+  if (const auto left = LeftOf(*smallest, *questioned, run); left != smallest->end()) {
+    Result<Keepsake> kept = KeepsakeOfFile(options, left->file, experiment);
+    if (kept && options.name.empty()) kept->content.name = fmt::format("run-{}", run);
+    return kept;
+  }
+
+  const Result<std::vector<Confirmation>> known = ReadConfirmations(options.directory);
+  if (!known) return known.error();
+  const auto confirmed =
+      std::ranges::find(*known, ConfirmationKey(experiment, one.test_case), &Confirmation::key);
+  if (confirmed == known->end()) {
+    return InvalidInput(
+        fmt::format("run {} was not simulated again with fresh seeds: `{} confirm {} {}` does it", run,
+                    context.program, PastedPath(options.directory), run));
+  }
+  Keepsake kept;
+  kept.content.found = {confirmed->tally.failures,
+                        confirmed->tally.runs(),
+                        {confirmed->interval.low, confirmed->interval.high}};
+  if (const Status fails = CheckFails(fmt::format("run {}", run), kept.content.found); !fails)
+    return fails.error();
+  const Result<CampaignReplay> replay =
+      context.campaigns.Replay(confirmed->example->campaign, confirmed->example->run, /*scratch=*/"");
+  if (!replay) return replay.error();
+  kept.picture = analysis::DrawRun(FigureOf(experiment.name, replay->report));
+  kept.content.found_in = fmt::format("run {} of {}", run, experiment.name);
+  kept.content.settings = SettingsOf(experiment);
+  kept.plugins = PluginsOf(experiment);
+  kept.content.document = {std::move(one.test_case)};
+  kept.content.name = options.name.empty() ? fmt::format("run-{}", run) : options.name;
+  return kept;
+}
+
+Result<Keepsake> KeepsakeOf(CommandContext& context, const CorpusOptions& options, const std::string& text) {
+  if (std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; })) {
+    const Result<std::uint64_t> run = ParseRunId(text);
+    if (!run) return run.error();
+    return KeepsakeOfRun(context, options, *run);
+  }
+  const Result<QuestionedCampaign> questioned = CasesOfRuns(options.directory, {});
+  if (!questioned) return questioned.error();
+  if (questioned->plans.size() > 1) {
+    return InvalidInput(fmt::format(
+        "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
+        options.directory, questioned->plans.size(), text));
+  }
+  return KeepsakeOfFile(options, text, questioned->plans.front().experiment);
+}
+
+// What is there already, and what is to come, must make one corpus.
+Status CheckFits(const CorpusOptions& options, const std::vector<Keepsake>& kept) {
+  std::vector<CorpusEntry> all;
+  std::error_code none;
+  if (fs::exists(options.corpus, none) && !fs::is_empty(options.corpus, none)) {
+    Result<std::vector<CorpusEntry>> there = ReadCorpus(options.corpus);
+    if (!there) return there.error();
+    all = *std::move(there);
+  }
+  for (const Keepsake& one : kept) {
+    const std::string& name = one.content.name;
+    if (std::ranges::any_of(all, [&](const CorpusEntry& other) { return other.content.name == name; })) {
+      return InvalidInput(fmt::format("{} has a case called '{}' already: give this one another --name",
+                                      options.corpus, name));
+    }
+    for (const char* ending : {".json", ".svg"}) {
+      const std::string file = fmt::format("{}/{}{}", options.corpus, name, ending);
+      if (fs::exists(file, none))
+        return InvalidInput(fmt::format("{} exists already: give this case another --name", file));
+    }
+    for (const char* key : {"scenario", "controller"}) {
+      const std::string here = all.empty() ? "" : SettingOf(all.front().content, key);
+      const std::string its = SettingOf(one.content, key);
+      if (!all.empty() && here != its) {
+        return InvalidInput(fmt::format("{} holds cases of the {} '{}', '{}' is of '{}': --to another folder",
+                                        options.corpus, key, here, name, its));
+      }
+    }
+    all.push_back({fmt::format("{}/{}.json", options.corpus, name), one.content});
+    if (Result<CorpusCase> read = ParseCorpusCase(WriteCorpusCase(one.content), "--name " + name); !read)
+      return read.error();
+    if (const Result<Experiment> experiment = ExperimentOf(all.back(), {}, one.plugins); !experiment)
+      return experiment.error();
+  }
+  return Ok{};
+}
+
+ExitCode RunCorpus(CommandContext& context, const CorpusOptions& options) {
+  if (options.action != "add") {
+    return Fail(context,
+                InvalidInput(fmt::format("corpus {}: 'corpus add' is what there is", options.action)));
+  }
+  if (!options.name.empty() && options.cases.size() > 1)
+    return Fail(context, InvalidInput(fmt::format("--name {}: {} cases cannot have one name", options.name,
+                                                  options.cases.size())));
+  std::vector<Keepsake> kept;
+  for (auto text = options.cases.begin(); text != options.cases.end(); ++text) {
+    if (std::find(options.cases.begin(), text, *text) != text) continue;  // given twice
+    Result<Keepsake> one = KeepsakeOf(context, options, *text);
+    if (!one) return Fail(context, one.error());
+    kept.push_back(*std::move(one));
+  }
+  if (const Status fits = CheckFits(options, kept); !fits) return Fail(context, fits.error());
+  std::error_code error;
+  fs::create_directories(options.corpus, error);
+  if (error)
+    return Fail(context, Error{ErrorKind::kIo, fmt::format("{}: {}", options.corpus, error.message())});
+  for (const Keepsake& one : kept) {
+    const std::string path = fmt::format("{}/{}", options.corpus, one.content.name);
+    Status written = WriteOutputFile(path + ".svg", one.picture);
+    if (written) written = WriteOutputFile(path + ".json", WriteCorpusCase(one.content));
+    if (!written) return Fail(context, written.error());
+    context.out << fmt::format("{}.json  {} obstacles, failed in {} of {} fresh runs ({}); picture {}.svg\n",
+                               path, one.content.document.test_case.obstacles.size(),
+                               one.content.found.failures, one.content.found.runs, one.content.found_in,
+                               path);
+  }
+  const bool from_plugin =
+      std::ranges::any_of(kept, [](const Keepsake& one) { return !one.plugins.empty(); });
+  context.out << fmt::format("\nDoes the controller still fail? {} check {}{}\n", context.program,
+                             PastedPath(options.corpus), from_plugin ? " --plugin LIB.so" : "")
+              << std::flush;
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddCorpus(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("corpus", "'corpus add': keep cases that break a controller, for 'check'", RunCorpus);
+  command.add_option("ACTION", options.action, "add")->required();
+  AddDirectory(command, options.directory);
+  command
+      .add_option("CASE", options.cases, "runs of the campaign whose cases are meant, or files of 'minimise'")
+      ->required();
+  AddValue(command, "--to", "CORPUS", options.corpus, "the folder that keeps them; made when it is not there")
+      ->required();
+  AddValue(command, "--name", "NAME", options.name, "of the case and its files, instead of run-N");
+  command.footer(
+      R"(Keeps each case as one readable file, CORPUS/NAME.json, with its picture, CORPUS/NAME.svg: the layout, the
+controller and all settings, how often it failed with fresh seeds, and what 'gauntlet check' is to expect of it
+("fail", until the controller is mended). Where 'gauntlet minimise' has made the case smaller, what is left is
+kept, else the case as it is. A case must be confirmed: 'gauntlet confirm DIR RUN_ID' first, or 'minimise'.
+The folder is made to be kept under version control beside the controller.
+
+Examples:
+  gauntlet corpus add DIR 812 --to corpus
+  gauntlet corpus add DIR 812 817 --to corpus
+  gauntlet corpus add DIR my-minimised.json --to corpus --name jam-at-the-corner)");
+}
+
+}  // namespace gauntlet

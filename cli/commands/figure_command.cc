@@ -1,0 +1,174 @@
+// gauntlet figure: a campaign's figures for papers, with their data.
+#include <algorithm>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "base/printable.h"
+#include "base/shell_quoted.h"
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/output/output_file.h"
+#include "cli/output/table.h"
+#include "report/figures/archive_figure.h"
+#include "report/figures/campaign_figures.h"
+#include "report/figures/set_comparison.h"
+#include "report/figures/study_figures.h"
+#include "report/pages/study_pages.h"
+#include "study/study_campaigns.h"
+
+namespace gauntlet {
+namespace {
+
+struct FigureOptions {
+  std::string directory;
+  std::string name;
+  std::vector<std::string> others;
+  std::string svg;
+  std::string csv;
+};
+
+// "run-981" is about a run; 0 when the name is about none. Error: what stands behind the dash is no number.
+Result<RunId> RunOf(const std::string& name) {
+  for (const std::string prefix : {"run-", "motion-", "states-"}) {
+    if (name.starts_with(prefix)) return ParseRunId(name.substr(prefix.size()));
+  }
+  return RunId{0};
+}
+
+// Names of figures and their titles.
+using Listed = std::vector<std::pair<std::string, std::string>>;
+
+// Of every campaign, by what is said about them.
+Listed FiguresOfMore() {
+  return {{"comparison", "with --with SET: box plots of several sets of runs"},
+          {"run-ID", "of a run: everybody's way"},
+          {"motion-ID", "of a run: how the swarm moved, over time"},
+          {"states-ID", "of a run: what every robot did when (foraging, task-partitioning)"}};
+}
+
+std::string ListText(const Listed& listed) {
+  Table table({"name", "figure"});
+  for (const auto& [name, title] : listed) table.AddRow({name, title});
+  return table.ToText();
+}
+
+Error NoSuchFigure(const std::string& name, const Listed& listed) {
+  std::string known;
+  for (const auto& [one, title] : listed) known += (known.empty() ? "" : ", ") + one;
+  return InvalidInput(
+      fmt::format("there is no figure '{}'; there are: {}", Printable(name), known.empty() ? "none" : known));
+}
+
+// Writes what was asked for; the picture to stdout when nothing was.
+Status Write(CommandContext& context, const NamedFigure& figure, const FigureOptions& options) {
+  const std::pair<const std::string&, const std::function<std::string()>&> outputs[] = {
+      {options.svg, figure.svg}, {options.csv, figure.csv}};
+  for (const auto& [path, content] : outputs) {
+    if (path.empty()) continue;
+    if (Status written = WriteOutputFile(path, content()); !written) return written;
+    PrintMessage(context, fmt::format("wrote {}", path));
+  }
+  if (options.svg.empty() && options.csv.empty()) context.out << figure.svg() << std::flush;
+  return Ok{};
+}
+
+// Lists the figures, or writes the one that was asked for. `others`: that there are too, but not for this
+// name.
+ExitCode ListOrWrite(CommandContext& context, const FigureOptions& options,
+                     const std::vector<NamedFigure>& figures, const Listed& others) {
+  Listed listed;
+  for (const NamedFigure& figure : figures) listed.emplace_back(figure.name, figure.title);
+  listed.insert(listed.end(), others.begin(), others.end());
+  if (options.name.empty()) {
+    context.out << ListText(listed) << std::flush;
+    return kExitDone;
+  }
+  const auto figure = std::ranges::find(figures, options.name, &NamedFigure::name);
+  if (figure == figures.end()) return Fail(context, NoSuchFigure(options.name, listed));
+  if (const Status written = Write(context, *figure, options); !written)
+    return Fail(context, written.error());
+  return kExitDone;
+}
+
+ExitCode RunStudyFigure(CommandContext& context, const FigureOptions& options) {
+  const Result<StudyPages> study = GatherStudy(options.directory);
+  if (!study) return Fail(context, study.error());
+  if (!study->report) {
+    return Fail(context,
+                InvalidInput(fmt::format(
+                    "{0} holds a study that has not finished: 'gauntlet resume {0}' goes on; figures "
+                    "of its searches: 'gauntlet figure {0}/searches'",
+                    PastedPath(options.directory))));
+  }
+  return ListOrWrite(context, options, FiguresOf(*study->report), {});
+}
+
+// Of sets of runs, as `report` compares them.
+ExitCode RunComparisonFigure(CommandContext& context, const FigureOptions& options) {
+  std::vector<std::string> sets = {options.directory};
+  sets.insert(sets.end(), options.others.begin(), options.others.end());
+  const Result<SetComparisons> compared = CompareSets(sets);
+  if (!compared) return Fail(context, compared.error());
+  for (const std::string& note : compared->notes) PrintMessage(context, note);
+  if (compared->comparisons.size() != 1) {
+    return Fail(context, InvalidInput("these sets are not of one scenario: name at least two that are, the "
+                                      "first in place of DIR and each other one by --with"));
+  }
+  return ListOrWrite(context, options, {FigureOf(compared->comparisons.front())}, {});
+}
+
+ExitCode RunFigureCommand(CommandContext& context, const FigureOptions& options) {
+  if (!options.others.empty()) return RunComparisonFigure(context, options);
+  if (IsStudy(options.directory)) return RunStudyFigure(context, options);
+  if (options.name == "comparison") return RunComparisonFigure(context, options);
+  const Result<RunId> run = RunOf(options.name);
+  if (!run) return Fail(context, run.error());
+  const Result<CampaignFacts> facts = ReadFacts(options.directory);
+  if (!facts) return Fail(context, facts.error());
+  for (const std::string& note : facts->notes) PrintMessage(context, note);
+  std::vector<ShownRun> shown;
+  std::vector<NamedFigure> figures;
+  if (*run == 0) {
+    figures = FiguresOf(CoursesOf(*facts), MapsOf(*facts));
+    std::ranges::move(ArchiveFigures(*facts), std::back_inserter(figures));
+  } else {
+    Result<std::vector<ShownRun>> one = ShowRuns(*facts, {*run});
+    if (!one) return Fail(context, one.error());
+    shown = *std::move(one);
+    if (const std::string& trouble = shown.front().trouble; !trouble.empty()) {
+      PrintMessage(context, fmt::format("run {}: {}", *run, trouble));
+      return kExitNegative;
+    }
+    figures = FiguresOf(shown.front());
+  }
+  return ListOrWrite(context, options, figures, FiguresOfMore());
+}
+
+}  // namespace
+
+void AddFigure(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("figure", "a campaign's figures as SVG, and their data as CSV", RunFigureCommand);
+  AddDirectory(command, options.directory);
+  command.add_option("NAME", options.name, "which one; without it, they are listed");
+  AddValue(command, "--with", "SET", options.others,
+           "of the figure 'comparison': another set of runs, as 'compare' names them; repeatable");
+  AddValue(command, "-o,--svg", "F", options.svg, "where the picture goes; stdout when nothing is said");
+  AddValue(command, "--csv", "F", options.csv, "write the data that it shows");
+  command.footer(
+      R"(Figures of a whole campaign: progress (fitness and failures over the runs spent; searches that differ in
+their seed only are repeats of one another and are drawn with a band), failure-types, behaviour. Figures of
+a run simulate it again: exit 1 when it does not end as it was stored. Figures of a study: the box plots of
+each comparison; of a tuning: robustness, consistency. Of several sets of runs, DIR and those of --with: their
+box plots, comparison. The same figures stand in 'gauntlet report'.
+
+Examples:
+  gauntlet figure campaigns/flocking-20260131T120000Z
+  gauntlet figure DIR failure-types -o types.svg --csv types.csv
+  gauntlet figure DIR motion-812 -o motion.svg
+  gauntlet figure random:all comparison --with evolved:final -o boxes.svg --csv boxes.csv)");
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,113 @@
+// gauntlet import: ARGoS' files as case files.
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "base/printable.h"
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/output/output_file.h"
+#include "proto/case_json.h"
+#include "search/cases/case_file.h"
+
+namespace gauntlet {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImportOptions {
+  std::vector<std::string> files;
+  std::string out;
+  std::string directory;
+};
+
+Status CheckImportOptions(const ImportOptions& options) {
+  if (options.files.empty()) return InvalidInput("which files? gauntlet import FILE.argos... --dir DIR");
+  if (options.out.empty() == options.directory.empty())
+    return InvalidInput("where to? Either --out CASE.json, of one file, or --dir DIR, of any number");
+  if (!options.out.empty() && options.files.size() > 1)
+    return InvalidInput(
+        fmt::format("--out {}: {} files want a directory, --dir DIR", options.out, options.files.size()));
+  std::set<std::string> names;
+  for (const std::string& file : options.files) {
+    if (fs::path(file).extension() != ".argos" && fs::path(file).extension() != ".xml")
+      return InvalidInput(fmt::format("{}: only .argos (or .xml) files are imported", file));
+    if (!names.insert(fs::path(file).stem().string()).second)
+      return InvalidInput(fmt::format("{}: there is another file of that name, and both would become {}.json",
+                                      file, fs::path(file).stem().string()));
+  }
+  return Ok{};
+}
+
+struct CaseFile {
+  std::string name;
+  std::string text;
+};
+
+// All of them or none. What was changed and ignored is printed.
+Result<std::vector<CaseFile>> ReadCases(CommandContext& context, const std::vector<std::string>& files) {
+  std::vector<CaseFile> cases;
+  for (const std::string& file : files) {
+    const Result<LoadedCase> loaded = LoadCase(file);
+    if (!loaded) return loaded.error();
+    if (!loaded->notice.empty())
+      PrintMessage(context, Printable(fmt::format("{}: {}", file, loaded->notice)));
+    cases.push_back({fs::path(file).stem().string() + ".json", proto::WriteCaseJson(loaded->test_case)});
+  }
+  return cases;
+}
+
+Result<std::uint64_t> WriteCases(const std::vector<CaseFile>& cases, const std::string& directory) {
+  for (const CaseFile& one : cases) {
+    const Status written = WriteOutputFile(directory + "/" + one.name, one.text);
+    if (!written) return written.error();
+  }
+  return cases.size();
+}
+
+ExitCode RunImport(CommandContext& context, const ImportOptions& options) {
+  if (const Status checked = CheckImportOptions(options); !checked) return Fail(context, checked.error());
+  const Result<std::vector<CaseFile>> cases = ReadCases(context, options.files);
+  if (!cases) return Fail(context, cases.error());
+  if (!options.out.empty()) {
+    const Status written = WriteOutputFile(options.out, cases->front().text);
+    if (!written) return Fail(context, written.error());
+    PrintMessage(context, fmt::format("wrote {}", Printable(options.out)));
+    return kExitDone;
+  }
+  const Result<std::uint64_t> written = WriteOutputDirectory(
+      "--dir", options.directory, [&](const std::string& draft) { return WriteCases(*cases, draft); });
+  if (!written) return Fail(context, written.error());
+  PrintMessage(context, fmt::format("wrote {} case {} into {}", *written, *written == 1 ? "file" : "files",
+                                    Printable(options.directory)));
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddImport(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("import", "case files out of ARGoS' experiment files", RunImport);
+  command.add_option("FILE", options.files, "ARGoS3 experiment files (.argos)");
+  AddValue(command, "--dir", "DIR", options.directory,
+           "where to write: a new directory, a .json file for each");
+  AddValue(command, "--out", "CASE.json", options.out, "where to write a single one");
+  command.footer(
+      R"(Takes the arena, its boxes and walls, the foot-bots and where they start, each at its pose or in an area.
+Says of each file what it changed (movable boxes, boxes that are low) and ignored, by name: controllers, loop
+functions, lamps and the floor are the scenario's business here. Of a file that 'export' wrote, it gives the very
+case that was exported, with start poses. Seeds belong to runs, not to cases. When a file cannot be read, the
+message names the place in it, and nothing is written.
+
+Examples:
+  gauntlet import env1.argos --out env1.json && gauntlet evaluate flocking --case env1.json --replicates 20
+  gauntlet import argos-cases/*.argos --dir cases
+  gauntlet evaluate flocking --case env1.argos    # without a file in between)");
+}
+
+}  // namespace gauntlet

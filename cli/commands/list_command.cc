@@ -1,0 +1,349 @@
+// gauntlet list: what can be named, and every parameter with unit, default and range.
+#include <algorithm>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/shell_quoted.h"
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/output/table.h"
+#include "controllers/registry.h"
+#include "master/directory/plugins.h"
+#include "proto/json_text.h"
+#include "search/experiment/definition_table.h"
+#include "search/experiment/experiment_file.h"
+#include "search/experiment/schema.h"
+#include "search/search_table.h"
+
+namespace gauntlet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kTextWidth = 110;
+
+struct ListOptions {
+  std::string section;  // the name of one of kSections, "" = all
+  bool json = false;
+  std::vector<std::string> plugins;  // libraries: what they bring, and nothing else
+};
+
+// What the search reads, keys of searches first.
+std::vector<Key> KeysOf(const SearchInfo& search) {
+  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  std::erase_if(keys, [&](const Key& key) { return !Reads(search, key.path); });
+  std::stable_partition(keys.begin(), keys.end(),
+                        [](const Key& key) { return key.path.starts_with("search."); });
+  return keys;
+}
+
+std::vector<Key> DisturbanceKeys() {
+  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  std::erase_if(keys, std::not_fn(IsDisturbance));
+  return keys;
+}
+
+std::string Number(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+std::string RangeOf(double min, double max) {
+  return fmt::format("{} to {}", Number(min), Number(max));
+}
+
+std::string RangeOf(const Key& key) {
+  if (key.type == KeyType::kChoice) return "a choice";
+  if (key.type == KeyType::kFlag) return "true, false";
+  if (key.type == KeyType::kText) return "text";
+  return RangeOf(key.min, key.max);
+}
+
+std::string DescriptionOf(const Key& key) {
+  if (key.type != KeyType::kChoice) return key.description;
+  return fmt::format("{} ({})", fmt::join(key.choices, " | "), key.description);
+}
+
+std::string DefaultOf(const Key& key) {
+  const auto* text = std::get_if<std::string>(&key.default_value);
+  return text != nullptr ? *text : ToToml(key.default_value);
+}
+
+Table NewParameterTable() {
+  return Table({"parameter", ">default", "unit", "range", ""});
+}
+
+std::string ParameterTable(std::span<const controllers::ParameterInfo> parameters) {
+  Table table = NewParameterTable();
+  for (const controllers::ParameterInfo& info : parameters) {
+    table.AddRow({std::string(info.name), Number(info.default_value), std::string(info.unit),
+                  RangeOf(info.min, info.max), std::string(info.description)});
+  }
+  return table.ToText(4);
+}
+
+std::string KeyTable(const std::vector<Key>& keys, std::size_t indent) {
+  Table table = NewParameterTable();
+  for (const Key& key : keys)
+    table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
+  return table.ToText(indent);
+}
+
+// What an experiment may define of a scenario that is defined by it.
+std::string DefinitionText() {
+  return "\n" + KeyTable(DefinitionKeys(), 4) +
+         "\n    Formulas are over the metrics below. Of light, ground, source and nest there may be "
+         "several:\n"
+         "    generic.light.2.x, or in a file one [[generic.light]] after the other.\n";
+}
+
+std::string MetricTable(std::span<const controllers::MetricInfo> metrics) {
+  Table table({"metric", "unit", ""});
+  for (const controllers::MetricInfo& info : metrics) {
+    table.AddRow(
+        {std::string(info.name), std::string(info.unit),
+         fmt::format("{}{}{}", info.description, info.none ? fmt::format("; {} = none", *info.none) : "",
+                     info.descriptor ? "; describes behaviour" : "")});
+  }
+  return table.ToText(4);
+}
+
+std::string FailureTable(std::span<const controllers::FailureType> failures) {
+  if (failures.empty()) return {};
+  Table table({">failure type", ""});
+  for (const controllers::FailureType& failure : failures) {
+    table.AddRow({fmt::format("{}", failure.type), failure.name});
+  }
+  return "\n" + table.ToText(4);
+}
+
+std::string ExperimentsText() {
+  Table table({"", ""});
+  for (const ShippedExperiment& shipped : ListExperiments(BuiltInCatalogue())) {
+    table.AddRow({shipped.name, shipped.error.empty() ? shipped.description : "ERROR: " + shipped.error});
+  }
+  return "Experiments (gauntlet evolve NAME)\n" + table.ToText();
+}
+
+std::string RowsText(std::span<const controllers::ScenarioInfo> rows) {
+  std::string text;
+  for (const controllers::ScenarioInfo& scenario : rows) {
+    text +=
+        "\n  " + Wrapped(fmt::format("{}: {}", scenario.name, scenario.description), kTextWidth, 4) + "\n";
+    text += fmt::format("    controller unless another is named: {}\n\n", scenario.default_controller);
+    text += ParameterTable(scenario.parameters) + (scenario.check_definition ? DefinitionText() : "") + "\n" +
+            MetricTable(scenario.metrics) + FailureTable(scenario.failure_types);
+  }
+  return text;
+}
+
+std::string ScenariosText() {
+  return "Scenarios (--set scenario=NAME, --set scenario_parameters.PARAMETER=VALUE)\n" +
+         RowsText(controllers::Scenarios());
+}
+
+std::string RowsText(std::span<const controllers::ControllerInfo> rows) {
+  std::string text;
+  for (const controllers::ControllerInfo& controller : rows) {
+    text += "\n  " + Wrapped(fmt::format("{}: {}", controller.name, controller.description), kTextWidth, 4) +
+            "\n";
+    text += controller.scenario == controllers::kAnyScenario
+                ? "    written for any scenario\n\n"
+                : fmt::format("    written for the scenario {}\n\n", controller.scenario);
+    text += ParameterTable(controller.parameters);
+  }
+  return text;
+}
+
+std::string ControllersText() {
+  return "Controllers (--set controller=NAME, --set controller_parameters.PARAMETER=VALUE)\n" +
+         RowsText(controllers::Controllers());
+}
+
+std::string PluginText(const controllers::PluginInfo& plugin) {
+  std::string text;
+  const auto add = [&](std::string_view what, std::string_view key, const std::string& rows) {
+    if (rows.empty()) return;
+    text += fmt::format("{}{} of {} (--plugin {} --set {}=NAME), SHA-256 {}\n", text.empty() ? "" : "\n",
+                        what, plugin.file, PastedPath(plugin.file), key, plugin.hash) +
+            rows;
+  };
+  add("Scenarios", "scenario", RowsText(plugin.scenarios));
+  add("Controllers", "controller", RowsText(plugin.controllers));
+  return text;
+}
+
+std::string SearchesText() {
+  std::string text = "Searches (--set search.algorithm=NAME, --set PARAMETER=VALUE)\n";
+  for (const SearchInfo& search : BuiltInCatalogue().searches) {
+    text += fmt::format("\n  {}: {}\n\n", search.name, search.description);
+    text += KeyTable(KeysOf(search), 4);
+  }
+  return text;
+}
+
+std::string DisturbancesText() {
+  return "Disturbances (--set PARAMETER=VALUE on any experiment)\n\n" + KeyTable(DisturbanceKeys(), 2);
+}
+
+// What `to_json` makes of each item.
+template <typename Items>
+Json JsonOf(const Items& items, const auto& to_json) {
+  Json list = Json::array();
+  for (const auto& item : items) list.push_back(to_json(item));
+  return list;
+}
+
+Json ParameterJson(const controllers::ParameterInfo& info) {
+  return {{"name", info.name},
+          {"type", info.unit == "bool" ? "flag"
+                   : info.integer      ? "integer"
+                                       : "number"},
+          {"unit", info.unit == "bool" ? "" : info.unit},
+          {"default", info.default_value},
+          {"min", info.min},
+          {"max", info.max},
+          {"description", info.description}};
+}
+
+Json MetricJson(const controllers::MetricInfo& info) {
+  return {{"name", info.name},
+          {"unit", info.unit},
+          {"none", info.none ? Json(*info.none) : Json()},
+          {"descriptor", info.descriptor},
+          {"description", info.description}};
+}
+
+Json FailureJson(const controllers::FailureType& failure) {
+  return {{"type", failure.type}, {"name", failure.name}};
+}
+
+Json KeyJson(const Key& key) {
+  Json json = {{"name", key.path}, {"type", NameOf(key.type)}, {"unit", key.unit}};
+  std::visit(
+      [&](const auto& value) {
+        // Seeds are strings: readers of JSON lose digits of numbers above 2^53.
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::uint64_t>) {
+          json["default"] = fmt::format("{}", value);
+        } else {
+          json["default"] = value;
+        }
+      },
+      key.default_value);
+  if (key.type == KeyType::kChoice) {
+    json["choices"] = key.choices;
+  } else if (key.type == KeyType::kInteger || key.type == KeyType::kNumber) {
+    json["min"] = key.min;
+    json["max"] = key.max;
+  }
+  json["description"] = key.description;
+  return json;
+}
+
+Json ExperimentJson(const ShippedExperiment& shipped) {
+  return {{"name", shipped.name},          {"description", shipped.description},
+          {"scenario", shipped.scenario},  {"controller", shipped.controller},
+          {"path", shipped.path.string()}, {"error", shipped.error.empty() ? Json() : Json(shipped.error)}};
+}
+
+Json ScenarioJson(const controllers::ScenarioInfo& scenario) {
+  return {{"name", scenario.name},
+          {"description", scenario.description},
+          {"default_controller", scenario.default_controller},
+          {"parameters", JsonOf(scenario.parameters, ParameterJson)},
+          {"time_limit", scenario.time_limit},
+          {"metrics", JsonOf(scenario.metrics, MetricJson)},
+          {"failure_types", JsonOf(scenario.failure_types, FailureJson)}};
+}
+
+Json ControllerJson(const controllers::ControllerInfo& controller) {
+  return {{"name", controller.name},
+          {"description", controller.description},
+          {"scenario", controller.scenario},
+          {"parameters", JsonOf(controller.parameters, ParameterJson)}};
+}
+
+Json PluginJson(const controllers::PluginInfo& plugin) {
+  return {{"file", plugin.file},
+          {"sha256", plugin.hash},
+          {"scenarios", JsonOf(plugin.scenarios, ScenarioJson)},
+          {"controllers", JsonOf(plugin.controllers, ControllerJson)}};
+}
+
+Json SearchJson(const SearchInfo& search) {
+  return {{"name", search.name},
+          {"description", search.description},
+          {"parameters", JsonOf(KeysOf(search), KeyJson)}};
+}
+
+struct Section {
+  const char* name;
+  std::string (*text)();
+  Json (*json)();
+};
+constexpr Section kSections[] = {
+    {"experiments", ExperimentsText,
+     [] { return JsonOf(ListExperiments(BuiltInCatalogue()), ExperimentJson); }},
+    {"scenarios", ScenariosText, [] { return JsonOf(controllers::Scenarios(), ScenarioJson); }},
+    {"controllers", ControllersText, [] { return JsonOf(controllers::Controllers(), ControllerJson); }},
+    {"searches", SearchesText, [] { return JsonOf(BuiltInCatalogue().searches, SearchJson); }},
+    {"disturbances", DisturbancesText, [] { return JsonOf(DisturbanceKeys(), KeyJson); }}};
+
+ExitCode ListPlugins(CommandContext& context, const ListOptions& options) {
+  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.plugins);
+  if (!plugins) return Fail(context, plugins.error());
+  std::string text;
+  Json json = Json::array();
+  for (const std::string& hash : *plugins) {
+    const controllers::PluginInfo& plugin = *controllers::FindPlugin(hash);
+    text += (text.empty() ? "" : "\n") + PluginText(plugin);
+    json.push_back(PluginJson(plugin));
+  }
+  context.out << (options.json ? JsonText({{"plugins", std::move(json)}}) : text) << std::flush;
+  return kExitDone;
+}
+
+ExitCode RunList(CommandContext& context, const ListOptions& options) {
+  if (!options.plugins.empty()) return ListPlugins(context, options);
+  std::string text;
+  Json json = Json::object();
+  for (const Section& section : kSections) {
+    if (!options.section.empty() && section.name != options.section) continue;
+    if (options.json) {
+      json[section.name] = section.json();
+    } else {
+      text += (text.empty() ? "" : "\n") + section.text();
+    }
+  }
+  if (options.json) text = JsonText(json);
+  context.out << text << std::flush;
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddList(CommandParser& parser) {
+  const auto [command, options] = parser.Add(
+      "list", "experiments, scenarios, controllers, searches, disturbances; all parameters", RunList);
+  std::vector<std::string> names;
+  for (const Section& section : kSections) names.emplace_back(section.name);
+  auto* section =
+      command
+          .add_option("SECTION", options.section,
+                      "experiments, scenarios, controllers, searches or disturbances (default: all)")
+          ->check(CLI::IsMember(names));
+  AddValue(command, "--plugin", "LIB.so", options.plugins, "what this library of yours brings, instead");
+  command.get_option("--plugin")->excludes(section);
+  command.add_flag("--json", options.json, "as one JSON document");
+  command.footer(R"(Examples:
+  gauntlet list experiments
+  gauntlet list --plugin build/libmine.so
+  gauntlet list controllers --json | jq '.controllers[].name')");
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,121 @@
+// gauntlet master: a search whose workers come from elsewhere.
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "cli/options/stop_signal.h"
+#include "cli/run_campaign.h"
+#include "master/directory/campaign_ownership.h"
+#include "report/tables/search_columns.h"
+#include "search/search_table.h"
+
+namespace gauntlet {
+namespace {
+
+struct MasterOptions {
+  ExperimentOptions experiment;
+  SizeOptions size;
+  ServingOptions serving;
+  BindOptions bind;
+  bool resume = false;
+};
+
+// Which typed settings the campaign has to be made longer for ("key=value"). Error: one that it was not begun
+// with, and that nothing can change any more.
+Result<std::vector<std::string>> LengthsToChange(const MasterOptions& options, const Experiment& experiment,
+                                                 const std::vector<std::string>& typed) {
+  const std::string& dir = options.experiment.directory;
+  const Result<CampaignView> view = ViewCampaign(dir, Checked::kTotals);
+  if (!view) return view.error();
+  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(view->directory);
+  if (!plans) return plans.error();
+  const SearchPlan& begun = plans->front();
+  const auto refuse = [&](const std::string& what) {
+    return InvalidInput(
+        fmt::format("--resume: {} was not begun with {}; only its length may change: leave that out, "
+                    "or name another --dir",
+                    dir, what));
+  };
+  if (!options.experiment.seed.empty() && experiment.seed != begun.experiment.seed)
+    return refuse("--seed " + options.experiment.seed);
+  const SearchColumns differing({begun, {"", experiment, {}}});
+  std::vector<std::string> lengths;
+  for (const std::string& set : typed) {
+    const std::string key = set.substr(0, set.find('='));
+    if (std::ranges::count(differing.columns(), key, &Column::name) == 0) continue;
+    if (key != RowOf(begun.experiment).info.length) return refuse(set);
+    lengths.push_back(set);
+  }
+  return lengths;
+}
+
+// The campaign goes on as the options say, or not at all.
+Status Obey(CommandContext& context, const MasterOptions& options, const Experiment& experiment) {
+  const std::vector<ExtraSet> extra = SetsOf(options.size);
+  const Result<std::vector<std::string>> typed = JoinSets(options.experiment.sets, extra);
+  if (!typed) return typed.error();
+  if (typed->empty() && options.experiment.seed.empty()) return Ok{};
+  const Result<std::vector<std::string>> lengths = LengthsToChange(options, experiment, *typed);
+  if (!lengths) return lengths.error();
+  if (lengths->empty()) return Ok{};
+  const std::string& dir = options.experiment.directory;
+  const Result<std::string> change = context.campaigns.Extend(dir, *lengths, StopSignal::Requested);
+  if (!change) return AsTyped(change.error(), extra);
+  if (!options.serving.quiet) PrintMessage(context, fmt::format("{} goes on: {}", dir, *change));
+  return Ok{};
+}
+
+ExitCode RunMaster(CommandContext& context, const MasterOptions& options) {
+  const std::string& wanted = options.experiment.directory;
+  if (options.resume && wanted.empty())
+    return Fail(context, InvalidInput("--resume needs --dir: which campaign is to go on?"));
+  const Result<Experiment> experiment = LoadExperimentWith(options.experiment, SetsOf(options.size));
+  if (!experiment) return Fail(context, experiment.error());
+  std::error_code ignored;
+  const bool goes_on = options.resume && std::filesystem::exists(wanted + "/campaign.db", ignored);
+  const Result<std::string> directory =
+      goes_on ? Result<std::string>(wanted) : NewDirectory(wanted, *experiment);
+  if (!directory) return Fail(context, directory.error());
+
+  CampaignRun campaign;
+  campaign.directory = *directory;
+  campaign.session.workers = 0;
+  campaign.serving = options.serving;
+  campaign.bind = options.bind;
+  campaign.run = [&](const SessionOptions& session) -> Result<SessionReport> {
+    if (!goes_on) return context.campaigns.Start(*directory, {{"", *experiment}}, session);
+    if (Status obeyed = Obey(context, options, *experiment); !obeyed) return obeyed.error();
+    return context.campaigns.Resume(*directory, session);
+  };
+  return RunCampaign(context, campaign);
+}
+
+}  // namespace
+
+void AddMaster(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("master", "a search whose workers come from elsewhere", RunMaster);
+  AddExperimentOptions(command, options.experiment);
+  AddSizeOptions(command, options.size);
+  AddServingOptions(command, options.serving);
+  AddBindOptions(command, options.bind);
+  command.get_option("--bind")->required();
+  command.add_flag(
+      "--resume", options.resume,
+      "go on with the campaign in --dir when there is one; of its settings, only its length may be other");
+  command.footer(
+      R"(Evolves like 'evolve', but starts no workers: they find the master through access.json in the campaign's
+directory ('gauntlet-worker --dir DIR' on any machine that sees it). Everything is encrypted, and only workers
+with the keys in access.json are let in, on loopback too (unless --insecure). Ctrl-C or SIGTERM
+stops the master alone (exit 3): workers finish, keep their results and wait 10 minutes for a successor.
+'gauntlet stop DIR' lets the workers go too.
+
+Examples:
+  gauntlet master flocking --bind 'tcp://0.0.0.0:*' --dir /shared/flocking-1
+  gauntlet master flocking --bind 'tcp://0.0.0.0:*' --dir /shared/flocking-1 --resume)");
+}
+
+}  // namespace gauntlet

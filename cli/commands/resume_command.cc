@@ -1,0 +1,198 @@
+// gauntlet resume: go on with a campaign.
+#include <algorithm>
+#include <cstdlib>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "base/shell_quoted.h"
+#include "cli/commands.h"
+#include "cli/options/stop_signal.h"
+#include "cli/run_campaign.h"
+#include "cli/study_run.h"
+#include "cli/submitted_campaign.h"
+#include "study/study_campaigns.h"
+
+namespace gauntlet {
+namespace {
+
+struct ResumeOptions {
+  std::string directory;
+  std::string generations;
+  std::vector<std::string> sets;
+  RunningOptions running;
+  BindOptions bind;
+  bool as_job = false;
+};
+
+// Makes the campaign longer, if that is wanted.
+Status Extend(CommandContext& context, const ResumeOptions& options) {
+  std::vector<ExtraSet> extra;
+  if (!options.generations.empty())
+    extra.push_back({"--generations", "search.generations", options.generations});
+  const Result<std::vector<std::string>> sets = JoinSets(options.sets, extra);
+  if (!sets) return sets.error();
+  if (sets->empty()) return Ok{};
+  const Result<std::string> change =
+      context.campaigns.Extend(options.directory, *sets, StopSignal::Requested);
+  if (!change) return AsTyped(change.error(), extra);
+  if (options.running.quiet) return Ok{};
+  PrintMessage(context, change->empty() ? fmt::format("{} is that long already", options.directory)
+                                        : fmt::format("{} goes on: {}", options.directory, *change));
+  return Ok{};
+}
+
+Status CheckNoMasterJob(CommandContext& context, const std::string& directory,
+                        const slurm::SlurmCampaign& campaign) {
+  const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*context.slurm());
+  if (!jobs) return jobs.error();
+  for (const slurm::JobStatus& job : *jobs) {
+    if (job.name != campaign.master_job_name()) continue;
+    return Error{ErrorKind::kInUse,
+                 fmt::format("job {} ({}) is the campaign's master already; see: {} status {}", job.id,
+                             job.state, context.program, PastedPath(directory))};
+  }
+  return Ok{};
+}
+
+std::string JobOfThisProcess() {
+  const char* job = std::getenv("SLURM_JOB_ID");
+  return job != nullptr ? job : "unknown";
+}
+
+// The master's job of a submitted campaign, handed to Slurm again unless it is there.
+ExitCode SubmitAgain(CommandContext& context, const ResumeOptions& options,
+                     const slurm::SlurmCampaign& campaign) {
+  const std::string& directory = options.directory;
+  const Result<CampaignSummary> summary = context.campaigns.Read(directory);
+  if (!summary) return Fail(context, summary.error());
+  if (summary->finished) {
+    const Status printed = PrintFinished(context, *summary, directory, options.running);
+    return printed ? kExitDone : Fail(context, printed.error());
+  }
+  if (Status free = CheckNoMasterJob(context, directory, campaign); !free) return Fail(context, free.error());
+  const Result<std::string> job = SubmitMasterJob(context, directory, campaign);
+  if (!job) return Fail(context, job.error());
+  context.out << fmt::format("{} goes on as job {}\n", directory, *job) << std::flush;
+  return kExitDone;
+}
+
+ExitCode ResumeSubmitted(CommandContext& context, const ResumeOptions& options,
+                         const slurm::SlurmCampaign& campaign) {
+  const Status extended = [&] {
+    const StopSignal handlers;
+    return Extend(context, options);
+  }();
+  if (!extended) {
+    const ExitCode code = Fail(context, extended.error());
+    return StopSignal::Requested() ? kExitStopped : code;
+  }
+  if (options.as_job)
+    return ServeSubmitted(context, options.running, options.directory, campaign, JobOfThisProcess());
+  if (campaign.settings().master == slurm::MasterPlace::kHere)
+    return ServeSubmitted(context, options.running, options.directory, campaign, "");
+  return SubmitAgain(context, options, campaign);
+}
+
+// Whether nothing is left to be simulated.
+Result<bool> IsSimulated(const Study& study, const std::string& directory) {
+  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+    if (std::ranges::count(study.parts, stage, &StageOf) == 0) continue;
+    const Result<StageState> state = LookAtStage(study, directory, stage);
+    if (!state) return state.error();
+    if (!state->finished) return false;
+  }
+  return true;
+}
+
+// A study's directory holds campaigns, of a length that its file says.
+ExitCode ResumeStudy(CommandContext& context, const ResumeOptions& options) {
+  const std::string& directory = options.directory;
+  if (!options.generations.empty() || !options.sets.empty() || !options.bind.endpoint.empty()) {
+    return Fail(context,
+                InvalidInput(fmt::format("{} holds a study: its file says how long its searches are, and "
+                                         "its workers are of this machine or of Slurm",
+                                         directory)));
+  }
+  const Result<Study> study = OpenStudy(directory);
+  if (!study) return Fail(context, study.error());
+  const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
+  if (!submitted) return Fail(context, submitted.error());
+  if (!submitted->has_value() && options.as_job)
+    return Fail(context, InvalidInput(fmt::format("--as-job: {} was not submitted to Slurm", directory)));
+  const Result<bool> simulated = IsSimulated(*study, directory);
+  if (!simulated) return Fail(context, simulated.error());
+  StudyRun run{directory, options.running, "", nullptr, ""};
+  if (!submitted->has_value() || !options.running.workers.empty() || *simulated)
+    return RunStudyIn(context, *study, run);
+  run.submitted = &**submitted;
+  if (options.as_job) {
+    run.batch_job = JobOfThisProcess();
+    return RunStudyIn(context, *study, run);
+  }
+  if ((*submitted)->settings().master == slurm::MasterPlace::kHere) return RunStudyIn(context, *study, run);
+  if (Status free = CheckNoMasterJob(context, directory, **submitted); !free)
+    return Fail(context, free.error());
+  return SubmitStudyJob(context, directory, **submitted, options.running.json);
+}
+
+ExitCode RunResume(CommandContext& context, const ResumeOptions& options) {
+  if (IsStudy(options.directory)) return ResumeStudy(context, options);
+  const bool bound = !options.bind.endpoint.empty();
+  if (!bound && options.running.workers.empty()) {
+    const Result<std::optional<slurm::SlurmCampaign>> submitted =
+        slurm::SlurmCampaign::Find(options.directory);
+    if (!submitted) return Fail(context, submitted.error());
+    if (submitted->has_value()) return ResumeSubmitted(context, options, **submitted);
+  }
+  if (options.as_job)
+    return Fail(context,
+                InvalidInput(fmt::format("--as-job: {} was not submitted to Slurm, or --workers or --bind "
+                                         "is given; use 'submit'",
+                                         options.directory)));
+  // With --bind workers come from elsewhere, unless some are asked for.
+  const bool none = bound && options.running.workers.empty();
+  const Result<int> workers = none ? Result<int>(0) : ParseWorkers(options.running.workers);
+  if (!workers) return Fail(context, workers.error());
+  CampaignRun campaign;
+  campaign.directory = options.directory;
+  campaign.session.workers = *workers;
+  campaign.serving = options.running;
+  campaign.bind = options.bind;
+  campaign.run = [&](const SessionOptions& session) -> Result<SessionReport> {
+    if (Status extended = Extend(context, options); !extended) return extended.error();
+    return context.campaigns.Resume(options.directory, session);
+  };
+  return RunCampaign(context, campaign);
+}
+
+}  // namespace
+
+void AddResume(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("resume", "go on with a campaign that was stopped or killed", RunResume);
+  AddDirectory(command, options.directory);
+  AddValue(command, "--generations", "G", options.generations, "short for --set search.generations=G");
+  AddValue(command, "--set", "KEY=VALUE", options.sets,
+           "make the campaign longer: a greater number for the key that says how long its search goes on "
+           "(search.generations, search.cases)");
+  AddRunningOptions(command, options.running);
+  AddBindOptions(command, options.bind);
+  command.add_flag(
+      "--as-job", options.as_job,
+      "for the master's job of a submitted campaign: replaces a twin, leaves workers to its successor");
+  command.footer(
+      R"(Goes on where the campaign was, whatever ended it; no finished run is simulated again, and the result
+is that of an undisturbed campaign. A finished campaign is only summarised, unless --generations or --set make
+it longer: it then ends as one that was that long from the start. All searches of a sweep become that long.
+
+With --bind, workers come from elsewhere, as with 'gauntlet master'. A campaign that was submitted to Slurm
+goes on there, unless --workers or --bind is given; jobs of it that are left are used.
+
+Examples:
+  gauntlet resume campaigns/flocking-20260131T120000Z --workers 4
+  gauntlet resume DIR --generations 80
+  gauntlet resume DIR --bind 'tcp://0.0.0.0:*')");
+}
+
+}  // namespace gauntlet

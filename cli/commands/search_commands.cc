@@ -1,0 +1,103 @@
+// gauntlet evolve and gauntlet random: a search on a pool of workers of this machine.
+#include <set>
+
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "cli/dry_run.h"
+#include "cli/options/sweep.h"
+#include "cli/run_campaign.h"
+#include "search/search_table.h"
+#include "study/questions/empty_arena.h"
+
+namespace gauntlet {
+namespace {
+
+struct SearchOptions : LocalOptions {
+  SweepOptions sweep;
+};
+
+struct RandomOptions : SearchOptions {
+  std::string cases;
+};
+
+// A search for the fewest obstacles that make a swarm fail needs one that does not fail without any.
+Status CheckEmptyArenas(const std::vector<SearchPlan>& searches) {
+  std::set<std::string> checked;  // controllers
+  for (const SearchPlan& search : searches) {
+    const Experiment& experiment = search.experiment;
+    if (RowOf(experiment).members != "elites" || !checked.insert(experiment.controller).second) continue;
+    if (Status sound = CheckEmptyArena(experiment); !sound) return sound;
+  }
+  return Ok{};
+}
+
+// Runs the experiment with `extra` settings, once or as a sweep.
+ExitCode RunSearches(CommandContext& context, const SearchOptions& options,
+                     const std::vector<ExtraSet>& extra) {
+  std::vector<ExtraSet> all = SetsOf(options.size);
+  all.insert(all.end(), extra.begin(), extra.end());
+  const Result<std::vector<SearchPlan>> searches = PlanSearches(options.experiment, all, options.sweep);
+  if (!searches) return Fail(context, searches.error());
+  if (const Status sound = CheckEmptyArenas(*searches); !sound) return Fail(context, sound.error());
+  Result<CampaignRun> campaign = LocalRun(*searches, options);
+  if (!campaign) return Fail(context, campaign.error());
+  if (options.dry_run) return PrintDryRun(context, *campaign, *searches);
+  campaign->run = [&](const SessionOptions& session) {
+    return context.campaigns.Start(campaign->directory, *searches, session);
+  };
+  return RunCampaign(context, *campaign);
+}
+
+ExitCode RunEvolve(CommandContext& context, const SearchOptions& options) {
+  return RunSearches(context, options, {});
+}
+
+ExitCode RunRandom(CommandContext& context, const RandomOptions& options) {
+  std::vector<ExtraSet> extra = {{"random", "search.algorithm", "random"}};
+  if (!options.cases.empty()) extra.push_back({"--cases", "search.cases", options.cases});
+  return RunSearches(context, options, extra);
+}
+
+}  // namespace
+
+void AddEvolve(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("evolve", "evolve test cases in which the swarm fails", RunEvolve);
+  AddLocalOptions(command, options, /*sizes=*/true);
+  AddSweepOptions(command, options.sweep);
+  command.footer(
+      R"(Evolves test cases with the experiment's search on a local pool of workers, shows progress, and ends
+with a table of the toughest cases. Ctrl-C stops cleanly (exit 3); 'gauntlet resume DIR' goes on.
+Same experiment, settings and seed: same result, whatever the number of workers.
+
+With --sweep and --seeds the campaign holds many searches, which share the workers, so that no core waits at a
+generation's end; each ends like 'evolve' with its --set and --seed. 'show' tells them apart.
+
+Examples:
+  gauntlet evolve flocking
+  gauntlet evolve flocking --generations 100 --workers 8 --dir campaigns/long
+  gauntlet evolve flocking --seed random --set search.crossover=uniform --json > result.json
+  gauntlet evolve flocking --seeds 1..10 --dry-run
+  gauntlet evolve flocking --sweep search.mutation_probability=0.02,0.05,0.1 --seeds 1..10
+  gauntlet evolve my-experiment.toml --set controller_parameters.bird_speed=0.1)");
+}
+
+void AddRandom(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("random", "random test cases: the baseline to hold an evolution against", RunRandom);
+  AddLocalOptions(command, options, /*sizes=*/false);
+  AddSweepOptions(command, options.sweep);
+  AddValue(command, "--cases", "N", options.cases,
+           "how many test cases (default: the experiment's search.cases)");
+  command.footer(
+      R"(Generates valid random test cases by the experiment's rules and simulates each once (more often with
+--set search.replicates=K). The population that 'show' reports are all cases.
+
+Examples:
+  gauntlet random flocking --cases 200
+  gauntlet random flocking --cases 1000 --seed 7 --dir campaigns/baseline
+  gauntlet random flocking --cases 100 --sweep scenario_parameters.birds=3,5,7)");
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,203 @@
+// gauntlet status: what a campaign does now; gauntlet watch: the same every second.
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/printable.h"
+#include "base/shell_quoted.h"
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/options/stop_signal.h"
+#include "cli/output/table.h"
+#include "proto/json_text.h"
+#include "slurm/slurm_campaign.h"
+
+namespace gauntlet {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kShownWorkers = 20;
+
+struct StatusOptions {
+  std::string directory;
+  bool json = false;
+};
+
+std::string Seconds(double seconds) {
+  return fmt::format("{:.1f} s", seconds);
+}
+
+std::string RunsOf(const Json& worker) {
+  std::string text;
+  for (const Json& run : worker["runs"]) {
+    const bool waits = run.value("state", "") == "waiting";  // behind those that run there
+    const auto attempt = run.value("attempt", std::uint64_t{1});
+    text += fmt::format("{}{} ({}{})", text.empty() ? "" : ", ", run["run"].get<std::uint64_t>(),
+                        waits ? "next" : Seconds(run["seconds"]),
+                        attempt > 1 ? fmt::format(", attempt {}", attempt) : "");
+  }
+  return text.empty() ? "-" : text;
+}
+
+// The jobs of a submitted campaign.
+std::string JobsText(const Json& status) {
+  const Json allocations = status.value("allocations", Json::array());
+  if (allocations.empty()) return "";
+  Table table({"job", "state", "reason", "node", ">workers"});
+  for (const Json& allocation : allocations) {
+    const std::string state = allocation["state"];
+    const std::string name = allocation.value("role", "");
+    table.AddRow({allocation["job"].get<std::string>() + (name.empty() ? "" : " " + name),
+                  state + (allocation["cancelled"] == true ? ", cancelled" : ""), allocation["reason"],
+                  allocation["nodes"], fmt::format("{}", allocation["workers"].get<std::uint64_t>())});
+  }
+  return "\n" + table.ToText();
+}
+
+// The master's sentences name no path, for the directory may be elsewhere for whoever reads them.
+std::string WithDirectory(std::string sentence, const std::string& directory) {
+  constexpr std::string_view kPlaceholder = " DIR`";
+  if (const std::size_t at = sentence.find(kPlaceholder); at != std::string::npos)
+    sentence.replace(at, kPlaceholder.size(), " " + PastedPath(directory) + "`");
+  return sentence;
+}
+
+std::string StatusText(const Json& status, const std::string& directory) {
+  const auto count = [&status](const char* key) { return status.value(key, std::uint64_t{0}); };
+  std::string text = fmt::format("{}: {}", directory, Printable(status.value("state", "unknown")));
+  if (const Json& master = status.value("master", Json()); master.is_object()) {
+    text += fmt::format(", master {} on {} (start number {}), {}", master["pid"].get<std::int64_t>(),
+                        Printable(master["host"].get<std::string>()), master["epoch"].get<std::uint64_t>(),
+                        master["encrypted"] == true ? "encrypted" : "plaintext");
+  }
+  text += "\n";
+  if (status.contains("runs_done")) {
+    text +=
+        fmt::format("generation {}/{}, {} runs done, {} running, {} waiting, {:.1f}/s\n", count("generation"),
+                    count("generations"), FormatCount(count("runs_done")), count("runs_running"),
+                    count("runs_queued") + count("runs_ahead"), status.value("runs_per_second", 0.0));
+  }
+  if (count("nondeterministic") > 0) {
+    text += fmt::format("NONDETERMINISTIC: {} runs ended differently on two workers, see log/master.log\n",
+                        count("nondeterministic"));
+  }
+  if (const std::uint64_t lone = count("verdicts_of_one_worker"); lone > 0) {
+    text += fmt::format(
+        "{} runs were given up on the word of one worker each: there was no other to ask, see "
+        "log/master.log\n",
+        FormatCount(lone));
+  }
+  if (const Json& why = status.value("why_nothing_runs", Json()); why.is_string())
+    text += "nothing runs: " + WithDirectory(Printable(why.get<std::string>()), directory) + "\n";
+  if (const Json& trouble = status.value("pool_trouble", Json());
+      trouble.is_string() && !status.value("why_nothing_runs", Json()).is_string())
+    text += "fewer workers than could be used: " + Printable(trouble.get<std::string>()) + "\n";
+  if (const double age = status.value("status_age_seconds", 0.0); age > 5.0)
+    text += fmt::format("the master has said nothing for {:.0f} s: frozen, or its disk is slow\n", age);
+  text += JobsText(status);
+  const Json& workers = status["worker_list"];
+  if (workers.empty()) return text;
+  for (const Json& worker : workers) {
+    if (const Json& reason = worker.value("quarantined", Json()); reason.is_string())
+      text += fmt::format("worker {} is quarantined: {}\n", Printable(worker["worker"].get<std::string>()),
+                          Printable(reason.get<std::string>()));
+  }
+  Table table({"worker", "state", ">heard", "runs"});
+  for (std::size_t i = 0; i < std::min(kShownWorkers, workers.size()); ++i) {
+    const Json& worker = workers[i];
+    table.AddRow({worker["worker"].get<std::string>(), worker["state"].get<std::string>(),
+                  Seconds(worker["silent_seconds"]), RunsOf(worker)});
+  }
+  text += "\n" + table.ToText();
+  if (workers.size() > kShownWorkers)
+    text += fmt::format("and {} more workers (all with --json)\n", workers.size() - kShownWorkers);
+  return text;
+}
+
+// What Slurm has of a campaign that no master serves.
+void AddJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, Json& status) {
+  const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*context.slurm());
+  if (!jobs) {
+    status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message);
+    return;
+  }
+  status["allocations"] = Json::array();
+  for (const slurm::JobStatus& job : *jobs) {
+    const bool master = job.name == campaign.master_job_name();
+    status["allocations"].push_back({{"job", job.id},
+                                     {"role", master ? "master" : "workers"},
+                                     {"state", job.state},
+                                     {"reason", job.reason},
+                                     {"nodes", job.nodes},
+                                     {"workers", 0},
+                                     {"cancelled", false}});
+    if (!master || status.value("state", "") == "finished") continue;
+    status["why_nothing_runs"] = fmt::format("job {}, which is to be the master, is {}{}", job.id, job.state,
+                                             job.reason.empty() ? "" : " (" + job.reason + ")");
+  }
+}
+
+// What a campaign does now, and the jobs of a submitted one that no master serves: for a person, or as one
+// JSON document.
+Result<std::string> CurrentStatus(CommandContext& context, const std::string& directory, bool json) {
+  Result<std::string> text = context.campaigns.ReadStatus(directory);
+  if (!text) return text;
+  Json status = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  if (!status.is_object()) return Error{ErrorKind::kCorrupt, "the status does not parse"};
+  const std::string state = status.value("state", "");
+  if (state == "stopped" || state == "finished") {
+    const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
+    // Somebody else's campaign may be looked at; whether Slurm has jobs of it is theirs to ask.
+    if (!submitted) status["pool_trouble"] = "Slurm was not asked: " + submitted.error().message;
+    if (submitted && submitted->has_value()) AddJobs(context, **submitted, status);
+    if (!submitted || submitted->has_value()) text = JsonText(status);
+  }
+  return json ? text : StatusText(status, directory);
+}
+
+ExitCode RunStatus(CommandContext& context, const StatusOptions& options) {
+  const Result<std::string> text = CurrentStatus(context, options.directory, options.json);
+  if (!text) return Fail(context, text.error());
+  context.out << *text << std::flush;
+  return kExitDone;
+}
+
+ExitCode RunWatch(CommandContext& context, const StatusOptions& options) {
+  constexpr int kMilliseconds = 1000;
+  const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
+  while (true) {
+    const Result<bool> lives = context.campaigns.MasterLives(options.directory);
+    if (!lives) return Fail(context, lives.error());
+    const Result<std::string> text = CurrentStatus(context, options.directory, /*json=*/false);
+    if (!text) return Fail(context, text.error());
+    // The screen is cleared on a terminal; elsewhere the states follow each other.
+    context.out << (context.out_is_terminal ? "\x1b[H\x1b[2J" : "") << *text << std::flush;
+    if (!*lives || StopSignal::ComesWithin(kMilliseconds)) return kExitDone;
+  }
+}
+
+}  // namespace
+
+void AddStatus(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("status", "what runs where, since when, and why nothing runs", RunStatus);
+  AddDirectory(command, options.directory);
+  command.add_flag("--json", options.json, "everything as one JSON document");
+  command.footer(
+      R"(Read from what the living master writes every second; without one, from what is stored. Of a submitted campaign
+it lists the jobs with Slurm's state and reason.
+
+Examples:
+  gauntlet status DIR
+  gauntlet status DIR --json | jq -r .why_nothing_runs)");
+}
+
+void AddWatch(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("watch", "the status every second, until the campaign's master ends", RunWatch);
+  AddDirectory(command, options.directory);
+  command.footer("Example:\n  gauntlet watch DIR");
+}
+
+}  // namespace gauntlet

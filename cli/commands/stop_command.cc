@@ -1,0 +1,101 @@
+// gauntlet stop: ends a campaign's master, its workers and its jobs.
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/options/stop_signal.h"
+#include "slurm/slurm_campaign.h"
+#include "study/study_campaigns.h"
+
+namespace gauntlet {
+namespace {
+
+struct StopOptions {
+  std::string directory;
+};
+
+// What Slurm still has of a campaign without a master. False when Slurm did not answer.
+bool CancelLeftovers(CommandContext& context, const std::string& directory) {
+  const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
+  if (submitted && !submitted->has_value()) return true;
+  const Result<std::vector<std::string>> cancelled =
+      submitted ? (*submitted)->CancelJobs(*context.slurm())
+                : Result<std::vector<std::string>>(submitted.error());
+  if (!cancelled) {
+    PrintMessage(context, fmt::format("{}{}; jobs of the campaign may be left: try again",
+                                      cancelled.error().message, slurm::NextStep(cancelled.error().message)));
+    return false;
+  }
+  if (!cancelled->empty())
+    PrintMessage(context, fmt::format("cancelled job{} {}", cancelled->size() == 1 ? "" : "s",
+                                      fmt::join(*cancelled, ", ")));
+  return true;
+}
+
+// Of a study the campaign that has a master, if any; else the directory itself.
+Result<std::string> ServedIn(CommandContext& context, const std::string& directory) {
+  if (!IsStudy(directory)) return directory;
+  std::string last = directory;
+  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+    const std::string campaign = CampaignOf(directory, stage);
+    std::error_code error;
+    if (!std::filesystem::exists(campaign, error)) continue;
+    const Result<bool> lives = context.campaigns.MasterLives(campaign);
+    if (!lives) return lives.error();
+    if (*lives) return campaign;
+    last = campaign;
+  }
+  return last;
+}
+
+// Returns when the master is gone.
+ExitCode StopCampaign(CommandContext& context, const StopOptions& options) {
+  constexpr int kPollMilliseconds = 100;
+  Result<bool> lives = context.campaigns.MasterLives(options.directory);
+  if (!lives) return Fail(context, lives.error());
+  if (!*lives) {
+    PrintMessage(context, fmt::format("no master serves {}: there is nothing to stop", options.directory));
+    return CancelLeftovers(context, options.directory) ? kExitDone : kExitUsage;
+  }
+  if (const Status asked = context.campaigns.RequestStop(options.directory); !asked)
+    return Fail(context, asked.error());
+  PrintMessage(context, "the master lets the runs that have begun end, then stops (Ctrl-C: wait no longer)");
+  const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
+  while (*lives) {
+    if (StopSignal::ComesWithin(kPollMilliseconds)) return kExitDone;
+    lives = context.campaigns.MasterLives(options.directory);
+    if (!lives) return Fail(context, lives.error());
+  }
+  const bool clean = CancelLeftovers(context, options.directory);
+  PrintMessage(context, "stopped");
+  return clean ? kExitDone : kExitUsage;
+}
+
+ExitCode RunStop(CommandContext& context, const StopOptions& options) {
+  const Result<std::string> served = ServedIn(context, options.directory);
+  if (!served) return Fail(context, served.error());
+  if (*served == options.directory) return StopCampaign(context, options);
+  const ExitCode code = StopCampaign(context, {*served});
+  // The master's job of a study belongs to the study.
+  return CancelLeftovers(context, options.directory) ? code : kExitUsage;
+}
+
+}  // namespace
+
+void AddStop(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("stop", "let a campaign end what has begun, and stop it", RunStop);
+  AddDirectory(command, options.directory);
+  command.footer(
+      R"(No more runs are given away; those that have begun end and are stored, workers leave, the master ends
+(exit 3). Returns when it is gone. Works from any machine that sees the directory. Of a submitted campaign
+all jobs are cancelled, and no others.
+
+Example:
+  gauntlet stop DIR)");
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,110 @@
+// gauntlet submit: a campaign whose master and workers are jobs of a Slurm cluster.
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/shell_quoted.h"
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/options/sweep.h"
+#include "cli/submitted_campaign.h"
+#include "master/session/bind_endpoint.h"
+#include "proto/json_text.h"
+#include "search/experiment/experiment_file.h"
+
+namespace gauntlet {
+namespace {
+
+struct SubmitOptions {
+  ExperimentOptions experiment;
+  SizeOptions size;
+  MessageOptions messages;
+  SweepOptions sweep;
+  SlurmOptions slurm;
+  bool dry_run = false;
+};
+
+// Hands the master's job to Slurm and says how to follow it.
+ExitCode SubmitAndReturn(CommandContext& context, const SubmitOptions& options, const std::string& directory,
+                         const slurm::SlurmCampaign& campaign) {
+  const Result<std::string> job = SubmitMasterJob(context, directory, campaign);
+  if (!job) return Fail(context, job.error());
+  if (options.messages.json) {
+    context.out << JsonText({{"directory", directory}, {"job", *job}});
+  } else {
+    context.out << fmt::format(
+        "{0}: job {1} is the master; its workers will be {2}w*\n\n  {3} status {4}\n  {3} stop {4}\n",
+        directory, *job, campaign.job_prefix(), context.program, PastedPath(directory));
+  }
+  context.out << std::flush;
+  return kExitDone;
+}
+
+ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
+  const Result<std::vector<SearchPlan>> searches =
+      PlanSearches(options.experiment, SetsOf(options.size), options.sweep);
+  if (!searches) return Fail(context, searches.error());
+  const Experiment& experiment = searches->front().experiment;
+  const Result<ExperimentText> text = ReadExperimentText(options.experiment.experiment);
+  if (!text) return Fail(context, text.error());
+  const Result<slurm::SlurmSettings> settings = ReadSlurmOptions(
+      options.slurm, slurm::SlurmSource{text->text, text->file_name, false}, experiment.name);
+  if (!settings) return Fail(context, settings.error());
+  const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
+  if (!directory) return Fail(context, directory.error());
+  const Result<slurm::SlurmCampaign> campaign = slurm::SlurmCampaign::Make(*settings, *directory);
+  if (!campaign) return Fail(context, campaign.error());
+
+  if (Status possible = TestJobs(context, *campaign, options.dry_run); !possible)
+    return Fail(context, possible.error());
+  if (options.dry_run) return kExitDone;
+  const bool as_job = settings->master == slurm::MasterPlace::kJob;
+  if (!as_job) {
+    if (const Status free = TryToListen(settings->bind); !free) return Fail(context, free.error());
+  }
+  const Status prepared =
+      context.campaigns.Prepare(*directory, *searches, slurm::WriteSlurmSettings(*settings));
+  if (!prepared) return Fail(context, prepared.error());
+  if (as_job) return SubmitAndReturn(context, options, *directory, *campaign);
+  if (!options.messages.quiet)
+    PrintMessage(context, fmt::format("{}: workers come from Slurm as {}w*; see: {} status {}", *directory,
+                                      campaign->job_prefix(), context.program, PastedPath(*directory)));
+  return ServeSubmitted(context, {options.messages, "", ""}, *directory, *campaign, "");
+}
+
+}  // namespace
+
+void AddSubmit(CommandParser& parser) {
+  const auto [command, options] = parser.Add("submit", "a search as jobs of a Slurm cluster", RunSubmit);
+  AddExperimentOptions(command, options.experiment);
+  AddSizeOptions(command, options.size);
+  AddMessageOptions(command, options.messages);
+  AddSlurmOptions(command, options.slurm);
+  AddSweepOptions(command, options.sweep);
+  command.add_flag("--dry-run", options.dry_run,
+                   "submit nothing: print the scripts and what sbatch --test-only says of them");
+  std::string settings;
+  for (const slurm::SlurmKeyInfo& key : slurm::SlurmKeys()) {
+    settings += fmt::format("  {:24}{}{}\n", key.name, key.description,
+                            key.default_value.empty() ? "" : fmt::format(" (default {})", key.default_value));
+  }
+  command.footer(
+      R"(Submits the master as a job and returns; the master submits workers as there is work for them, replaces those
+that are lost, and cancels them when the search has ended. The campaign's directory must be on a file system
+that the compute nodes share. Same experiment and seed: same result as with 'evolve'.
+
+With --sweep and --seeds the campaign holds many searches, which share one pool; each ends like 'evolve' with its
+--set and --seed. 'show' tells them apart.
+
+Settings for --slurm, also in the experiment's [slurm] table and in ~/.config/gauntlet/slurm.toml:
+)" + settings +
+      R"(
+Examples:
+  gauntlet submit flocking --dir $WORK/flocking-1 --slurm partition=short --slurm max_allocations=20
+  gauntlet submit flocking --dry-run
+  gauntlet submit flocking --sweep search.mutation_probability=0.02,0.05,0.1 --seeds 1..20
+  gauntlet submit flocking --master here --generations 100)");
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,89 @@
+// gauntlet tune: which values of a search's parameters are worth having, and how many repeats are enough.
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "cli/study_run.h"
+#include "master/directory/plugins.h"
+
+namespace gauntlet {
+namespace {
+
+struct TuneOptions {
+  std::string experiment;
+  std::string candidates;
+  std::string repeats;
+  std::vector<std::string> sets;
+  StudyStartOptions start;
+};
+
+constexpr const char* kCandidates = "tune-flocking";  // of experiments without a list of their own
+
+bool IsTuning(const Study& study) {
+  return std::ranges::any_of(study.analyses, [](const StudyAnalysis& one) { return one.tuning.has_value(); });
+}
+
+Result<Study> LoadTuning(const TuneOptions& options) {
+  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.start.plugins);
+  if (!plugins) return plugins.error();
+  const std::vector<std::string> shipped = ShippedStudies();
+  const std::string own = "tune-" + options.experiment;
+  if (options.candidates.empty() && std::ranges::count(shipped, own) > 0)
+    return LoadStudy(own, {"", options.repeats, options.sets}, *plugins);
+  std::string experiment = options.experiment;
+  // A file is found again by whoever goes on, from wherever that is.
+  std::error_code error;
+  const bool is_file = experiment.find('/') != std::string::npos || experiment.ends_with(".toml");
+  if (is_file) experiment = std::filesystem::absolute(experiment, error).string();
+  Result<Study> study = LoadStudy(options.candidates.empty() ? kCandidates : options.candidates,
+                                  {experiment, options.repeats, options.sets}, *plugins);
+  if (study && !IsTuning(*study)) {
+    return InvalidInput(fmt::format("--candidates {}: the study has no table [tune.NAME] with candidates",
+                                    options.candidates));
+  }
+  return study;
+}
+
+ExitCode RunTune(CommandContext& context, const TuneOptions& options) {
+  const Result<Study> study = LoadTuning(options);
+  if (!study) return Fail(context, study.error());
+  return StartStudy(context, *study, options.start);
+}
+
+}  // namespace
+
+void AddTune(CommandParser& parser) {
+  const auto [command, options] =
+      parser.Add("tune", "which values of a search's parameters find tougher cases?", RunTune);
+  command.add_option("EXPERIMENT", options.experiment, "the baseline: a shipped name, or a TOML file")
+      ->required();
+  AddValue(command, "--candidates", "STUDY", options.candidates,
+           "values to try: a shipped study or a TOML file with a table [tune.NAME] (default: tune-EXPERIMENT "
+           "where there is one, else tune-flocking)");
+  AddValue(command, "--repeats", "N", options.repeats,
+           "evolutions of every value, 1 to 100 (default: as the study says, 20 in the shipped ones)");
+  AddValue(command, "--set", "KEY=VALUE", options.sets, "change the baseline, as for 'evolve'; repeatable");
+  AddStudyStartOptions(command, options.start);
+  command.footer(
+      R"(Changes one parameter at a time while all others keep the experiment's values, and compares each value with
+the baseline by Vargha and Delaney's A (Spartan's robustness analysis). An evolution counts once: by the mean
+fitness of its final population, simulated again with fresh seeds. A value is recommended instead of the
+baseline's when A is large (0.71) and that is no matter of chance (p below 0.05 after Holm's correction).
+Consistency analysis says how many repeats are enough: it draws sets of evolutions with the same parameters
+and looks how far A strays between them.
+
+The shipped lists are those of H. Wei's thesis, Tables 4.1 and 5.1 (studies tune-flocking, tune-foraging). A
+tuning is a study: it shares the workers among all evolutions, leaves robustness.svg and consistency.svg in
+its directory, and goes on with the same command, or 'gauntlet resume DIR', whenever it was killed. 'gauntlet
+report DIR -o tuning.html' shows it in a browser.
+
+Examples:
+  gauntlet tune flocking --dry-run
+  gauntlet tune flocking --repeats 5 --dir campaigns/tuning
+  gauntlet tune my-experiment.toml --candidates my-candidates.toml --markdown tuning.md)");
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,65 @@
+// gauntlet ui: the pages of campaigns in a browser, live.
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "cli/commands.h"
+#include "cli/options/options.h"
+#include "cli/options/stop_signal.h"
+#include "report/ui/served_campaigns.h"
+#include "report/ui/web_access.h"
+#include "report/ui/web_server.h"
+
+namespace gauntlet {
+namespace {
+
+struct UiOptions {
+  std::vector<std::string> sets;
+  std::string port;
+};
+
+ExitCode RunUi(CommandContext& context, const UiOptions& options) {
+  const Result<int> port = ParsePort("--port", options.port);
+  if (!port) return Fail(context, port.error());
+  const Result<std::unique_ptr<ServedCampaigns>> served =
+      ServedCampaigns::Open(options.sets, context.campaigns);
+  if (!served) return Fail(context, served.error());
+  const StopSignal handlers(/*announced=*/false);
+  const std::string token = NewToken();
+  const Result<std::unique_ptr<WebServer>> server =
+      WebServer::Start(*port, [&campaigns = **served, &token](const WebRequest& request) {
+        const Admission admission = Admit(request, token);
+        return admission.refusal ? *admission.refusal : campaigns.Answer(admission.path);
+      });
+  if (!server) return Fail(context, server.error());
+  context.out << AddressOf((*server)->port(), token) << "\n" << std::flush;
+  PrintMessage(context, "open this address in a browser of this machine; Ctrl-C ends it");
+  constexpr int kMilliseconds = 1000;
+  while (!StopSignal::ComesWithin(kMilliseconds)) {
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+void AddUi(CommandParser& parser) {
+  const auto [command, options] = parser.Add(
+      "ui", "campaigns in a browser: what 'report' tells, live, and every run to be replayed", RunUi);
+  command
+      .add_option("DIR", options.sets,
+                  "a campaign, also while it runs, or what 'study' or 'tune' makes; of several campaigns, or "
+                  "of several sets of runs as 'compare' names "
+                  "them, the fitness is compared")
+      ->required();
+  AddValue(command, "--port", "PORT", options.port, "of 127.0.0.1 (default: any free one)");
+  command.footer(
+      R"(Prints an address for a browser of this machine and serves the pages of 'gauntlet report' there until Ctrl-C.
+Beside them it shows what the campaign does now (workers, throughput, time left, why nothing runs, events),
+and a click on any run simulates it again. It reads, and changes nothing. Only who knows the whole address
+gets in; from another machine, through a tunnel: ssh -L PORT:127.0.0.1:PORT HOST.
+
+Examples:
+  gauntlet ui campaigns/flocking-20260131T120000Z
+  gauntlet ui DIR --port 8080)");
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,16 @@
+// --dry-run of the commands that begin a campaign on this machine.
+#pragma once
+
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/run_campaign.h"
+
+namespace gauntlet {
+
+// Says what the campaign would ask for and cost here, as text or JSON, after a few measured runs; makes no
+// file.
+ExitCode PrintDryRun(CommandContext& context, const CampaignRun& campaign,
+                     const std::vector<SearchPlan>& searches);
+
+}  // namespace gauntlet

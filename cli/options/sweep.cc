@@ -1,0 +1,182 @@
+#include "cli/options/sweep.h"
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/split.h"
+#include "search/experiment/schema.h"
+#include "search/experiment/seed_list.h"
+#include "search/search_table.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr std::size_t kMostSearches = 1000;
+
+struct Sweep {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+// "a,b,c"; none of them may be empty.
+std::optional<std::vector<std::string>> SplitList(std::string_view text) {
+  std::vector<std::string> items = Split(text, ',');
+  if (std::ranges::count(items, "") > 0) return std::nullopt;
+  return items;
+}
+
+// The first that stands in the list twice: its searches would be the same.
+template <typename Value>
+std::optional<Value> FirstRepeated(const std::vector<Value>& values) {
+  std::set<Value> seen;
+  for (const Value& value : values) {
+    if (!seen.insert(value).second) return value;
+  }
+  return std::nullopt;
+}
+
+Result<Sweep> ParseSweep(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string_view view = text;
+  const auto values = equals == std::string::npos ? std::nullopt : SplitList(view.substr(equals + 1));
+  if (!values || equals == 0)
+    return InvalidInput(fmt::format("--sweep {}: give a key and its values, key=a,b,c", text));
+  const std::string key = text.substr(0, equals);
+  if (key == "seed") return InvalidInput(fmt::format("--sweep {}: seeds are given with --seeds", text));
+  if (const auto twice = FirstRepeated(*values))
+    return InvalidInput(fmt::format("--sweep {}: {} is given twice", text, *twice));
+  return Sweep{key, *values};
+}
+
+Result<std::vector<Sweep>> ParseSweeps(const std::vector<std::string>& texts) {
+  std::vector<Sweep> sweeps;
+  for (const std::string& text : texts) {
+    Result<Sweep> sweep = ParseSweep(text);
+    if (!sweep) return sweep.error();
+    if (std::ranges::count(sweeps, sweep->key, &Sweep::key) > 0)
+      return InvalidInput(
+          fmt::format("--sweep {}: {} is swept already; give all its values at once", text, sweep->key));
+    sweeps.push_back(*std::move(sweep));
+  }
+  return sweeps;
+}
+
+// None when `text` is "".
+Result<std::vector<std::uint64_t>> ParseSeeds(const std::string& text) {
+  if (text.empty()) return std::vector<std::uint64_t>();
+  const auto seeds = ParseSeedList(text, kMostSearches);
+  if (!seeds)
+    return InvalidInput(
+        fmt::format("--seeds {}: give a range (1..20) or a list (1,5,9) of at most {} whole numbers", text,
+                    kMostSearches));
+  if (const auto twice = FirstRepeated(*seeds))
+    return InvalidInput(fmt::format("--seeds {}: {} is given twice", text, *twice));
+  return *seeds;
+}
+
+Status CheckNumber(const std::vector<Sweep>& sweeps, const std::vector<std::uint64_t>& seeds) {
+  std::size_t searches = std::max<std::size_t>(seeds.size(), 1);
+  for (const Sweep& sweep : sweeps) {
+    searches *= sweep.values.size();
+    if (searches > kMostSearches)
+      return InvalidInput(fmt::format("--sweep and --seeds ask for more than {} searches", kMostSearches));
+  }
+  return Ok{};
+}
+
+// All combinations, the last sweep varying fastest.
+std::vector<std::vector<ExtraSet>> Combinations(const std::vector<Sweep>& sweeps) {
+  std::vector<std::vector<ExtraSet>> combinations = {{}};
+  for (const Sweep& sweep : sweeps) {
+    std::vector<std::vector<ExtraSet>> longer;
+    for (const std::vector<ExtraSet>& combination : combinations) {
+      for (const std::string& value : sweep.values) {
+        longer.push_back(combination);
+        longer.back().push_back({fmt::format("--sweep {}=", sweep.key), sweep.key, value});
+      }
+    }
+    combinations = std::move(longer);
+  }
+  return combinations;
+}
+
+std::vector<SearchPlan> WithSeeds(const SearchPlan& plan, const std::vector<std::uint64_t>& seeds) {
+  if (seeds.empty()) return {plan};
+  std::vector<SearchPlan> plans;
+  for (const std::uint64_t seed : seeds) {
+    SearchPlan& one = plans.emplace_back(plan);
+    one.settings += fmt::format("{}seed {}", plan.settings.empty() ? "" : ", ", seed);
+    one.experiment.seed = seed;
+  }
+  return plans;
+}
+
+// What was given on the command line for another search than these.
+Status CheckSettings(const std::vector<ExtraSet>& settings, const std::vector<SearchPlan>& plans) {
+  const auto read = [&](const std::string& key) {
+    return std::ranges::any_of(
+        plans, [&](const SearchPlan& plan) { return Reads(RowOf(plan.experiment).info, key); });
+  };
+  const SearchInfo& search = RowOf(plans.front().experiment).info;
+  for (const auto& [option, key, value] : settings) {
+    if (!key.starts_with("search.") || key == "search.algorithm" || read(key)) continue;
+    std::string known;
+    for (const Key& one : CommonKeys(BuiltInCatalogue())) {
+      if (!one.path.starts_with("search.") || !Reads(search, one.path)) continue;
+      known += (known.empty() ? "" : ", ") + one.path;
+      if (one.path == "search.cases") known += " (random --cases N)";
+    }
+    return InvalidInput(fmt::format("{} {}: the search '{}' does not read {}; it reads {}", option, value,
+                                    search.name, key, known));
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
+                                             const std::vector<ExtraSet>& extra, const SweepOptions& sweep) {
+  if (!sweep.seeds.empty() && !options.seed.empty())
+    return InvalidInput(fmt::format("--seed {} and --seeds {}: give one of them", options.seed, sweep.seeds));
+  const Result<std::vector<Sweep>> sweeps = ParseSweeps(sweep.sweeps);
+  if (!sweeps) return sweeps.error();
+  const Result<std::vector<std::uint64_t>> seeds = ParseSeeds(sweep.seeds);
+  if (!seeds) return seeds.error();
+  if (Status few = CheckNumber(*sweeps, *seeds); !few) return few.error();
+
+  std::vector<SearchPlan> plans;
+  for (const std::vector<ExtraSet>& combination : Combinations(*sweeps)) {
+    std::vector<ExtraSet> all = extra;
+    SearchPlan plan;
+    for (const ExtraSet& set : combination) {
+      plan.settings += fmt::format("{}{}={}", plan.settings.empty() ? "" : ", ", set.key, set.value);
+      all.push_back(set);
+    }
+    const Result<Experiment> experiment = LoadExperimentWith(options, all);
+    if (!experiment) return experiment.error();
+    if (RowOf(*experiment).given_cases)
+      return InvalidInput(fmt::format("search.algorithm = {} needs a list of cases: use '{}'",
+                                      experiment->search.algorithm, RowOf(*experiment).command));
+    plan.experiment = *experiment;
+    // A seed that was drawn (--seed random) is that of them all.
+    if (!plans.empty() && seeds->empty()) plan.experiment.seed = plans.front().experiment.seed;
+    std::ranges::move(WithSeeds(plan, *seeds), std::back_inserter(plans));
+  }
+
+  std::vector<ExtraSet> settings = extra;
+  for (const std::string& set : options.sets)
+    settings.push_back({"--set", set.substr(0, set.find('=')), set});
+  for (const Sweep& one : *sweeps)
+    settings.push_back({"--sweep", one.key, fmt::format("{}={}", one.key, fmt::join(one.values, ","))});
+  if (Status meant = CheckSettings(settings, plans); !meant) return meant.error();
+  if (plans.size() == 1) plans.front().settings.clear();
+  return plans;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,89 @@
+#include "cli/output/output_file.h"
+
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+namespace gauntlet {
+
+Result<OutputFile> OutputFile::Open(const std::string& path) {
+  OutputFile output(path);
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(path, error);
+  if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) {
+    const mode_t mask = umask(0);
+    umask(mask);
+    Result<FileReplacement> file = FileReplacement::Begin(path, 0666 & ~mask);
+    if (!file) return output.Named(file.error()).error();
+    output.file_.emplace(*std::move(file));
+    return output;
+  }
+  errno = 0;
+  output.stream_.open(path, std::ios::binary | std::ios::trunc);
+  if (Status opened = output.OfStream(); !opened) return opened.error();
+  return output;
+}
+
+Status OutputFile::Write(std::string_view bytes) {
+  if (file_) return Named(file_->Write(bytes));
+  errno = 0;
+  stream_.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return OfStream();
+}
+
+Status OutputFile::Close() {
+  if (file_) return Named(file_->Finish());
+  errno = 0;
+  stream_.close();
+  return OfStream();
+}
+
+Status OutputFile::Named(const Status& written) const {
+  if (written) return written;
+  return Error{written.error().kind,
+               fmt::format("{}: cannot be written: {}", path_, written.error().message)};
+}
+
+Status OutputFile::OfStream() const {
+  if (stream_) return Ok{};
+  return Error{ErrorKind::kIo, fmt::format("{}: cannot be written: {}", path_, std::strerror(errno))};
+}
+
+Status WriteOutputFile(const std::string& path, std::string_view content) {
+  Result<OutputFile> output = OutputFile::Open(path);
+  if (!output) return output.error();
+  if (Status written = output->Write(content); !written) return written;
+  return output->Close();
+}
+
+Result<std::uint64_t> WriteOutputDirectory(
+    const std::string& option, const std::string& path,
+    const std::function<Result<std::uint64_t>(const std::string& draft)>& write) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  if (fs::exists(path, error) && !(fs::is_directory(path, error) && fs::is_empty(path, error)))
+    return InvalidInput(fmt::format(
+        "{} {}: there is something already; give a directory that is new or empty", option, path));
+  const std::string place = fs::path(path).has_filename() ? path : fs::path(path).parent_path().string();
+  std::string draft = place + ".XXXXXX";
+  if (mkdtemp(draft.data()) == nullptr)
+    return SystemError(fmt::format("{} {}: no directory can be made there", option, path), errno);
+  Result<std::uint64_t> files = write(draft);
+  if (files) {
+    const mode_t mask = umask(0);
+    umask(mask);
+    if (chmod(draft.c_str(), 0777 & ~mask) != 0 || rename(draft.c_str(), place.c_str()) != 0)
+      files = SystemError(fmt::format("{} {}: cannot be put there", option, path), errno);
+  }
+  if (!files) fs::remove_all(draft, error);
+  return files;
+}
+
+}  // namespace gauntlet

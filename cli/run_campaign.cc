@@ -1,0 +1,240 @@
+#include "cli/run_campaign.h"
+
+#include <cstdlib>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "base/duration_text.h"
+#include "base/shell_quoted.h"
+#include "cli/options/stop_signal.h"
+#include "cli/output/progress.h"
+#include "cli/output/summary.h"
+#include "cli/output/table.h"
+#include "master/session/bind_endpoint.h"
+#include "master/session/metrics_server.h"
+#include "proto/run_failure.h"
+#include "search/search_table.h"
+
+namespace gauntlet {
+namespace {
+
+std::string ResumeHint(const CommandContext& context, const CampaignRun& campaign) {
+  if (campaign.same_command_resumes) return "the same command";
+  const std::string& directory = campaign.resumed_by.empty() ? campaign.directory : campaign.resumed_by;
+  return fmt::format("{} resume {}", context.program, PastedPath(directory));
+}
+
+// Whether there is anything to resume decides how to go on after an error.
+std::string HowToGoOn(const CommandContext& context, const CampaignRun& campaign) {
+  std::error_code ignored;
+  if (std::filesystem::exists(campaign.directory + "/campaign.db", ignored)) {
+    return fmt::format("stopped; what was finished is stored. Go on with: {}", ResumeHint(context, campaign));
+  }
+  return fmt::format("nothing was simulated. When there is room, the same command with --dir {} starts anew",
+                     PastedPath(campaign.directory));
+}
+
+std::string Timing(const SessionReport& report) {
+  std::string line = fmt::format("{} runs in {}", FormatCount(report.runs_this_session),
+                                 FormatDuration(report.wall_seconds));
+  if (report.runs_this_session > 0 && report.wall_seconds > 0) {
+    const auto runs = static_cast<double>(report.runs_this_session);
+    line += fmt::format(" ({:.1f}/s; master {:.0f} us of CPU per run)", runs / report.wall_seconds,
+                        1e6 * report.master_cpu_seconds / runs);
+  }
+  const WorkerStatistics& workers = report.workers;
+  if (workers.slot_seconds > 0.0) {
+    line +=
+        fmt::format("; workers idle for {:.0f} % of {} ({:.0f} % because the search waited for results)",
+                    100.0 * workers.idle_seconds / workers.slot_seconds, FormatDuration(workers.slot_seconds),
+                    100.0 * workers.barrier_seconds / workers.slot_seconds);
+  }
+  if (workers.audits > 0) {
+    line += fmt::format("; {} runs simulated on a second worker",
+                        FormatCount(workers.audits - workers.audits_alone));
+    if (workers.audits_alone > 0)
+      line += fmt::format(", {} again on the only one there was", FormatCount(workers.audits_alone));
+    line += fmt::format(", {}", workers.nondeterministic == 0
+                                    ? "all equal"
+                                    : fmt::format("{} ENDED DIFFERENTLY", workers.nondeterministic));
+  }
+  return line;
+}
+
+// Where workers connect, and that nothing protects the campaign when that is so.
+void PrintServing(CommandContext& context, const CampaignRun& campaign, const ServingNotice& notice) {
+  const std::string& endpoint = notice.endpoints.front();
+  if (!notice.encrypted) {
+    // Said even with --quiet.
+    context.err << (context.err_is_terminal ? "\x1b[1;31m" : "") << std::flush;
+    PrintMessage(context,
+                 fmt::format("INSECURE: whoever reaches {} can read this campaign and feed it results; "
+                             "nothing is encrypted or checked",
+                             endpoint));
+    context.err << (context.err_is_terminal ? "\x1b[0m" : "") << std::flush;
+  }
+  if (campaign.serving.quiet || campaign.bind.endpoint.empty()) return;
+  // The worker beside this program, as a person who started this one can start it.
+  const std::string start = campaign.session.make_pool
+                                ? ""
+                                : fmt::format("; start them with: {}-worker --dir {}", context.program,
+                                              PastedPath(campaign.directory));
+  PrintMessage(context, fmt::format("workers connect to {}{}{}", endpoint,
+                                    notice.encrypted ? ", encrypted" : "", start));
+}
+
+// Said before anything is started: the person may have meant another number.
+void WarnOfManyWorkers(CommandContext& context, int workers) {
+  constexpr int kManyPerCore = 4;
+  const int cores = AvailableCores();
+  if (workers <= kManyPerCore * cores) return;
+  PrintMessage(context, fmt::format("warning: {} workers on {} core{}: more than {} make nothing faster, and "
+                                    "each takes memory and three processes",
+                                    workers, cores, cores == 1 ? "" : "s", cores));
+}
+
+Result<std::unique_ptr<MetricsServer>> StartMetrics(CommandContext& context, const ServingOptions& options) {
+  if (options.metrics_port.empty()) return std::unique_ptr<MetricsServer>();
+  const Result<int> port = ParsePort("--metrics-port", options.metrics_port);
+  if (!port) return port.error();
+  Result<std::unique_ptr<MetricsServer>> metrics = MetricsServer::Start(*port);
+  if (metrics && !options.quiet) PrintMessage(context, fmt::format("metrics at {}", (*metrics)->url()));
+  return metrics;
+}
+
+// `began`: some progress was made.
+ExitCode FailCampaign(CommandContext& context, const CampaignRun& campaign, const Error& error, bool began) {
+  const ExitCode code = Fail(context, error);
+  // What was deleted or replaced under this master says itself what is left.
+  if (began && error.kind == ErrorKind::kNotFound) return kExitStopped;
+  const bool resumable = error.kind == ErrorKind::kNoSpace ||
+                         (began && (error.kind == ErrorKind::kIo || error.kind == ErrorKind::kInUse)) ||
+                         (error.kind == ErrorKind::kInUse && StopSignal::Requested());
+  if (error.kind == ErrorKind::kInUse && campaign.same_command_resumes && !began)
+    PrintMessage(context, "the same question is being answered just now; when that has ended, ask again");
+  if (!resumable) return code;
+  PrintMessage(context, HowToGoOn(context, campaign));
+  return kExitStopped;
+}
+
+ExitCode Conclude(CommandContext& context, const CampaignRun& campaign, const SessionReport& report) {
+  const CampaignSummary& summary = report.summary;
+  if (!campaign.serving.quiet && report.runs_this_session > 0) PrintMessage(context, Timing(report));
+  if (campaign.report) {
+    if (const Status printed = campaign.report(report); !printed) return Fail(context, printed.error());
+  } else {
+    const bool nothing_left = report.runs_this_session == 0 && summary.finished;
+    const Status printed = nothing_left
+                               ? PrintFinished(context, summary, campaign.directory, campaign.serving)
+                               : PrintSummary(context, summary, campaign.directory, campaign.serving.json);
+    if (!printed) return Fail(context, printed.error());
+  }
+  if (report.end == CampaignEnd::kStopped) {
+    PrintMessage(context, fmt::format("stopped after {} runs, all of them stored. Go on with: {}",
+                                      FormatCount(summary.runs_done), ResumeHint(context, campaign)));
+    return kExitStopped;
+  }
+  // `evaluate` judges its cases itself.
+  const SearchRow* search = FindSearch(summary.search);
+  const bool given_cases = search != nullptr && search->given_cases;
+  if (!given_cases && summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
+    const std::string why = summary.runs_without_result.empty()
+                                ? ""
+                                : ", most often: " + proto::Explained(summary.runs_without_result[0].message);
+    PrintMessage(context,
+                 fmt::format("none of the {} runs gave a result{}", FormatCount(summary.runs_done), why));
+    return kExitNegative;
+  }
+  if (report.workers.audits > 0 && report.workers.nondeterministic > 0) {
+    if (!summary.plugin_controllers.empty()) PrintMessage(context, WhyNotReproducible(summary));
+    return kExitNegative;
+  }
+  return kExitDone;
+}
+
+}  // namespace
+
+ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
+  const ServingOptions& options = campaign.serving;
+  const std::string& endpoint = campaign.bind.endpoint;
+  const Result<double> audit_share = ParseShare("--audit", options.audit);
+  if (!audit_share) return Fail(context, audit_share.error());
+  const Status possible = endpoint.empty() ? Status(Ok{}) : CheckBindEndpoint(endpoint);
+  if (!possible) return Fail(context, possible.error());
+  if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
+  WarnOfManyWorkers(context, campaign.session.workers);
+  const Result<std::unique_ptr<MetricsServer>> metrics = StartMetrics(context, options);
+  if (!metrics) return Fail(context, metrics.error());
+
+  const SteadyClock clock;
+  const ProgressMode mode = ChooseProgressMode(!options.quiet && !options.no_progress,
+                                               context.err_is_terminal, std::getenv("TERM"));
+  ProgressPrinter progress(
+      mode, clock, [&](const std::string& text) { context.err << text << std::flush; }, TerminalColumns);
+  bool began = false;
+
+  SessionOptions session = campaign.session;
+  session.metrics = metrics->get();
+  session.insecure = campaign.bind.insecure;
+  session.audit_share = *audit_share;
+  if (!endpoint.empty()) session.bind = endpoint;
+  if (!endpoint.empty() || session.insecure)
+    session.on_serving = [&](const ServingNotice& notice) { PrintServing(context, campaign, notice); };
+  session.stop_requested = StopSignal::Requested;
+  session.on_progress = [&](const CampaignProgress& now) {
+    began = true;
+    progress.Update(now);
+  };
+  const Result<SessionReport> report = [&] {
+    const StopSignal handlers;
+    return campaign.run(session);
+  }();
+  progress.Finish();
+  return report ? Conclude(context, campaign, *report)
+                : FailCampaign(context, campaign, report.error(), began);
+}
+
+void PrintAsOf(CommandContext& context, const std::string& directory, const std::string& as_of) {
+  if (as_of.empty()) return;
+  PrintMessage(context, fmt::format("{} is served from another machine; this is what was stored {}",
+                                    directory, as_of));
+}
+
+Status PrintSummary(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
+                    bool json) {
+  TRY(const CampaignAnswers answers, ReadAnswers(directory));
+  context.out << (json ? SummaryJson(summary, answers, directory)
+                       : SummaryText(summary, answers, {context.program, directory}))
+              << std::flush;
+  return Ok{};
+}
+
+Status PrintFinished(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
+                     const MessageOptions& options) {
+  if (!options.quiet) PrintMessage(context, fmt::format("{} is finished, nothing was left to do", directory));
+  return PrintSummary(context, summary, directory, options.json);
+}
+
+Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const LocalOptions& options) {
+  const Experiment& experiment = searches.front().experiment;
+  const Result<int> workers = ParseWorkers(options.running.workers);
+  if (!workers) return workers.error();
+  const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
+  if (!directory) return directory.error();
+  const SearchRow& search = RowOf(experiment);
+  CampaignRun campaign;
+  campaign.directory = *directory;
+  const std::string what =
+      searches.size() == 1
+          ? fmt::format("{}, {}, seed {}", search.title, search.plan(experiment), experiment.seed)
+          : fmt::format("{} searches ({}; ...; {})", searches.size(), searches.front().settings,
+                        searches.back().settings);
+  campaign.announcement = fmt::format("{}: {}, {} worker{}, in {}", experiment.name, what, *workers,
+                                      *workers == 1 ? "" : "s", *directory);
+  campaign.serving = options.running;
+  campaign.session.workers = *workers;
+  return campaign;
+}
+
+}  // namespace gauntlet

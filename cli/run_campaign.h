@@ -1,0 +1,43 @@
+// What evolve, random, evaluate and resume have in common: progress, clean stop, the closing messages.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/command_line.h"
+#include "cli/options/options.h"
+
+namespace gauntlet {
+
+struct CampaignRun {
+  std::string directory;
+  std::string resumed_by = "";        // the directory that `resume` takes, when it is not `directory`
+  bool same_command_resumes = false;  // it answers a question, which `resume` knows nothing of
+  std::string announcement;           // one line before it begins, without "gauntlet: "; "" = none
+  ServingOptions serving;
+  BindOptions bind;
+  SessionOptions session;  // workers, pool and batch job; the rest follows from what stands above
+  std::function<Result<SessionReport>(const SessionOptions&)> run;
+  // Prints the result to context.out; nothing: the summary.
+  std::function<Status(const SessionReport&)> report;
+};
+
+// Runs it with progress on context.err; SIGINT and SIGTERM stop it cleanly. Exit 0; 1 when a search ended and
+// none of its runs gave a result, or an audit found runs that end differently when they are repeated; 3 when
+// it was stopped and can be resumed; or as the error demands.
+ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign);
+
+// To stderr: that what follows is a snapshot (CampaignView::as_of). Nothing when `as_of` is empty.
+void PrintAsOf(CommandContext& context, const std::string& directory, const std::string& as_of);
+// The summary as text or JSON.
+Status PrintSummary(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
+                    bool json);
+// The same of a campaign that had ended before; says that nothing was left to do.
+Status PrintFinished(CommandContext& context, const CampaignSummary& summary, const std::string& directory,
+                     const MessageOptions& options);
+
+// A new campaign with workers on this machine, but for what it is to run.
+Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const LocalOptions& options);
+
+}  // namespace gauntlet

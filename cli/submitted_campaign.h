@@ -1,0 +1,31 @@
+// Campaigns that run in Slurm, for the commands that meet one.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "cli/command_line.h"
+#include "cli/options/options.h"
+#include "slurm/slurm_campaign.h"
+
+namespace gauntlet {
+
+// The user's file, then the [slurm] table of `file`, then the options; with a tag, drawn for `name`. Error:
+// also an address on which nobody could listen.
+Result<slurm::SlurmSettings> ReadSlurmOptions(const SlurmOptions& options,
+                                              const std::optional<slurm::SlurmSource>& file,
+                                              const std::string& name);
+
+// Asks Slurm of the campaign's jobs whether they could ever start; `print` scripts and answers too. Error:
+// the first that could not.
+Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, bool print);
+
+// A master in this process with a pool of Slurm allocations. `batch_job`: the job that holds it, "" for none.
+ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, const std::string& directory,
+                        const slurm::SlurmCampaign& campaign, const std::string& batch_job);
+
+// Hands the master's job of an existing campaign to Slurm. Error: with what to do next.
+Result<std::string> SubmitMasterJob(CommandContext& context, const std::string& directory,
+                                    const slurm::SlurmCampaign& campaign);
+
+}  // namespace gauntlet

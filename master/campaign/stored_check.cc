@@ -1,0 +1,149 @@
+#include "master/campaign/stored_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "master/campaign/verdict_text.h"
+#include "master/store/run_numbers.h"
+#include "proto/run_codec.h"
+#include "search/search_setup.h"
+#include "search/search_table.h"
+
+namespace gauntlet {
+namespace {
+
+Error Damaged(const std::string& what) {
+  return {ErrorKind::kCorrupt, "the campaign's database was changed or is damaged: " + what};
+}
+
+template <typename Value>
+Status Same(const StoredRun& run, const char* column, const Value& in_row, const Value& in_result) {
+  if (in_row == in_result) return Ok{};
+  return Damaged(
+      fmt::format("run {} has {} {} in its row, {} in its result", run.id, column, in_row, in_result));
+}
+
+Status CheckRecord(const StoredRun& run) {
+  if (const std::uint64_t hash = SpecHash(run.spec); hash != run.spec_hash) {
+    return Damaged(fmt::format("the spec of run {} has hash {:016x}, when it was stored it had {:016x}",
+                               run.id, hash, run.spec_hash));
+  }
+  const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
+  if (!result) return Damaged(fmt::format("the result of run {}: {}", run.id, result.error().message));
+  return CheckCopies(run, *result);
+}
+
+// Test cases by individual; a run's spec must hold that of its individual.
+Status CheckTestCase(const std::map<IndividualId, sim::TestCase>& test_cases, const StoredRun& run) {
+  const auto known = test_cases.find(run.individual);
+  if (known == test_cases.end()) return Ok{};  // individuals are stored at the end of their generation
+  Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
+  if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));
+  spec->test_case = known->second;
+  if (proto::EncodeRunSpec(*spec) == run.spec) return Ok{};
+  return Damaged(fmt::format("the stored test case of individual {} is not the one that run {} simulated",
+                             run.individual, run.id));
+}
+
+}  // namespace
+
+Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
+  if (run.hash != result.hash) {
+    return Damaged(fmt::format("run {} has hash {:016x} in its row, {:016x} in its result", run.id, run.hash,
+                               result.hash));
+  }
+  if (run.verdict != static_cast<int>(result.verdict)) {
+    return Damaged(fmt::format("run {} has verdict {} in its row, '{}' in its result", run.id, run.verdict,
+                               NameOf(result.verdict)));
+  }
+  if (std::bit_cast<std::uint64_t>(run.fitness) != std::bit_cast<std::uint64_t>(result.fitness)) {
+    return Damaged(fmt::format("run {} has fitness {} in its row, {} in its result", run.id, run.fitness,
+                               result.fitness));
+  }
+  if (Status same = Same(run, "message", run.message, result.message); !same) return same;
+  if (Status same = Same(run, "total_failure", run.total_failure, result.failure.total); !same) return same;
+  return Same(run, "failure_type", run.failure_type, result.failure.type);
+}
+
+Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
+  sim::TestCase test_case;
+  if (RowOf(experiment).seeds_of_cases) {
+    if (run.spec.empty()) return Ok{};  // rows alone are looked at
+    Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
+    if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));
+    test_case = std::move(spec->test_case);
+  }
+  const std::uint64_t seed = RunSeed(experiment, run.individual, test_case, run.evaluation, run.replicate);
+  if (seed == run.seed) return Ok{};
+  return Damaged(fmt::format(
+      "run {} has seed {}, but replicate {} of evaluation {} of individual {} has {} (campaign seed {})",
+      run.id, run.seed, run.replicate, run.evaluation, run.individual, seed, experiment.seed));
+}
+
+Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store, Checked what) {
+  Result<std::vector<StoredSearch>> searches = store.LoadSearches();
+  if (!searches) return searches.error();
+  RunId finished_with = 0;
+  for (const StoredSearch& stored : *searches) {
+    if (stored.id == search) finished_with = stored.finished_with;
+  }
+  Result<std::optional<SavedState>> state = store.LoadNewestState(search);
+  if (!state) return state.error();
+  if (finished_with > 0 && !state->has_value())
+    return Damaged("the search has finished, but its states are missing");
+  const RunId last_seen = state->has_value() ? (*state)->last_run : 0;
+
+  const bool everything = what == Checked::kEverything;
+  std::map<IndividualId, sim::TestCase> test_cases;
+  if (everything) {
+    Result<std::vector<Individual>> individuals = store.LoadIndividuals(search);
+    if (!individuals) return individuals.error();
+    for (Individual& individual : *individuals)
+      test_cases.emplace(individual.id, std::move(individual.test_case));
+  }
+  const auto missing = [&](RunId run) {
+    return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
+                               run, (*state)->generation, last_seen));
+  };
+  std::optional<Error> damage;
+  RunId expected = RunIdOf(search, 1);
+  const auto check = [&](const StoredRun& run) {
+    if (damage) return;
+    if (run.id != expected && expected <= last_seen) {
+      damage = missing(expected);
+      return;
+    }
+    expected = run.id + 1;
+    Status whole = CheckSeed(experiment, run);
+    if (whole && everything) whole = CheckRecord(run);
+    if (whole && everything) whole = CheckTestCase(test_cases, run);
+    if (!whole) damage = whole.error();
+    test_cases.erase(run.individual);
+  };
+  const Status read = everything ? store.ForEachRun(search, 0, check) : store.ForEachRow(search, 0, check);
+  if (!read) return read;
+  if (damage) return *damage;
+  if (expected <= last_seen) return missing(expected);
+  if (finished_with > last_seen) {
+    return Damaged(fmt::format(
+        "the search has finished with run {}, but the newest state has seen only the runs up to {}",
+        finished_with, last_seen));
+  }
+  return Ok{};
+}
+
+Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store, Checked what) {
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const Status whole = CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store, what);
+    if (!whole) return whole;
+  }
+  return Ok{};
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,93 @@
+#include "master/campaign/stored_search.h"
+
+#include <utility>
+#include <vector>
+
+#include "master/store/run_numbers.h"
+#include "proto/run_codec.h"
+#include "search/search_table.h"
+
+namespace gauntlet {
+
+Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, SearchId id,
+                                                          ResultStore& store) {
+  if (!RowOf(experiment).given_cases) return MakeSearch(experiment, kOnlySearch);
+  Result<std::vector<Individual>> individuals = store.LoadIndividuals(id);
+  if (!individuals) return individuals.error();
+  if (individuals->empty()) {
+    return Error{ErrorKind::kCorrupt,
+                 "the campaign was stopped before its cases were stored: evaluate them anew"};
+  }
+  std::vector<sim::TestCase> cases;
+  for (Individual& individual : *individuals) {
+    if (individual.parents.empty())
+      cases.push_back(std::move(individual.test_case));  // others were born later
+  }
+  return MakeSearch(experiment, kOnlySearch, std::move(cases));
+}
+
+bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const SearchAlgorithm& search) {
+  const auto runs_each = static_cast<std::uint64_t>(experiment.search.replicates);
+  const RunId last = RunIdOf(stored.id, 1) - 1 + search.Progress().evaluations_planned * runs_each;
+  return stored.finished_with > 0 && stored.finished_with >= last;
+}
+
+Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics, bool with_ways) {
+  RunOutcome outcome{.verdict = static_cast<sim::Verdict>(run.verdict),
+                     .fitness = run.fitness,
+                     .total_failure = run.total_failure,
+                     .failure_type = run.failure_type};
+  if (!with_metrics && !with_ways) return outcome;
+  Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
+  if (!result) return result.error();
+  if (with_metrics) outcome.metrics = std::move(result->metrics);
+  if (with_ways) outcome.robots = std::move(result->robots);
+  return outcome;
+}
+
+Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgorithm& search) {
+  SavedProgress saved;
+  saved.last_run = RunIdOf(id, 1) - 1;
+  Result<std::optional<SavedState>> newest = store.LoadNewestState(id);
+  if (!newest) return newest.error();
+  if (!newest->has_value()) return saved;
+  saved.last_run = (*newest)->last_run;
+  saved.state = std::move((*newest)->state);
+  Result<ResultsDigest> results = ResultsDigest::Restore((*newest)->results_digest);
+  if (!results) return results.error();
+  saved.results = *results;
+
+  const History history = [&](const std::function<void(const EvaluationOutcome&)>& visit) -> Status {
+    EvaluationOutcome next;  // its runs stand one behind the other
+    std::optional<Error> damage;
+    const auto tell = [&] {
+      if (next.runs.empty()) return;
+      visit(OutcomeOfRuns(next.individual, next.evaluation, std::exchange(next.runs, {})));
+    };
+    const bool with_metrics = search.WantsMetrics();  // they stand in the results
+    const bool with_ways = search.WantsWays();
+    const auto take = [&](const StoredRun& run) {
+      if (damage || run.id > saved.last_run) return;
+      if (run.individual != next.individual || run.evaluation != next.evaluation) tell();
+      next.individual = run.individual;
+      next.evaluation = run.evaluation;
+      Result<RunOutcome> outcome = OutcomeOf(run, with_metrics, with_ways);
+      if (!outcome) {
+        damage = outcome.error();
+      } else {
+        next.runs.push_back(*std::move(outcome));
+      }
+    };
+    const Status read =
+        with_metrics || with_ways ? store.ForEachRun(id, 0, take) : store.ForEachRow(id, 0, take);
+    if (!read) return read;
+    if (damage) return *damage;
+    tell();
+    return Ok{};
+  };
+  CanonicalDecoder decoder(saved.state);
+  if (Status restored = search.Restore(decoder, history); !restored) return restored.error();
+  return saved;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,90 @@
+// What the scheduler (scheduler.h) knows of runs, leases and workers.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "base/system/clock.h"
+#include "master/dispatch/leases/scheduler_orders.h"
+#include "master/dispatch/leases/worker_record.h"
+
+namespace gauntlet::scheduling {
+
+enum class LeaseState { kLive, kOrphaned, kCancelled, kAnswered };
+struct Lease {
+  RunId run = 0;
+  InstanceId worker = 0;
+  LeaseState state = LeaseState::kLive;
+  Duration granted{};
+  Duration begun{};  // at the earliest: when it came to be among as many as the worker has slots
+  bool result_may_wait = false;
+};
+struct Place {  // in the queue
+  std::uint64_t batch = 0;
+  double length = 0.0;
+  RunId run = 0;
+  bool operator<(const Place& other) const {
+    return std::tie(batch, other.length, run) < std::tie(other.batch, length, other.run);
+  }
+};
+// An answer to a lease of an unfinished run that was no result.
+struct Attempt {
+  InstanceId worker = 0;
+  std::string host;
+  bool trusted = false;                         // the worker, then
+  std::optional<proto::RunnerFailure> failure;  // none: the answer could not be read
+};
+struct Run {
+  proto::EncodedSpec spec;  // empty when the run has finished and its audit is not open
+  std::uint64_t batch = 0;
+  double length = 0.0;
+  std::vector<Fence> fences;  // live, orphaned and cancelled leases
+  std::uint32_t live = 0;
+  std::uint32_t leases = 0;       // given so far
+  std::vector<Attempt> attempts;  // that failed, while it is unfinished
+  bool finished = false;
+  bool given_up = false;
+  bool acknowledged = false;
+  bool audit = false;  // is to be simulated once more, and has not been
+  std::uint32_t audit_failures = 0;
+  Fence accepted = 0;
+  InstanceId finished_by = 0;
+  std::uint64_t hash = 0;
+};
+struct Worker {
+  std::uint32_t slots = 1;
+  std::vector<Fence> live;   // in the order in which they were given, which is that of its work
+  std::vector<Fence> loose;  // orphaned and cancelled
+  Duration heard{};
+  Duration excused{};  // value of listening_ at the last excuse
+  bool lost = false;
+  bool draining = false;
+  bool blocked = false;  // the last lease could not be delivered
+  bool filled = false;   // was given as many leases as it may have, and has not worked off half of them
+  std::string host;
+  WorkerRecord record;
+  Duration slowed_until{};  // when it next gets a lease if it is a black hole
+  // Its part in the sums slots_ and busy_.
+  std::uint32_t counted_slots = 0;
+  std::uint32_t counted_busy = 0;
+  // Its place in available_, when it has one.
+  bool listed = false;
+  std::uint32_t level = 0;
+};
+
+struct Tally {                           // of a run's failed attempts
+  std::uint32_t failures = 0;            // that count
+  std::uint32_t workers = 0;             // different ones
+  std::uint32_t trusted = 0;             // of these
+  std::optional<std::string> only_host;  // all were there; none: on several
+};
+struct Others {  // workers that could do a run and have neither failed it nor kept it too long
+  std::uint32_t all = 0;
+  std::uint32_t untried = 0;  // that have neither finished nor failed anything yet
+  bool elsewhere = false;     // some on another host than all that failed it
+};
+
+}  // namespace gauntlet::scheduling

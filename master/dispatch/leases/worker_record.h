@@ -1,0 +1,38 @@
+// What a worker has shown of itself, and what follows from it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace gauntlet {
+
+// Plain counts, since the worker's first hello to this master.
+struct WorkerRecord {
+  // So many that speak against a worker, and more than speak for it, and it gets nothing more to do.
+  static constexpr std::uint64_t kMostFaults = 3;
+  // So many runs failed in a row, and it looks like a hole into which all work falls.
+  static constexpr std::uint32_t kBlackHole = 3;
+  // Failures of a worker count for a verdict while at most one of so many of its runs speaks against it.
+  static constexpr std::uint64_t kFinishedForEachFault = 10;
+
+  std::uint64_t finished = 0;      // runs of which it brought a result
+  std::uint64_t failed = 0;        // runs that failed on it of themselves, as it says
+  std::uint64_t contradicted = 0;  // of these, that another worker finished
+  std::uint64_t strikes = 0;       // answers that could not be read, or to leases that it does not have
+  // Different runs that failed on it since it finished one, or since another worker failed one of them too.
+  std::uint32_t failed_in_a_row = 0;
+  bool quarantined = false;
+
+  std::uint64_t faults() const { return contradicted + strikes; }
+  bool tried() const { return finished + failed > 0; }
+  // Has it worked well enough for its failures to be believed?
+  bool trusted() const {
+    return !quarantined && finished > 0 && kFinishedForEachFault * faults() <= finished;
+  }
+  bool deserves_quarantine() const { return !quarantined && faults() >= kMostFaults && faults() > finished; }
+};
+
+// What speaks for and against the worker, in a line for people.
+std::string InWords(const WorkerRecord& record);
+
+}  // namespace gauntlet

@@ -1,0 +1,118 @@
+#include "master/dispatch/pool/worker_program.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/system/process_call.h"
+#include "base/system/sha256.h"
+#include "base/system/trusted_path.h"
+#include "controllers/registry.h"
+#include "master/dispatch/leases/run_limits.h"
+#include "master/dispatch/pool/local_pool.h"
+#include "proto/run_codec.h"
+
+namespace gauntlet {
+namespace {
+
+// A kill comes from outside (a memory killer, an operator): the pure question may be asked again this often.
+constexpr int kTries = 3;
+
+// stdout of gauntlet-worker with these arguments; its stderr is ours.
+Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::string_view input) {
+  // With every pose of every tick, a result may be large.
+  const CallOptions options{.part_of_us = true, .most_output = std::size_t{1} << 30};
+  const std::string program = WorkerProgramPath();
+  arguments.insert(arguments.begin(), program);
+  for (int attempt = 1;; ++attempt) {
+    Result<CallOutput> output = CallProcess(arguments, input, options);
+    if (!output) return output.error();
+    if (output->exit_code == 0) return std::move(output->out);
+    if (output->signal == SIGKILL && attempt < kTries) continue;
+    return Error{ErrorKind::kInternal,
+                 fmt::format("{} ended {} {}", program, output->signal != 0 ? "by signal" : "with status",
+                             output->signal != 0 ? output->signal : output->exit_code)};
+  }
+}
+
+// A campaign's copy of a plug-in (plugins/HASH.so) may be somebody else's, of a campaign that is only looked
+// at: it must not run in our name.
+Status CheckPluginIsOurs(const std::string& file) {
+  const std::filesystem::path path(file);
+  if (!IsSha256(path.stem().string())) return Ok{};
+  const std::string name = path.filename();
+  return CheckOnlyWeWrite(path.parent_path(), std::array<std::string_view, 1>{name});
+}
+
+// Names the libraries that the run needs.
+Status AddPlugins(const sim::RunSpec& spec, std::vector<std::string>& arguments) {
+  for (const std::string& hash : std::set{spec.plugin, spec.scenario_plugin}) {
+    const auto* plugin = controllers::FindPlugin(hash);
+    if (plugin == nullptr) continue;
+    if (Status ours = CheckPluginIsOurs(plugin->file); !ours) return ours;
+    arguments.insert(arguments.end(), {"--plugin", plugin->file});
+  }
+  return Ok{};
+}
+
+// What gauntlet-worker prints with these arguments, which ask something of the library.
+Result<std::string> AskPlugin(std::vector<std::string> arguments, std::string_view input,
+                              const std::string& library) {
+  // The worker has limits of its own; this one is for a worker that is stuck.
+  const CallOptions options{.deadline = std::chrono::seconds(60)};
+  arguments.insert(arguments.begin(), WorkerProgramPath());
+  const Result<CallOutput> output = CallProcess(arguments, input, options);
+  if (!output) return output.error();
+  if (output->exit_code == 0) return output->out;
+  std::string_view why = output->err;
+  constexpr std::string_view kWho = "gauntlet-worker: ";
+  if (why.starts_with(kWho)) why.remove_prefix(kWho.size());
+  while (why.ends_with('\n')) why.remove_suffix(1);
+  return InvalidInput(why.empty() ? fmt::format("the plug-in {} gives no answer", library)
+                                  : std::string(why));
+}
+
+}  // namespace
+
+Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch) {
+  const std::string cpu_limit =
+      fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters, spec.scenario_plugin));
+  std::vector<std::string> arguments = {"--run-spec", "-", "--cpu-limit", cpu_limit, "--quiet"};
+  if (const Status added = AddPlugins(spec, arguments); !added) return added.error();
+  if (!scratch.empty()) arguments.insert(arguments.end(), {"--scratch", scratch});
+  Result<std::string> output = RunWorkerProgram(std::move(arguments), proto::EncodeRunSpec(spec));
+  if (!output) return output.error();
+  return proto::DecodeRunResult(*output);
+}
+
+Result<std::string> DescribePlugin(const std::string& file) {
+  if (const Status ours = CheckPluginIsOurs(file); !ours) return ours.error();
+  return AskPlugin({"--describe-plugin", file}, {}, file);
+}
+
+Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {
+  std::vector<std::string> arguments = {"--describe-beginning", "-"};
+  if (const Status added = AddPlugins(spec, arguments); !added) return added.error();
+  return AskPlugin(std::move(arguments), proto::EncodeRunSpec(spec),
+                   controllers::FindPlugin(spec.scenario_plugin)->file);
+}
+
+Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers) {
+  std::vector<std::string> arguments = {"--golden"};
+  arguments.insert(arguments.end(), controllers.begin(), controllers.end());
+  const Result<std::string> output = RunWorkerProgram(std::move(arguments), {});
+  if (!output) return output.error();
+  if (output->empty()) return proto::GoldenHashes();
+  Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(*output);
+  if (hashes) return hashes;
+  return Error{ErrorKind::kInternal, "gauntlet-worker --golden: " + hashes.error().message};
+}
+
+}  // namespace gauntlet

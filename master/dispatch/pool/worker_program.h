@@ -1,0 +1,31 @@
+// gauntlet-worker as a helper program: one simulation outside of any campaign, questions to plug-ins, and the
+// golden hashes of this machine.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "proto/golden_hashes.h"
+#include "sim/run_result.h"
+#include "sim/run_spec.h"
+
+namespace gauntlet {
+
+// Simulates a run in a runner, under the limits of any run, and returns the result (not checked against
+// anything). `scratch`: working directory of a plug-in's run, which keeps what it writes; "": one that is
+// removed.
+Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch = "");
+
+// What the library brings, as gauntlet-worker describes it (proto/plugin_description.h). Error: what is wrong
+// with it.
+Result<std::string> DescribePlugin(const std::string& file);
+
+// How a run begins whose scenario a plug-in brings, as gauntlet-worker says it, which loads the library
+// (proto/run_beginning.h). The plug-in is known. Error: why there is no answer.
+Result<std::string> DescribeBeginning(const sim::RunSpec& spec);
+
+// Of those of these controllers that gauntlet-worker was built with.
+Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers);
+
+}  // namespace gauntlet

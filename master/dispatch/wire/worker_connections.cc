@@ -1,0 +1,94 @@
+#include "master/dispatch/wire/worker_connections.h"
+
+#include <fmt/format.h>
+
+#include "master/dispatch/dispatch_log.h"
+#include "proto/message_codec.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr int kUnreachableBeats = 2;  // a connection gets this long to come back
+
+}  // namespace
+
+std::string LabelOf(const proto::Hello& hello) {
+  return fmt::format("{:016x}@{}", hello.instance_id, Shorten(hello.process.host));
+}
+
+std::optional<proto::InstanceId> WorkerConnections::SpeakerOf(const PeerId& peer) const {
+  const auto found = speakers_.find(peer);
+  return found == speakers_.end() ? std::nullopt : std::optional(found->second);
+}
+
+WorkerConnections::Arrival WorkerConnections::Accept(const PeerId& peer, const proto::Hello& hello) {
+  const auto [found, added] = workers_.try_emplace(hello.instance_id);
+  Worker& worker = found->second;
+  const bool repeated = !added && worker.peer == peer;
+  if (!added && !repeated) speakers_.erase(worker.peer);
+  worker.peer = peer;
+  worker.label = gauntlet::LabelOf(hello);
+  worker.pid = hello.process.pid;
+  worker.allocation = Shorten(hello.allocation);
+  worker.unreachable = 0;
+  speakers_[peer] = hello.instance_id;
+  processes_.Watch(hello.instance_id, hello.process);
+  if (added) return Arrival::kNew;
+  return repeated ? Arrival::kRepeated : Arrival::kBack;
+}
+
+void WorkerConnections::Disconnect(proto::InstanceId worker) {
+  const auto found = workers_.find(worker);
+  if (found == workers_.end()) return;
+  const auto speaker = speakers_.find(found->second.peer);
+  if (speaker != speakers_.end() && speaker->second == worker) speakers_.erase(speaker);
+  processes_.Forget(worker);
+  workers_.erase(found);
+}
+
+const WorkerConnections::Worker* WorkerConnections::Find(proto::InstanceId worker) const {
+  const auto found = workers_.find(worker);
+  return found == workers_.end() ? nullptr : &found->second;
+}
+
+std::string WorkerConnections::LabelOf(proto::InstanceId worker) const {
+  const Worker* known = Find(worker);
+  return known == nullptr ? fmt::format("{:016x}", worker) : known->label;
+}
+
+SendOutcome WorkerConnections::Send(proto::InstanceId worker, const proto::MasterMessage& message) {
+  const auto found = workers_.find(worker);
+  if (found == workers_.end()) return SendOutcome::kUnreachable;
+  SendAcknowledgements(found->second);
+  return transport_.Send(found->second.peer, proto::EncodeMasterMessage(message));
+}
+
+void WorkerConnections::Acknowledge(proto::InstanceId worker, proto::Fence fence) {
+  const auto found = workers_.find(worker);
+  if (found != workers_.end()) found->second.acknowledged.push_back(fence);
+}
+
+void WorkerConnections::SendAcknowledgements(proto::InstanceId worker) {
+  const auto found = workers_.find(worker);
+  if (found != workers_.end()) SendAcknowledgements(found->second);
+}
+
+void WorkerConnections::SendAcknowledgements(Worker& worker) {
+  if (worker.acknowledged.empty()) return;
+  transport_.Send(worker.peer, proto::EncodeMasterMessage(proto::Acknowledge{worker.acknowledged}));
+  worker.acknowledged.clear();
+}
+
+std::vector<proto::InstanceId> WorkerConnections::SendHeartbeats() {
+  std::vector<proto::InstanceId> out_of_reach;
+  const std::string heartbeat = proto::EncodeMasterMessage(proto::Heartbeat{++heartbeats_, {}});
+  for (auto& [id, worker] : workers_) {
+    SendAcknowledgements(worker);
+    const bool reached = transport_.Send(worker.peer, heartbeat) != SendOutcome::kUnreachable;
+    worker.unreachable = reached ? 0 : worker.unreachable + 1;
+    if (worker.unreachable >= kUnreachableBeats) out_of_reach.push_back(id);
+  }
+  return out_of_reach;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,94 @@
+#include "report/figures/archive_figure.h"
+
+#include <fmt/format.h>
+
+#include "controllers/registry.h"
+#include "report/tables/archive_cells.h"
+#include "report/tables/data_table.h"
+#include "search/archive/failure_archive.h"
+#include "search/search_setup.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr const char* kTitle = "The fewest obstacles that break the swarm";
+
+// Whether the axes are the coordinates of the place of the failure.
+bool ArePlaces(const ArchiveView& archive, const Experiment& experiment) {
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  return scenario != nullptr && scenario->failure_place &&
+         archive.axes[0].metric == scenario->failure_place->x &&
+         archive.axes[1].metric == scenario->failure_place->y;
+}
+
+std::string Counted(std::size_t obstacles) {
+  return obstacles == 1 ? "1 obstacle" : fmt::format("{} obstacles", obstacles);
+}
+
+analysis::LayoutGrid GridOf(const CampaignSummary& summary, const Experiment& experiment) {
+  const ArchiveView& archive = summary.archive;
+  analysis::LayoutGrid grid{
+      .title = kTitle,
+      .outcome = fmt::format(
+          "{} of {} cells hold a failure that repeats; below each, in how many of its runs it came",
+          archive.failures.size(), CellsOf(archive)),
+      .across_name = archive.axes[0].metric,
+      .up_name = archive.axes[1].metric,
+      .columns = {},
+      .rows = {},
+      .arena = EmptyArena(experiment.arena),
+      .layouts = {}};
+  for (int part = 0; part < archive.axes[0].parts; ++part) {
+    grid.columns.push_back(RangeText(archive.axes[0], part));
+  }
+  for (int part = 0; part < archive.axes[1].parts; ++part) {
+    grid.rows.push_back(RangeText(archive.axes[1], part));
+  }
+  const bool places = ArePlaces(archive, experiment);
+  for (const ArchivedFailure& failure : archive.failures) {
+    analysis::GridLayout& layout = grid.layouts.emplace_back();
+    layout.column = static_cast<std::size_t>(failure.cell[0]);
+    layout.row = static_cast<std::size_t>(failure.cell[1]);
+    layout.obstacles = MemberOf(summary, failure).genome;
+    layout.caption =
+        fmt::format("{}: {} of {}", Counted(layout.obstacles.size()), failure.failures, failure.runs);
+    if (places) layout.place = sim::Vec2(failure.middle[0], failure.middle[1]);
+  }
+  return grid;
+}
+
+std::string CsvOf(const CampaignSummary& summary) {
+  const ArchiveView& archive = summary.archive;
+  std::vector<std::string> columns = {"column",   "row",    "test case", "obstacles",
+                                      "length_m", "failed", "runs"};
+  for (const CellAxis& axis : archive.axes) columns.push_back(axis.metric);
+  std::vector<std::vector<Cell>> rows;
+  for (const ArchivedFailure& failure : archive.failures) {
+    const LayoutSize size = SizeOf(MemberOf(summary, failure).genome);
+    rows.push_back({std::int64_t{failure.cell[0]}, std::int64_t{failure.cell[1]}, failure.individual,
+                    static_cast<std::uint64_t>(size.obstacles), size.length, std::int64_t{failure.failures},
+                    std::int64_t{failure.runs}, failure.middle[0], failure.middle[1]});
+  }
+  return CsvText(columns, rows);
+}
+
+}  // namespace
+
+std::vector<NamedFigure> ArchiveFigures(const CampaignFacts& facts) {
+  const CampaignSummary& summary = facts.summary;
+  if (facts.plans.size() != 1 || summary.archive.axes.size() != 2 || summary.archive.failures.empty())
+    return {};
+  const Experiment experiment = facts.plans.front().experiment;
+  return {
+      {"archive", kTitle,
+       "A cell for each way in which the swarm breaks, by two metrics of the runs; in it the arena with the "
+       "smallest layout that does it reliably, and in how many of its runs. A red spot is the place where "
+       "the "
+       "swarm broke, where the metrics are a place. These runs took part in choosing the layouts: 'gauntlet "
+       "confirm --elites' simulates them with fresh seeds.",
+       [=] { return analysis::DrawLayoutGrid(GridOf(summary, experiment)); },
+       [=] { return CsvOf(summary); }}};
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,239 @@
+#include "report/figures/campaign_facts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/number_text.h"
+#include "controllers/registry.h"
+#include "master/campaign/stored_campaign.h"
+#include "master/store/event_kinds.h"
+#include "proto/run_codec.h"
+#include "study/sets/subset.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+
+// The descriptors of an experiment's scenario, nullptr where there are none.
+std::vector<const controllers::MetricInfo*> DescriptorsOf(const Experiment& experiment) {
+  std::vector<const controllers::MetricInfo*> descriptors;
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (scenario == nullptr) return descriptors;
+  for (const controllers::MetricInfo& metric : scenario->metrics) {
+    if (metric.descriptor) descriptors.push_back(&metric);
+  }
+  return descriptors;
+}
+
+Result<RunFacts> FactsOf(const StoredRun& run,
+                         const std::vector<const controllers::MetricInfo*>& descriptors) {
+  RunFacts facts = FactsOfRow(run);
+  facts.descriptors.assign(descriptors.size(), kNotMeasured);
+  if (!facts.completed || descriptors.empty()) return facts;
+  const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
+  if (!result) return Error{result.error().kind, fmt::format("run {}: {}", run.id, result.error().message)};
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const auto metric =
+        std::ranges::find(result->metrics, descriptors[i]->name, &std::pair<std::string, double>::first);
+    if (metric == result->metrics.end()) continue;
+    facts.descriptors[i] = MeasuredValue(descriptors[i], metric->second).value_or(kNotMeasured);
+  }
+  return facts;
+}
+
+Status AddRuns(const SearchPlan& plan, SearchId search, ResultStore& store, std::vector<RunFacts>& runs) {
+  const auto descriptors = DescriptorsOf(plan.experiment);
+  Status decoded = Ok{};
+  const auto add = [&](const StoredRun& run) {
+    if (!decoded) return;
+    Result<RunFacts> facts = FactsOf(run, descriptors);
+    if (facts) {
+      runs.push_back(*std::move(facts));
+    } else {
+      decoded = facts.error();
+    }
+  };
+  const Status read =
+      descriptors.empty() ? store.ForEachRow(search, 0, add) : store.ForEachRun(search, 0, add);
+  return read ? decoded : read;
+}
+
+void AddRun(const RunFacts& run, CaseFacts& of_case) {
+  ++of_case.runs;
+  if (run.total_failure) ++of_case.total_failures;
+  if (!run.completed) return;
+  if (of_case.completed == 0 || run.fitness < of_case.fitness) {
+    of_case.toughest = run.id;
+    of_case.fitness = run.fitness;
+    of_case.failure_type = run.failure_type;
+  }
+  ++of_case.completed;
+  of_case.mean_fitness += (run.fitness - of_case.mean_fitness) / static_cast<double>(of_case.completed);
+}
+
+Result<std::vector<CaseFacts>> CasesOf(const CampaignFacts& facts, ResultStore& store) {
+  std::map<std::pair<SearchId, IndividualId>, CaseFacts> cases;
+  for (const RunFacts& run : facts.runs) AddRun(run, cases[{run.search, run.individual}]);
+  std::map<RunId, const Confirmation*> confirmed;
+  for (const Confirmation& one : facts.answers.confirmations) confirmed[one.run] = &one;
+  for (const RunFacts& run : facts.runs) {
+    const auto found = confirmed.find(run.id);
+    if (found != confirmed.end()) cases[{run.search, run.individual}].confirmation = *found->second;
+  }
+  std::vector<CaseFacts> all;
+  for (SearchId search = 1; search <= facts.plans.size(); ++search) {
+    const Result<std::vector<Individual>> individuals = store.LoadIndividuals(search);
+    if (!individuals) return individuals.error();
+    for (const Individual& individual : *individuals) {
+      const auto found = cases.find({search, individual.id});
+      if (found == cases.end()) continue;
+      CaseFacts& one = all.emplace_back(std::move(found->second));
+      one.search = search;
+      one.individual = individual.id;
+      one.name = individual.test_case.name;
+      one.born = individual.birth_generation;
+      one.obstacles = individual.test_case.obstacles.size();
+      if (one.completed == 0) one.mean_fitness = kNotMeasured;
+    }
+  }
+  std::ranges::stable_sort(all, [](const CaseFacts& a, const CaseFacts& b) {
+    if ((a.completed == 0) != (b.completed == 0)) return b.completed == 0;
+    return a.completed > 0 && a.mean_fitness < b.mean_fitness;
+  });
+  return all;
+}
+
+// "worker 1cfc97e775e2ec67@node7 (pid 26700, slots 1) joined"
+std::string HostOf(const std::string& text) {
+  const std::size_t at = text.find('@');
+  if (at == std::string::npos) return "";
+  return text.substr(at + 1, text.find(' ', at) - at - 1);
+}
+
+Result<CampaignHistory> HistoryOf(SqliteStore& store) {
+  const Result<std::vector<StoredEvent>> events = store.LoadEvents();
+  if (!events) return events.error();
+  CampaignHistory history{.created_unix_ms = store.meta().created_unix_ms};
+  history.last_unix_ms = history.created_unix_ms;
+  std::set<std::string> hosts;
+  std::int64_t since = 0;
+  for (const StoredEvent& one : *events) {
+    const bool starts = one.kind == event::kStart || one.kind == event::kResume;
+    if (starts) {
+      ++history.sessions;
+      since = one.unix_ms;
+    } else if (since != 0 && one.unix_ms > since) {
+      // The session is known to have lived until then.
+      history.served_seconds += static_cast<double>(one.unix_ms - since) / 1000.0;
+      since = one.unix_ms;
+    }
+    if (one.kind == event::kWorkerJoined) hosts.insert(HostOf(one.text));
+    history.last_unix_ms = std::max(history.last_unix_ms, one.unix_ms);
+  }
+  hosts.erase("");
+  history.hosts.assign(hosts.begin(), hosts.end());
+  return history;
+}
+
+std::vector<std::string> NotesOf(const CampaignFacts& facts, const std::string& being_written) {
+  std::vector<std::string> notes;
+  const CampaignSummary& summary = facts.summary;
+  if (!being_written.empty()) notes.push_back(being_written);
+  if (summary.runs_done == 0) {
+    notes.push_back(fmt::format("{} has no run yet", facts.directory));
+  } else if (!summary.finished) {
+    notes.push_back(fmt::format("{} is half-finished: this tells of the {} runs that it has so far",
+                                facts.directory, FormatCount(summary.runs_done)));
+  }
+  if (summary.nondeterministic > 0) {
+    notes.emplace_back(
+        "the same run gave different results: the campaign is not reproducible, do not trust its figures");
+  }
+  if (summary.runs_failed > 0) {
+    notes.push_back(fmt::format("{} runs ended without a result (crashed, hung, refused)",
+                                FormatCount(summary.runs_failed)));
+  }
+  if (summary.lone_verdicts > 0) {
+    notes.push_back(fmt::format("{} runs without a result stand on the word of one worker each",
+                                FormatCount(summary.lone_verdicts)));
+  }
+  return notes;
+}
+
+std::string TextOfFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+RunFacts FactsOfRow(const StoredRun& run) {
+  return {.id = run.id,
+          .search = run.search,
+          .individual = run.individual,
+          .generation = run.generation,
+          .completed = run.verdict == static_cast<int>(sim::Verdict::kCompleted),
+          .total_failure = run.total_failure,
+          .failure_type = run.failure_type,
+          .fitness = run.fitness,
+          .descriptors = {}};
+}
+
+Result<CampaignFacts> ReadFacts(const std::string& dir) {
+  const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
+  if (!campaign) return campaign.error();
+  SqliteStore& store = *campaign->view.store;
+  CampaignFacts facts;
+  facts.directory = dir;
+  facts.software_version = store.meta().software_version;
+  facts.golden_hashes = store.meta().golden_hashes;
+  facts.experiment_toml = TextOfFile(campaign->view.directory.experiment_path());
+  facts.plans = campaign->plans;
+  Result<CampaignSummary> summary = Summarise(facts.plans, store);
+  if (!summary) return summary.error();
+  facts.summary = *std::move(summary);
+  Result<CampaignAnswers> answers = ReadAnswers(dir);
+  if (!answers) return answers.error();
+  facts.answers = *std::move(answers);
+  Result<std::vector<Blame>> blames = ReadAllBlames(dir);
+  if (!blames) return blames.error();
+  facts.blames = *std::move(blames);
+  Result<CampaignHistory> history = HistoryOf(store);
+  if (!history) return history.error();
+  facts.history = *std::move(history);
+  for (std::size_t i = 0; i < facts.plans.size(); ++i) {
+    const Status added = AddRuns(facts.plans[i], static_cast<SearchId>(i + 1), store, facts.runs);
+    if (!added) return added.error();
+  }
+  Result<std::vector<CaseFacts>> cases = CasesOf(facts, store);
+  if (!cases) return cases.error();
+  facts.cases = *std::move(cases);
+  facts.notes = NotesOf(facts, campaign->being_written);
+  return facts;
+}
+
+Result<std::vector<StoredRun>> ReadRuns(const std::string& dir, const std::vector<RunId>& ids) {
+  const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kTotals);
+  if (!campaign) return campaign.error();
+  std::vector<StoredRun> runs;
+  for (const RunId id : ids) {
+    Result<std::optional<StoredRun>> run = campaign->store->LoadRun(id);
+    if (!run) return run.error();
+    if (!run->has_value())
+      return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", id, dir)};
+    runs.push_back(std::move(**run));
+  }
+  return runs;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,115 @@
+#include "report/figures/set_comparison.h"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "analysis/figures/box_figure.h"
+#include "analysis/statistics/multiple_tests.h"
+#include "report/tables/data_table.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr std::size_t kMostInAllPairs = 4;
+
+Result<ComparedPair> Compared(const std::vector<RunSet>& sets, std::size_t first, std::size_t second) {
+  Result<analysis::Comparison> comparison = analysis::Compare(sets[first].values, sets[second].values);
+  if (!comparison) return comparison.error();
+  ComparedPair pair{.first = first,
+                    .second = second,
+                    .comparison = *std::move(comparison),
+                    .p_adjusted = 0.0,
+                    .words = "",
+                    .differences = WhatDiffers(sets[first], sets[second])};
+  pair.words = analysis::InWords(pair.comparison, sets[first].values.name, sets[second].values.name);
+  return pair;
+}
+
+Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunSet> sets) {
+  SetComparison comparison{scenario, std::move(sets), {}};
+  const std::size_t count = comparison.sets.size();
+  for (std::size_t first = 0; first < (count <= kMostInAllPairs ? count : 1); ++first) {
+    for (std::size_t second = first + 1; second < count; ++second) {
+      Result<ComparedPair> pair = Compared(comparison.sets, first, second);
+      if (!pair) return pair.error();
+      comparison.pairs.push_back(*std::move(pair));
+    }
+  }
+  std::vector<double> p;
+  for (const ComparedPair& pair : comparison.pairs) p.push_back(pair.comparison.p_two_sided);
+  const std::vector<double> adjusted = analysis::HolmAdjusted(p);
+  for (std::size_t i = 0; i < adjusted.size(); ++i) comparison.pairs[i].p_adjusted = adjusted[i];
+  return comparison;
+}
+
+}  // namespace
+
+std::string DrawSets(const std::string& title, const std::string& outcome, const std::string& metric,
+                     const std::vector<analysis::ComparedSet>& sets) {
+  analysis::BoxFigure figure{.title = title,
+                             .outcome = outcome,
+                             .axis_name = metric == "fitness" ? "fitness (lower = tougher)" : metric,
+                             .boxes = {}};
+  for (const analysis::ComparedSet& set : sets) {
+    std::vector<double> values;
+    for (const auto& cluster : set.clusters) values.insert(values.end(), cluster.begin(), cluster.end());
+    figure.boxes.push_back(
+        {set.name, analysis::MakeBoxPlot(values), analysis::Describe(values).mean, values.size()});
+  }
+  return analysis::DrawBoxes(figure);
+}
+
+std::string SetsCsv(const std::string& metric, const std::vector<analysis::ComparedSet>& sets) {
+  std::vector<std::vector<Cell>> rows;
+  for (const analysis::ComparedSet& set : sets) {
+    for (std::size_t unit = 0; unit < set.clusters.size(); ++unit) {
+      for (const double value : set.clusters[unit])
+        rows.push_back({set.name, std::uint64_t{unit + 1}, NumberCell(value)});
+    }
+  }
+  return CsvText({"set", "unit", metric}, rows);
+}
+
+NamedFigure FigureOf(const SetComparison& comparison) {
+  const std::string title =
+      fmt::format("{}: fitness of {} sets of runs", comparison.scenario, comparison.sets.size());
+  std::vector<analysis::ComparedSet> values;
+  for (const RunSet& set : comparison.sets) values.push_back(set.values);
+  return {"comparison", title, std::string(kReadingOfBoxes),
+          [=] { return DrawSets(title, "", "fitness", values); }, [=] { return SetsCsv("fitness", values); }};
+}
+
+Result<SetComparisons> CompareSets(const std::vector<std::string>& names) {
+  SetComparisons all;
+  using NameAndPlugin = std::pair<std::string, std::string>;
+  std::map<NameAndPlugin, std::vector<RunSet>> by_scenario;
+  for (const std::string& name : names) {
+    Result<RunSet> set = ReadRunSet(name, "fitness");
+    if (!set) return set.error();
+    for (const std::string& note : set->notes) all.notes.push_back(note);
+    if (set->values.clusters.empty()) {
+      all.notes.push_back(fmt::format("{} has no run with a fitness: it is not compared", name));
+      continue;
+    }
+    const Experiment experiment = set->origins.empty() ? Experiment() : set->origins.front().experiment;
+    by_scenario[{experiment.scenario, experiment.scenario_plugin}].push_back(*std::move(set));
+  }
+  for (auto& [name_and_plugin, sets] : by_scenario) {
+    const std::string& scenario = name_and_plugin.first;
+    if (sets.size() < 2) {
+      if (names.size() > 1) {
+        all.notes.push_back(fmt::format("{} stands alone: no other set is of the scenario {}",
+                                        sets.front().values.name, scenario));
+      }
+      continue;
+    }
+    Result<SetComparison> comparison = ComparisonOf(scenario, std::move(sets));
+    if (!comparison) return comparison.error();
+    all.comparisons.push_back(*std::move(comparison));
+  }
+  return all;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,86 @@
+#include "report/figures/shown_run.h"
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <set>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "report/figures/replayed_figure.h"
+
+namespace gauntlet {
+namespace {
+
+Result<ShownRun> ShowRun(const std::string& experiment_name, StoredRun stored) {
+  const RunId id = stored.id;
+  Result<ReplayReport> report = ReplayRun(std::move(stored));
+  if (!report) {
+    // What contradicts itself is told beside the run; that nothing can be simulated concerns all.
+    if (report.error().kind != ErrorKind::kCorrupt) return report.error();
+    ShownRun shown;
+    shown.report.stored.id = id;
+    shown.trouble = report.error().message;
+    return shown;
+  }
+  ShownRun shown{*std::move(report), "", {}};
+  if (!shown.report.damage.empty()) {
+    shown.trouble = shown.report.damage;
+    return shown;
+  }
+  if (!shown.report.differences.empty()) {
+    shown.trouble = fmt::format("this version does not end the run as it was stored: {}",
+                                shown.report.differences.front());
+  }
+  shown.figure = FigureOf(experiment_name, shown.report);
+  return shown;
+}
+
+}  // namespace
+
+std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunMap>& maps, std::size_t most) {
+  std::vector<RunId> ids;
+  std::set<RunId> known;
+  const auto add = [&](RunId id) {
+    if (id != 0 && ids.size() < most && known.insert(id).second) ids.push_back(id);
+  };
+  for (const DistinctFailure& failure : DistinctFailures(facts.answers.confirmations, {}))
+    add(failure.cases.front()->run);
+  for (const SmallestLayout& one : facts.answers.smallest_layouts) add(one.run);
+  for (const RunMap& map : maps) {
+    for (const std::vector<MapCell>& row : map.cells) {
+      for (const MapCell& cell : row) add(cell.toughest);
+    }
+  }
+  for (const CaseFacts& one : facts.cases) add(one.toughest);
+  return ids;
+}
+
+Result<std::vector<ShownRun>> ShowRuns(const CampaignFacts& facts, const std::vector<RunId>& ids) {
+  if (ids.empty()) return std::vector<ShownRun>{};
+  Result<std::vector<StoredRun>> runs = ReadRuns(facts.directory, ids);
+  if (!runs) return runs.error();
+  std::vector<std::optional<Result<ShownRun>>> shown(runs->size());
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < runs->size(); i = next++) {
+      const std::string& name = facts.plans.at((*runs)[i].search - 1).experiment.name;
+      shown[i] = ShowRun(name, std::move((*runs)[i]));
+    }
+  };
+  {
+    std::vector<std::jthread> threads;
+    const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+    while (threads.size() + 1 < std::min(cores, runs->size())) threads.emplace_back(work);
+    work();
+  }
+  std::vector<ShownRun> all;
+  for (std::optional<Result<ShownRun>>& one : shown) {
+    if (!*one) return one->error();
+    all.push_back(**std::move(one));
+  }
+  return all;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,31 @@
+// Runs of a campaign that are simulated again to be seen.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "analysis/figures/run/run_figure.h"
+#include "base/result.h"
+#include "master/campaign/replay.h"
+#include "report/figures/campaign_facts.h"
+#include "report/figures/run_map.h"
+
+namespace gauntlet {
+
+struct ShownRun {
+  ReplayReport report;  // `stored` is always there
+  // Why it cannot be shown as it was: it did not end as stored, or does not read back; "" = it was reproduced
+  // bit for bit.
+  std::string trouble;
+  analysis::RunFigure figure;  // empty when the stored run does not read back
+};
+
+// At most `most` runs that are worth a look: of the distinct failures, of cases that were made smaller, the
+// toughest of each field of the maps, the first map first,
+// then the toughest run of the toughest cases. Each once, in this order.
+std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunMap>& maps, std::size_t most);
+
+// Simulates them on all cores. Errors: those of ReadRuns; the worker program cannot be run.
+Result<std::vector<ShownRun>> ShowRuns(const CampaignFacts& facts, const std::vector<RunId>& ids);
+
+}  // namespace gauntlet

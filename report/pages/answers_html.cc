@@ -1,0 +1,170 @@
+#include "report/pages/answers_html.h"
+
+#include <algorithm>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "analysis/figures/layout_strip.h"
+#include "base/number_text.h"
+#include "base/shell_quoted.h"
+#include "report/pages/html_text.h"
+#include "study/questions/answered_calls.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr std::size_t kMostFailures = 12;   // that are listed
+constexpr std::size_t kMostMinimised = 24;  // that are drawn
+
+std::string Counted(std::size_t count, const char* what) {
+  return fmt::format("{} {}{}", FormatCount(count), what, count == 1 ? "" : "s");
+}
+
+// The case's name, with a link where its run can be shown.
+std::string CaseLink(const CampaignPages& pages, std::size_t number, const std::string& name, RunId run) {
+  if (run == 0 || !pages.HasPage(run)) return Html(name);
+  return fmt::format("<a href=\"#{}\">{}</a>", IdOfRun(number, run), Html(name));
+}
+
+std::string RowsOf(const CampaignPages& pages, std::size_t number,
+                   const std::vector<DistinctFailure>& failures) {
+  std::vector<std::vector<std::string>> rows;
+  for (const DistinctFailure& failure : failures) {
+    if (rows.size() == kMostFailures) break;
+    const Confirmation& toughest = *failure.cases.front();
+    rows.push_back(
+        {fmt::format("{}", rows.size() + 1), Html(failure.what),
+         CaseLink(pages, number, toughest.name, toughest.run), OutOf(toughest.tally),
+         fmt::format("{:.0f} to {:.0f} %", 100.0 * toughest.interval.low, 100.0 * toughest.interval.high),
+         FormatCount(failure.cases.size()),
+         failure.smallest == nullptr
+             ? "-"
+             : CaseLink(pages, number,
+                        Counted(failure.smallest->document.test_case.obstacles.size(), "obstacle"),
+                        failure.smallest->run),
+         failure.confirmed ? "yes" : "no"});
+  }
+  return TableHtml({">", "what happens", "toughest case", ">fails in", ">probability (95 %)", ">cases",
+                    "smallest", "confirmed"},
+                   rows);
+}
+
+// "24 of 30"
+std::string OutOf(const proto::CaseFailures& found) {
+  return fmt::format("{} of {}", found.failures, found.runs);
+}
+
+analysis::LayoutPicture PictureOf(const proto::CaseLineage& lineage, const proto::CaseStep& step) {
+  analysis::LayoutPicture picture{.heading = step.change,
+                                  .outcome = fmt::format("failed in {} runs", OutOf(step.found)),
+                                  .obstacles = {},
+                                  .kept = {}};
+  for (const int obstacle : step.obstacles) {
+    const auto index = static_cast<std::size_t>(obstacle - 1);
+    if (index >= lineage.parent.obstacles.size()) continue;  // somebody has changed the file
+    picture.kept.push_back(index);
+    picture.obstacles.push_back(lineage.parent.obstacles[index]);
+  }
+  return picture;
+}
+
+// The case beside what is left of it; with `every_step` also what came between them.
+std::string DrawSteps(const SmallestLayout& one, bool every_step) {
+  const proto::CaseLineage& lineage = *one.document.lineage;
+  analysis::LayoutStrip strip{
+      .title = fmt::format("run {}: from {} obstacles to {}", one.run, lineage.parent.obstacles.size(),
+                           one.document.test_case.obstacles.size()),
+      .original = lineage.parent,
+      .pictures = {},
+      .places = {}};
+  for (const proto::CaseStep& step : lineage.steps) {
+    if (every_step || &step == &lineage.steps.front() || &step == &lineage.steps.back())
+      strip.pictures.push_back(PictureOf(lineage, step));
+  }
+  if (strip.pictures.empty()) strip.pictures.emplace_back();
+  analysis::LayoutPicture& last = strip.pictures.back();
+  last.obstacles = one.document.test_case.obstacles;  // which may have been made shorter
+  last.outcome = fmt::format("fails in {} fresh runs", OutOf(lineage.verified));
+  if (!every_step) last.heading = "what is left";
+  return analysis::DrawLayoutStrip(strip);
+}
+
+// Whether a run is one of the case.
+bool IsOf(const CampaignFacts& facts, RunId run, const CaseFacts& of_case) {
+  const auto found = std::ranges::find(facts.runs, run, &RunFacts::id);
+  return found != facts.runs.end() && found->search == of_case.search &&
+         found->individual == of_case.individual;
+}
+
+std::string PictureHtml(const std::string& svg, const std::string& title, const std::string& reading) {
+  return fmt::format(
+      "<figure><div class=\"scroll\"><img alt=\"{}\" "
+      "src=\"{}\"></div>\n<figcaption>{}</figcaption></figure>\n",
+      Html(title), DataUri(svg), Html(reading));
+}
+
+}  // namespace
+
+std::string DistinctFailuresHtml(const CampaignPages& pages, std::size_t number) {
+  const CampaignFacts& facts = pages.facts;
+  const std::vector<Confirmation>& confirmations = facts.answers.confirmations;
+  if (confirmations.empty()) {
+    if (facts.summary.total_failures == 0 && facts.summary.failing_runs == 0) return "";
+    return "<h3>Distinct failures</h3>\n<p>How many different failures these are, and whether they happen "
+           "again with fresh seeds, is not known yet. This finds it out:</p>\n" +
+           CommandHtml(fmt::format("gauntlet confirm {} --all-failing", PastedPath(facts.directory)));
+  }
+  const std::vector<DistinctFailure> failures =
+      DistinctFailures(confirmations, facts.answers.smallest_layouts);
+  const auto confirmed = std::ranges::count(failures, true, &DistinctFailure::confirmed);
+  std::string html = fmt::format(
+      "<h3>{} ({} confirmed)</h3>\n<p>Of {} that were simulated again with fresh seeds. Cases whose runs "
+      "fail at the same place or in the same way are one failure; it is confirmed when one of them fails in "
+      "at least half of these runs.</p>\n",
+      Counted(failures.size(), "distinct failure"), confirmed, Counted(confirmations.size(), "test case"));
+  if (failures.empty()) return html;
+  html += RowsOf(pages, number, failures);
+  if (failures.size() > kMostFailures)
+    html += fmt::format("<p class=\"soft\">and {} more.</p>\n", failures.size() - kMostFailures);
+  return html;
+}
+
+std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {
+  std::vector<SmallestLayout> layouts = pages.facts.answers.smallest_layouts;
+  std::erase_if(layouts, std::not_fn(&SmallestLayout::Smaller));
+  if (layouts.empty()) return "";
+  std::string html =
+      "<h3>The few obstacles that do it</h3>\n<p>Cases beside the smallest part of them that still breaks "
+      "the "
+      "swarm in the same way; what was taken away stands faintly.</p>\n<ul class=\"thumbs pairs\">\n";
+  for (const SmallestLayout& one : std::span(layouts).first(std::min(kMostMinimised, layouts.size()))) {
+    html += fmt::format("<li><img loading=\"lazy\" alt=\"\" src=\"{}\">{}: {} of {} are left</li>\n",
+                        DataUri(DrawSteps(one, /*every_step=*/false)),
+                        CaseLink(pages, number, fmt::format("run {}", one.run), one.run),
+                        one.document.test_case.obstacles.size(),
+                        Counted(one.document.lineage->parent.obstacles.size(), "obstacle"));
+  }
+  return html + "</ul>\n";
+}
+
+std::string AnswersHtml(const CampaignFacts& facts, const CaseFacts& of_case) {
+  std::string html;
+  for (const SmallestLayout& one : facts.answers.smallest_layouts) {
+    if (!one.Smaller() || !IsOf(facts, one.run, of_case)) continue;
+    html +=
+        PictureHtml(DrawSteps(one, /*every_step=*/true), "How the case was made smaller",
+                    "How the case was made smaller: each picture takes something away and the swarm still "
+                    "fails in the same way.");
+  }
+  for (const Blame& blame : facts.blames) {
+    if (!IsOf(facts, blame.run, of_case)) continue;
+    html +=
+        PictureHtml(analysis::DrawBlame(FigureOf(blame)), "Which obstacles are to blame",
+                    "Which obstacles are to blame: the redder an obstacle, the less the case fails without "
+                    "it; blue is where robots got stuck.");
+  }
+  return html.empty() ? "" : "<h3>What its obstacles do</h3>\n" + html;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,25 @@
+#include "report/pages/campaign_pages.h"
+
+#include <algorithm>
+
+namespace gauntlet {
+
+bool CampaignPages::HasPage(RunId run) const {
+  if (every_run) return run != 0;
+  return std::ranges::any_of(shown, [run](const ShownRun& one) { return one.report.stored.id == run; });
+}
+
+Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown) {
+  Result<CampaignFacts> facts = ReadFacts(dir);
+  if (!facts) return facts.error();
+  CampaignPages pages{.facts = *std::move(facts), .courses = {}, .maps = {}, .shown = {}};
+  pages.courses = CoursesOf(pages.facts);
+  pages.maps = MapsOf(pages.facts);
+  Result<std::vector<ShownRun>> shown =
+      ShowRuns(pages.facts, RunsToShow(pages.facts, pages.maps, most_shown));
+  if (!shown) return shown.error();
+  pages.shown = *std::move(shown);
+  return pages;
+}
+
+}  // namespace gauntlet

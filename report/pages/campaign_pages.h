@@ -1,0 +1,47 @@
+// What a report's pages show of one campaign.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "report/figures/campaign_facts.h"
+#include "report/figures/run_map.h"
+#include "report/figures/search_course.h"
+#include "report/figures/set_comparison.h"
+#include "report/figures/shown_run.h"
+
+namespace gauntlet {
+
+struct CampaignPages {
+  CampaignFacts facts;
+  std::vector<SearchCourse> courses;
+  std::vector<RunMap> maps;
+  std::vector<ShownRun> shown;
+  bool every_run = false;  // others than those shown can be had too: pages that are served
+
+  bool HasPage(RunId run) const;
+};
+
+// Error: those of ReadFacts and ShowRuns.
+Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown);
+
+// The parts of the pages; `number`: of the campaign in the report, from 0, which all ids within the page
+// have. Everything is HTML.
+
+// What was tested, and what came of it, in two or three sentences; a text.
+std::string VerdictOf(const CampaignPages& pages);
+std::string OverviewHtml(const CampaignPages& pages, std::size_t number);
+std::string FailuresHtml(const CampaignPages& pages, std::size_t number);
+// A page for each run that is shown.
+std::string CasesHtml(const CampaignPages& pages, std::size_t number);
+// One of them.
+std::string CaseHtml(const CampaignFacts& facts, std::size_t number, const ShownRun& shown);
+std::string ComparisonHtml(const std::vector<SetComparison>& comparisons,
+                           const std::vector<std::string>& notes);
+
+// The id of a run's page.
+std::string IdOfRun(std::size_t number, RunId run);
+
+}  // namespace gauntlet

@@ -1,0 +1,106 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "analysis/figures/run/run_thumbnail.h"
+#include "base/shell_quoted.h"
+#include "master/campaign/verdict_text.h"
+#include "report/figures/campaign_figures.h"
+#include "report/pages/answers_html.h"
+#include "report/pages/campaign_pages.h"
+#include "report/pages/html_text.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr double kPicturePixels = 420.0;
+
+const CaseFacts* CaseOf(const CampaignFacts& facts, const StoredRun& run) {
+  const auto found = std::ranges::find_if(facts.cases, [&](const CaseFacts& one) {
+    return one.search == run.search && one.individual == run.individual;
+  });
+  return found == facts.cases.end() ? nullptr : &*found;
+}
+
+std::string ConfirmationText(const std::optional<Confirmation>& confirmation) {
+  if (!confirmation) return "";
+  return fmt::format("fails in {} of {} runs with fresh seeds, probability {:.2f} to {:.2f} (95 %): {}",
+                     confirmation->tally.failures, confirmation->tally.runs(), confirmation->interval.low,
+                     confirmation->interval.high, NameOf(confirmation->verdict));
+}
+
+std::string RunFactsHtml(const CampaignFacts& facts, const ShownRun& shown) {
+  const StoredRun& run = shown.report.stored;
+  const sim::RunResult& result = shown.report.replayed;
+  std::vector<std::pair<std::string, std::string>> rows;
+  rows.emplace_back("outcome", Html(analysis::DescribeOutcome(shown.figure)));
+  if (!result.failure.label.empty()) rows.emplace_back("failure type", Html(result.failure.label));
+  rows.emplace_back("fitness", result.verdict == sim::Verdict::kCompleted
+                                   ? fmt::format("{:.3f}", result.fitness)
+                                   : Html(NameOf(result.verdict)));
+  if (const CaseFacts* of_case = CaseOf(facts, run)) {
+    rows.emplace_back("test case", Html(fmt::format("{} {}", of_case->individual, of_case->name)));
+    rows.emplace_back("its runs",
+                      fmt::format("{}, of them {} total failures", of_case->runs, of_case->total_failures));
+    rows.emplace_back("confirmed", ConfirmationText(of_case->confirmation));
+    rows.emplace_back("born in generation", fmt::format("{}", of_case->born));
+    rows.emplace_back("obstacles", fmt::format("{}", of_case->obstacles));
+  }
+  rows.emplace_back("seed", fmt::format("{}", run.seed));
+  rows.emplace_back("result hash", fmt::format("{:016x}", run.hash));
+  for (const auto& [name, value] : shown.figure.metrics) rows.emplace_back(Html(name), Html(value));
+  return FactsHtml(rows);
+}
+
+std::string CommandsHtml(const CampaignFacts& facts, RunId id) {
+  const std::string dir = PastedPath(facts.directory);
+  return "<h3>Commands</h3>\n<p>See it again, bit for bit:</p>\n" +
+         CommandHtml(fmt::format("gauntlet replay {} {} --svg run-{}.svg", dir, id, id)) +
+         "<p>Does it fail with fresh seeds too, and how often?</p>\n" +
+         CommandHtml(fmt::format("gauntlet confirm {} {}", dir, id)) +
+         "<p>Which of its obstacles does it take?</p>\n" +
+         CommandHtml(fmt::format("gauntlet minimise {} {}", dir, id)) +
+         "<p>How much does each of them do?</p>\n" +
+         CommandHtml(fmt::format("gauntlet blame {} {}", dir, id)) + "<p>Its ways as a table:</p>\n" +
+         CommandHtml(fmt::format(
+             "gauntlet export {} --format csv --what trajectories --run {} --out run-{}.csv", dir, id, id));
+}
+
+}  // namespace
+
+std::string CaseHtml(const CampaignFacts& facts, std::size_t number, const ShownRun& shown) {
+  const RunId id = shown.report.stored.id;
+  const std::string page_id = IdOfRun(number, id);
+  std::string html = fmt::format(
+      "<section class=\"page case\" id=\"{}\">\n<h2>Run {}</h2>\n<p class=\"soft\">{} &middot; <a "
+      "href=\"#failures\">all failures</a></p>\n",
+      page_id, id, Html(facts.directory));
+  if (!shown.trouble.empty())
+    html += fmt::format("<ul class=\"notes\"><li>{}</li></ul>\n", Html(shown.trouble));
+  if (shown.figure.result.trajectory.empty()) return html + CommandsHtml(facts, id) + "</section>\n";
+  html += fmt::format(
+      "<p class=\"verdict\">{}</p>\n<div class=\"columns\"><div>\n<div class=\"replay needs-js\" "
+      "data-run=\"{}\"></div>\n<noscript><figure><img class=\"arena\" alt=\"The arena from above\" "
+      "src=\"{}\"></figure></noscript>\n<p class=\"soft\">The arena from above, as the run went: blue are "
+      "those that did well, red those that were lost in the end, green is a guide. The stroke within is "
+      "where "
+      "a robot heads. A dashed circle appears where the swarm split or an item changed hands, a red ring "
+      "around who is trapped.</p>\n</div>\n"
+      "<div>{}</div></div>\n",
+      Html(analysis::DescribeOutcome(shown.figure)), page_id,
+      DataUri(analysis::DrawThumbnail(shown.figure, kPicturePixels)), RunFactsHtml(facts, shown));
+  for (const NamedFigure& figure : FiguresOf(shown)) {
+    if (figure.name.starts_with("run-")) continue;  // the replay shows more
+    html += FigureHtml(figure, facts.directory);
+  }
+  if (const CaseFacts* of_case = CaseOf(facts, shown.report.stored)) html += AnswersHtml(facts, *of_case);
+  return html + CommandsHtml(facts, id) + "</section>\n";
+}
+
+std::string CasesHtml(const CampaignPages& pages, std::size_t number) {
+  std::string html;
+  for (const ShownRun& shown : pages.shown) html += CaseHtml(pages.facts, number, shown);
+  return html;
+}
+
+}  // namespace gauntlet

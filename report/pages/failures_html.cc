@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include "analysis/figures/run/run_thumbnail.h"
+#include "base/number_text.h"
+#include "base/shell_quoted.h"
+#include "controllers/registry.h"
+#include "report/pages/answers_html.h"
+#include "report/pages/campaign_pages.h"
+#include "report/pages/html_text.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr double kThumbnailPixels = 220.0;
+constexpr std::size_t kMostCases = 50;  // of the table of cases, where no script makes a whole one
+
+std::string CellHtml(const CampaignPages& pages, std::size_t number, const MapCell& cell,
+                     std::uint64_t largest) {
+  const analysis::HeatColors colors = analysis::HeatColorsOf(cell.runs, largest);
+  if (cell.runs == 0) return fmt::format("<td class=\"none\" title=\"{}: none\"></td>", Html(cell.meaning));
+  const std::string style = fmt::format("style=\"background:{};color:{}\"", colors.fill, colors.text);
+  const std::string title = Html(fmt::format("{}: {} runs; the toughest is run {}", cell.meaning,
+                                             FormatCount(cell.runs), cell.toughest));
+  if (!pages.HasPage(cell.toughest))
+    return fmt::format("<td {} title=\"{}\">{}</td>", style, title, FormatCount(cell.runs));
+  return fmt::format("<td {}><a href=\"#{}\" title=\"{}\" aria-label=\"{}\">{}</a></td>", style,
+                     IdOfRun(number, cell.toughest), title, title, FormatCount(cell.runs));
+}
+
+std::string MapHtml(const CampaignPages& pages, std::size_t number, const RunMap& map) {
+  std::string html = fmt::format(
+      "<h3>{}</h3>\n<p>{}. {} A click on a field leads to its toughest run.</p>\n"
+      "<div class=\"scroll\"><table class=\"map\"><thead><tr><th></th><th scope=\"colgroup\" "
+      "colspan=\"{}\">{}</th></tr>\n<tr><th scope=\"col\">{}</th>",
+      Html(map.title), Html(map.outcome), Html(map.reading), map.columns.size(), Html(map.across_name),
+      Html(map.down_name));
+  for (const std::string& column : map.columns)
+    html += fmt::format("<th scope=\"col\">{}</th>", Html(column));
+  html += "</tr></thead><tbody>\n";
+  const std::uint64_t largest = LargestCount(map);
+  for (std::size_t row = 0; row < map.rows.size(); ++row) {
+    html += fmt::format("<tr><th scope=\"row\">{}</th>", Html(map.rows[row]));
+    for (const MapCell& cell : map.cells[row]) html += CellHtml(pages, number, cell, largest);
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table></div>\n<details><summary>For a paper: as SVG, its data as CSV</summary>" +
+         CommandHtml(fmt::format("gauntlet figure {0} {1} -o {1}.svg --csv {1}.csv",
+                                 PastedPath(pages.facts.directory), map.name)) +
+         "</details>\n";
+}
+
+std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
+  std::string html =
+      "<h3>What it looks like</h3>\n<p>The arena of each run from above, with everybody's way. Blue ways are "
+      "of robots that did well, red ones of those that were lost, green is a guide; dots are where they "
+      "ended. "
+      "A click leads to the run.</p>\n<ul class=\"thumbs\">\n";
+  std::size_t drawn = 0;
+  for (const ShownRun& one : pages.shown) {
+    if (one.figure.result.trajectory.empty()) continue;
+    ++drawn;
+    const RunId id = one.report.stored.id;
+    const std::string outcome = Html(analysis::DescribeOutcome(one.figure));
+    html += fmt::format(
+        "<li><a href=\"#{}\"><img loading=\"lazy\" alt=\"\" width=\"220\" height=\"220\" "
+        "src=\"{}\">Run {}: {}</a></li>\n",
+        IdOfRun(number, id), DataUri(analysis::DrawThumbnail(one.figure, kThumbnailPixels)), id, outcome);
+  }
+  return drawn == 0 ? "" : html + "</ul>\n";
+}
+
+std::string CasesTable(const CampaignPages& pages, std::size_t number) {
+  const CampaignFacts& facts = pages.facts;
+  std::vector<std::vector<std::string>> rows;
+  for (const CaseFacts& one : facts.cases) {
+    if (rows.size() == kMostCases) break;
+    std::string run = one.toughest == 0 ? "-" : fmt::format("{}", one.toughest);
+    if (pages.HasPage(one.toughest))
+      run = fmt::format("<a href=\"#{}\">{}</a>", IdOfRun(number, one.toughest), run);
+    rows.push_back({fmt::format("{}", one.individual), Html(one.name),
+                    one.completed == 0 ? "-" : fmt::format("{:.3f}", one.mean_fitness), FormatCount(one.runs),
+                    FormatCount(one.total_failures), run});
+  }
+  const std::string sentence =
+      "A row for each test case, the toughest first: its number, how its runs ended, and its toughest run. A "
+      "run that has a replay here is a link.";
+  return fmt::format(
+      "<h3>Test cases</h3>\n<p>{}</p>\n<div class=\"all-cases\" data-campaign=\"{}\">\n<p class=\"soft\">The "
+      "toughest {} of {}.</p>{}</div>\n",
+      sentence, number, rows.size(), FormatCount(facts.cases.size()),
+      TableHtml({">case", "name", ">mean fitness", ">runs", ">total failures", ">toughest run"}, rows));
+}
+
+}  // namespace
+
+std::string IdOfRun(std::size_t number, RunId run) {
+  return fmt::format("run-{}-{}", number, run);
+}
+
+std::string FailuresHtml(const CampaignPages& pages, std::size_t number) {
+  std::string html = fmt::format("<h2>{}</h2>\n<p class=\"soft\">{}</p>\n",
+                                 Html(pages.facts.summary.experiment), Html(pages.facts.directory));
+  if (pages.facts.cases.empty()) return html + "<p>There is no run yet.</p>\n";
+  if (pages.maps.empty()) html += "<p>Nothing failed, and the scenario describes no behaviour.</p>\n";
+  html += DistinctFailuresHtml(pages, number) + MinimisedCasesHtml(pages, number);
+  for (const RunMap& map : pages.maps) html += MapHtml(pages, number, map);
+  return html + ThumbnailsHtml(pages, number) + CasesTable(pages, number);
+}
+
+}  // namespace gauntlet

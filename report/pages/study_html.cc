@@ -1,0 +1,141 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "base/shell_quoted.h"
+#include "report/figures/study_figures.h"
+#include "report/pages/html_text.h"
+#include "report/pages/study_pages.h"
+#include "study/study_tables.h"
+
+namespace gauntlet {
+namespace {
+
+std::string TableOf(const StudyTable& table) {
+  if (table.rows.empty()) return "";
+  std::vector<std::vector<std::string>> rows = table.rows;
+  for (auto& row : rows)
+    std::ranges::transform(row, row.begin(), [](const auto& cell) { return Html(cell); });
+  return TableHtml(table.headers, rows);
+}
+
+std::string Paragraph(const std::string& text, std::string_view style = "") {
+  const std::string attribute = style.empty() ? "" : fmt::format(" class=\"{}\"", style);
+  return text.empty() ? "" : fmt::format("<p{}>{}</p>\n", attribute, Html(text));
+}
+
+std::string InWords(const StudyClaim& claim) {
+  return fmt::format("{}: this {}.", claim.text, claim.holds ? "holds" : "does not hold");
+}
+
+std::string PublishedHtml(const std::vector<JudgedRow>& rows, std::string_view title) {
+  if (rows.empty()) return "";
+  PublishedNotes notes;
+  std::string html = fmt::format("<h3>{}</h3>\n{}", Html(title), TableOf(PublishedTable(rows, notes)));
+  if (notes.all().empty()) return html;
+  html += "<p>Notes:</p><ol>\n";
+  for (const std::string& note : notes.all()) html += fmt::format("<li>{}</li>\n", Html(note));
+  return html + "</ol>\n";
+}
+
+std::string FiguresHtml(const StudyPages& study, const StudySection& section) {
+  std::string html;
+  for (const NamedFigure& figure : FiguresOf(*study.report, section))
+    html += FigureHtml(figure, study.directory);
+  return html;
+}
+
+// What it comes to first, then the picture, then every number.
+std::string AnalysisHtml(const StudyPages& study, const StudySection& section) {
+  std::string html = fmt::format("<h2>{}</h2>\n", Html(section.title));
+  if (section.claim) html += Paragraph(InWords(*section.claim), "verdict");
+  html += FiguresHtml(study, section);
+  for (const std::string& sentence : section.sentences) html += Paragraph(sentence);
+  for (const StudyTable& table : section.tables) html += TableOf(table);
+  return html + PublishedHtml(section.published, "Published figures beside ours");
+}
+
+// A tuning's last sentence and last table are what it recommends.
+std::string TuningHtml(const StudyPages& study, const StudySection& section) {
+  std::string html = fmt::format("<h2>{}</h2>\n", Html(section.title));
+  html += Paragraph(section.sentences.back(), "verdict") + TableOf(section.tables.back());
+  html += FiguresHtml(study, section) + "<h3>Why</h3>\n";
+  for (auto sentence = section.sentences.begin(); sentence + 1 != section.sentences.end(); ++sentence)
+    html += Paragraph(*sentence);
+  html += "<h3>In numbers</h3>\n";
+  for (auto table = section.tables.begin(); table + 1 != section.tables.end(); ++table)
+    html += TableOf(*table);
+  return html + PublishedHtml(section.published, "Published values beside ours");
+}
+
+std::string LinkTo(std::string_view page, std::string_view text) {
+  return fmt::format("<p><a href=\"#{}\">{}</a></p>\n", page, Html(text));
+}
+
+}  // namespace
+
+std::string StudyOverviewHtml(const StudyPages& study) {
+  std::string html = fmt::format("<h2>{}</h2>\n{}{}", Html(study.name), Paragraph(study.directory, "soft"),
+                                 Paragraph(study.description));
+  if (!study.report) {
+    return html +
+           Paragraph(
+               "It has not finished: what it finds stands here when it has. Where nobody works on it "
+               "any more, this goes on:",
+               "notes") +
+           CommandHtml("gauntlet resume " + PastedPath(study.directory));
+  }
+  const StudyReport& report = *study.report;
+  bool others = false;
+  for (const StudySection& section : report.sections) {
+    if (section.tuning) {
+      html += Paragraph(section.sentences.back(), "verdict") +
+              LinkTo("parameters", "What was tried, and how sure that is: " + section.title);
+    }
+    others = others || !section.tuning;
+  }
+  StudyTable claims = ClaimTable(report);
+  claims.headers.pop_back();
+  for (auto& row : claims.rows) row.pop_back();
+  html += TableOf(claims) + Paragraph(TallyInWords(report));
+  if (others) html += LinkTo("comparison", "What was compared, with every figure");
+  return html + fmt::format("<details><summary>What it has cost</summary>{}{}</details>\n",
+                            TableOf(PartTable(report)), Paragraph(TimeInWords(report)));
+}
+
+std::string StudyResultsHtml(const StudyPages& study) {
+  if (!study.report) return "";
+  std::string html;
+  for (const StudySection& section : study.report->sections) {
+    if (!section.tuning) html += AnalysisHtml(study, section);
+  }
+  if (html.empty()) return "";
+  return html + PublishedHtml(study.report->elsewhere, "Published figures that have no counterpart here");
+}
+
+std::string ParametersHtml(const StudyPages& study) {
+  if (!study.report) return "";
+  std::string html;
+  for (const StudySection& section : study.report->sections) {
+    if (section.tuning) html += TuningHtml(study, section);
+  }
+  return html;
+}
+
+Result<StudyPages> GatherStudy(const std::string& dir) {
+  const Result<Study> study = OpenStudy(dir);
+  if (!study) return study.error();
+  StudyPages pages{.directory = dir, .name = study->name, .description = study->description, .report = {}};
+  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+    if (std::ranges::count(study->parts, stage, &StageOf) == 0) continue;
+    const Result<StageState> state = LookAtStage(*study, dir, stage);
+    if (!state) return state.error();
+    if (!state->finished) return pages;
+  }
+  Result<StudyReport> report = MakeStudyReport(*study, dir);
+  if (!report) return report.error();
+  pages.report = *std::move(report);
+  return pages;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/number_text.h"
+#include "controllers/registry.h"
+#include "report/pages/campaign_pages.h"
+
+namespace gauntlet {
+namespace {
+
+std::string Percent(double share) {
+  return fmt::format("{:.1f} %", 100.0 * share);
+}
+
+// "swarm of birds"
+std::string SwarmOf(const CampaignFacts& facts) {
+  const Experiment& experiment = facts.plans.front().experiment;
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  return scenario == nullptr ? "swarm" : fmt::format("swarm of {}s", scenario->style.member);
+}
+
+// How the share of failures grew, over all searches.
+std::string Learning(const std::vector<SearchCourse>& courses) {
+  double first = 0.0;
+  double last = 0.0;
+  double searches = 0.0;
+  for (const SearchCourse& course : courses) {
+    for (const std::vector<CourseBlock>& blocks : course.repeats) {
+      if (blocks.size() < 2) continue;
+      searches += 1.0;
+      first += blocks.front().failure_share;
+      last += blocks.back().failure_share;
+    }
+  }
+  if (searches == 0.0) return "";
+  return fmt::format(" Of the first runs that a search spent {} failed, of the last {}.",
+                     Percent(first / searches), Percent(last / searches));
+}
+
+std::string Toughest(const CampaignFacts& facts) {
+  const auto toughest = std::ranges::find_if(
+      facts.cases, [](const CaseFacts& one) { return one.total_failures > 0 && one.completed > 0; });
+  if (toughest == facts.cases.end()) return "";
+  return fmt::format(" The toughest test case, number {}{}, made the swarm fail in {} of {} runs.",
+                     toughest->individual,
+                     facts.plans.size() > 1 ? fmt::format(" of search {}", toughest->search) : "",
+                     FormatCount(toughest->total_failures), FormatCount(toughest->runs));
+}
+
+std::string Confirmed(const CampaignFacts& facts) {
+  const auto& confirmations = facts.answers.confirmations;
+  if (confirmations.empty()) return "";
+  const auto failing = std::ranges::count(confirmations, FailureVerdict::kFail, &Confirmation::verdict);
+  return fmt::format(
+      " Of {} test cases that were simulated again with fresh seeds, {} failed in at least half "
+      "of these runs.",
+      FormatCount(confirmations.size()), failing);
+}
+
+}  // namespace
+
+std::string VerdictOf(const CampaignPages& pages) {
+  const CampaignFacts& facts = pages.facts;
+  const CampaignSummary& summary = facts.summary;
+  if (summary.runs_done == 0) return "Nothing has been simulated yet.";
+  if (summary.runs_failed == summary.runs_done)
+    return fmt::format("No run gave a result: of {} runs none could be simulated to its end.",
+                       FormatCount(summary.runs_done));
+  if (summary.total_failures == 0) {
+    return fmt::format("The {} held out: in none of {} runs did it fail as a whole.{}", SwarmOf(facts),
+                       FormatCount(summary.runs_done), Confirmed(facts));
+  }
+  const double share = static_cast<double>(summary.total_failures) / static_cast<double>(summary.runs_done);
+  return fmt::format("The {} broke: it failed as a whole in {} of {} runs ({}).{}{}{}", SwarmOf(facts),
+                     FormatCount(summary.total_failures), FormatCount(summary.runs_done), Percent(share),
+                     Learning(pages.courses), Toughest(facts), Confirmed(facts));
+}
+
+}  // namespace gauntlet

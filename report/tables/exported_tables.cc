@@ -1,0 +1,218 @@
+#include "report/tables/exported_tables.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "master/dispatch/pool/worker_program.h"
+#include "proto/run_codec.h"
+#include "report/tables/run_table.h"
+#include "report/tables/search_columns.h"
+#include "sim/robot/foot_bot.h"
+
+namespace gauntlet {
+namespace {
+
+const std::vector<Column> kCaseColumns = {
+    {"individual", "", "number of the test case within its search"},
+    {"birth_generation", "", "in which it was born, from 1"},
+    {"parents", "", "numbers of its parents, a blank between"},
+    {"name", "", "of a given case, that of its file"},
+    {"obstacle", "", "number of the obstacle within the case, from 1; nothing in a case without any"},
+    {"x", "m", "centre, from the middle of the arena"},
+    {"y", "m", "centre"},
+    {"length", "m", ""},
+    {"width", "m", ""},
+    {"orientation_deg", "degrees", "counter-clockwise"},
+    {"speed", "m/s", "of one that moves"},
+    {"path", "m", "of one that moves: where it goes, x and y of each place, blanks between"},
+    {"light", "", "colour of the lamps that it carries"}};
+
+const std::vector<Column> kTrajectoryColumns = {{"run", "", "id of the run"},
+                                                {"robot", "", "number of the robot, from 0"},
+                                                {"time", "s", "in the simulation, every 5 s"},
+                                                {"x", "m", "position, from the middle of the arena"},
+                                                {"y", "m", "position"}};
+
+const std::vector<Column> kEventColumns = {{"time", "", "UTC, ISO 8601"},
+                                           {"kind", "", "what happened, one word"},
+                                           {"text", "", "the same in words"}};
+
+// Visits the runs that were asked for, in logical order, until `visit` gives an error, which is returned.
+Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chosen,
+                     const std::function<Status(const StoredRun&)>& visit) {
+  SqliteStore& store = *campaign.view.store;
+  for (const RunId id : chosen) {
+    const Result<std::optional<StoredRun>> run = store.LoadRun(id);
+    if (!run) return run.error();
+    if (!run->has_value())
+      return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", id)};
+    if (Status visited = visit(**run); !visited) return visited;
+  }
+  if (!chosen.empty()) return Ok{};
+  for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
+    Status visited = Ok{};
+    const Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
+      if (visited) visited = visit(run);
+    });
+    if (!visited) return visited;
+    if (!read) return read;
+  }
+  return Ok{};
+}
+
+Status WriteRuns(const StoredCampaign& campaign, const std::set<RunId>& chosen, const RunTable& runs,
+                 DataTable& table) {
+  return ForEachChosen(campaign, chosen, [&](const StoredRun& run) -> Status {
+    const Result<std::vector<Cell>> row = runs.Row(run);
+    if (!row) return row.error();
+    return table.AddRow(*row);
+  });
+}
+
+std::vector<Cell> ObstacleCells(const sim::ObstacleGene& gene, std::size_t number) {
+  std::string path;
+  for (const sim::Vec2& point : gene.path)
+    path += fmt::format("{}{} {}", path.empty() ? "" : " ", point.x(), point.y());
+  return {std::uint64_t{number},
+          gene.x,
+          gene.y,
+          gene.length,
+          gene.width,
+          gene.orientation_deg,
+          gene.Moves() ? Cell(gene.speed) : Cell(),
+          gene.Moves() ? Cell(path) : Cell(),
+          gene.Lit() ? Cell(std::string(sim::NameOf(gene.light))) : Cell()};
+}
+
+Status WriteCases(const StoredCampaign& campaign, const SearchColumns& searches, DataTable& table) {
+  for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
+    const Result<std::vector<Individual>> individuals = campaign.view.store->LoadIndividuals(search);
+    if (!individuals) return individuals.error();
+    for (const Individual& individual : *individuals) {
+      std::vector<Cell> of_case = searches.CellsOf(search);
+      of_case.insert(of_case.end(), {individual.id, std::uint64_t{individual.birth_generation},
+                                     TextCell(fmt::format("{}", fmt::join(individual.parents, " "))),
+                                     TextCell(individual.test_case.name)});
+      const sim::Genome& obstacles = individual.test_case.obstacles;
+      for (std::size_t i = 0; i < std::max<std::size_t>(obstacles.size(), 1); ++i) {
+        std::vector<Cell> row = of_case;
+        if (i < obstacles.size()) {
+          const std::vector<Cell> obstacle = ObstacleCells(obstacles[i], i + 1);
+          row.insert(row.end(), obstacle.begin(), obstacle.end());
+        }
+        row.resize(searches.columns().size() + kCaseColumns.size());
+        if (Status written = table.AddRow(row); !written) return written;
+      }
+    }
+  }
+  return Ok{};
+}
+
+// The run's result with the robots' ways.
+Result<sim::RunResult> WithWays(const StoredRun& run, std::uint64_t& simulated) {
+  Result<sim::RunResult> stored = proto::DecodeStoredResult(run.result);
+  if (!stored || stored->verdict != sim::Verdict::kCompleted) return stored;
+  if (!stored->robots.empty() && !stored->robots.front().waypoints.empty()) return stored;
+  const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
+  if (!spec) return spec.error();
+  Result<sim::RunResult> again = SimulateInRunner(*spec);
+  if (!again) return again;
+  if (again->hash != run.hash)
+    return Error{ErrorKind::kCorrupt, "it does not end as it did; `gauntlet replay` says what differs"};
+  ++simulated;
+  return again;
+}
+
+Status WriteTrajectories(const StoredCampaign& campaign, const std::set<RunId>& chosen, DataTable& table,
+                         std::uint64_t& simulated) {
+  return ForEachChosen(campaign, chosen, [&](const StoredRun& run) -> Status {
+    const Result<sim::RunResult> result = WithWays(run, simulated);
+    if (!result) return Error{result.error().kind, fmt::format("run {}: {}", run.id, result.error().message)};
+    for (std::size_t robot = 0; robot < result->robots.size(); ++robot) {
+      const std::vector<sim::Vec2>& way = result->robots[robot].waypoints;
+      for (std::size_t i = 0; i < way.size(); ++i) {
+        const double time = static_cast<double>(i * sim::kSummaryTicks) / sim::kTicksPerSecond;
+        const Status written = table.AddRow({run.id, std::uint64_t{robot}, time, way[i].x(), way[i].y()});
+        if (!written) return written;
+      }
+    }
+    return Ok{};
+  });
+}
+
+Status WriteEvents(const StoredCampaign& campaign, DataTable& table) {
+  const Result<std::vector<StoredEvent>> events = campaign.view.store->LoadEvents();
+  if (!events) return events.error();
+  for (const StoredEvent& event : *events) {
+    const std::string time =
+        fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(event.unix_ms / 1000), event.unix_ms % 1000);
+    if (Status written = table.AddRow({time, event.kind, event.text}); !written) return written;
+  }
+  return Ok{};
+}
+
+std::vector<Column> Joined(std::vector<Column> first, const std::vector<Column>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+}  // namespace
+
+Result<ExportReport> WriteTable(const StoredCampaign& campaign, const ExportOptions& options,
+                                const std::string& head, const Sink& sink) {
+  ExportReport report;
+  const auto write = [&](const char* name, const std::vector<Column>& columns,
+                         const std::function<Status(DataTable&)>& rows) -> Result<ExportReport> {
+    DataTable table(options.format, columns, sink, head, name);
+    if (Status written = rows(table); !written) return written.error();
+    if (Status finished = table.Finish(); !finished) return finished.error();
+    report.rows = table.rows();
+    return report;
+  };
+  switch (options.what) {
+    case Exported::kRuns: {
+      const Result<RunTable> runs = RunTable::Make(campaign.plans, *campaign.view.store);
+      if (!runs) return runs.error();
+      return write("runs", runs->columns(),
+                   [&](DataTable& table) { return WriteRuns(campaign, options.runs, *runs, table); });
+    }
+    case Exported::kCases: {
+      const SearchColumns searches(campaign.plans);
+      return write("cases", Joined(searches.columns(), kCaseColumns),
+                   [&](DataTable& table) { return WriteCases(campaign, searches, table); });
+    }
+    case Exported::kTrajectories:
+      return write("trajectories", kTrajectoryColumns, [&](DataTable& table) {
+        return WriteTrajectories(campaign, options.runs, table, report.simulated);
+      });
+    case Exported::kEvents:
+      break;
+  }
+  return write("events", kEventColumns, [&](DataTable& table) { return WriteEvents(campaign, table); });
+}
+
+std::vector<Column> CommonColumns(Exported what) {
+  switch (what) {
+    case Exported::kRuns: {
+      const RunColumns runs = CommonRunColumns();
+      return Joined(Joined(runs.before_metrics,
+                           {{"...", "", "the scenario's metrics by their names: `gauntlet list scenarios`"}}),
+                    runs.after_metrics);
+    }
+    case Exported::kCases:
+      return Joined(CommonSearchColumns(), kCaseColumns);
+    case Exported::kTrajectories:
+      return kTrajectoryColumns;
+    case Exported::kEvents:
+      break;
+  }
+  return kEventColumns;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,150 @@
+#include "report/tables/run_table.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "controllers/registry.h"
+#include "master/campaign/verdict_text.h"
+#include "proto/run_codec.h"
+#include "sim/robot/foot_bot.h"
+#include "study/sets/subset.h"
+
+namespace gauntlet {
+namespace {
+
+const Column kId = {"id", "", "number of the run, as `replay` takes it"};
+
+const std::vector<Column>& ColumnsOfTheRun() {
+  static const std::vector<Column> columns = {
+      {"individual", "", "number of the test case within its search"},
+      {"generation", "", "in which it was run, from 1"},
+      {"evaluation", "", "round of runs of this test case, 0 = its first"},
+      {"replicate", "", "run of this evaluation, from 0"},
+      {"seed", "", "of the run, 64 bits"},
+      {"verdict", "", "completed, or why there is no result: refused, crashed, hung, ..."},
+      {"fitness", "", "lower = tougher; nothing without a result"},
+      {"total_failure", "", "whether the whole swarm failed"},
+      {"failure_type", "", "number of the failure type, nothing when there is none"},
+      {"failure", "", "the failure type in words"}};
+  return columns;
+}
+
+const std::vector<Column>& ColumnsBehindMetrics() {
+  static const std::vector<Column> columns = {
+      {"simulated_time", "s", "how long the run lasted in the simulation"},
+      {"cpu_seconds", "s", "CPU time that the simulation took"},
+      {"hash", "", "of the result, 16 hexadecimal digits"},
+      {"worker", "", "who simulated it"},
+      {"attempt", "", "how often it had been given out, from 1"},
+      {"message", "", "why there is no result"}};
+  return columns;
+}
+
+template <typename Some>
+void Append(const Some& some, auto& all) {
+  all.insert(all.end(), std::begin(some), std::end(some));
+}
+
+Error InRun(RunId run, const Error& error) {
+  return {error.kind, fmt::format("run {}: {}", run, error.message)};
+}
+
+// The metrics of the search's first completed run, in the scenario's order; none when it has no such run.
+Result<std::vector<std::string>> MetricsOf(SearchId search, ResultStore& store) {
+  std::optional<RunId> completed;
+  const Status read = store.ForEachRow(search, 0, [&](const StoredRun& run) {
+    if (!completed && run.verdict == static_cast<int>(sim::Verdict::kCompleted)) completed = run.id;
+  });
+  if (!read) return read.error();
+  std::vector<std::string> names;
+  if (!completed) return names;
+  const Result<std::optional<StoredRun>> run = store.LoadRun(*completed);
+  if (!run) return run.error();
+  const Result<sim::RunResult> result = proto::DecodeStoredResult((*run)->result);
+  if (!result) return InRun(*completed, result.error());
+  for (const auto& [name, value] : result->metrics) names.push_back(name);
+  return names;
+}
+
+}  // namespace
+
+RunColumns CommonRunColumns() {
+  std::vector<Column> before = {kId};
+  Append(CommonSearchColumns(), before);
+  Append(ColumnsOfTheRun(), before);
+  return {std::move(before), ColumnsBehindMetrics()};
+}
+
+Result<RunTable> RunTable::Make(const std::vector<SearchPlan>& plans, ResultStore& store) {
+  std::vector<std::vector<std::string>> metrics;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    Result<std::vector<std::string>> names = MetricsOf(static_cast<SearchId>(i + 1), store);
+    if (!names) return names.error();
+    metrics.push_back(*std::move(names));
+  }
+  return RunTable(plans, metrics);
+}
+
+RunTable::RunTable(const std::vector<SearchPlan>& plans, const std::vector<std::vector<std::string>>& metrics)
+    : searches_(plans), columns_{kId}, metrics_(plans.size()) {
+  Append(searches_.columns(), columns_);
+  Append(ColumnsOfTheRun(), columns_);
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const Experiment& experiment = plans[i].experiment;
+    const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+    untyped_failures_.emplace_back(scenario == nullptr ? "" : scenario->untyped_failure);
+    for (const std::string& name : metrics[i]) {
+      const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, name);
+      auto column = std::ranges::find(columns_, name, &Column::name);
+      if (column == columns_.end()) {
+        column = columns_.insert(columns_.end(), {name, std::string(info == nullptr ? "" : info->unit),
+                                                  std::string(info == nullptr ? "" : info->description)});
+      }
+      metrics_[i][name] = {static_cast<std::size_t>(column - columns_.begin()), info};
+    }
+  }
+  Append(ColumnsBehindMetrics(), columns_);
+}
+
+Result<std::vector<Cell>> RunTable::Row(const StoredRun& run) const {
+  const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
+  if (!result) return InRun(run.id, result.error());
+  const bool completed = result->verdict == sim::Verdict::kCompleted;
+  const sim::SwarmFailure& failure = result->failure;
+  const bool typed = failure.type >= 0;
+  const std::string& untyped = untyped_failures_.at(run.search - 1);
+  std::vector<Cell> cells = {run.id};
+  cells.reserve(columns_.size());
+  Append(searches_.CellsOf(run.search), cells);
+  Append(std::initializer_list<Cell>{run.individual, std::uint64_t{run.generation},
+                                     std::uint64_t{run.evaluation}, std::uint64_t{run.replicate},
+                                     fmt::format("{}", run.seed), std::string(NameOf(result->verdict)),
+                                     completed ? NumberCell(result->fitness) : Cell(), failure.total,
+                                     typed ? Cell(std::int64_t{failure.type}) : Cell(),
+                                     TextCell(failure.total && !typed ? untyped : failure.label)},
+         cells);
+
+  cells.resize(columns_.size() - ColumnsBehindMetrics().size());
+  for (const auto& [name, value] : result->metrics) {
+    if (!completed) break;
+    const auto metric = metrics_.at(run.search - 1).find(name);
+    if (metric == metrics_.at(run.search - 1).end())
+      return Error{
+          ErrorKind::kCorrupt,
+          fmt::format("run {} has the metric {}, which its search's first run has not", run.id, name)};
+    if (const auto measured = MeasuredValue(metric->second.info, value))
+      cells[metric->second.place] = *measured;
+  }
+  Append(std::initializer_list<Cell>{static_cast<double>(result->ticks) / sim::kTicksPerSecond,
+                                     result->cpu_seconds, fmt::format("{:016x}", run.hash), run.worker,
+                                     std::uint64_t{run.attempt}, TextCell(result->message)},
+         cells);
+  return cells;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,154 @@
+// A search for many different failures, each as small as possible: an archive over how swarms fail, in each
+// cell of which the smallest reliable failure stays. After the elites of MAP-Elites (Mouret and Clune 2015),
+// with reliability as a constraint and the size of a layout as its quality.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "search/archive/archive_emitters.h"
+#include "search/archive/failure_archive.h"
+#include "search/archive/failure_prior.h"
+#include "search/evolution/population_search.h"
+#include "search/search_table.h"
+
+namespace gauntlet {
+
+// Where a layout came from. Saved states depend on the order.
+enum class Emitter : std::uint8_t { kRandom, kNearest, kWithout, kMirrored, kAcross, kJittered, kRecheck };
+inline constexpr std::size_t kEmitters = 7;
+std::string_view NameOf(Emitter emitter);
+
+// What an emitter has cost and given.
+struct EmitterAccount {
+  std::uint64_t runs = 0;
+  std::uint64_t layouts = 0;
+  std::uint64_t elites = 0;  // layouts that became the smallest of their cell
+};
+
+enum class Race { kOpen, kAdmit, kDrop };
+
+// search.slots layouts are under test at a time, each with one run outstanding, so what is asked depends on
+// exactly the results 1 .. k - slots, for any number of workers. A layout is dropped when its first run
+// passes or shows that it cannot become the smallest of its cell, or when a second run passes; it is admitted
+// when 3 of 3 or 4 of 5 runs fail. A layout that was admitted is followed by those with one obstacle less; a
+// random case that fails, by its obstacles nearest to where it failed: 1, 2, 3, 4 of them, and then itself.
+// When nothing follows, a slot goes on with a random case, obstacles across the way, an elite moved to
+// another cell, a changed elite, or one more run of an elite. Elites of which fewer than 80 % of further runs
+// are expected to fail (FailurePrior) are run again before anything new begins, and leave the archive when
+// fewer than 60 % are, or when the next of their cell has as few obstacles and is expected to fail more
+// often. What is only shorter than an elite is admitted when it is expected to fail as often.
+//
+// As "random-deletion", the baseline, it knows nothing of cells: random cases alone, each run until it is
+// admitted or dropped and then shortened by one obstacle, the farthest from the way first, as long as what is
+// left is admitted. The archive only collects what comes of it.
+//
+// Population() is the smallest of each cell, in the order of the cells.
+class ArchiveSearch : public PopulationSearch {
+ public:
+  // Error: the scenario has no axes, or the ranges leave no room for a valid case.
+  static Result<std::unique_ptr<ArchiveSearch>> Create(const SearchSetup& setup);
+
+  std::vector<EvaluationRequest> Ask() override;
+  bool WantsMetrics() const override { return true; }
+  SearchProgress Progress() const override;
+  std::vector<std::pair<std::string, double>> Statistics() const override;
+  ArchiveView Archive() const override;
+  // After every kSaveInterval outcomes, and at the end. What was asked and not told is part of the state.
+  bool AtBoundary() const override;
+
+  static constexpr std::uint64_t kSaveInterval = 100;
+  // Evaluations after which it is late. Chosen: of flocking's cells most hold one or two obstacles then, and
+  // few are left that rows of up to three would win.
+  static constexpr std::uint64_t kEarly = 1000;
+
+ private:
+  struct Step {
+    Emitter emitter = Emitter::kRandom;
+    sim::Genome obstacles;
+  };
+  // A line of layouts, each of which follows from what came of the one before.
+  struct Slot {
+    Emitter emitter = Emitter::kRandom;
+    Finding finding;              // under test
+    std::deque<Step> plan;        // what follows
+    std::size_t cell = 0;         // that they are to become the smallest of
+    std::optional<Finding> root;  // the random case, under test after everything that is smaller
+    IndividualId parent = 0;      // of what follows; 0 = none
+  };
+
+  ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario);
+
+  void Told(const EvaluationOutcome& outcome) override;
+  void SaveRest(CanonicalEncoder& encoder) const override;
+  Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
+
+  std::uint64_t Planned() const;
+  bool Late() const { return evaluations_done_ > kEarly; }
+  // What the outcome says of the finding.
+  void Count(const EvaluationOutcome& outcome, Finding& finding) const;
+  // Makes the slot's next layout, when what it has is decided.
+  void Continue(Slot& slot);
+  void Begin(Slot& slot, Emitter emitter, sim::Genome obstacles, IndividualId parent);
+  bool BeginPlanned(Slot& slot);
+  void BeginAnew(Slot& slot);
+  // One of the kinds of lines that have a share; false: it is not their turn, or there is nothing to begin
+  // with.
+  bool BeginDrawn(Slot& slot, sim::RandomStream& random);
+  void BeginRandom(Slot& slot, sim::RandomStream& random);
+  // What could be won along the shortest way through the arena.
+  double Promise(const sim::TestCase& test_case) const;
+  bool BeginMirrored(Slot& slot);
+  bool BeginAcross(Slot& slot, sim::RandomStream& random);
+  // With no more obstacles in a row than win a cell; one alone is nearly as long as any may be.
+  bool BeginNeeded(Slot& slot, sim::RandomStream& random);
+  std::uint32_t MostAcross() const;  // obstacles in a row
+  // The most obstacles that would win a cell, which is drawn from those that hold none or more than one. 0:
+  // there is none.
+  std::uint32_t DrawMostAcross(sim::RandomStream& random) const;
+  bool BeginJittered(Slot& slot, sim::RandomStream& random);
+  // Of the elite that is expected to fail least, if that is less than `below`.
+  bool BeginRecheck(Slot& slot, double below);
+  void PlanNearest(Slot& slot);
+  void PlanWithout(Slot& slot, const Finding& found);
+  // Whether it is worth knowing that a layout of this size fails in the cell.
+  bool Matters(std::size_t cell, const LayoutSize& size) const;
+  // Of what is to be admitted: when it has as many obstacles as the elite of its cell, it has to be as
+  // reliable.
+  Race JudgeShortening(const Finding& finding) const;
+  // Whether a layout that fails often enough does so in one cell.
+  Race JudgePlace(const Finding& finding) const;
+  void Rechecked(Slot& slot);
+  // The obstacles in the order in which they are probably needed.
+  std::vector<std::size_t> Order(const sim::Genome& obstacles, const Descriptor& failure) const;
+  const Finding& DrawElite(sim::RandomStream& random) const;
+  const Finding* DrawEliteOfOne(sim::RandomStream& random) const;  // nullptr: there is none
+  void UpdatePopulation();
+  static void SaveFinding(const Finding& finding, CanonicalEncoder& encoder);
+  Result<Finding> RestoreFinding(CanonicalDecoder& decoder) const;
+  static void SaveSlot(const Slot& slot, CanonicalEncoder& encoder);
+  Status RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const;
+
+  const bool only_deletion_;
+  const std::string_view failing_;
+  const sim::ArenaRequirements requirements_;
+  const Way way_;
+  bool places_ = false;  // the axes are the coordinates of a place
+  FailureArchive archive_;
+  FailurePrior prior_;
+  std::vector<Slot> slots_;
+  std::deque<std::size_t> waiting_;  // slots whose run is asked for or about to be, in order
+  std::size_t asked_ = 0;            // of waiting_, from its front
+  IndividualId next_id_ = 1;
+  std::array<EmitterAccount, kEmitters> accounts_;
+};
+
+SearchRow ArchiveRow();
+SearchRow RandomDeletionRow();
+
+}  // namespace gauntlet

@@ -1,0 +1,106 @@
+#include "search/evolution/genome_generator.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "search/experiment/genome_ranges.h"
+
+namespace gauntlet {
+namespace {
+
+double Draw(double min, double max, double step, sim::RandomStream& random) {
+  if (step == 0.0) return random.Uniform(min, max);
+  const GridRange grid = GridOf(min, max, step);
+  const auto points = static_cast<std::uint32_t>(grid.last - grid.first + 1);
+  // A quotient of whole numbers is the double nearest to the decimal: 3 / 10.0 is 0.3, 3 * 0.1 is not.
+  return static_cast<double>(grid.first + static_cast<std::int64_t>(random.Below(points))) / grid.divisions;
+}
+
+}  // namespace
+
+GenomeGenerator::GenomeGenerator(const GenomeSpec& spec, const sim::TestCase& arena_without_obstacles,
+                                 const sim::ArenaRequirements& requirements)
+    : spec_(spec),
+      arena_(arena_without_obstacles),
+      requirements_(requirements),
+      empty_(arena_without_obstacles, requirements) {
+  arena_.obstacles.clear();
+  const Status status = CheckGenomeSpec(spec_);
+  GAUNTLET_CHECK(status.ok(), status.error().message);
+}
+
+sim::ObstacleGene GenomeGenerator::RandomGene(sim::RandomStream& random) const {
+  sim::ObstacleGene gene;
+  gene.x = Draw(spec_.position_min, spec_.position_max, spec_.step, random);
+  gene.y = Draw(spec_.position_min, spec_.position_max, spec_.step, random);
+  gene.length = Draw(spec_.length_min, spec_.length_max, spec_.step, random);
+  gene.width = Draw(spec_.width_min, spec_.width_max, spec_.step, random);
+  gene.orientation_deg = random.Below(360);
+  if (spec_.moving > 0.0 && random.Chance(spec_.moving)) SetInMotion(random, gene);
+  if (spec_.lights > 0.0 && random.Chance(spec_.lights)) gene.light = spec_.light_color;
+  return gene;
+}
+
+void GenomeGenerator::SetInMotion(sim::RandomStream& random, sim::ObstacleGene& gene) const {
+  gene.speed = Draw(spec_.speed_min, spec_.speed_max, kSpeedStep, random);
+  for (int i = 0; i < spec_.waypoints; ++i) {
+    const double x = Draw(spec_.position_min, spec_.position_max, spec_.step, random);
+    gene.path.emplace_back(x, Draw(spec_.position_min, spec_.position_max, spec_.step, random));
+  }
+}
+
+template <typename Append>
+std::optional<sim::Genome> GenomeGenerator::TryGenome(const Append& append, sim::RandomStream& random) const {
+  sim::Genome genome;
+  while (std::ssize(genome) < spec_.genes) {
+    int tries_left = spec_.tries_per_gene;
+    sim::ObstacleGene gene;
+    do {
+      if (tries_left-- == 0) return std::nullopt;
+      gene = RandomGene(random);
+    } while (append(gene).has_value());
+    genome.push_back(gene);
+  }
+  return genome;
+}
+
+std::optional<sim::Genome> GenomeGenerator::TryGenome(sim::RandomStream& random) const {
+  // Few cases ever lose their last path: drawn without looking at it, a case that has one in the end is the
+  // case that looking at every gene would have given.
+  const sim::RandomStream begin = random;
+  sim::IncrementalValidity hopeful = empty_;
+  std::optional<sim::Genome> genome = TryGenome(
+      [&](const sim::ObstacleGene& gene) { return hopeful.TryAppendWhateverPathIsLeft(gene); }, random);
+  if (hopeful.LeavesPath()) return genome;
+  random = begin;
+  sim::IncrementalValidity careful = empty_;
+  return TryGenome([&](const sim::ObstacleGene& gene) { return careful.TryAppend(gene); }, random);
+}
+
+Result<sim::TestCase> GenomeGenerator::RandomTestCase(sim::RandomStream& random) const {
+  if (const std::optional<sim::Violation>& violation = empty_.arena_violation()) {
+    return InvalidInput(fmt::format("the arena breaks the rule {} before it has any obstacle: {}",
+                                    sim::NameOf(violation->rule), violation->message));
+  }
+  for (int start = 0; start < kMaxRestarts; ++start) {
+    if (std::optional<sim::Genome> genome = TryGenome(random)) return WithObstacles(std::move(*genome));
+  }
+  return InvalidInput(fmt::format(
+      "no valid test case found in {} starts with genome.genes = {}, positions {} to {} m, lengths {} to {} "
+      "m, widths {} to {} m in an arena of {} x {} m: use fewer or smaller obstacles",
+      kMaxRestarts, spec_.genes, spec_.position_min, spec_.position_max, spec_.length_min, spec_.length_max,
+      spec_.width_min, spec_.width_max, arena_.side_x, arena_.side_y));
+}
+
+sim::TestCase GenomeGenerator::WithObstacles(sim::Genome genome) const {
+  sim::TestCase test_case = arena_;
+  test_case.obstacles = std::move(genome);
+  return test_case;
+}
+
+bool GenomeGenerator::Valid(const sim::Genome& genome) const {
+  return !sim::CheckValidity(WithObstacles(genome), requirements_).has_value();
+}
+
+}  // namespace gauntlet

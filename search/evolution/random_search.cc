@@ -1,0 +1,93 @@
+#include "search/evolution/random_search.h"
+
+#include <algorithm>
+#include <array>
+
+#include "base/number_text.h"
+
+namespace gauntlet {
+namespace {
+
+// Cases drawn before the search starts, to find ranges that leave no room.
+constexpr std::uint64_t kTrialCases = 20;
+
+constexpr std::array<controllers::ParameterInfo, 1> kRandomParameters = {
+    {{"cases", "", 1000, 1, 1e8, true, "test cases of random search"}}};
+
+std::uint64_t PlannedCases(const Experiment& experiment) {
+  return static_cast<std::uint64_t>(ValueOf(kRandomParameters[0], experiment.search.parameters));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RandomSearch>> RandomSearch::Create(const SearchSetup& setup) {
+  std::unique_ptr<RandomSearch> search(new RandomSearch(setup));
+  for (IndividualId id = 1; id <= std::min(kTrialCases, search->Planned()); ++id) {
+    if (const auto trial = search->DrawCase(id); !trial.ok()) return trial.error();
+  }
+  return search;
+}
+
+std::uint64_t RandomSearch::Planned() const {
+  return PlannedCases(setup_.experiment);
+}
+
+Individual RandomSearch::Draw(IndividualId id) const {
+  sim::RandomStream random = GenomeStream(search_seed_, id);
+  while (true) {
+    Result<sim::TestCase> test_case = generator_.RandomTestCase(random);
+    if (test_case.ok()) return MakeIndividual(id, std::move(*test_case));
+  }
+}
+
+std::vector<EvaluationRequest> RandomSearch::Ask() {
+  std::vector<EvaluationRequest> requests;
+  if (waiting_.size() >= kLookahead) return requests;
+  const std::uint64_t asked = evaluations_done_ + waiting_.size();
+  for (IndividualId id = asked + 1; id <= std::min(Planned(), asked + kChunk); ++id) {
+    newborns_.push_back(waiting_.emplace_back(Draw(id)));
+    requests.push_back(Request(waiting_.back(), 1));
+  }
+  return requests;
+}
+
+void RandomSearch::Told(const EvaluationOutcome& outcome) {
+  Record(outcome, waiting_.front());
+  population_.push_back(std::move(waiting_.front()));
+  waiting_.pop_front();
+}
+
+SearchProgress RandomSearch::Progress() const {
+  return {.generation = evaluations_done_ + waiting_.size() > 0 ? 1U : 0U,
+          .generations = 1,
+          .evaluations_done = evaluations_done_,
+          .evaluations_planned = Planned(),
+          .individuals_planned = Planned(),
+          .finished = evaluations_done_ >= Planned()};
+}
+
+bool RandomSearch::AtBoundary() const {
+  return evaluations_done_ % kSaveInterval == 0 || evaluations_done_ == Planned();
+}
+
+Status RandomSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const History& history) {
+  return Recall(history, [this](const EvaluationOutcome& outcome) {
+    Record(outcome, population_.emplace_back(Draw(population_.size() + 1)));
+  });
+}
+
+SearchRow RandomRow() {
+  return {.info = {.name = "random",
+                   .description = "independent random test cases, the baseline: gauntlet random",
+                   .keys = {"search.replicates", "search.objective", "genome."},
+                   .parameters = kRandomParameters,
+                   .length = "search.cases",
+                   .check = CheckObjective},
+          .number = 1,
+          .title = "random search",
+          .members = "cases",
+          .plan = [](const Experiment& e) { return FormatCount(PlannedCases(e)) + " test cases"; },
+          .make = Make<RandomSearch>};
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,103 @@
+// An experiment: everything a campaign depends on but the machine. Read from TOML, changed by --set, written
+// back resolved.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "sim/arena/color.h"
+#include "sim/run_spec.h"
+
+namespace gauntlet {
+
+// Ranges that generated genes are drawn from.
+struct GenomeSpec {
+  int genes = 8;               // obstacles per test case (thesis Table 4.1)
+  double position_min = -3.0;  // m, centre x and y
+  double position_max = 3.0;   // m
+  double length_min = 0.4;     // m
+  double length_max = 2.0;     // m
+  double width_min = 0.1;      // m
+  double width_max = 0.4;      // m
+  double step = 0.1;  // m, grid of positions and sizes (the thesis' files carry one decimal); 0 = continuous
+  double moving = 0.0;      // share of the genes that move (thesis 7.4)
+  int waypoints = 1;        // points that they go to; 1 = back and forth
+  double speed_min = 0.01;  // m/s
+  double speed_max = 0.03;  // m/s
+  double lights = 0.0;      // share of the genes that carry lights (thesis 7.4)
+  sim::Color light_color = sim::Color::kRed;
+  int tries_per_gene = 500;  // redraws of one gene before the whole case starts anew
+};
+
+enum class ParentSelection { kAllParentBestHalf, kTwoBestParentsTwoWorseAway, kTwoRandomParentsTwoWorseAway };
+enum class CrossoverKind { kSinglePoint, kDoublePoint, kUniform };
+// Who is simulated in a generation: everybody with new seeds, or the newborn only. kScheme = as thesis
+// 3.2.3.3 does it for the parent selection: everybody in the two-parent schemes, children only in
+// AllParent-BestHalf.
+enum class Reevaluation { kScheme, kPopulation, kChildren };
+enum class FitnessAggregation { kMean, kLast };
+
+// How test cases are searched for. Which of these a search reads, its row says (SearchInfo).
+struct SearchSpec {
+  std::string algorithm = "genetic";  // the name of a SearchInfo
+  int population = 20;
+  int generations = 50;
+  ParentSelection parent_selection = ParentSelection::kTwoBestParentsTwoWorseAway;
+  CrossoverKind crossover = CrossoverKind::kSinglePoint;
+  double crossover_probability = 0.1;  // per couple
+  double mutation_probability = 0.05;  // per gene; a mutated gene is drawn anew as a whole
+  Reevaluation reevaluation = Reevaluation::kScheme;
+  FitnessAggregation aggregation = FitnessAggregation::kMean;
+  int replicates = 1;          // runs per evaluation
+  int variation_tries = 100;   // of an offspring that breaks a validity rule; then it becomes a copy
+  std::string cells;           // failure_cells.h; "" = those that the scenario declares
+  sim::Parameters parameters;  // what one search alone reads (SearchInfo::parameters); missing = its default
+};
+
+struct ArenaSpec {
+  double side = 6.0;            // m
+  double wall_thickness = 0.1;  // m
+};
+
+// What is kept of a run. No influence on any result.
+struct StoreSpec {
+  bool trajectories = false;  // the robots' waypoints and the annotations too; replay computes them anyway
+};
+
+struct Experiment {
+  std::string name;
+  std::string description;
+  std::string scenario;
+  std::string scenario_plugin;          // SHA-256 of the plug-in that brings the scenario; "": it is built in
+  sim::Parameters scenario_parameters;  // resolved
+  std::string definition;               // of a scenario that is defined in the experiment, as in sim::RunSpec
+  std::string controller;
+  sim::Parameters controller_parameters;  // resolved
+  std::string plugin;  // SHA-256 of the plug-in that brings the controller; "": it is built in
+  ArenaSpec arena;
+  GenomeSpec genome;
+  SearchSpec search;
+  std::uint64_t seed = 1;
+  sim::PhysicsKind physics = sim::PhysicsKind::kImpulse;
+  sim::Disturbances disturbances;
+  StoreSpec store;
+};
+
+// A run of the experiment.
+inline sim::RunSpec SpecOf(const Experiment& experiment, const sim::TestCase& test_case, std::uint64_t seed) {
+  sim::RunSpec spec;
+  spec.test_case = test_case;
+  spec.scenario = experiment.scenario;
+  spec.scenario_plugin = experiment.scenario_plugin;
+  spec.definition = experiment.definition;
+  spec.scenario_parameters = experiment.scenario_parameters;
+  spec.controller = experiment.controller;
+  spec.controller_parameters = experiment.controller_parameters;
+  spec.plugin = experiment.plugin;
+  spec.seed = seed;
+  spec.physics = experiment.physics;
+  spec.disturbances = experiment.disturbances;
+  return spec;
+}
+
+}  // namespace gauntlet

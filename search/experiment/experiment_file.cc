@@ -1,0 +1,381 @@
+#include "search/experiment/experiment_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "base/nearest_name.h"
+#include "base/parse_number.h"
+#include "base/printable.h"
+#include "base/system/sha256.h"
+#include "search/experiment/definition_table.h"
+#include "search/experiment/toml_text.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr std::string_view kPluginsKey = "plugins";
+// They decide which other keys there are.
+constexpr std::array<std::string_view, 4> kBaseKeys = {"scenario", "scenario_plugin", "controller", "plugin"};
+
+// What the value of an assignment to `key` is (KindOf), closer where the kind alone would puzzle.
+std::string KindFor(const Key& key, const Assignment& assignment) {
+  const std::string_view digits =
+      std::string_view(assignment.text).substr(assignment.text.starts_with('-') ? 1 : 0);
+  const bool is_text = std::holds_alternative<std::string>(assignment.value);
+  if (is_text && !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos)
+    return "a number beyond 64 bits";
+  if (key.type == KeyType::kSeed && std::holds_alternative<std::int64_t>(assignment.value))
+    return "a negative number";
+  return KindOf(assignment.value);
+}
+
+std::string ExpectationOf(const Key& key) {
+  switch (key.type) {
+    case KeyType::kText:
+      return "text";
+    case KeyType::kChoice:
+      return fmt::format("one of {}", fmt::join(key.choices, ", "));
+    case KeyType::kInteger:
+      return fmt::format("a whole number, {} to {}", key.min, key.max);
+    case KeyType::kNumber:
+      return fmt::format("a number, {} to {}{}{}", key.min, key.max, key.unit.empty() ? "" : " ", key.unit);
+    case KeyType::kFlag:
+      return "true or false";
+    case KeyType::kSeed:
+      break;
+  }
+  return "a whole number, 0 to 18446744073709551615 (as text from 9223372036854775808 on)";
+}
+
+std::optional<std::uint64_t> SeedOf(const TomlValue& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value); integer != nullptr && *integer >= 0) {
+    return static_cast<std::uint64_t>(*integer);
+  }
+  const auto* text = std::get_if<std::string>(&value);
+  return text == nullptr ? std::nullopt : ParseNumber<std::uint64_t>(*text);
+}
+
+// The assignment's value in the type of the key, or nothing when it is of another kind.
+std::optional<KeyValue> Convert(const Key& key, const Assignment& assignment) {
+  const TomlValue& value = assignment.value;
+  const auto* integer = std::get_if<std::int64_t>(&value);
+  switch (key.type) {
+    case KeyType::kText:
+    case KeyType::kChoice:
+      if (const auto* text = std::get_if<std::string>(&value)) return *text;
+      // --set name=123 means the text.
+      if (!assignment.text.empty()) return assignment.text;
+      return std::nullopt;
+    case KeyType::kInteger:
+      if (integer != nullptr) return *integer;
+      return std::nullopt;
+    case KeyType::kNumber:
+      if (integer != nullptr) return static_cast<double>(*integer);
+      if (const auto* number = std::get_if<double>(&value)) return *number;
+      return std::nullopt;
+    case KeyType::kFlag:
+      if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+      if (integer != nullptr && (*integer == 0 || *integer == 1)) return *integer == 1;
+      return std::nullopt;
+    case KeyType::kSeed:
+      break;
+  }
+  if (const std::optional<std::uint64_t> seed = SeedOf(value)) return *seed;
+  return std::nullopt;
+}
+
+std::string NameFromFile(const std::string& file_name) {
+  std::string name = std::filesystem::path(file_name).stem().string();
+  for (char& c : name) {
+    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                      c == '.' || c == '_' || c == '-';
+    if (!good) c = '-';
+  }
+  return name;
+}
+
+// Builds one experiment from assignments in order; the later ones win.
+class Reader {
+ public:
+  Reader(std::vector<Assignment> assignments, std::string file_name, const Catalogue& catalogue)
+      : assignments_(std::move(assignments)), file_name_(std::move(file_name)), catalogue_(catalogue) {}
+
+  Result<Experiment> Read() {
+    for (Key& key : CommonKeys(catalogue_)) AddWithDefault(std::move(key));
+    AddWithDefault(PluginKey());
+    AddWithDefault(ScenarioPluginKey());
+    if (Status status = AssignAll(/*base=*/true); !status.ok()) return status.error();
+    if (Status status = ResolveNames(); !status.ok()) return status.error();
+    if (Status status = AssignAll(/*base=*/false); !status.ok()) return status.error();
+    if (Status status = Define(); !status.ok()) return status.error();
+    if (experiment_.name.empty()) experiment_.name = NameFromFile(file_name_);
+    if (const std::optional<BrokenRule> broken = CheckRules(experiment_, catalogue_)) {
+      return InvalidInput(fmt::format("{}: {}", PlaceOf(broken->path), broken->message));
+    }
+    return experiment_;
+  }
+
+ private:
+  // `base`: kBaseKeys; else the others.
+  Status AssignAll(bool base) {
+    for (const Assignment& assignment : assignments_) {
+      const bool is_base = std::ranges::count(kBaseKeys, assignment.path) > 0;
+      if (base != is_base || InDefinition(assignment.path)) continue;
+      if (Status status = Assign(assignment); !status.ok()) return status;
+    }
+    return Ok{};
+  }
+
+  Status Assign(const Assignment& assignment) {
+    if (assignment.path == kPluginsKey) return CheckPlugins(assignment);
+    const auto key = std::ranges::find(keys_, assignment.path, &Key::path);
+    if (key == keys_.end()) return UnknownKey(assignment);
+    const std::optional<KeyValue> value = Convert(*key, assignment);
+    if (!value.has_value()) {
+      return InvalidInput(fmt::format("{}: {} is {}, expected {}", assignment.where, assignment.path,
+                                      KindFor(*key, assignment), ExpectationOf(*key)));
+    }
+    if (const std::optional<std::string> wrong = CheckValue(*key, *value)) {
+      return InvalidInput(fmt::format("{}: {}", assignment.where, *wrong));
+    }
+    key->set(experiment_, *value);
+    places_[key->path] = assignment.where;
+    return Ok{};
+  }
+
+  Status UnknownKey(const Assignment& assignment) const {
+    if (assignment.path == "slurm" || assignment.path.starts_with("slurm.")) {
+      // How a cluster is used changes no result: `submit` reads this table.
+      if (assignment.text.empty()) return Ok{};
+      return InvalidInput(
+          fmt::format("{}: settings of Slurm are given with --slurm KEY=VALUE", assignment.where));
+    }
+    const auto* other = std::get_if<OtherToml>(&assignment.value);
+    const bool in_list = other != nullptr && other->kind == kListOfTables;
+    const std::string path =
+        in_list ? assignment.path.substr(0, assignment.path.rfind('.')) : assignment.path;
+    const std::string example = FirstKeyOf(path);
+    if (!example.empty() && other != nullptr && other->kind == "a table")
+      return Ok{};  // an empty one is harmless
+    if (!example.empty()) {
+      return InvalidInput(fmt::format("{}: {} is a table of keys such as {}, not {}", assignment.where, path,
+                                      example, KindOf(assignment.value)));
+    }
+    return InvalidInput(fmt::format("{}: unknown key '{}'; {}", assignment.where, path, HintFor(path)));
+  }
+
+  // The libraries are given to the catalogue by who has read their names (PluginFilesOf).
+  static Status CheckPlugins(const Assignment& assignment) {
+    if (!assignment.text.empty()) {
+      return InvalidInput(fmt::format("{}: plug-ins are given with --plugin FILE, or in an experiment file",
+                                      assignment.where));
+    }
+    if (const auto* other = std::get_if<OtherToml>(&assignment.value); other != nullptr && other->texts)
+      return Ok{};
+    return InvalidInput(fmt::format("{}: {} is {}, expected a list of files: [\"libmine.so\"]",
+                                    assignment.where, kPluginsKey, KindOf(assignment.value)));
+  }
+
+  // "search.algorithm" of "search"; "" when there is no such table.
+  std::string FirstKeyOf(const std::string& table) const {
+    for (const Key& key : keys_) {
+      if (key.path.starts_with(table + ".")) return key.path;
+    }
+    return table == "scenario_parameters" || table == "controller_parameters" ? table + ".NAME" : "";
+  }
+
+  // "did you mean ...?", or the keys that could have been meant.
+  std::string HintFor(const std::string& path) const {
+    if (path == "search.mode") return "write search.algorithm = \"steady-state\" or \"genetic\"";
+    const std::size_t dot = path.find('.');
+    const std::string table = dot == std::string::npos ? "" : path.substr(0, dot + 1);
+    const std::string name = path.substr(table.size());
+    std::vector<std::string_view> paths;
+    std::vector<std::string_view> siblings;  // names in the same table
+    std::string siblings_text;
+    std::string same_name;  // in another table
+    for (const Key& key : keys_) {
+      paths.push_back(key.path);
+      if (key.path.ends_with("." + name)) same_name = key.path;
+      if (table.empty() || !key.path.starts_with(table)) continue;
+      siblings.push_back(std::string_view(key.path).substr(table.size()));
+      siblings_text += (siblings_text.empty() ? "known: " : ", ") + key.path;
+    }
+    std::string nearest = same_name;
+    if (nearest.empty() && siblings.empty()) nearest = NearestName(path, paths);
+    if (const std::string sibling = NearestName(name, siblings); !sibling.empty()) nearest = table + sibling;
+    if (!nearest.empty()) return fmt::format("did you mean '{}'?", nearest);
+    if (!siblings_text.empty()) return siblings_text;
+    return "known at the top: name, description, seed, scenario, controller, physics, faults, plugins";
+  }
+
+  // Looks scenario and controller up and adds the keys of their parameters, with defaults.
+  Status ResolveNames() {
+    if (experiment_.scenario.empty()) {
+      return InvalidInput(fmt::format("{}: scenario is missing; known: {}", PlaceOf("scenario"),
+                                      NamesOf(catalogue_.scenarios)));
+    }
+    const auto named = ResolveRow<controllers::ScenarioInfo>(
+        "scenario", experiment_.scenario, catalogue_.scenarios, &controllers::PluginInfo::scenarios,
+        experiment_.scenario_plugin);
+    if (!named) return named.error();
+    scenario_ = *named;
+    const controllers::ScenarioInfo* scenario = scenario_;
+    if (experiment_.controller.empty()) experiment_.controller = scenario->default_controller;
+    const auto found =
+        ResolveRow<controllers::ControllerInfo>("controller", experiment_.controller, catalogue_.controllers,
+                                                &controllers::PluginInfo::controllers, experiment_.plugin);
+    if (!found) return found.error();
+    const controllers::ControllerInfo* controller = *found;
+    if (!scenario->Takes(*controller)) {
+      return InvalidInput(fmt::format("{}: controller '{}' is written for the scenario '{}', not for '{}'",
+                                      PlaceOf("controller"), controller->name, controller->scenario,
+                                      scenario->name));
+    }
+    for (Key& key : ScenarioParameterKeys(*scenario)) AddWithDefault(std::move(key));
+    for (Key& key : ControllerParameterKeys(*controller)) AddWithDefault(std::move(key));
+    return Ok{};
+  }
+
+  // What [generic] says, of the scenario that it is for.
+  Status Define() {
+    if (scenario_->check_definition) {
+      Result<std::string> definition = ReadDefinition(assignments_, file_name_);
+      if (!definition.ok()) return definition.error();
+      experiment_.definition = *std::move(definition);
+      return Ok{};
+    }
+    const auto stray = std::ranges::find_if(assignments_, InDefinition, &Assignment::path);
+    if (stray == assignments_.end()) return Ok{};
+    return InvalidInput(fmt::format("{}: {} defines the scenario 'generic', and this is '{}'", stray->where,
+                                    stray->path, experiment_.scenario));
+  }
+
+  // The row of that name, built in or a plug-in's. `what` it is, the key that names it; `rows` of a plug-in.
+  // `plugin`: the hash that was given for it; becomes that of the plug-in that brings the row.
+  template <typename Info>
+  Result<const Info*> ResolveRow(const std::string& what, const std::string& name,
+                                 std::span<const Info> built_in,
+                                 std::vector<Info> controllers::PluginInfo::*rows, std::string& plugin) {
+    const std::string given = std::exchange(plugin, "");
+    if (const Info* row = FindByName(built_in, name)) return row;
+    if (!given.empty() && controllers::FindPlugin(given) == nullptr) {
+      const std::string key = what == "controller" ? "plugin" : "scenario_plugin";
+      return InvalidInput(
+          fmt::format("{}: {} = \"{}\": this library is not here; it stands in plugins/ "
+                      "of the campaign that the experiment is from",
+                      PlaceOf(key), key, given));
+    }
+    std::vector<std::string> plugins = catalogue_.plugins;
+    if (!experiment_.scenario_plugin.empty()) plugins.insert(plugins.begin(), experiment_.scenario_plugin);
+    if (!given.empty()) plugins.insert(plugins.begin(), given);
+    std::vector<Info> known(built_in.begin(), built_in.end());
+    for (const std::string& hash : plugins) {
+      const std::vector<Info>& more = controllers::FindPlugin(hash)->*rows;
+      if (const Info* row = FindByName(more, name)) {
+        plugin = hash;
+        return row;
+      }
+      known.insert(known.end(), more.begin(), more.end());
+    }
+    return InvalidInput(
+        fmt::format("{}: {}", PlaceOf(what), UnknownName(what, name, std::span<const Info>(known))));
+  }
+
+  void AddWithDefault(Key key) {
+    key.set(experiment_, key.default_value);
+    keys_.push_back(std::move(key));
+  }
+
+  std::string PlaceOf(const std::string& path) const {
+    const auto found = places_.find(path);
+    return found == places_.end() ? file_name_ : found->second;
+  }
+
+  std::vector<Assignment> assignments_;
+  std::string file_name_;
+  Catalogue catalogue_;
+  Experiment experiment_;
+  const controllers::ScenarioInfo* scenario_ = nullptr;  // the experiment's
+  std::vector<Key> keys_;
+  std::map<std::string, std::string> places_;  // path -> where it was assigned last
+};
+
+}  // namespace
+
+Result<Experiment> ParseExperiment(std::string_view text, const std::string& file_name,
+                                   const std::vector<std::string>& sets, const Catalogue& catalogue) {
+  // Messages quote what was written there.
+  const auto printable = [](const Error& error) { return Error{error.kind, Printable(error.message)}; };
+  Result<std::vector<Assignment>> assignments = ReadToml(text, file_name);
+  if (!assignments.ok()) return printable(assignments.error());
+  for (const std::string& set : sets) {
+    Result<Assignment> assignment = ReadSet(set);
+    if (!assignment.ok()) return printable(assignment.error());
+    assignments->push_back(std::move(*assignment));
+  }
+  Result<Experiment> experiment = Reader(std::move(*assignments), file_name, catalogue).Read();
+  if (!experiment.ok()) return printable(experiment.error());
+  return experiment;
+}
+
+Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment) {
+  const Result<std::vector<Assignment>> assignments = ReadToml(experiment.text, experiment.file_name);
+  if (!assignments) return Error{assignments.error().kind, Printable(assignments.error().message)};
+  const std::filesystem::path folder = std::filesystem::path(experiment.file_name).parent_path();
+  std::vector<std::string> files;
+  for (const Assignment& assignment : *assignments) {
+    const auto* other = std::get_if<OtherToml>(&assignment.value);
+    if (assignment.path == kPluginsKey && other != nullptr && other->texts) {
+      for (const std::string& name : *other->texts) files.push_back(folder / name);
+    }
+    const auto* hash = std::get_if<std::string>(&assignment.value);
+    const bool names_library = assignment.path == "plugin" || assignment.path == "scenario_plugin";
+    if (names_library && hash != nullptr && IsSha256(*hash))
+      files.push_back(folder / "plugins" / (*hash + ".so"));
+  }
+  return files;
+}
+
+std::string WriteExperiment(const Experiment& experiment, const std::vector<std::string>& header,
+                            const Catalogue& catalogue) {
+  std::vector<Key> keys = CommonKeys(catalogue);
+  const auto insert_before_tables = [&keys](std::vector<Key> more) {
+    const auto in_table = [](const Key& key) { return key.path.starts_with("arena."); };
+    keys.insert(std::ranges::find_if(keys, in_table), more.begin(), more.end());
+  };
+  const auto* scenario = experiment.scenario_plugin.empty()
+                             ? FindByName(catalogue.scenarios, experiment.scenario)
+                             : controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (scenario != nullptr) insert_before_tables(ScenarioParameterKeys(*scenario));
+  const auto* controller = experiment.plugin.empty()
+                               ? FindByName(catalogue.controllers, experiment.controller)
+                               : controllers::FindController(experiment.controller, experiment.plugin);
+  if (controller != nullptr) insert_before_tables(ControllerParameterKeys(*controller));
+  if (!experiment.plugin.empty())
+    keys.insert(std::ranges::find(keys, "controller", &Key::path) + 1, PluginKey());
+  if (!experiment.scenario_plugin.empty())
+    keys.insert(std::ranges::find(keys, "scenario", &Key::path) + 1, ScenarioPluginKey());
+
+  std::string text;
+  for (const std::string& line : header) text += line.empty() ? "#\n" : fmt::format("# {}\n", line);
+  std::string last_table;
+  for (const Key& key : keys) {
+    const std::size_t dot = key.path.find('.');
+    const std::string table = dot == std::string::npos ? "" : key.path.substr(0, dot);
+    if (table != last_table) text += fmt::format("\n[{}]\n", table);
+    last_table = table;
+    const std::string line =
+        fmt::format("{} = {}", key.path.substr(table.empty() ? 0 : dot + 1), ToToml(key.get(experiment)));
+    text += fmt::format("{:<36}  # {}{}{}\n", line, key.unit, key.unit.empty() ? "" : "; ", key.description);
+  }
+  text += WriteDefinition(experiment.definition);
+  return text;
+}
+
+}  // namespace gauntlet

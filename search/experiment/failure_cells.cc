@@ -1,0 +1,84 @@
+#include "search/experiment/failure_cells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "base/nearest_name.h"
+#include "base/parse_number.h"
+#include "controllers/registry.h"
+
+namespace gauntlet {
+namespace {
+
+std::vector<std::string> SplitAtColons(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text + ":");
+  for (std::string part; std::getline(stream, part, ':');) parts.push_back(part);
+  return parts;
+}
+
+Result<CellAxis> ParseAxis(const std::string& text, const controllers::ScenarioInfo& scenario) {
+  const std::vector<std::string> parts = SplitAtColons(text);
+  const auto wrong = [&](const std::string& what) {
+    return InvalidInput(fmt::format("search.cells: '{}': {}", text, what));
+  };
+  if (parts.size() != 4) return wrong("METRIC:FROM:TO:PARTS is needed, as in x:-3:3:5");
+  const auto from = ParseNumber<double>(parts[1]);
+  const auto to = ParseNumber<double>(parts[2]);
+  const auto count = ParseNumber<int>(parts[3]);
+  if (!from || !to || !std::isfinite(*from) || !std::isfinite(*to))
+    return wrong(fmt::format("{} to {} are no two numbers", parts[1], parts[2]));
+  if (*from >= *to) return wrong(fmt::format("the range from {} to {} is empty", parts[1], parts[2]));
+  if (!count || *count < 1 || *count > kMostCells)
+    return wrong(fmt::format("{} parts: a whole number from 1 to {} is needed", parts[3], kMostCells));
+  if (controllers::FindMetric(scenario, parts[0]) == nullptr)
+    return wrong(fmt::format("{} does not report it: {}", scenario.name,
+                             UnknownName("metric", parts[0], scenario.metrics)));
+  return CellAxis{parts[0], *from, *to, *count};
+}
+
+}  // namespace
+
+Result<std::vector<CellAxis>> ParseCells(const std::string& text, const controllers::ScenarioInfo& scenario) {
+  std::vector<CellAxis> axes;
+  double cells = 1.0;
+  std::istringstream stream(text);
+  for (std::string word; stream >> word;) {
+    Result<CellAxis> axis = ParseAxis(word, scenario);
+    if (!axis) return axis.error();
+    if (std::ranges::find(axes, axis->metric, &CellAxis::metric) != axes.end())
+      return InvalidInput(fmt::format("search.cells: '{}' stands twice", axis->metric));
+    cells *= axis->parts;
+    axes.push_back(*std::move(axis));
+  }
+  if (cells > kMostCells)
+    return InvalidInput(fmt::format("search.cells: {} cells; {} are the most", cells, kMostCells));
+  return axes;
+}
+
+std::vector<CellAxis> CellsOf(const Experiment& experiment) {
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (scenario == nullptr) return {};
+  if (!experiment.search.cells.empty()) return ParseCells(experiment.search.cells, *scenario).value();
+  std::vector<CellAxis> axes;
+  for (const controllers::DescriptorAxis& axis : scenario->descriptor_axes)
+    axes.push_back({std::string(axis.metric), axis.min, axis.max, axis.parts});
+  return axes;
+}
+
+std::optional<BrokenRule> CheckCells(const Experiment& experiment) {
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (scenario == nullptr || experiment.search.cells.empty()) return std::nullopt;
+  const Result<std::vector<CellAxis>> cells = ParseCells(experiment.search.cells, *scenario);
+  if (!cells) return BrokenRule{"search.cells", cells.error().message};
+  if (cells->empty()) return BrokenRule{"search.cells", "search.cells names no metric"};
+  return std::nullopt;
+}
+
+}  // namespace gauntlet

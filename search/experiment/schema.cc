@@ -1,0 +1,436 @@
+#include "search/experiment/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include "base/nearest_name.h"
+#include "base/system/sha256.h"
+#include "search/experiment/genome_ranges.h"
+#include "search/experiment/objective.h"
+#include "search/experiment/toml_text.h"
+#include "sim/arena/color.h"
+#include "sim/robot/disturbances.h"
+
+namespace gauntlet {
+namespace {
+
+// A place in an Experiment: Field(e) is a reference to it.
+template <auto Member>
+auto& Field(auto& experiment) {
+  return experiment.*Member;
+}
+template <auto Part, auto Member>
+auto& Field(auto& experiment) {
+  return experiment.*Part.*Member;
+}
+
+// A key without access to its place yet.
+Key MakeKey(const std::string& path, KeyType type, const std::string& description) {
+  Key key;
+  key.path = path;
+  key.type = type;
+  key.description = description;
+  return key;
+}
+
+// The key of the place at Path: text, flag, whole number, number or seed, as what stands there.
+template <auto... Path>
+Key FieldKey(const std::string& path, const std::string& description) {
+  using Place = std::remove_reference_t<decltype(Field<Path...>(std::declval<Experiment&>()))>;
+  using Value = std::conditional_t<std::is_same_v<Place, int>, std::int64_t, Place>;
+  const KeyType type = std::is_same_v<Place, std::string> ? KeyType::kText
+                       : std::is_same_v<Place, bool>      ? KeyType::kFlag
+                       : std::is_same_v<Place, int>       ? KeyType::kInteger
+                       : std::is_same_v<Place, double>    ? KeyType::kNumber
+                                                          : KeyType::kSeed;
+  Key key = MakeKey(path, type, description);
+  key.get = [](const Experiment& e) -> KeyValue { return Value{Field<Path...>(e)}; };
+  key.set = [](Experiment& e, const KeyValue& v) {
+    Field<Path...>(e) = static_cast<Place>(std::get<Value>(v));
+  };
+  return key;
+}
+
+// The same of numbers, whole ones and others.
+template <auto... Path>
+Key NumberKey(const std::string& path, const std::string& unit, double min, double max,
+              const std::string& description) {
+  Key key = FieldKey<Path...>(path, description);
+  key.unit = unit;
+  key.min = min;
+  key.max = max;
+  return key;
+}
+
+// `choices` in the order of the enumeration, which begins at 0 without gaps.
+template <auto... Path>
+Key ChoiceKey(const std::string& path, const std::vector<std::string>& choices,
+              const std::string& description) {
+  Key key = MakeKey(path, KeyType::kChoice, description);
+  key.choices = choices;
+  key.get = [choices](const Experiment& e) -> KeyValue {
+    return choices.at(static_cast<std::size_t>(Field<Path...>(e)));
+  };
+  key.set = [choices](Experiment& e, const KeyValue& v) {
+    auto& field = Field<Path...>(e);
+    const auto found = std::find(choices.begin(), choices.end(), std::get<std::string>(v));
+    field = static_cast<std::remove_reference_t<decltype(field)>>(found - choices.begin());
+  };
+  return key;
+}
+
+Key ObjectiveKey() {
+  Key key = MakeKey(
+      "search.objective", KeyType::kChoice,
+      "what is searched for: low fitness, short obstacles that make the swarm fail, or frequent failures");
+  key.choices.assign(kObjectiveNames.begin(), kObjectiveNames.end());
+  key.get = [](const Experiment& e) -> KeyValue {
+    return std::string(kObjectiveNames.at(static_cast<std::size_t>(ObjectiveOf(e.search))));
+  };
+  key.set = [](Experiment& e, const KeyValue& v) {
+    const auto found = std::ranges::find(kObjectiveNames, std::get<std::string>(v));
+    e.search.parameters[std::string(kObjectiveParameter)] =
+        static_cast<double>(found - kObjectiveNames.begin());
+  };
+  return key;
+}
+
+Key LightColorKey() {
+  Key key =
+      MakeKey("genome.light_color", KeyType::kChoice, "of those lights; birds are red, their prey is blue");
+  key.choices.assign(sim::kColorNames.begin() + 1, sim::kColorNames.end());  // black is no light
+  key.get = [](const Experiment& e) -> KeyValue { return std::string(sim::NameOf(e.genome.light_color)); };
+  key.set = [](Experiment& e, const KeyValue& v) {
+    e.genome.light_color = *sim::ColorNamed(std::get<std::string>(v));
+  };
+  return key;
+}
+
+Key FaultsKey() {
+  Key key =
+      MakeKey("faults", KeyType::kText,
+              "ROBOT:WHAT@TICK, with spaces between several: 3:wheels@500 9:stopped@0; WHAT is a device or "
+              "'stopped'");
+  key.get = [](const Experiment& e) -> KeyValue { return sim::FaultsText(e.disturbances.faults); };
+  key.set = [](Experiment& e, const KeyValue& v) {
+    e.disturbances.faults = *sim::ParseFaults(std::get<std::string>(v));
+  };
+  key.check = [](const KeyValue& v) -> std::optional<std::string> {
+    const auto faults = sim::ParseFaults(std::get<std::string>(v));
+    if (faults.ok()) return std::nullopt;
+    return "faults: " + faults.error().message;
+  };
+  return key;
+}
+
+// "noise.proximity.gaussian": one number of one device.
+Key NoiseKey(const sim::DeviceInfo& noisy, const std::string& name, double sim::DeviceNoise::*member,
+             const std::string& description) {
+  Key key =
+      MakeKey(fmt::format("noise.{}.{}", sim::KeyOf(noisy.device), name), KeyType::kNumber, description);
+  key.max = noisy.most_noise;
+  key.unit = noisy.noise_unit;
+  key.get = [device = noisy.device, member](const Experiment& e) -> KeyValue {
+    const auto found = e.disturbances.noise.find(device);
+    return found == e.disturbances.noise.end() ? 0.0 : found->second.*member;
+  };
+  key.set = [device = noisy.device, member](Experiment& e, const KeyValue& v) {
+    e.disturbances.noise[device].*member = std::get<double>(v);
+    if (!e.disturbances.noise[device].Any()) e.disturbances.noise.erase(device);
+  };
+  return key;
+}
+
+std::vector<Key> NoiseKeys() {
+  std::vector<Key> keys;
+  for (const sim::DeviceInfo& noisy : sim::kDevices) {
+    if (noisy.most_noise == 0.0) continue;
+    keys.push_back(NoiseKey(noisy, "uniform", &sim::DeviceNoise::uniform,
+                            fmt::format("half width of a uniform error {}", noisy.noise_error)));
+    keys.push_back(NoiseKey(noisy, "gaussian", &sim::DeviceNoise::gaussian,
+                            "standard deviation of a Gaussian one, likewise"));
+    if (!noisy.drops) continue;
+    keys.push_back(NoiseKey(noisy, "drop", &sim::DeviceNoise::drop, "probability that one is not received"));
+    keys.back().max = 1.0;
+    keys.back().unit = "";
+  }
+  return keys;
+}
+
+Key AlgorithmKey(const Catalogue& catalogue) {
+  Key key = FieldKey<&Experiment::search, &SearchSpec::algorithm>(
+      "search.algorithm", "how test cases are found: gauntlet list searches");
+  key.type = KeyType::kChoice;
+  for (const SearchInfo& search : catalogue.searches) key.choices.emplace_back(search.name);
+  return key;
+}
+
+KeyType TypeOf(const controllers::ParameterInfo& info) {
+  if (info.unit == "bool") return KeyType::kFlag;
+  return info.integer ? KeyType::kInteger : KeyType::kNumber;
+}
+
+KeyValue ParameterValue(KeyType type, double value) {
+  if (type == KeyType::kFlag) return value != 0.0;
+  if (type == KeyType::kInteger) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+double ParameterNumber(const KeyValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  return std::get<double>(value);
+}
+
+// Keys "TABLE.NAME" of the parameters at Path.
+template <auto... Path>
+std::vector<Key> ParameterKeys(std::string_view table, std::span<const controllers::ParameterInfo> infos) {
+  std::vector<Key> keys;
+  for (const controllers::ParameterInfo& info : infos) {
+    const std::string name(info.name);
+    const KeyType type = TypeOf(info);
+    Key key = MakeKey(fmt::format("{}.{}", table, name), type, std::string(info.description));
+    key.unit = type == KeyType::kFlag ? "" : std::string(info.unit);
+    key.min = info.min;
+    key.max = info.max;
+    key.default_value = ParameterValue(type, info.default_value);
+    key.get = [info, type](const Experiment& e) {
+      return ParameterValue(type, ValueOf(info, Field<Path...>(e)));
+    };
+    key.set = [name](Experiment& e, const KeyValue& v) { Field<Path...>(e)[name] = ParameterNumber(v); };
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
+bool IsName(std::string_view name) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+  return !name.empty() && name.size() <= 64 && name.front() != '.' && name.front() != '-' &&
+         name.find_first_not_of(kLetters) == std::string_view::npos;
+}
+
+// Of what all searches together read.
+std::vector<Key> SearchKeys(const Catalogue& catalogue) {
+  constexpr auto kSearch = &Experiment::search;
+  std::vector<Key> keys = {
+      AlgorithmKey(catalogue),
+      NumberKey<kSearch, &SearchSpec::population>("search.population", "", 4, 10000,
+                                                  "individuals, an even number (thesis Table 4.1)"),
+      NumberKey<kSearch, &SearchSpec::generations>("search.generations", "", 1, 1e6,
+                                                   "the initial population is generation 1"),
+      ChoiceKey<kSearch, &SearchSpec::parent_selection>(
+          "search.parent_selection",
+          {"AllParent-BestHalf", "2BestParents-2WorseAway", "2RandomParents-2WorseAway"}, "thesis 3.2.3.3"),
+      ChoiceKey<kSearch, &SearchSpec::crossover>(
+          "search.crossover", {"single-point", "double-point", "uniform"}, "thesis 3.2.3.4"),
+      NumberKey<kSearch, &SearchSpec::crossover_probability>("search.crossover_probability", "", 0.0, 1.0,
+                                                             "per couple; otherwise children are copies"),
+      NumberKey<kSearch, &SearchSpec::mutation_probability>("search.mutation_probability", "", 0.0, 1.0,
+                                                            "per gene; a mutated gene is drawn anew"),
+      ChoiceKey<kSearch, &SearchSpec::reevaluation>(
+          "search.reevaluation", {"scheme", "population", "children"},
+          "who is simulated in a generation; scheme = the children in AllParent-BestHalf, else everybody"),
+      FieldKey<kSearch, &SearchSpec::cells>(
+          "search.cells",
+          "METRIC:FROM:TO:PARTS, with spaces between several: how failures are told apart, instead of the "
+          "scenario's own cells"),
+      ChoiceKey<kSearch, &SearchSpec::aggregation>("search.fitness_aggregation", {"mean", "last"},
+                                                   "how an individual's evaluations make its fitness"),
+      ObjectiveKey(),
+      NumberKey<kSearch, &SearchSpec::replicates>("search.replicates", "", 1, 10000,
+                                                  "runs per evaluation, each with its own seed"),
+      NumberKey<kSearch, &SearchSpec::variation_tries>(
+          "search.variation_tries", "", 1, 1e6,
+          "of an offspring that breaks a validity rule; then the step leaves it unchanged"),
+  };
+  for (const SearchInfo& search : catalogue.searches) {
+    for (Key& key : ParameterKeys<kSearch, &SearchSpec::parameters>("search", search.parameters)) {
+      keys.push_back(std::move(key));
+    }
+  }
+  return keys;
+}
+
+// Of arena and genomes.
+std::vector<Key> GenomeKeys() {
+  constexpr auto kArena = &Experiment::arena;
+  constexpr auto kGenome = &Experiment::genome;
+  return {
+      NumberKey<kArena, &ArenaSpec::side>("arena.side", "m", 1.0, 50.0,
+                                          "between the centre lines of opposite walls (thesis 4.5.3)"),
+      NumberKey<kArena, &ArenaSpec::wall_thickness>("arena.wall_thickness", "m", 0.01, 1.0,
+                                                    "half of it stands inside the centre lines"),
+
+      NumberKey<kGenome, &GenomeSpec::genes>("genome.genes", "", 0, 64,
+                                             "obstacles per test case (thesis Table 4.1)"),
+      NumberKey<kGenome, &GenomeSpec::position_min>("genome.position_min", "m", -25.0, 25.0,
+                                                    "least x and y of an obstacle's centre"),
+      NumberKey<kGenome, &GenomeSpec::position_max>("genome.position_max", "m", -25.0, 25.0,
+                                                    "largest x and y of an obstacle's centre"),
+      NumberKey<kGenome, &GenomeSpec::length_min>("genome.length_min", "m", 0.01, 50.0, "shortest obstacle"),
+      NumberKey<kGenome, &GenomeSpec::length_max>("genome.length_max", "m", 0.01, 50.0, "longest obstacle"),
+      NumberKey<kGenome, &GenomeSpec::width_min>("genome.width_min", "m", 0.01, 50.0, "narrowest obstacle"),
+      NumberKey<kGenome, &GenomeSpec::width_max>("genome.width_max", "m", 0.01, 50.0, "widest obstacle"),
+      NumberKey<kGenome, &GenomeSpec::step>("genome.step", "m", 0.0, 1.0,
+                                            "grid of positions and sizes; 0 = continuous"),
+      NumberKey<kGenome, &GenomeSpec::moving>("genome.moving", "", 0.0, 1.0,
+                                              "share of the obstacles that move (thesis 7.4)"),
+      NumberKey<kGenome, &GenomeSpec::waypoints>("genome.waypoints", "", 1, sim::kMaxObstaclePath,
+                                                 "places that they visit in turn; 1 = back and forth"),
+      NumberKey<kGenome, &GenomeSpec::speed_min>("genome.speed_min", "m/s", 0.001, sim::kMaxObstacleSpeed,
+                                                 "slowest moving obstacle"),
+      NumberKey<kGenome, &GenomeSpec::speed_max>("genome.speed_max", "m/s", 0.001, sim::kMaxObstacleSpeed,
+                                                 "fastest moving obstacle"),
+      NumberKey<kGenome, &GenomeSpec::lights>("genome.lights", "", 0.0, 1.0,
+                                              "share of the obstacles that carry lights (thesis 7.4)"),
+      LightColorKey(),
+      NumberKey<kGenome, &GenomeSpec::tries_per_gene>(
+          "genome.tries_per_gene", "", 1, 1e6, "redraws of one obstacle before the whole case starts anew"),
+  };
+}
+
+}  // namespace
+
+std::vector<Key> CommonKeys(const Catalogue& catalogue) {
+  std::vector<Key> keys = {
+      FieldKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -"),
+      FieldKey<&Experiment::description>("description", "one line for people"),
+      NumberKey<&Experiment::seed>("seed", "", 0.0, 18446744073709551615.0,
+                                   "all seeds of test cases, variation and runs derive from it"),
+      FieldKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
+      FieldKey<&Experiment::controller>("controller",
+                                        "the algorithm under test; default: the scenario's own"),
+      ChoiceKey<&Experiment::physics>("physics", {"box2d", "relaxation", "impulse"},
+                                      "impulse = contacts as in ARGoS; box2d = Box2D's contacts; relaxation "
+                                      "= without friction, for comparison"),
+      FaultsKey(),
+  };
+  for (std::vector<Key>& more : std::array{GenomeKeys(), SearchKeys(catalogue), NoiseKeys()}) {
+    std::move(more.begin(), more.end(), std::back_inserter(keys));
+  }
+  keys.push_back(FieldKey<&Experiment::store, &StoreSpec::trajectories>(
+      "store.trajectories",
+      "keep every robot's way and the annotations of each run; without them replay computes them anew"));
+  for (Key& key : keys) {
+    key.default_value = key.get(Experiment{});
+    key.for_people = key.path == "name" || key.path == "description" || key.path.starts_with("store.");
+  }
+  return keys;
+}
+
+namespace {
+
+template <auto kMember>
+Key LibraryKey(const char* path, const char* description) {
+  Key key = FieldKey<kMember>(path, description);
+  key.default_value = std::string();
+  key.check = [path](const KeyValue& v) -> std::optional<std::string> {
+    const auto& text = std::get<std::string>(v);
+    if (text.empty() || IsSha256(text)) return std::nullopt;
+    return fmt::format("{} = {} is no SHA-256 of 64 hexadecimal digits; name files by plugins = [\"FILE\"]",
+                       path, QuoteToml(text));
+  };
+  return key;
+}
+
+}  // namespace
+
+Key PluginKey() {
+  return LibraryKey<&Experiment::plugin>(
+      "plugin", "SHA-256 of the library that brings the controller, in plugins/ beside this file");
+}
+
+Key ScenarioPluginKey() {
+  return LibraryKey<&Experiment::scenario_plugin>(
+      "scenario_plugin", "SHA-256 of the library that brings the scenario, in plugins/ beside this file");
+}
+
+std::string_view NameOf(KeyType type) {
+  constexpr std::string_view kNames[] = {"text", "choice", "integer", "number", "flag", "seed"};
+  return kNames[static_cast<std::size_t>(type)];
+}
+
+double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& given) {
+  const auto found = given.find(std::string(info.name));
+  return found == given.end() ? info.default_value : found->second;
+}
+
+bool IsDisturbance(const Key& key) {
+  return key.path == "faults" || key.path.starts_with("noise.");
+}
+
+bool Reads(const SearchInfo& search, std::string_view path) {
+  const auto own = [&](const controllers::ParameterInfo& info) {
+    return path.starts_with("search.") && path.substr(7) == info.name;
+  };
+  return std::ranges::any_of(search.parameters, own) ||
+         std::ranges::any_of(search.keys, [&](std::string_view key) {
+           return key.ends_with('.') ? path.starts_with(key) : path == key;
+         });
+}
+
+std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario) {
+  return ParameterKeys<&Experiment::scenario_parameters>("scenario_parameters", scenario.parameters);
+}
+
+std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& controller) {
+  return ParameterKeys<&Experiment::controller_parameters>("controller_parameters", controller.parameters);
+}
+
+std::string ToToml(const KeyValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return QuoteToml(*text);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* seed = std::get_if<std::uint64_t>(&value)) {
+    return *seed <= std::uint64_t{INT64_MAX} ? fmt::format("{}", *seed) : fmt::format("\"{}\"", *seed);
+  }
+  // The shortest decimal that reads back as the same double, recognisable as a number that is not whole.
+  std::string number = fmt::format("{}", std::get<double>(value));
+  if (number.find_first_of(".enai") == std::string::npos) number += ".0";
+  return number;
+}
+
+std::optional<std::string> CheckValue(const Key& key, const KeyValue& value) {
+  if (key.check) return key.check(value);
+  const auto message = [&](std::string_view what) {
+    return fmt::format("{} = {} {}", key.path, ToToml(value), what);
+  };
+  if (key.type == KeyType::kChoice) {
+    const auto& text = std::get<std::string>(value);
+    if (std::ranges::count(key.choices, text) > 0) return std::nullopt;
+    return message(fmt::format("is unknown, allowed {}", fmt::join(key.choices, ", ")));
+  }
+  if (key.type == KeyType::kInteger || key.type == KeyType::kNumber) {
+    const double number = ParameterNumber(value);
+    if (number >= key.min && number <= key.max) return std::nullopt;
+    return message(fmt::format("is out of range, allowed {} to {}{}{}", key.min, key.max,
+                               key.unit.empty() ? "" : " ", key.unit));
+  }
+  return std::nullopt;
+}
+
+std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue) {
+  if (!IsName(experiment.name)) {
+    return BrokenRule{"name",
+                      fmt::format("name = {} is no good folder name: use up to 64 letters, digits, '.', "
+                                  "'_' or '-', and begin with none of '.' and '-'",
+                                  QuoteToml(experiment.name))};
+  }
+  if (const Status genome = CheckGenomeSpec(experiment.genome); !genome.ok()) {
+    const std::string& message = genome.error().message;
+    return BrokenRule{message.substr(0, message.find(' ')), message};
+  }
+  if (experiment.arena.wall_thickness > experiment.arena.side / 2.0) {
+    return BrokenRule{"arena.wall_thickness",
+                      fmt::format("arena.wall_thickness = {} must not exceed half of arena.side = {}",
+                                  experiment.arena.wall_thickness, experiment.arena.side)};
+  }
+  const SearchInfo* search = FindByName(catalogue.searches, experiment.search.algorithm);
+  return search->check == nullptr ? std::nullopt : search->check(experiment);
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,100 @@
+// The schema of experiments: one table of keys that reading TOML, --set, validation, writing, `list --json`
+// and the identity of saved searches share.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "controllers/registry.h"
+#include "search/experiment/experiment.h"
+
+namespace gauntlet {
+
+enum class KeyType {
+  kText,
+  kChoice,   // one of `choices`
+  kInteger,  // min to max
+  kNumber,   // min to max
+  kFlag,     // true or false; 0 and 1 are taken too
+  kSeed,     // 0 to 2^64-1; in TOML, whose integers are signed, also as a string of decimal digits
+};
+// "text", "choice", "integer", "number", "flag", "seed".
+std::string_view NameOf(KeyType type);
+
+// kText and kChoice: string; kInteger: int64; kNumber: double; kFlag: bool; kSeed: uint64.
+using KeyValue = std::variant<std::string, std::int64_t, double, bool, std::uint64_t>;
+
+struct Key {
+  std::string path;  // dotted, "search.population"
+  KeyType type = KeyType::kNumber;
+  std::string unit;  // "" where there is none
+  double min = 0.0;  // of integers and numbers
+  double max = 0.0;
+  std::vector<std::string> choices;
+  std::string description;  // one line
+  KeyValue default_value;
+  bool for_people = false;  // has no influence on any run
+  std::function<std::optional<std::string>(const KeyValue&)>
+      check;  // what is wrong with a text; may be empty
+  std::function<KeyValue(const Experiment&)> get;
+  std::function<void(Experiment&, const KeyValue&)> set;  // `value` must have passed CheckValue
+};
+
+// A broken rule that concerns more than one key, and the key to point at.
+struct BrokenRule {
+  std::string path;
+  std::string message;
+};
+
+// What an experiment may say of a search.
+struct SearchInfo {
+  std::string_view name;                    // as in search.algorithm
+  std::string_view description;             // one line
+  std::vector<std::string_view> keys = {};  // what it reads: common keys, "genome." for a whole table
+  std::span<const controllers::ParameterInfo> parameters = {};  // keys "search.NAME" that are its own
+  std::string_view length = {};  // the key that only says how long it goes on; "" = there is none
+  std::optional<BrokenRule> (*check)(const Experiment&) = nullptr;  // rules between its keys
+};
+// Whether the search reads the key "search.NAME" or "genome.NAME".
+bool Reads(const SearchInfo& search, std::string_view path);
+
+// What an experiment may name.
+struct Catalogue {
+  std::span<const controllers::ScenarioInfo> scenarios;
+  std::span<const controllers::ControllerInfo> controllers;
+  std::span<const SearchInfo> searches;
+  std::vector<std::string> plugins = {};  // SHA-256 of those whose rows may be named too
+};
+
+// Keys of every experiment, those of all searches among them, in the order they are written. Defaults are
+// those of Experiment{}.
+std::vector<Key> CommonKeys(const Catalogue& catalogue);
+// "plugin": the plug-in that brings the controller. Written only where there is one.
+Key PluginKey();
+// "scenario_plugin": the one that brings the scenario. Likewise.
+Key ScenarioPluginKey();
+// Whether the key is about what is wrong with robots: "faults", "noise.DEVICE.NAME".
+bool IsDisturbance(const Key& key);
+// A parameter's value, or its default when it was not given.
+double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& given);
+// One key per parameter: "scenario_parameters.NAME" and "controller_parameters.NAME".
+std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario);
+std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& controller);
+
+// "1.5", "20", "true", "\"genetic\"": the value as TOML.
+std::string ToToml(const KeyValue& value);
+
+// What is wrong with a value of the right type ("search.crossover_probability = 1.5 is out of range, allowed
+// 0 to 1"), or nothing.
+std::optional<std::string> CheckValue(const Key& key, const KeyValue& value);
+
+// The first rule between keys that the experiment breaks. `experiment.search.algorithm` is in the catalogue.
+std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue);
+
+}  // namespace gauntlet

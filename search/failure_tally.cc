@@ -1,0 +1,71 @@
+#include "search/failure_tally.h"
+
+#include <algorithm>
+
+#include "controllers/registry.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr std::string_view kTotalFailure = "total_failure";
+constexpr int kEnoughFailures = 5;
+constexpr int kEnoughPasses = 6;
+
+}  // namespace
+
+std::string_view FailingOf(const Experiment& experiment) {
+  const auto* info = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  return info == nullptr ? kTotalFailure : info->failing;
+}
+
+bool FailingNeedsMetrics(std::string_view failing) {
+  return failing != kTotalFailure;
+}
+
+bool Fails(const RunOutcome& run, std::string_view failing) {
+  if (run.verdict != sim::Verdict::kCompleted) return false;
+  if (!FailingNeedsMetrics(failing)) return run.total_failure;
+  const auto metric = std::ranges::find(run.metrics, failing, &std::pair<std::string, double>::first);
+  return metric != run.metrics.end() && metric->second == 1.0;
+}
+
+void FailureTally::Add(const RunOutcome& run, std::string_view failing) {
+  if (run.verdict != sim::Verdict::kCompleted) {
+    ++errors;
+  } else if (Fails(run, failing)) {
+    ++failures;
+  } else {
+    ++passes;
+  }
+}
+
+std::string_view NameOf(FailureVerdict verdict) {
+  switch (verdict) {
+    case FailureVerdict::kOpen:
+      return "open";
+    case FailureVerdict::kFail:
+      return "fail";
+    case FailureVerdict::kFlaky:
+      return "flaky";
+    case FailureVerdict::kPass:
+      return "pass";
+    case FailureVerdict::kError:
+      return "error";
+  }
+  return "";
+}
+
+int RunsToVerdict(const FailureTally& tally, int replicates) {
+  if (tally.errors > 0) return 0;
+  if (replicates > 0) return std::max(0, replicates - tally.runs());
+  return std::max(0, std::min(kEnoughFailures - tally.failures, kEnoughPasses - tally.passes));
+}
+
+FailureVerdict VerdictOf(const FailureTally& tally, int replicates) {
+  if (tally.errors > 0) return FailureVerdict::kError;
+  if (RunsToVerdict(tally, replicates) > 0) return FailureVerdict::kOpen;
+  if (2 * tally.failures >= tally.runs()) return FailureVerdict::kFail;
+  return tally.failures > 0 ? FailureVerdict::kFlaky : FailureVerdict::kPass;
+}
+
+}  // namespace gauntlet

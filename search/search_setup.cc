@@ -1,0 +1,109 @@
+#include "search/search_setup.h"
+
+#include <span>
+
+#include <fmt/format.h>
+
+#include "base/check.h"
+#include "base/hash.h"
+#include "search/search_table.h"
+#include "sim/arena/genome.h"
+
+namespace gauntlet {
+namespace {
+
+void AddCase(const sim::TestCase& test_case, Fnv1a64& hash) {
+  hash.AddUint64(GenomeHash(test_case.obstacles));
+  hash.AddDouble(test_case.side_x);
+  hash.AddDouble(test_case.side_y);
+  hash.AddDouble(test_case.wall_thickness);
+  hash.AddUint64(static_cast<std::uint64_t>(test_case.robots.value_or(-1)));
+  for (const sim::Pose& pose : test_case.start_poses) {
+    hash.AddDouble(pose.position.x());
+    hash.AddDouble(pose.position.y());
+    hash.AddDouble(pose.heading);
+  }
+  if (!test_case.spawn_area.has_value()) return;
+  for (const sim::Vec2& corner : {test_case.spawn_area->min, test_case.spawn_area->max}) {
+    hash.AddDouble(corner.x());
+    hash.AddDouble(corner.y());
+  }
+}
+
+std::uint64_t HashOf(std::span<const sim::TestCase> cases) {
+  Fnv1a64 hash;
+  for (const sim::TestCase& test_case : cases) AddCase(test_case, hash);
+  return hash.value();
+}
+
+}  // namespace
+
+std::uint64_t CaseHash(const sim::TestCase& test_case) {
+  return HashOf({&test_case, 1});
+}
+
+sim::TestCase EmptyArena(const ArenaSpec& arena) {
+  sim::TestCase test_case;
+  test_case.side_x = arena.side;
+  test_case.side_y = arena.side;
+  test_case.wall_thickness = arena.wall_thickness;
+  return test_case;
+}
+
+GenomeGenerator MakeGenerator(const SearchSetup& setup) {
+  return {setup.experiment.genome, EmptyArena(setup.experiment.arena), setup.requirements};
+}
+
+std::uint64_t SearchSeed(const SearchSetup& setup) {
+  return sim::DeriveSeed(setup.experiment.seed, sim::SeedPurpose::kSearch, setup.search_id,
+                         /*individual=*/0, /*evaluation=*/0, RowOf(setup.experiment).number);
+}
+
+std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
+                      std::uint32_t evaluation, std::uint32_t replicate) {
+  constexpr std::uint32_t kSearch = 1;  // every search counts as the first of its campaign
+  const SearchRow& row = RowOf(experiment);
+  const std::uint64_t who = row.seeds_of_cases ? CaseHash(test_case) : individual;
+  return sim::DeriveSeed(experiment.seed, row.purpose, kSearch, who, evaluation, replicate);
+}
+
+sim::RandomStream GenomeStream(std::uint64_t search_seed, std::uint64_t id) {
+  GAUNTLET_CHECK(id <= 0xFFFFFFFFULL, fmt::format("individual {}", id));
+  return {search_seed, sim::StreamPurpose::kGenome, static_cast<std::uint32_t>(id)};
+}
+
+std::string SearchIdentity(const SearchSetup& setup) {
+  static const std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  const Experiment& experiment = setup.experiment;
+  const SearchRow& row = RowOf(experiment);
+  const auto matters = [&](const Key& key) {
+    if (key.for_people || key.path == row.info.length) return false;
+    if (key.path == "search.algorithm") return true;
+    const bool of_searches = key.path.starts_with("search.") || key.path.starts_with("genome.");
+    if (of_searches && !Reads(row.info, key.path)) return false;
+    // Of what came later than stored campaigns, only what was asked for.
+    const bool if_asked_for =
+        IsDisturbance(key) || key.path == "search.objective" || key.path == "search.cells";
+    return !if_asked_for || key.get(experiment) != key.default_value;
+  };
+  std::string identity = fmt::format("search = {}\n", setup.search_id);
+  for (const Key& key : keys) {
+    if (matters(key)) identity += fmt::format("{} = {}\n", key.path, ToToml(key.get(experiment)));
+  }
+  const auto add = [&](std::string_view table, const sim::Parameters& parameters) {
+    for (const auto& [name, value] : parameters) identity += fmt::format("{}.{} = {}\n", table, name, value);
+  };
+  if (!experiment.plugin.empty()) identity += fmt::format("plugin = {}\n", experiment.plugin);
+  if (!experiment.scenario_plugin.empty())
+    identity += fmt::format("scenario_plugin = {}\n", experiment.scenario_plugin);
+  if (!experiment.definition.empty()) identity += fmt::format("definition = {}\n", experiment.definition);
+  add("scenario_parameters", experiment.scenario_parameters);
+  add("controller_parameters", experiment.controller_parameters);
+  if (row.given_cases) {
+    identity +=
+        fmt::format("list of cases = {} with hash {:016x}\n", setup.cases.size(), HashOf(setup.cases));
+  }
+  return identity;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,52 @@
+// What every search starts from, and the keys of its randomness and of its runs'.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "search/evolution/genome_generator.h"
+#include "search/experiment/experiment.h"
+#include "search/search_algorithm.h"
+#include "sim/arena/test_case.h"
+#include "sim/arena/validity.h"
+
+namespace gauntlet {
+
+struct SearchSetup {
+  Experiment experiment;
+  sim::ArenaRequirements requirements;  // of the experiment's scenario for its empty arena
+  std::uint32_t search_id = 1;          // within the campaign
+  std::vector<sim::TestCase> cases;     // of a search through given cases
+};
+
+// Of the arena, its robots and obstacles: equal for the same case under another name.
+std::uint64_t CaseHash(const sim::TestCase& test_case);
+
+// The experiment's arena without obstacles.
+sim::TestCase EmptyArena(const ArenaSpec& arena);
+
+GenomeGenerator MakeGenerator(const SearchSetup& setup);
+
+// The seed of a search's random streams: different for every campaign seed, search and SearchRow::number, so
+// that random search and the initial population of an evolution share no case. No run has this seed: runs
+// belong to individuals from 1 on.
+std::uint64_t SearchSeed(const SearchSetup& setup);
+
+// The seed of replicate 0, 1, ... of an evaluation of an individual. It depends on these numbers and the
+// experiment's seed alone, so a search of a sweep has the seeds that it would have in a campaign of its own.
+// Where seeds are those of cases (SearchRow::seeds_of_cases) the arena, robots and obstacles count instead of
+// the individual's number, so that a case has the same seeds at any place of the list (and the same case
+// given twice, whatever its name, the same runs).
+std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
+                      std::uint32_t evaluation, std::uint32_t replicate);
+
+// The random stream of the case that individual `id` starts life with.
+sim::RandomStream GenomeStream(std::uint64_t search_seed, std::uint64_t id);
+
+// Everything the course of a search depends on, as lines "key = value": all keys of the experiment but those
+// for people and those that this search does not read. How long it goes on is left out too: a saved state may
+// be continued with more generations or cases than it was made with.
+std::string SearchIdentity(const SearchSetup& setup);
+
+}  // namespace gauntlet

@@ -1,0 +1,84 @@
+#include "search/search_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "base/check.h"
+#include "controllers/registry.h"
+#include "controllers/run_start.h"
+#include "search/archive/archive_search.h"
+#include "search/evolution/genetic_algorithm.h"
+#include "search/evolution/random_search.h"
+#include "search/evolution/steady_state_search.h"
+#include "search/given/blame_search.h"
+#include "search/given/case_list_search.h"
+#include "search/given/confirmation_search.h"
+#include "search/given/minimisation_search.h"
+#include "sim/robot/disturbances.h"
+
+namespace gauntlet {
+
+std::span<const SearchRow> Searches() {
+  static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
+                                  RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
+                                  MinimisationRow(),   BlameRow(),       CheckRow()};
+  return rows;
+}
+
+const SearchRow* FindSearch(std::string_view name) {
+  const auto row = std::ranges::find(Searches(), name, [](const SearchRow& one) { return one.info.name; });
+  return row == Searches().end() ? nullptr : &*row;
+}
+
+const SearchRow& RowOf(const Experiment& experiment) {
+  const SearchRow* row = FindSearch(experiment.search.algorithm);
+  GAUNTLET_CHECK(row != nullptr, experiment.search.algorithm);
+  return *row;
+}
+
+const Catalogue& BuiltInCatalogue() {
+  static const std::vector<SearchInfo> searches = [] {
+    std::vector<SearchInfo> infos;
+    for (const SearchRow& row : Searches()) infos.push_back(row.info);
+    return infos;
+  }();
+  static const Catalogue catalogue{controllers::Scenarios(), controllers::Controllers(), searches};
+  return catalogue;
+}
+
+Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {
+  const Result<std::size_t> robots = controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed));
+  if (!robots.ok()) return robots.error();
+  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, *robots)) {
+    return InvalidInput(*refused);
+  }
+  return Ok{};
+}
+
+Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment, std::uint32_t search_id,
+                                                    std::vector<sim::TestCase> cases) {
+  const SearchRow& row = RowOf(experiment);
+  if (row.given_cases) {
+    if (!cases.empty()) return row.make({experiment, {}, search_id, std::move(cases)});
+    return InvalidInput(fmt::format("search.algorithm = \"{}\" needs a list of test cases: use `gauntlet {}`",
+                                    row.info.name, row.command));
+  }
+  if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
+    return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};
+  const sim::TestCase empty = EmptyArena(experiment.arena);
+  const Result<sim::ArenaRequirements> requirements =
+      controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed));
+  if (!requirements.ok()) return requirements.error();
+  auto search = row.make({experiment, *requirements, search_id, {}});
+  if (!search.ok()) return search;
+  // Without this every run of the search would be refused for the same reason.
+  if (const Status fits = CheckSwarmFits(experiment, empty); !fits.ok()) {
+    return InvalidInput("no run can begin, even without obstacles: " + fits.error().message);
+  }
+  return search;
+}
+
+}  // namespace gauntlet

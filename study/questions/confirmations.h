@@ -1,0 +1,62 @@
+// How often cases of a campaign fail with fresh seeds: what `gauntlet confirm` has found out.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/statistics/interval.h"
+#include "base/result.h"
+#include "search/archive/failure_archive.h"
+#include "search/failure_tally.h"
+#include "study/questions/questioned_cases.h"
+#include "study/questions/smallest_layouts.h"
+#include "study/sets/failure_groups.h"
+
+namespace gauntlet {
+
+struct Confirmation {
+  std::string name;       // of the case, as in CaseInQuestion
+  RunId run = 0;          // that it is the case of; 0 when it came from a file
+  std::uint64_t key = 0;  // ConfirmationKey
+  FailureTally tally;
+  FailureVerdict verdict = FailureVerdict::kOpen;
+  analysis::Interval interval;  // of the probability to fail (Wilson, 95 %)
+  // Of its failed runs, along the scenario's descriptor axes. Nothing when none could be described.
+  std::optional<Descriptor> middle;
+  std::string message;  // of the first run that ended without a result; "" = none did
+  // How most of its failed runs failed, and the one that shows it best. Nothing when none failed.
+  struct Example {
+    std::string scenario;
+    FailureWay way;
+    std::string campaign;  // its directory
+    RunId run = 0;
+    std::string scenario_plugin = "";  // that brings the scenario, as in Experiment
+  };
+  std::optional<Example> example;
+};
+// The same for the same case under the same experiment, whatever it is called.
+std::uint64_t ConfirmationKey(const Experiment& experiment, const sim::TestCase& test_case);
+// What the campaign in `dir` knows, each case once, also while it is being found out; open ones are left
+// out. Of a case that was confirmed twice, what stands on more runs.
+Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir);
+
+// Cases that failed with fresh seeds and are one and the same failure.
+struct DistinctFailure {
+  std::vector<const Confirmation*> cases;  // the toughest first: by the share of runs that failed
+  std::string what;                        // of the toughest one, in words
+  bool confirmed = false;                  // at least one of the cases
+  // Of what `gauntlet minimise` has left of the cases, the one with the fewest obstacles; null: of none.
+  const SmallestLayout* smallest = nullptr;
+};
+// The toughest first, of equally tough ones that with most cases. The arguments must outlive them.
+std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations,
+                                              const std::vector<SmallestLayout>& layouts);
+
+// A campaign that finds out how often cases fail. `known` with fewer runs than `replicates` are simulated
+// anew; 0 = until there is a verdict.
+CallPlan PlanConfirmation(const std::string& dir, const QuestionedCampaign& questioned,
+                          const std::vector<Confirmation>& known, int replicates);
+
+}  // namespace gauntlet

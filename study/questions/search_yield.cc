@@ -1,0 +1,201 @@
+#include "study/questions/search_yield.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/shell_quoted.h"
+#include "controllers/registry.h"
+#include "master/campaign/stored_campaign.h"
+#include "master/store/run_numbers.h"
+#include "search/experiment/failure_cells.h"
+#include "search/given/confirmation_search.h"
+#include "search/search_table.h"
+#include "study/questions/confirmations.h"
+#include "study/sets/subset.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr std::string_view kElites = "elites";  // SearchRow::members of a search that chooses its failures
+
+// What is looked at of a campaign.
+struct Candidates {
+  bool elites = false;  // else all cases that failed
+  QuestionedCampaign cases;
+};
+
+Result<Candidates> CandidatesOf(const std::string& dir, const std::vector<SearchPlan>& plans) {
+  const bool elites = RowOf(plans.front().experiment).members == kElites;
+  Result<QuestionedCampaign> cases = elites ? PopulationCases(dir) : FailingCases(dir);
+  if (!cases) return cases.error();
+  return Candidates{elites, *std::move(cases)};
+}
+
+// The number within its search of the run from which on the search knew that the case fails. Every layout
+// that an archive keeps failed in its first run; of others the case is named by the first run that failed.
+class FindingRuns {
+ public:
+  void Add(const StoredRun& run) {
+    individual_of_[run.id] = run.individual;
+    first_run_.emplace(run.individual, run.id);
+  }
+  std::uint64_t Of(RunId run, bool elite) const {
+    const RunId found = elite ? first_run_.at(individual_of_.at(run)) : run;
+    return found - RunIdOf(SearchOf(run), 1) + 1;
+  }
+  std::uint64_t runs() const { return individual_of_.size(); }
+
+ private:
+  std::map<RunId, IndividualId> individual_of_;
+  std::map<IndividualId, RunId> first_run_;
+};
+
+// What both experiments test, or how they search, as lines; "" when they are alike, else the first line of
+// either that differs.
+std::string FirstDifference(const std::string& first, const std::string& second) {
+  std::istringstream lines1(first);
+  std::istringstream lines2(second);
+  std::string line1;
+  std::string line2;
+  do {
+    line1.clear();
+    line2.clear();
+    std::getline(lines1, line1);
+    std::getline(lines2, line2);
+    if (line1 != line2) return fmt::format("'{}' and '{}'", line1, line2);
+  } while (lines1 || lines2);
+  return {};
+}
+
+std::string IdentityBesideSeed(Experiment experiment) {
+  experiment.seed = 0;
+  return SearchIdentity({experiment, {}, kOnlySearch, {}});
+}
+
+std::string WhatIsTested(const Experiment& experiment) {
+  return IdentityBesideSeed(ConfirmationOf(experiment, 0));
+}
+
+Status AddCampaign(const std::string& dir, YieldSet& set) {
+  const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
+  if (!campaign) return campaign.error();
+  const std::vector<SearchPlan>& plans = campaign->plans;
+  const Result<Candidates> candidates = CandidatesOf(dir, plans);
+  if (!candidates) return candidates.error();
+  const Result<std::vector<Confirmation>> confirmations = ReadConfirmations(dir);
+  if (!confirmations) return confirmations.error();
+  std::map<std::uint64_t, const Confirmation*> known;
+  for (const Confirmation& one : *confirmations) known[one.key] = &one;
+
+  std::vector<FindingRuns> finding_runs(plans.size());
+  const std::size_t first = set.searches.size();
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const auto id = static_cast<SearchId>(i + 1);
+    const auto add = [&](const StoredRun& run) { finding_runs[i].Add(run); };
+    if (Status read = campaign->view.store->ForEachRow(id, 0, add); !read) return read;
+    set.searches.push_back({.place = plans.size() > 1 ? fmt::format("{}:search:{}", dir, id) : dir,
+                            .experiment = plans[i].experiment,
+                            .runs = finding_runs[i].runs(),
+                            .confirmed = {}});
+  }
+  std::size_t unconfirmed = 0;
+  for (const CaseInQuestion& one : candidates->cases.cases) {
+    SearchYield& yield = set.searches[first + one.search];
+    ++yield.cases;
+    const auto found = known.find(ConfirmationKey(yield.experiment, one.test_case));
+    if (found == known.end()) {
+      ++unconfirmed;
+      continue;
+    }
+    const Confirmation& confirmation = *found->second;
+    if (confirmation.verdict != FailureVerdict::kFail || !confirmation.middle) continue;
+    const DescriptorGrid grid(CellsOf(yield.experiment));
+    yield.confirmed.push_back({grid.CellOf(*confirmation.middle), one.test_case.obstacles.size(),
+                               finding_runs[one.search].Of(RunOfName(one.name), candidates->elites)});
+  }
+  if (unconfirmed == 0) return Ok{};
+  return InvalidInput(fmt::format(
+      "{}: {} of its {} {} have not been simulated again with fresh seeds: `gauntlet confirm {} {}`", dir,
+      unconfirmed, candidates->cases.cases.size(), candidates->elites ? "elites" : "failing cases",
+      PastedPath(dir), candidates->elites ? "--elites" : "--all-failing"));
+}
+
+Status CheckAxes(const SearchYield& yield) {
+  if (!CellsOf(yield.experiment).empty()) return Ok{};
+  return InvalidInput(fmt::format("{}: scenario {} does not say along which metrics its failures differ",
+                                  yield.place, yield.experiment.scenario));
+}
+
+}  // namespace
+
+std::size_t CellsWith(const SearchYield& yield, std::size_t most_obstacles) {
+  std::set<std::size_t> cells;
+  for (const ConfirmedCase& one : yield.confirmed) {
+    if (one.obstacles <= most_obstacles) cells.insert(one.cell);
+  }
+  return cells.size();
+}
+
+std::optional<std::uint64_t> RunsUntil(const SearchYield& yield, std::size_t cells,
+                                       std::size_t most_obstacles) {
+  std::map<std::size_t, std::uint64_t> first;  // by cell
+  for (const ConfirmedCase& one : yield.confirmed) {
+    if (one.obstacles > most_obstacles) continue;
+    const auto [found, added] = first.emplace(one.cell, one.found);
+    if (!added) found->second = std::min(found->second, one.found);
+  }
+  if (cells == 0 || first.size() < cells) return std::nullopt;
+  std::vector<std::uint64_t> runs;
+  for (const auto& [cell, found] : first) runs.push_back(found);
+  std::ranges::sort(runs);
+  return runs[cells - 1];
+}
+
+Result<YieldSet> ReadYields(const std::string& text) {
+  const Result<std::vector<SetPart>> parts = SplitSet(text);
+  if (!parts) return parts.error();
+  YieldSet set{.name = text, .title = {}, .searches = {}};
+  for (const SetPart& part : *parts) {
+    if (!part.rest.empty())
+      return InvalidInput(
+          fmt::format("{}:{}: whole campaigns are compared, without ':{}'", part.path, part.rest, part.rest));
+    if (Status added = AddCampaign(part.path, set); !added) return added.error();
+  }
+  const SearchYield& first = set.searches.front();
+  if (Status axes = CheckAxes(first); !axes) return axes.error();
+  for (const SearchYield& one : set.searches) {
+    const std::string difference =
+        FirstDifference(IdentityBesideSeed(first.experiment), IdentityBesideSeed(one.experiment));
+    if (difference.empty()) continue;
+    return InvalidInput(
+        fmt::format("{} and {} differ in more than their seeds: {}", first.place, one.place, difference));
+  }
+  set.title = RowOf(first.experiment).title;
+  return set;
+}
+
+Status CheckSameBudget(const std::vector<YieldSet>& sets) {
+  const SearchYield& first = sets.front().searches.front();
+  for (const YieldSet& set : sets) {
+    for (const SearchYield& one : set.searches) {
+      const std::string difference =
+          FirstDifference(WhatIsTested(first.experiment), WhatIsTested(one.experiment));
+      if (!difference.empty()) {
+        return InvalidInput(
+            fmt::format("{} and {} do not test the same: {}", first.place, one.place, difference));
+      }
+      if (one.runs == first.runs) continue;
+      return InvalidInput(fmt::format("{} has {} runs and {} has {}: searches are compared at equal runs",
+                                      first.place, first.runs, one.place, one.runs));
+    }
+  }
+  return Ok{};
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,265 @@
+#include "study/sets/subset.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "base/nearest_name.h"
+#include "base/parse_number.h"
+#include "base/split.h"
+#include "controllers/registry.h"
+#include "master/campaign/stored_campaign.h"
+#include "master/campaign/stored_search.h"
+#include "proto/run_codec.h"
+#include "search/search_table.h"
+#include "sim/random/random_stream.h"
+
+namespace gauntlet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFitness = "fitness";
+constexpr const char* kTotalFailure = "total_failure";
+constexpr const char* kFailureType = "failure_type";
+
+bool IsColumn(const std::string& metric) {
+  return metric == kFitness || metric == kTotalFailure || metric == kFailureType;
+}
+
+// The metrics that can be compared, for messages.
+struct MetricName {
+  std::string_view name;
+};
+
+// What the row of a run with a result says of it.
+std::optional<double> ColumnOf(const StoredRun& run, const std::string& metric) {
+  if (metric == kTotalFailure) return run.total_failure ? 1.0 : 0.0;
+  if (metric == kFailureType) {
+    return run.total_failure && run.failure_type >= 0 ? std::optional<double>(run.failure_type)
+                                                      : std::nullopt;
+  }
+  return std::isfinite(run.fitness) ? std::optional(run.fitness) : std::nullopt;
+}
+
+std::optional<double> MetricOf(const sim::RunResult& result, const controllers::MetricInfo* info,
+                               const std::string& metric) {
+  const auto found = std::ranges::find(result.metrics, metric, &std::pair<std::string, double>::first);
+  return found == result.metrics.end() ? std::nullopt : MeasuredValue(info, found->second);
+}
+
+// One value for each stored run of a search, in logical order.
+Result<std::vector<SelectedRun>> LoadValues(const Experiment& experiment, SearchId search, ResultStore& store,
+                                            const std::string& metric) {
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, metric);
+  std::vector<SelectedRun> values;
+  std::optional<Error> damage;
+  const auto take = [&](const StoredRun& run) {
+    SelectedRun& value = values.emplace_back(
+        SelectedRun{run.id, run.individual, run.evaluation, run.generation, std::nullopt});
+    if (damage || run.verdict != static_cast<int>(sim::Verdict::kCompleted)) return;
+    if (IsColumn(metric)) {
+      value.value = ColumnOf(run, metric);
+      return;
+    }
+    const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
+    if (!result) {
+      damage = result.error();
+    } else {
+      value.value = MetricOf(*result, info, metric);
+    }
+  };
+  const Status read =
+      IsColumn(metric) ? store.ForEachRow(search, 0, take) : store.ForEachRun(search, 0, take);
+  if (!read) return read.error();
+  if (damage) return *damage;
+  return values;
+}
+
+// Of the newest evaluation of each member of the population.
+Result<std::vector<SelectedRun>> FinalValues(const Experiment& experiment, SearchId id, ResultStore& store,
+                                             const std::vector<SelectedRun>& all) {
+  const Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(experiment, id, store);
+  if (!search) return search.error();
+  const Result<SavedProgress> saved = RestoreSearch(id, store, **search);
+  if (!saved) return saved.error();
+  std::map<IndividualId, std::uint32_t> newest;
+  for (const Individual& individual : (*search)->Population()) newest[individual.id] = 0;
+  const auto counts = [&](const SelectedRun& run) {
+    return run.run <= saved->last_run && newest.contains(run.individual);
+  };
+  for (const SelectedRun& run : all) {
+    if (counts(run)) newest[run.individual] = std::max(newest[run.individual], run.evaluation);
+  }
+  std::vector<SelectedRun> final;
+  std::ranges::copy_if(all, std::back_inserter(final), [&](const SelectedRun& run) {
+    return counts(run) && run.evaluation == newest[run.individual];
+  });
+  return final;
+}
+
+Status CheckEnough(const std::vector<SelectedRun>& runs, std::uint64_t count, const std::string& place) {
+  if (count <= runs.size()) return Ok{};
+  return InvalidInput(
+      fmt::format("{}: {} runs cannot be taken from {} that have a value", place, count, runs.size()));
+}
+
+// `count` of them, in their order.
+Result<std::vector<SelectedRun>> Drawn(std::vector<SelectedRun> all, std::uint64_t count, std::uint64_t seed,
+                                       const std::string& place) {
+  std::erase_if(all, [](const SelectedRun& run) { return !run.value; });
+  if (Status enough = CheckEnough(all, count, place); !enough) return enough.error();
+  sim::RandomStream random(seed, sim::StreamPurpose::kStatistics, 0, 1);  // the bootstrap's have b = 0
+  for (std::size_t i = 0; i < count; ++i) {
+    std::swap(all[i], all[i + random.Below(static_cast<std::uint32_t>(all.size() - i))]);
+  }
+  all.resize(count);
+  std::ranges::sort(all, {}, &SelectedRun::run);
+  return all;
+}
+
+// The `count` of lowest value, of equal ones the earlier; in their order.
+Result<std::vector<SelectedRun>> Lowest(std::vector<SelectedRun> all, std::uint64_t count,
+                                        const std::string& place) {
+  std::erase_if(all, [](const SelectedRun& run) { return !run.value; });
+  if (Status enough = CheckEnough(all, count, place); !enough) return enough.error();
+  std::ranges::stable_sort(all, {}, [](const SelectedRun& run) { return *run.value; });
+  all.resize(count);
+  std::ranges::sort(all, {}, &SelectedRun::run);
+  return all;
+}
+
+// The path is the longest beginning that exists, so that it may hold colons.
+Result<SetPart> SplitPart(const std::string& text) {
+  std::error_code error;
+  for (std::size_t end = text.size(); end != std::string::npos && end > 0; end = text.rfind(':', end - 1)) {
+    const std::string path = text.substr(0, end);
+    if (fs::exists(path, error)) return SetPart{path, end < text.size() ? text.substr(end + 1) : ""};
+  }
+  return Error{ErrorKind::kNotFound,
+               fmt::format("{}: no such campaign or CSV file (DIR, DIR:final, DIR:all, DIR:random:100, "
+                           "DIR:search:2:final, FILE.csv:COLUMN)",
+                           text)};
+}
+
+}  // namespace
+
+std::optional<double> MeasuredValue(const controllers::MetricInfo* info, double value) {
+  if (!std::isfinite(value) || (info != nullptr && info->none == value)) return std::nullopt;
+  return value;
+}
+
+Result<Subset> ParseSubset(const std::string& text, const std::string& place) {
+  const Error wrong = InvalidInput(
+      fmt::format("{}: no subset '{}'; known: final, all, random:N, worst:N, and search:N in front of them",
+                  place, text));
+  Subset subset;
+  if (text.empty()) return subset;
+  std::vector<std::string> words = Split(text, ':');
+  if (words.front() == "search") {
+    const auto number = words.size() > 1 ? ParseNumber<std::uint32_t>(words[1]) : std::nullopt;
+    if (!number || *number == 0) return wrong;
+    subset.search = *number;
+    words.erase(words.begin(), words.begin() + 2);
+    if (words.empty()) return subset;
+  }
+  if (words.size() == 1 && words[0] == "final") return subset;
+  if (words.size() == 1 && words[0] == "all") {
+    subset.kind = Subset::Kind::kAll;
+    return subset;
+  }
+  const auto count = words.size() == 2 && (words[0] == "random" || words[0] == "worst")
+                         ? ParseNumber<std::uint64_t>(words[1])
+                         : std::nullopt;
+  if (!count || *count == 0) return wrong;
+  subset.kind = words[0] == "random" ? Subset::Kind::kRandom : Subset::Kind::kWorst;
+  subset.count = *count;
+  return subset;
+}
+
+Result<std::vector<SetPart>> SplitSet(const std::string& text) {
+  std::error_code error;
+  std::vector<SetPart> parts;
+  for (const std::string& one : fs::exists(text, error) ? std::vector{text} : Split(text, ',')) {
+    Result<SetPart> part = SplitPart(one);
+    if (!part) return part.error();
+    const auto same = [&](const SetPart& other) {
+      return other.rest == part->rest && fs::equivalent(other.path, part->path, error);
+    };
+    if (std::ranges::any_of(parts, same))
+      return InvalidInput(fmt::format("{} is in the set '{}' twice: its runs would count twice", one, text));
+    parts.push_back(*std::move(part));
+  }
+  return parts;
+}
+
+Result<OpenedSubset> OpenSubset(const SetPart& part) {
+  const Result<Subset> subset = ParseSubset(part.rest, part.path);
+  if (!subset) return subset.error();
+  Result<StoredCampaign> stored = OpenStoredCampaign(part.path);
+  if (!stored) return stored.error();
+  return OpenedSubset{std::move(stored->view), std::move(stored->plans), *subset,
+                      std::move(stored->being_written)};
+}
+
+Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, const std::string& place,
+                     const Subset& subset, const std::function<Status(const SubsetSearch&)>& visit) {
+  if (subset.search > plans.size()) {
+    return InvalidInput(
+        fmt::format("{} has no search {}: its searches are 1 to {}", place, subset.search, plans.size()));
+  }
+  const Result<std::vector<StoredSearch>> stored = store.LoadSearches();
+  if (!stored) return stored.error();
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    const auto id = static_cast<SearchId>(i + 1);
+    if (subset.search != 0 && subset.search != id) continue;
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(plans[i].experiment, id, store);
+    if (!search) return search.error();
+    const bool finished = std::ranges::any_of(*stored, [&](const StoredSearch& one) {
+      return one.id == id && HasFinished(one, plans[i].experiment, **search);
+    });
+    const std::string name = plans.size() > 1 ? fmt::format("{}:search:{}", place, id) : place;
+    if (Status visited = visit({id, plans[i].experiment, name, finished}); !visited) return visited;
+  }
+  return Ok{};
+}
+
+Status CheckMetric(const Experiment& experiment, const std::string& metric) {
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (IsColumn(metric) || scenario == nullptr || controllers::FindMetric(*scenario, metric) != nullptr) {
+    return Ok{};
+  }
+  std::vector<MetricName> known = {{kFitness}, {kTotalFailure}, {kFailureType}};
+  for (const controllers::MetricInfo& info : scenario->metrics) known.push_back({info.name});
+  return InvalidInput(UnknownName("metric", metric, known));
+}
+
+Result<std::vector<SelectedRun>> SelectRuns(const SubsetSearch& search, ResultStore& store,
+                                            const Subset& subset, const std::string& metric) {
+  if (Status known = CheckMetric(search.experiment, metric); !known) return known.error();
+  // What is chosen by its fitness is chosen before the metric is looked at.
+  const bool worst = subset.kind == Subset::Kind::kWorst;
+  Result<std::vector<SelectedRun>> runs = LoadValues(search.experiment, search.id, store, metric);
+  if (runs && subset.kind == Subset::Kind::kFinal) {
+    return FinalValues(search.experiment, search.id, store, *runs);
+  }
+  if (runs && subset.kind == Subset::Kind::kRandom) {
+    return Drawn(*std::move(runs), subset.count, search.experiment.seed, search.place);
+  }
+  if (!runs || !worst) return runs;
+  Result<std::vector<SelectedRun>> by_fitness = LoadValues(search.experiment, search.id, store, kFitness);
+  if (by_fitness) by_fitness = Lowest(*std::move(by_fitness), subset.count, search.place);
+  if (!by_fitness) return by_fitness;
+  std::erase_if(*runs, [&](const SelectedRun& run) {
+    return !std::ranges::binary_search(*by_fitness, run.run, {}, &SelectedRun::run);
+  });
+  return runs;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,70 @@
+// Runs command lines against a campaign that only notes what it is asked.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/command_line.h"
+#include "tests/support/fake_campaigns.h"
+
+namespace gauntlet {
+
+class CommandLine : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    directory_ =
+        std::filesystem::path(::testing::TempDir()) /
+        (std::string("gauntlet-cli-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(directory_);
+    std::filesystem::create_directories(directory_);
+    campaigns_.report.summary.experiment = "flocking";
+    campaigns_.report.summary.search = "genetic";
+    campaigns_.report.summary.finished = true;
+    campaigns_.report.runs_this_session = 100;
+    campaigns_.report.wall_seconds = 4.0;
+  }
+  void TearDown() override { std::filesystem::remove_all(directory_); }
+
+  ExitCode Run(const std::vector<std::string>& arguments) {
+    out_.str("");
+    err_.str("");
+    CommandContext context{
+        .out = out_, .err = err_, .err_is_terminal = err_is_terminal_, .campaigns = campaigns_};
+    return RunCommandLine(arguments, context);
+  }
+  std::string Path(const std::string& name) const { return (directory_ / name).string(); }
+  std::string Write(const std::string& name, const std::string& text) const {
+    std::ofstream(directory_ / name, std::ios::binary) << text;
+    return Path(name);
+  }
+  static std::string Read(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+  // Exit 2, one line on standard error, nothing on standard output, nothing started.
+  void ExpectUsageError(const std::vector<std::string>& arguments,
+                        const ::testing::Matcher<std::string>& message) {
+    EXPECT_EQ(Run(arguments), kExitUsage);
+    const std::string text = err_.str();
+    EXPECT_THAT(text, ::testing::StartsWith("gauntlet: "));
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    EXPECT_THAT(text, message);
+    EXPECT_THAT(out_.str(), ::testing::IsEmpty());
+    EXPECT_EQ(campaigns_.starts, 0);
+  }
+
+  std::filesystem::path directory_;
+  std::ostringstream out_;
+  std::ostringstream err_;
+  bool err_is_terminal_ = false;
+  testing_support::FakeCampaigns campaigns_;
+};
+
+}  // namespace gauntlet

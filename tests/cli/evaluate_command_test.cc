@@ -1,0 +1,87 @@
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "proto/run_codec.h"
+#include "tests/cli/command_line_fixture.h"
+
+namespace gauntlet {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using Json = nlohmann::json;
+
+TEST_F(CommandLine, EvaluateRefusesByRuleAndSimulatesTheRest) {
+  const std::string good =
+      Write("good.json", R"({"obstacles": [{"x": 0, "y": 1.5, "length": 1, "width": 0.2}]})");
+  const std::string blocked =
+      Write("blocked.json", R"({"obstacles": [{"x": 2.5, "y": 2.5, "length": 1, "width": 0.4}]})");
+  const std::string broken = Write("broken.json", "{\"obstacles\": [}");
+  sim::RunResult result;
+  result.fitness = 0.75;
+  SetHashes(result);
+  campaigns_.stored.resize(2);
+  for (std::size_t i = 0; i < 2; ++i) {
+    campaigns_.stored[i].id = i + 1;
+    campaigns_.stored[i].search = 1;
+    campaigns_.stored[i].individual = 1;
+    campaigns_.stored[i].seed = 40 + i;
+    campaigns_.stored[i].result = proto::EncodeRunResult(result);
+  }
+  EXPECT_EQ(Run({"evaluate", "flocking", "--case", blocked, good, broken, "--replicates", "2", "--json",
+                 "--dir", Path("c")}),
+            kExitDone);
+  EXPECT_EQ(campaigns_.experiment.search.algorithm, "cases");
+  EXPECT_EQ(campaigns_.experiment.search.replicates, 2);
+  ASSERT_EQ(campaigns_.cases.size(), 1U);
+  EXPECT_EQ(campaigns_.cases[0].name, "good.json");
+  const Json cases = Json::parse(out_.str()).at("cases");
+  ASSERT_EQ(cases.size(), 3U);
+  EXPECT_EQ(cases[0].at("file"), blocked);
+  EXPECT_EQ(cases[0].at("refused"), "start-blocked");
+  EXPECT_TRUE(cases[0].at("fitness").is_null());
+  EXPECT_EQ(cases[1].at("file"), good);
+  EXPECT_EQ(cases[1].at("fitness"), 0.75);
+  EXPECT_EQ(cases[1].at("runs").at(1).at("seed"), "41");
+  EXPECT_TRUE(cases[2].at("refused").is_null());
+  EXPECT_THAT(cases[2].at("error").get<std::string>(), HasSubstr("broken.json:1:"));
+  EXPECT_THAT(err_.str(),
+              AllOf(HasSubstr("blocked.json: refused, start-blocked: "), HasSubstr("broken.json:1:")));
+}
+
+TEST_F(CommandLine, CasesAreKnownByTheirFilesAndTheirOwnNames) {
+  const std::string file = Write("bend.json", R"({"name": "a narrow bend", "obstacles": []})");
+  (void)Run({"evaluate", "flocking", "--case", file, "--dir", Path("c")});
+  ASSERT_EQ(campaigns_.cases.size(), 1U);
+  EXPECT_EQ(campaigns_.cases[0].name, "bend.json (a narrow bend)");
+}
+
+TEST_F(CommandLine, NoticesOfManyFilesAreGivenOnce) {
+  const std::string argos = R"(<argos-configuration><framework/><arena size="6,6,1"/></argos-configuration>)";
+  const std::vector<std::string> files = {Write("a.argos", argos), Write("b.argos", argos),
+                                          Write("c.argos", argos)};
+  EXPECT_EQ(Run({"evaluate", "flocking", "--case", files[0], files[1], files[2], "--dir", Path("c")}),
+            kExitUsage)
+      << "the campaign of this test simulates nothing";
+  const std::string text = err_.str();
+  EXPECT_THAT(text, HasSubstr(files[0] + " and 2 more: 0 of 4 walls are in the file"));
+  EXPECT_EQ(text.find("0 of 4 walls"), text.rfind("0 of 4 walls"));
+}
+
+TEST_F(CommandLine, EvaluateExitsTwoWhenNothingCouldBeSimulated) {
+  const std::string blocked =
+      Write("blocked.json", R"({"obstacles": [{"x": 2.5, "y": 2.5, "length": 1, "width": 0.4}]})");
+  EXPECT_EQ(Run({"evaluate", "flocking", "--case", blocked, "none.json", "--json", "--dir", Path("c")}),
+            kExitUsage);
+  EXPECT_EQ(campaigns_.starts, 0);
+  const Json cases = Json::parse(out_.str()).at("cases");
+  EXPECT_EQ(cases[0].at("refused"), "start-blocked");
+  EXPECT_THAT(cases[1].at("error").get<std::string>(), HasSubstr("none.json: no such file"));
+  EXPECT_FALSE(std::filesystem::exists(Path("c")));
+}
+
+}  // namespace
+}  // namespace gauntlet

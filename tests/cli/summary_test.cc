@@ -1,0 +1,251 @@
+#include <limits>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "cli/output/summary.h"
+#include "master/campaign/verdict_text.h"
+
+namespace gauntlet {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using Json = nlohmann::json;
+
+CampaignSummary Evolved() {
+  CampaignSummary summary;
+  summary.experiment = "flocking";
+  summary.search = "genetic";
+  summary.seed = 18446744073709551615U;
+  summary.progress = {50, 50, 1000, 1000, true};
+  summary.runs_done = 1000;
+  summary.runs_failed = 0;
+  summary.distinct_individuals = 372;
+  summary.best_fitness = 0.0;
+  summary.mean_fitness = 0.2125;
+  summary.worst_fitness = 0.633;
+  summary.total_failures = 231;
+  for (int type = 0; type < 20; ++type) summary.failure_types.push_back({type, "apart", 0});
+  summary.failure_types[12] = {12, "slowly apart", 200};
+  summary.failure_types[3].runs = 30;
+  summary.untyped_failures = 1;
+  summary.untyped = "without a split";
+  summary.statistics = {{"clone_rate", 0.61}};
+  for (std::uint32_t g = 1; g <= 50; ++g)
+    summary.generations.push_back({g, 20, 20, 0.3 - 0.006 * g, 0.5, 0.9, g});
+  summary.population = {{17, {3, 9}, 5, 0.25, {{1.0, 2.0, 0.5, 0.2, 30.0}}, {80, 812}},
+                        {18, {}, 1, 0.0, {{1.5, 2.0, 0.5, 0.2, 31.0}, {0, 0, 1, 0.1, 0}}, {81, 813}},
+                        {19, {}, 1, std::numeric_limits<double>::infinity(), {}, {82}}};
+  summary.state_hash = "00ff00ff00ff00ff";
+  summary.finished = true;
+  return summary;
+}
+
+TEST(SummaryText, GivenCasesAreNamedByTheirFiles) {
+  CampaignSummary summary = Evolved();
+  EXPECT_THAT(SummaryText(summary, {}, {"gauntlet", "d"}), testing::Not(testing::HasSubstr("  file\n")));
+  summary.population[0].name = "three-walls.json";
+  EXPECT_THAT(SummaryText(summary, {}, {"gauntlet", "d"}), testing::HasSubstr("three-walls.json\n"));
+  EXPECT_EQ(Json::parse(SummaryJson(summary, {}, "d")).at("population").at(0).at("name"), "three-walls.json");
+}
+
+TEST(SummaryJson, HasTheKeysOfTheContract) {
+  const Json json = Json::parse(SummaryJson(Evolved(), {}, "campaigns/x"));
+  EXPECT_EQ(json.at("experiment"), "flocking");
+  EXPECT_EQ(json.at("search"), "genetic");
+  EXPECT_EQ(json.at("generation"), 50);
+  EXPECT_EQ(json.at("runs_done"), 1000);
+  EXPECT_EQ(json.at("runs_failed"), 0);
+  EXPECT_EQ(json.at("distinct_individuals"), 372);
+  EXPECT_EQ(json.at("best_fitness"), 0.0);
+  EXPECT_EQ(json.at("mean_fitness"), 0.2125);
+  EXPECT_EQ(json.at("total_failures"), 231);
+  EXPECT_EQ(json.at("finished"), true);
+  EXPECT_EQ(json.at("failure_types").size(), 20U);
+  EXPECT_EQ(json.at("failure_types")[12], Json({{"type", 12}, {"name", "slowly apart"}, {"runs", 200}}));
+  EXPECT_EQ(json.at("failure_types")[0].at("runs"), 0);
+  EXPECT_EQ(json.at("unclassified_failures"), 1);
+  EXPECT_EQ(json.at("history").size(), 50U);
+  const Json& member = json.at("population").at(0);
+  EXPECT_EQ(member.at("id"), 17);
+  EXPECT_EQ(member.at("fitness"), 0.25);
+  EXPECT_EQ(member.at("runs"), Json({80, 812}));
+  EXPECT_EQ(member.at("genome").at(0),
+            Json({{"x", 1.0}, {"y", 2.0}, {"length", 0.5}, {"width", 0.2}, {"orientationDeg", 30.0}}));
+}
+
+TEST(SummaryJson, SeedsAndHashesAreStrings) {
+  const Json json = Json::parse(SummaryJson(Evolved(), {}, "campaigns/x"));
+  EXPECT_EQ(json.at("seed"), "18446744073709551615");
+  EXPECT_EQ(json.at("state_hash"), "00ff00ff00ff00ff");
+}
+
+TEST(SummaryJson, IdsThatReadersWouldRoundAreStrings) {
+  CampaignSummary summary = Evolved();
+  summary.population[0].runs = {1ULL << 53, (1ULL << 53) + 1};
+  const Json runs = Json::parse(SummaryJson(summary, {}, "d")).at("population").at(0).at("runs");
+  EXPECT_EQ(runs.at(0), 9007199254740992U);
+  EXPECT_EQ(runs.at(1), "9007199254740993");
+}
+
+TEST(SummaryJson, AFitnessThatDoesNotExistIsNull) {
+  CampaignSummary summary = Evolved();
+  summary.best_fitness = summary.mean_fitness = summary.worst_fitness =
+      std::numeric_limits<double>::quiet_NaN();
+  const Json json = Json::parse(SummaryJson(summary, {}, "d"));
+  EXPECT_TRUE(json.at("best_fitness").is_null());
+  EXPECT_TRUE(json.at("mean_fitness").is_null());
+  EXPECT_TRUE(json.at("population").at(2).at("fitness").is_null());
+}
+
+TEST(SummaryText, EndsWithCommandsOnTheToughestCase) {
+  const std::string text = SummaryText(Evolved(), {}, {"gauntlet", "campaigns/my runs"});
+  EXPECT_THAT(text, HasSubstr("flocking: genetic search, seed 18446744073709551615, finished"));
+  EXPECT_THAT(text, HasSubstr("231 of 1,000 runs (23.1 %)"));
+  EXPECT_THAT(text, HasSubstr("2 of 20; 1 failure without a split"));
+  const std::size_t hints = text.find("Next commands to try");
+  ASSERT_NE(hints, std::string::npos);
+  EXPECT_THAT(text.substr(hints),
+              AllOf(HasSubstr("gauntlet replay 'campaigns/my runs' 813 --svg case-18.svg"),
+                    HasSubstr("gauntlet show 'campaigns/my runs' --json"), Not(HasSubstr("resume"))));
+}
+
+TEST(SummaryText, NamesTheFailureTypesThatOccurredMostFrequentFirst) {
+  EXPECT_THAT(SummaryText(Evolved(), {}, {"gauntlet", "d"}), HasSubstr("   200    12  slowly apart\n"
+                                                                       "    30     3  apart\n"
+                                                                       "     1     -  without a split\n"));
+}
+
+TEST(SummaryText, SpeaksOfNoFailureTypesWhereTheScenarioHasNone) {
+  CampaignSummary summary = Evolved();
+  summary.failure_types.clear();
+  EXPECT_THAT(SummaryText(summary, {}, {"gauntlet", "d"}), Not(HasSubstr("failure types")));
+}
+
+TEST(SummaryText, ToughestCaseStandsFirstAndCasesWithoutFitnessAreLeftOut) {
+  const std::string text = SummaryText(Evolved(), {}, {"gauntlet", "d"});
+  const std::size_t tough = text.find("\n         18    0.000");
+  const std::size_t next = text.find("\n         17    0.250");
+  EXPECT_NE(tough, std::string::npos) << text;
+  EXPECT_NE(next, std::string::npos) << text;
+  EXPECT_LT(tough, next);
+  EXPECT_THAT(text, Not(HasSubstr("\n         19")));
+}
+
+TEST(SummaryText, ShowsFirstAndLastAndAtMostTwelveGenerations) {
+  const std::string text = SummaryText(Evolved(), {}, {"gauntlet", "d"});
+  const std::size_t begin = text.find("  generation  runs");
+  ASSERT_NE(begin, std::string::npos) << text;
+  const std::string table = text.substr(begin, text.find("\n\n", begin) - begin);
+  EXPECT_THAT(table, HasSubstr("\n           1    20  0.294"));
+  EXPECT_THAT(table, HasSubstr("\n          50    20  0.000"));
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 12);
+}
+
+TEST(SummaryText, UnfinishedCampaignOffersToResume) {
+  CampaignSummary summary = Evolved();
+  summary.finished = false;
+  EXPECT_THAT(SummaryText(summary, {}, {"./dev run", "d"}),
+              AllOf(HasSubstr("not finished"), HasSubstr("./dev run resume d ")));
+}
+
+TEST(SummaryText, AnEmptyCampaignIsNoProblem) {
+  CampaignSummary summary;
+  summary.experiment = "flocking";
+  summary.search = "random";
+  summary.best_fitness = summary.mean_fitness = summary.worst_fitness =
+      std::numeric_limits<double>::quiet_NaN();
+  const std::string text = SummaryText(summary, {}, {"gauntlet", "d"});
+  EXPECT_THAT(text, HasSubstr("best -   mean -   worst -"));
+  EXPECT_THAT(text, HasSubstr("0 of 0 runs (-)"));
+  EXPECT_THAT(text, Not(HasSubstr("replay")));
+}
+
+TEST(SummaryText, NondeterminismIsShouted) {
+  CampaignSummary summary = Evolved();
+  summary.nondeterministic = 1;
+  EXPECT_THAT(SummaryText(summary, {}, {"gauntlet", "d"}),
+              HasSubstr("WARNING: the same run gave different results"));
+  summary.plugin_controllers = {"mine"};
+  EXPECT_THAT(SummaryText(summary, {}, {"gauntlet", "d"}),
+              HasSubstr("The controller 'mine' of the plug-in is not reproducible"));
+}
+
+std::vector<EvaluatedCase> Evaluated() {
+  EvaluatedCase good;
+  good.file = "good.json";
+  for (const double fitness : {0.5, 0.25}) {
+    sim::RunResult result;
+    result.fitness = fitness;
+    result.metrics = {{"angular_order", 0.9}};
+    result.hash = 0xabc;
+    good.runs.push_back({good.runs.size() + 1, 1ULL << 60, result});
+  }
+  good.runs[1].result.failure = {true, 7, "70-80 degrees apart"};
+  EvaluatedCase crashed;
+  crashed.file = "crashed.json";
+  sim::RunResult crash;
+  crash.verdict = sim::Verdict::kCrashed;
+  crash.message = "signal 11";
+  crashed.runs.push_back({3, 5, crash});
+  EvaluatedCase refused;
+  refused.file = "blocked.argos";
+  refused.refused_rule = "no-path";
+  refused.error = "there is no path from start to goal";
+  EvaluatedCase missing;
+  missing.file = "missing.json";
+  missing.error = "missing.json: no such file";
+  return {good, crashed, refused, missing};
+}
+
+TEST(EvaluationJson, HasTheShapeOfTheContract) {
+  const Json json = Json::parse(EvaluationJson(Evaluated(), nullptr, "d"));
+  const Json& cases = json.at("cases");
+  ASSERT_EQ(cases.size(), 4U);
+  EXPECT_EQ(cases[0].at("file"), "good.json");
+  EXPECT_EQ(cases[0].at("fitness"), 0.375);
+  EXPECT_TRUE(cases[0].at("refused").is_null());
+  EXPECT_TRUE(cases[0].at("error").is_null());
+  const Json& run = cases[0].at("runs").at(1);
+  EXPECT_EQ(run.at("id"), 2);
+  EXPECT_EQ(run.at("seed"), "1152921504606846976");
+  EXPECT_EQ(run.at("fitness"), 0.25);
+  EXPECT_EQ(run.at("metrics").at("angular_order"), 0.9);
+  EXPECT_EQ(run.at("failure"), Json({{"total", true}, {"type", 7}, {"label", "70-80 degrees apart"}}));
+  EXPECT_EQ(run.at("hash"), "0000000000000abc");
+  EXPECT_TRUE(cases[0].at("runs").at(0).at("failure").at("type").is_null());
+
+  EXPECT_TRUE(cases[1].at("fitness").is_null());
+  EXPECT_TRUE(cases[1].at("runs").at(0).at("fitness").is_null());
+  EXPECT_EQ(cases[1].at("runs").at(0).at("verdict"), "crashed");
+  EXPECT_EQ(cases[1].at("runs").at(0).at("message"), "signal 11");
+  EXPECT_EQ(cases[2].at("refused"), "no-path");
+  EXPECT_EQ(cases[3].at("error"), "missing.json: no such file");
+}
+
+TEST(EvaluationJson, TextThatIsNotUtf8IsReplacedRatherThanRefused) {
+  std::vector<EvaluatedCase> cases = Evaluated();
+  cases[0].file = "bad\xff.json";
+  const Json json = Json::parse(EvaluationJson(cases, nullptr, "d"));
+  EXPECT_EQ(json.at("cases")[0].at("file"), "bad\uFFFD.json");
+}
+
+TEST(EvaluationText, NamesRefusalsAndTheRunToLookAt) {
+  const std::string text = EvaluationText(Evaluated(), {"gauntlet", "d"});
+  EXPECT_THAT(text, HasSubstr("refused: no-path"));
+  EXPECT_THAT(text, HasSubstr("1 without a result: crashed"));
+  EXPECT_THAT(text, HasSubstr("gauntlet replay d 2 --svg run-2.svg"));
+}
+
+TEST(RuleOf, TakesTheNameInFrontOfTheColon) {
+  EXPECT_EQ(RuleOf("no-room-to-spawn: 3 of 10 robots placed"), "no-room-to-spawn");
+  EXPECT_EQ(RuleOf("The thing: broke"), "");
+  EXPECT_EQ(RuleOf("nothing"), "");
+}
+
+}  // namespace
+}  // namespace gauntlet

@@ -1,0 +1,68 @@
+#include "master/campaign/campaign_status.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace gauntlet {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(CampaignStatusTest, SaysWhoWasTurnedAwayWhileNobodyWorks) {
+  BackendView backend;
+  backend.queued = 20;
+  EXPECT_EQ(WhyNothingRuns({}, {}, backend),
+            "no worker is connected: start some with `gauntlet-worker --dir DIR`");
+  backend.refused_workers = 2;
+  backend.last_refusal = "this worker has software version 1, this master has 2";
+  backend.unknown_keys = 1;
+  backend.failed_handshakes = 80;
+  const std::string why = WhyNothingRuns({}, {}, backend);
+  EXPECT_THAT(why,
+              HasSubstr("; 2 workers were refused, the last because this worker has software version 1"));
+  EXPECT_THAT(why, HasSubstr("; 1 connection was turned away for keys that are not this campaign's"));
+  EXPECT_THAT(why, HasSubstr("; 80 connections were dropped in the greeting"));
+}
+
+TEST(CampaignStatusTest, AMasterWithWorkersOfItsOwnNeedsNobodyToStartThem) {
+  BackendView backend;
+  backend.own_workers = 1;
+  EXPECT_EQ(WhyNothingRuns({}, {}, backend), "no worker is connected: 1 of the master's own is starting");
+}
+
+TEST(CampaignStatusTest, ALeaseBeyondTheSlotsWaits) {
+  BackendView backend;
+  WorkerView& worker = backend.workers.emplace_back();
+  worker.leases = {{39, 0x100000027, 1, 4.2, false}, {40, 0x100000028, 3, 4.1, true}};
+  const auto json = nlohmann::json::parse(StatusJson({}, {}, backend));
+  EXPECT_EQ(json.at("runs_running"), 1);
+  EXPECT_EQ(json.at("runs_ahead"), 1);
+  const auto& runs = json.at("worker_list").at(0).at("runs");
+  EXPECT_EQ(runs.at(0).at("state"), "running");
+  EXPECT_EQ(runs.at(0).at("lease"), "100000027");
+  EXPECT_EQ(runs.at(1).at("state"), "waiting");
+  EXPECT_EQ(runs.at(1).at("attempt"), 3);
+}
+
+TEST(CampaignStatusTest, WordsOfOthersThatAreNotUtf8AreShownAllTheSame) {
+  BackendView backend;
+  backend.pool_trouble = "sbatch: erreur \xe9";
+  backend.allocations.push_back({"12", "PENDING", "\xff", "\xff", 0, false});
+  backend.workers.emplace_back().label = "\xff";
+  const auto json = nlohmann::json::parse(StatusJson({}, {}, backend));
+  EXPECT_EQ(json.at("pool_trouble"), "sbatch: erreur \ufffd");
+}
+
+// A master's own count begins at 0 when it starts; what its predecessors found still voids the claims.
+TEST(CampaignStatusTest, DifferencesUnderFormerMastersCount) {
+  MasterView master;
+  master.nondeterministic_before = 2;
+  CampaignProgress progress;
+  progress.workers.nondeterministic = 1;
+  EXPECT_EQ(nlohmann::json::parse(StatusJson(master, progress, {})).at("nondeterministic"), 3);
+}
+
+}  // namespace
+}  // namespace gauntlet

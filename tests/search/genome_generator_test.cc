@@ -1,0 +1,183 @@
+#include "search/evolution/genome_generator.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <rapidcheck/gtest.h>
+#include <algorithm>
+
+#include <cmath>
+#include <set>
+
+#include "search/experiment/genome_ranges.h"
+#include "tests/search/toy_search.h"
+
+namespace gauntlet {
+namespace {
+
+bool InRanges(const sim::Genome& genome, const GenomeSpec& spec) {
+  const auto within = [](double value, double min, double max) { return value >= min && value <= max; };
+  return std::ranges::all_of(genome, [&](const sim::ObstacleGene& gene) {
+    const auto position = [&](double value) { return within(value, spec.position_min, spec.position_max); };
+    return position(gene.x) && position(gene.y) && within(gene.length, spec.length_min, spec.length_max) &&
+           within(gene.width, spec.width_min, spec.width_max) && gene.orientation_deg >= 0.0 &&
+           gene.orientation_deg < 360.0 &&
+           (!gene.Moves() || within(gene.speed, spec.speed_min, spec.speed_max)) &&
+           std::ranges::all_of(
+               gene.path, [&](const sim::Vec2& point) { return position(point.x()) && position(point.y()); });
+  });
+}
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+GenomeGenerator Generator(const GenomeSpec& spec) {
+  SearchSetup setup = ToySetup();
+  setup.experiment.genome = spec;
+  return MakeGenerator(setup);
+}
+
+RC_GTEST_PROP(GenomeGeneratorTest, EveryCaseIsValidInRangeAndOnTheGrid, ()) {
+  const SearchSetup setup = ToySetup();
+  const GenomeGenerator generator = MakeGenerator(setup);
+  sim::RandomStream random(*rc::gen::arbitrary<std::uint64_t>(), sim::StreamPurpose::kTest);
+  const Result<sim::TestCase> test_case = generator.RandomTestCase(random);
+  RC_ASSERT(test_case.ok());
+  RC_ASSERT(test_case->obstacles.size() == 8U);
+  RC_ASSERT(!sim::CheckValidity(*test_case, setup.requirements).has_value());
+  RC_ASSERT(InRanges(test_case->obstacles, setup.experiment.genome));
+  for (const sim::ObstacleGene& gene : test_case->obstacles) {
+    for (const double value : {gene.x, gene.y, gene.length, gene.width}) {
+      // One decimal says it all: JSON shows 0.3, not 0.30000000000000004.
+      RC_ASSERT(fmt::format("{}", value) == fmt::format("{}", std::stod(fmt::format("{:.1f}", value))));
+      RC_ASSERT(!(value == 0.0 && std::signbit(value)));
+    }
+    RC_ASSERT(gene.orientation_deg == std::floor(gene.orientation_deg));
+  }
+}
+
+TEST(GenomeGeneratorTest, EveryGridPointOfEveryRangeIsDrawn) {
+  const GenomeGenerator generator = Generator({});
+  std::set<double> x;
+  std::set<double> length;
+  std::set<double> width;
+  std::set<double> orientation;
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  for (int i = 0; i < 5000; ++i) {
+    const sim::ObstacleGene gene = generator.RandomGene(random);
+    x.insert(gene.x);
+    length.insert(gene.length);
+    width.insert(gene.width);
+    orientation.insert(gene.orientation_deg);
+  }
+  EXPECT_EQ(x.size(), 61U);
+  EXPECT_EQ(*x.begin(), -3.0);
+  EXPECT_EQ(*x.rbegin(), 3.0);
+  EXPECT_TRUE(x.contains(0.3));
+  EXPECT_EQ(length.size(), 17U);
+  EXPECT_EQ(*length.begin(), 0.4);
+  EXPECT_EQ(*length.rbegin(), 2.0);
+  EXPECT_EQ(width, (std::set<double>{0.1, 0.2, 0.3, 0.4}));
+  EXPECT_EQ(orientation.size(), 360U);
+  EXPECT_EQ(*orientation.rbegin(), 359.0);
+}
+
+TEST(GenomeGeneratorTest, StepZeroIsContinuous) {
+  const GenomeGenerator generator = Generator({.step = 0.0});
+  std::set<double> x;
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  for (int i = 0; i < 100; ++i) {
+    const sim::ObstacleGene gene = generator.RandomGene(random);
+    x.insert(gene.x);
+    EXPECT_TRUE(InRanges({gene}, generator.spec()));
+  }
+  EXPECT_EQ(x.size(), 100U);
+}
+
+TEST(GenomeGeneratorTest, OneStreamGivesOneCase) {
+  const GenomeGenerator generator = Generator({});
+  sim::RandomStream random(3, sim::StreamPurpose::kGenome, 1);
+  sim::RandomStream again(3, sim::StreamPurpose::kGenome, 1);
+  sim::RandomStream other(3, sim::StreamPurpose::kGenome, 2);
+  const sim::Genome genome = generator.RandomTestCase(random)->obstacles;
+  EXPECT_EQ(generator.RandomTestCase(again)->obstacles, genome);
+  EXPECT_NE(generator.RandomTestCase(other)->obstacles, genome);
+}
+
+TEST(GenomeGeneratorTest, RangesThatLeaveNoRoomAreReported) {
+  // Blocks larger than the arena.
+  const GenomeGenerator generator = Generator({.genes = 8,
+                                               .length_min = 20.0,
+                                               .length_max = 20.0,
+                                               .width_min = 20.0,
+                                               .width_max = 20.0,
+                                               .tries_per_gene = 5});
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  const Result<sim::TestCase> test_case = generator.RandomTestCase(random);
+  ASSERT_FALSE(test_case.ok());
+  EXPECT_THAT(test_case.error().message,
+              AllOf(HasSubstr("100 starts"), HasSubstr("genes = 8"),
+                    HasSubstr("lengths 20 to 20 m, widths 20 to 20 m"), HasSubstr("arena of 6 x 6 m")));
+}
+
+TEST(GenomeGeneratorTest, AnArenaThatIsInvalidWithoutObstaclesIsReportedByItsRule) {
+  SearchSetup setup = ToySetup();
+  setup.requirements.start = {9.0, 9.0};
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  const Result<sim::TestCase> test_case = MakeGenerator(setup).RandomTestCase(random);
+  ASSERT_FALSE(test_case.ok());
+  EXPECT_THAT(test_case.error().message, AllOf(HasSubstr("start-blocked"), HasSubstr("(9, 9)")));
+}
+
+TEST(CheckGenomeSpecTest, RefusesRangesThatCannotBeDrawnFrom) {
+  EXPECT_TRUE(CheckGenomeSpec({}).ok());
+  EXPECT_EQ(CheckGenomeSpec({.length_min = 3.0}).error().message,
+            "genome.length_min = 3 must not exceed genome.length_max = 2");
+  EXPECT_THAT(CheckGenomeSpec({.step = 0.3}).error().message, HasSubstr("genome.step = 0.3"));
+  EXPECT_THAT(CheckGenomeSpec({.step = -0.1}).error().message, HasSubstr("genome.step = -0.1"));
+  EXPECT_EQ(CheckGenomeSpec({.width_min = 0.15, .width_max = 0.18}).error().message,
+            "genome.width_min = 0.15 to genome.width_max = 0.18 holds no multiple of genome.step = 0.1");
+  EXPECT_TRUE(CheckGenomeSpec({.width_min = 0.15, .width_max = 0.18, .step = 0.0}).ok());
+}
+
+// Thesis 7.4: the asked-for shares move and shine; without shares the draws are those of always.
+TEST(GenomeGeneratorTest, SharesOfTheGenesMoveAndShine) {
+  GenomeSpec spec = ToySetup().experiment.genome;
+  sim::RandomStream plain_draws(1, sim::StreamPurpose::kTest);
+  for (int i = 0; i < 100; ++i) EXPECT_TRUE(Generator(spec).RandomGene(plain_draws).Plain());
+  spec.moving = 0.2;
+  spec.lights = 0.1;
+  spec.waypoints = 2;
+  spec.light_color = sim::Color::kGreen;
+  const GenomeGenerator generator = Generator(spec);
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  int moving = 0;
+  int lit = 0;
+  constexpr int kGenes = 10000;
+  for (int i = 0; i < kGenes; ++i) {
+    const sim::ObstacleGene gene = generator.RandomGene(random);
+    moving += gene.Moves() ? 1 : 0;
+    lit += gene.Lit() ? 1 : 0;
+    ASSERT_TRUE(!gene.Lit() || gene.light == sim::Color::kGreen);
+    ASSERT_TRUE(InRanges({gene}, spec));
+    if (!gene.Moves()) continue;
+    ASSERT_EQ(gene.path.size(), 2u);
+    ASSERT_NEAR(gene.speed * 1000, std::round(gene.speed * 1000), 1e-9);
+  }
+  EXPECT_NEAR(moving / double{kGenes}, 0.2, 0.016);  // four standard deviations
+  EXPECT_NEAR(lit / double{kGenes}, 0.1, 0.012);
+}
+
+TEST(CheckGenomeSpecTest, RefusesSpeedsThatCannotBeDrawn) {
+  GenomeSpec spec;
+  spec.speed_min = 0.0101;
+  spec.speed_max = 0.0109;
+  EXPECT_THAT(CheckGenomeSpec(spec).error().message,
+              HasSubstr("genome.speed_min = 0.0101 to genome.speed_max"));
+  spec.speed_min = 0.02;
+  EXPECT_THAT(CheckGenomeSpec(spec).error().message, HasSubstr("genome.speed_min = 0.02 must not exceed"));
+}
+
+}  // namespace
+}  // namespace gauntlet

@@ -1,0 +1,85 @@
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "controllers/registry.h"
+#include "search/search_table.h"
+#include "tests/search/toy_search.h"
+
+namespace gauntlet {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(MakeSearchTest, MakesTheSearchOfTheExperiment) {
+  SearchSetup setup = ToySetup();
+  SearchSpec& spec = setup.experiment.search;
+  const auto genetic = RowOf(setup.experiment).make(setup);
+  ASSERT_TRUE(genetic.ok());
+  EXPECT_EQ((*genetic)->Progress().evaluations_planned, 1000U);
+  EXPECT_GE(StatisticOf(**genetic, "clone_rate"), 0.0);
+
+  spec.algorithm = "random";
+  spec.parameters["cases"] = 12;
+  const auto random = RowOf(setup.experiment).make(setup);
+  ASSERT_TRUE(random.ok());
+  EXPECT_EQ((*random)->Progress().evaluations_planned, 12U);
+}
+
+TEST(MakeSearchTest, AListOfCasesCannotBeMadeFromAnExperimentAlone) {
+  Experiment experiment = ToySetup().experiment;
+  experiment.search.algorithm = "cases";
+  const auto search = MakeSearch(experiment, 1);
+  ASSERT_FALSE(search.ok());
+  EXPECT_THAT(search.error().message, HasSubstr("gauntlet evaluate"));
+}
+
+TEST(MakeSearchTest, AFaultOfARobotThatTheSwarmDoesNotHaveIsRefused) {
+  Experiment experiment = ToySetup().experiment;
+  experiment.scenario = "foraging";
+  experiment.controller = "foraging";
+  experiment.controller_parameters.clear();
+  const auto parameters =
+      controllers::ResolveParameters(controllers::FindScenario("foraging")->parameters, {{"robots", 10.0}});
+  ASSERT_TRUE(parameters.ok());
+  experiment.scenario_parameters = *parameters;
+  experiment.disturbances.faults = {{.robot = 10, .device = sim::Device::kWheels, .tick = 500}};
+  const auto search = MakeSearch(experiment, 1);
+  ASSERT_FALSE(search.ok());
+  EXPECT_THAT(search.error().message,
+              HasSubstr("bad-fault: 10:wheels@500: robot 10, tick 500; this swarm has "
+                        "robots 0 to 9"));
+  experiment.disturbances.faults[0].robot = 9;
+  EXPECT_TRUE(MakeSearch(experiment, 1).ok());
+}
+
+TEST(MakeSearchTest, UnknownScenarioIsNamed) {
+  Experiment experiment = ToySetup().experiment;
+  experiment.scenario = "juggling";
+  const auto search = MakeSearch(experiment, 1);
+  ASSERT_FALSE(search.ok());
+  EXPECT_EQ(search.error().kind, ErrorKind::kNotFound);
+  EXPECT_THAT(search.error().message, HasSubstr("'juggling'"));
+}
+
+TEST(MakeSearchTest, ASwarmThatDoesNotFitIntoTheEmptyArenaIsRefused) {
+  Experiment experiment = ToySetup().experiment;
+  experiment.scenario = "foraging";
+  experiment.controller = "foraging";
+  experiment.controller_parameters.clear();
+  const auto defaults = controllers::ResolveParameters(controllers::FindScenario("foraging")->parameters,
+                                                       {{"robots", 100.0}, {"spawn_radius", 0.4}});
+  ASSERT_TRUE(defaults.ok());
+  experiment.scenario_parameters = *defaults;
+  auto search = MakeSearch(experiment, 1);
+  ASSERT_FALSE(search.ok());
+  EXPECT_EQ(search.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_THAT(search.error().message, HasSubstr("no-room-to-spawn: only "));
+  EXPECT_THAT(search.error().message, HasSubstr(" of 100 robots fit"));
+  experiment.scenario_parameters["robots"] = 10.0;
+  search = MakeSearch(experiment, 1);
+  EXPECT_TRUE(search.ok()) << search.error().message;
+}
+
+}  // namespace
+}  // namespace gauntlet

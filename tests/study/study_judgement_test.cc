@@ -1,0 +1,63 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "study/study_report.h"
+
+namespace gauntlet {
+namespace {
+
+using ::testing::HasSubstr;
+
+const StudyFigures kFigures = {
+    {"c.first.mean", {0.5, "0.500"}}, {"c.first.sd", {0.2, "0.200"}},  {"c.first.n", {100, "100"}},
+    {"c.a", {0.1, "0.1000"}},         {"c.p", {1e-9, "1e-09"}},        {"k.first.count", {50, "50"}},
+    {"k.first.of", {100, "100"}},     {"k.first.percent", {50, "50"}}, {"w.steady", {std::nullopt, "never"}}};
+
+std::string Verdict(const std::string& value, const std::string& figure, const std::string& rule) {
+  const auto judged = Judge({"1.1", "what", "of", value, figure, rule, {"why", false}}, kFigures);
+  return judged ? judged->verdict : judged.error().message;
+}
+
+TEST(Judge, MeansAreComparedByWelchsTest) {
+  EXPECT_EQ(Verdict("0.55", "c.first.mean", "mean 0.2 100"), "agrees");   // t = 1.77
+  EXPECT_EQ(Verdict("0.60", "c.first.mean", "mean 0.2 100"), "differs");  // t = 3.54
+  EXPECT_EQ(Verdict("0.60", "c.first.mean", "mean 0.2 10"), "agrees");
+}
+
+TEST(Judge, EveryOtherRuleHasItsOwnMeasure) {
+  EXPECT_EQ(Verdict("0.29", "c.first.sd", "sd"), "agrees");
+  EXPECT_EQ(Verdict("0.31", "c.first.sd", "sd"), "differs");
+  EXPECT_EQ(Verdict("5828.5", "c.first.mean", "effect 0.0778"), "agrees");
+  EXPECT_EQ(Verdict("5828.5", "c.first.mean", "effect 0.35"), "differs") << "medium";
+  EXPECT_EQ(Verdict("5828.5", "c.first.mean", "effect 0.95"), "differs") << "the other side";
+  EXPECT_EQ(Verdict("<0.00001", "c.p", "p"), "agrees");
+  EXPECT_EQ(Verdict("0.3", "c.p", "p"), "differs");
+  EXPECT_EQ(Verdict("40", "k.first.count", "count 100"), "agrees");
+  EXPECT_EQ(Verdict("24", "k.first.count", "count 100"), "differs");
+  EXPECT_EQ(Verdict("24", "k.first.percent", "percent 100"), "differs");
+  EXPECT_EQ(Verdict("30", "k.first.count", "between 45 55"), "agrees");
+  EXPECT_EQ(Verdict("16-18", "w.steady", "between 16 18"), "differs") << "never is not between";
+  EXPECT_EQ(Verdict("never", "w.steady", "same"), "agrees");
+  EXPECT_EQ(Verdict("7", "k.first.count", ""), "not judged");
+  EXPECT_EQ(Verdict("7", "", ""), "not computed");
+}
+
+TEST(Judge, ARuleThatDoesNotFitIsAnError) {
+  EXPECT_THAT(Verdict("7", "k.first.counts", "same"),
+              HasSubstr("no analysis gives the figure 'k.first.counts'"));
+  EXPECT_THAT(Verdict("7", "k.first.count", "equal"), HasSubstr("there is no rule 'equal'"));
+  EXPECT_THAT(Verdict("7", "k.first.count", "count"), HasSubstr("does not fit the figure"));
+  EXPECT_THAT(Verdict("many", "c.first.sd", "sd"), HasSubstr("does not fit the figure"));
+}
+
+TEST(Judge, AReasonIsGivenWhereFiguresDifferAndARemarkAlways) {
+  PublishedRow row{"1.1", "what", "of", "0.31", "c.first.sd", "sd", {"why", false}};
+  EXPECT_EQ(Judge(row, kFigures)->note, "why");
+  row.value = "0.21";
+  EXPECT_EQ(Judge(row, kFigures)->note, "");
+  row.note.always = true;
+  EXPECT_EQ(Judge(row, kFigures)->note, "why");
+}
+
+}  // namespace
+}  // namespace gauntlet

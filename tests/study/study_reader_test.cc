@@ -1,0 +1,211 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "study/study.h"
+
+namespace gauntlet {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+// A study of one file, with `rest` behind its first part.
+Result<Study> ReadWith(const std::string& rest, const std::string& beginning = "name = \"small\"\n") {
+  return ReadStudy({{"small.toml", beginning +
+                                       "[part.evolved]\nkind = \"evolve\"\nexperiment = \"flocking\"\n"
+                                       "seeds = \"1..3\"\nset.search.generations = 4\n" +
+                                       rest}},
+                   "small.toml");
+}
+
+std::string ErrorWith(const std::string& rest, const std::string& beginning = "name = \"small\"\n") {
+  const Result<Study> study = ReadWith(rest, beginning);
+  return study ? "" : study.error().message;
+}
+
+std::string Evaluation(const std::string& keys) {
+  return "[part.again]\nkind = \"evaluate\"\n" + keys;
+}
+
+TEST(StudyReader, PartsHaveTheSettingsOfThoseThatTheirCasesComeFromUnlessTheySayOtherwise) {
+  const auto study =
+      ReadWith(Evaluation("from = \"evolved:final\"\nset.controller = \"flocking-improved\"\n"));
+  ASSERT_TRUE(study.ok()) << study.error().message;
+  ASSERT_THAT(study->parts, SizeIs(2));
+  EXPECT_EQ(study->parts[0].experiment.search.generations, 4);
+  EXPECT_THAT(study->parts[0].seeds, ElementsAre(1, 2, 3));
+  EXPECT_EQ(study->parts[1].from, "evolved");
+  EXPECT_EQ(study->parts[1].subset, "final");
+  EXPECT_EQ(study->parts[1].experiment.controller, "flocking-improved");
+  EXPECT_EQ(study->parts[1].experiment.search.algorithm, "cases");
+}
+
+TEST(StudyReader, NamesWhatIsWrongAndWhere) {
+  EXPECT_THAT(ErrorWith("kindd = 1\n"),
+              HasSubstr("small.toml:7:1: unknown key 'kindd'; did you mean 'kind'?"));
+  EXPECT_THAT(ErrorWith("[parts.x]\nkind = \"evolve\"\n"),
+              HasSubstr("unknown key 'parts'; did you mean 'part'?"));
+  EXPECT_THAT(ErrorWith(Evaluation("")), HasSubstr("a part of the kind evaluate needs the key from"));
+  EXPECT_THAT(ErrorWith(Evaluation("from = \"evolvd\"\n")),
+              HasSubstr("small.toml:9:1: unknown part 'evolvd'; did you mean 'evolved'?"));
+  EXPECT_THAT(ErrorWith(Evaluation("from = \"again\"\n")), HasSubstr("unknown part 'again'"));
+  EXPECT_THAT(ErrorWith(Evaluation("from = \"evolved:best\"\n")),
+              HasSubstr("no subset 'best'; known: final"));
+  EXPECT_THAT(
+      ErrorWith(Evaluation("from = \"evolved\"\n") + "[part.third]\nkind = \"evaluate\"\nfrom = \"again\"\n"),
+      HasSubstr("'again' simulates cases of 'evolved' itself; take them from there"));
+  EXPECT_THAT(
+      ErrorWith(Evaluation("from = \"evolved\"\nexperiment = \"foraging\"\n")),
+      HasSubstr("part 'again' has the scenario 'foraging', the cases of 'evolved' are of 'flocking'"));
+  EXPECT_THAT(ErrorWith("[part.r]\nkind = \"random\"\nexperiment = \"flocking\"\n"),
+              HasSubstr("needs the key cases"));
+  EXPECT_THAT(ErrorWith("[part.r]\nkind = \"randm\"\n"),
+              HasSubstr("kind is 'randm', expected evolve, random"));
+  EXPECT_THAT(ErrorWith("set.search.generatons = 3\n"), HasSubstr("did you mean 'search.generations'?"));
+  EXPECT_THAT(ErrorWith("[compare.c]\ntitle = \"t\"\nfirst = \"evolved\"\n"),
+              HasSubstr("[compare.c] needs the key second"));
+  EXPECT_THAT(ErrorWith("[compare.c]\ntitle = \"t\"\nfirst = \"evolved\"\nsecond = \"evolve\"\n"),
+              HasSubstr("second: unknown part 'evolve'; did you mean 'evolved'?"));
+  const std::string sets = "title = \"t\"\nfirst = \"evolved\"\nsecond = \"evolved\"\n";
+  EXPECT_THAT(ErrorWith("[compare.c]\n" + sets + "metric = \"birds_lft\"\n"),
+              HasSubstr("did you mean 'birds_left'?"));
+  EXPECT_THAT(ErrorWith("[compare.c]\n" + sets + "effect = \"big\"\n"),
+              HasSubstr("effect is 'big', expected a number"));
+  EXPECT_THAT(ErrorWith("[compare.c]\n" + sets + "expect = \"more\"\n"),
+              HasSubstr("expected less or greater"));
+  EXPECT_THAT(ErrorWith("", ""), HasSubstr("the study has no name"));
+  EXPECT_THAT(ErrorWith("", "name = \"small\"\ninclude = \"small\"\n"),
+              HasSubstr("small.toml is included twice"));
+  EXPECT_THAT(LoadStudy("thesis-floking").error().message, HasSubstr("did you mean 'thesis-flocking'?"));
+}
+
+TEST(StudyReader, PublishedFiguresBelongToAnalysesAndTheirNotesExist) {
+  const auto with = [](const std::string& row) {
+    const auto study = ReadStudy(
+        {{"s.toml",
+          "name = \"s\"\npublished = \"p.csv\"\n[part.e]\nkind = \"evolve\"\nexperiment = \"flocking\"\n"
+          "[note.why]\ntext = \"because\"\n[peak.p]\ntitle = \"t\"\npart = \"e\"\n"},
+         {"p.csv", "section,quantity,condition,value,figure,rule,note\n" + row}},
+        "s.toml");
+    return study ? study->published.at(0).note.text : study.error().message;
+  };
+  EXPECT_EQ(with("1,a,b,2,p.generation,same,why\n"), "because");
+  EXPECT_THAT(with("1,a,b,2,q.generation,same,why\n"), HasSubstr("unknown analysis 'q'"));
+  EXPECT_THAT(with("1,a,b,2,p.generation,same,whi\n"), HasSubstr("there is no [note.whi]"));
+}
+
+TEST(StudyReader, EveryShippedStudyCanBeRead) {
+  EXPECT_THAT(ShippedStudies(), ElementsAre("thesis", "thesis-flocking", "thesis-foraging",
+                                            "thesis-partitioning", "tune-flocking", "tune-foraging"));
+  for (const std::string& name : ShippedStudies()) {
+    const auto study = LoadStudy(name);
+    ASSERT_TRUE(study.ok()) << study.error().message;
+    EXPECT_EQ(study->name, name);
+    EXPECT_GE(study->published.size(), 8U);
+    EXPECT_EQ(ReadStudy(study->texts, study->main_file)->parts.size(), study->parts.size());
+  }
+}
+
+constexpr const char* kTuning =
+    "name = \"t\"\n[tune.flock]\ntitle = \"t\"\nexperiment = \"flocking\"\nrepeats = 3\n"
+    "set.genome.genes = 4\n"
+    "candidates.search.population = \"10, 20, 30\"\ncandidates.genome.genes = \"6\"\n";
+
+Result<Study> ReadTuning(const std::string& rest, const TuningChanges& changes = {}) {
+  return ReadStudy({{"t.toml", kTuning + rest}}, "t.toml", changes);
+}
+
+std::string TuningError(const std::string& rest, const TuningChanges& changes = {}) {
+  const Result<Study> study = ReadTuning(rest, changes);
+  return study ? "" : study.error().message;
+}
+
+TEST(StudyReader, ATuningIsABaselineAndAPartForEveryOtherValueWithSeedsOfItsOwn) {
+  const auto study = ReadTuning("");
+  ASSERT_TRUE(study.ok()) << study.error().message;
+  std::vector<std::string> names;
+  std::set<std::uint64_t> seeds;
+  for (const StudyPart& part : study->parts) {
+    names.push_back(part.name);
+    seeds.insert(part.seeds.begin(), part.seeds.end());
+  }
+  EXPECT_THAT(names, ElementsAre("flock.baseline", "flock.baseline-again", "flock.search.population=10",
+                                 "flock.search.population=10-again", "flock.search.population=30",
+                                 "flock.search.population=30-again", "flock.genome.genes=6",
+                                 "flock.genome.genes=6-again"));
+  EXPECT_EQ(seeds.size(), 4U * 3U + 4U);
+  EXPECT_EQ(study->parts[0].experiment.genome.genes, 4);
+  EXPECT_EQ(study->parts[2].experiment.search.population, 10);
+  EXPECT_EQ(study->parts[2].experiment.genome.genes, 4);
+  EXPECT_EQ(study->parts[3].from, "flock.search.population=10");
+  EXPECT_EQ(study->parts[6].experiment.search.population, 20);
+  EXPECT_EQ(study->parts[7].experiment.search.algorithm, "cases");
+  ASSERT_TRUE(study->analyses.front().tuning.has_value());
+  const Tuning& tuning = *study->analyses.front().tuning;
+  EXPECT_EQ(tuning.repeats, 3);
+  ASSERT_THAT(tuning.parameters, SizeIs(2));
+  EXPECT_EQ(tuning.parameters[0].key, "search.population");
+  EXPECT_EQ(tuning.parameters[0].values[1].part, "flock.baseline");
+  EXPECT_THAT(tuning.parameters[1].values, SizeIs(2)) << "the baseline's value is added";
+  EXPECT_EQ(tuning.parameters[1].values[0].value, "4");
+}
+
+TEST(StudyReader, ATuningTakesAnotherExperimentRepeatsAndSettings) {
+  const auto study = ReadTuning("", {"foraging", "2", {"search.population=30"}});
+  ASSERT_TRUE(study.ok()) << study.error().message;
+  EXPECT_EQ(study->name, "tune-foraging");
+  EXPECT_THAT(study->parts.front().seeds, SizeIs(2));
+  EXPECT_EQ(study->parts.front().experiment.scenario, "foraging");
+  EXPECT_EQ(study->analyses.front().tuning->parameters.front().baseline, "30");
+}
+
+TEST(StudyReader, SaysWhatIsWrongWithATuning) {
+  EXPECT_THAT(
+      TuningError("candidates.search.crossover = \"singlepoint\"\n"),
+      HasSubstr("t.toml:9:19: --set search.crossover=singlepoint: search.crossover = \"singlepoint\" is "
+                "unknown, allowed single-point"));
+  EXPECT_THAT(TuningError("candidates.search.popluation = \"4\"\n"),
+              HasSubstr("did you mean 'search.population'?"));
+  EXPECT_THAT(TuningError("candidates.search.cases = \"4\"\n"),
+              HasSubstr("the search 'genetic' does not read search.cases"));
+  EXPECT_THAT(TuningError("candidates.search.crossover = \"uniform, uniform\"\n"),
+              HasSubstr("uniform is given twice"));
+  EXPECT_THAT(TuningError("candidates.search.crossover = \"single-point\"\n"),
+              HasSubstr("has no candidate besides its baseline value single-point"));
+  EXPECT_THAT(TuningError("candidates.seed = \"4\"\n"), HasSubstr("seed is no parameter of a search"));
+  EXPECT_THAT(TuningError("sizes = \"5, 1\"\n"), HasSubstr("expected ascending whole numbers"));
+  EXPECT_THAT(TuningError("set.search.algorithm = \"random\"\n"), HasSubstr("has no population"));
+  EXPECT_THAT(TuningError("", {"", "101", {}}),
+              HasSubstr("--repeats 101: give a whole number from 1 to 100"));
+  EXPECT_THAT(TuningError("", {"", "", {"search.generations=0"}}), HasSubstr("out of range"));
+}
+
+TEST(StudyReader, TheShippedTuningsHoldTheCandidatesOfTheThesis) {
+  for (const auto& [name, generations] :
+       {std::pair("tune-flocking", "50"), std::pair("tune-foraging", "30")}) {
+    const auto study = LoadStudy(name);
+    ASSERT_TRUE(study.ok()) << study.error().message;
+    const Tuning& tuning = *study->analyses.front().tuning;
+    EXPECT_EQ(tuning.repeats, 20);
+    std::map<std::string, std::size_t> candidates;
+    for (const TunedParameter& parameter : tuning.parameters)
+      candidates[parameter.key] = parameter.values.size();
+    const std::map<std::string, std::size_t> expected = {{"genome.genes", 4},
+                                                         {"search.population", 5},
+                                                         {"search.parent_selection", 3},
+                                                         {"search.crossover", 3},
+                                                         {"search.crossover_probability", 3},
+                                                         {"search.mutation_probability", 4},
+                                                         {"search.generations", 4}};
+    EXPECT_EQ(candidates, expected) << "and none besides for the baseline";
+    EXPECT_EQ(tuning.parameters.back().baseline, generations);
+    EXPECT_THAT(study->published, SizeIs(8));
+  }
+}
+
+}  // namespace
+}  // namespace gauntlet

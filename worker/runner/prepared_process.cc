@@ -1,0 +1,220 @@
+#include "worker/runner/prepared_process.h"
+
+#include <malloc.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "base/canonical_encoder.h"
+#include "base/system/atomic_file.h"
+#include "worker/runner/fork_server.h"
+
+namespace gauntlet::worker {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What the process says first: whether calls can be forked from it.
+constexpr const char* kPrepared = "prepared";
+constexpr const char* kUnfit = "unfit";
+
+struct Request {
+  std::string request;
+  SeparateOptions options;
+};
+
+std::string Encode(const std::string& request, const SeparateOptions& options) {
+  CanonicalEncoder encoder;
+  encoder.String(request);
+  encoder.Double(options.cpu_limit_seconds);
+  encoder.Uint(options.memory_limit_bytes);
+  encoder.Uint(options.wall_limit_seconds);
+  encoder.String(options.scratch);
+  return encoder.Take();
+}
+
+Request DecodeRequest(const std::string& bytes) {
+  CanonicalDecoder decoder(bytes);
+  Request request;
+  request.request = decoder.String();
+  request.options.cpu_limit_seconds = decoder.Double();
+  request.options.memory_limit_bytes = decoder.Uint();
+  request.options.wall_limit_seconds = static_cast<unsigned>(decoder.Uint());
+  request.options.scratch = decoder.String();
+  GAUNTLET_CHECK(decoder.ok() && decoder.AtEnd(), "a request that does not decode");
+  return request;
+}
+
+std::string Encode(const Result<SeparateOutcome>& outcome) {
+  CanonicalEncoder encoder;
+  encoder.Double(SecondsWithChildren());
+  encoder.Bool(outcome.ok());
+  if (!outcome) {
+    encoder.String(outcome.error().message);
+    return encoder.Take();
+  }
+  encoder.Int(outcome->wait_status);
+  encoder.String(outcome->output_tail);
+  encoder.Bool(outcome->bytes.has_value());
+  if (outcome->bytes) encoder.String(*outcome->bytes);
+  return encoder.Take();
+}
+
+Result<SeparateOutcome> DecodeOutcome(const std::string& bytes, double& cpu_seconds) {
+  CanonicalDecoder decoder(bytes);
+  cpu_seconds = decoder.Double();
+  if (!decoder.Bool()) return Error{ErrorKind::kIo, decoder.String()};
+  SeparateOutcome outcome;
+  outcome.wait_status = static_cast<int>(decoder.Int());
+  outcome.output_tail = decoder.String();
+  if (decoder.Bool()) outcome.bytes = decoder.String();
+  GAUNTLET_CHECK(decoder.ok() && decoder.AtEnd(), "an outcome that does not decode");
+  return outcome;
+}
+
+std::ptrdiff_t EntriesIn(const char* folder) {
+  std::error_code failed;
+  const fs::directory_iterator entries(folder, failed);
+  return failed ? -1 : std::distance(begin(entries), end(entries));
+}
+
+bool HasChildren() {
+  siginfo_t ended{};
+  return waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT) == 0 || errno != ECHILD;
+}
+
+void LiftTimeLimits() {
+  alarm(0);
+  rlimit limit{};
+  if (getrlimit(RLIMIT_CPU, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_CPU, &limit);
+}
+
+}  // namespace
+
+Result<SeparateOutcome> PreparedProcess::Call(const std::string& request, const SeparateOptions& options) {
+  if (process_ == 0 && !for_each_call_) {
+    Result<std::optional<SeparateOutcome>> ended = Start(options);
+    if (!ended) return ended.error();
+    if (*ended) return **std::move(ended);
+  }
+  if (for_each_call_) {
+    return CallInSeparateProcess(
+        [&] {
+          prepare_();
+          return work_(request);
+        },
+        options);
+  }
+  SeparateOptions with_folder = options;
+  if (options.scratch.empty()) {
+    if (const Status renewed = RenewFolder(); !renewed) return renewed.error();
+    with_folder.scratch = folder_->path();
+  }
+  std::optional<std::string> answer;
+  if (WriteFrame(pipe_.get(), Encode(request, with_folder))) answer = Answer();
+  if (!answer) return Reap();
+  return DecodeOutcome(*answer, cpu_seconds_);
+}
+
+Result<std::optional<SeparateOutcome>> PreparedProcess::Start(const SeparateOptions& options) {
+  if (const Status renewed = RenewFolder(); !renewed) return renewed.error();
+  Result<SocketPair> pipe = MakeSocketPair(SOCK_STREAM);
+  if (!pipe) return pipe.error();
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) return SystemError("cannot start a process", errno);
+  if (child == 0) {
+    pipe->first.Reset();
+    Live(std::move(pipe->second), parent, options);
+  }
+  process_ = child;
+  pipe->second.Reset();
+  pipe_ = std::move(pipe->first);
+  answers_ = FrameBuffer();
+  const std::optional<std::string> answer = Answer();
+  if (!answer) return std::optional(Reap());
+  for_each_call_ = *answer != kPrepared || !folder_->HoldsOnlyEmpty(kOutputFile);
+  if (for_each_call_) End();
+  return std::optional<SeparateOutcome>();
+}
+
+void PreparedProcess::Live(UniqueFd pipe, pid_t parent, const SeparateOptions& options) {
+  setpgid(0, 0);
+  if (!DieWithParent(parent)) _exit(0);
+  if (!MoveInto(folder_->path())) _exit(kExitWithoutPlugin);
+  folder_->LeaveToParent();
+  Confine(options);
+  const std::ptrdiff_t descriptors = EntriesIn("/proc/self/fd");
+  CallOrEnd([this] {
+    prepare_();
+    return std::string();
+  });
+  std::fflush(nullptr);
+  const bool fit =
+      EntriesIn("/proc/self/fd") == descriptors && EntriesIn("/proc/self/task") == 1 && !HasChildren();
+  // What is free in the heap, a call touches first, which costs less than a copy of it; and what the call
+  // allocates beyond lies at the heap's end, where large pages begin.
+  malloc_trim(0);
+  if (!WriteFrame(pipe.get(), fit ? kPrepared : kUnfit)) _exit(0);
+  LiftTimeLimits();
+  Serve(std::move(pipe));
+}
+
+void PreparedProcess::Serve(UniqueFd pipe) const {
+  FrameBuffer requests;
+  while (true) {
+    const std::optional<std::string> message = requests.Next();
+    if (!message) {
+      if (requests.ReadFrom(pipe.get(), FrameBuffer::Wait::kYes) != FrameBuffer::State::kOpen) _exit(0);
+      continue;
+    }
+    const Request request = DecodeRequest(*message);
+    const auto work = [&] {
+      pipe.Reset();
+      return work_(request.request);
+    };
+    if (!WriteFrame(pipe.get(), Encode(CallInSeparateProcess(work, request.options)))) _exit(0);
+  }
+}
+
+std::optional<std::string> PreparedProcess::Answer() {
+  while (true) {
+    if (std::optional<std::string> answer = answers_.Next()) return answer;
+    if (answers_.ReadFrom(pipe_.get(), FrameBuffer::Wait::kYes) != FrameBuffer::State::kOpen)
+      return std::nullopt;
+  }
+}
+
+SeparateOutcome PreparedProcess::Reap() {
+  pipe_.Reset();
+  cpu_seconds_ = 0.0;
+  SeparateOutcome outcome;
+  outcome.wait_status = WaitForGroup(std::exchange(process_, 0));
+  outcome.output_tail = OutputTail(folder_->path());
+  return outcome;
+}
+
+void PreparedProcess::End() {
+  if (process_ != 0) Reap();
+}
+
+Status PreparedProcess::RenewFolder() {
+  if (folder_ && folder_->HoldsOnlyEmpty(kOutputFile)) return Ok{};
+  folder_.reset();
+  Result<ScratchFolder> made = ScratchFolder::Make("");
+  if (!made) return made.error();
+  folder_.emplace(*std::move(made));
+  return Ok{};
+}
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,58 @@
+// Work in processes of its own, each of which finds something prepared: a library that was loaded. It is
+// prepared once, in a process that does nothing else, and the process of every call is forked from that one:
+// it finds what was prepared as it was then, whatever earlier calls have done.
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/result.h"
+#include "base/system/unique_fd.h"
+#include "worker/runner/pipe.h"
+#include "worker/runner/scratch_folder.h"
+#include "worker/runner/separate_process.h"
+
+namespace gauntlet::worker {
+
+class PreparedProcess {
+ public:
+  // `prepare` ends its process when it fails. A process that prints, leaves files, descriptors, threads or
+  // children when it prepares is not fit for being forked from: then every call prepares for itself.
+  PreparedProcess(std::function<void()> prepare, std::function<std::string(const std::string&)> work)
+      : prepare_(std::move(prepare)), work_(std::move(work)) {}
+  PreparedProcess(const PreparedProcess&) = delete;
+  PreparedProcess& operator=(const PreparedProcess&) = delete;
+  ~PreparedProcess() { End(); }
+
+  // As CallInSeparateProcess, of work(request). When `prepare` ended its process, that is the outcome.
+  Result<SeparateOutcome> Call(const std::string& request, const SeparateOptions& options);
+  // Ends the process, which is started again when it is needed.
+  void End();
+  // User and system time of the process and of those of its calls, s; of what has ended since, nothing.
+  double cpu_seconds() const { return cpu_seconds_; }
+
+ private:
+  // Nothing: it is prepared, or needs to be for each call. Otherwise how it ended.
+  Result<std::optional<SeparateOutcome>> Start(const SeparateOptions& options);
+  [[noreturn]] void Live(UniqueFd pipe, pid_t parent, const SeparateOptions& options);
+  [[noreturn]] void Serve(UniqueFd pipe) const;
+  // The next answer; nothing when the process has ended.
+  std::optional<std::string> Answer();
+  SeparateOutcome Reap();
+  // Makes the folder new unless nobody can tell it from a new one.
+  Status RenewFolder();
+
+  std::function<void()> prepare_;
+  std::function<std::string(const std::string&)> work_;
+  pid_t process_ = 0;  // 0: there is none
+  bool for_each_call_ = false;
+  UniqueFd pipe_;
+  FrameBuffer answers_;
+  std::optional<ScratchFolder> folder_;  // of preparing, then of one call after the other
+  double cpu_seconds_ = 0.0;
+};
+
+}  // namespace gauntlet::worker

@@ -1,0 +1,226 @@
+#include "worker/runner/separate_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <malloc.h>
+#include <stdio_ext.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "base/system/atomic_file.h"
+#include "base/system/unique_fd.h"
+#include "proto/messages.h"
+#include "worker/runner/fork_server.h"
+#include "worker/runner/scratch_folder.h"
+#include "worker/runner/shifted_clock.h"
+
+namespace gauntlet::worker {
+namespace {
+
+// The largest file that it may write.
+constexpr rlim_t kMostFileBytes = rlim_t{64} << 20;
+// No two processes that live at about the same time have clocks of the same time, and no clock is more than
+// an hour ahead.
+constexpr pid_t kMostShift = 3600;  // s
+constexpr std::size_t kMostResultBytes = std::size_t{1} << 30;
+
+void WriteToStderr(std::string_view text) {
+  // Best effort: there is nobody else to tell.
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+}
+
+[[noreturn]] void OutOfMemory() {
+  WriteToStderr("out of memory\n");
+  _exit(kExitOutOfMemory);
+}
+
+void SetLimit(__rlimit_resource resource, rlim_t wanted) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return;
+  limit.rlim_cur = std::min(wanted, limit.rlim_max);
+  setrlimit(resource, &limit);
+}
+
+// A length and so many bytes: whoever reads it knows whether it is all.
+bool WriteResult(int fd, const std::string& bytes) {
+  SetLimit(RLIMIT_FSIZE, RLIM_INFINITY);
+  const std::uint64_t size = bytes.size();
+  if (pwrite(fd, bytes.data(), bytes.size(), sizeof size) != static_cast<ssize_t>(bytes.size())) return false;
+  return pwrite(fd, &size, sizeof size, 0) == sizeof size;
+}
+
+std::optional<std::string> ReadResult(int fd) {
+  std::uint64_t size = 0;
+  if (pread(fd, &size, sizeof size, 0) != sizeof size || size > kMostResultBytes) return std::nullopt;
+  std::string bytes(size, '\0');
+  if (pread(fd, bytes.data(), size, sizeof size) != static_cast<ssize_t>(size)) return std::nullopt;
+  return bytes;
+}
+
+// Lets what the process allocates from here on lie on pages of 2 MB where the system has them. Every page
+// that a new process touches first costs it: on a virtual machine 1.7 us for one of 4 kB, of which a run
+// takes hundreds, and 50 us for one of 2 MB. Malloc takes what is new from the end of its heap.
+void UseLargePages() {
+  constexpr std::uintptr_t kPage = 4096;                          // bytes
+  constexpr std::uintptr_t kLargePage = std::uintptr_t{2} << 20;  // bytes, of x86-64
+  constexpr std::uintptr_t kAdvised = 2 * kLargePage;             // more than most runs need
+  constexpr int kMostOfHeap = 32 << 20;                           // the largest block that comes from it
+  mallopt(M_MMAP_THRESHOLD, kMostOfHeap);
+  mallopt(M_TRIM_THRESHOLD, kMostOfHeap);
+  mallopt(M_TOP_PAD, static_cast<int>(kAdvised + kLargePage));
+  // What lies before the first large page is skipped: allocated and, but for its first byte, never touched.
+  const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0));
+  const std::uintptr_t first = (end + 2 * kPage + kLargePage - 1) / kLargePage * kLargePage;
+  auto* const skipped = static_cast<volatile char*>(std::malloc(first - end - kPage));
+  if (skipped == nullptr) return;
+  *skipped = 0;  // or else the compiler leaves the allocation out
+  // A wish: where it is not granted, the memory is as good.
+  madvise(reinterpret_cast<void*>(first), kAdvised, MADV_HUGEPAGE);
+}
+
+[[noreturn]] void LiveSeparately(const std::function<std::string()>& work, const SeparateOptions& options,
+                                 pid_t parent, const std::string& folder, int result) {
+  setpgid(0, 0);
+  if (!DieWithParent(parent)) _exit(0);
+  if (!MoveInto(folder)) _exit(kExitWithoutPlugin);
+  Confine(options);
+  ShiftTimeOfDay(std::chrono::seconds(getpid() % kMostShift));
+  UseLargePages();
+  const std::string bytes = CallOrEnd(work);
+  std::fflush(nullptr);
+  if (!WriteResult(result, bytes)) {
+    if (errno == ENOSPC || errno == ENOMEM) OutOfMemory();
+    _exit(kExitUnheard);
+  }
+  _exit(0);
+}
+
+}  // namespace
+
+bool OnlyOthersSend(int signal) {
+  // SIGPIPE: the supervisor has closed the pipe.
+  constexpr std::array kSignals = {SIGKILL, SIGTERM, SIGINT,  SIGHUP, SIGQUIT,
+                                   SIGPIPE, SIGUSR1, SIGUSR2, SIGPWR};
+  return std::ranges::find(kSignals, signal) != kSignals.end();
+}
+
+void Confine(const SeparateOptions& options) {
+  SetLimit(RLIMIT_CORE, 0);
+  SetLimit(RLIMIT_FSIZE, kMostFileBytes);
+  if (options.cpu_limit_seconds > 0.0)
+    SetLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(options.cpu_limit_seconds)));
+  if (options.memory_limit_bytes > 0) SetLimit(RLIMIT_AS, rlim_t{options.memory_limit_bytes});
+  if (options.wall_limit_seconds > 0) alarm(options.wall_limit_seconds);
+}
+
+bool MoveInto(const std::string& folder) {
+  __fpurge(stdout);  // what this process' parent had not yet written is not this one's to say
+  if (chdir(folder.c_str()) != 0) return false;
+  const UniqueFd output(
+      open(kOutputFile, O_WRONLY | O_CREAT | O_APPEND | O_TRUNC | O_CLOEXEC, kReadableByAll));
+  const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  return output.valid() && nothing.valid() && dup2(nothing.get(), STDIN_FILENO) >= 0 &&
+         dup2(output.get(), STDOUT_FILENO) >= 0 && dup2(output.get(), STDERR_FILENO) >= 0 &&
+         setvbuf(stdout, nullptr, _IOLBF, 0) == 0;
+}
+
+int WaitForGroup(pid_t child) {
+  siginfo_t ended{};
+  while (waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOWAIT) != 0 && errno == EINTR) continue;
+  kill(-child, SIGKILL);  // it is not reaped yet, so the process group is still its own
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  return status;
+}
+
+std::string OutputTail(const std::string& folder) {
+  const Result<std::string> output = ReadSmallFile(folder + "/" + kOutputFile, kMostFileBytes);
+  if (!output) return "";
+  return output->substr(output->size() - std::min(output->size(), proto::kMaxStderrTail));
+}
+
+double SecondsWithChildren() {
+  double seconds = 0.0;
+  for (const int whose : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage usage{};
+    if (getrusage(whose, &usage) != 0) continue;
+    for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+      seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  }
+  return seconds;
+}
+
+std::string CallOrEnd(const std::function<std::string()>& work) {
+  std::set_new_handler(OutOfMemory);
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    OutOfMemory();
+  } catch (const std::exception& error) {
+    std::fflush(nullptr);
+    WriteToStderr(fmt::format("uncaught exception: {}\n", error.what()));
+  } catch (...) {
+    std::fflush(nullptr);
+    WriteToStderr("uncaught exception of an unknown type\n");
+  }
+  _exit(kExitException);
+}
+
+Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>& work,
+                                              const SeparateOptions& options) {
+  const Result<ScratchFolder> scratch = ScratchFolder::Make(options.scratch);
+  if (!scratch) return scratch.error();
+  const UniqueFd result(memfd_create("result", MFD_CLOEXEC));
+  if (!result.valid()) return SystemError("cannot make a file in memory", errno);
+  const pid_t parent = getpid();
+  const pid_t child = fork();
+  if (child < 0) return SystemError("cannot start a process", errno);
+  if (child == 0) LiveSeparately(work, options, parent, scratch->path(), result.get());
+
+  SeparateOutcome outcome;
+  outcome.wait_status = WaitForGroup(child);
+  if (outcome.wait_status == 0) outcome.bytes = ReadResult(result.get());
+  if (!outcome.bytes) outcome.output_tail = OutputTail(scratch->path());
+  return outcome;
+}
+
+void EndAs(const SeparateOutcome& outcome) {
+  WriteToStderr(outcome.output_tail);
+  if (WIFSIGNALED(outcome.wait_status)) {
+    const int number = WTERMSIG(outcome.wait_status);
+    if (OnlyOthersSend(number) && number != SIGKILL) {
+      WriteToStderr(
+          fmt::format("the plug-in ended its process by signal {} ({})\n", number, strsignal(number)));
+      _exit(kExitSignalled + number);
+    }
+    SetLimit(RLIMIT_CORE, 0);
+    signal(number, SIG_DFL);
+    sigset_t only;
+    sigemptyset(&only);
+    sigaddset(&only, number);
+    sigprocmask(SIG_UNBLOCK, &only, nullptr);
+    raise(number);
+  }
+  const int code = WEXITSTATUS(outcome.wait_status);
+  if (code == kExitUnheard)
+    WriteToStderr("the plug-in closed or limited files that are not its own, among them the run's result\n");
+  if (code == 0) WriteToStderr("exit(0) was called before the run had a result\n");
+  _exit(code == 0 ? kExitWithoutResult : code);
+}
+
+}  // namespace gauntlet::worker
