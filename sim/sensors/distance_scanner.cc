@@ -4,6 +4,7 @@
 
 #include "sim/geometry/ray_cast.h"
 #include "sim/geometry/trigonometry.h"
+#include "sim/sensors/sensor_table.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/sensors/sensor_table.h"
+
 namespace gauntlet::sim {
 namespace {
 

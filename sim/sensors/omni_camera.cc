@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "sim/sensors/seen_lists.h"
-#include "sim/sensors/sensor.h"
+#include "sim/sensors/sensor_table.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -1,6 +1,6 @@
 // What a robot knows of itself: its pose in the world and how its wheels turn (ARGoS positioning and
 // differential_steering).
-#include "sim/sensors/sensor.h"
+#include "sim/sensors/sensor_table.h"
 
 namespace gauntlet::sim {
 namespace {

@@ -6,6 +6,7 @@
 #include "base/bits.h"
 #include "sim/geometry/nearby_boxes.h"
 #include "sim/geometry/neighbour_pairs.h"
+#include "sim/sensors/sensor_table.h"
 
 namespace gauntlet::sim {
 namespace {

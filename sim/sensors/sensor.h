@@ -1,9 +1,8 @@
 // What all sensors have in common. To add one: a row in robot/devices.h, its reading in robot/controller.h, a
-// class with its Make in a header and a source of its own (it overrides Disturb when the device may be
-// noisy), and a row in sensor_suite.cc, which includes that header.
+// class with its Make in a source of its own (it overrides Disturb when the device may be noisy), and both
+// lines of it in sensor_table.h.
 #pragma once
 
-#include <memory>
 #include <span>
 
 #include "sim/arena/arena.h"
@@ -56,25 +55,5 @@ class Sensor {
   virtual void Disturb(const Scene& /*scene*/, RobotIndex /*robot*/, DeviceErrors& /*errors*/,
                        SensorReadings& /*readings*/) {}
 };
-
-// The sensors that there are, of the robots of a swarm in that arena.
-using MakeSensor = std::unique_ptr<Sensor>(const Arena& arena, std::span<const RobotSensors> robots);
-
-// Cameras see a blob for every beacon, ring LED and lamp that is not black, strictly inside their square and
-// not hidden: robots in robot order, of each the beacon, then its ring; then lights in their order, then
-// those of obstacles. Robots are lower than the line to a beacon and hide none; a ring LED may be hidden by a
-// robot, by its own too. A robot does not see its own LEDs. Lamps 0.577 m (twice the camera's height) or more
-// above the floor are not seen.
-MakeSensor MakeOmniCameras;
-// Radios hear those that are strictly nearer than the sender's range when no box and, if bodies block, no
-// third robot stands between: robots in robot order, then radio beacons in theirs.
-MakeSensor MakeRadios;
-MakeSensor MakeProximityRings;
-MakeSensor MakeLightSensors;
-MakeSensor MakeMotorGroundSensors;
-MakeSensor MakeBaseGroundSensors;
-MakeSensor MakeDistanceScanners;
-MakeSensor MakePositioningSensors;
-MakeSensor MakeWheelEncoders;
 
 }  // namespace gauntlet::sim

@@ -4,36 +4,14 @@
 #include <bit>
 #include <cstdint>
 
+#include "sim/sensors/sensor_table.h"
+
 namespace gauntlet::sim {
 namespace {
-
-class GripperSensor final : public Sensor {
- public:
-  void Read(const Scene& scene, RobotIndex robot, SensorReadings& readings) override {
-    readings.holding_item = scene.grippers.Holds(robot);
-  }
-  void Blank(RobotIndex /*robot*/, SensorReadings& readings) override { readings.holding_item = false; }
-};
-
-std::unique_ptr<Sensor> MakeGripperSensor(const Arena& /*arena*/, std::span<const RobotSensors> /*robots*/) {
-  return std::make_unique<GripperSensor>();
-}
 
 bool SameBits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
-
-struct SensorKind {
-  Device device;
-  MakeSensor* make;
-};
-constexpr SensorKind kSensorKinds[] = {
-    {Device::kOmnidirectionalCamera, MakeOmniCameras}, {Device::kRangeAndBearing, MakeRadios},
-    {Device::kProximity, MakeProximityRings},          {Device::kLight, MakeLightSensors},
-    {Device::kMotorGround, MakeMotorGroundSensors},    {Device::kBaseGround, MakeBaseGroundSensors},
-    {Device::kDistanceScanner, MakeDistanceScanners},  {Device::kGripper, MakeGripperSensor},
-    {Device::kPositioning, MakePositioningSensors},    {Device::kWheelEncoders, MakeWheelEncoders},
-};
 
 }  // namespace
 

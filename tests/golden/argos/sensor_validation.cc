@@ -12,6 +12,7 @@
 #include "sim/sensors/ground_sensor.h"
 #include "sim/sensors/light_sensor.h"
 #include "sim/sensors/proximity.h"
+#include "sim/sensors/sensor_table.h"
 #include "tests/sim/sensors/sensing.h"
 #include "tests/support/make_box.h"
 #include "tests/support/paths.h"

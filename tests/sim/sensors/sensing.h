@@ -7,7 +7,7 @@
 
 #include "base/bits.h"
 #include "sim/sensors/proximity.h"
-#include "sim/sensors/sensor.h"
+#include "sim/sensors/sensor_table.h"
 
 namespace gauntlet::sim {
 
