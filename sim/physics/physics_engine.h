@@ -44,8 +44,8 @@ class PhysicsEngine {
 std::unique_ptr<PhysicsEngine> MakeImpulseEngine();
 // Box2D 2.4 with the drive model of ARGoS' dynamics2d.
 std::unique_ptr<PhysicsEngine> MakeBox2dEngine();
-// Hand-written: the same drive, contacts by relaxation of positions, without friction. An oracle in tests, and
-// `--set physics=relaxation`.
+// Hand-written: the same drive, contacts by relaxation of positions, without friction. An oracle in tests;
+// `physics = "relaxation"` is taken without being named to users.
 std::unique_ptr<PhysicsEngine> MakeRelaxationEngine();
 
 }  // namespace gauntlet::sim
