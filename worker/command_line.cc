@@ -186,7 +186,6 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
   if (app.count("--describe-plugin") > 0)
     return PrintDescription(line.described_plugin, functions.describe_plugin);
   line.spec.plugins.load = functions.load_plugin;
-  line.spec.plugins.rehearse = functions.rehearse;
   if (app.count("--describe-beginning") > 0) {
     const Result<std::string> spec = ReadSpec(line.begun_spec);
     if (spec) return PrintBeginning(*spec, line.spec.plugins, functions.describe_beginning);
@@ -194,7 +193,6 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
     return kExitRefused;
   }
   line.worker.plugins.load = functions.load_plugin;
-  line.worker.plugins.rehearse = functions.rehearse;
   if (app.count("--plugin") > 0 && app.count("--run-spec") == 0) {
     fmt::print(stderr, "gauntlet-worker: --plugin is for --run-spec and --describe-beginning\n");
     return kExitRefused;

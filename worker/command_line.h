@@ -12,7 +12,6 @@ struct WorkerFunctions {
   LoadPluginFunction load_plugin = {};  // without: it is never given a plug-in, as the next
   DescribePluginFunction describe_plugin = {};
   DescribeBeginningFunction describe_beginning = {};
-  std::function<void()> rehearse = {};  // as in PluginSettings
 };
 
 // The exit code. To be called from main(), before any thread exists.

@@ -3,7 +3,6 @@
 #include "worker/golden_hash.h"
 #include "worker/plugin/plugin_library.h"
 #include "worker/run_executor.h"
-#include "worker/runner/rehearsal.h"
 
 int main(int argc, char** argv) {
   namespace worker = gauntlet::worker;
@@ -12,6 +11,5 @@ int main(int argc, char** argv) {
                                        .golden_hashes = worker::GoldenHashes,
                                        .load_plugin = worker::LoadPlugin,
                                        .describe_plugin = worker::DescribePlugin,
-                                       .describe_beginning = worker::DescribeBeginning,
-                                       .rehearse = worker::Rehearse});
+                                       .describe_beginning = worker::DescribeBeginning});
 }

@@ -70,8 +70,7 @@ class BoxDrawing {
     }
     canvas_.Text({kLeft, kTop + kHeight + kBottom - 32}, "line: median; ring: mean; small circles: outliers",
                  "class=\"axis\"");
-    canvas_.Text({kLeft, kTop + kHeight + kBottom - 14}, NameOf(figure_.boxes.front().box.rule),
-                 "class=\"axis\"");
+    canvas_.Text({kLeft, kTop + kHeight + kBottom - 14}, kBoxRule, "class=\"axis\"");
     return canvas_.Take();
   }
 

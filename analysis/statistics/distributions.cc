@@ -1,6 +1,5 @@
 #include "analysis/statistics/distributions.h"
 
-#include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
@@ -28,12 +27,6 @@ double StudentUpperQuantile(double tail, double degrees_of_freedom) {
   GAUNTLET_CHECK(degrees_of_freedom > 0.0, "Student's distribution needs degrees of freedom > 0");
   GAUNTLET_CHECK(tail > 0.0 && tail < 1.0, "Student's quantile needs a tail in (0, 1)");
   return math::quantile(math::complement(math::students_t(degrees_of_freedom), tail));
-}
-
-double BetaQuantile(double probability, double shape1, double shape2) {
-  GAUNTLET_CHECK(probability >= 0.0 && probability <= 1.0, "a beta quantile needs a probability in [0, 1]");
-  GAUNTLET_CHECK(shape1 > 0.0 && shape2 > 0.0, "a beta distribution needs shapes > 0");
-  return math::quantile(math::beta_distribution<>(shape1, shape2), probability);
 }
 
 }  // namespace gauntlet::analysis

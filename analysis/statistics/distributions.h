@@ -14,7 +14,4 @@ double StudentUpperTail(double t, double degrees_of_freedom);
 // The t with P(T > t) = `tail` in (0, 1).
 double StudentUpperQuantile(double tail, double degrees_of_freedom);
 
-// The x in [0, 1] below which a beta distribution (both shapes > 0) has `probability` in [0, 1].
-double BetaQuantile(double probability, double shape1, double shape2);
-
 }  // namespace gauntlet::analysis

@@ -30,16 +30,6 @@ Interval WilsonInterval(std::uint32_t hits, std::uint32_t trials, double confide
   return {hits == 0 ? 0.0 : centre - half, hits == trials ? 1.0 : centre + half};
 }
 
-Interval ClopperPearsonInterval(std::uint32_t hits, std::uint32_t trials, double confidence) {
-  CheckCounts(hits, trials);
-  CheckConfidence(confidence);
-  const double tail = (1.0 - confidence) / 2.0;
-  const double k = hits;
-  const double n = trials;
-  return {hits == 0 ? 0.0 : BetaQuantile(tail, k, n - k + 1.0),
-          hits == trials ? 1.0 : BetaQuantile(1.0 - tail, k + 1.0, n - k)};
-}
-
 Interval DifferenceInterval(std::uint32_t hits1, std::uint32_t trials1, std::uint32_t hits2,
                             std::uint32_t trials2, double confidence) {
   const Interval first = WilsonInterval(hits1, trials1, confidence);

@@ -7,12 +7,9 @@
 
 namespace gauntlet::analysis {
 
-// Intervals for a probability of which `hits` of `trials` were seen (trials >= 1, hits <= trials), at a
-// confidence in (0, 1).
-// Wilson 1927, without continuity correction: holds its confidence on average.
+// Interval for a probability of which `hits` of `trials` were seen (trials >= 1, hits <= trials), at a
+// confidence in (0, 1): Wilson 1927, without continuity correction: holds its confidence on average.
 Interval WilsonInterval(std::uint32_t hits, std::uint32_t trials, double confidence);
-// Clopper and Pearson 1934: holds at least its confidence whatever the probability, and is wider.
-Interval ClopperPearsonInterval(std::uint32_t hits, std::uint32_t trials, double confidence);
 
 // Of the difference between the probabilities of the first and the second (Newcombe 1998, method 10: from
 // both Wilson intervals).

@@ -73,16 +73,11 @@ RankTest MannWhitney(std::span<const double> first, std::span<const double> seco
   return FromRankSum(rank_sum1, first.size(), second.size(), tie_term);
 }
 
-RankTest MannWhitneyFromRankSum(double rank_sum1, std::size_t n1, std::size_t n2) {
-  GAUNTLET_CHECK(n1 > 0 && n2 > 0, "a rank test needs values in both sets");
-  return FromRankSum(rank_sum1, n1, n2, 0.0);
-}
-
-std::string_view EffectOf(double a, const EffectThresholds& thresholds) {
+std::string_view EffectOf(double a) {
   const double size = std::max(a, 1.0 - a);
-  if (size >= thresholds.large) return "large";
-  if (size >= thresholds.medium) return "medium";
-  return size >= thresholds.small ? "small" : "none";
+  if (size >= kVarghaDelaney2000.large) return "large";
+  if (size >= kVarghaDelaney2000.medium) return "medium";
+  return size >= kVarghaDelaney2000.small ? "small" : "none";
 }
 
 }  // namespace gauntlet::analysis

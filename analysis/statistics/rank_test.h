@@ -33,9 +33,6 @@ struct RankTest {
 // method says so.
 RankTest MannWhitney(std::span<const double> first, std::span<const double> second);
 
-// The same from what tables print. Ties, which a table does not tell, are taken for none.
-RankTest MannWhitneyFromRankSum(double rank_sum1, std::size_t n1, std::size_t n2);
-
 struct ExactRankTest {
   double p_less = 1.0;
   double p_greater = 1.0;
@@ -57,9 +54,8 @@ struct EffectThresholds {
   double large = 0.0;
 };
 inline constexpr EffectThresholds kVarghaDelaney2000{0.56, 0.64, 0.71};  // thesis 3.2.4
-inline constexpr EffectThresholds kSpartan{0.56, 0.66, 0.73};            // manual pages of the R package
 
-// "none", "small", "medium" or "large". `a` in [0, 1].
-std::string_view EffectOf(double a, const EffectThresholds& thresholds = kVarghaDelaney2000);
+// "none", "small", "medium" or "large", by kVarghaDelaney2000. `a` in [0, 1].
+std::string_view EffectOf(double a);
 
 }  // namespace gauntlet::analysis

@@ -21,17 +21,12 @@ std::vector<double> Sorted(std::span<const double> values) {
   return sorted;
 }
 
-double SortedQuantile(const std::vector<double>& sorted, double probability, QuantileType type) {
+double SortedQuantile(const std::vector<double>& sorted, double probability) {
   GAUNTLET_CHECK(probability >= 0.0 && probability <= 1.0, "a quantile needs a probability in [0, 1]");
-  // Plotting positions (k - a) / (n + 1 - 2 a) of the k-th value (Hyndman and Fan 1996, table 1).
-  const double a = type == QuantileType::k5   ? 0.5
-                   : type == QuantileType::k6 ? 0.0
-                   : type == QuantileType::k7 ? 1.0
-                                              : 1.0 / 3.0;
   const auto n = static_cast<double>(sorted.size());
   // Positions that are whole numbers but for rounding are whole numbers: the fuzz of R's quantile().
   constexpr double kFuzz = 4.0 * std::numeric_limits<double>::epsilon();
-  const double position = a + probability * (n + 1.0 - 2.0 * a);
+  const double position = 1.0 + probability * (n - 1.0);
   const double whole = std::floor(position + kFuzz);
   double part = position - whole;
   if (std::fabs(part) < kFuzz) part = 0.0;
@@ -73,7 +68,7 @@ Description Describe(std::span<const double> values) {
   Description description;
   description.n = sorted.size();
   description.minimum = sorted.front();
-  description.median = SortedQuantile(sorted, 0.5, QuantileType::k7);
+  description.median = SortedQuantile(sorted, 0.5);
   description.maximum = sorted.back();
   // The second pass takes back what rounding did to the first, so that equal values have exactly no spread.
   description.mean = std::accumulate(sorted.begin(), sorted.end(), 0.0) / n;
@@ -97,25 +92,14 @@ Interval MeanInterval(std::span<const double> values, double confidence) {
   return {description.mean - half, description.mean + half};
 }
 
-double Quantile(std::span<const double> values, double probability, QuantileType type) {
-  return SortedQuantile(Sorted(values), probability, type);
+double Quantile(std::span<const double> values, double probability) {
+  return SortedQuantile(Sorted(values), probability);
 }
 
-std::string_view NameOf(BoxRule rule) {
-  return rule == BoxRule::kTukeyHinges
-             ? "Tukey's hinges; whiskers to the last value within 1.5 box lengths"
-             : "quartiles of type 7; whiskers to the last value within 1.5 box lengths";
-}
-
-BoxPlot MakeBoxPlot(std::span<const double> values, BoxRule rule) {
+BoxPlot MakeBoxPlot(std::span<const double> values) {
   const std::vector<double> sorted = Sorted(values);
   BoxPlot box;
-  box.rule = rule;
-  const auto [lower, median, upper] = rule == BoxRule::kTukeyHinges
-                                          ? TukeyHinges(sorted)
-                                          : std::array{SortedQuantile(sorted, 0.25, QuantileType::k7),
-                                                       SortedQuantile(sorted, 0.5, QuantileType::k7),
-                                                       SortedQuantile(sorted, 0.75, QuantileType::k7)};
+  const auto [lower, median, upper] = TukeyHinges(sorted);
   box.lower_quartile = lower;
   box.median = median;
   box.upper_quartile = upper;

@@ -30,22 +30,15 @@ Description Describe(std::span<const double> values);
 // Of the mean of at least two values, by Student's t distribution; confidence in (0, 1).
 Interval MeanInterval(std::span<const double> values, double confidence);
 
-// The number of Hyndman and Fan 1996, which is also R's: 5 is MATLAB's, 6 SPSS's, 7 the default of R and
-// NumPy, 8 nearly unbiased for the median whatever the distribution.
-enum class QuantileType { k5 = 5, k6 = 6, k7 = 7, k8 = 8 };
+// Type 7 of Hyndman and Fan 1996, the default of R and NumPy. `probability` in [0, 1]; the values in any
+// order.
+double Quantile(std::span<const double> values, double probability);
 
-// `probability` in [0, 1]; the values in any order.
-double Quantile(std::span<const double> values, double probability, QuantileType type = QuantileType::k7);
-
-enum class BoxRule {
-  kTukeyHinges,  // R's boxplot.stats: hinges are the medians of the halves, the median in both when n is odd
-  kQuartiles7,   // quantiles of type 7, as Matplotlib draws them
-};
-// e.g. "Tukey's hinges; whiskers to the last value within 1.5 box lengths".
-std::string_view NameOf(BoxRule rule);
-
+inline constexpr std::string_view kBoxRule =
+    "Tukey's hinges; whiskers to the last value within 1.5 box lengths";
+// R's boxplot.stats: the quartiles are Tukey's hinges, the medians of the halves, the median in both when n
+// is odd.
 struct BoxPlot {
-  BoxRule rule = BoxRule::kTukeyHinges;
   double lower_whisker = 0.0;  // the smallest value that is not more than 1.5 box lengths below the box
   double lower_quartile = 0.0;
   double median = 0.0;
@@ -55,6 +48,6 @@ struct BoxPlot {
   double upper_notch = 0.0;
   std::vector<double> outliers;  // what lies beyond the whiskers, ascending
 };
-BoxPlot MakeBoxPlot(std::span<const double> values, BoxRule rule = BoxRule::kTukeyHinges);
+BoxPlot MakeBoxPlot(std::span<const double> values);
 
 }  // namespace gauntlet::analysis

@@ -48,7 +48,7 @@ Json OptionalJson(const std::optional<double>& value) {
 }
 
 Json BoxJson(const analysis::BoxPlot& box) {
-  return {{"rule", analysis::NameOf(box.rule)},   {"lower_whisker", box.lower_whisker},
+  return {{"rule", analysis::kBoxRule},           {"lower_whisker", box.lower_whisker},
           {"lower_quartile", box.lower_quartile}, {"median", box.median},
           {"upper_quartile", box.upper_quartile}, {"upper_whisker", box.upper_whisker},
           {"outliers", box.outliers.size()}};

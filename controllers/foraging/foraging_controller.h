@@ -50,9 +50,6 @@ class ForagingController : public sim::Controller {
   void Step(const sim::ControlStep& step) override;
 
   ForagingState state() const { return state_; }
-  // Of a beacon; kNoPheromone otherwise.
-  double nest_staleness() const { return to_nest_.staleness(); }
-  double food_staleness() const { return to_food_.staleness(); }
 
  private:
   // A beacon in range.

@@ -83,6 +83,17 @@ Key ChoiceKey(const std::string& path, const std::vector<std::string>& choices,
   return key;
 }
 
+// Without friction, a model for tests.
+constexpr const char* kUnlistedPhysics = "relaxation";
+
+Key PhysicsKey() {
+  Key key = ChoiceKey<&Experiment::physics>("physics", {"box2d", kUnlistedPhysics, "impulse"},
+                                            "impulse = contacts as in ARGoS; box2d = Box2D's contacts");
+  std::erase(key.choices, kUnlistedPhysics);
+  key.unlisted_choices = {kUnlistedPhysics};
+  return key;
+}
+
 Key ObjectiveKey() {
   Key key = MakeKey(
       "search.objective", KeyType::kChoice,
@@ -304,9 +315,7 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
       FieldKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
       FieldKey<&Experiment::controller>("controller",
                                         "the algorithm under test; default: the scenario's own"),
-      ChoiceKey<&Experiment::physics>("physics", {"box2d", "relaxation", "impulse"},
-                                      "impulse = contacts as in ARGoS; box2d = Box2D's contacts; relaxation "
-                                      "= without friction, for comparison"),
+      PhysicsKey(),
       FaultsKey(),
   };
   for (std::vector<Key>& more : std::array{GenomeKeys(), SearchKeys(catalogue), NoiseKeys()}) {
@@ -401,7 +410,9 @@ std::optional<std::string> CheckValue(const Key& key, const KeyValue& value) {
   };
   if (key.type == KeyType::kChoice) {
     const auto& text = std::get<std::string>(value);
-    if (std::ranges::count(key.choices, text) > 0) return std::nullopt;
+    for (const auto& choices : {std::cref(key.choices), std::cref(key.unlisted_choices)}) {
+      if (std::ranges::count(choices.get(), text) > 0) return std::nullopt;
+    }
     return message(fmt::format("is unknown, allowed {}", fmt::join(key.choices, ", ")));
   }
   if (key.type == KeyType::kInteger || key.type == KeyType::kNumber) {

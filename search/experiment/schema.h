@@ -18,7 +18,7 @@ namespace gauntlet {
 
 enum class KeyType {
   kText,
-  kChoice,   // one of `choices`
+  kChoice,   // one of `choices` or `unlisted_choices`
   kInteger,  // min to max
   kNumber,   // min to max
   kFlag,     // true or false; 0 and 1 are taken too
@@ -37,7 +37,8 @@ struct Key {
   double min = 0.0;  // of integers and numbers
   double max = 0.0;
   std::vector<std::string> choices;
-  std::string description;  // one line
+  std::vector<std::string> unlisted_choices = {};  // taken as well, named nowhere
+  std::string description;                         // one line
   KeyValue default_value;
   bool for_people = false;  // has no influence on any run
   std::function<std::optional<std::string>(const KeyValue&)>

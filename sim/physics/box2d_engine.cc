@@ -36,16 +36,12 @@ constexpr int kPositionIterations = 3;
 
 // In one step of ours the motor may give a contact the impulse that it gives in one substep of ARGoS. All
 // motors being equal, who pushes whom does not depend on the limit; a larger one keeps the solver from
-// settling and lets jammed robots overlap (measured: 11 mm with the whole 15 N, 8 mm so). The ground under
-// movable boxes is weakened likewise.
-constexpr double kForceShare = kTickSeconds / foot_bot::kSubstepsPerTick / kStep;
-constexpr double kMotorForce = foot_bot::kMaxForce * kForceShare;
+// settling and lets jammed robots overlap (measured: 11 mm with the whole 15 N, 8 mm so).
+constexpr double kMotorForce = foot_bot::kMaxForce * (kTickSeconds / foot_bot::kSubstepsPerTick / kStep);
 
 // Box2D mixes the friction of a pair as sqrt(a * b), ARGoS as a * b.
 constexpr double kRobotFriction = foot_bot::kFriction * foot_bot::kFriction;
 constexpr double kStaticFriction = foot_bot::kStaticFriction * foot_bot::kStaticFriction;
-constexpr double kMovableFriction = movable_box::kFriction * movable_box::kFriction;
-constexpr double kRestSpeed = 1e-6;  // m/s and rad/s; below, a movable box stands
 
 // Beyond what both can move in a tick, robots this near (m) are given to the solver: position correction of
 // a crowd moves robots a little further than they drive.
@@ -120,7 +116,6 @@ class Box2dEngine final : public PhysicsEngine {
   }
 
   void AddBox(const OrientedBox& box) override;
-  BoxIndex AddMovableBox(const OrientedBox& box, double mass) override;
   BoxIndex AddKinematicBox(const OrientedBox& box) override;
   RobotIndex AddRobot(const Pose& pose) override;
   void MoveBox(BoxIndex box, const Pose& end) override { moving_[static_cast<std::size_t>(box)].SendTo(end); }
@@ -130,14 +125,12 @@ class Box2dEngine final : public PhysicsEngine {
 
  private:
   b2Fixture* AddFixture(b2Body& body, const OrientedBox& box, double friction);
-  MovingBox& AddMoving(MovingBox moving, b2BodyType type, double friction);
   void Prepare();
   void FindNear(double longest_move);
   bool MoveIntoSolver();
   void Solve();
   void StepBackToContact();
   void MoveBoxes(std::size_t step);
-  bool BoxesAct() const;
   void StepBackFromBoxes(std::size_t index);
   static void PutBack(Robot& robot, const Vec2& move);
 
@@ -171,36 +164,13 @@ void Box2dEngine::AddBox(const OrientedBox& box) {
   nearby_.AddBox(box);
 }
 
-MovingBox& Box2dEngine::AddMoving(MovingBox moving, b2BodyType type, double friction) {
-  b2BodyDef body;
-  body.type = type;
-  body.position = ToBox2d(moving.box.center);
-  moving.body = world_.CreateBody(&body);
-  moving.shape = static_cast<b2PolygonShape*>(AddFixture(*moving.body, moving.box, friction)->GetShape());
-  return moving_.emplace_back(moving);
-}
-
-BoxIndex Box2dEngine::AddMovableBox(const OrientedBox& box, double mass) {
-  GAUNTLET_CHECK(mass > 0.0, "a movable box has a mass");
-  const MovingBox& moving = AddMoving({box, false}, b2_dynamicBody, kMovableFriction);
-  b2MassData data;
-  data.mass = static_cast<float>(mass);
-  data.center.SetZero();
-  data.I = static_cast<float>(mass * (box.half_extents * kScale).squaredNorm() / 3.0);
-  moving.body->SetMassData(&data);
-
-  b2FrictionJointDef ground;
-  ground.bodyA = ground_;
-  ground.bodyB = moving.body;
-  ground.collideConnected = true;
-  ground.maxForce = static_cast<float>(movable_box::kGroundForce * kForceShare * kScale);
-  ground.maxTorque = static_cast<float>(movable_box::kGroundTorque * kForceShare * kScale * kScale);
-  world_.CreateJoint(&ground);
-  return static_cast<BoxIndex>(moving_.size()) - 1;
-}
-
 BoxIndex Box2dEngine::AddKinematicBox(const OrientedBox& box) {
-  AddMoving({box, true}, b2_kinematicBody, kStaticFriction);
+  b2BodyDef body;
+  body.type = b2_kinematicBody;
+  body.position = ToBox2d(box.center);
+  MovingBox& moving = moving_.emplace_back(box);
+  moving.body = world_.CreateBody(&body);
+  moving.shape = static_cast<b2PolygonShape*>(AddFixture(*moving.body, box, kStaticFriction)->GetShape());
   return static_cast<BoxIndex>(moving_.size()) - 1;
 }
 
@@ -248,7 +218,7 @@ void Box2dEngine::Step(std::span<const WheelSpeeds> commands) {
     longest_move = std::max(longest_move, move.squaredNorm());
   }
   FindNear(std::sqrt(longest_move));
-  if (MoveIntoSolver() || BoxesAct()) {
+  if (MoveIntoSolver()) {
     Solve();
   } else {
     for (std::size_t step = 0; step < kStepsPerTick; ++step) MoveBoxes(step);
@@ -300,9 +270,7 @@ void Box2dEngine::FindNear(double longest_move) {
     }
   }
   for (MovingBox& moving : moving_) {
-    moving.reach = moving.kinematic
-                       ? moving.move.norm() + std::abs(moving.turn) * moving.box.half_extents.norm()
-                       : longest_move + kTickSeconds * FromBox2d(moving.body->GetLinearVelocity()).norm();
+    moving.reach = moving.move.norm() + std::abs(moving.turn) * moving.box.half_extents.norm();
   }
   for (std::size_t i = 0; i < robots_.size(); ++i) {
     Robot& robot = robots_[i];
@@ -335,39 +303,11 @@ bool Box2dEngine::MoveIntoSolver() {
   return any;
 }
 
-// Do the movable boxes need the solver although no robot is near anything?
-bool Box2dEngine::BoxesAct() const {
-  bool kinematic = false;
-  bool movable = false;
-  for (const MovingBox& moving : moving_) {
-    if (moving.kinematic) {
-      kinematic = kinematic || moving.Goes();
-    } else {
-      movable = true;
-      if (moving.body->GetLinearVelocity().LengthSquared() > 0.0f ||
-          moving.body->GetAngularVelocity() != 0.0f)
-        return true;
-    }
-  }
-  return kinematic && movable;
-}
-
-// After a step: kinematic boxes go where they are sent, movable ones are where the solver brought them.
+// After a step of the solver, or instead of it.
 void Box2dEngine::MoveBoxes(std::size_t step) {
   for (MovingBox& moving : moving_) {
-    if (moving.kinematic) {
-      if (!moving.Goes()) continue;
-      moving.Advance(kStepsPerTick - step);
-    } else {
-      moving.Place(FromBox2d(moving.body->GetPosition()),
-                   moving.heading + static_cast<double>(moving.body->GetAngle()));
-      const b2Vec2 velocity = moving.body->GetLinearVelocity();
-      if (FromBox2d(velocity).squaredNorm() < kRestSpeed * kRestSpeed &&
-          std::abs(static_cast<double>(moving.body->GetAngularVelocity())) < kRestSpeed) {
-        moving.body->SetLinearVelocity({0.0f, 0.0f});
-        moving.body->SetAngularVelocity(0.0f);
-      }
-    }
+    if (!moving.Goes()) continue;
+    moving.Advance(kStepsPerTick - step);
     moving.shown = false;
   }
 }
@@ -376,7 +316,6 @@ void Box2dEngine::Solve() {
   for (MovingBox& moving : moving_) Show(moving);
   for (std::size_t step = 0; step < kStepsPerTick; ++step) {
     for (MovingBox& moving : moving_) {
-      if (!moving.kinematic) continue;
       const double share = 1.0 / (kStep * static_cast<double>(kStepsPerTick - step));
       moving.body->SetLinearVelocity(ToBox2d(share * moving.move));
       moving.body->SetAngularVelocity(static_cast<float>(share * moving.turn));
@@ -429,17 +368,9 @@ void Box2dEngine::StepBackFromBoxes(std::size_t index) {
     const Vec2 back = WayBack(nearby_.box(i), robot);
     if (back != Vec2::Zero()) PutBack(robot, back);
   }
-  for (MovingBox& moving : moving_) {
+  for (const MovingBox& moving : moving_) {
     const Vec2 back = WayBack(moving.box, robot);
-    if (back == Vec2::Zero()) continue;
-    if (moving.kinematic) {
-      PutBack(robot, back);
-    } else {  // it gives way
-      robot.touched = true;
-      moving.Place(moving.box.center - back, moving.heading);
-      moving.shown = false;
-      Show(moving);
-    }
+    if (back != Vec2::Zero()) PutBack(robot, back);
   }
 }
 

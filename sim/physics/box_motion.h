@@ -1,4 +1,4 @@
-// A box that moves, and what is left of its way in a tick: what both engines know of it.
+// A kinematic box, and what is left of its way in a tick: what all engines know of it.
 #pragma once
 
 #include <cmath>
@@ -12,19 +12,16 @@ namespace gauntlet::sim {
 
 struct BoxMotion {
   OrientedBox box;
-  double heading = 0.0;  // rad in (-pi, pi]
-  bool kinematic = false;
-  Vec2 move = Vec2::Zero();  // m, of a kinematic box in what is left of this tick
+  double heading = 0.0;      // rad in (-pi, pi]
+  Vec2 move = Vec2::Zero();  // m, in what is left of this tick
   double turn = 0.0;         // rad, likewise
 
-  BoxMotion(const OrientedBox& place, bool is_kinematic)
-      : box(place), heading(AngleOf(place.axis)), kinematic(is_kinematic) {}
+  explicit BoxMotion(const OrientedBox& place) : box(place), heading(AngleOf(place.axis)) {}
 
   // See PhysicsEngine::MoveBox.
   void SendTo(const Pose& end) {
     move = end.position - box.center;
     turn = WrapAngle(end.heading - heading);
-    GAUNTLET_CHECK(kinematic, "only kinematic boxes are moved");
     GAUNTLET_CHECK(move.squaredNorm() <= kMaxBoxMove * kMaxBoxMove * (1.0 + 1e-9) &&
                        std::abs(turn) <= kMaxBoxTurn * (1.0 + 1e-9),
                    "a kinematic box goes too far in a tick");

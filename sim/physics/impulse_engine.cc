@@ -109,7 +109,6 @@ class ImpulseEngine final : public PhysicsEngine {
   ImpulseEngine() : nearby_(kBoxReach) {}
 
   void AddBox(const OrientedBox& box) override;
-  BoxIndex AddMovableBox(const OrientedBox& box, double mass) override;
   BoxIndex AddKinematicBox(const OrientedBox& box) override;
   RobotIndex AddRobot(const Pose& pose) override;
   void MoveBox(BoxIndex box, const Pose& end) override { moving_[static_cast<std::size_t>(box)].SendTo(end); }
@@ -151,12 +150,8 @@ void ImpulseEngine::AddBox(const OrientedBox& box) {
   ++fixed_boxes_;
 }
 
-BoxIndex ImpulseEngine::AddMovableBox(const OrientedBox& /*box*/, double /*mass*/) {
-  GAUNTLET_CHECK(false, "boxes that robots push need the engine box2d");
-}
-
 BoxIndex ImpulseEngine::AddKinematicBox(const OrientedBox& box) {
-  moving_.emplace_back(box, true);
+  moving_.emplace_back(box);
   return static_cast<BoxIndex>(moving_.size()) - 1;
 }
 

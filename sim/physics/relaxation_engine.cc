@@ -1,7 +1,7 @@
 // The hand-written solver: the same drive model as in box2d_engine.cc, contacts by relaxation. In each half
 // of a tick robots go where they drive, then overlaps are taken out a few times over, each pair sharing its
-// overlap evenly. Without friction, and boxes that are pushed neither turn nor meet other boxes: an oracle
-// and a measure of speed, not the model that results are published with.
+// overlap evenly. Without friction: an oracle and a measure of speed, not the model that results are
+// published with.
 
 #include <algorithm>
 #include <cmath>
@@ -57,11 +57,7 @@ class RelaxationEngine final : public PhysicsEngine {
   RelaxationEngine() : nearby_(kBoxReach) {}
 
   void AddBox(const OrientedBox& box) override { nearby_.AddBox(box); }
-  BoxIndex AddMovableBox(const OrientedBox& box, double mass) override {
-    GAUNTLET_CHECK(mass > 0.0, "a movable box has a mass");
-    return AddMoving(box, false);
-  }
-  BoxIndex AddKinematicBox(const OrientedBox& box) override { return AddMoving(box, true); }
+  BoxIndex AddKinematicBox(const OrientedBox& box) override;
   RobotIndex AddRobot(const Pose& pose) override;
   void MoveBox(BoxIndex box, const Pose& end) override { moving_[static_cast<std::size_t>(box)].SendTo(end); }
   void Step(std::span<const WheelSpeeds> commands) override;
@@ -72,7 +68,6 @@ class RelaxationEngine final : public PhysicsEngine {
   const OrientedBox& BoxAt(BoxIndex box) const override { return moving_[static_cast<std::size_t>(box)].box; }
 
  private:
-  BoxIndex AddMoving(const OrientedBox& box, bool kinematic);
   void PartRobots();
   void LeaveBoxes(std::size_t robot);
 
@@ -85,8 +80,8 @@ class RelaxationEngine final : public PhysicsEngine {
   bool prepared_ = false;
 };
 
-BoxIndex RelaxationEngine::AddMoving(const OrientedBox& box, bool kinematic) {
-  moving_.emplace_back(box, kinematic);
+BoxIndex RelaxationEngine::AddKinematicBox(const OrientedBox& box) {
+  moving_.emplace_back(box);
   return static_cast<BoxIndex>(moving_.size()) - 1;
 }
 
@@ -157,15 +152,11 @@ void RelaxationEngine::PartRobots() {
 }
 
 void RelaxationEngine::LeaveBoxes(std::size_t robot) {
-  for (BoxMotion& moving : moving_) {
+  for (const BoxMotion& moving : moving_) {
     const Vec2 way = WayOut(moving.box, positions_[robot]);
     if (way == Vec2::Zero()) continue;
-    if (moving.kinematic) {
-      positions_[robot] += way;
-      robots_[robot].touched = true;
-    } else {
-      moving.box.center -= way;
-    }
+    positions_[robot] += way;
+    robots_[robot].touched = true;
   }
   for (const std::size_t index : nearby_.Near(robot, positions_[robot])) {
     const Vec2 way = WayOut(nearby_.box(index), positions_[robot]);

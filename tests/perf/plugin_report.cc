@@ -23,7 +23,6 @@
 #include "worker/run_executor.h"
 #include "worker/runner/fork_server.h"
 #include "worker/runner/pipe.h"
-#include "worker/runner/rehearsal.h"
 #include "worker/runner/runner.h"
 
 namespace gauntlet::perf {
@@ -44,8 +43,7 @@ class MeasuredRunner {
     if (child == 0) {
       if (!worker::DieWithParent(parent)) _exit(0);
       pipe.first.Reset();
-      worker::RunnerMain(pipe.second.get(), worker::Run,
-                         {.files = {library}, .load = worker::LoadPlugin, .rehearse = worker::Rehearse});
+      worker::RunnerMain(pipe.second.get(), worker::Run, {.files = {library}, .load = worker::LoadPlugin});
     }
     pipe_ = std::move(pipe.first);
   }

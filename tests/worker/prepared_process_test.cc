@@ -22,7 +22,6 @@
 #include "tests/support/sanitizer.h"
 #include "worker/run_executor.h"
 #include "worker/runner/pipe.h"
-#include "worker/runner/rehearsal.h"
 #include "worker/runner/runner.h"
 
 namespace gauntlet::worker {
@@ -184,47 +183,6 @@ TEST_F(PreparedProcessTest, UsesTheFolderThatIsNamed) {
   const Result<SeparateOutcome> outcome = process.Call("", {.scratch = scratch / "mine"});
   ASSERT_TRUE(outcome.ok());
   EXPECT_EQ(outcome->bytes, fs::canonical(scratch / "mine").string());
-}
-
-TEST_F(PreparedProcessTest, ARunnerRehearsesBeforeItLoads) {
-  const TemporaryDirectory folder;
-  std::ofstream(folder / "library") << "anything";
-  sim::RunSpec spec;
-  spec.plugin = Sha256("anything");
-  const RunFunction run = [](const sim::RunSpec&) {
-    sim::RunResult result;
-    result.ticks = statics;
-    sim::SetHashes(result);
-    return result;
-  };
-  const PluginSettings settings = {.files = {folder / "library"},
-                                   .load = [](const PluginFile&) -> Status {
-                                     statics *= 10;
-                                     return Ok{};
-                                   },
-                                   .rehearse = [] { ++statics; }};
-  const Result<SocketPair> pipe = MakeSocketPair(SOCK_STREAM);
-  const pid_t runner = fork();
-  if (runner == 0) {
-    alarm(60);
-    RunnerMain(pipe->second.get(), run, settings);
-  }
-  FrameBuffer answers;
-  for (int i = 0; i < 2; ++i) {
-    ASSERT_TRUE(WriteFrame(pipe->first.get(), EncodeJob({.spec = proto::EncodeRunSpec(spec)})));
-    std::optional<std::string> report;
-    while (!(report = answers.Next())) {
-      const auto state = answers.ReadFrom(pipe->first.get(), FrameBuffer::Wait::kYes);
-      ASSERT_EQ(state, FrameBuffer::State::kOpen);
-    }
-    EXPECT_EQ(proto::DecodeRunResult(DecodeReport(*report)->result)->ticks, 10);
-  }
-  kill(runner, SIGKILL);
-  waitpid(runner, nullptr, 0);
-}
-
-TEST(Rehearsal, IsARunToItsEnd) {
-  EXPECT_EQ(Rehearse().verdict, sim::Verdict::kCompleted);
 }
 
 struct Trace {

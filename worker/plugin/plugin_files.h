@@ -29,7 +29,6 @@ struct PluginSettings {
   std::vector<std::string> files = {};  // these libraries instead, if one has the hash
   std::string scratch = "";  // working directory of a run, which stays; "": one that is removed after the run
   LoadPluginFunction load = nullptr;
-  std::function<void()> rehearse = nullptr;  // called once in a runner, before it loads any; may be empty
 };
 
 // Not for sharing between threads.

@@ -98,8 +98,7 @@ RunnerReport Execute(const RunnerJob& job, const Result<sim::RunSpec>& spec, con
 // nothing to this one.
 class PluginRuns {
  public:
-  PluginRuns(const PluginSettings& settings, const RunFunction& run)
-      : files_(settings), rehearse_(settings.rehearse), run_(run) {}
+  PluginRuns(const PluginSettings& settings, const RunFunction& run) : files_(settings), run_(run) {}
 
   // The report of the run. Ends this process as that of the run when that one ended without a result.
   std::string Execute(const RunnerJob& job, const sim::RunSpec& spec) {
@@ -130,7 +129,6 @@ class PluginRuns {
     if (found != processes_.end()) return found->second;
     const Result<std::vector<PluginFile>> files = files_.Of(spec);
     if (!files) EndWithoutPlugin(files.error());
-    if (const auto rehearse = std::exchange(rehearse_, nullptr)) rehearse();
     const auto load = [this, files = *files] {
       for (const PluginFile& file : files) {
         if (const Status loaded = files_.settings().load(file); !loaded) EndWithoutPlugin(loaded.error());
@@ -145,7 +143,6 @@ class PluginRuns {
   }
 
   PluginFiles files_;
-  std::function<void()> rehearse_;
   const RunFunction& run_;
   std::map<ControllersAndScenarios, PreparedProcess> processes_;  // by the plug-ins' hashes
 };

@@ -82,10 +82,9 @@ class Scheduler {
   bool Known(InstanceId worker) const { return workers_.contains(worker); }
   bool Connected(InstanceId worker) const;  // known and not lost
   bool Works(InstanceId worker) const;      // has a lease that it has not answered
-  std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown runs
+  std::uint32_t LeasesOf(RunId run) const;  // given so far; 0 for unknown and forgotten runs
   std::size_t queued() const;               // runs that nobody has
   std::size_t unfinished() const { return unfinished_; }
-  std::size_t remembered_runs() const { return runs_.size(); }  // all that takes memory
   WorkerStatistics Statistics() const;
   // Without labels and pids, in the order of the ids; times as of the last event. Runs that several workers
   // do are named with each.

@@ -15,9 +15,6 @@ namespace {
 TEST(ProportionIntervals, AgreeWithR) {
   for (const ReferenceRow& row : ReadReference("failure_probability_ci.csv")) {
     const std::string what = row.Text("k") + " of " + row.Text("n");
-    const Interval clopper = ClopperPearsonInterval(row.Count("k"), row.Count("n"), 0.95);
-    EXPECT_NEAR(clopper.low, row.Number("clopper_lo"), 1e-12) << what;
-    EXPECT_NEAR(clopper.high, row.Number("clopper_hi"), 1e-12) << what;
     const Interval wilson = WilsonInterval(row.Count("k"), row.Count("n"), 0.95);
     EXPECT_NEAR(wilson.low, row.Number("wilson_lo"), 1e-12) << what;
     EXPECT_NEAR(wilson.high, row.Number("wilson_hi"), 1e-12) << what;
@@ -54,17 +51,12 @@ double Coverage(const std::vector<Interval>& interval_of_count, double probabili
 TEST(ProportionIntervals, HoldTheirConfidenceForSmallNumbersOfTrials) {
   for (const std::uint32_t trials : {1U, 3U, 10U, 20U}) {
     for (const double confidence : {0.9, 0.95}) {
-      std::vector<Interval> clopper;
       std::vector<Interval> wilson;
-      for (std::uint32_t k = 0; k <= trials; ++k) {
-        clopper.push_back(ClopperPearsonInterval(k, trials, confidence));
-        wilson.push_back(WilsonInterval(k, trials, confidence));
-      }
+      for (std::uint32_t k = 0; k <= trials; ++k) wilson.push_back(WilsonInterval(k, trials, confidence));
       double mean = 0.0;
       constexpr int kSteps = 400;
       for (int i = 1; i < kSteps; ++i) {
         const double probability = i / static_cast<double>(kSteps);
-        EXPECT_GE(Coverage(clopper, probability), confidence - 1e-9) << trials << " trials, " << probability;
         mean += Coverage(wilson, probability) / (kSteps - 1);
       }
       if (trials >= 10) {

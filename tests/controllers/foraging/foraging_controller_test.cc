@@ -375,16 +375,15 @@ TEST(Beacon, StartsWithItsOwnTrailAndEvaporates) {
   robot.Step(Covered(), 300);  // 30 s out of the nest
   robot.Step(Scene());
   ASSERT_EQ(robot.controller().state(), State::kBeacon);
-  EXPECT_NEAR(robot.controller().nest_staleness(), 30.1 / 60.0, 1e-12);
-  EXPECT_EQ(robot.controller().food_staleness(), kNoPheromone);
+  EXPECT_NEAR(robot.says().first, 30.1 / 60.0, 1e-7);
+  EXPECT_EQ(robot.says().second, kNoPheromone);
   robot.Step(Scene(), 100);
-  EXPECT_NEAR(robot.controller().nest_staleness(), 30.1 / 60.0 + 10.0 / 300.0, 1e-12);
+  EXPECT_NEAR(robot.says().first, 30.1 / 60.0 + 10.0 / 300.0, 1e-7);
 }
 
 TEST(Beacon, KnowsTheNestItHears) {
   Robot robot(Certain());
   robot.BeBeacon().Step(Scene().Nest(2.0), 50);
-  EXPECT_NEAR(robot.controller().nest_staleness(), -std::log(1.01), 1e-12);
   EXPECT_NEAR(robot.says().first, -std::log(1.01), 1e-7);
 }
 
@@ -392,20 +391,21 @@ TEST(Beacon, KeepsTheFreshestOfWhatRobotsLay) {
   Robot robot(Certain());
   robot.Step(Scene());
   robot.Step(Scene().Forager(1.0, true, 10.0).Forager(2.0, true, 50.0).Forager(0.5, false, 500.0));
-  EXPECT_NEAR(robot.controller().food_staleness(), (10.0 + 1.0 / kSpeed) / 60.0, 1e-7);
-  EXPECT_LT(robot.controller().nest_staleness(), 0.1) << "its own trail is fresher";
+  EXPECT_NEAR(robot.says().second, (10.0 + 1.0 / kSpeed) / 60.0, 1e-7);
+  EXPECT_LT(robot.says().first, 0.1) << "its own trail is fresher";
   robot.Step(Scene().Forager(1.0, true, 20.0));
-  EXPECT_NEAR(robot.controller().food_staleness(), (10.0 + 1.0 / kSpeed) / 60.0 + 0.1 / 300.0, 1e-7);
+  EXPECT_NEAR(robot.says().second, (10.0 + 1.0 / kSpeed) / 60.0 + 0.1 / 300.0, 1e-7);
   robot.Step(Scene().Beacon(1.0, 0.0, 0.0, 0.0));
-  EXPECT_GT(robot.controller().food_staleness(), 0.5) << "beacons lay nothing";
+  EXPECT_GT(robot.says().second, 0.5) << "beacons lay nothing";
 }
 
 TEST(Beacon, ForgetsWhenItLeaves) {
   Robot robot(Certain());
   robot.BeBeacon().Step(Scene().Nest(2.0).Forager(1.0, true, 10.0));
   robot.Step(Scene().Nest(2.0).Beacon(1.0).Beacon(1.5));
-  EXPECT_EQ(robot.controller().nest_staleness(), kNoPheromone);
-  EXPECT_EQ(robot.controller().food_staleness(), kNoPheromone);
+  ASSERT_EQ(robot.Step(Scene()), State::kBeacon);
+  EXPECT_GT(robot.says().first, 0.0) << "its own trail, not what it heard of the nest";
+  EXPECT_EQ(robot.says().second, kNoPheromone);
 }
 
 TEST(ForagingController, TellsHowLongAgoItLeftTheNestOrTheFood) {

@@ -18,7 +18,7 @@ constexpr double kContactGap = 1e-4;         // m
 constexpr std::size_t kLastTicks = 20;
 
 sim::Trajectory Simulate(const sim::ArgosScene& scene, sim::PhysicsKind physics) {
-  const bool box2d = physics == sim::PhysicsKind::kBox2d || !scene.movable.empty();
+  const bool box2d = physics == sim::PhysicsKind::kBox2d;
   return sim::SimulateScene(scene, box2d ? *sim::MakeBox2dEngine() : *sim::MakeImpulseEngine());
 }
 

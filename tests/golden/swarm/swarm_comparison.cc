@@ -7,7 +7,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "analysis/statistics/equivalence_test.h"
 #include "analysis/statistics/sample.h"
 #include "controllers/examples/light_flocking_metrics.h"
 #include "controllers/examples/light_flocking_registry.h"
@@ -15,6 +14,7 @@
 #include "controllers/registry.h"
 #include "search/cases/case_file.h"
 #include "sim/simulation.h"
+#include "tests/golden/swarm/equivalence_test.h"
 #include "tests/support/paths.h"
 
 namespace gauntlet::golden {

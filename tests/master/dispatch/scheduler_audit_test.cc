@@ -40,7 +40,7 @@ TEST_F(SchedulerAuditTest, AnotherWorkerSimulatesTheRunOnceMore) {
   EXPECT_TRUE(Decide().mismatches.empty());
   EXPECT_EQ(scheduler_.Statistics().audits, 1U);
   EXPECT_EQ(scheduler_.Statistics().audits_open, 0U);
-  EXPECT_EQ(scheduler_.remembered_runs(), 0U);
+  EXPECT_EQ(scheduler_.LeasesOf(1), 0U);
 }
 
 TEST_F(SchedulerAuditTest, ADifferenceNamesBothWorkers) {

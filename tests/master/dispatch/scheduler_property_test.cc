@@ -246,7 +246,7 @@ class World {
       clock_.Advance(milliseconds(1000));
       scheduler_.Decide(clock_.Now());
     }
-    RC_ASSERT(scheduler_.remembered_runs() == 0U);
+    for (const RunId run : expected_) RC_ASSERT(scheduler_.LeasesOf(run) == 0U);
   }
 
  private:

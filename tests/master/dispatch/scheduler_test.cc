@@ -41,7 +41,7 @@ TEST_F(SchedulerTest, AcknowledgesAResultWhenItIsStoredAndForgetsTheRun) {
   scheduler_.Acknowledge(1);
   const SchedulerOrders orders = Decide();
   EXPECT_THAT(FencesOf(orders.acknowledgements), ElementsAre(fence));
-  EXPECT_EQ(scheduler_.remembered_runs(), 0U);
+  EXPECT_EQ(scheduler_.LeasesOf(1), 0U);
   EXPECT_EQ(scheduler_.Statistics().duplicates, 0U);
 }
 
@@ -80,7 +80,7 @@ TEST_F(SchedulerTest, ThreeOwnFailuresGiveUpTheRun) {
   EXPECT_THAT(FencesOf(orders.acknowledgements), ElementsAre(last));
   EXPECT_THAT(orders.leases, IsEmpty());
   scheduler_.Acknowledge(2);
-  EXPECT_EQ(scheduler_.remembered_runs(), 0U);
+  EXPECT_EQ(scheduler_.LeasesOf(2), 0U);
 }
 
 TEST_F(SchedulerTest, ExternalFailuresAndLostWorkersAreNoAttempts) {

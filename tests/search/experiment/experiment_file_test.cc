@@ -172,6 +172,16 @@ KeyValue AllowedValue(const Key& key) {
   return *rc::gen::arbitrary<std::uint64_t>();
 }
 
+TEST(ExperimentFileTest, APhysicsThatIsNotListedIsTakenAndWritten) {
+  const Result<Experiment> experiment = ParseToy("scenario = 'marching'\nphysics = 'relaxation'");
+  ASSERT_TRUE(experiment.ok()) << experiment.error().message;
+  EXPECT_EQ(experiment->physics, sim::PhysicsKind::kRelaxation);
+  const std::string written = WriteExperiment(*experiment, {}, ToyCatalogue());
+  EXPECT_EQ(ParseToy(written)->physics, sim::PhysicsKind::kRelaxation);
+  EXPECT_EQ(ErrorOf("scenario = 'marching'\nphysics = 'none'"),
+            "toy.toml:2:1: physics = \"none\" is unknown, allowed box2d, impulse");
+}
+
 RC_GTEST_PROP(ExperimentFileTest, WhatIsWrittenReadsBackAsTheSame, ()) {
   Experiment experiment = *ParseToy("scenario = 'marching'");
   for (const Key& key : KeysOf(experiment)) {

@@ -53,8 +53,6 @@ const std::vector<ArgosScene>& ArgosScenes() {
       {"push_robot_8cm", {kAhead, kBrake}, {}, false, 0.025},
       {"push_two_robots", {kAhead, kBrake, kBrake}, {}},
       {"rear_end", {kAhead, kSlow}, {}},
-      {"push_box1kg", {kAhead}, {}, false, 0.0025, {Box(0.4, 0, 0.2, 0.2)}},
-      {"push_box1kg_off", {kAhead}, {}, false, 0.0025, {Box(0.4, 0.05, 0.2, 0.2)}},
   };
   return scenes;
 }
@@ -78,11 +76,9 @@ Trajectory ArgosTrajectory(const ArgosScene& scene) {
 
 Trajectory SimulateScene(const ArgosScene& scene, PhysicsEngine& engine) {
   const Trajectory argos = ArgosTrajectory(scene);
-  const std::size_t bodies = argos[0].size();
   const std::size_t robots = scene.commands.size();
-  EXPECT_EQ(bodies, robots + scene.movable.size()) << scene.name;
+  EXPECT_EQ(argos[0].size(), robots) << scene.name;
   for (const OrientedBox& box : scene.boxes) engine.AddBox(box);
-  for (const OrientedBox& box : scene.movable) engine.AddMovableBox(box, movable_box::kMass);
   for (std::size_t i = 0; i < robots; ++i) engine.AddRobot(argos[0][i]);
   Trajectory trajectory = {argos[0]};
   const std::vector<WheelSpeeds> rest(robots);
@@ -91,10 +87,6 @@ Trajectory SimulateScene(const ArgosScene& scene, PhysicsEngine& engine) {
     trajectory.emplace_back();
     for (std::size_t i = 0; i < robots; ++i)
       trajectory[tick].push_back(engine.PoseOf(static_cast<RobotIndex>(i)));
-    for (std::size_t i = 0; i < scene.movable.size(); ++i) {
-      const OrientedBox& box = engine.BoxAt(static_cast<BoxIndex>(i));
-      trajectory[tick].push_back({box.center, AngleOf(box.axis)});
-    }
   }
   return trajectory;
 }
@@ -114,9 +106,6 @@ Deviation Compare(const Trajectory& a, const Trajectory& b, std::size_t end) {
 std::size_t TicksBeforeContact(const ArgosScene& scene, const Trajectory& trajectory, double gap) {
   const auto contact = [&](const std::vector<Pose>& poses) {
     for (std::size_t i = 0; i < scene.commands.size(); ++i) {
-      for (const OrientedBox& box : scene.movable) {
-        if (Distance(box, poses[i].position) < foot_bot::kRadius + gap) return true;
-      }
       for (const OrientedBox& box : scene.boxes) {
         if (Distance(box, poses[i].position) < foot_bot::kRadius + gap) return true;
       }

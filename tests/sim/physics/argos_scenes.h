@@ -14,9 +14,8 @@ struct ArgosScene {
   std::string name;                   // of the file in motion/, without .csv
   std::vector<WheelSpeeds> commands;  // per robot, from the end of tick 1 on
   std::vector<OrientedBox> boxes;
-  bool free = false;                      // nothing is ever touched
-  double contact_tolerance = 0.0025;      // m, over the whole file
-  std::vector<OrientedBox> movable = {};  // of 1 kg; in the file they follow the robots
+  bool free = false;                  // nothing is ever touched
+  double contact_tolerance = 0.0025;  // m, over the whole file
 };
 
 inline void PrintTo(const ArgosScene& scene, std::ostream* out) {
@@ -26,7 +25,7 @@ inline void PrintTo(const ArgosScene& scene, std::ostream* out) {
 const std::vector<ArgosScene>& ArgosScenes();
 const ArgosScene& FindArgosScene(const std::string& name);
 
-// [tick][robot, then movable box]
+// [tick][robot]
 using Trajectory = std::vector<std::vector<Pose>>;
 Trajectory ArgosTrajectory(const ArgosScene& scene);
 // As many ticks as ARGoS recorded, from ARGoS' start poses.

@@ -97,10 +97,5 @@ TEST(ImpulseEngine, ARobotSlidesOffTheEndOfAWall) {
   EXPECT_GT(engine->PoseOf(0).position.y(), 0.1);
 }
 
-TEST(ImpulseEngineDeathTest, HasNoBoxesThatRobotsPush) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeImpulseEngine();
-  EXPECT_DEATH(engine->AddMovableBox(MakeBox({0.0, 0.0}, 0.2, 0.2, 0.0), 1.0), "box2d");
-}
-
 }  // namespace
 }  // namespace gauntlet::sim

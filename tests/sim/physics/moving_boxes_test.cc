@@ -1,4 +1,4 @@
-// Boxes that move: pushed by robots, or on a way of their own.
+// Boxes that move, on a way of their own.
 
 #include <gtest/gtest.h>
 
@@ -56,29 +56,6 @@ TEST_P(KinematicBoxes, ARobotAgainstAKinematicBoxThatComesTowardsItIsCarriedBack
   }
   EXPECT_LT(foot_bot::kRadius - Distance(engine->BoxAt(box), engine->PoseOf(0).position), 0.004);
   EXPECT_LT(engine->PoseOf(0).position.x(), 0.0);
-}
-
-TEST(MovingBoxes, APushedBoxStopsAtAWallAndStopsItsRobot) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
-  engine->AddBox(MakeBox({1.1, 0.0}, 0.2, 2.0, 0.0));
-  const BoxIndex box = engine->AddMovableBox(MakeBox({0.5, 0.0}, 0.2, 0.2, 0.0), movable_box::kMass);
-  engine->AddRobot({{0.0, 0.0}, 0.0});
-  const std::vector<WheelSpeeds> ahead = {{0.1, 0.1}};
-  for (int tick = 0; tick < 300; ++tick) engine->Step(ahead);
-  EXPECT_NEAR(engine->BoxAt(box).center.x(), 0.9, 0.002);
-  EXPECT_NEAR(engine->PoseOf(0).position.x(), 0.8 - foot_bot::kRadius, 0.004);
-}
-
-TEST(MovingBoxes, ABoxStaysWhereItsRobotLeavesIt) {
-  const std::unique_ptr<PhysicsEngine> engine = MakeBox2dEngine();
-  const BoxIndex box = engine->AddMovableBox(MakeBox({0.3, 0.0}, 0.2, 0.2, 0.0), movable_box::kMass);
-  engine->AddRobot({{0.0, 0.0}, 0.0});
-  for (int tick = 0; tick < 50; ++tick) engine->Step(std::vector<WheelSpeeds>{{0.1, 0.1}});
-  for (int tick = 0; tick < 5; ++tick) engine->Step(std::vector<WheelSpeeds>{{-0.1, -0.1}});
-  const Vec2 left = engine->BoxAt(box).center;
-  EXPECT_GT(left.x(), 0.5);
-  for (int tick = 0; tick < 50; ++tick) engine->Step(std::vector<WheelSpeeds>{{-0.1, -0.1}});
-  EXPECT_EQ(engine->BoxAt(box).center, left);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ TEST(RelaxationEngine, DrivesFreelyAsInArgos) {
 // Outcomes in which friction has no part.
 TEST(RelaxationEngine, StopsAndPushesAsInArgos) {
   for (const char* name : {"wall_headon", "wall_headon5", "wall_corner", "headon_0", "headon_5v10",
-                           "push_robot_0", "rear_end", "push_box1kg"}) {
+                           "push_robot_0", "rear_end"}) {
     const ArgosScene& scene = FindArgosScene(name);
     const Trajectory argos = ArgosTrajectory(scene);
     const Trajectory ours = SimulateScene(scene, *MakeRelaxationEngine());

@@ -1,4 +1,4 @@
-#include "analysis/statistics/equivalence_test.h"
+#include "tests/golden/swarm/equivalence_test.h"
 
 #include <cmath>
 
