@@ -34,7 +34,7 @@ struct SessionOptions {
   std::string bind = "tcp://127.0.0.1:*";  // where workers connect
   bool insecure =
       false;  // in plaintext, open to whoever gets there; otherwise encrypted, for known keys only
-  double audit_share = 0.0;          // of runs, 0 to 1, that a second worker simulates too, to be compared
+  double audit_share = 0.0;        // of runs, 0 to 1, that a second worker simulates too, to be compared
   MetricsPage* metrics = nullptr;  // told every second what goes on; nullptr = nobody asks
   std::function<void(const ServingNotice&)> on_serving = [](const ServingNotice&) {};
   // Asks for a clean stop at once. Workers from elsewhere stay and look for the campaign's next master; when
