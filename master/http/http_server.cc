@@ -73,14 +73,12 @@ HttpAnswer AnswerOf(const HttpHandler& handler, const HttpRequest& request) {
 }  // namespace
 
 struct HttpServer::Running {
-  Running(HttpOptions with, HttpHandler handler)
-      : options(std::move(with)), answer(std::move(handler)), answering(options.answering_threads) {}
+  Running(HttpOptions with, HttpHandler handler);
   ~Running() {
     answering.stop();
     sockets.stop();
   }
 
-  void Listen();
   void Accept();
   void Admit(tcp::socket socket);
 
@@ -196,11 +194,11 @@ class HttpServer::Connection : public std::enable_shared_from_this<Connection> {
   bool asked_ = false;
 };
 
-void HttpServer::Running::Listen() {
-  const auto port = static_cast<std::uint16_t>(options.port);
+HttpServer::Running::Running(HttpOptions with, HttpHandler handler)
+    : options(std::move(with)), answer(std::move(handler)), answering(options.answering_threads) {
   listener.open(tcp::v4());
   listener.set_option(tcp::acceptor::reuse_address(true));
-  listener.bind({asio::ip::address_v4::loopback(), port});
+  listener.bind({asio::ip::address_v4::loopback(), static_cast<std::uint16_t>(options.port)});
   listener.listen();
   Accept();
   thread = std::jthread([this] { sockets.run(); });
@@ -236,9 +234,8 @@ Result<std::unique_ptr<HttpServer>> HttpServer::Start(HttpOptions options, HttpH
   pthread_sigmask(SIG_SETMASK, &all, &before);
   Result<std::unique_ptr<HttpServer>> server = [&]() -> Result<std::unique_ptr<HttpServer>> {
     try {
-      auto running = std::make_unique<Running>(std::move(options), std::move(answer));
-      running->Listen();
-      return std::unique_ptr<HttpServer>(new HttpServer(std::move(running)));
+      return std::unique_ptr<HttpServer>(
+          new HttpServer(std::make_unique<Running>(std::move(options), std::move(answer))));
     } catch (const boost::system::system_error& thrown) {
       Error error = SystemError(failed, thrown.code().value());
       if (thrown.code() == asio::error::address_in_use) error.kind = ErrorKind::kInUse;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <future>
 #include <iterator>
+#include <latch>
 #include <list>
 #include <thread>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "base/system/unique_fd.h"
 #include "master/http/http_server.h"
 #include "tests/support/local_socket.h"
+#include "tests/support/sanitizer.h"
 
 namespace gauntlet {
 namespace {
@@ -38,6 +40,14 @@ HttpAnswer Fine(const HttpRequest&) {
 // More than sockets take without a reader.
 HttpAnswer Vast(const HttpRequest&) {
   return {.body = std::string(16 << 20, 'x')};
+}
+
+// The same answers, of which each counts.
+HttpHandler Told(std::latch& asked, HttpHandler answer) {
+  return [&asked, answer = std::move(answer)](const HttpRequest& request) {
+    asked.count_down();
+    return answer(request);
+  };
 }
 
 std::ptrdiff_t OpenDescriptors() {
@@ -83,11 +93,12 @@ TEST_P(HttpCrowdTest, WhoAsksSlowlyIsCutOff) {
 }
 
 TEST_P(HttpCrowdTest, WhoStaysAfterItsAnswerIsCutOff) {
-  const auto server = Start({.asking_time = kSoon}, Fine);
+  std::latch asked(2);
+  const auto server = Start({.asking_time = kSoon}, Told(asked, Fine));
   const std::ptrdiff_t before = OpenDescriptors();
   const OpenConnection silent(server->port(), kWhole);
   OpenConnection talker(server->port(), kWhole);
-  EXPECT_TRUE(DescriptorsBecome(before + 4));
+  asked.wait();
   const auto end = Clock::now() + kPatience;
   while (OpenDescriptors() != before + 2 && Clock::now() < end)
     talker.IsClosedWhileSaying('x', milliseconds(1));
@@ -95,11 +106,11 @@ TEST_P(HttpCrowdTest, WhoStaysAfterItsAnswerIsCutOff) {
 }
 
 TEST_P(HttpCrowdTest, WhoDoesNotTakeItsAnswerIsCutOff) {
-  const auto server = Start({.standstill_time = kSoon}, Vast);
+  std::latch asked(1);
+  const auto server = Start({.standstill_time = kSoon}, Told(asked, Vast));
   const std::ptrdiff_t before = OpenDescriptors();
   const OpenConnection silent(server->port(), kWhole);
-  ASSERT_TRUE(silent.ok());
-  EXPECT_TRUE(DescriptorsBecome(before + 2));
+  asked.wait();
   EXPECT_TRUE(DescriptorsBecome(before + 1)) << "the server's end is closed";
 }
 
@@ -147,6 +158,7 @@ TEST_P(HttpCrowdTest, AFloodKeepsTheOwnerFromNothing) {
 
 // Those that wait are announced over and over.
 TEST_P(HttpCrowdTest, WhoComesWhileThereAreNoDescriptorsIsServedLater) {
+  if (testing_support::kSanitized) GTEST_SKIP() << "sanitizers read memory through pipes";
   const auto server = Start({}, Fine);
   std::vector<UniqueFd> all;
   do {
@@ -184,7 +196,9 @@ TEST(HttpAnsweringThreadsTest, AnAnswerThatTakesLongKeepsNobodyElseWaitingAndIsN
                                    });
   auto answer = std::async(std::launch::async, Converse, server->port(), "GET /long HTTP/1.1\r\n\r\n");
   EXPECT_THAT(Converse(server->port(), "GET /short HTTP/1.1\r\n\r\n"), EndsWith("answer to /short"));
-  for (int i = 0; i < 8; ++i) Converse(server->port(), "GET /half");
+  std::list<OpenConnection> idle;
+  for (int i = 0; i < 8; ++i) idle.emplace_back(server->port(), "GET /half");
+  EXPECT_THAT(Converse(server->port(), "GET /next HTTP/1.1\r\n\r\n"), EndsWith("answer to /next"));
   made.set_value();
   EXPECT_THAT(answer.get(), EndsWith("answer to /long"));
 }
