@@ -12,7 +12,7 @@
 #include "cli/output/summary.h"
 #include "cli/output/table.h"
 #include "master/session/bind_endpoint.h"
-#include "master/session/metrics_server.h"
+#include "master/session/metrics_page.h"
 #include "proto/run_failure.h"
 #include "search/search_table.h"
 
@@ -94,11 +94,11 @@ void WarnOfManyWorkers(CommandContext& context, int workers) {
                                     workers, cores, cores == 1 ? "" : "s", cores));
 }
 
-Result<std::unique_ptr<MetricsServer>> StartMetrics(CommandContext& context, const ServingOptions& options) {
-  if (options.metrics_port.empty()) return std::unique_ptr<MetricsServer>();
+Result<std::unique_ptr<MetricsPage>> StartMetrics(CommandContext& context, const ServingOptions& options) {
+  if (options.metrics_port.empty()) return std::unique_ptr<MetricsPage>();
   const Result<int> port = ParsePort("--metrics-port", options.metrics_port);
   if (!port) return port.error();
-  Result<std::unique_ptr<MetricsServer>> metrics = MetricsServer::Start(*port);
+  Result<std::unique_ptr<MetricsPage>> metrics = MetricsPage::Serve(*port);
   if (metrics && !options.quiet) PrintMessage(context, fmt::format("metrics at {}", (*metrics)->url()));
   return metrics;
 }
@@ -164,7 +164,7 @@ ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
   if (!possible) return Fail(context, possible.error());
   if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
   WarnOfManyWorkers(context, campaign.session.workers);
-  const Result<std::unique_ptr<MetricsServer>> metrics = StartMetrics(context, options);
+  const Result<std::unique_ptr<MetricsPage>> metrics = StartMetrics(context, options);
   if (!metrics) return Fail(context, metrics.error());
 
   const SteadyClock clock;

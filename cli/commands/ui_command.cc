@@ -5,9 +5,9 @@
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/options/stop_signal.h"
+#include "master/http/http_server.h"
 #include "report/ui/served_campaigns.h"
 #include "report/ui/web_access.h"
-#include "report/ui/web_server.h"
 
 namespace gauntlet {
 namespace {
@@ -25,12 +25,19 @@ ExitCode RunUi(CommandContext& context, const UiOptions& options) {
   if (!served) return Fail(context, served.error());
   const StopSignal handlers(/*announced=*/false);
   const std::string token = NewToken();
-  const Result<std::unique_ptr<WebServer>> server =
-      WebServer::Start(*port, [&campaigns = **served, &token](const WebRequest& request) {
-        const Admission admission = Admit(request, token);
-        return admission.refusal ? *admission.refusal : campaigns.Answer(admission.path);
-      });
-  if (!server) return Fail(context, server.error());
+  constexpr std::size_t kAnsweringThreads = 16;  // a browser keeps up to six connections open
+  const Result<std::unique_ptr<HttpServer>> server =
+      HttpServer::Start({.port = *port, .answering_threads = kAnsweringThreads},
+                        [&campaigns = **served, &token](const HttpRequest& request) {
+                          const Admission admission = Admit(request, token);
+                          return admission.refusal ? *admission.refusal : campaigns.Answer(admission.path);
+                        });
+  if (!server) {
+    Error error = server.error();
+    if (error.kind == ErrorKind::kInUse)
+      error.message += ": give --port another number, or 0 for any free one";
+    return Fail(context, error);
+  }
   context.out << AddressOf((*server)->port(), token) << "\n" << std::flush;
   PrintMessage(context, "open this address in a browser of this machine; Ctrl-C ends it");
   constexpr int kMilliseconds = 1000;

@@ -18,7 +18,7 @@
 #include "master/dispatch/pool/local_pool.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/master_log.h"
-#include "master/session/metrics_server.h"
+#include "master/session/metrics_page.h"
 #include "master/session/metrics_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/access_file.h"

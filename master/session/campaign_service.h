@@ -16,7 +16,7 @@
 
 namespace gauntlet {
 
-class MetricsServer;
+class MetricsPage;
 
 // What a master says of itself once workers can reach it.
 struct ServingNotice {
@@ -34,8 +34,8 @@ struct SessionOptions {
   std::string bind = "tcp://127.0.0.1:*";  // where workers connect
   bool insecure =
       false;  // in plaintext, open to whoever gets there; otherwise encrypted, for known keys only
-  double audit_share = 0.0;          // of runs, 0 to 1, that a second worker simulates too, to be compared
-  MetricsServer* metrics = nullptr;  // told every second what goes on; nullptr = nobody asks
+  double audit_share = 0.0;        // of runs, 0 to 1, that a second worker simulates too, to be compared
+  MetricsPage* metrics = nullptr;  // told every second what goes on; nullptr = nobody asks
   std::function<void(const ServingNotice&)> on_serving = [](const ServingNotice&) {};
   // Asks for a clean stop at once. Workers from elsewhere stay and look for the campaign's next master; when
   // `gauntlet stop` asks, runs that have begun are waited for and all workers are let go.

@@ -27,15 +27,15 @@ constexpr std::size_t kShownRuns = 12;
 constexpr std::chrono::seconds kBetweenLooks{1};
 constexpr std::chrono::seconds kLongestBetweenLooks{5};
 
-WebAnswer JsonAnswer(const Json& json) {
+HttpAnswer JsonAnswer(const Json& json) {
   return {.type = "application/json", .body = json.dump(-1, ' ', false, Json::error_handler_t::replace)};
 }
 
-WebAnswer Gone(const Error& error) {
+HttpAnswer Gone(const Error& error) {
   return {.status = 410, .body = error.message + "\n"};
 }
 
-WebAnswer NoSuchPage() {
+HttpAnswer NoSuchPage() {
   return {.status = 404, .body = "there is no such page\n"};
 }
 
@@ -132,7 +132,7 @@ std::vector<std::shared_ptr<ServedCampaigns::Followed>> ServedCampaigns::Followe
   return followed_;
 }
 
-WebAnswer ServedCampaigns::Answer(const std::string& path) {
+HttpAnswer ServedCampaigns::Answer(const std::string& path) {
   const std::vector<std::string_view> parts = PartsOf(path);
   if (path.empty()) return AnswerPages();
   if (path == "status") return AnswerStatus();
@@ -151,7 +151,7 @@ WebAnswer ServedCampaigns::Answer(const std::string& path) {
   return NoSuchPage();
 }
 
-WebAnswer ServedCampaigns::AnswerPages() {
+HttpAnswer ServedCampaigns::AnswerPages() {
   Result<Report> report = GatherReport(sets_, kShownRuns);
   if (!report) return Gone(report.error());
   report->served = true;
@@ -165,7 +165,7 @@ WebAnswer ServedCampaigns::AnswerPages() {
   return {.type = "text/html; charset=utf-8", .body = ReportPage(*report)};
 }
 
-WebAnswer ServedCampaigns::AnswerStatus() {
+HttpAnswer ServedCampaigns::AnswerStatus() {
   Json all = Json::array();
   for (const std::shared_ptr<Followed>& one : FollowedNow()) {
     const std::lock_guard lock(one->mutex);
@@ -191,14 +191,14 @@ WebAnswer ServedCampaigns::AnswerStatus() {
   return JsonAnswer({{"campaigns", std::move(all)}});
 }
 
-WebAnswer ServedCampaigns::AnswerProgress(Followed& followed, std::size_t course) {
+HttpAnswer ServedCampaigns::AnswerProgress(Followed& followed, std::size_t course) {
   const std::lock_guard lock(followed.mutex);
   const std::vector<SearchCourse> courses = followed.feed.courses();
   if (course >= courses.size()) return NoSuchPage();
   return {.type = "image/svg+xml", .body = FiguresOf(courses, {})[course].svg()};
 }
 
-WebAnswer ServedCampaigns::AnswerRun(Followed& followed, std::size_t campaign, RunId run) {
+HttpAnswer ServedCampaigns::AnswerRun(Followed& followed, std::size_t campaign, RunId run) {
   const Result<std::shared_ptr<const CampaignFacts>> known = followed.FactsWith(run);
   if (!known) return Gone(known.error());
   const CampaignFacts& facts = **known;

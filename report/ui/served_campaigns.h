@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/result.h"
+#include "master/http/http_server.h"
 #include "master/session/campaign_service.h"
-#include "report/ui/web_server.h"
 
 namespace gauntlet {
 
@@ -28,16 +28,16 @@ class ServedCampaigns {
   //   "progress/C"    how its searches went so far (SVG); "progress/C/K": the K-th kind of search, from 0
   //   "run/C/ID"      {"page", "replay"}: a run, simulated again
   // Anything else: 404. What cannot be read, because it was deleted, for instance: 410 with the reason.
-  WebAnswer Answer(const std::string& path);
+  HttpAnswer Answer(const std::string& path);
 
  private:
   struct Followed;
   ServedCampaigns(std::vector<std::string> sets, CampaignService& campaigns);
 
-  WebAnswer AnswerPages();
-  WebAnswer AnswerStatus();
-  WebAnswer AnswerProgress(Followed& followed, std::size_t course);
-  WebAnswer AnswerRun(Followed& followed, std::size_t campaign, RunId run);
+  HttpAnswer AnswerPages();
+  HttpAnswer AnswerStatus();
+  HttpAnswer AnswerProgress(Followed& followed, std::size_t course);
+  HttpAnswer AnswerRun(Followed& followed, std::size_t campaign, RunId run);
 
   const std::vector<std::string> sets_;
   CampaignService& campaigns_;

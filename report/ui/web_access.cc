@@ -9,7 +9,7 @@
 namespace gauntlet {
 namespace {
 
-WebAnswer Refused(int status, const std::string& reason) {
+HttpAnswer Refused(int status, const std::string& reason) {
   return {.status = status, .body = reason + "\n"};
 }
 
@@ -39,9 +39,7 @@ std::string AddressOf(int port, const std::string& token) {
   return fmt::format("http://127.0.0.1:{}/{}/", port, token);
 }
 
-Admission Admit(const WebRequest& request, const std::string& token) {
-  if (request.method != "GET" && request.method != "HEAD")
-    return {"", Refused(405, "only GET and HEAD are answered here")};
+Admission Admit(const HttpRequest& request, const std::string& token) {
   if (!IsThisMachine(request.host)) return {"", Refused(403, "this host is not served here")};
   if (!request.origin.empty() && request.origin != "http://" + request.host)
     return {"", Refused(403, "pages of other sites are not answered")};

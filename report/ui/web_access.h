@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "report/ui/web_server.h"
+#include "master/http/http_server.h"
 
 namespace gauntlet {
 
@@ -14,14 +14,14 @@ std::string NewToken();
 // "http://127.0.0.1:43211/TOKEN/"
 std::string AddressOf(int port, const std::string& token);
 
-// The path behind the token, "" of the first page; the refusal of a request that has no business here: the
-// method is neither GET nor HEAD (405), another site's page sends it or has a name of its own point here
-// (Host and Origin are not this machine: 403), it does not know the token (403), or its path has "..": 404.
+// The path behind the token, "" of the first page; the refusal of a request that has no business here:
+// another site's page sends it or has a name of its own point here (Host and Origin are not this machine:
+// 403), it does not know the token (403), or its path has "..": 404.
 // Host may name any port, so that the pages can be reached through a tunnel.
 struct Admission {
   std::string path;
-  std::optional<WebAnswer> refusal;
+  std::optional<HttpAnswer> refusal;
 };
-Admission Admit(const WebRequest& request, const std::string& token);
+Admission Admit(const HttpRequest& request, const std::string& token);
 
 }  // namespace gauntlet

@@ -2,10 +2,12 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cstdint>
+#include <utility>
 
 namespace gauntlet::testing_support {
 
@@ -42,6 +44,20 @@ OpenConnection::OpenConnection(int port, const std::string& bytes)
   sockaddr_in address = LocalAddress(port);
   ok_ = connect(fd_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0 &&
         send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
+}
+
+OpenConnection::OpenConnection(OpenConnection&& other) noexcept
+    : fd_(std::exchange(other.fd_, -1)), ok_(other.ok_) {}
+
+bool OpenConnection::IsClosedWhileSaying(char byte, std::chrono::milliseconds patience) {
+  const auto end = std::chrono::steady_clock::now() + patience;
+  pollfd heard{fd_, POLLIN, 0};
+  while (std::chrono::steady_clock::now() < end) {
+    char answer[4096];
+    if (poll(&heard, 1, 10) > 0 && recv(fd_, answer, sizeof answer, MSG_DONTWAIT) <= 0) return true;
+    send(fd_, &byte, 1, MSG_NOSIGNAL | MSG_DONTWAIT);
+  }
+  return false;
 }
 
 OpenConnection::~OpenConnection() {

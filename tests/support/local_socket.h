@@ -1,6 +1,7 @@
 // One conversation with a port of this machine, in plain bytes.
 #pragma once
 
+#include <chrono>
 #include <string>
 
 namespace gauntlet::testing_support {
@@ -13,11 +14,14 @@ std::string Converse(int port, const std::string& request);
 class OpenConnection {
  public:
   OpenConnection(int port, const std::string& bytes);
+  OpenConnection(OpenConnection&& other) noexcept;
   OpenConnection(const OpenConnection&) = delete;
   OpenConnection& operator=(const OpenConnection&) = delete;
   ~OpenConnection();
   // Whether it was made, and all was sent.
   bool ok() const { return ok_; }
+  // Sends `byte` every 10 ms, until the other side closes or these are over. Whether it closed.
+  bool IsClosedWhileSaying(char byte, std::chrono::milliseconds patience);
 
  private:
   int fd_ = -1;

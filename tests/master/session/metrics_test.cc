@@ -1,13 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
-#include <list>
 #include <set>
 #include <sstream>
 
-#include "master/session/metrics_server.h"
+#include "master/session/metrics_page.h"
 #include "master/session/metrics_text.h"
 #include "tests/support/local_socket.h"
 
@@ -71,60 +69,41 @@ TEST(MetricsText, AProcessKnowsItsCost) {
   EXPECT_GT(cost.cpu_seconds, 0.0);
 }
 
-class MetricsServerTest : public testing::Test {
+class MetricsPageTest : public testing::Test {
  protected:
-  std::string Ask(const std::string& request) { return Converse(server_->port(), request); }
+  std::string Ask(const std::string& request) { return Converse(Port(), request); }
+  int Port() const {
+    const std::string url = page_->url();
+    return std::stoi(url.substr(url.rfind(':') + 1));
+  }
 
-  std::unique_ptr<MetricsServer> server_ = *MetricsServer::Start(0);
+  std::unique_ptr<MetricsPage> page_ = *MetricsPage::Serve(0);
 };
 
-TEST_F(MetricsServerTest, AnswersWithWhatWasPublishedLast) {
+TEST_F(MetricsPageTest, AnswersWithWhatWasPublishedLast) {
   EXPECT_THAT(Ask("GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n"), StartsWith("HTTP/1.1 503 "));
-  server_->Publish("first 1\n");
-  server_->Publish("second 2\n");
+  page_->Publish("first 1\n");
+  page_->Publish("second 2\n");
   EXPECT_THAT(Ask("GET /metrics HTTP/1.1\r\nHost: x\r\n\r\n"),
               AllOf(StartsWith("HTTP/1.1 200 OK\r\nContent-Type: text/plain; version=0.0.4"),
                     HasSubstr("Content-Length: 9\r\n"), HasSubstr("\r\n\r\nsecond 2\n")));
-  EXPECT_EQ(server_->url(), "http://127.0.0.1:" + std::to_string(server_->port()) + "/metrics");
+  EXPECT_THAT(Ask("GET /metrics?all HTTP/1.0\r\n\r\n"), HasSubstr("second 2\n"));
+  EXPECT_THAT(page_->url(), testing::MatchesRegex("http://127\\.0\\.0\\.1:[0-9]+/metrics"));
 }
 
-TEST_F(MetricsServerTest, AnythingElseIsRefused) {
-  server_->Publish("secret 1\n");
+TEST_F(MetricsPageTest, AnythingElseIsRefused) {
+  page_->Publish("secret 1\n");
   EXPECT_THAT(Ask("GET /etc/passwd HTTP/1.1\r\n\r\n"), StartsWith("HTTP/1.1 404 "));
   EXPECT_THAT(Ask("GET /metrics/../x HTTP/1.1\r\n\r\n"), StartsWith("HTTP/1.1 404 "));
   EXPECT_THAT(Ask("POST /metrics HTTP/1.1\r\n\r\n"), StartsWith("HTTP/1.1 405 "));
-  EXPECT_THAT(Ask(std::string(100'000, 'x')), testing::Not(HasSubstr("secret")));
-  // Half a request is waited for a second, and then dropped; the next is answered.
-  EXPECT_EQ(Ask("GET /metr"), "");
-  EXPECT_THAT(Ask("GET /metrics HTTP/1.0\r\n\r\n"), HasSubstr("secret 1\n"));
 }
 
-// A scraper gives up after ten seconds; whoever has it wait for strangers that say nothing needs their number
-// of seconds.
-TEST_F(MetricsServerTest, IdleConnectionsKeepNobodyWaiting) {
-  server_->Publish("fresh 1\n");
-  for (const std::size_t strangers : {200UL, 3 * MetricsServer::kMostConnections}) {
-    std::list<testing_support::OpenConnection> idle;
-    for (std::size_t i = 0; i < strangers; ++i)
-      ASSERT_TRUE(idle.emplace_back(server_->port(), i % 2 == 0 ? "GET /me" : "").ok()) << i;
-    const auto asked = std::chrono::steady_clock::now();
-    EXPECT_THAT(Ask("GET /metrics HTTP/1.1\r\n\r\n"), HasSubstr("fresh 1\n"));
-    EXPECT_LT(std::chrono::steady_clock::now() - asked, std::chrono::seconds(5)) << strangers;
-  }
-}
-
-TEST_F(MetricsServerTest, AnAnswerLongerThanTheSocketTakesArrivesWhole) {
-  const std::string text(8 << 20, 'x');
-  server_->Publish(text);
-  const std::string answer = Ask("GET /metrics HTTP/1.1\r\n\r\n");
-  EXPECT_EQ(answer.size() - answer.find("\r\n\r\n") - 4, text.size());
-}
-
-TEST_F(MetricsServerTest, APortThatIsTakenIsNamed) {
-  const Result<std::unique_ptr<MetricsServer>> second = MetricsServer::Start(server_->port());
+TEST_F(MetricsPageTest, APortThatIsTakenIsNamed) {
+  const Result<std::unique_ptr<MetricsPage>> second = MetricsPage::Serve(Port());
   ASSERT_FALSE(second.ok());
   EXPECT_EQ(second.error().kind, ErrorKind::kInUse);
-  EXPECT_THAT(second.error().message, HasSubstr("127.0.0.1:" + std::to_string(server_->port())));
+  EXPECT_THAT(second.error().message,
+              StartsWith("cannot serve metrics on 127.0.0.1:" + std::to_string(Port()) + ": "));
 }
 
 }  // namespace
