@@ -12,7 +12,6 @@
 #include "slurm/job_script.h"
 #include "tests/support/fake_campaigns.h"
 #include "tests/support/fake_slurm.h"
-#include "tests/support/golden.h"
 #include "tests/support/local_socket.h"
 
 namespace gauntlet {
@@ -45,13 +44,6 @@ class Submit : public ::testing::Test {
     return RunCommandLine(arguments, context);
   }
   std::string dir() const { return root_ / "c"; }
-  // Holds a text of several lines against tests/cli/texts/NAME.txt; the test's directory is <here> there.
-  void ExpectText(const std::string& name, std::string text) const {
-    const std::string here = root_.string();
-    for (std::size_t at = text.find(here); at != std::string::npos; at = text.find(here))
-      text.replace(at, here.size(), "<here>");
-    testing_support::ExpectGolden("tests/cli/texts/" + name + ".txt", text);
-  }
   // Of the campaign's jobs, once its master's job was submitted.
   std::string JobPrefix() const {
     const std::string& name = cluster_.jobs.at(0).name;
