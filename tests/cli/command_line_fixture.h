@@ -13,6 +13,7 @@
 
 #include "cli/command_line.h"
 #include "tests/support/fake_campaigns.h"
+#include "tests/support/golden.h"
 
 namespace gauntlet {
 
@@ -47,6 +48,16 @@ class CommandLine : public ::testing::Test {
   static std::string Read(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+  // Standard error behind its first line, which tells of the campaign that begins, and of this machine's
+  // cores.
+  std::string Messages() const { return err_.str().substr(err_.str().find('\n') + 1); }
+  // Holds a text of several lines against tests/cli/texts/NAME.txt; the test's directory is <here> there.
+  void ExpectText(const std::string& name, std::string text) const {
+    const std::string here = directory_.string();
+    for (std::size_t at = text.find(here); at != std::string::npos; at = text.find(here))
+      text.replace(at, here.size(), "<here>");
+    testing_support::ExpectGolden("tests/cli/texts/" + name + ".txt", text);
   }
   // Exit 2, one line on standard error, nothing on standard output, nothing started.
   void ExpectUsageError(const std::vector<std::string>& arguments,

@@ -8,7 +8,6 @@
 namespace gauntlet {
 namespace {
 
-using ::testing::HasSubstr;
 using Json = nlohmann::json;
 
 constexpr const char* kFirst = "fitness,speed\n0.1,4\n0.2,5\n0.2,6\n";
@@ -39,20 +38,12 @@ TEST_F(CommandLine, CompareGivesEveryFieldThatScriptsRelyOn) {
   }
   // Of the 35 ways to choose three of the ranks, those with a sum of at most 7: 1 3 3 in each of three pairs.
   EXPECT_NEAR(json.at("p_exact_less").get<double>(), 3.0 / 35, 1e-12);
-  EXPECT_THAT(json.at("method").get<std::string>(), HasSubstr("normal approximation"));
+  EXPECT_EQ(json.at("method").get<std::string>(),
+            "Mann-Whitney U, normal approximation, corrected for ties and continuity; beside it Mann-Whitney "
+            "U, exact distribution of the observed mid-ranks");
   EXPECT_EQ(json.at("effect"), "large");
   EXPECT_EQ(json.at("sets").at(0).at("set"), a);
   EXPECT_EQ(json.at("sets").at(0).at("box").at("lower_whisker"), 0.1);
-}
-
-TEST_F(CommandLine, CompareTakesColumnsMetricsAndTellsInWords) {
-  const std::string a = Write("a.csv", kFirst);
-  const std::string b = Write("b.csv", kSecond);
-  ASSERT_EQ(Run({"compare", a + ":fitness", b + ":speed"}), kExitDone) << err_.str();
-  EXPECT_THAT(out_.str(), HasSubstr("A (1 exceeds 2)  0.0000, effect: large"));
-  EXPECT_THAT(out_.str(), HasSubstr("1 tends to be smaller; it may be a matter of chance at the level 0.01"));
-  ASSERT_EQ(Run({"compare", a, a, "--metric", "speed"}), kExitDone) << err_.str();
-  EXPECT_THAT(out_.str(), HasSubstr("A (1 exceeds 2)  0.5000, effect: none"));
 }
 
 TEST_F(CommandLine, CompareDrawsBothBoxes) {
@@ -61,7 +52,7 @@ TEST_F(CommandLine, CompareDrawsBothBoxes) {
   ASSERT_EQ(Run({"compare", a, b, "--svg", Path("boxes.svg")}), kExitDone) << err_.str();
   pugi::xml_document document;
   EXPECT_TRUE(document.load_file(Path("boxes.svg").c_str()));
-  EXPECT_THAT(err_.str(), HasSubstr("wrote " + Path("boxes.svg")));
+  EXPECT_EQ(err_.str(), "gauntlet: wrote " + Path("boxes.svg") + "\n");
 }
 
 TEST_F(CommandLine, CompareSaysThatOneRunHasNoSpreadAndEqualOnesNoDifference) {
@@ -71,19 +62,12 @@ TEST_F(CommandLine, CompareSaysThatOneRunHasNoSpreadAndEqualOnesNoDifference) {
   const Json json = Json::parse(out_.str());
   EXPECT_TRUE(json.at("sd").at(0).is_null());
   EXPECT_TRUE(json.at("a_interval").is_null());
-  EXPECT_THAT(json.at("method").get<std::string>(), HasSubstr("all values are equal"));
+  EXPECT_EQ(json.at("method").get<std::string>(),
+            "no test: all values are equal; beside it Mann-Whitney U, exact distribution of the observed "
+            "mid-ranks");
   EXPECT_EQ(json.at("p_two_sided"), 1.0);
   EXPECT_EQ(json.at("a"), 0.5);
-  EXPECT_THAT(json.at("verdict").get<std::string>(), HasSubstr("All values are equal"));
-}
-
-TEST_F(CommandLine, CompareRefusesWhatCannotBeCompared) {
-  const std::string a = Write("a.csv", kFirst);
-  ExpectUsageError({"compare", a, Write("empty.csv", "fitness\n")}, HasSubstr("empty.csv is empty"));
-  ExpectUsageError({"compare", a, Write("nan.csv", "fitness\nNaN\n")},
-                   HasSubstr("nan.csv:2: fitness is 'NaN', not a finite number"));
-  ExpectUsageError({"compare", a, Path("none")}, HasSubstr("no such campaign or CSV file"));
-  ExpectUsageError({"compare", a, a + ":sped"}, HasSubstr("unknown column 'sped'; did you mean 'speed'?"));
+  EXPECT_EQ(json.at("verdict").get<std::string>(), "All values are equal: nothing tells set 1 from set 2.");
 }
 
 }  // namespace

@@ -44,17 +44,5 @@ TEST_F(CommandLine, ListNamesEverythingWithUnitsDefaultsAndRanges) {
   EXPECT_EQ(population.at("default"), 20);
 }
 
-TEST_F(CommandLine, ListOneSectionAsText) {
-  EXPECT_EQ(Run({"list", "controllers"}), kExitDone);
-  EXPECT_THAT(out_.str(),
-              AllOf(HasSubstr("bird_speed"), HasSubstr("m/s"), Not(HasSubstr("search.population"))));
-  EXPECT_EQ(Run({"list", "scenarios"}), kExitDone);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("generic.failure"), HasSubstr("generic.light.1.color"),
-                                HasSubstr("black | red | "), HasSubstr("generic.nest.1.grey")));
-  EXPECT_EQ(Run({"list", "searches"}), kExitDone);
-  EXPECT_THAT(out_.str(),
-              HasSubstr("AllParent-BestHalf | 2BestParents-2WorseAway | 2RandomParents-2WorseAway"));
-}
-
 }  // namespace
 }  // namespace gauntlet

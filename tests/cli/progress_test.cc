@@ -13,9 +13,6 @@
 namespace gauntlet {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::Not;
-
 CampaignProgress Halfway() {
   CampaignProgress progress;
   progress.search.generation = 12;
@@ -40,10 +37,7 @@ TEST(LiveProgressLine, ShowsEverythingOnAWideTerminal) {
 
 TEST(LiveProgressLine, LeavesOutWhatMattersLeastFirst) {
   const std::string line = LiveProgressLine(Halfway(), 80);
-  EXPECT_THAT(line, HasSubstr("gen 12/50"));
-  EXPECT_THAT(line, HasSubstr("1,240/2,480 runs"));
-  EXPECT_THAT(line, HasSubstr("53 s left"));
-  EXPECT_THAT(line, Not(HasSubstr("workers")));
+  EXPECT_EQ(line, "gen 12/50  1,240/2,480 runs  23/s  best 0.000 mean 0.413  53 s left");
 }
 
 RC_GTEST_PROP(LiveProgressLine, NeverExceedsTheTerminal, ()) {
@@ -132,7 +126,11 @@ TEST_F(Printer, PlainEndsWithTheLastStateOnce) {
   printer.Finish();
   printer.Finish();
   EXPECT_EQ(Lines(), 2);
-  EXPECT_THAT(written_, HasSubstr("runs 2,480/2,480"));
+  EXPECT_EQ(written_,
+            "generation 12/50, runs 1,240/2,480 (23/s), best 0.000, mean 0.413, total failures 37, workers 2 "
+            "(1 busy), 53 s left\n"
+            "generation 12/50, runs 2,480/2,480 (23/s), best 0.000, mean 0.413, total failures 37, workers 2 "
+            "(1 busy), 53 s left\n");
 }
 
 TEST_F(Printer, LiveRedrawsOneLineAndRemovesItAtTheEnd) {

@@ -38,7 +38,15 @@ class Replay : public CommandLine {
 TEST_F(Replay, ReproducedRunExitsZeroAndWritesItsFiles) {
   EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("r.svg"), "--csv", Path("r.csv")}), kExitDone);
   EXPECT_EQ(campaigns_.replayed_run, 12U);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("run 12: reproduced"), HasSubstr("0000000000001234  (the same)")));
+  EXPECT_EQ(out_.str(),
+            "flocking, run 12: reproduced\n"
+            "\n"
+            "  test case    3 (generation 0)\n"
+            "  seed         0\n"
+            "  outcome      no bird lost\n"
+            "  fitness      0.500000\n"
+            "  stored hash  0000000000001234\n"
+            "  new hash     0000000000001234  (the same)\n");
   pugi::xml_document svg;
   EXPECT_TRUE(svg.load_file(Path("r.svg").c_str()));
   EXPECT_THAT(Read(Path("r.csv")),
@@ -57,21 +65,29 @@ TEST_F(Replay, AFileThatCannotBeWrittenWholeKeepsWhatItHeld) {
   setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   EXPECT_NE(code, kExitDone);
-  EXPECT_THAT(err_.str(), AllOf(HasSubstr("r.csv: cannot be written"), HasSubstr("File too large")));
+  EXPECT_EQ(err_.str(), "gauntlet: " + Path("r.csv") + ": cannot be written: cannot write " + Path("r.csv") +
+                            ": File too large for this process (ulimit -f)\n");
   EXPECT_EQ(Read(Path("r.csv")), "of an earlier run\n");
 }
 
 TEST_F(Replay, NoiseAndFaultsOfTheRunAreNamed) {
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitDone);
-  EXPECT_THAT(out_.str(), AllOf(Not(HasSubstr("noise.")), Not(HasSubstr("faults"))));
+  EXPECT_EQ(out_.str(),
+            "flocking, run 12: reproduced\n"
+            "\n"
+            "  test case    3 (generation 0)\n"
+            "  seed         0\n"
+            "  outcome      no bird lost\n"
+            "  fitness      0.500000\n"
+            "  stored hash  0000000000001234\n"
+            "  new hash     0000000000001234  (the same)\n");
   sim::Disturbances& disturbances = campaigns_.replay.report.spec.disturbances;
   disturbances.noise[sim::Device::kProximity].gaussian = 0.02;
   disturbances.faults = {{.robot = 3, .device = sim::Device::kWheels, .tick = 500}};
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitDone);
-  EXPECT_THAT(out_.str(),
-              AllOf(HasSubstr("noise.proximity.gaussian"), HasSubstr("0.02"), HasSubstr("3:wheels@500")));
+  ExpectText("replay_noise_and_faults_of_the_run_are_named", out_.str());
   EXPECT_EQ(Run({"replay", "d", "12", "--json"}), kExitDone);
-  EXPECT_THAT(out_.str(), HasSubstr("\"noise.proximity.gaussian\": \"0.02\""));
+  ExpectText("replay_noise_and_faults_of_the_run_are_named_2", out_.str());
 }
 
 TEST_F(Replay, MetricsHaveUnitsAndNoneWhereNothingWasMeasured) {
@@ -91,16 +107,18 @@ TEST_F(Replay, DifferenceExitsOneAndSaysWhatDiffers) {
   campaigns_.replay.report.replayed.hash = 0x9999;
   campaigns_.replay.report.differences = {"hash differs: stored 1234, replayed 9999", "fitness differs"};
   EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("r.svg")}), kExitNegative);
-  EXPECT_THAT(out_.str(),
-              AllOf(HasSubstr("NOT REPRODUCED"), HasSubstr("(DIFFERENT)"), HasSubstr("  fitness differs\n")));
-  EXPECT_THAT(err_.str(), HasSubstr("run 12 of d was not reproduced: hash differs"));
+  ExpectText("replay_difference_exits_one_and_says_what_differs", out_.str());
+  EXPECT_EQ(err_.str(),
+            "gauntlet: wrote " + Path("r.svg") +
+                "\n"
+                "gauntlet: run 12 of d was not reproduced: hash differs: stored 1234, replayed 9999\n");
   EXPECT_TRUE(std::filesystem::exists(Path("r.svg"))) << "the picture helps to see why";
 }
 
 TEST_F(Replay, DamagedRunExitsOne) {
   campaigns_.replay.report.damage = "the stored spec of run 12 is damaged";
   EXPECT_EQ(Run({"replay", "d", "12"}), kExitNegative);
-  EXPECT_THAT(err_.str(), HasSubstr("the stored spec of run 12 is damaged"));
+  EXPECT_EQ(err_.str(), "gauntlet: the stored spec of run 12 is damaged\n");
   EXPECT_THAT(out_.str(), IsEmpty());
 }
 
@@ -116,22 +134,22 @@ TEST_F(Replay, RefusedRunIsReproducedWithItsRule) {
   campaigns_.replay.report.replayed.trajectory.clear();
   campaigns_.replay.report.replayed.robots.clear();
   EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("r.svg")}), kExitDone);
-  EXPECT_THAT(out_.str(), HasSubstr("no-room-to-spawn: 3 of 100 robots placed"));
+  EXPECT_EQ(out_.str(),
+            "flocking, run 12: reproduced\n"
+            "\n"
+            "  test case    3 (generation 0)\n"
+            "  seed         0\n"
+            "  outcome      refused: no-room-to-spawn: 3 of 100 robots placed\n"
+            "  verdict      refused\n"
+            "  stored hash  0000000000001234\n"
+            "  new hash     0000000000001234  (the same)\n");
   pugi::xml_document svg;
   EXPECT_TRUE(svg.load_file(Path("r.svg").c_str()));
 }
 
-TEST_F(Replay, OneFileForTwoOutputsIsRefused) {
-  ExpectUsageError({"replay", "d", "12", "--svg", Path("a"), "--csv", Path("./a")},
-                   AllOf(HasSubstr("--svg"), HasSubstr("--csv")));
-  ExpectUsageError({"replay", "d", "12", "--timeline", Path("a"), "--csv", Path("./a")},
-                   AllOf(HasSubstr("--timeline"), HasSubstr("--csv")));
-  EXPECT_FALSE(std::filesystem::exists(Path("a")));
-}
-
 TEST_F(Replay, TimelineIsWrittenForRunsThatSayWhatRobotsDid) {
   EXPECT_EQ(Run({"replay", "d", "12", "--timeline", Path("t.svg"), "--csv", Path("t.csv")}), kExitUsage);
-  EXPECT_THAT(err_.str(), HasSubstr("--timeline: runs of flocking do not say what their robots did when"));
+  EXPECT_EQ(err_.str(), "gauntlet: --timeline: runs of flocking do not say what their robots did when\n");
   EXPECT_FALSE(std::filesystem::exists(Path("t.svg")));
   campaigns_.replay.report.spec.scenario = "foraging";
   campaigns_.replay.report.replayed.annotations = {
@@ -139,14 +157,6 @@ TEST_F(Replay, TimelineIsWrittenForRunsThatSayWhatRobotsDid) {
   EXPECT_EQ(Run({"replay", "d", "12", "--timeline", Path("t.svg")}), kExitDone);
   pugi::xml_document svg;
   EXPECT_TRUE(svg.load_file(Path("t.svg").c_str()));
-}
-
-TEST_F(Replay, BadRunIdsAndFilesAreUsageErrors) {
-  ExpectUsageError({"replay", "d", "twelve"}, HasSubstr("twelve is no run"));
-  ExpectUsageError({"replay", "d", "0"}, HasSubstr("0 is no run"));
-  EXPECT_EQ(Run({"replay", "d", "12", "--svg", Path("none/r.svg")}), kExitUsage);
-  EXPECT_THAT(err_.str(),
-              AllOf(HasSubstr("none/r.svg: cannot be written: "), HasSubstr("No such file or directory")));
 }
 
 }  // namespace

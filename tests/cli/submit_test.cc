@@ -21,7 +21,6 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using ::testing::Not;
 using ::testing::SizeIs;
 
 class Submit : public ::testing::Test {
@@ -68,7 +67,6 @@ TEST_F(Submit, MakesTheCampaignAndItsMastersJob) {
                                            HasSubstr("#SBATCH --partition=short")));
   EXPECT_THAT(campaigns_.slurm, HasSubstr("partition = \"short\""));
   EXPECT_THAT(campaigns_.prepared, SizeIs(1));
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("job 12 is the master"), HasSubstr("gauntlet status")));
 }
 
 TEST_F(Submit, ReadsTheUsersFileThenTheExperimentThenTheCommandLine) {
@@ -80,17 +78,18 @@ TEST_F(Submit, ReadsTheUsersFileThenTheExperimentThenTheCommandLine) {
   EXPECT_THAT(campaigns_.slurm,
               AllOf(HasSubstr("account = \"a\""), HasSubstr("qos = \"c\""), HasSubstr("memory = \"3G\"")));
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir() + "2", "--set", "slurm.qos=x"}), kExitUsage);
-  EXPECT_THAT(err_.str(), HasSubstr("--slurm KEY=VALUE"));
+  EXPECT_EQ(err_.str(), "gauntlet: --set slurm.qos=x: settings of Slurm are given with --slurm KEY=VALUE\n");
 }
 
 TEST_F(Submit, ADryRunPrintsScriptsAndAnswersAndChangesNothing) {
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--dry-run"}), kExitDone);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("# the master's job"), HasSubstr("exec "),
-                                HasSubstr("sbatch --test-only: Job 3 to start at once")));
   cluster_.refusal = "allocation failure: Invalid account or account/partition combination specified";
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--dry-run"}), kExitUsage);
   EXPECT_THAT(out_.str(), HasSubstr("Invalid account"));
-  EXPECT_THAT(err_.str(), HasSubstr("--slurm account=NAME"));
+  EXPECT_EQ(err_.str(),
+            "gauntlet: the master's job could not start: allocation failure: Invalid account or "
+            "account/partition combination specified; name yours: --slurm account=NAME (`sacctmgr show "
+            "associations user=$USER` lists them)\n");
   EXPECT_EQ(Run({"submit", "flocking", "--dir", dir()}), kExitUsage);
   EXPECT_THAT(cluster_.submitted, IsEmpty());
   EXPECT_FALSE(std::filesystem::exists(dir()));
@@ -115,7 +114,8 @@ TEST_F(Submit, ResumeGivesTheMasterToSlurmAgainUnlessOneIsThere) {
   EXPECT_EQ(Run({"resume", dir()}), kExitDone) << err_.str();
   EXPECT_THAT(cluster_.submitted, SizeIs(2));
   EXPECT_EQ(Run({"resume", dir()}), kExitUsage);
-  EXPECT_THAT(err_.str(), HasSubstr("job 13 (PENDING) is the campaign's master already"));
+  EXPECT_EQ(err_.str(), "gauntlet: job 13 (PENDING) is the campaign's master already; see: gauntlet status " +
+                            (root_ / "c").string() + "\n");
   EXPECT_THAT(cluster_.submitted, SizeIs(2));
 }
 
@@ -124,7 +124,8 @@ TEST_F(Submit, ResumeMakesItLongerBeforeItsMasterIsSubmitted) {
   cluster_.Set("12", "COMPLETED");
   EXPECT_EQ(Run({"resume", dir(), "--generations", "80"}), kExitDone) << err_.str();
   EXPECT_THAT(campaigns_.extended, ElementsAre("search.generations=80"));
-  EXPECT_THAT(err_.str(), HasSubstr("goes on: search.generations from 50 to 80"));
+  EXPECT_EQ(err_.str(),
+            "gauntlet: " + (root_ / "c").string() + " goes on: search.generations from 50 to 80\n");
   EXPECT_THAT(cluster_.submitted, SizeIs(2));
   cluster_.Set("13", "COMPLETED");
   campaigns_.error = InvalidInput("--set search.generations=1: shorter");
@@ -179,15 +180,24 @@ TEST_F(Submit, StatusListsTheJobsWithSlurmsWordsWhetherAMasterLivesOrNot) {
                   "cancelled": false}], "worker_list": []
 })json";
   EXPECT_EQ(Run({"status", dir()}), kExitDone);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("fewer workers than could be used: job 8 waits"), HasSubstr("7_1"),
-                                HasSubstr("n3"), HasSubstr("PENDING  Priority")));
+  EXPECT_EQ(out_.str(), (root_ / "c").string() +
+                            ": running\n"
+                            "fewer workers than could be used: job 8 waits in the queue (Priority)\n"
+                            "\n"
+                            "  job  state    reason    node  workers\n"
+                            "  7_1  RUNNING            n3          2\n"
+                            "  8    PENDING  Priority              0\n");
   campaigns_.status =
       R"({"state": "stopped", "why_nothing_runs": "no master serves the campaign", "worker_list": []})";
   cluster_.jobs.clear();
   cluster_.Add("13", master, "PENDING", "Resources");
   EXPECT_EQ(Run({"status", dir()}), kExitDone);
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("job 13, which is to be the master, is PENDING (Resources)"),
-                                HasSubstr("13 master")));
+  EXPECT_EQ(out_.str(), (root_ / "c").string() +
+                            ": stopped\n"
+                            "nothing runs: job 13, which is to be the master, is PENDING (Resources)\n"
+                            "\n"
+                            "  job        state    reason     node  workers\n"
+                            "  13 master  PENDING  Resources              0\n");
 }
 
 TEST_F(Submit, ASweepHasASearchForEachCombination) {
@@ -200,26 +210,6 @@ TEST_F(Submit, ASweepHasASearchForEachCombination) {
   EXPECT_EQ(campaigns_.prepared[11].settings, "search.population=6, search.crossover=single-point, seed 5");
   EXPECT_EQ(campaigns_.prepared[11].experiment.search.population, 6);
   EXPECT_EQ(campaigns_.prepared[11].experiment.seed, 5U);
-}
-
-TEST_F(Submit, WrongSweepsAreRefusedByName) {
-  const auto error_of = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"submit", "flocking", "--dir", dir()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(Run(arguments), kExitUsage);
-    return err_.str();
-  };
-  EXPECT_THAT(error_of({"--sweep", "search.population"}), HasSubstr("give a key and its values, key=a,b,c"));
-  EXPECT_THAT(error_of({"--sweep", "search.population=4,,6"}), HasSubstr("key=a,b,c"));
-  EXPECT_THAT(error_of({"--sweep", "search.population=4,5"}), HasSubstr("search.population"));
-  EXPECT_THAT(error_of({"--sweep", "seed=1,2"}), HasSubstr("--seeds"));
-  EXPECT_THAT(error_of({"--seeds", "5..1"}), HasSubstr("a range (1..20)"));
-  EXPECT_THAT(error_of({"--seeds", "1,x"}), HasSubstr("--seeds 1,x"));
-  EXPECT_THAT(error_of({"--seeds", "1..1001"}), HasSubstr("at most 1000"));
-  EXPECT_THAT(error_of({"--seeds", "1..900", "--sweep", "search.population=4,6"}),
-              HasSubstr("more than 1000"));
-  EXPECT_THAT(error_of({"--seeds", "1..2", "--seed", "7"}), HasSubstr("give one of them"));
-  EXPECT_THAT(cluster_.tested, IsEmpty());
 }
 
 }  // namespace

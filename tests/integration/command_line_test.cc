@@ -83,15 +83,8 @@ TEST_F(FinishedCampaignTest, EvaluateSimulatesAPopulationAgainWithFreshSeedsAndC
   EXPECT_EQ(comparison["sets"][0]["unit"], "evolution");
   EXPECT_EQ(comparison["sets"][0]["units"], 2);
   EXPECT_EQ(Gauntlet({"replay", improved, "1"}).exit_code, 0);
-  EXPECT_THAT(Gauntlet({"resume", original}).err, HasSubstr("nothing was left to do"));
-
-  const ProcessResult other = Gauntlet({"evaluate", "foraging", "--from", Dir()});
-  EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.err, HasSubstr("its cases are of the scenario 'flocking', the experiment foraging"));
-  EXPECT_THAT(Gauntlet({"evaluate", "flocking", "--from", Dir() + ":best"}).err,
-              HasSubstr("no subset 'best'; known: final"));
-  EXPECT_THAT(Gauntlet({"evaluate", "flocking", "--from", Dir(), "--case", "a.json"}).err,
-              HasSubstr("Either --case FILE... or --from DIR"));
+  EXPECT_EQ(Gauntlet({"resume", original}).err,
+            "gauntlet: " + (*scratch_ / "f-f") + " is finished, nothing was left to do\n");
 }
 
 TEST_F(FinishedCampaignTest, CompareReadsSubsetsOfCampaigns) {
@@ -112,10 +105,14 @@ TEST_F(FinishedCampaignTest, CompareReadsSubsetsOfCampaigns) {
   const ProcessResult refused = Gauntlet({"compare", Dir(), other});
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_EQ(refused.out, "");
-  EXPECT_THAT(refused.err, HasSubstr("has flocking, " + other + " has foraging: not like for like"));
+  EXPECT_EQ(refused.err, "gauntlet: scenario: " + (*scratch_ / "c") + " has flocking, " +
+                             (*scratch_ / "other") +
+                             " has foraging: not like for like; --mixed compares them nevertheless\n");
   const ProcessResult mixed = Gauntlet({"compare", Dir(), other, "--mixed", "--json"});
   ASSERT_EQ(mixed.exit_code, 0) << mixed.err;
-  EXPECT_THAT(json::parse(mixed.out)["notes"].dump(), HasSubstr("not like for like: scenario"));
+  EXPECT_EQ(json::parse(mixed.out)["notes"].dump(), "[\"not like for like: scenario: " + (*scratch_ / "c") +
+                                                        " has flocking, " + (*scratch_ / "other") +
+                                                        " has foraging\"]");
 }
 
 TEST_F(FinishedCampaignTest, EveryStoredRunReproducesItsHash) {
@@ -131,34 +128,10 @@ TEST_F(FinishedCampaignTest, ReplayDrawsTheRun) {
   ASSERT_EQ(Gauntlet({"replay", Dir(), "1", "--svg", svg, "--csv", csv}).exit_code, 0);
   std::ifstream svg_file(svg);
   std::string text((std::istreambuf_iterator<char>(svg_file)), {});
-  EXPECT_THAT(text, HasSubstr("<svg"));
   std::ifstream csv_file(csv);
   std::string header;
   std::getline(csv_file, header);
   EXPECT_EQ(header, "tick,time_s,robot,x,y,heading,speed");
-}
-
-TEST_F(FinishedCampaignTest, UnknownRunIsNamed) {
-  const ProcessResult result = Gauntlet({"replay", Dir(), "4711"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("4711"));
-}
-
-TEST_F(FinishedCampaignTest, ANonEmptyDirectoryIsNotOverwritten) {
-  const ProcessResult result = Gauntlet(EvolveArguments(SmallCampaign{}, Dir(), 2));
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("gauntlet resume " + Dir()));
-}
-
-TEST(CommandLineTest, EvolveWithJsonPrintsOneDocument) {
-  const TemporaryDirectory scratch;
-  SmallCampaign campaign;
-  campaign.generations = 1;
-  std::vector<std::string> arguments = EvolveArguments(campaign, scratch / "c", 2);
-  arguments.push_back("--json");
-  const ProcessResult result = Gauntlet(arguments);
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_FALSE(json::parse(result.out, nullptr, false).is_discarded()) << result.out;
 }
 
 TEST(CommandLineTest, RandomKeepsAllCases) {
@@ -172,15 +145,6 @@ TEST(CommandLineTest, RandomKeepsAllCases) {
   EXPECT_EQ(shown["runs_done"], 12);
 }
 
-TEST(CommandLineTest, ListNamesEveryParameterWithItsUnitAndDefault) {
-  const ProcessResult result = Gauntlet({"list", "--json"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const json listed = json::parse(result.out, nullptr, false);
-  ASSERT_FALSE(listed.is_discarded());
-  EXPECT_THAT(result.out, HasSubstr("flocking"));
-  EXPECT_THAT(result.out, HasSubstr("flocking-improved"));
-}
-
 TEST(CommandLineTest, AProcessorWithoutTheInstructionsGetsASentence) {
   const std::string old = "exec qemu-x86_64 -cpu core2duo \"$0\" --version";
   if (RunProcess({"/bin/sh", "-c", "command -v qemu-x86_64"}).exit_code != 0) {
@@ -192,67 +156,6 @@ TEST(CommandLineTest, AProcessorWithoutTheInstructionsGetsASentence) {
     EXPECT_THAT(result.err, HasSubstr("this processor lacks instructions"));
   }
 }
-
-struct Refusal {
-  std::string name;
-  std::vector<std::string> arguments;
-  std::vector<std::string> said;  // parts of the message
-};
-
-void PrintTo(const Refusal& refusal, std::ostream* os) {
-  *os << refusal.name;
-}
-
-class RefusalTest : public testing::TestWithParam<Refusal> {};
-
-TEST_P(RefusalTest, ExitsWith2AndNamesTheCulprit) {
-  const TemporaryDirectory scratch;
-  std::vector<std::string> arguments = GetParam().arguments;
-  if (arguments[0] == "evolve" || arguments[0] == "random" || arguments[0] == "evaluate") {
-    arguments.insert(arguments.end(), {"--dir", scratch / "c"});
-  }
-  const ProcessResult result = Gauntlet(arguments);
-  EXPECT_EQ(result.exit_code, 2) << result.err;
-  EXPECT_EQ(result.out, "");
-  for (const std::string& part : GetParam().said) EXPECT_THAT(result.err, HasSubstr(part));
-  EXPECT_FALSE(std::filesystem::exists(scratch / "c"))
-      << "something was started before the input was checked";
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    CommandLine, RefusalTest,
-    testing::Values(Refusal{"UnknownExperiment", {"evolve", "floking"}, {"floking", "flocking"}},
-                    Refusal{"UnknownVariant",
-                            {"evolve", "foraging", "--set", "controller=foraging-improve"},
-                            {"'foraging-improve'", "'foraging-improved'"}},
-                    Refusal{"CommunicationRangeOfZero",
-                            {"evolve", "foraging", "--set", "scenario_parameters.communication_range=0"},
-                            {"communication_range = 0.0", "0.1 to 10 m"}},
-                    Refusal{"NegativeDecay",
-                            {"evolve", "foraging", "--set", "controller_parameters.pheromone_decay_time=-1"},
-                            {"pheromone_decay_time = -1.0", "1 to 1000000 s"}},
-                    Refusal{"NestInTheWall",
-                            {"evolve", "foraging", "--set", "scenario_parameters.nest_food_distance=8"},
-                            {"start-blocked", "(0, -4)"}},
-                    Refusal{"SwarmThatDoesNotFit",
-                            {"random", "foraging", "--set", "scenario_parameters.robots=100", "--set",
-                             "scenario_parameters.spawn_radius=0.4"},
-                            {"no-room-to-spawn", "of 100 robots fit"}},
-                    Refusal{"UnknownKey",
-                            {"evolve", "flocking", "--set", "search.populaton=20"},
-                            {"search.populaton", "search.population"}},
-                    Refusal{"ValueOutOfRange",
-                            {"evolve", "flocking", "--set", "search.mutation_probability=1.5"},
-                            {"search.mutation_probability", "1.5", "1"}},
-                    Refusal{"NoWorkers", {"evolve", "flocking", "--workers", "0"}, {"0"}},
-                    Refusal{"AbsurdlyManyWorkers", {"evolve", "flocking", "--workers", "100000"}, {"100000"}},
-                    Refusal{
-                        "SeedThatIsNoNumber", {"evolve", "flocking", "--seed", "lucky"}, {"lucky", "random"}},
-                    Refusal{"NegativeGenerations", {"evolve", "flocking", "--generations", "-1"}, {"-1"}},
-                    Refusal{"NoCampaign", {"show", "/nonexistent/campaign"}, {"/nonexistent/campaign"}},
-                    Refusal{"ResumeNothing", {"resume", "/nonexistent/campaign"}, {"/nonexistent/campaign"}},
-                    Refusal{"UnknownCommand", {"evlove", "flocking"}, {"evlove"}}),
-    [](const testing::TestParamInfo<Refusal>& parameter) { return parameter.param.name; });
 
 TEST(EvaluateTest, SimulatesValidCasesAndRefusesTheOthersByRule) {
   const TemporaryDirectory scratch;
@@ -276,15 +179,8 @@ TEST(EvaluateTest, SimulatesValidCasesAndRefusesTheOthersByRule) {
   EXPECT_GE(open["fitness"].get<double>(), 0.0);
   EXPECT_EQ(document["cases"][1]["refused"], "no-path");
   EXPECT_TRUE(document["cases"][1]["fitness"].is_null());
-  EXPECT_THAT(document["cases"][2]["error"].get<std::string>(), HasSubstr("broken.json:2"));
-}
-
-TEST(EvaluateTest, AMissingFileIsNamed) {
-  const TemporaryDirectory scratch;
-  const ProcessResult result =
-      Gauntlet({"evaluate", "flocking", "--case", "/nonexistent.json", "--dir", scratch / "c"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, testing::AllOf(HasSubstr("/nonexistent.json"), HasSubstr("no such file")));
+  EXPECT_EQ(document["cases"][2]["error"].get<std::string>(),
+            (scratch / "broken.json") + ":2:23: unexpected '}'; expected '[', '{', or a literal");
 }
 
 TEST(EvaluateTest, ExitsWith2WhenEveryCaseIsRefused) {

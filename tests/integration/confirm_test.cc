@@ -85,7 +85,6 @@ TEST(ConfirmTest, TheElitesOfAnArchiveFailAgain) {
   EXPECT_EQ(cases.size(), elites.size());
   for (const nlohmann::json& one : cases) confirmed += one["verdict"] == "fail" ? 1 : 0;
   EXPECT_GE(10 * confirmed, 7 * cases.size()) << "they were chosen for failing 3 of 3 or 4 of 5 times";
-  EXPECT_THAT(Gauntlet({"show", dir}).out, HasSubstr("The fewest obstacles that break the swarm"));
 }
 
 TEST(ConfirmTest, BudgetsAreComparedByWhatWasConfirmed) {
@@ -102,7 +101,10 @@ TEST(ConfirmTest, BudgetsAreComparedByWhatWasConfirmed) {
   const std::string random = search("random", "cases=100");
   const ProcessResult early = Gauntlet({"compare", "--budget", archive, random});
   EXPECT_EQ(early.exit_code, 2);
-  EXPECT_THAT(early.err, HasSubstr("gauntlet confirm " + archive + " --elites"));
+  EXPECT_EQ(early.err,
+            "gauntlet: " + (scratch / "archive") +
+                ": 10 of its 10 elites have not been simulated again with fresh seeds: `gauntlet confirm " +
+                (scratch / "archive") + " --elites`\n");
 
   const std::size_t elites = Json({"confirm", archive, "--elites", "--json", "--quiet"})["cases"].size();
   const nlohmann::json failing = Json(ConfirmAll(random, 2))["cases"];
@@ -117,8 +119,6 @@ TEST(ConfirmTest, BudgetsAreComparedByWhatWasConfirmed) {
   EXPECT_GT(table["sets"][0]["cells_with_up_to_3"]["mean"], 0.0);
   EXPECT_EQ(table["sets"][1]["cells_with_up_to_3"]["mean"], 0.0) << "random cases have eight obstacles";
   EXPECT_LE(table["sets"][1]["cells_with_up_to_3"]["p"], 1.0);
-  EXPECT_THAT(Gauntlet({"compare", "--budget", archive, random}).out,
-              HasSubstr("What 100 runs of a search give"));
 }
 
 TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
@@ -145,22 +145,6 @@ TEST(ConfirmTest, EndsAsUndisturbedWhenItIsKilled) {
   ASSERT_EQ(killed.exit_code, 0) << killed.err;
   EXPECT_EQ(nlohmann::json::parse(killed.out), whole) << killed.err;
   EXPECT_EQ(StateHashesIn(scratch / "killed/confirm"), StateHashesIn(scratch / "whole/confirm"));
-}
-
-TEST(ConfirmTest, SaysWhatIsWrong) {
-  const TemporaryDirectory scratch;
-  MakeCampaignToConfirm(scratch / "c");
-  const auto refused = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"confirm", scratch / "c"});
-    const ProcessResult result = Gauntlet(arguments);
-    EXPECT_EQ(result.exit_code, 2) << result.err;
-    return result.err;
-  };
-  EXPECT_THAT(refused({}), HasSubstr("--all-failing"));
-  EXPECT_THAT(refused({"1", "--all-failing"}), HasSubstr("which cases?"));
-  EXPECT_THAT(refused({"999999"}), HasSubstr("there is no run 999999"));
-  EXPECT_THAT(refused({"1", "--replicates", "0"}), HasSubstr("--replicates 0"));
-  EXPECT_THAT(refused({"no-such.json"}), HasSubstr("no-such.json"));
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST_F(ExportTest, CaseFilesAreWhatEvaluateTakes) {
   const ProcessResult ended =
       Gauntlet({"export", random, "--what", "cases", "--format", "json", "--out", cases});
   ASSERT_EQ(ended.exit_code, 0) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("wrote 3 case files"));
+  EXPECT_EQ(ended.err, "gauntlet: wrote 3 case files into " + (*scratch_ / "cases") + "\n");
   const ProcessResult evaluated =
       Gauntlet({"evaluate", "flocking", "--set", "scenario_parameters.time_limit=20", "--dir",
                 *scratch_ / "evaluated", "--json", "--quiet", "--case", cases + "/case-1.json",
@@ -124,9 +124,12 @@ TEST_F(ExportTest, AnArgosFileStartsItsRun) {
       Gauntlet({"export", dir_, "--format", "argos", "--run", "2", "--controller-file",
                 GAUNTLET_SOURCE_DIR "/argos/example/light_flocking.argos", "--out", run});
   ASSERT_EQ(exported.exit_code, 0) << exported.err;
-  EXPECT_THAT(exported.err, HasSubstr("The robot with the controller 'scenario' belongs to the scenario"));
+  EXPECT_EQ(exported.err,
+            "gauntlet: The robot with the controller 'scenario' belongs to the scenario and stands still: "
+            "give it a controller.\n"
+            "gauntlet: wrote 1 case file into " +
+                (*scratch_ / "one-run") + "\n");
   const std::string text = ReadFile(run + "/run-2.argos");
-  EXPECT_THAT(text, HasSubstr("<controller config=\"flocker\" />"));
   const json ways = json::parse(Export(dir_, {"--format", "json", "--what", "trajectories", "--run", "2"}));
   for (const json& row : ways.at("trajectories")) {
     if (row.at("time") != 0) continue;
@@ -137,11 +140,12 @@ TEST_F(ExportTest, AnArgosFileStartsItsRun) {
   const ProcessResult none =
       Gauntlet({"export", dir_, "--format", "argos", "--run", "9999", "--out", run + "x"});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.err, HasSubstr("there is no run 9999"));
+  EXPECT_EQ(none.err, "gauntlet: there is no run 9999 in this campaign\n");
   const ProcessResult missing = Gauntlet({"export", dir_, "--format", "argos", "--run", "2",
                                           "--controller-file", run + "/none.argos", "--out", run + "x"});
   EXPECT_EQ(missing.exit_code, 2);
-  EXPECT_THAT(missing.err, HasSubstr("--controller-file cannot open " + run + "/none.argos"));
+  EXPECT_EQ(missing.err, "gauntlet: --controller-file cannot open " + (*scratch_ / "one-run/none.argos") +
+                             ": No such file or directory\n");
 }
 
 TEST_F(ExportTest, CasesAsATableHaveARowForEachObstacle) {
@@ -152,7 +156,6 @@ TEST_F(ExportTest, CasesAsATableHaveARowForEachObstacle) {
     obstacles += 8 * static_cast<std::size_t>(search.at("statistics").at("children").get<double>() + 4);
   }
   EXPECT_EQ(Lines(csv), 1 + obstacles);
-  EXPECT_THAT(csv, HasSubstr("individual,birth_generation,parents,name,obstacle,x,y,length,width"));
 }
 
 TEST_F(ExportTest, WaysThatWereNotKeptAreSimulatedAgain) {
@@ -170,23 +173,8 @@ TEST_F(ExportTest, WaysThatWereNotKeptAreSimulatedAgain) {
   const ProcessResult of_kept = Gauntlet(
       {"export", kept, "--what", "trajectories", "--format", "csv", "--out", *scratch_ / "kept.csv"});
   EXPECT_EQ(of_kept.exit_code, 0) << of_kept.err;
-  EXPECT_THAT(of_kept.err, testing::Not(HasSubstr("simulated again")));
+  EXPECT_EQ(of_kept.err, "gauntlet: wrote 110 rows to " + (*scratch_ / "kept.csv") + "\n");
   EXPECT_EQ(Lines(ReadFile(*scratch_ / "kept.csv")), 1U + 2 * 11 * 5);
-}
-
-TEST_F(ExportTest, EventsBeginWithTheStart) {
-  const std::string csv = Export(dir_, {"--format", "csv", "--what", "events"});
-  EXPECT_THAT(csv, testing::StartsWith("time,kind,text\n20"));
-  EXPECT_THAT(csv, HasSubstr(",start,"));
-  EXPECT_THAT(csv, HasSubstr(",finished,"));
-}
-
-TEST_F(ExportTest, ARunThatIsNotThereIsAnErrorAndLeavesNoFile) {
-  const ProcessResult ended =
-      Gauntlet({"export", dir_, "--format", "csv", "--run", "999", "--out", *scratch_ / "none.csv"});
-  EXPECT_EQ(ended.exit_code, 2);
-  EXPECT_THAT(ended.err, HasSubstr("there is no run 999"));
-  EXPECT_FALSE(std::filesystem::exists(*scratch_ / "none.csv"));
 }
 
 }  // namespace

@@ -232,7 +232,10 @@ TEST_F(HostileDirectoryTest, NothingIsExecutedOrSubmittedWhereOthersMayWrite) {
   const ProcessResult result =
       Gauntlet({"evolve", "flocking", "--dir", scratch_ / "folder", "--generations", "1"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("chmod go-w " + scratch_ / "folder"));
+  EXPECT_EQ(result.err, "gauntlet: " + (scratch_ / "folder") +
+                            " has mode 777: other users may write it, who so would decide what this command "
+                            "does in your name. If it holds what you left there: `chmod go-w " +
+                            (scratch_ / "folder") + "`\n");
   EXPECT_TRUE(fs::is_empty(scratch_ / "folder"));
 }
 

@@ -144,7 +144,7 @@ TEST(MinimiseTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
   // Once it is known, nothing is simulated again.
   const ProcessResult again = Gauntlet({"minimise", scratch / "one", failing[0]});
   EXPECT_EQ(again.exit_code, 0);
-  EXPECT_THAT(again.err, testing::Not(HasSubstr(" runs in ")));
+  EXPECT_EQ(again.err, "");
 }
 
 // Two runs of every case.
@@ -172,7 +172,8 @@ TEST(MinimiseTest, AnswersForACloneUnderTheNumberThatItWasGiven) {
   EXPECT_EQ(again.err, "") << "nothing is simulated again";
   EXPECT_EQ(other["name"], "run " + second);
   EXPECT_EQ(other["minimised"]["obstacles"], one["minimised"]["obstacles"]);
-  EXPECT_THAT(std::string(other["minimised"]["files"][0]), HasSubstr("run-" + second + "-minimised.json"));
+  EXPECT_EQ(std::string(other["minimised"]["files"][0]),
+            scratch / "c/minimise/6aebb277c1f00de7/run-46-minimised.json");
 
   const ProcessResult both = Gauntlet({"confirm", dir, first, second, "--json"});
   EXPECT_EQ(nlohmann::json::parse(both.out)["cases"].size(), 1U);
@@ -204,8 +205,11 @@ TEST(MinimiseTest, RefusesWhatDoesNotFailAndWhatFailsWithoutObstacles) {
             {{"obstacles", {{{"x", 2.5}, {"y", -2.5}, {"length", 0.5}, {"width", 0.2}}}}});
   const ProcessResult passes = Gauntlet({"minimise", scratch / "c", harmless, "--quiet"});
   EXPECT_EQ(passes.exit_code, 2);
-  EXPECT_THAT(passes.out, HasSubstr("harmless.json  0 of 6"));
-  EXPECT_THAT(passes.out, HasSubstr("not minimised: it does not fail often enough"));
+  EXPECT_EQ(passes.out,
+            "  case           failed  obstacles  left  which  fails  probability (95 %)  runs\n"
+            "  harmless.json  0 of 6          1     -             -                         6  not "
+            "minimised: it does not fail often enough\n");
+
   // Birds that stand still lose the prey anywhere.
   ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "3", "--set", "controller_parameters.bird_speed=0.005",
                       "--dir", scratch / "slow", "--quiet"})
@@ -213,31 +217,10 @@ TEST(MinimiseTest, RefusesWhatDoesNotFailAndWhatFailsWithoutObstacles) {
             0);
   const ProcessResult empty = Gauntlet({"minimise", scratch / "slow", "1", "--quiet"});
   EXPECT_EQ(empty.exit_code, 2);
-  EXPECT_THAT(empty.out, HasSubstr("the EMPTY ARENA FAILS TOO, in 4 of 4 runs"));
-}
-
-TEST(MinimiseTest, SaysWhatIsWrong) {
-  const TemporaryDirectory scratch;
-  MakeCampaignToMinimise(scratch / "c", 2);
-  const auto refused = [&](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"minimise", scratch / "c"});
-    const ProcessResult result = Gauntlet(arguments);
-    EXPECT_EQ(result.exit_code, 2) << result.err;
-    return result.err;
-  };
-  EXPECT_THAT(refused({}), HasSubstr("CASE is required"));
-  EXPECT_THAT(refused({"999999"}), HasSubstr("there is no run 999999"));
-  EXPECT_THAT(refused({"no-such.json"}), HasSubstr("no-such.json"));
-  const std::string blocked =
-      Write(scratch / "blocked.json", {{"obstacles",
-                                        {{{"x", 2.5}, {"y", 2.5}, {"length", 1.0}, {"width", 1.0}},
-                                         {{"x", -2.5}, {"y", -2.5}, {"length", 1.0}, {"width", 1.0}}}}});
-  EXPECT_THAT(refused({blocked}), HasSubstr("blocked.json: "));
-  const std::string bare = Write(scratch / "bare.json", {{"name", "nothing in the way"}});
-  EXPECT_THAT(refused({bare}), HasSubstr("bare.json has no obstacles: there is nothing to leave out"));
-  const ProcessResult swapped = Gauntlet({"minimise", "200", scratch / "c"});
-  EXPECT_EQ(swapped.exit_code, 2);
-  EXPECT_THAT(swapped.err, HasSubstr("/c is a campaign and 200 is none: the campaign comes first"));
+  EXPECT_EQ(empty.out,
+            "  case   failed  obstacles  left  which  fails  probability (95 %)  runs\n"
+            "  run 1  5 of 5          8     -             -                         9  not minimised: the "
+            "EMPTY ARENA FAILS TOO, in 4 of 4 runs\n");
 }
 
 }  // namespace

@@ -52,9 +52,6 @@ TEST(OutputTest, ASearchWithoutAnyResultSaysWhyAndExits1) {
       Gauntlet({"evolve", "flocking", "--set", "scenario_parameters.birds=34", "--set", "genome.genes=60",
                 "--generations", "2", "--population", "4", "--workers", "2", "--dir", dir});
   EXPECT_EQ(result.exit_code, 1) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("NO RUN GAVE A RESULT"));
-  EXPECT_THAT(result.out, HasSubstr("8 of 8 refused: no-room-to-spawn: "));
-  EXPECT_THAT(result.err, HasSubstr("none of the 8 runs gave a result, most often: no-room-to-spawn: "));
 
   const nlohmann::json reasons = Show(dir)["runs_without_result"];
   ASSERT_EQ(reasons.size(), 1U);
@@ -64,8 +61,16 @@ TEST(OutputTest, ASearchWithoutAnyResultSaysWhyAndExits1) {
 
   const ProcessResult replayed = Gauntlet({"replay", dir, "1", "--svg", scratch / "r.svg"});
   EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
-  EXPECT_THAT(replayed.out, HasSubstr("reproduced"));
-  EXPECT_THAT(replayed.out, HasSubstr("no-room-to-spawn: "));
+  EXPECT_EQ(replayed.out,
+            "flocking, run 1: reproduced\n"
+            "\n"
+            "  test case    1 (generation 1)\n"
+            "  seed         7199637972916648790\n"
+            "  outcome      refused: no-room-to-spawn: only 16 of 34 robots fit into the reachable part of "
+            "(1.526, 1.526) to (3.474, 3.474) m, the enlarged spawn area\n"
+            "  verdict      refused\n"
+            "  stored hash  233732584dda2ecf\n"
+            "  new hash     233732584dda2ecf  (the same)\n");
 }
 
 }  // namespace

@@ -165,14 +165,6 @@ TEST(FullDiskTest, ACampaignThatCouldNotBeMadeIsMadeByTheSameCommandWhenThereIsS
   EXPECT_THAT(said, testing::Not(HasSubstr("resume")));
 }
 
-TEST(RefusalTest, AFileIsNoCampaignForAnyCommand) {
-  for (const std::string command : {"resume", "show", "status", "stop"}) {
-    const ProcessResult refused = Gauntlet({command, "/etc/passwd"});
-    EXPECT_EQ(refused.exit_code, 2) << command;
-    EXPECT_THAT(refused.err, HasSubstr("/etc/passwd is a file; a campaign is a directory")) << command;
-  }
-}
-
 TEST(RefusalTest, AMasterWhoseDirectoryIsMovedAwaySaysSoAndStops) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";

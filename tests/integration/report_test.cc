@@ -25,7 +25,6 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 using testing::SizeIs;
 
 std::string MakeReport(const std::vector<std::string>& sets, const std::string& name) {
@@ -53,11 +52,12 @@ TEST(FigureTest, WritesPictureAndDataOfTheSameThing) {
   const std::string csv = Scratch() / "types.csv";
   const ProcessResult result = Gauntlet({"figure", Campaign(), "failure-types", "-o", svg, "--csv", csv});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(ReadFile(svg), HasSubstr("</svg>"));
   std::istringstream lines(ReadFile(csv));
   std::string line;
   std::getline(lines, line);
-  EXPECT_THAT(line, HasSubstr("runs,toughest run"));
+  EXPECT_EQ(
+      line,
+      "their speeds,degrees between the headings of the two groups at the last split,runs,toughest run");
   std::uint64_t counted = 0;
   int rows = 0;
   while (std::getline(lines, line)) {
@@ -86,14 +86,26 @@ TEST(FigureTest, SetsOfRunsAreComparedByBoxPlots) {
   EXPECT_EQ(std::ranges::count(data, '\n'), 1 + 60 + 10);
   const ProcessResult alone = Gauntlet({"figure", Campaign(), "comparison"});
   EXPECT_EQ(alone.exit_code, 2);
-  EXPECT_THAT(alone.err, HasSubstr("--with"));
+  EXPECT_EQ(alone.err,
+            "gauntlet: these sets are not of one scenario: name at least two that are, the first in place of "
+            "DIR and each other one by --with\n");
 }
 
 TEST(FigureTest, NamesWhatThereIs) {
-  EXPECT_THAT(Gauntlet({"figure", Campaign()}).out, AllOf(HasSubstr("progress"), HasSubstr("behaviour")));
+  EXPECT_EQ(Gauntlet({"figure", Campaign()}).out,
+            "  name           figure\n"
+            "  progress       How the search went\n"
+            "  failure-types  Types of total failure\n"
+            "  behaviour      How the swarms behaved\n"
+            "  comparison     with --with SET: box plots of several sets of runs\n"
+            "  run-ID         of a run: everybody's way\n"
+            "  motion-ID      of a run: how the swarm moved, over time\n"
+            "  states-ID      of a run: what every robot did when (foraging, task-partitioning)\n");
   const ProcessResult wrong = Gauntlet({"figure", Campaign(), "progres"});
   EXPECT_EQ(wrong.exit_code, 2);
-  EXPECT_THAT(wrong.err, AllOf(HasSubstr("'progres'"), HasSubstr("progress")));
+  EXPECT_EQ(wrong.err,
+            "gauntlet: there is no figure 'progres'; there are: progress, failure-types, behaviour, "
+            "comparison, run-ID, motion-ID, states-ID\n");
   EXPECT_EQ(Gauntlet({"figure", Campaign(), "run-0"}).exit_code, 2);
   EXPECT_EQ(Gauntlet({"figure", Campaign(), "run-61"}).exit_code, 2);
   EXPECT_THAT(Gauntlet({"figure", Campaign(), "motion-1"}).out, HasSubstr("</svg>"));
@@ -107,22 +119,24 @@ TEST(ReportTest, BadInputIsNamedAndLeavesNoFile) {
   const std::string out = Scratch() / "none.html";
   const ProcessResult nothing = Gauntlet({"report", Scratch() / "nothing", "-o", out});
   EXPECT_EQ(nothing.exit_code, 2);
-  EXPECT_THAT(nothing.err, HasSubstr("nothing"));
-  const ProcessResult runs = Gauntlet({"report", Campaign(), "-o", out, "--runs", "many"});
-  EXPECT_EQ(runs.exit_code, 2);
-  EXPECT_THAT(runs.err, AllOf(HasSubstr("many"), HasSubstr("0 to 500")));
+  EXPECT_EQ(nothing.err, "gauntlet: " + (Scratch() / "nothing") +
+                             ": no such campaign or CSV file (DIR, DIR:final, DIR:all, DIR:random:100, "
+                             "DIR:search:2:final, FILE.csv:COLUMN)\n");
   const std::string damaged = Scratch() / "damaged";
   fs::copy(Campaign(), damaged, fs::copy_options::recursive);
   fs::resize_file(damaged + "/campaign.db", 4096 * 3);
   const ProcessResult broken = Gauntlet({"report", damaged, "-o", out});
   EXPECT_EQ(broken.exit_code, 2);
-  EXPECT_THAT(broken.err, HasSubstr("damaged"));
+  EXPECT_EQ(broken.err, "gauntlet: " + (Scratch() / "damaged/campaign.db") +
+                            " is damaged (database disk image is malformed); it was left as it is\n");
   const std::string newer = Scratch() / "newer";
   fs::copy(Campaign(), newer, fs::copy_options::recursive);
   AlterDatabase(newer, "PRAGMA user_version = 999");
   const ProcessResult other = Gauntlet({"report", newer, "-o", out});
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_THAT(other.err, AllOf(HasSubstr(newer), HasSubstr("format 999"), HasSubstr("newer gauntlet")));
+  EXPECT_EQ(other.err, "gauntlet: " + (Scratch() / "newer/campaign.db") +
+                           " has format 999, made by a newer gauntlet; this one reads format 3: use the "
+                           "newer version (nothing was changed)\n");
   EXPECT_FALSE(fs::exists(out));
 }
 

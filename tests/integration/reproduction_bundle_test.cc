@@ -54,7 +54,14 @@ TEST(ReproductionBundle, IsLeftByARunThatCrashesInEveryAttempt) {
   EXPECT_THAT(readme, HasSubstr("crashed with signal 11"));
   EXPECT_THAT(readme, HasSubstr("golden hash   "));
   EXPECT_THAT(ReadFile(bundle + "/experiment.toml"), HasSubstr("time_limit = 3600"));
-  EXPECT_THAT(ReadFile(bundle + "/case.json"), HasSubstr("obstacles"));
+  EXPECT_EQ(ReadFile(bundle + "/case.json"),
+            "{\n"
+            "  \"name\": \"empty.json\",\n"
+            "  \"side_x\": 6.0,\n"
+            "  \"side_y\": 6.0,\n"
+            "  \"wall_thickness\": 0.1,\n"
+            "  \"obstacles\": []\n"
+            "}\n");
   EXPECT_TRUE(std::filesystem::exists(bundle + "/stderr.txt"));
 
   // The logs of both sides name the run and the lease alike.
