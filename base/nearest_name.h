@@ -1,4 +1,5 @@
-// Names that a user wrote, looked up in a table; of an unknown one, the known name nearest to it.
+// Names that a user wrote: whether they are good, what they mean in a table, and of an unknown one the known
+// name nearest to it.
 #pragma once
 
 #include <algorithm>
@@ -6,9 +7,19 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace gauntlet {
+
+// Whether it can name a campaign, a controller, a scenario, a parameter or a metric: 1 to 64 letters, digits
+// and . _ -, not beginning with . or -.
+inline constexpr std::size_t kMostNameBytes = 64;
+inline bool IsName(std::string_view name) {
+  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
+  return !name.empty() && name.size() <= kMostNameBytes && name.front() != '.' && name.front() != '-' &&
+         name.find_first_not_of(kLetters) == std::string_view::npos;
+}
 
 // Insertions, deletions, substitutions and swaps of neighbours that turn `a` into `b` (optimal string
 // alignment distance).
@@ -66,11 +77,21 @@ auto FindByName(const Infos& infos, std::string_view name) {
   return found == infos.end() ? nullptr : &*found;
 }
 
+// Of an entry of a table; a table of nothing but names is one too.
+template <typename Info>
+std::string_view NameIn(const Info& info) {
+  if constexpr (std::is_convertible_v<const Info&, std::string_view>) {
+    return info;
+  } else {
+    return info.name;
+  }
+}
+
 // "a, b, c": the names of a table.
 template <typename Infos>
 std::string NamesOf(const Infos& infos) {
   std::string names;
-  for (const auto& info : infos) names.append(names.empty() ? "" : ", ").append(info.name);
+  for (const auto& info : infos) names.append(names.empty() ? "" : ", ").append(NameIn(info));
   return names;
 }
 
@@ -78,7 +99,7 @@ std::string NamesOf(const Infos& infos) {
 template <typename Infos>
 std::string UnknownName(std::string_view what, std::string_view name, const Infos& infos) {
   std::vector<std::string_view> known;
-  for (const auto& info : infos) known.push_back(info.name);
+  for (const auto& info : infos) known.push_back(NameIn(info));
   const std::string nearest = NearestName(name, known);
   std::string message = "unknown ";
   message.append(what).append(" '").append(name).append("'; ");

@@ -10,6 +10,7 @@
 #include "controllers/registry.h"
 #include "controllers/run_start.h"
 #include "master/campaign/verdict_text.h"
+#include "master/directory/campaign_directory.h"
 #include "search/cases/case_file.h"
 #include "search/search_setup.h"
 #include "search/search_table.h"
@@ -17,11 +18,6 @@
 
 namespace gauntlet {
 namespace {
-
-bool IsCampaign(const std::string& path) {
-  std::error_code none;
-  return std::filesystem::exists(path + "/campaign.db", none);
-}
 
 // Each different case once, under the name that came first.
 void AskOnce(CommandContext& context, QuestionedCampaign& questioned) {
@@ -50,8 +46,8 @@ std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::Te
 
 Result<QuestionedCampaign> GivenCases(CommandContext& context, const std::string& directory,
                                       const std::vector<std::string>& cases) {
-  if (const auto swapped = std::ranges::find_if(cases, IsCampaign);
-      swapped != cases.end() && !IsCampaign(directory)) {
+  if (const auto swapped = std::ranges::find_if(cases, CampaignDirectory::IsCampaign);
+      swapped != cases.end() && !CampaignDirectory::IsCampaign(directory)) {
     return InvalidInput(fmt::format(
         "{} is a campaign and {} is none: the campaign comes first, then its runs", *swapped, directory));
   }
@@ -104,8 +100,7 @@ CampaignRun RunOfCall(CommandContext& context, const CallPlan& plan, int workers
   campaign.serving = serving;
   campaign.session.workers = workers;
   campaign.run = [&context, plan](const SessionOptions& session) {
-    std::error_code none;
-    return std::filesystem::exists(plan.directory + "/campaign.db", none)
+    return CampaignDirectory::IsCampaign(plan.directory)
                ? context.campaigns.Resume(plan.directory, session)
                : context.campaigns.Start(plan.directory, plan.searches, session);
   };

@@ -1,7 +1,6 @@
 #include "cli/run_campaign.h"
 
 #include <cstdlib>
-#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -11,6 +10,7 @@
 #include "cli/output/progress.h"
 #include "cli/output/summary.h"
 #include "cli/output/table.h"
+#include "master/directory/campaign_directory.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_page.h"
 #include "proto/run_failure.h"
@@ -27,8 +27,7 @@ std::string ResumeHint(const CommandContext& context, const CampaignRun& campaig
 
 // Whether there is anything to resume decides how to go on after an error.
 std::string HowToGoOn(const CommandContext& context, const CampaignRun& campaign) {
-  std::error_code ignored;
-  if (std::filesystem::exists(campaign.directory + "/campaign.db", ignored)) {
+  if (CampaignDirectory::IsCampaign(campaign.directory)) {
     return fmt::format("stopped; what was finished is stored. Go on with: {}", ResumeHint(context, campaign));
   }
   return fmt::format("nothing was simulated. When there is room, the same command with --dir {} starts anew",

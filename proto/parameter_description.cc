@@ -6,13 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/nearest_name.h"
 #include "base/number_text.h"
 #include "base/printable.h"
 
 namespace gauntlet::proto {
 namespace {
-
-constexpr std::size_t kMostNameBytes = 64;
 
 Status CheckParameter(const DescribedParameter& parameter) {
   if (!IsName(parameter.name)) return WrongName("parameter", parameter.name);
@@ -30,12 +29,6 @@ Status CheckParameter(const DescribedParameter& parameter) {
 }
 
 }  // namespace
-
-bool IsName(std::string_view name) {
-  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
-  return !name.empty() && name.size() <= kMostNameBytes && name.front() != '.' && name.front() != '-' &&
-         name.find_first_not_of(kLetters) == std::string_view::npos;
-}
 
 Error WrongName(std::string_view what, const std::string& name) {
   return InvalidInput(

@@ -22,10 +22,7 @@ struct DescribedParameter {
   bool operator==(const DescribedParameter&) const = default;
 };
 
-// Whether it can name a controller, a scenario, a parameter or a metric: 1 to 64 letters, digits and . _ -,
-// not beginning with . or -.
-bool IsName(std::string_view name);
-// "controller 'a b': a name has ..."
+// Of what is no name (IsName): "controller 'a b': a name has ..."
 Error WrongName(std::string_view what, const std::string& name);
 
 // What is wrong with them: a name that is none or is given twice, a range that is none or that the default is

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/nearest_name.h"
 #include "proto/json_text.h"
 
 namespace gauntlet::proto {

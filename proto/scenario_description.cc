@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/nearest_name.h"
 #include "base/number_text.h"
 #include "base/printable.h"
 

@@ -8,6 +8,7 @@
 
 #include "base/nearest_name.h"
 #include "base/number_text.h"
+#include "base/split.h"
 #include "search/experiment/toml_text.h"
 
 namespace gauntlet {
@@ -31,15 +32,9 @@ const std::vector<StudyTableKind>& TableKinds() {
 
 const std::vector<std::string_view> kTopKeys = {"name", "description", "include", "published"};
 
-struct KeyName {
-  std::string_view name;
-};
-
 std::string UnknownKey(const std::string& where, const std::string& key,
                        std::span<const std::string_view> known) {
-  std::vector<KeyName> names;
-  for (const std::string_view one : known) names.push_back({one});
-  return fmt::format("{}: {}", where, UnknownName("key", key, names));
+  return fmt::format("{}: {}", where, UnknownName("key", key, known));
 }
 
 std::string TextOf(const TomlValue& value) {
@@ -49,20 +44,8 @@ std::string TextOf(const TomlValue& value) {
   return std::get<bool>(value) ? "true" : "false";
 }
 
-std::vector<std::string> SplitPath(const std::string& path) {
-  std::vector<std::string> parts(1);
-  for (const char c : path) {
-    if (c == '.') {
-      parts.emplace_back();
-    } else {
-      parts.back() += c;
-    }
-  }
-  return parts;
-}
-
 Status AddToTable(const Assignment& assignment, StudyFileContent& content) {
-  const std::vector<std::string> path = SplitPath(assignment.path);
+  const std::vector<std::string> path = Split(assignment.path, '.');
   const StudyTableKind* kind = FindByName(TableKinds(), path[0]);
   if (kind == nullptr) {
     std::vector<std::string_view> known = kTopKeys;
@@ -138,14 +121,8 @@ Result<StudyFileContent> ReadStudyFile(const std::string& text, const std::strin
 }
 
 std::vector<std::string> ListItems(const std::string& text) {
-  std::vector<std::string> items(1);
-  for (const char c : text) {
-    if (c == ',') {
-      items.emplace_back();
-    } else if (c != ' ') {
-      items.back() += c;
-    }
-  }
+  std::vector<std::string> items = Split(text, ',');
+  for (std::string& item : items) std::erase(item, ' ');
   std::erase(items, "");
   return items;
 }

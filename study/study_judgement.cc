@@ -6,24 +6,13 @@
 #include "analysis/statistics/proportions.h"
 #include "analysis/statistics/rank_test.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 #include "study/study_report.h"
 
 namespace gauntlet {
 namespace {
 
 constexpr double kMostSdRatio = 1.5;  // where standard deviations differ at a glance
-
-std::vector<std::string> Words(const std::string& text) {
-  std::vector<std::string> words(1);
-  for (const char c : text) {
-    if (c == ' ') {
-      words.emplace_back();
-    } else {
-      words.back() += c;
-    }
-  }
-  return words;
-}
 
 // Of a published p-value: "<0.00001" stands for at most that.
 std::optional<double> NumberOf(std::string text) {
@@ -151,7 +140,7 @@ Result<JudgedRow> Judge(const PublishedRow& row, const StudyFigures& figures) {
   }
   JudgedRow judged{row, figure->second.text, row.note.text, "not judged"};
   if (row.rule.empty()) return judged;
-  std::vector<std::string> words = Words(row.rule);
+  std::vector<std::string> words = Split(row.rule, ' ');
   std::optional<bool> agrees;
   if (words[0] == "same") {
     agrees = figure->second.text == row.value;

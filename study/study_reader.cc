@@ -340,13 +340,8 @@ Result<fs::path> PathOf(const std::string& name_or_path) {
         ErrorKind::kNotFound,
         fmt::format("there is no study '{}': no studies are installed beside this program", name_or_path)};
   }
-  struct Named {
-    std::string_view name;
-  };
-  std::vector<Named> names;
-  for (const std::string& name : shipped) names.push_back({name});
   return Error{ErrorKind::kNotFound, fmt::format("{} (a file is named by a path ending in .toml)",
-                                                 UnknownName("study", name_or_path, names))};
+                                                 UnknownName("study", name_or_path, shipped))};
 }
 
 }  // namespace

@@ -103,6 +103,20 @@ Status AllowOpenFiles(rlim_t needed, const std::string& who) {
                fmt::format("{} open files cannot be allowed: {}", needed, std::strerror(errno))};
 }
 
+void SetSoftLimit(__rlimit_resource resource, rlim_t wanted) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return;
+  limit.rlim_cur = std::min(wanted, limit.rlim_max);
+  setrlimit(resource, &limit);
+}
+
+double CpuSecondsOf(const rusage& usage) {
+  double seconds = 0.0;
+  for (const timeval& time : {usage.ru_utime, usage.ru_stime})
+    seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  return seconds;
+}
+
 std::string DescribeLimits() {
   SafeText text;
   text.AddLimits();

@@ -20,6 +20,13 @@ Status PrepareProgram();
 // the hard one is below, says "`who` need up to ... open files".
 Status AllowOpenFiles(rlim_t needed, const std::string& who);
 
+// Sets the soft limit of this process, no higher than the hard one: a lowered hard limit could never be
+// raised again.
+void SetSoftLimit(__rlimit_resource resource, rlim_t wanted);
+
+// User and system time, s.
+double CpuSecondsOf(const rusage& usage);
+
 // The limits of this process that are not infinite, for messages: "60 open files (ulimit -n), ...".
 std::string DescribeLimits();
 

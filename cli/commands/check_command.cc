@@ -19,6 +19,7 @@
 #include "cli/output/output_file.h"
 #include "cli/run_campaign.h"
 #include "master/campaign/stored_search.h"
+#include "master/directory/campaign_directory.h"
 #include "master/directory/plugins.h"
 #include "search/given/confirmation_search.h"
 #include "study/questions/answered_calls.h"
@@ -80,8 +81,7 @@ Result<CorpusPlan> PlanCheck(const CheckOptions& options) {
 // A check that has ended is done anew: the controller's code may have changed since. One that was stopped is
 // gone on with.
 Status MakeRoom(CommandContext& context, const CorpusPlan& plan) {
-  std::error_code none;
-  if (!fs::exists(plan.directory + "/campaign.db", none)) return Ok{};
+  if (!CampaignDirectory::IsCampaign(plan.directory)) return Ok{};
   const Result<CampaignSummary> earlier = context.campaigns.Read(plan.directory);
   if (!earlier) return earlier.error();
   if (!earlier->finished) return Ok{};

@@ -1,6 +1,5 @@
 // gauntlet master: a search whose workers come from elsewhere.
 #include <algorithm>
-#include <filesystem>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -8,6 +7,7 @@
 #include "cli/commands.h"
 #include "cli/options/stop_signal.h"
 #include "cli/run_campaign.h"
+#include "master/directory/campaign_directory.h"
 #include "master/directory/campaign_ownership.h"
 #include "report/tables/search_columns.h"
 #include "search/search_table.h"
@@ -74,8 +74,7 @@ ExitCode RunMaster(CommandContext& context, const MasterOptions& options) {
     return Fail(context, InvalidInput("--resume needs --dir: which campaign is to go on?"));
   const Result<Experiment> experiment = LoadExperimentWith(options.experiment, SetsOf(options.size));
   if (!experiment) return Fail(context, experiment.error());
-  std::error_code ignored;
-  const bool goes_on = options.resume && std::filesystem::exists(wanted + "/campaign.db", ignored);
+  const bool goes_on = options.resume && CampaignDirectory::IsCampaign(wanted);
   const Result<std::string> directory =
       goes_on ? Result<std::string>(wanted) : NewDirectory(wanted, *experiment);
   if (!directory) return Fail(context, directory.error());

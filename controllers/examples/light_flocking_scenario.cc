@@ -51,9 +51,7 @@ Result<std::vector<sim::Pose>> LightFlockingScenario::StartPoses() const {
                                      .area = spawn_area_,
                                      .robot_radius = sim::foot_bot::kRadius,
                                      .start = start_};
-  sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
-  const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
-  return sim::Spawn(request, grid, random);
+  return sim::Spawn(request, arena_, seed_);
 }
 
 Result<std::vector<sim::RobotSetup>> LightFlockingScenario::CreateSwarm(const sim::Headquarters&) {

@@ -34,20 +34,19 @@ class Goal {
   explicit Goal(std::span<const sim::Blob> blobs) {
     for (const sim::Blob& blob : blobs) {
       if (blob.color != kPreyColor) continue;
-      rule_ = BirdRule::kChase;
+      known_ = true;
       sum_ = blob.position;
       return;
     }
     for (const sim::Blob& blob : blobs) {
       if (blob.color != kBirdColor) continue;
-      rule_ = BirdRule::kFlock;
+      known_ = true;
       sum_ += blob.position;
     }
   }
 
-  // kChase, kFlock, or kWander when nobody is visible.
-  BirdRule rule() const { return rule_; }
-  bool known() const { return rule_ != BirdRule::kWander; }
+  // Not when nobody is visible.
+  bool known() const { return known_; }
   // Of any length; only when known.
   const Vec2& Way() const { return sum_; }
   bool InFront(const sim::Blob& blob) const { return !known() || blob.position.dot(sum_) >= 0.0; }
@@ -58,7 +57,7 @@ class Goal {
   }
 
  private:
-  BirdRule rule_ = BirdRule::kWander;
+  bool known_ = false;
   Vec2 sum_ = Vec2::Zero();  // of the positions that it aims at
 };
 
@@ -165,26 +164,25 @@ void BirdController::Step(const sim::ControlStep& step) {
 
   const Goal goal(blobs);
   const ObstaclePush obstacles = FindObstacles(step.readings, least_obstacle_reading_);
+  // The rules in falling priority; the first that applies decides, anew in every tick.
   DriveCommand command;
+  bool wanders = false;
   if (obstacles.ahead) {
-    last_rule_ = BirdRule::kObstacle;
     command = React(WayPastObstacles(obstacles.away, goal), straight_edge_, reactions);
     command.forward *= settings_.obstacle_speed_factor;
   } else if (const sim::Blob* near = FindTooNear(blobs, settings_.separation_distance, goal)) {
-    last_rule_ = BirdRule::kSeparate;
     command = React(Vec2(-near->position), straight_edge_, reactions);
     if (std::fabs(near->position.y()) > near->position.x()) {
       command.forward = reactions.speed * reactions.turning_speed_factor;
     }
   } else if (goal.known()) {
-    last_rule_ = goal.rule();
     command = React(goal.Way(), straight_edge_, reactions);
   } else {
-    last_rule_ = BirdRule::kWander;
+    wanders = true;
     command = React(wander_.Next(step.random), reactions);
     wander_.Turned(command.turn * sim::kTickSeconds);
   }
-  if (last_rule_ != BirdRule::kWander || command.turn == 0.0) wander_.Reset();
+  if (!wanders || command.turn == 0.0) wander_.Reset();
 
   step.actuators.beacon = kBirdColor;
   step.actuators.Drive(command.forward, command.turn);

@@ -21,9 +21,6 @@ struct BirdSettings {
   double catch_up_gain = 1.0;      // factor on speed and turn rate; 1 = never hurries
 };
 
-// The rules in falling priority; the first that applies decides, anew in every tick.
-enum class BirdRule { kObstacle, kSeparate, kChase, kFlock, kWander };
-
 // One bird. Sees red birds and the blue prey with the camera, obstacles with the proximity ring; remembers
 // nothing but the angle of its random walk. Not for sharing between threads.
 class BirdController : public sim::Controller {
@@ -32,15 +29,12 @@ class BirdController : public sim::Controller {
 
   sim::DeviceSet Devices() const override;
   void Step(const sim::ControlStep& step) override;
-  // The rule that decided the last step.
-  BirdRule last_rule() const { return last_rule_; }
 
  private:
   BirdSettings settings_;
   double least_obstacle_reading_;
   sim::Vec2 straight_edge_;  // to the left of what counts as straight ahead
   RandomWalk wander_;
-  BirdRule last_rule_ = BirdRule::kWander;
 };
 
 }  // namespace gauntlet::controllers

@@ -66,9 +66,7 @@ Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::He
                                      .robot_radius = sim::foot_bot::kRadius,
                                      .occupied = {start_},
                                      .start = start_};
-  sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
-  const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
-  const auto poses = start_poses_.empty() ? sim::Spawn(request, grid, random) : start_poses_;
+  const auto poses = start_poses_.empty() ? sim::Spawn(request, arena_, seed_) : start_poses_;
   if (!poses.ok()) return poses.error();
 
   std::vector<sim::RobotSetup> swarm;

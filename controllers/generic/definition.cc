@@ -93,14 +93,10 @@ std::string Beginning(const std::string& text) {
   return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
 }
 
-struct Name {
-  std::string_view name;
-};
-
 Error UnknownKey(std::string_view path) {
-  std::vector<Name> known;
-  for (const FormulaKey& formula : kFormulas) known.push_back({formula.name});
-  for (const ElementTable& table : Tables()) known.push_back({table.name});
+  std::vector<std::string_view> known;
+  for (const FormulaKey& formula : kFormulas) known.push_back(formula.name);
+  for (const ElementTable& table : Tables()) known.push_back(table.name);
   return InvalidInput("[generic]: " + UnknownName("key", path, known));
 }
 

@@ -98,11 +98,7 @@ void DefineOperations(mu::Parser& parser) {
   parser.DefineFun("max", Largest);
 }
 
-struct Known {
-  std::string_view name;
-};
-
-constexpr std::array<Known, 4> kFunctions = {{{"min"}, {"max"}, {"abs"}, {"sqrt"}}};
+constexpr std::array<std::string_view, 4> kFunctions = {"min", "max", "abs", "sqrt"};
 
 bool IsNameCharacter(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -130,11 +126,9 @@ std::string Complaint(const mu::ParserError& error, const std::string& text,
   const std::string where = "character " + std::to_string(place + 1) + ": ";
   const std::string_view name = NameAt(text, place);
   if (error.GetCode() == mu::ecUNASSIGNABLE_TOKEN && !name.empty()) {
-    if (FindByName(kFunctions, name) != nullptr)
+    if (std::ranges::count(kFunctions, name) > 0)
       return where + "behind '" + std::string(name) + "' stands '('";
-    std::vector<Known> known;
-    for (const std::string& one : names) known.push_back({one});
-    return where + UnknownName("measure", name, known);
+    return where + UnknownName("measure", name, names);
   }
   if (const std::string_view function = NameBefore(text, place);
       text.substr(place, 1) == "(" && !function.empty())

@@ -117,9 +117,7 @@ Result<std::vector<sim::Pose>> GenericScenario::StartPoses() const {
                                      .area = spawn_area_,
                                      .robot_radius = sim::foot_bot::kRadius,
                                      .start = start_};
-  sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
-  const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
-  Result<std::vector<sim::Pose>> poses = sim::Spawn(request, grid, random);
+  Result<std::vector<sim::Pose>> poses = sim::Spawn(request, arena_, seed_);
   if (!poses.ok()) return poses;
   for (sim::Pose& pose : *poses) {
     pose.heading = sim::WrapAngle(settings_.heading + pose.heading * (settings_.heading_spread / sim::kPi));

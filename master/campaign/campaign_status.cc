@@ -39,13 +39,6 @@ std::string TurnedAway(const BackendView& backend) {
   return text;
 }
 
-std::string_view StateOf(const WorkerView& worker) {
-  if (worker.lost) return "lost";
-  if (worker.record.quarantined) return "quarantined";
-  if (worker.leaving) return "leaving";
-  return worker.leases.empty() ? "idle" : "running";
-}
-
 ordered_json OrNull(const std::string& text) {
   return text.empty() ? ordered_json(nullptr) : ordered_json(text);
 }

@@ -148,6 +148,11 @@ Result<CampaignDirectory> CampaignDirectory::Create(const std::string& dir) {
   return directory;
 }
 
+bool CampaignDirectory::IsCampaign(const std::string& dir) {
+  std::error_code ignored;
+  return fs::exists(CampaignDirectory(dir).database_path(), ignored);
+}
+
 Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
   CampaignDirectory directory(WithoutSlash(dir));
   std::error_code error;

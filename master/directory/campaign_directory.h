@@ -30,6 +30,9 @@ class CampaignDirectory {
   // store's business.
   static Result<CampaignDirectory> Open(const std::string& dir);
 
+  // Whether there is a campaign, finished or not, as far as can be seen.
+  static bool IsCampaign(const std::string& dir);
+
   // Whether nobody but this user (and root) could have written what the directory holds: to be asked before
   // anything is obeyed that stands there. kInvalidInput says who could, and the way out.
   Status CheckTrusted() const;

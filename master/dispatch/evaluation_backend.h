@@ -1,9 +1,11 @@
 // Runs go in, finished runs come out; where and how often they are simulated is the backend's business.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -71,6 +73,16 @@ struct WorkerView {
   double silent_seconds = 0.0;  // since it was heard
   std::vector<Lease> leases;    // in the order in which they were given
 };
+
+// What it does, one of these words.
+inline constexpr std::array<std::string_view, 5> kWorkerStates = {"running", "idle", "leaving", "quarantined",
+                                                                  "lost"};
+inline std::string_view StateOf(const WorkerView& worker) {
+  if (worker.lost) return "lost";
+  if (worker.record.quarantined) return "quarantined";
+  if (worker.leaving) return "leaving";
+  return worker.leases.empty() ? "idle" : "running";
+}
 
 // One batch job of an elastic pool, for people; words are the batch system's.
 struct AllocationView {

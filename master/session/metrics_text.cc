@@ -1,14 +1,15 @@
 #include "master/session/metrics_text.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string_view>
 
 #include "base/system/atomic_file.h"
+#include "base/system/resource_limits.h"
 
 namespace gauntlet {
 namespace {
@@ -52,19 +53,13 @@ class Page {
 };
 
 void AddWorkers(Page& page, const BackendView& backend) {
-  int states[] = {0, 0, 0, 0, 0};
   std::size_t leased = 0;
-  for (const WorkerView& worker : backend.workers) {
-    leased += worker.leases.size();
-    ++states[worker.lost                 ? 4
-             : worker.record.quarantined ? 3
-             : worker.leaving            ? 2
-             : worker.leases.empty()     ? 1
-                                         : 0];
-  }
+  for (const WorkerView& worker : backend.workers) leased += worker.leases.size();
   page.Describe("gauntlet_workers", "gauge", "Workers that the master knows, by what they do.");
-  for (int i = 0; const char* state : {"running", "idle", "leaving", "quarantined", "lost"})
-    page.Sample("gauntlet_workers", fmt::format("{{state=\"{}\"}}", state), states[i++]);
+  for (const std::string_view state : kWorkerStates) {
+    page.Sample("gauntlet_workers", fmt::format("{{state=\"{}\"}}", state),
+                static_cast<double>(std::ranges::count(backend.workers, state, StateOf)));
+  }
   page.Add("gauntlet_runs_leased", "gauge", "Runs that workers have, those that wait there included.",
            leased);
   page.Add("gauntlet_runs_queued", "gauge", "Runs that wait for a worker.", backend.queued);
@@ -76,8 +71,7 @@ ProcessCost CostOfThisProcess() {
   ProcessCost cost;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  for (const timeval& time : {usage.ru_utime, usage.ru_stime})
-    cost.cpu_seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  cost.cpu_seconds = CpuSecondsOf(usage);
   // "size resident ...", in pages.
   if (const Result<std::string> statm = ReadSmallFile("/proc/self/statm"); statm) {
     const std::size_t space = statm->find(' ');

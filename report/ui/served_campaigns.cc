@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/parse_number.h"
+#include "base/split.h"
 #include "report/figures/campaign_figures.h"
 #include "report/pages/report_document.h"
 #include "report/pages/report_page.h"
@@ -37,17 +38,6 @@ HttpAnswer Gone(const Error& error) {
 
 HttpAnswer NoSuchPage() {
   return {.status = 404, .body = "there is no such page\n"};
-}
-
-// "run/0/17": its parts.
-std::vector<std::string_view> PartsOf(std::string_view path) {
-  std::vector<std::string_view> parts;
-  while (true) {
-    const std::size_t end = path.find('/');
-    parts.push_back(path.substr(0, end));
-    if (end == std::string_view::npos) return parts;
-    path.remove_prefix(end + 1);
-  }
 }
 
 Json EventsJson(const std::vector<StoredEvent>& events) {
@@ -133,12 +123,12 @@ std::vector<std::shared_ptr<ServedCampaigns::Followed>> ServedCampaigns::Followe
 }
 
 HttpAnswer ServedCampaigns::Answer(const std::string& path) {
-  const std::vector<std::string_view> parts = PartsOf(path);
+  const std::vector<std::string> parts = Split(path, '/');  // "run/0/17"
   if (path.empty()) return AnswerPages();
   if (path == "status") return AnswerStatus();
   std::vector<std::uint64_t> numbers;
   for (std::size_t i = 1; i < parts.size(); ++i) {
-    const auto number = ParseNumber<std::uint64_t>(std::string(parts[i]));
+    const auto number = ParseNumber<std::uint64_t>(parts[i]);
     if (!number) return NoSuchPage();
     numbers.push_back(*number);
   }

@@ -2,27 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "base/nearest_name.h"
 #include "base/parse_number.h"
+#include "base/split.h"
 #include "controllers/registry.h"
 
 namespace gauntlet {
 namespace {
 
-std::vector<std::string> SplitAtColons(const std::string& text) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text + ":");
-  for (std::string part; std::getline(stream, part, ':');) parts.push_back(part);
-  return parts;
-}
-
 Result<CellAxis> ParseAxis(const std::string& text, const controllers::ScenarioInfo& scenario) {
-  const std::vector<std::string> parts = SplitAtColons(text);
+  const std::vector<std::string> parts = Split(text, ':');
   const auto wrong = [&](const std::string& what) {
     return InvalidInput(fmt::format("search.cells: '{}': {}", text, what));
   };

@@ -218,12 +218,6 @@ std::vector<Key> ParameterKeys(std::string_view table, std::span<const controlle
   return keys;
 }
 
-bool IsName(std::string_view name) {
-  constexpr std::string_view kLetters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
-  return !name.empty() && name.size() <= 64 && name.front() != '.' && name.front() != '-' &&
-         name.find_first_not_of(kLetters) == std::string_view::npos;
-}
-
 // Of what all searches together read.
 std::vector<Key> SearchKeys(const Catalogue& catalogue) {
   constexpr auto kSearch = &Experiment::search;

@@ -160,4 +160,10 @@ Result<std::vector<Pose>> Spawn(const SpawnRequest& request, const OccupancyGrid
   return poses;
 }
 
+Result<std::vector<Pose>> Spawn(const SpawnRequest& request, const Arena& arena, std::uint64_t seed) {
+  RandomStream random(seed, StreamPurpose::kSpawn);
+  const OccupancyGrid grid(arena, OccupancyGrid::kDefaultInflation);
+  return Spawn(request, grid, random);
+}
+
 }  // namespace gauntlet::sim

@@ -1,6 +1,7 @@
 // Where robots begin: uniformly in an area, without overlap, only where the start can be reached.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/result.h"
@@ -24,5 +25,7 @@ struct SpawnRequest {
 // twice its sides, and stays so for the robots that follow. Error "no-room-to-spawn: ..." when they do not
 // fit or the request makes no sense.
 Result<std::vector<Pose>> Spawn(const SpawnRequest& request, const OccupancyGrid& grid, RandomStream& random);
+// The same with the stream of the run's start poses, on the arena's grid of OccupancyGrid::kDefaultInflation.
+Result<std::vector<Pose>> Spawn(const SpawnRequest& request, const Arena& arena, std::uint64_t seed);
 
 }  // namespace gauntlet::sim

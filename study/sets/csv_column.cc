@@ -34,10 +34,6 @@ std::vector<std::string> CellsOf(std::string_view line) {
   return cells;
 }
 
-struct ReadColumn {
-  std::string name;
-};
-
 struct Line {
   std::size_t number = 0;
   std::vector<std::string> cells;
@@ -78,8 +74,8 @@ Result<CsvColumn> ReadCsvColumn(const std::string& path, const std::string& colu
   if (!text) return text.error();
   const Result<std::vector<Line>> lines = LinesOf(*text, path);
   if (!lines) return lines.error();
-  std::vector<ReadColumn> columns;
-  for (const std::string& cell : lines->front().cells) columns.push_back({Printable(cell)});
+  std::vector<std::string> columns;
+  for (const std::string& cell : lines->front().cells) columns.push_back(Printable(cell));
   const auto found = std::ranges::find(lines->front().cells, column);
   if (found == lines->front().cells.end()) {
     return InvalidInput(fmt::format("{}: {}", path, UnknownName("column", Printable(column), columns)));

@@ -30,11 +30,6 @@ bool IsColumn(const std::string& metric) {
   return metric == kFitness || metric == kTotalFailure || metric == kFailureType;
 }
 
-// The metrics that can be compared, for messages.
-struct MetricName {
-  std::string_view name;
-};
-
 // What the row of a run with a result says of it.
 std::optional<double> ColumnOf(const StoredRun& run, const std::string& metric) {
   if (metric == kTotalFailure) return run.total_failure ? 1.0 : 0.0;
@@ -235,8 +230,8 @@ Status CheckMetric(const Experiment& experiment, const std::string& metric) {
   if (IsColumn(metric) || scenario == nullptr || controllers::FindMetric(*scenario, metric) != nullptr) {
     return Ok{};
   }
-  std::vector<MetricName> known = {{kFitness}, {kTotalFailure}, {kFailureType}};
-  for (const controllers::MetricInfo& info : scenario->metrics) known.push_back({info.name});
+  std::vector<std::string_view> known = {kFitness, kTotalFailure, kFailureType};
+  for (const controllers::MetricInfo& info : scenario->metrics) known.push_back(info.name);
   return InvalidInput(UnknownName("metric", metric, known));
 }
 

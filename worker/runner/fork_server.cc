@@ -21,6 +21,7 @@
 #include <set>
 
 #include "base/system/atomic_file.h"
+#include "base/system/resource_limits.h"
 #include "worker/runner/scratch_folder.h"
 
 namespace gauntlet::worker {
@@ -102,13 +103,6 @@ ReceiveState ReceiveMessage(int control, ReceivedMessage& received) {
     received.second.Reset(fds[1]);
   }
   return ReceiveState::kMessage;
-}
-
-double CpuSecondsOf(const rusage& usage) {
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 sigset_t ChildSignals() {

@@ -1,7 +1,6 @@
 #include "worker/runner/prepared_process.h"
 
 #include <malloc.h>
-#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +14,7 @@
 
 #include "base/canonical_encoder.h"
 #include "base/system/atomic_file.h"
+#include "base/system/resource_limits.h"
 #include "worker/runner/fork_server.h"
 
 namespace gauntlet::worker {
@@ -91,14 +91,6 @@ bool HasChildren() {
   return waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT) == 0 || errno != ECHILD;
 }
 
-void LiftTimeLimits() {
-  alarm(0);
-  rlimit limit{};
-  if (getrlimit(RLIMIT_CPU, &limit) != 0) return;
-  limit.rlim_cur = limit.rlim_max;
-  setrlimit(RLIMIT_CPU, &limit);
-}
-
 }  // namespace
 
 Result<SeparateOutcome> PreparedProcess::Call(const std::string& request, const SeparateOptions& options) {
@@ -166,7 +158,8 @@ void PreparedProcess::Live(UniqueFd pipe, pid_t parent, const SeparateOptions& o
   // allocates beyond lies at the heap's end, where large pages begin.
   malloc_trim(0);
   if (!WriteFrame(pipe.get(), fit ? kPrepared : kUnfit)) _exit(0);
-  LiftTimeLimits();
+  alarm(0);
+  SetSoftLimit(RLIMIT_CPU, RLIM_INFINITY);
   Serve(std::move(pipe));
 }
 

@@ -1,7 +1,6 @@
 #include "worker/runner/runner.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include <map>
 
 #include "base/canonical_encoder.h"
+#include "base/system/resource_limits.h"
 #include "base/utf8.h"
 #include "proto/run_codec.h"
 #include "worker/runner/pipe.h"
@@ -31,8 +31,7 @@ double SecondsOf(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// The soft limits of this process: a lowered hard limit could never be raised again. Remembers what is set,
-// so that most runs cost no system call.
+// The soft limits of this process. Remembers what is set, so that most runs cost no system call.
 class Limits {
  public:
   // `used`: the CPU time that this process has had, s.
@@ -43,19 +42,12 @@ class Limits {
     if (!kMemoryLimitWorks) return;
     Set(RLIMIT_AS, job.memory_limit_bytes == 0 ? RLIM_INFINITY : rlim_t{job.memory_limit_bytes}, memory_);
   }
-  static void ForbidCoreDumps() {
-    std::optional<rlim_t> unknown;
-    Set(RLIMIT_CORE, 0, unknown);
-  }
 
  private:
   static void Set(__rlimit_resource resource, rlim_t wanted, std::optional<rlim_t>& now) {
     if (now == wanted) return;
     now = wanted;
-    rlimit limit{};
-    if (getrlimit(resource, &limit) != 0) return;
-    limit.rlim_cur = std::min(wanted, limit.rlim_max);
-    setrlimit(resource, &limit);
+    SetSoftLimit(resource, wanted);
   }
 
   std::optional<rlim_t> cpu_;
@@ -214,7 +206,7 @@ RunnerFailure WaitedTooLong(double wall_seconds) {
 }
 
 void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugins) {
-  Limits::ForbidCoreDumps();
+  SetSoftLimit(RLIMIT_CORE, 0);
   Limits limits;
   PluginRuns plugin_runs(plugins, run);
   FrameBuffer messages;

@@ -23,6 +23,7 @@
 #include <new>
 
 #include "base/system/atomic_file.h"
+#include "base/system/resource_limits.h"
 #include "base/system/unique_fd.h"
 #include "proto/messages.h"
 #include "worker/runner/fork_server.h"
@@ -49,16 +50,9 @@ void WriteToStderr(std::string_view text) {
   _exit(kExitOutOfMemory);
 }
 
-void SetLimit(__rlimit_resource resource, rlim_t wanted) {
-  rlimit limit{};
-  if (getrlimit(resource, &limit) != 0) return;
-  limit.rlim_cur = std::min(wanted, limit.rlim_max);
-  setrlimit(resource, &limit);
-}
-
 // A length and so many bytes: whoever reads it knows whether it is all.
 bool WriteResult(int fd, const std::string& bytes) {
-  SetLimit(RLIMIT_FSIZE, RLIM_INFINITY);
+  SetSoftLimit(RLIMIT_FSIZE, RLIM_INFINITY);
   const std::uint64_t size = bytes.size();
   if (pwrite(fd, bytes.data(), bytes.size(), sizeof size) != static_cast<ssize_t>(bytes.size())) return false;
   return pwrite(fd, &size, sizeof size, 0) == sizeof size;
@@ -120,11 +114,11 @@ bool OnlyOthersSend(int signal) {
 }
 
 void Confine(const SeparateOptions& options) {
-  SetLimit(RLIMIT_CORE, 0);
-  SetLimit(RLIMIT_FSIZE, kMostFileBytes);
+  SetSoftLimit(RLIMIT_CORE, 0);
+  SetSoftLimit(RLIMIT_FSIZE, kMostFileBytes);
   if (options.cpu_limit_seconds > 0.0)
-    SetLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(options.cpu_limit_seconds)));
-  if (options.memory_limit_bytes > 0) SetLimit(RLIMIT_AS, rlim_t{options.memory_limit_bytes});
+    SetSoftLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(options.cpu_limit_seconds)));
+  if (options.memory_limit_bytes > 0) SetSoftLimit(RLIMIT_AS, rlim_t{options.memory_limit_bytes});
   if (options.wall_limit_seconds > 0) alarm(options.wall_limit_seconds);
 }
 
@@ -158,9 +152,7 @@ double SecondsWithChildren() {
   double seconds = 0.0;
   for (const int whose : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
     rusage usage{};
-    if (getrusage(whose, &usage) != 0) continue;
-    for (const timeval& time : {usage.ru_utime, usage.ru_stime})
-      seconds += static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    if (getrusage(whose, &usage) == 0) seconds += CpuSecondsOf(usage);
   }
   return seconds;
 }
@@ -208,7 +200,7 @@ void EndAs(const SeparateOutcome& outcome) {
           fmt::format("the plug-in ended its process by signal {} ({})\n", number, strsignal(number)));
       _exit(kExitSignalled + number);
     }
-    SetLimit(RLIMIT_CORE, 0);
+    SetSoftLimit(RLIMIT_CORE, 0);
     signal(number, SIG_DFL);
     sigset_t only;
     sigemptyset(&only);
