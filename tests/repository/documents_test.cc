@@ -21,16 +21,16 @@ namespace {
 namespace fs = std::filesystem;
 using testing::Contains;
 
-const fs::path kRoot = GAUNTLET_SOURCE_DIR;
+const fs::path kSourceRoot = GAUNTLET_SOURCE_DIR;
 
-struct Line {
+struct DocumentLine {
   std::string text;
   bool code = false;  // of a fenced or an indented block
 };
 
-std::vector<Line> LinesOf(const std::string& document) {
-  std::ifstream in(kRoot / document);
-  std::vector<Line> lines;
+std::vector<DocumentLine> ReadDocument(const std::string& document) {
+  std::ifstream in(kSourceRoot / document);
+  std::vector<DocumentLine> lines;
   bool fenced = false;
   for (std::string text; std::getline(in, text);) {
     const bool fence = text.starts_with("```");
@@ -43,8 +43,8 @@ std::vector<Line> LinesOf(const std::string& document) {
 // Every Markdown page of ours, relative to the repository.
 std::vector<std::string> Documents() {
   std::vector<std::string> found;
-  for (auto entry = fs::recursive_directory_iterator(kRoot); entry != fs::end(entry); ++entry) {
-    const std::string path = fs::relative(entry->path(), kRoot).string();
+  for (auto entry = fs::recursive_directory_iterator(kSourceRoot); entry != fs::end(entry); ++entry) {
+    const std::string path = fs::relative(entry->path(), kSourceRoot).string();
     if (entry->is_directory() && (path == "build" || path.starts_with("."))) {
       entry.disable_recursion_pending();
     } else if (path.ends_with(".md")) {
@@ -62,7 +62,7 @@ bool IsGenerated(const std::string& document) {
 std::set<std::string> LinksOf(const std::string& document) {
   static const std::regex link(R"(\]\(([^)\s]+)\))");
   std::set<std::string> links;
-  for (const Line& line : LinesOf(document)) {
+  for (const DocumentLine& line : ReadDocument(document)) {
     if (line.code) continue;
     const std::sregex_iterator end;
     for (std::sregex_iterator i(line.text.begin(), line.text.end(), link); i != end; ++i)
@@ -74,7 +74,7 @@ std::set<std::string> LinksOf(const std::string& document) {
 // What a link to one of its headings ends with, as GitHub makes it.
 std::set<std::string> AnchorsOf(const std::string& document) {
   std::set<std::string> anchors;
-  for (const Line& line : LinesOf(document)) {
+  for (const DocumentLine& line : ReadDocument(document)) {
     if (line.code || !line.text.starts_with("#")) continue;
     std::string anchor;
     for (const char c : line.text.substr(std::min(line.text.find(' ') + 1, line.text.size()))) {
@@ -93,12 +93,12 @@ std::size_t Characters(const std::string& text) {
 }
 
 TEST(Documents, FrontPageIsShort) {
-  EXPECT_LE(LinesOf("README.md").size(), 110U);
+  EXPECT_LE(ReadDocument("README.md").size(), 110U);
 }
 
 TEST(Documents, ChangelogIsShort) {
-  const std::vector<Line> lines = LinesOf("CHANGELOG.md");
-  EXPECT_LE(std::ranges::count_if(lines, [](const Line& line) { return !line.text.empty(); }), 30);
+  const std::vector<DocumentLine> lines = ReadDocument("CHANGELOG.md");
+  EXPECT_LE(std::ranges::count_if(lines, [](const DocumentLine& line) { return !line.text.empty(); }), 30);
 }
 
 TEST(Documents, IndexLinksEveryPage) {
@@ -117,7 +117,7 @@ TEST(Documents, EveryLinkLeadsSomewhere) {
       const std::string path = link.substr(0, link.find('#'));
       const fs::path target =
           path.empty() ? fs::path(document) : (fs::path(document).parent_path() / path).lexically_normal();
-      ASSERT_TRUE(fs::exists(kRoot / target)) << document << " links " << link;
+      ASSERT_TRUE(fs::exists(kSourceRoot / target)) << document << " links " << link;
       if (link.find('#') == std::string::npos) continue;
       EXPECT_THAT(AnchorsOf(target.string()), Contains(link.substr(link.find('#') + 1)))
           << document << " links " << link;
@@ -129,14 +129,15 @@ TEST(Documents, EveryLinkLeadsSomewhere) {
 TEST(Documents, EverySourceThatTheyNameExists) {
   static const std::regex source(R"(`([a-z]+(/[A-Za-z0-9_.-]+)+\.(h|cc|md|toml|txt|proto|sbatch|argos)))");
   for (const std::string& document : Documents()) {
-    for (const Line& line : LinesOf(document)) {
+    for (const DocumentLine& line : ReadDocument(document)) {
       const std::sregex_iterator end;
       for (std::sregex_iterator i(line.text.begin(), line.text.end(), source); i != end; ++i) {
         const std::string name = (*i)[1];
-        if (line.code || !fs::is_directory(kRoot / name.substr(0, name.find('/')))) continue;
-        const bool made_up = fs::path(name).filename().string().starts_with("my_");
-        EXPECT_TRUE(made_up || fs::exists(kRoot / name) ||
-                    fs::exists((kRoot / document).parent_path() / name))
+        if (line.code || !fs::is_directory(kSourceRoot / name.substr(0, name.find('/')))) continue;
+        const bool made_up =
+            fs::path(name).filename().string().starts_with("my_") || name.starts_with("tests/a/");
+        EXPECT_TRUE(made_up || fs::exists(kSourceRoot / name) ||
+                    fs::exists((kSourceRoot / document).parent_path() / name))
             << document << " names " << name;
       }
     }
@@ -147,9 +148,9 @@ TEST(Documents, ProseIsNotWide) {
   for (const std::string& document : Documents()) {
     if (IsGenerated(document)) continue;
     int number = 0;
-    for (const Line& line : LinesOf(document)) {
+    for (const DocumentLine& line : ReadDocument(document)) {
       ++number;
-      if (line.code || line.text.starts_with("|")) continue;
+      if (line.code || line.text.starts_with("|") || line.text.starts_with("![")) continue;
       EXPECT_LE(Characters(line.text), 120U) << fmt::format("{}:{}", document, number);
     }
   }
