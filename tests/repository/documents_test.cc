@@ -11,6 +11,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/support/paths.h"
@@ -94,6 +95,14 @@ std::size_t Characters(const std::string& text) {
 
 TEST(Documents, FrontPageIsShort) {
   EXPECT_LE(ReadDocument("README.md").size(), 110U);
+}
+
+TEST(Documents, FrontPageBeginsWithAPictureOfWhatIsFound) {
+  const std::vector<DocumentLine> lines = ReadDocument("README.md");
+  const auto starts = [](std::string_view with) {
+    return [with](const DocumentLine& line) { return line.text.starts_with(with); };
+  };
+  EXPECT_LT(std::ranges::find_if(lines, starts("![")), std::ranges::find_if(lines, starts("## ")));
 }
 
 TEST(Documents, ChangelogIsShort) {
