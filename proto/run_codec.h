@@ -57,8 +57,8 @@ std::string EncodeWithoutWays(const sim::RunResult& result);
 // What either of them wrote. Error (kCorrupt): not a RunResult, or its hash is not that of its content.
 Result<sim::RunResult> DecodeRunResult(std::string_view bytes);
 
-// The same for bytes from the store, which guards them by a checksum: of a result without ways no hash is
-// held against its content.
+// The same for bytes from the store, which guards them by a checksum: of a result without waypoints no
+// hash is held against its content.
 Result<sim::RunResult> DecodeStoredResult(std::string_view bytes);
 
 }  // namespace gauntlet::proto

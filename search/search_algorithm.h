@@ -100,7 +100,7 @@ class SearchAlgorithm {
   virtual void Tell(const EvaluationOutcome& outcome) = 0;
   // Whether outcomes are to carry the metrics of their runs; constant. They have to be decoded for it.
   virtual bool WantsMetrics() const { return false; }
-  // Whether also their ways; constant. Its campaign has to keep them (store.trajectories).
+  // Whether also their trajectories; constant. Its campaign has to keep them (store.trajectories).
   virtual bool WantsWays() const { return false; }
   virtual SearchProgress Progress() const = 0;
   // The current population, in a fixed order (all cases told so far for searches without survivors).

@@ -11,7 +11,7 @@ namespace gauntlet::analysis {
 std::string_view ArenaStyleSheet();
 
 void DrawFloor(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
-// With the ways of those that move, the lamps of those that are lit, and the walls.
+// With the paths of those that move, the lamps of those that are lit, and the walls.
 void DrawObstacles(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena);
 // Returns where they stand. `kept`: which of a larger arena's obstacles these are, from 0; empty = all.
 std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena,

@@ -114,7 +114,7 @@ std::vector<ExtraSet> SetsOf(const SizeOptions& options);
 // `sets`, and `extra` as "key=value" behind them. Error: one of `extra` contradicts another or one of `sets`.
 Result<std::vector<std::string>> JoinSets(const std::vector<std::string>& sets,
                                           const std::vector<ExtraSet>& extra);
-// An error that begins with "--set key=value:" begins with the option instead that stands for it.
+// `error`, where it begins with "--set key=value:" of one of `extra`, with the option that was typed instead.
 Error AsTyped(Error error, const std::vector<ExtraSet>& extra);
 // The experiment with --set, then `extra`, then --seed applied. Error: also when `extra` contradicts a --set.
 Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const std::vector<ExtraSet>& extra);

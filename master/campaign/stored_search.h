@@ -21,8 +21,8 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& expe
 // longer since it ended has not. Takes no look at its runs.
 bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const SearchAlgorithm& search);
 
-// What a search is to know of a stored run. kCorrupt when its metrics or ways are wanted and do not read
-// back.
+// What a search is to know of a stored run. kCorrupt when its metrics or trajectories are wanted and
+// do not read back.
 Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics, bool with_ways = false);
 
 // How far a search had come when its newest state was saved.

@@ -39,7 +39,7 @@ struct StoredRun {
   std::uint64_t seed = 0;
   proto::EncodedSpec spec;      // as it was sent
   std::uint64_t spec_hash = 0;  // FNV-1a of `spec`: finds a changed byte that would not change the result
-  proto::EncodedResult result;  // without a trajectory, mostly without ways (proto::DecodeStoredResult)
+  proto::EncodedResult result;  // without poses, mostly without waypoints (proto::DecodeStoredResult)
   std::uint64_t hash = 0;       // of the whole result
   std::string worker;
   std::uint32_t attempt = 1;

@@ -114,7 +114,7 @@ Status WriteCases(const StoredCampaign& campaign, const SearchColumns& searches,
   return Ok{};
 }
 
-// The run's result with the robots' ways.
+// The run's result with the robots' trajectories.
 Result<sim::RunResult> WithWays(const StoredRun& run, std::uint64_t& simulated) {
   Result<sim::RunResult> stored = proto::DecodeStoredResult(run.result);
   if (!stored || stored->verdict != sim::Verdict::kCompleted) return stored;

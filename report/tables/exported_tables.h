@@ -22,7 +22,7 @@ struct ExportOptions {
 
 struct ExportReport {
   std::uint64_t rows = 0;
-  std::uint64_t simulated = 0;  // runs whose ways were not kept, simulated again and found the same
+  std::uint64_t simulated = 0;  // runs whose trajectories were not kept, simulated again and found the same
 };
 
 // Writes the table to `sink`. `head`: the text of a JSON object that the rows continue. Needs memory for the

@@ -44,10 +44,10 @@ struct MinimisingRules {
 // alone; then each that is left is taken away, the farthest first, and put back if it was needed. Without a
 // place the second part begins with all of them, those that robots visited least first. It is repeated until
 // none can be spared. A step is taken when a sequential probability ratio test (Wald 1945) prefers a failure
-// probability of .95 to .75, both errors 10
-// %. Many tests in a row select for luck, so what is left must fail in 24 of 30 more runs, and at least half
-// of these failures be the same ones; if not, the newest step that does is taken, or the search goes on with
-// one obstacle more.
+// probability of .95 to .75, with error
+// probabilities of .1. Many tests in a row select for luck, so what is left must fail in 24 of 30 more runs,
+// and at least half of these failures be the same ones; if not, the newest step that does is taken, or the
+// search goes on with one obstacle more.
 class CaseMinimiser final : public LayoutQuestion {
  public:
   static constexpr int kVerifyingRuns = 30;

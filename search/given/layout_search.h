@@ -58,7 +58,7 @@ class LayoutSearch : public PopulationSearch {
   std::vector<EvaluationRequest> requests_;  // that Ask has not handed out; they follow from what was told
 };
 
-// An experiment that asks about cases of `experiment`; it keeps the robots' ways.
+// An experiment that asks about cases of `experiment`; it keeps the robots' trajectories.
 Experiment LayoutExperiment(const Experiment& experiment, std::string_view algorithm);
 
 }  // namespace gauntlet

@@ -1,4 +1,4 @@
-// A kinematic box, and what is left of its way in a tick: what all engines know of it.
+// A kinematic box, and what is left of its path in a tick: what all engines know of it.
 #pragma once
 
 #include <cmath>

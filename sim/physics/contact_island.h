@@ -1,4 +1,4 @@
-// Robots that could touch each other or a box in a tick, and what becomes of their ways: the contact dynamics
+// Robots that could touch each other or a box in a tick, and where they end up: the contact dynamics
 // of ARGoS' dynamics2d engine (Chipmunk 6.0.1: cpSpaceStep, cpArbiter, cpPivotJoint) for discs of equal mass
 // that turn as their drive says, whatever rubs. Source of the rules and constants: argos3 at 421bd763,
 // src/plugins/simulator/physics_engines/dynamics2d. The turret, in ARGoS a body of its own, is part of the

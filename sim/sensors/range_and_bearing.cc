@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kManyMessages = 64;
 // Up to this many robots, what is known of bodies between them is kept.
 constexpr std::size_t kFewSenders = 100;
-constexpr double kWaysRounding = 1e-6;  // m, more than sums of a run's ways lose
+constexpr double kWaysRounding = 1e-6;  // m, more than sums over a run's trajectory lose
 
 Point3 AntennaAt(const Vec2& position) {
   return {position, foot_bot::kRangeAndBearingHeight};

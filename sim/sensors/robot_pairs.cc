@@ -14,7 +14,7 @@ constexpr std::size_t kFewRobots = 40;
 constexpr double kEverywhere = 1e6;  // m
 // m; a list of pairs holds for two seconds of driving or more.
 constexpr double kPairSlack = 0.4;
-constexpr double kRounding = 1e-6;  // m, more than sums of a run's ways lose
+constexpr double kRounding = 1e-6;  // m, more than sums over a run's trajectory lose
 constexpr double kDue = -std::numeric_limits<double>::infinity();
 
 // Of a square that reaches so far, and whose lights may be on a ring.

@@ -121,7 +121,7 @@ std::string SplitLabel(const RunFigure& figure, const sim::Annotation& split) {
 }
 
 // Where a box of that size, linked to `place`, hides the least: among positions around it, the one that
-// covers the fewest points of ways and obstacles' numbers.
+// covers the fewest points of trajectories and obstacles' numbers.
 Pixel PlaceCallout(const FigureFrame& frame, Pixel place, double width, const std::vector<Track>& tracks,
                    const std::vector<Pixel>& keep_free) {
   Pixel best{FigureFrame::kLeft + 10, FigureFrame::kTop + 10};

@@ -76,7 +76,7 @@ void ReadSummary(const sim::RobotSummary& summary, const FigureFrame& frame, Tra
   AppendPoint(track, frame.At(summary.end.position), 1.0, true);
 }
 
-constexpr int kCrowd = 12;  // more ways than this hide one another
+constexpr int kCrowd = 12;  // more trajectories than this hide one another
 
 double WidthOf(const Track& track) {
   if (track.kind == TrackKind::kKept) return track.crowded ? 0.8 : 1.5;

@@ -1,4 +1,4 @@
-// The ways of the robots in a run's picture: lines that grow stronger with time, start and end marks.
+// The trajectories of the robots in a run's picture: lines that grow stronger with time, start and end marks.
 #pragma once
 
 #include <optional>
@@ -21,7 +21,7 @@ struct Track {
   std::vector<Pixel> points;           // thinned: neighbours are at least a pixel apart
   std::vector<double> times;           // of the points, as a share of the run: 0..1
   std::optional<double> trapped_from;  // from then on it kept to one place; the same share
-  bool crowded = false;                // one of so many that its way is drawn thin and faint
+  bool crowded = false;                // one of so many that its trajectory is drawn thin and faint
   sim::Pose start;
   sim::Pose end;
 };
