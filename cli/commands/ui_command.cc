@@ -17,21 +17,17 @@ struct UiOptions {
   std::string port;
 };
 
-ExitCode RunUi(CommandContext& context, const UiOptions& options) {
-  const Result<int> port = ParsePort("--port", options.port);
-  if (!port) return Fail(context, port.error());
-  const Result<std::unique_ptr<ServedCampaigns>> served =
-      ServedCampaigns::Open(options.sets, context.campaigns);
-  if (!served) return Fail(context, served.error());
+Result<ExitCode> RunUi(CommandContext& context, const UiOptions& options) {
+  TRY(const int port, ParsePort("--port", options.port));
+  TRY(const std::unique_ptr<ServedCampaigns> served, ServedCampaigns::Open(options.sets, context.campaigns));
   const StopSignal handlers(/*announced=*/false);
   const std::string token = NewToken();
-  const Result<std::unique_ptr<WebServer>> server =
-      WebServer::Start(*port, [&campaigns = **served, &token](const WebRequest& request) {
+  TRY(const std::unique_ptr<WebServer> server,
+      WebServer::Start(port, [&campaigns = *served, &token](const WebRequest& request) {
         const Admission admission = Admit(request, token);
         return admission.refusal ? *admission.refusal : campaigns.Answer(admission.path);
-      });
-  if (!server) return Fail(context, server.error());
-  context.out << AddressOf((*server)->port(), token) << "\n" << std::flush;
+      }));
+  context.out << AddressOf(server->port(), token) << "\n" << std::flush;
   PrintMessage(context, "open this address in a browser of this machine; Ctrl-C ends it");
   constexpr int kMilliseconds = 1000;
   while (!StopSignal::ComesWithin(kMilliseconds)) {
