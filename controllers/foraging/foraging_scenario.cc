@@ -33,8 +33,8 @@ ForagingScenario::ForagingScenario(const sim::TestCase& test_case, const Foragin
 
 Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
     const sim::Headquarters& /*headquarters*/) {
-  if (const Status checked = CheckSite("food"); !checked.ok()) return checked.error();
-  if (const Status checked = controller_.Check(arena_); !checked.ok()) return checked.error();
+  TRY(CheckSite("food"));
+  TRY(controller_.Check(arena_));
   const sim::SpawnRequest request = {.count = site_.robots,
                                      .area = spawn_area_,
                                      .disc = spawn_disc_,
@@ -42,12 +42,11 @@ Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
                                      .start = nest_};
   sim::RandomStream random(seed_, sim::StreamPurpose::kSpawn);
   const sim::OccupancyGrid grid(arena_, sim::OccupancyGrid::kDefaultInflation);
-  const auto poses = start_poses_.empty() ? sim::Spawn(request, grid, random) : start_poses_;
-  if (!poses.ok()) return poses.error();
+  TRY(const auto poses, start_poses_.empty() ? sim::Spawn(request, grid, random) : start_poses_);
 
   std::vector<sim::RobotSetup> swarm;
-  swarm.reserve(poses->size());
-  for (const sim::Pose& pose : *poses) {
+  swarm.reserve(poses.size());
+  for (const sim::Pose& pose : poses) {
     swarm.push_back(SetUp(pose, {.robot = static_cast<sim::RobotIndex>(swarm.size())}));
     swarm.back().bodies_block_radio = bodies_block_radio_;
   }
