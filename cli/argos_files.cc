@@ -30,9 +30,7 @@ Result<std::optional<ArgosControllers>> ControllersOf(const ArgosFilesOptions& o
   if (options.controller_file.empty()) return controllers;
   const Result<std::string> text = ReadSmallFile(options.controller_file, kMostControllerBytes);
   if (!text) return InvalidInput(fmt::format("--controller-file {}", text.error().message));
-  Result<ArgosControllers> read = ReadArgosControllers(*text, options.controller_file, options.controller);
-  if (!read) return read.error();
-  controllers = std::move(*read);
+  TRY(controllers, ReadArgosControllers(*text, options.controller_file, options.controller));
   return controllers;
 }
 
@@ -66,22 +64,20 @@ std::string Unlikeness(const ArgosControllers& own, const sim::RunSpec& spec) {
 
 Result<ArgosFile> FileOf(const StoredCampaign& campaign, RunId id,
                          const std::optional<ArgosControllers>& controllers) {
-  const Result<std::optional<StoredRun>> stored = campaign.view.store->LoadRun(id);
-  if (!stored) return stored.error();
-  if (!stored->has_value())
+  TRY(const std::optional<StoredRun> stored, campaign.view.store->LoadRun(id));
+  if (!stored.has_value())
     return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", id)};
-  const Result<sim::RunSpec> spec = proto::DecodeRunSpec((*stored)->spec);
-  if (!spec) return spec.error();
-  const Result<sim::RunStart> start = controllers::StartOf(*spec);
+  TRY(const sim::RunSpec spec, proto::DecodeRunSpec(stored->spec));
+  const Result<sim::RunStart> start = controllers::StartOf(spec);
   if (!start)
     return Error{start.error().kind, fmt::format("run {} cannot begin: {}", id, start.error().message)};
   std::optional<ArgosControllers> own = controllers;
-  const std::string unlike = own && !spec->plugin.empty() ? Unlikeness(*own, *spec) : "";
-  if (own && !spec->plugin.empty()) own = WithParameters(std::move(*own), spec->controller_parameters);
+  const std::string unlike = own && !spec.plugin.empty() ? Unlikeness(*own, spec) : "";
+  if (own && !spec.plugin.empty()) own = WithParameters(std::move(*own), spec.controller_parameters);
   const std::string title = fmt::format("Run {} of {}, test case {}, scenario {}, controller {}.", id,
-                                        campaign.plans[(*stored)->search - 1].experiment.name,
-                                        (*stored)->individual, spec->scenario, spec->controller);
-  ArgosFile file = WriteArgos(*spec, *start, own ? &*own : nullptr, title);
+                                        campaign.plans[stored->search - 1].experiment.name,
+                                        stored->individual, spec.scenario, spec.controller);
+  ArgosFile file = WriteArgos(spec, *start, own ? &*own : nullptr, title);
   if (!unlike.empty()) file.notices.push_back(unlike);
   return file;
 }
@@ -90,25 +86,21 @@ Result<ArgosFile> FileOf(const StoredCampaign& campaign, RunId id,
 
 Result<ArgosFilesReport> WriteArgosFiles(const StoredCampaign& campaign, const ArgosFilesOptions& options,
                                          const std::filesystem::path& directory) {
-  const Result<std::optional<ArgosControllers>> controllers = ControllersOf(options);
-  if (!controllers) return controllers.error();
+  TRY(const std::optional<ArgosControllers> controllers, ControllersOf(options));
   std::vector<NamedRun> runs;
   for (const RunId run : options.runs) runs.push_back({fmt::format("run-{}.argos", run), run});
   if (runs.empty()) {
-    Result<std::vector<NamedRun>> first = FirstRuns(campaign);
-    if (!first) return first.error();
-    runs = std::move(*first);
+    TRY(runs, FirstRuns(campaign));
   }
   ArgosFilesReport report;
   for (const NamedRun& one : runs) {
-    const Result<ArgosFile> file = FileOf(campaign, one.run, *controllers);
+    const Result<ArgosFile> file = FileOf(campaign, one.run, controllers);
     if (!file && options.runs.empty() && file.error().kind == ErrorKind::kInvalidInput) {
       ++report.notices[fmt::format("There is no {}: {}.", one.file, file.error().message)];
       continue;
     }
     if (!file) return file.error();
-    const Status written = WriteOutputFile(directory / one.file, file->text);
-    if (!written) return written.error();
+    TRY(WriteOutputFile(directory / one.file, file->text));
     ++report.files;
     for (const std::string& notice : file->notices) ++report.notices[notice];
   }

@@ -121,7 +121,8 @@ ExitCode RunCommandLine(const std::vector<std::string>& arguments, CommandContex
     CommandAction chosen;
     Configure(app, chosen);
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
-    return chosen(context);
+    const Result<ExitCode> code = chosen(context);
+    return code ? *code : Fail(context, code.error());
   } catch (const CLI::CallForHelp&) {
     context.out << app.help() << std::flush;
     return kExitDone;

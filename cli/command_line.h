@@ -37,7 +37,8 @@ struct CommandContext {
 
 // "gauntlet: MESSAGE", one line whatever the message holds.
 void PrintMessage(CommandContext& context, std::string_view message);
-// Prints the error and gives the exit code of its kind: kInternal 4, kNoSpace 3, all others 2.
+// Prints the error and gives the exit code of its kind: kInternal 4, kNoSpace 3, all others 2. An error that
+// a command returns comes here by itself.
 ExitCode Fail(CommandContext& context, const Error& error);
 
 // Runs the command that `arguments` (without the program's name) ask for. Never throws.

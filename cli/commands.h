@@ -12,7 +12,7 @@ class App;
 
 namespace gauntlet {
 
-using CommandAction = std::function<ExitCode(CommandContext&)>;
+using CommandAction = std::function<Result<ExitCode>(CommandContext&)>;
 
 // The command line while it is set up.
 class CommandParser {
@@ -24,7 +24,7 @@ class CommandParser {
   // chosen, its action calls `run` with these values.
   template <typename Options>
   std::pair<CLI::App&, Options&> Add(const char* name, const char* description,
-                                     ExitCode (*run)(CommandContext&, const Options&)) {
+                                     Result<ExitCode> (*run)(CommandContext&, const Options&)) {
     const auto options = std::make_shared<Options>();
     CLI::App& command = AddSubcommand(
         name, description, [options, run](CommandContext& context) { return run(context, *options); });

@@ -66,13 +66,12 @@ std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>
 
 }  // namespace
 
-ExitCode PrintDryRun(CommandContext& context, const CampaignRun& campaign,
-                     const std::vector<SearchPlan>& searches) {
-  const Result<Forecast> forecast = MakeForecast(searches);
-  if (!forecast) return Fail(context, forecast.error());
+Result<ExitCode> PrintDryRun(CommandContext& context, const CampaignRun& campaign,
+                             const std::vector<SearchPlan>& searches) {
+  TRY(const Forecast forecast, MakeForecast(searches));
   const int workers = campaign.session.workers;
-  context.out << (campaign.serving.json ? ForecastJson(*forecast, searches, workers)
-                                        : ForecastText(*forecast, searches, workers))
+  context.out << (campaign.serving.json ? ForecastJson(forecast, searches, workers)
+                                        : ForecastText(forecast, searches, workers))
               << std::flush;
   return kExitDone;
 }

@@ -10,7 +10,7 @@ namespace gauntlet {
 
 // Says what the campaign would ask for and cost here, as text or JSON, after a few measured runs; makes no
 // file.
-ExitCode PrintDryRun(CommandContext& context, const CampaignRun& campaign,
-                     const std::vector<SearchPlan>& searches);
+Result<ExitCode> PrintDryRun(CommandContext& context, const CampaignRun& campaign,
+                             const std::vector<SearchPlan>& searches);
 
 }  // namespace gauntlet

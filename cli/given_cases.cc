@@ -55,28 +55,25 @@ Result<QuestionedCampaign> GivenCases(CommandContext& context, const std::string
   std::vector<CaseInQuestion> files;
   for (const std::string& text : cases) {
     if (std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) {
-      const Result<std::uint64_t> run = ParseRunId(text);
-      if (!run) return run.error();
-      runs.push_back(*run);
+      TRY(const std::uint64_t run, ParseRunId(text));
+      runs.push_back(run);
       continue;
     }
-    Result<LoadedCase> loaded = LoadCase(text);
-    if (!loaded) return loaded.error();
-    files.push_back({std::filesystem::path(text).filename().string(), 0, std::move(loaded->test_case)});
+    TRY(LoadedCase loaded, LoadCase(text));
+    files.push_back({std::filesystem::path(text).filename().string(), 0, std::move(loaded.test_case)});
   }
-  Result<QuestionedCampaign> questioned = CasesOfRuns(directory, runs);
-  if (!questioned) return questioned;
-  if (!files.empty() && questioned->plans.size() > 1) {
+  TRY(QuestionedCampaign questioned, CasesOfRuns(directory, runs));
+  if (!files.empty() && questioned.plans.size() > 1) {
     return InvalidInput(fmt::format(
         "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
-        directory, questioned->plans.size(), files.front().name));
+        directory, questioned.plans.size(), files.front().name));
   }
   for (CaseInQuestion& file : files) {
-    if (const auto refusal = RefusalOf(questioned->plans.front().experiment, file.test_case))
+    if (const auto refusal = RefusalOf(questioned.plans.front().experiment, file.test_case))
       return InvalidInput(fmt::format("{}: {}", file.name, refusal->message));
-    questioned->cases.push_back(std::move(file));
+    questioned.cases.push_back(std::move(file));
   }
-  AskOnce(context, *questioned);
+  AskOnce(context, questioned);
   return questioned;
 }
 

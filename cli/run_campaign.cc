@@ -95,39 +95,39 @@ void WarnOfManyWorkers(CommandContext& context, int workers) {
 
 Result<std::unique_ptr<MetricsPage>> StartMetrics(CommandContext& context, const ServingOptions& options) {
   if (options.metrics_port.empty()) return std::unique_ptr<MetricsPage>();
-  const Result<int> port = ParsePort("--metrics-port", options.metrics_port);
-  if (!port) return port.error();
-  Result<std::unique_ptr<MetricsPage>> metrics = MetricsPage::Serve(*port);
+  TRY(const int port, ParsePort("--metrics-port", options.metrics_port));
+  Result<std::unique_ptr<MetricsPage>> metrics = MetricsPage::Serve(port);
   if (metrics && !options.quiet) PrintMessage(context, fmt::format("metrics at {}", (*metrics)->url()));
   return metrics;
 }
 
 // `began`: some progress was made.
-ExitCode FailCampaign(CommandContext& context, const CampaignRun& campaign, const Error& error, bool began) {
-  const ExitCode code = Fail(context, error);
+Result<ExitCode> FailCampaign(CommandContext& context, const CampaignRun& campaign, const Error& error,
+                              bool began) {
+  const bool in_use = error.kind == ErrorKind::kInUse;
+  const bool asked_now = in_use && campaign.same_command_resumes && !began;
   // What was deleted or replaced under this master says itself what is left.
-  if (began && error.kind == ErrorKind::kNotFound) return kExitStopped;
+  const bool gone = began && error.kind == ErrorKind::kNotFound;
   const bool resumable = error.kind == ErrorKind::kNoSpace ||
-                         (began && (error.kind == ErrorKind::kIo || error.kind == ErrorKind::kInUse)) ||
-                         (error.kind == ErrorKind::kInUse && StopSignal::Requested());
-  if (error.kind == ErrorKind::kInUse && campaign.same_command_resumes && !began)
+                         (began && (error.kind == ErrorKind::kIo || in_use)) ||
+                         (in_use && StopSignal::Requested());
+  if (!asked_now && !gone && !resumable) return error;
+  PrintMessage(context, error.message);
+  if (asked_now)
     PrintMessage(context, "the same question is being answered just now; when that has ended, ask again");
-  if (!resumable) return code;
-  PrintMessage(context, HowToGoOn(context, campaign));
-  return kExitStopped;
+  if (resumable) PrintMessage(context, HowToGoOn(context, campaign));
+  return gone || resumable ? kExitStopped : kExitUsage;
 }
 
-ExitCode Conclude(CommandContext& context, const CampaignRun& campaign, const SessionReport& report) {
+Result<ExitCode> Conclude(CommandContext& context, const CampaignRun& campaign, const SessionReport& report) {
   const CampaignSummary& summary = report.summary;
   if (!campaign.serving.quiet && report.runs_this_session > 0) PrintMessage(context, Timing(report));
   if (campaign.report) {
-    if (const Status printed = campaign.report(report); !printed) return Fail(context, printed.error());
+    TRY(campaign.report(report));
   } else {
     const bool nothing_left = report.runs_this_session == 0 && summary.finished;
-    const Status printed = nothing_left
-                               ? PrintFinished(context, summary, campaign.directory, campaign.serving)
-                               : PrintSummary(context, summary, campaign.directory, campaign.serving.json);
-    if (!printed) return Fail(context, printed.error());
+    TRY(nothing_left ? PrintFinished(context, summary, campaign.directory, campaign.serving)
+                     : PrintSummary(context, summary, campaign.directory, campaign.serving.json));
   }
   if (report.end == CampaignEnd::kStopped) {
     PrintMessage(context, fmt::format("stopped after {} runs, all of them stored. Go on with: {}",
@@ -154,17 +154,14 @@ ExitCode Conclude(CommandContext& context, const CampaignRun& campaign, const Se
 
 }  // namespace
 
-ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
+Result<ExitCode> RunCampaign(CommandContext& context, const CampaignRun& campaign) {
   const ServingOptions& options = campaign.serving;
   const std::string& endpoint = campaign.bind.endpoint;
-  const Result<double> audit_share = ParseShare("--audit", options.audit);
-  if (!audit_share) return Fail(context, audit_share.error());
-  const Status possible = endpoint.empty() ? Status(Ok{}) : CheckBindEndpoint(endpoint);
-  if (!possible) return Fail(context, possible.error());
+  TRY(const double audit_share, ParseShare("--audit", options.audit));
+  TRY(endpoint.empty() ? Status(Ok{}) : CheckBindEndpoint(endpoint));
   if (!options.quiet && !campaign.announcement.empty()) PrintMessage(context, campaign.announcement);
   WarnOfManyWorkers(context, campaign.session.workers);
-  const Result<std::unique_ptr<MetricsPage>> metrics = StartMetrics(context, options);
-  if (!metrics) return Fail(context, metrics.error());
+  TRY(const std::unique_ptr<MetricsPage> metrics, StartMetrics(context, options));
 
   const SteadyClock clock;
   const ProgressMode mode = ChooseProgressMode(!options.quiet && !options.no_progress,
@@ -174,9 +171,9 @@ ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign) {
   bool began = false;
 
   SessionOptions session = campaign.session;
-  session.metrics = metrics->get();
+  session.metrics = metrics.get();
   session.insecure = campaign.bind.insecure;
-  session.audit_share = *audit_share;
+  session.audit_share = audit_share;
   if (!endpoint.empty()) session.bind = endpoint;
   if (!endpoint.empty() || session.insecure)
     session.on_serving = [&](const ServingNotice& notice) { PrintServing(context, campaign, notice); };
@@ -217,22 +214,20 @@ Status PrintFinished(CommandContext& context, const CampaignSummary& summary, co
 
 Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const LocalOptions& options) {
   const Experiment& experiment = searches.front().experiment;
-  const Result<int> workers = ParseWorkers(options.running.workers);
-  if (!workers) return workers.error();
-  const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
-  if (!directory) return directory.error();
+  TRY(const int workers, ParseWorkers(options.running.workers));
+  TRY(const std::string directory, NewDirectory(options.experiment.directory, experiment));
   const SearchRow& search = RowOf(experiment);
   CampaignRun campaign;
-  campaign.directory = *directory;
+  campaign.directory = directory;
   const std::string what =
       searches.size() == 1
           ? fmt::format("{}, {}, seed {}", search.title, search.plan(experiment), experiment.seed)
           : fmt::format("{} searches ({}; ...; {})", searches.size(), searches.front().settings,
                         searches.back().settings);
-  campaign.announcement = fmt::format("{}: {}, {} worker{}, in {}", experiment.name, what, *workers,
-                                      *workers == 1 ? "" : "s", *directory);
+  campaign.announcement = fmt::format("{}: {}, {} worker{}, in {}", experiment.name, what, workers,
+                                      workers == 1 ? "" : "s", directory);
   campaign.serving = options.running;
-  campaign.session.workers = *workers;
+  campaign.session.workers = workers;
   return campaign;
 }
 

@@ -26,7 +26,7 @@ struct CampaignRun {
 // Runs it with progress on context.err; SIGINT and SIGTERM stop it cleanly. Exit 0; 1 when a search ended and
 // none of its runs gave a result, or an audit found runs that end differently when they are repeated; 3 when
 // it was stopped and can be resumed; or as the error demands.
-ExitCode RunCampaign(CommandContext& context, const CampaignRun& campaign);
+Result<ExitCode> RunCampaign(CommandContext& context, const CampaignRun& campaign);
 
 // To stderr: that what follows is a snapshot (CampaignView::as_of). Nothing when `as_of` is empty.
 void PrintAsOf(CommandContext& context, const std::string& directory, const std::string& as_of);

@@ -29,15 +29,14 @@ namespace fs = std::filesystem;
 
 // Makes the stage's campaign under another name first, so that one with this name is whole.
 Status MakeStage(CommandContext& context, const Study& study, const StudyRun& run, StudyStage stage) {
-  const Result<std::vector<SearchPlan>> plans =
-      stage == StudyStage::kSearches ? PlanSearchStage(study) : PlanEvaluationStage(study, run.directory);
-  if (!plans) return plans.error();
+  TRY(const std::vector<SearchPlan> plans,
+      stage == StudyStage::kSearches ? PlanSearchStage(study) : PlanEvaluationStage(study, run.directory));
   const std::string unfinished = UnfinishedCampaignOf(run.directory, stage);
   std::error_code error;
   fs::remove_all(unfinished, error);
   const std::string slurm =
       run.submitted == nullptr ? "" : slurm::WriteSlurmSettings(run.submitted->settings());
-  if (Status prepared = context.campaigns.Prepare(unfinished, *plans, slurm); !prepared) return prepared;
+  TRY(context.campaigns.Prepare(unfinished, plans, slurm));
   fs::rename(unfinished, CampaignOf(run.directory, stage), error);
   if (error) return Error{ErrorKind::kIo, fmt::format("{}: {}", unfinished, error.message())};
   return SyncDirectory(run.directory);
@@ -53,14 +52,13 @@ std::string Announcement(const Study& study, const CampaignRun& campaign, const 
                      campaign.directory);
 }
 
-ExitCode RunStage(CommandContext& context, const Study& study, const StudyRun& run, StudyStage stage,
-                  int workers) {
-  Result<StageState> state = LookAtStage(study, run.directory, stage);
-  if (!state) return Fail(context, state.error());
-  if (!state->exists) {
-    if (Status made = MakeStage(context, study, run, stage); !made) return Fail(context, made.error());
+Result<ExitCode> RunStage(CommandContext& context, const Study& study, const StudyRun& run, StudyStage stage,
+                          int workers) {
+  TRY(const StageState state, LookAtStage(study, run.directory, stage));
+  if (!state.exists) {
+    TRY(MakeStage(context, study, run, stage));
   }
-  if (state->finished) return kExitDone;
+  if (state.finished) return kExitDone;
   CampaignRun campaign;
   campaign.directory = CampaignOf(run.directory, stage);
   campaign.resumed_by = run.directory;
@@ -69,10 +67,7 @@ ExitCode RunStage(CommandContext& context, const Study& study, const StudyRun& r
   if (run.submitted == nullptr) {
     campaign.session.workers = workers;
   } else {
-    Result<slurm::SlurmCampaign> made =
-        slurm::SlurmCampaign::Make(run.submitted->settings(), campaign.directory);
-    if (!made) return Fail(context, made.error());
-    jobs = *std::move(made);
+    TRY(jobs, slurm::SlurmCampaign::Make(run.submitted->settings(), campaign.directory));
     campaign.bind.endpoint = jobs->settings().bind;
     campaign.session.workers = 0;
     campaign.session.batch_job = run.batch_job;
@@ -86,32 +81,30 @@ ExitCode RunStage(CommandContext& context, const Study& study, const StudyRun& r
   return RunCampaign(context, campaign);
 }
 
-ExitCode PrintForecast(CommandContext& context, const Study& study, const RunningOptions& running) {
-  const Result<int> workers = ParseWorkers(running.workers);
-  if (!workers) return Fail(context, workers.error());
+Result<ExitCode> PrintForecast(CommandContext& context, const Study& study, const RunningOptions& running) {
+  TRY(const int workers, ParseWorkers(running.workers));
   Table table({"part", ">searches", ">runs", ">cases, at most", ">ms per run", ">time", ">disk, MB"});
   nlohmann::ordered_json parts = nlohmann::ordered_json::array();
   Forecast all;
   double seconds = 0.0;
   for (const StudyPart& part : study.parts) {
     const std::vector<SearchPlan> plans = ForecastPlans(study, part);
-    const Result<Forecast> forecast = MakeForecast(plans);
-    if (!forecast) return Fail(context, forecast.error());
+    TRY(const Forecast forecast, MakeForecast(plans));
     const bool again = StageOf(part) == StudyStage::kEvaluations;
-    all.runs += forecast->runs;
-    all.cases += again ? 0 : forecast->cases;
-    all.bytes += forecast->bytes;
-    seconds += forecast->Seconds(*workers);
-    table.AddRow({part.name, FormatCount(plans.size()), FormatCount(forecast->runs),
-                  again ? "" : FormatCount(forecast->cases),
-                  fmt::format("{:.1f}", 1e3 * forecast->seconds_per_run),
-                  FormatDuration(forecast->Seconds(*workers)), fmt::format("{:.1f}", forecast->bytes / 1e6)});
+    all.runs += forecast.runs;
+    all.cases += again ? 0 : forecast.cases;
+    all.bytes += forecast.bytes;
+    seconds += forecast.Seconds(workers);
+    table.AddRow({part.name, FormatCount(plans.size()), FormatCount(forecast.runs),
+                  again ? "" : FormatCount(forecast.cases),
+                  fmt::format("{:.1f}", 1e3 * forecast.seconds_per_run),
+                  FormatDuration(forecast.Seconds(workers)), fmt::format("{:.1f}", forecast.bytes / 1e6)});
     parts.push_back({{"part", part.name},
                      {"searches", plans.size()},
-                     {"runs", forecast->runs},
-                     {"cases", again ? 0 : forecast->cases},
-                     {"seconds", forecast->Seconds(*workers)},
-                     {"bytes", forecast->bytes}});
+                     {"runs", forecast.runs},
+                     {"cases", again ? 0 : forecast.cases},
+                     {"seconds", forecast.Seconds(workers)},
+                     {"bytes", forecast.bytes}});
   }
   table.AddRow({"all", "", FormatCount(all.runs), FormatCount(all.cases), "", FormatDuration(seconds),
                 fmt::format("{:.1f}", all.bytes / 1e6)});
@@ -120,7 +113,7 @@ ExitCode PrintForecast(CommandContext& context, const Study& study, const Runnin
                              {"parts", std::move(parts)},
                              {"runs", all.runs},
                              {"cases", all.cases},
-                             {"workers", *workers},
+                             {"workers", workers},
                              {"seconds", seconds},
                              {"bytes", all.bytes}})
                 << std::flush;
@@ -129,7 +122,7 @@ ExitCode PrintForecast(CommandContext& context, const Study& study, const Runnin
                        "{}: a dry run, nothing was made\n\n{}\n  Times are those of up to twelve of the "
                        "first runs of "
                        "each part, with {} worker{}; later runs may take longer or shorter.\n",
-                       study.name, table.ToText(), *workers, *workers == 1 ? "" : "s")
+                       study.name, table.ToText(), workers, workers == 1 ? "" : "s")
                 << std::flush;
   }
   return kExitDone;
@@ -141,55 +134,48 @@ Status WritePictures(CommandContext& context, const StudyReport& report, const S
     if (!section.tuning) continue;
     for (const NamedFigure& figure : FiguresOf(report, section)) {
       const std::string file = fmt::format("{}/{}.svg", run.directory, figure.name);
-      if (Status written = WriteOutputFile(file, figure.svg()); !written) return written;
+      TRY(WriteOutputFile(file, figure.svg()));
       if (!run.running.quiet) PrintMessage(context, fmt::format("wrote {}", file));
     }
   }
   return Ok{};
 }
 
-ExitCode SubmitStudy(CommandContext& context, const Study& study, const StudyStartOptions& options,
-                     const std::string& directory) {
+Result<ExitCode> SubmitStudy(CommandContext& context, const Study& study, const StudyStartOptions& options,
+                             const std::string& directory) {
   if (!options.markdown.empty() || !options.running.workers.empty()) {
-    return Fail(context,
-                InvalidInput("--submit goes without --workers and --markdown: when the jobs have ended, the "
-                             "same command without --submit writes the page"));
+    return InvalidInput(
+        "--submit goes without --workers and --markdown: when the jobs have ended, the "
+        "same command without --submit writes the page");
   }
-  const Result<slurm::SlurmSettings> settings = ReadSlurmOptions(options.slurm, std::nullopt, study.name);
-  if (!settings) return Fail(context, settings.error());
-  const Result<slurm::SlurmCampaign> campaign = slurm::SlurmCampaign::Make(*settings, directory);
-  if (!campaign) return Fail(context, campaign.error());
-  if (Status possible = TestJobs(context, *campaign, /*print=*/false); !possible)
-    return Fail(context, possible.error());
-  const Result<std::optional<slurm::SlurmCampaign>> before = slurm::SlurmCampaign::Find(directory);
-  if (!before) return Fail(context, before.error());
-  if (before->has_value()) {
-    return Fail(context, InvalidInput(fmt::format("{} was submitted before; go on with: {} resume {}",
-                                                  directory, context.program, PastedPath(directory))));
+  TRY(const slurm::SlurmSettings settings, ReadSlurmOptions(options.slurm, std::nullopt, study.name));
+  TRY(const slurm::SlurmCampaign campaign, slurm::SlurmCampaign::Make(settings, directory));
+  TRY(TestJobs(context, campaign, /*print=*/false));
+  TRY(const std::optional<slurm::SlurmCampaign> before, slurm::SlurmCampaign::Find(directory));
+  if (before.has_value()) {
+    return InvalidInput(fmt::format("{} was submitted before; go on with: {} resume {}", directory,
+                                    context.program, PastedPath(directory)));
   }
-  if (Status begun = BeginStudy(directory, study); !begun) return Fail(context, begun.error());
-  const Status kept =
-      WriteFileAtomically(directory + "/slurm.toml", slurm::WriteSlurmSettings(*settings), kReadableByAll);
-  if (!kept) return Fail(context, kept.error());
-  if (settings->master == slurm::MasterPlace::kJob)
-    return SubmitStudyJob(context, directory, *campaign, options.running.json);
-  return RunStudyIn(context, study, {directory, options.running, "", &*campaign, ""});
+  TRY(BeginStudy(directory, study));
+  TRY(WriteFileAtomically(directory + "/slurm.toml", slurm::WriteSlurmSettings(settings), kReadableByAll));
+  if (settings.master == slurm::MasterPlace::kJob)
+    return SubmitStudyJob(context, directory, campaign, options.running.json);
+  return RunStudyIn(context, study, {directory, options.running, "", &campaign, ""});
 }
 
 }  // namespace
 
-ExitCode SubmitStudyJob(CommandContext& context, const std::string& directory,
-                        const slurm::SlurmCampaign& campaign, bool json) {
-  const Result<std::string> job = SubmitMasterJob(context, directory, campaign);
-  if (!job) return Fail(context, job.error());
+Result<ExitCode> SubmitStudyJob(CommandContext& context, const std::string& directory,
+                                const slurm::SlurmCampaign& campaign, bool json) {
+  TRY(const std::string job, SubmitMasterJob(context, directory, campaign));
   if (json) {
-    context.out << JsonText({{"directory", directory}, {"job", *job}});
+    context.out << JsonText({{"directory", directory}, {"job", job}});
   } else {
     context.out << fmt::format(
         "{0}: job {1} is the master\n\n  {2} status {3}/searches\n  {2} resume {3}    tells what came out, "
         "when "
         "it has ended\n",
-        directory, *job, context.program, PastedPath(directory));
+        directory, job, context.program, PastedPath(directory));
   }
   context.out << std::flush;
   return kExitDone;
@@ -211,34 +197,31 @@ void AddStudyStartOptions(CLI::App& command, StudyStartOptions& options) {
   AddRunningOptions(command, options.running);
 }
 
-ExitCode StartStudy(CommandContext& context, const Study& study, const StudyStartOptions& options) {
+Result<ExitCode> StartStudy(CommandContext& context, const Study& study, const StudyStartOptions& options) {
   if (!options.submit && (!options.slurm.master.empty() || !options.slurm.settings.empty()))
-    return Fail(context, InvalidInput("--master and --slurm are for --submit"));
+    return InvalidInput("--master and --slurm are for --submit");
   if (options.dry_run) return PrintForecast(context, study, options.running);
   const std::string directory =
       options.directory.empty() ? DefaultDirectory(study.name, std::time(nullptr)) : options.directory;
   if (options.submit) return SubmitStudy(context, study, options, directory);
-  if (Status begun = BeginStudy(directory, study); !begun) return Fail(context, begun.error());
+  TRY(BeginStudy(directory, study));
   return RunStudyIn(context, study, {directory, options.running, options.markdown, nullptr, ""});
 }
 
-ExitCode RunStudyIn(CommandContext& context, const Study& study, const StudyRun& run) {
-  const Result<int> workers = ParseWorkers(run.running.workers);
-  if (!workers) return Fail(context, workers.error());
+Result<ExitCode> RunStudyIn(CommandContext& context, const Study& study, const StudyRun& run) {
+  TRY(const int workers, ParseWorkers(run.running.workers));
   for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
     if (std::ranges::count(study.parts, stage, &StageOf) == 0) continue;
-    const ExitCode code = RunStage(context, study, run, stage, *workers);
+    TRY(const ExitCode code, RunStage(context, study, run, stage, workers));
     if (code != kExitDone) return code;
   }
-  const Result<StudyReport> report = MakeStudyReport(study, run.directory);
-  if (!report) return Fail(context, report.error());
-  if (Status drawn = WritePictures(context, *report, run); !drawn) return Fail(context, drawn.error());
+  TRY(const StudyReport report, MakeStudyReport(study, run.directory));
+  TRY(WritePictures(context, report, run));
   if (!run.markdown.empty()) {
-    if (Status written = WriteOutputFile(run.markdown, StudyMarkdown(*report)); !written)
-      return Fail(context, written.error());
+    TRY(WriteOutputFile(run.markdown, StudyMarkdown(report)));
     PrintMessage(context, fmt::format("wrote {}", run.markdown));
   }
-  context.out << (run.running.json ? StudyJson(*report, run.directory) : StudyText(*report)) << std::flush;
+  context.out << (run.running.json ? StudyJson(report, run.directory) : StudyText(report)) << std::flush;
   return kExitDone;
 }
 

@@ -19,11 +19,11 @@ struct StudyRun {
 };
 
 // Goes on with the study in its directory, and prints what came out. Exit codes as RunCampaign's.
-ExitCode RunStudyIn(CommandContext& context, const Study& study, const StudyRun& run);
+Result<ExitCode> RunStudyIn(CommandContext& context, const Study& study, const StudyRun& run);
 
 // Hands the master's job of a submitted study to Slurm and says how to follow it.
-ExitCode SubmitStudyJob(CommandContext& context, const std::string& directory,
-                        const slurm::SlurmCampaign& campaign, bool json);
+Result<ExitCode> SubmitStudyJob(CommandContext& context, const std::string& directory,
+                                const slurm::SlurmCampaign& campaign, bool json);
 
 // What commands that start a study have in common.
 struct StudyStartOptions {
@@ -38,6 +38,6 @@ struct StudyStartOptions {
 void AddStudyStartOptions(CLI::App& command, StudyStartOptions& options);
 
 // Begins the study in its directory, or goes on with it there.
-ExitCode StartStudy(CommandContext& context, const Study& study, const StudyStartOptions& options);
+Result<ExitCode> StartStudy(CommandContext& context, const Study& study, const StudyStartOptions& options);
 
 }  // namespace gauntlet

@@ -24,13 +24,12 @@ Result<slurm::SlurmSettings> ReadSlurmOptions(const SlurmOptions& options,
   if (file) sources.push_back(*file);
   std::vector<std::string> sets = options.settings;
   if (!options.master.empty()) sets.push_back("master=" + options.master);
-  Result<slurm::SlurmSettings> settings = slurm::ReadSlurmSettings(sources, sets);
-  if (!settings) return settings;
+  TRY(slurm::SlurmSettings settings, slurm::ReadSlurmSettings(sources, sets));
   const ListenOn where =
-      settings->master == slurm::MasterPlace::kHere ? ListenOn::kThisMachine : ListenOn::kAnotherMachine;
-  if (const Status possible = CheckBindEndpoint(settings->bind, where); !possible) return possible.error();
-  if (settings->tag.empty()) settings->tag = slurm::DrawTag(name);
-  for (std::string* path : {&settings->worker_template, &settings->master_template}) {
+      settings.master == slurm::MasterPlace::kHere ? ListenOn::kThisMachine : ListenOn::kAnotherMachine;
+  TRY(CheckBindEndpoint(settings.bind, where));
+  if (settings.tag.empty()) settings.tag = slurm::DrawTag(name);
+  for (std::string* path : {&settings.worker_template, &settings.master_template}) {
     if (path->empty()) continue;
     // Links are followed now, by whoever names the file; what the campaign keeps leads to the file itself.
     std::error_code error;
@@ -65,8 +64,9 @@ Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, b
   return outcome;
 }
 
-ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, const std::string& directory,
-                        const slurm::SlurmCampaign& campaign, const std::string& batch_job) {
+Result<ExitCode> ServeSubmitted(CommandContext& context, const ServingOptions& options,
+                                const std::string& directory, const slurm::SlurmCampaign& campaign,
+                                const std::string& batch_job) {
   CampaignRun run;
   run.directory = directory;
   run.serving = options;
@@ -80,7 +80,7 @@ ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, 
     served = report && (report->runs_this_session > 0 || !report->summary.finished);
     return report;
   };
-  const ExitCode code = RunCampaign(context, run);
+  TRY(const ExitCode code, RunCampaign(context, run));
   // Of a master that was killed between its last result and its farewell.
   if (code == kExitDone && !served && batch_job.empty()) {
     const Result<std::vector<std::string>> cancelled = campaign.CancelJobs(*context.slurm());
@@ -91,7 +91,7 @@ ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, 
 
 Result<std::string> SubmitMasterJob(CommandContext& context, const std::string& directory,
                                     const slurm::SlurmCampaign& campaign) {
-  if (const Status made = MakeDirectory(directory + "/log"); !made) return made.error();  // Slurm makes none
+  TRY(MakeDirectory(directory + "/log"));  // Slurm makes none
   Result<std::string> job = context.slurm()->Submit(campaign.master_script(), {});
   if (!job) {
     const std::string& words = job.error().message;

@@ -21,8 +21,9 @@ Result<slurm::SlurmSettings> ReadSlurmOptions(const SlurmOptions& options,
 Status TestJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, bool print);
 
 // A master in this process with a pool of Slurm allocations. `batch_job`: the job that holds it, "" for none.
-ExitCode ServeSubmitted(CommandContext& context, const ServingOptions& options, const std::string& directory,
-                        const slurm::SlurmCampaign& campaign, const std::string& batch_job);
+Result<ExitCode> ServeSubmitted(CommandContext& context, const ServingOptions& options,
+                                const std::string& directory, const slurm::SlurmCampaign& campaign,
+                                const std::string& batch_job);
 
 // Hands the master's job of an existing campaign to Slurm. Error: with what to do next.
 Result<std::string> SubmitMasterJob(CommandContext& context, const std::string& directory,

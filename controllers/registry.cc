@@ -142,37 +142,27 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos,
   for (const auto& [name, value] : given) {
     const ParameterInfo* info = FindByName(infos, name);
     if (info == nullptr) return InvalidInput(UnknownName("parameter", name, infos));
-    const Status in_range = CheckRange(*info, value);
-    if (!in_range.ok()) return in_range.error();
+    TRY(CheckRange(*info, value));
     resolved[name] = value;
   }
   return resolved;
 }
 
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec) {
-  const Result<const ScenarioInfo*> tested = ScenarioOf(spec);
-  if (!tested.ok()) return tested.error();
-  const ScenarioInfo* scenario = *tested;
+  TRY(const ScenarioInfo* scenario, ScenarioOf(spec));
   if (!scenario->create) return InvalidInput("the plug-in " + spec.scenario_plugin + " is not loaded");
-  const auto found = RowOf<ControllerInfo>("controller", spec.controller, spec.plugin, Controllers(),
-                                           &PluginInfo::controllers);
-  if (!found.ok()) return found.error();
-  const ControllerInfo* controller = *found;
+  TRY(const ControllerInfo* controller, RowOf<ControllerInfo>("controller", spec.controller, spec.plugin,
+                                                              Controllers(), &PluginInfo::controllers));
   if (!scenario->Takes(*controller)) {
     std::string message = "controller '";
     message.append(spec.controller).append("' is written for the scenario '").append(controller->scenario);
     return InvalidInput(message.append("', not for '").append(spec.scenario).append("'"));
   }
-  if (const Status definition = CheckDefinition(*scenario, spec.definition); !definition.ok())
-    return definition.error();
+  TRY(CheckDefinition(*scenario, spec.definition));
 
   sim::RunSpec resolved = spec;
-  auto scenario_parameters = ResolveParameters(scenario->parameters, spec.scenario_parameters);
-  if (!scenario_parameters.ok()) return scenario_parameters.error();
-  resolved.scenario_parameters = std::move(*scenario_parameters);
-  auto controller_parameters = ResolveParameters(controller->parameters, spec.controller_parameters);
-  if (!controller_parameters.ok()) return controller_parameters.error();
-  resolved.controller_parameters = std::move(*controller_parameters);
+  TRY(resolved.scenario_parameters, ResolveParameters(scenario->parameters, spec.scenario_parameters));
+  TRY(resolved.controller_parameters, ResolveParameters(controller->parameters, spec.controller_parameters));
 
   const auto requirements = scenario->requirements(resolved.scenario_parameters, spec.test_case);
   if (const auto violation = sim::CheckValidity(spec.test_case, requirements)) {

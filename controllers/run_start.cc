@@ -24,24 +24,18 @@ sim::RunSpec WithSeed(sim::RunSpec spec, std::uint64_t seed) {
 }
 
 Result<sim::ArenaRequirements> RequirementsHere(const sim::RunSpec& spec) {
-  const Result<const ScenarioInfo*> scenario = ScenarioOf(spec);
-  if (!scenario.ok()) return scenario.error();
-  if (!(*scenario)->requirements)
-    return InvalidInput("the plug-in " + spec.scenario_plugin + " is not loaded");
-  const Result<sim::Parameters> parameters =
-      ResolveParameters((*scenario)->parameters, spec.scenario_parameters);
-  if (!parameters.ok()) return parameters.error();
-  return (*scenario)->requirements(*parameters, spec.test_case);
+  TRY(const ScenarioInfo* scenario, ScenarioOf(spec));
+  if (!scenario->requirements) return InvalidInput("the plug-in " + spec.scenario_plugin + " is not loaded");
+  TRY(const sim::Parameters parameters, ResolveParameters(scenario->parameters, spec.scenario_parameters));
+  return scenario->requirements(parameters, spec.test_case);
 }
 
 Result<sim::RunStart> StartHere(const sim::RunSpec& spec) {
-  const auto scenario = CreateScenario(spec);
-  if (!scenario.ok()) return scenario.error();
+  TRY(const auto scenario, CreateScenario(spec));
   const sim::Observer observer(0, 0);
-  const auto swarm = (*scenario)->CreateSwarm(sim::Headquarters(observer));
-  if (!swarm.ok()) return swarm.error();
+  TRY(const auto swarm, scenario->CreateSwarm(sim::Headquarters(observer)));
   sim::RunStart start;
-  for (const sim::RobotSetup& robot : *swarm) {
+  for (const sim::RobotSetup& robot : swarm) {
     start.robots.push_back({.pose = robot.pose,
                             .camera_range = robot.camera_range,
                             .radio_range = robot.radio_range,
@@ -49,10 +43,10 @@ Result<sim::RunStart> StartHere(const sim::RunSpec& spec) {
                             .devices = robot.controller->Devices(),
                             .under_test = robot.under_test});
   }
-  start.lights.assign((*scenario)->lights().begin(), (*scenario)->lights().end());
-  start.radio_beacons = (*scenario)->radio_beacons().size();
-  start.ground_areas = (*scenario)->ground_areas();
-  start.tick_limit = (*scenario)->tick_limit();
+  start.lights.assign(scenario->lights().begin(), scenario->lights().end());
+  start.radio_beacons = scenario->radio_beacons().size();
+  start.ground_areas = scenario->ground_areas();
+  start.tick_limit = scenario->tick_limit();
   return start;
 }
 
@@ -61,17 +55,15 @@ Result<sim::RunStart> StartHere(const sim::RunSpec& spec) {
 Result<sim::ArenaRequirements> RequirementsOf(const sim::RunSpec& spec) {
   const auto* elsewhere = ElsewhereOf(spec);
   if (elsewhere == nullptr) return RequirementsHere(spec);
-  const Result<sim::RunBeginning> beginning = (*elsewhere)(WithSeed(spec, kAnySeed));
-  if (!beginning.ok()) return beginning.error();
-  return beginning->requirements;
+  TRY(const sim::RunBeginning beginning, (*elsewhere)(WithSeed(spec, kAnySeed)));
+  return beginning.requirements;
 }
 
 Result<sim::RunStart> StartOf(const sim::RunSpec& spec) {
   const auto* elsewhere = ElsewhereOf(spec);
   if (elsewhere == nullptr) return StartHere(spec);
-  Result<sim::RunBeginning> beginning = (*elsewhere)(spec);
-  if (!beginning.ok()) return beginning.error();
-  return std::move(beginning->start);
+  TRY(sim::RunBeginning beginning, (*elsewhere)(spec));
+  return std::move(beginning.start);
 }
 
 Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {
@@ -87,9 +79,8 @@ Result<std::size_t> CountSwarm(const sim::RunSpec& spec) {
 }
 
 Result<sim::RunBeginning> BeginningOf(const sim::RunSpec& spec) {
-  Result<sim::ArenaRequirements> requirements = RequirementsHere(spec);
-  if (!requirements.ok()) return requirements.error();
-  return sim::RunBeginning{*requirements, StartHere(spec)};
+  TRY(const sim::ArenaRequirements requirements, RequirementsHere(spec));
+  return sim::RunBeginning{requirements, StartHere(spec)};
 }
 
 }  // namespace gauntlet::controllers

@@ -36,10 +36,9 @@ std::string DirectoryOf(const std::string& path) {
 }
 
 Status Replace(const std::string& path, std::string_view bytes, mode_t mode, bool durable) {
-  Result<FileReplacement> file = FileReplacement::Begin(path, mode);
-  if (!file) return file.error();
-  if (Status written = file->Write(bytes); !written) return written;
-  return file->Finish(durable);
+  TRY(FileReplacement file, FileReplacement::Begin(path, mode));
+  TRY(file.Write(bytes));
+  return file.Finish(durable);
 }
 
 }  // namespace

@@ -35,14 +35,14 @@ Status CheckOnlyWeWrite(const std::string& directory, std::span<const std::strin
   struct stat status {};
   if (stat(directory.c_str(), &status) != 0)
     return SystemError(fmt::format("cannot look at {}", directory), errno);
-  if (Status ours = Check(directory, directory, status); !ours) return ours;
+  TRY(Check(directory, directory, status));
   for (const std::string_view file : files) {
     const std::string path = fmt::format("{}/{}", directory, file);
     if (lstat(path.c_str(), &status) != 0) {
       if (errno == ENOENT || errno == ENOTDIR) continue;
       return SystemError(fmt::format("cannot look at {}", path), errno);
     }
-    if (Status ours = Check(path, directory, status); !ours) return ours;
+    TRY(Check(path, directory, status));
   }
   return Ok{};
 }

@@ -109,16 +109,14 @@ Json JsonOf(const Blame& blame, const std::string& picture) {
 // of that name. A picture that is there stays: the campaign may be somebody's who may only read it.
 Status Conclude(CommandContext& context, const BlameOptions& options, const std::string& name,
                 const std::string& directory) {
-  Result<std::vector<Blame>> blames = ReadBlames(directory);
-  if (!blames) return blames.error();
-  for (Blame& blame : *blames) {
+  TRY(std::vector<Blame> blames, ReadBlames(directory));
+  for (Blame& blame : blames) {
     blame.name = name;
     blame.run = RunOfName(name);
     const std::string picture = fmt::format("{}/{}-blame.svg", directory, FileNameOf(name));
     std::error_code none;
     if (!std::filesystem::exists(picture, none)) {
-      if (Status written = WriteOutputFile(picture, analysis::DrawBlame(FigureOf(blame))); !written)
-        return written;
+      TRY(WriteOutputFile(picture, analysis::DrawBlame(FigureOf(blame))));
     }
     context.out << (options.json ? JsonText(JsonOf(blame, picture)) : TextOf(blame, picture)) << std::flush;
   }
@@ -137,25 +135,21 @@ std::string Renumbered(const std::string& file) {
   return fmt::format("obstacles count from 1 in {}; in {} {}", file, loaded->lineage->parent.name, text);
 }
 
-ExitCode RunBlame(CommandContext& context, const BlameOptions& options) {
-  const Result<int> replicates = ParsePartRuns(options.replicates);
-  if (!replicates) return Fail(context, replicates.error());
-  const Result<int> workers = ParseWorkers(options.workers);
-  if (!workers) return Fail(context, workers.error());
-  const Result<QuestionedCampaign> questioned = GivenCases(context, options.directory, {options.test_case});
-  if (!questioned) return Fail(context, questioned.error());
-  if (const Status obstacles = CheckHaveObstacles(*questioned); !obstacles)
-    return Fail(context, obstacles.error());
-  const std::string& name = questioned->cases.front().name;
+Result<ExitCode> RunBlame(CommandContext& context, const BlameOptions& options) {
+  TRY(const int replicates, ParsePartRuns(options.replicates));
+  TRY(const int workers, ParseWorkers(options.workers));
+  TRY(const QuestionedCampaign questioned, GivenCases(context, options.directory, {options.test_case}));
+  TRY(CheckHaveObstacles(questioned));
+  const std::string& name = questioned.cases.front().name;
   if (const std::string numbers = RunOfName(name) > 0 ? "" : Renumbered(options.test_case);
       !numbers.empty() && !options.quiet)
     PrintMessage(context, numbers);
-  const CallPlan plan = PlanBlame(options.directory, *questioned, *replicates);
+  const CallPlan plan = PlanBlame(options.directory, questioned, replicates);
   if (const Result<std::vector<Blame>> known = ReadBlames(plan.directory); known && !known->empty()) {
-    const Status concluded = Conclude(context, options, name, plan.directory);
-    return concluded ? kExitDone : Fail(context, concluded.error());
+    TRY(Conclude(context, options, name, plan.directory));
+    return kExitDone;
   }
-  CampaignRun campaign = RunOfCall(context, plan, *workers, options);
+  CampaignRun campaign = RunOfCall(context, plan, workers, options);
   campaign.report = [&](const SessionReport& report) -> Status {
     return report.end == CampaignEnd::kStopped ? Ok{} : Conclude(context, options, name, plan.directory);
   };

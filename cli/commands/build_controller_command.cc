@@ -99,10 +99,9 @@ Status RunCMake(CommandContext& context, const std::vector<std::string>& argumen
 }
 
 Result<std::string> ReadTable(CommandContext& context, const std::string& argos) {
-  const Result<std::string> text = ReadSmallFile(argos, kMostFile);
-  if (!text) return text.error();
-  Result<std::string> table = ArgosControllerTable(*text, argos);
-  if (table && HasLoopFunctions(*text)) {
+  TRY(const std::string text, ReadSmallFile(argos, kMostFile));
+  Result<std::string> table = ArgosControllerTable(text, argos);
+  if (table && HasLoopFunctions(text)) {
     PrintMessage(context,
                  fmt::format("{} has loop functions, which Gauntlet does not run: a controller that gets "
                              "something from them, such as a pointer or a target, goes without",
@@ -146,23 +145,16 @@ Status Build(CommandContext& context, const BuildControllerOptions& options, con
   const ScratchFolder scratch;
   if (scratch.path().empty()) return Error{ErrorKind::kIo, "no folder can be made in $TMPDIR or /tmp"};
   if (!table.empty()) {
-    if (Status written = WriteOutputFile(scratch.path() + "/table.cc", table); !written) return written;
+    TRY(WriteOutputFile(scratch.path() + "/table.cc", table));
   }
-  if (Status written =
-          WriteOutputFile(scratch.path() + "/CMakeLists.txt", ProjectText(options, !table.empty()));
-      !written) {
-    return written;
-  }
+  TRY(WriteOutputFile(scratch.path() + "/CMakeLists.txt", ProjectText(options, !table.empty())));
   const std::string prefix =
       options.sdk.empty() ? fs::path(MasterProgramPath()).parent_path().parent_path().string() : options.sdk;
-  if (Status there = FindSdk(prefix); !there) return there;
+  TRY(FindSdk(prefix));
   const std::string build = scratch.path() + "/build";
-  if (Status configured = RunCMake(context, {"cmake", "-S", scratch.path(), "-B", build,
-                                             "-DCMAKE_PREFIX_PATH=" + fs::absolute(prefix).string()});
-      !configured) {
-    return configured;
-  }
-  if (Status built = RunCMake(context, {"cmake", "--build", build}); !built) return built;
+  TRY(RunCMake(context, {"cmake", "-S", scratch.path(), "-B", build,
+                         "-DCMAKE_PREFIX_PATH=" + fs::absolute(prefix).string()}));
+  TRY(RunCMake(context, {"cmake", "--build", build}));
   const Result<std::string> usable = AddPluginFile(options.output);
   if (usable) return Ok{};
   std::error_code ignored;
@@ -170,18 +162,14 @@ Status Build(CommandContext& context, const BuildControllerOptions& options, con
   return usable.error();
 }
 
-ExitCode RunBuildController(CommandContext& context, const BuildControllerOptions& options) {
-  if (const Status checked = CheckBuildOptions(options); !checked) return Fail(context, checked.error());
+Result<ExitCode> RunBuildController(CommandContext& context, const BuildControllerOptions& options) {
+  TRY(CheckBuildOptions(options));
   std::string table;
   if (!options.argos.empty()) {
-    Result<std::string> read = ReadTable(context, options.argos);
-    if (!read) return Fail(context, read.error());
-    table = *std::move(read);
+    TRY(table, ReadTable(context, options.argos));
   }
   const std::string& written = options.table.empty() ? options.output : options.table;
-  const Status made =
-      options.table.empty() ? Build(context, options, table) : WriteOutputFile(options.table, table);
-  if (!made) return Fail(context, made.error());
+  TRY(options.table.empty() ? Build(context, options, table) : WriteOutputFile(options.table, table));
   PrintMessage(context, fmt::format("wrote {}", Printable(written)));
   return kExitDone;
 }

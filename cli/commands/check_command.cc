@@ -50,26 +50,23 @@ struct CorpusPlan {
 };
 
 Result<CorpusPlan> PlanCheck(const CheckOptions& options) {
-  Result<std::vector<CorpusEntry>> entries = ReadCorpus(options.corpus);
-  if (!entries) return entries.error();
-  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.plugins);
-  if (!plugins) return plugins.error();
-  CorpusPlan plan{*std::move(entries), {}, {}, {}, ""};
+  TRY(std::vector<CorpusEntry> entries, ReadCorpus(options.corpus));
+  TRY(const std::vector<std::string> plugins, AddPluginFiles(options.plugins));
+  CorpusPlan plan{std::move(entries), {}, {}, {}, ""};
   std::map<std::vector<std::pair<std::string, std::string>>, std::size_t> search_of;
   Fnv1a64 hash;
   for (std::size_t i = 0; i < plan.entries.size(); ++i) {
-    const Result<Experiment> experiment = ExperimentOf(plan.entries[i], options.sets, *plugins);
-    if (!experiment) return experiment.error();
-    plan.experiments.push_back(*experiment);
-    const auto [search, is_new] = search_of.try_emplace(SettingsOf(*experiment), plan.searches.size());
+    TRY(const Experiment experiment, ExperimentOf(plan.entries[i], options.sets, plugins));
+    plan.experiments.push_back(experiment);
+    const auto [search, is_new] = search_of.try_emplace(SettingsOf(experiment), plan.searches.size());
     if (is_new) {
       plan.searches.push_back(
-          {fmt::format("settings of {}", plan.entries[i].content.name), CheckOf(*experiment)});
+          {fmt::format("settings of {}", plan.entries[i].content.name), CheckOf(experiment)});
       plan.entry_of.emplace_back();
     }
     sim::TestCase test_case = plan.entries[i].content.document.test_case;
     test_case.name = plan.entries[i].content.name;
-    hash.AddUint64(KeyOfCase(CheckOf(*experiment), test_case));
+    hash.AddUint64(KeyOfCase(CheckOf(experiment), test_case));
     plan.searches[search->second].cases.push_back(std::move(test_case));
     plan.entry_of[search->second].push_back(i);
   }
@@ -82,12 +79,10 @@ Result<CorpusPlan> PlanCheck(const CheckOptions& options) {
 // gone on with.
 Status MakeRoom(CommandContext& context, const CorpusPlan& plan) {
   if (!CampaignDirectory::IsCampaign(plan.directory)) return Ok{};
-  const Result<CampaignSummary> earlier = context.campaigns.Read(plan.directory);
-  if (!earlier) return earlier.error();
-  if (!earlier->finished) return Ok{};
-  const Result<bool> lives = context.campaigns.MasterLives(plan.directory);
-  if (!lives) return lives.error();
-  if (*lives) return Ok{};
+  TRY(const CampaignSummary earlier, context.campaigns.Read(plan.directory));
+  if (!earlier.finished) return Ok{};
+  TRY(const bool lives, context.campaigns.MasterLives(plan.directory));
+  if (lives) return Ok{};
   std::error_code error;
   fs::remove_all(plan.directory, error);
   if (error) return Error{ErrorKind::kIo, fmt::format("{}: {}", plan.directory, error.message())};
@@ -176,44 +171,40 @@ Status Update(CommandContext& context, const CheckOptions& options, const Corpus
     if (diff.empty()) continue;
     ++changed;
     diffs += fmt::format("--- {0}\n+++ {0}\n{1}", entry.file, diff);
-    if (const Status written = WriteOutputFile(entry.file, WriteCorpusCase(after)); !written) return written;
+    TRY(WriteOutputFile(entry.file, WriteCorpusCase(after)));
   }
   if (!options.json) context.out << "\n" << diffs << std::flush;
   PrintMessage(context, fmt::format("{} of {} files changed", changed, plan.entries.size()));
   return Ok{};
 }
 
-ExitCode RunCheck(CommandContext& context, const CheckOptions& options) {
-  const Result<int> workers = ParseWorkers(options.workers);
-  if (!workers) return Fail(context, workers.error());
-  const Result<CorpusPlan> plan = PlanCheck(options);
-  if (!plan) return Fail(context, plan.error());
+Result<ExitCode> RunCheck(CommandContext& context, const CheckOptions& options) {
+  TRY(const int workers, ParseWorkers(options.workers));
+  TRY(const CorpusPlan plan, PlanCheck(options));
   std::optional<OutputFile> junit;  // opened before the runs, which would be for nothing without it
   if (!options.junit.empty()) {
-    Result<OutputFile> opened = OutputFile::Open(options.junit);
-    if (!opened) return Fail(context, opened.error());
-    junit.emplace(*std::move(opened));
+    TRY(OutputFile opened, OutputFile::Open(options.junit));
+    junit.emplace(std::move(opened));
   }
-  if (const Status room = MakeRoom(context, *plan); !room) return Fail(context, room.error());
-  if (const Status folder = MakeFolder(options); !folder) return Fail(context, folder.error());
+  TRY(MakeRoom(context, plan));
+  TRY(MakeFolder(options));
 
   bool worse = false;
-  CampaignRun campaign = RunOfCall(context, {plan->directory, plan->searches}, *workers, options);
+  CampaignRun campaign = RunOfCall(context, {plan.directory, plan.searches}, workers, options);
   campaign.report = [&](const SessionReport& session) -> Status {
     if (session.end == CampaignEnd::kStopped) return Ok{};
-    const Result<CorpusReport> report = ReadReport(context, options, *plan);
-    if (!report) return report.error();
-    worse = report->Count(CheckOutcome::kWorse) > 0;
-    context.out << (options.json ? CheckJson(*report) : CheckText(*report, context.program)) << std::flush;
+    TRY(const CorpusReport report, ReadReport(context, options, plan));
+    worse = report.Count(CheckOutcome::kWorse) > 0;
+    context.out << (options.json ? CheckJson(report) : CheckText(report, context.program)) << std::flush;
     if (junit) {
-      if (const Status written = junit->Write(CheckJunit(*report)); !written) return written;
-      if (const Status closed = junit->Close(); !closed) return closed;
+      TRY(junit->Write(CheckJunit(report)));
+      TRY(junit->Close());
     }
     if (!options.update) return Ok{};
-    worse = std::ranges::count(report->cases, FailureVerdict::kError, &CheckedCase::verdict) > 0;
-    return Update(context, options, *plan, *report);
+    worse = std::ranges::count(report.cases, FailureVerdict::kError, &CheckedCase::verdict) > 0;
+    return Update(context, options, plan, report);
   };
-  const ExitCode code = RunCampaign(context, campaign);
+  TRY(const ExitCode code, RunCampaign(context, campaign));
   return code == kExitDone && worse ? kExitNegative : code;
 }
 

@@ -146,19 +146,16 @@ Result<Outcome> Compute(const CompareOptions& options) {
         "{} sets of runs were named, two are compared: A and B (--budget takes any number of searches)",
         options.sets.size()));
   }
-  Result<RunSet> first = ReadRunSet(options.sets[0], options.metric);
-  if (!first) return first.error();
-  Result<RunSet> second = ReadRunSet(options.sets[1], options.metric);
-  if (!second) return second.error();
-  const std::vector<std::string> differences = WhatDiffers(*first, *second);
+  TRY(RunSet first, ReadRunSet(options.sets[0], options.metric));
+  TRY(RunSet second, ReadRunSet(options.sets[1], options.metric));
+  const std::vector<std::string> differences = WhatDiffers(first, second);
   if (!differences.empty() && !options.mixed) {
     return InvalidInput(fmt::format(
         "{}: not like for like{}; --mixed compares them nevertheless", differences.front(),
         differences.size() > 1 ? fmt::format(" (and {} more differences)", differences.size() - 1) : ""));
   }
-  Result<analysis::Comparison> comparison = analysis::Compare(first->values, second->values);
-  if (!comparison) return comparison.error();
-  Outcome outcome{*std::move(first), *std::move(second), {}, *std::move(comparison), ""};
+  TRY(analysis::Comparison comparison, analysis::Compare(first.values, second.values));
+  Outcome outcome{std::move(first), std::move(second), {}, std::move(comparison), ""};
   for (const std::string& difference : differences) {
     outcome.notes.push_back("not like for like: " + difference);
   }
@@ -192,29 +189,26 @@ std::string Drawing(const Outcome& outcome, const std::string& metric) {
                  {"2: " + outcome.second.values.name, c.second_box, c.second.mean, c.second.n}}});
 }
 
-ExitCode CompareBudgets(CommandContext& context, const CompareOptions& options) {
+Result<ExitCode> CompareBudgets(CommandContext& context, const CompareOptions& options) {
   std::vector<YieldSet> sets;
   for (const std::string& text : options.sets) {
-    Result<YieldSet> set = ReadYields(text);
-    if (!set) return Fail(context, set.error());
-    sets.push_back(*std::move(set));
+    TRY(YieldSet set, ReadYields(text));
+    sets.push_back(std::move(set));
   }
-  if (Status same = CheckSameBudget(sets); !same) return Fail(context, same.error());
+  TRY(CheckSameBudget(sets));
   context.out << (options.json ? JsonText(BudgetJson(sets)) : BudgetText(sets)) << std::flush;
   return kExitDone;
 }
 
-ExitCode RunCompare(CommandContext& context, const CompareOptions& options) {
+Result<ExitCode> RunCompare(CommandContext& context, const CompareOptions& options) {
   if (options.budget) return CompareBudgets(context, options);
-  const Result<Outcome> outcome = Compute(options);
-  if (!outcome) return Fail(context, outcome.error());
+  TRY(const Outcome outcome, Compute(options));
   if (!options.svg.empty()) {
-    const Status written = WriteOutputFile(options.svg, Drawing(*outcome, options.metric));
-    if (!written) return Fail(context, written.error());
+    TRY(WriteOutputFile(options.svg, Drawing(outcome, options.metric)));
     PrintMessage(context, fmt::format("wrote {}", options.svg));
   }
-  context.out << (options.json ? ComparisonJson(*outcome, options.metric)
-                               : ComparisonText(*outcome, options.metric))
+  context.out << (options.json ? ComparisonJson(outcome, options.metric)
+                               : ComparisonText(outcome, options.metric))
               << std::flush;
   return kExitDone;
 }

@@ -57,16 +57,15 @@ Result<int> ParseReplicates(const std::string& text) {
 
 // What is known by now of the cases that were asked about.
 Status Print(CommandContext& context, const ConfirmOptions& options, const QuestionedCampaign& questioned) {
-  Result<std::vector<Confirmation>> known = ReadConfirmations(options.directory);
-  if (!known) return known.error();
+  TRY(std::vector<Confirmation> known, ReadConfirmations(options.directory));
   std::vector<std::uint64_t> wanted;
   for (const CaseInQuestion& one : questioned.cases) {
     wanted.push_back(ConfirmationKey(questioned.plans[one.search].experiment, one.test_case));
   }
   std::vector<Confirmation> shown;
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    const auto found = std::ranges::find(*known, wanted[i], &Confirmation::key);
-    if (found == known->end()) continue;
+    const auto found = std::ranges::find(known, wanted[i], &Confirmation::key);
+    if (found == known.end()) continue;
     shown.push_back(*found);
     shown.back().name = questioned.cases[i].name;
   }
@@ -75,23 +74,19 @@ Status Print(CommandContext& context, const ConfirmOptions& options, const Quest
   return Ok{};
 }
 
-ExitCode RunConfirm(CommandContext& context, const ConfirmOptions& options) {
-  const Result<int> replicates = ParseReplicates(options.replicates);
-  if (!replicates) return Fail(context, replicates.error());
-  const Result<int> workers = ParseWorkers(options.workers);
-  if (!workers) return Fail(context, workers.error());
-  const Result<QuestionedCampaign> questioned = CasesOf(context, options);
-  if (!questioned) return Fail(context, questioned.error());
-  const Result<std::vector<Confirmation>> known = ReadConfirmations(options.directory);
-  if (!known) return Fail(context, known.error());
-  const CallPlan plan = PlanConfirmation(options.directory, *questioned, *known, *replicates);
+Result<ExitCode> RunConfirm(CommandContext& context, const ConfirmOptions& options) {
+  TRY(const int replicates, ParseReplicates(options.replicates));
+  TRY(const int workers, ParseWorkers(options.workers));
+  TRY(const QuestionedCampaign questioned, CasesOf(context, options));
+  TRY(const std::vector<Confirmation> known, ReadConfirmations(options.directory));
+  const CallPlan plan = PlanConfirmation(options.directory, questioned, known, replicates);
   if (plan.searches.empty()) {
-    const Status printed = Print(context, options, *questioned);
-    return printed ? kExitDone : Fail(context, printed.error());
+    TRY(Print(context, options, questioned));
+    return kExitDone;
   }
 
-  CampaignRun campaign = RunOfCall(context, plan, *workers, options);
-  campaign.report = [&](const SessionReport&) { return Print(context, options, *questioned); };
+  CampaignRun campaign = RunOfCall(context, plan, workers, options);
+  campaign.report = [&](const SessionReport&) { return Print(context, options, questioned); };
   return RunCampaign(context, campaign);
 }
 

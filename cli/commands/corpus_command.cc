@@ -69,9 +69,8 @@ Status CheckFails(const std::string& what, const proto::CaseFailures& found) {
 // A case that was made out of another one, or any other file.
 Result<Keepsake> KeepsakeOfFile(const CorpusOptions& options, const std::string& file,
                                 const Experiment& experiment) {
-  Result<LoadedCase> loaded = LoadCase(file);
-  if (!loaded) return loaded.error();
-  if (!loaded->lineage) {
+  TRY(LoadedCase loaded, LoadCase(file));
+  if (!loaded.lineage) {
     return InvalidInput(
         fmt::format("{}: nothing in it says how often it fails. Name the run that it comes from, or a file "
                     "that `gauntlet "
@@ -79,16 +78,14 @@ Result<Keepsake> KeepsakeOfFile(const CorpusOptions& options, const std::string&
                     file));
   }
   Keepsake kept;
-  kept.content.found = loaded->lineage->verified;
-  if (const Status fails = CheckFails(file, kept.content.found); !fails) return fails.error();
+  kept.content.found = loaded.lineage->verified;
+  TRY(CheckFails(file, kept.content.found));
   kept.content.found_in =
-      fmt::format("{} of {}, by {}", loaded->lineage->parent.name, experiment.name, loaded->lineage->made_by);
+      fmt::format("{} of {}, by {}", loaded.lineage->parent.name, experiment.name, loaded.lineage->made_by);
   kept.content.settings = SettingsOf(experiment);
   kept.plugins = PluginsOf(experiment);
-  kept.content.document = {std::move(loaded->test_case), std::move(loaded->lineage)};
-  Result<std::string> picture = PictureBeside(file);
-  if (!picture) return picture.error();
-  kept.picture = *std::move(picture);
+  kept.content.document = {std::move(loaded.test_case), std::move(loaded.lineage)};
+  TRY(kept.picture, PictureBeside(file));
   kept.content.name = options.name.empty() ? fs::path(file).stem().string() : options.name;
   return kept;
 }
@@ -105,23 +102,20 @@ std::vector<SmallestLayout>::const_iterator LeftOf(const std::vector<SmallestLay
 }
 
 Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& options, RunId run) {
-  Result<QuestionedCampaign> questioned = CasesOfRuns(options.directory, {run});
-  if (!questioned) return questioned.error();
-  CaseInQuestion& one = questioned->cases.front();
-  const Experiment& experiment = questioned->plans[one.search].experiment;
-  const Result<std::vector<SmallestLayout>> smallest = ReadSmallestLayouts(options.directory);
-  if (!smallest) return smallest.error();
-  if (const auto left = LeftOf(*smallest, *questioned, run); left != smallest->end()) {
+  TRY(QuestionedCampaign questioned, CasesOfRuns(options.directory, {run}));
+  CaseInQuestion& one = questioned.cases.front();
+  const Experiment& experiment = questioned.plans[one.search].experiment;
+  TRY(const std::vector<SmallestLayout> smallest, ReadSmallestLayouts(options.directory));
+  if (const auto left = LeftOf(smallest, questioned, run); left != smallest.end()) {
     Result<Keepsake> kept = KeepsakeOfFile(options, left->file, experiment);
     if (kept && options.name.empty()) kept->content.name = fmt::format("run-{}", run);
     return kept;
   }
 
-  const Result<std::vector<Confirmation>> known = ReadConfirmations(options.directory);
-  if (!known) return known.error();
+  TRY(const std::vector<Confirmation> known, ReadConfirmations(options.directory));
   const auto confirmed =
-      std::ranges::find(*known, ConfirmationKey(experiment, one.test_case), &Confirmation::key);
-  if (confirmed == known->end()) {
+      std::ranges::find(known, ConfirmationKey(experiment, one.test_case), &Confirmation::key);
+  if (confirmed == known.end()) {
     return InvalidInput(
         fmt::format("run {} was not simulated again with fresh seeds: `{} confirm {} {}` does it", run,
                     context.program, PastedPath(options.directory), run));
@@ -130,12 +124,10 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
   kept.content.found = {confirmed->tally.failures,
                         confirmed->tally.runs(),
                         {confirmed->interval.low, confirmed->interval.high}};
-  if (const Status fails = CheckFails(fmt::format("run {}", run), kept.content.found); !fails)
-    return fails.error();
-  const Result<CampaignReplay> replay =
-      context.campaigns.Replay(confirmed->example->campaign, confirmed->example->run, /*scratch=*/"");
-  if (!replay) return replay.error();
-  kept.picture = analysis::DrawRun(FigureOf(experiment.name, replay->report));
+  TRY(CheckFails(fmt::format("run {}", run), kept.content.found));
+  TRY(const CampaignReplay replay,
+      context.campaigns.Replay(confirmed->example->campaign, confirmed->example->run, /*scratch=*/""));
+  kept.picture = analysis::DrawRun(FigureOf(experiment.name, replay.report));
   kept.content.found_in = fmt::format("run {} of {}", run, experiment.name);
   kept.content.settings = SettingsOf(experiment);
   kept.plugins = PluginsOf(experiment);
@@ -146,18 +138,16 @@ Result<Keepsake> KeepsakeOfRun(CommandContext& context, const CorpusOptions& opt
 
 Result<Keepsake> KeepsakeOf(CommandContext& context, const CorpusOptions& options, const std::string& text) {
   if (std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; })) {
-    const Result<std::uint64_t> run = ParseRunId(text);
-    if (!run) return run.error();
-    return KeepsakeOfRun(context, options, *run);
+    TRY(const std::uint64_t run, ParseRunId(text));
+    return KeepsakeOfRun(context, options, run);
   }
-  const Result<QuestionedCampaign> questioned = CasesOfRuns(options.directory, {});
-  if (!questioned) return questioned.error();
-  if (questioned->plans.size() > 1) {
+  TRY(const QuestionedCampaign questioned, CasesOfRuns(options.directory, {}));
+  if (questioned.plans.size() > 1) {
     return InvalidInput(fmt::format(
         "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
-        options.directory, questioned->plans.size(), text));
+        options.directory, questioned.plans.size(), text));
   }
-  return KeepsakeOfFile(options, text, questioned->plans.front().experiment);
+  return KeepsakeOfFile(options, text, questioned.plans.front().experiment);
 }
 
 // What is there already, and what is to come, must make one corpus.
@@ -165,9 +155,7 @@ Status CheckFits(const CorpusOptions& options, const std::vector<Keepsake>& kept
   std::vector<CorpusEntry> all;
   std::error_code none;
   if (fs::exists(options.corpus, none) && !fs::is_empty(options.corpus, none)) {
-    Result<std::vector<CorpusEntry>> there = ReadCorpus(options.corpus);
-    if (!there) return there.error();
-    all = *std::move(there);
+    TRY(all, ReadCorpus(options.corpus));
   }
   for (const Keepsake& one : kept) {
     const std::string& name = one.content.name;
@@ -189,39 +177,33 @@ Status CheckFits(const CorpusOptions& options, const std::vector<Keepsake>& kept
       }
     }
     all.push_back({fmt::format("{}/{}.json", options.corpus, name), one.content});
-    if (Result<CorpusCase> read = ParseCorpusCase(WriteCorpusCase(one.content), "--name " + name); !read)
-      return read.error();
-    if (const Result<Experiment> experiment = ExperimentOf(all.back(), {}, one.plugins); !experiment)
-      return experiment.error();
+    TRY(ParseCorpusCase(WriteCorpusCase(one.content), "--name " + name));
+    TRY(ExperimentOf(all.back(), {}, one.plugins));
   }
   return Ok{};
 }
 
-ExitCode RunCorpus(CommandContext& context, const CorpusOptions& options) {
+Result<ExitCode> RunCorpus(CommandContext& context, const CorpusOptions& options) {
   if (options.action != "add") {
-    return Fail(context,
-                InvalidInput(fmt::format("corpus {}: 'corpus add' is what there is", options.action)));
+    return InvalidInput(fmt::format("corpus {}: 'corpus add' is what there is", options.action));
   }
   if (!options.name.empty() && options.cases.size() > 1)
-    return Fail(context, InvalidInput(fmt::format("--name {}: {} cases cannot have one name", options.name,
-                                                  options.cases.size())));
+    return InvalidInput(
+        fmt::format("--name {}: {} cases cannot have one name", options.name, options.cases.size()));
   std::vector<Keepsake> kept;
   for (auto text = options.cases.begin(); text != options.cases.end(); ++text) {
     if (std::find(options.cases.begin(), text, *text) != text) continue;  // given twice
-    Result<Keepsake> one = KeepsakeOf(context, options, *text);
-    if (!one) return Fail(context, one.error());
-    kept.push_back(*std::move(one));
+    TRY(Keepsake one, KeepsakeOf(context, options, *text));
+    kept.push_back(std::move(one));
   }
-  if (const Status fits = CheckFits(options, kept); !fits) return Fail(context, fits.error());
+  TRY(CheckFits(options, kept));
   std::error_code error;
   fs::create_directories(options.corpus, error);
-  if (error)
-    return Fail(context, Error{ErrorKind::kIo, fmt::format("{}: {}", options.corpus, error.message())});
+  if (error) return Error{ErrorKind::kIo, fmt::format("{}: {}", options.corpus, error.message())};
   for (const Keepsake& one : kept) {
     const std::string path = fmt::format("{}/{}", options.corpus, one.content.name);
-    Status written = WriteOutputFile(path + ".svg", one.picture);
-    if (written) written = WriteOutputFile(path + ".json", WriteCorpusCase(one.content));
-    if (!written) return Fail(context, written.error());
+    TRY(WriteOutputFile(path + ".svg", one.picture));
+    TRY(WriteOutputFile(path + ".json", WriteCorpusCase(one.content)));
     context.out << fmt::format("{}.json  {} obstacles, failed in {} of {} fresh runs ({}); picture {}.svg\n",
                                path, one.content.document.test_case.obstacles.size(),
                                one.content.found.failures, one.content.found.runs, one.content.found_in,

@@ -96,16 +96,15 @@ std::string OtherTask(const Experiment& there, const Experiment& here) {
 // One search for each of the campaigns' searches, so that relatives stay together.
 Result<CaseList> CasesOfCampaigns(CommandContext& context, const EvaluateOptions& options,
                                   const Experiment& experiment) {
-  const Result<std::vector<CaseSet>> sets = ReadCaseSets(options.from);
-  if (!sets) return sets.error();
+  TRY(const std::vector<CaseSet> sets, ReadCaseSets(options.from));
   CaseList list;
-  for (const CaseSet& set : *sets) {
+  for (const CaseSet& set : sets) {
     if (set.experiment.scenario != experiment.scenario) {
       return InvalidInput(
           fmt::format("--from {}: its cases are of the scenario '{}', the experiment {} has '{}'", set.place,
                       set.experiment.scenario, experiment.name, experiment.scenario));
     }
-    SearchPlan plan{sets->size() > 1 ? set.place : "", experiment};
+    SearchPlan plan{sets.size() > 1 ? set.place : "", experiment};
     if (RowOf(set.experiment).members == "population") plan.experiment.search.algorithm = "resimulation";
     plan.experiment.seed += list.searches.size();
     list.searches.push_back(std::move(plan));
@@ -184,40 +183,35 @@ void Print(CommandContext& context, const EvaluateOptions& options, const CaseLi
 }
 
 // kExitUsage when none of the cases gave a fitness.
-ExitCode RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
+Result<ExitCode> RunEvaluate(CommandContext& context, const EvaluateOptions& options) {
   if (options.files.empty() == options.from.empty()) {
-    return Fail(context, InvalidInput("which cases? Either --case FILE... or --from DIR[:SUBSET]"));
+    return InvalidInput("which cases? Either --case FILE... or --from DIR[:SUBSET]");
   }
   for (const ExtraSet& size : SetsOf(options.size)) {
-    return Fail(context, InvalidInput(fmt::format(
-                             "{} {}: 'evaluate' searches nothing; the runs per case are --replicates K",
-                             size.option, size.value)));
+    return InvalidInput(fmt::format(
+        "{} {}: 'evaluate' searches nothing; the runs per case are --replicates K", size.option, size.value));
   }
   std::vector<ExtraSet> extra = {{"evaluate", "search.algorithm", "cases"}};
   if (!options.replicates.empty()) extra.push_back({"--replicates", "search.replicates", options.replicates});
-  const Result<Experiment> experiment = LoadExperimentWith(options.experiment, extra);
-  if (!experiment) return Fail(context, experiment.error());
-  Result<CaseList> cases = options.from.empty() ? CasesOfFiles(context, options, *experiment)
-                                                : CasesOfCampaigns(context, options, *experiment);
-  if (!cases) return Fail(context, cases.error());
-  CaseList& list = *cases;
+  TRY(const Experiment experiment, LoadExperimentWith(options.experiment, extra));
+  TRY(CaseList list, options.from.empty() ? CasesOfFiles(context, options, experiment)
+                                          : CasesOfCampaigns(context, options, experiment));
   if (std::ranges::all_of(list.searches, [](const auto& one) { return one.cases.empty(); })) {
     Print(context, options, list, nullptr, "");
     return kExitUsage;
   }
-  Result<CampaignRun> campaign = LocalRun(list.searches, options);
-  if (!campaign) return Fail(context, campaign.error());
-  const std::string& directory = campaign->directory;
-  if (options.dry_run) return PrintDryRun(context, *campaign, list.searches);
-  campaign->run = [&](const SessionOptions& session) {
+  TRY(CampaignRun campaign, LocalRun(list.searches, options));
+  const std::string& directory = campaign.directory;
+  if (options.dry_run) return PrintDryRun(context, campaign, list.searches);
+  campaign.run = [&](const SessionOptions& session) {
     return context.campaigns.Start(directory, list.searches, session);
   };
-  campaign->report = [&](const SessionReport& report) -> Status {
-    if (Status added = AddRuns(context, directory, list); !added) return added;
+  campaign.report = [&](const SessionReport& report) -> Status {
+    TRY(AddRuns(context, directory, list));
     Print(context, options, list, &report.summary, directory);
     return Ok{};
   };
-  const ExitCode code = RunCampaign(context, *campaign);
+  TRY(const ExitCode code, RunCampaign(context, campaign));
   const bool none =
       std::ranges::none_of(list.cases, [](const auto& one) { return MeanFitness(one).has_value(); });
   return code == kExitDone && none ? kExitUsage : code;

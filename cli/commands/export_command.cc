@@ -59,9 +59,7 @@ bool WantsCaseFiles(const ExportCommandOptions& options, Exported what) {
 
 Result<ExportOptions> Judge(const ExportCommandOptions& options) {
   ExportOptions judged;
-  const Result<Exported> what = ChosenOf(options);
-  if (!what) return what.error();
-  judged.what = *what;
+  TRY(judged.what, ChosenOf(options));
   if (options.format != "csv" && options.format != "json" && options.format != "argos")
     return InvalidInput(fmt::format("--format {}: give csv, json or argos", options.format));
   judged.format = options.format == "csv" ? TableFormat::kCsv : TableFormat::kJson;
@@ -89,14 +87,13 @@ struct Condition {
 };
 
 Result<Condition> ConditionOf(const StoredCampaign& campaign, const std::string& directory) {
-  const Result<CampaignSummary> totals = SummariseTotals(campaign.plans, *campaign.view.store);
-  if (!totals) return totals.error();
-  Condition condition{totals->finished, {}};
+  TRY(const CampaignSummary totals, SummariseTotals(campaign.plans, *campaign.view.store));
+  Condition condition{totals.finished, {}};
   std::vector<std::string>& notes = condition.notes;
   if (!campaign.being_written.empty()) notes.push_back(campaign.being_written);
-  if (!totals->finished)
+  if (!totals.finished)
     notes.push_back(fmt::format("{} is half-finished: the {} runs that it has so far are exported", directory,
-                                FormatCount(totals->runs_done)));
+                                FormatCount(totals.runs_done)));
   return condition;
 }
 
@@ -116,15 +113,13 @@ std::string HeadJson(const StoredCampaign& campaign, const std::string& director
 Result<std::uint64_t> WriteCaseFiles(const StoredCampaign& campaign, const fs::path& directory) {
   std::uint64_t files = 0;
   for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
-    const Result<std::vector<Individual>> individuals = campaign.view.store->LoadIndividuals(search);
-    if (!individuals) return individuals.error();
+    TRY(const std::vector<Individual> individuals, campaign.view.store->LoadIndividuals(search));
     const std::string of_search = campaign.plans.size() > 1 ? fmt::format("search-{}-", search) : "";
     // As many digits for all, so that files sort by number.
-    const std::size_t digits = individuals->empty() ? 1 : fmt::formatted_size("{}", individuals->back().id);
-    for (const Individual& individual : *individuals) {
+    const std::size_t digits = individuals.empty() ? 1 : fmt::formatted_size("{}", individuals.back().id);
+    for (const Individual& individual : individuals) {
       const std::string name = fmt::format("{}case-{:0{}}.json", of_search, individual.id, digits);
-      const Status written = WriteOutputFile(directory / name, proto::WriteCaseJson(individual.test_case));
-      if (!written) return written.error();
+      TRY(WriteOutputFile(directory / name, proto::WriteCaseJson(individual.test_case)));
       ++files;
     }
   }
@@ -133,52 +128,44 @@ Result<std::uint64_t> WriteCaseFiles(const StoredCampaign& campaign, const fs::p
 
 Result<ExportReport> WriteTableFile(const StoredCampaign& campaign, const ExportOptions& options,
                                     const std::string& head, const std::string& path) {
-  Result<OutputFile> file = OutputFile::Open(path);
-  if (!file) return file.error();
-  const Result<ExportReport> report =
-      WriteTable(campaign, options, head, [&](std::string_view bytes) { return file->Write(bytes); });
-  if (!report) return report;
-  if (Status closed = file->Close(); !closed) return closed.error();
+  TRY(OutputFile file, OutputFile::Open(path));
+  TRY(const ExportReport report,
+      WriteTable(campaign, options, head, [&](std::string_view bytes) { return file.Write(bytes); }));
+  TRY(file.Close());
   return report;
 }
 
-ExitCode RunExport(CommandContext& context, const ExportCommandOptions& options) {
-  const Result<ExportOptions> judged = Judge(options);
-  if (!judged) return Fail(context, judged.error());
-  const Result<StoredCampaign> campaign = OpenStoredCampaign(options.directory);
-  if (!campaign) return Fail(context, campaign.error());
-  const Result<Condition> condition = ConditionOf(*campaign, options.directory);
-  if (!condition) return Fail(context, condition.error());
-  for (const std::string& note : condition->notes) PrintMessage(context, note);
+Result<ExitCode> RunExport(CommandContext& context, const ExportCommandOptions& options) {
+  TRY(const ExportOptions judged, Judge(options));
+  TRY(const StoredCampaign campaign, OpenStoredCampaign(options.directory));
+  TRY(const Condition condition, ConditionOf(campaign, options.directory));
+  for (const std::string& note : condition.notes) PrintMessage(context, note);
 
-  if (WantsCaseFiles(options, judged->what)) {
-    const ArgosFilesOptions argos = {judged->runs, options.controller_file, options.controller};
+  if (WantsCaseFiles(options, judged.what)) {
+    const ArgosFilesOptions argos = {judged.runs, options.controller_file, options.controller};
     ArgosFilesReport argos_files;
-    const Result<std::uint64_t> files = WriteOutputDirectory(
-        "--out", options.out, [&](const std::string& directory) -> Result<std::uint64_t> {
-          if (options.format == "json") return WriteCaseFiles(*campaign, directory);
-          Result<ArgosFilesReport> report = WriteArgosFiles(*campaign, argos, directory);
-          if (!report) return report.error();
-          argos_files = std::move(*report);
-          return argos_files.files;
-        });
-    if (!files) return Fail(context, files.error());
+    TRY(const std::uint64_t files,
+        WriteOutputDirectory("--out", options.out,
+                             [&](const std::string& directory) -> Result<std::uint64_t> {
+                               if (options.format == "json") return WriteCaseFiles(campaign, directory);
+                               TRY(argos_files, WriteArgosFiles(campaign, argos, directory));
+                               return argos_files.files;
+                             }));
     for (const auto& [notice, of_files] : argos_files.notices)
       PrintMessage(context,
-                   of_files == *files ? notice : fmt::format("{} of {} files: {}", of_files, *files, notice));
-    PrintMessage(context, fmt::format("wrote {} case {} into {}", FormatCount(*files),
-                                      *files == 1 ? "file" : "files", options.out));
+                   of_files == files ? notice : fmt::format("{} of {} files: {}", of_files, files, notice));
+    PrintMessage(context, fmt::format("wrote {} case {} into {}", FormatCount(files),
+                                      files == 1 ? "file" : "files", options.out));
     return kExitDone;
   }
-  const Result<ExportReport> report =
-      WriteTableFile(*campaign, *judged, HeadJson(*campaign, options.directory, *condition), options.out);
-  if (!report) return Fail(context, report.error());
-  if (report->simulated > 0)
+  TRY(const ExportReport report,
+      WriteTableFile(campaign, judged, HeadJson(campaign, options.directory, condition), options.out));
+  if (report.simulated > 0)
     PrintMessage(context,
                  fmt::format("{} runs, whose ways were not kept, were simulated again: each ended as "
                              "it had",
-                             FormatCount(report->simulated)));
-  PrintMessage(context, fmt::format("wrote {} rows to {}", FormatCount(report->rows), options.out));
+                             FormatCount(report.simulated)));
+  PrintMessage(context, fmt::format("wrote {} rows to {}", FormatCount(report.rows), options.out));
   return kExitDone;
 }
 

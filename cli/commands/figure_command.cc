@@ -67,7 +67,7 @@ Status Write(CommandContext& context, const NamedFigure& figure, const FigureOpt
       {options.svg, figure.svg}, {options.csv, figure.csv}};
   for (const auto& [path, content] : outputs) {
     if (path.empty()) continue;
-    if (Status written = WriteOutputFile(path, content()); !written) return written;
+    TRY(WriteOutputFile(path, content()));
     PrintMessage(context, fmt::format("wrote {}", path));
   }
   if (options.svg.empty() && options.csv.empty()) context.out << figure.svg() << std::flush;
@@ -76,8 +76,8 @@ Status Write(CommandContext& context, const NamedFigure& figure, const FigureOpt
 
 // Lists the figures, or writes the one that was asked for. `others`: that there are too, but not for this
 // name.
-ExitCode ListOrWrite(CommandContext& context, const FigureOptions& options,
-                     const std::vector<NamedFigure>& figures, const Listed& others) {
+Result<ExitCode> ListOrWrite(CommandContext& context, const FigureOptions& options,
+                             const std::vector<NamedFigure>& figures, const Listed& others) {
   Listed listed;
   for (const NamedFigure& figure : figures) listed.emplace_back(figure.name, figure.title);
   listed.insert(listed.end(), others.begin(), others.end());
@@ -86,59 +86,52 @@ ExitCode ListOrWrite(CommandContext& context, const FigureOptions& options,
     return kExitDone;
   }
   const auto figure = std::ranges::find(figures, options.name, &NamedFigure::name);
-  if (figure == figures.end()) return Fail(context, NoSuchFigure(options.name, listed));
-  if (const Status written = Write(context, *figure, options); !written)
-    return Fail(context, written.error());
+  if (figure == figures.end()) return NoSuchFigure(options.name, listed);
+  TRY(Write(context, *figure, options));
   return kExitDone;
 }
 
-ExitCode RunStudyFigure(CommandContext& context, const FigureOptions& options) {
-  const Result<StudyPages> study = GatherStudy(options.directory);
-  if (!study) return Fail(context, study.error());
-  if (!study->report) {
-    return Fail(context,
-                InvalidInput(fmt::format(
-                    "{0} holds a study that has not finished: 'gauntlet resume {0}' goes on; figures "
+Result<ExitCode> RunStudyFigure(CommandContext& context, const FigureOptions& options) {
+  TRY(const StudyPages study, GatherStudy(options.directory));
+  if (!study.report) {
+    return InvalidInput(
+        fmt::format("{0} holds a study that has not finished: 'gauntlet resume {0}' goes on; figures "
                     "of its searches: 'gauntlet figure {0}/searches'",
-                    PastedPath(options.directory))));
+                    PastedPath(options.directory)));
   }
-  return ListOrWrite(context, options, FiguresOf(*study->report), {});
+  return ListOrWrite(context, options, FiguresOf(*study.report), {});
 }
 
 // Of sets of runs, as `report` compares them.
-ExitCode RunComparisonFigure(CommandContext& context, const FigureOptions& options) {
+Result<ExitCode> RunComparisonFigure(CommandContext& context, const FigureOptions& options) {
   std::vector<std::string> sets = {options.directory};
   sets.insert(sets.end(), options.others.begin(), options.others.end());
-  const Result<SetComparisons> compared = CompareSets(sets);
-  if (!compared) return Fail(context, compared.error());
-  for (const std::string& note : compared->notes) PrintMessage(context, note);
-  if (compared->comparisons.size() != 1) {
-    return Fail(context, InvalidInput("these sets are not of one scenario: name at least two that are, the "
-                                      "first in place of DIR and each other one by --with"));
+  TRY(const SetComparisons compared, CompareSets(sets));
+  for (const std::string& note : compared.notes) PrintMessage(context, note);
+  if (compared.comparisons.size() != 1) {
+    return InvalidInput(
+        "these sets are not of one scenario: name at least two that are, the "
+        "first in place of DIR and each other one by --with");
   }
-  return ListOrWrite(context, options, {FigureOf(compared->comparisons.front())}, {});
+  return ListOrWrite(context, options, {FigureOf(compared.comparisons.front())}, {});
 }
 
-ExitCode RunFigureCommand(CommandContext& context, const FigureOptions& options) {
+Result<ExitCode> RunFigureCommand(CommandContext& context, const FigureOptions& options) {
   if (!options.others.empty()) return RunComparisonFigure(context, options);
   if (IsStudy(options.directory)) return RunStudyFigure(context, options);
   if (options.name == "comparison") return RunComparisonFigure(context, options);
-  const Result<RunId> run = RunOf(options.name);
-  if (!run) return Fail(context, run.error());
-  const Result<CampaignFacts> facts = ReadFacts(options.directory);
-  if (!facts) return Fail(context, facts.error());
-  for (const std::string& note : facts->notes) PrintMessage(context, note);
+  TRY(const RunId run, RunOf(options.name));
+  TRY(const CampaignFacts facts, ReadFacts(options.directory));
+  for (const std::string& note : facts.notes) PrintMessage(context, note);
   std::vector<ShownRun> shown;
   std::vector<NamedFigure> figures;
-  if (*run == 0) {
-    figures = FiguresOf(CoursesOf(*facts), MapsOf(*facts));
-    std::ranges::move(ArchiveFigures(*facts), std::back_inserter(figures));
+  if (run == 0) {
+    figures = FiguresOf(CoursesOf(facts), MapsOf(facts));
+    std::ranges::move(ArchiveFigures(facts), std::back_inserter(figures));
   } else {
-    Result<std::vector<ShownRun>> one = ShowRuns(*facts, {*run});
-    if (!one) return Fail(context, one.error());
-    shown = *std::move(one);
+    TRY(shown, ShowRuns(facts, {run}));
     if (const std::string& trouble = shown.front().trouble; !trouble.empty()) {
-      PrintMessage(context, fmt::format("run {}: {}", *run, trouble));
+      PrintMessage(context, fmt::format("run {}: {}", run, trouble));
       return kExitNegative;
     }
     figures = FiguresOf(shown.front());

@@ -53,37 +53,32 @@ struct CaseFile {
 Result<std::vector<CaseFile>> ReadCases(CommandContext& context, const std::vector<std::string>& files) {
   std::vector<CaseFile> cases;
   for (const std::string& file : files) {
-    const Result<LoadedCase> loaded = LoadCase(file);
-    if (!loaded) return loaded.error();
-    if (!loaded->notice.empty())
-      PrintMessage(context, Printable(fmt::format("{}: {}", file, loaded->notice)));
-    cases.push_back({fs::path(file).stem().string() + ".json", proto::WriteCaseJson(loaded->test_case)});
+    TRY(const LoadedCase loaded, LoadCase(file));
+    if (!loaded.notice.empty()) PrintMessage(context, Printable(fmt::format("{}: {}", file, loaded.notice)));
+    cases.push_back({fs::path(file).stem().string() + ".json", proto::WriteCaseJson(loaded.test_case)});
   }
   return cases;
 }
 
 Result<std::uint64_t> WriteCases(const std::vector<CaseFile>& cases, const std::string& directory) {
   for (const CaseFile& one : cases) {
-    const Status written = WriteOutputFile(directory + "/" + one.name, one.text);
-    if (!written) return written.error();
+    TRY(WriteOutputFile(directory + "/" + one.name, one.text));
   }
   return cases.size();
 }
 
-ExitCode RunImport(CommandContext& context, const ImportOptions& options) {
-  if (const Status checked = CheckImportOptions(options); !checked) return Fail(context, checked.error());
-  const Result<std::vector<CaseFile>> cases = ReadCases(context, options.files);
-  if (!cases) return Fail(context, cases.error());
+Result<ExitCode> RunImport(CommandContext& context, const ImportOptions& options) {
+  TRY(CheckImportOptions(options));
+  TRY(const std::vector<CaseFile> cases, ReadCases(context, options.files));
   if (!options.out.empty()) {
-    const Status written = WriteOutputFile(options.out, cases->front().text);
-    if (!written) return Fail(context, written.error());
+    TRY(WriteOutputFile(options.out, cases.front().text));
     PrintMessage(context, fmt::format("wrote {}", Printable(options.out)));
     return kExitDone;
   }
-  const Result<std::uint64_t> written = WriteOutputDirectory(
-      "--dir", options.directory, [&](const std::string& draft) { return WriteCases(*cases, draft); });
-  if (!written) return Fail(context, written.error());
-  PrintMessage(context, fmt::format("wrote {} case {} into {}", *written, *written == 1 ? "file" : "files",
+  TRY(const std::uint64_t written,
+      WriteOutputDirectory("--dir", options.directory,
+                           [&](const std::string& draft) { return WriteCases(cases, draft); }));
+  PrintMessage(context, fmt::format("wrote {} case {} into {}", written, written == 1 ? "file" : "files",
                                     Printable(options.directory)));
   return kExitDone;
 }

@@ -294,12 +294,11 @@ constexpr Section kSections[] = {
     {"searches", SearchesText, [] { return JsonOf(BuiltInCatalogue().searches, SearchJson); }},
     {"disturbances", DisturbancesText, [] { return JsonOf(DisturbanceKeys(), KeyJson); }}};
 
-ExitCode ListPlugins(CommandContext& context, const ListOptions& options) {
-  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.plugins);
-  if (!plugins) return Fail(context, plugins.error());
+Result<ExitCode> ListPlugins(CommandContext& context, const ListOptions& options) {
+  TRY(const std::vector<std::string> plugins, AddPluginFiles(options.plugins));
   std::string text;
   Json json = Json::array();
-  for (const std::string& hash : *plugins) {
+  for (const std::string& hash : plugins) {
     const controllers::PluginInfo& plugin = *controllers::FindPlugin(hash);
     text += (text.empty() ? "" : "\n") + PluginText(plugin);
     json.push_back(PluginJson(plugin));
@@ -308,7 +307,7 @@ ExitCode ListPlugins(CommandContext& context, const ListOptions& options) {
   return kExitDone;
 }
 
-ExitCode RunList(CommandContext& context, const ListOptions& options) {
+Result<ExitCode> RunList(CommandContext& context, const ListOptions& options) {
   if (!options.plugins.empty()) return ListPlugins(context, options);
   std::string text;
   Json json = Json::object();

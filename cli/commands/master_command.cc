@@ -28,11 +28,9 @@ struct MasterOptions {
 Result<std::vector<std::string>> LengthsToChange(const MasterOptions& options, const Experiment& experiment,
                                                  const std::vector<std::string>& typed) {
   const std::string& dir = options.experiment.directory;
-  const Result<CampaignView> view = ViewCampaign(dir, Checked::kTotals);
-  if (!view) return view.error();
-  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(view->directory);
-  if (!plans) return plans.error();
-  const SearchPlan& begun = plans->front();
+  TRY(const CampaignView view, ViewCampaign(dir, Checked::kTotals));
+  TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(view.directory));
+  const SearchPlan& begun = plans.front();
   const auto refuse = [&](const std::string& what) {
     return InvalidInput(
         fmt::format("--resume: {} was not begun with {}; only its length may change: leave that out, "
@@ -55,39 +53,34 @@ Result<std::vector<std::string>> LengthsToChange(const MasterOptions& options, c
 // The campaign goes on as the options say, or not at all.
 Status Obey(CommandContext& context, const MasterOptions& options, const Experiment& experiment) {
   const std::vector<ExtraSet> extra = SetsOf(options.size);
-  const Result<std::vector<std::string>> typed = JoinSets(options.experiment.sets, extra);
-  if (!typed) return typed.error();
-  if (typed->empty() && options.experiment.seed.empty()) return Ok{};
-  const Result<std::vector<std::string>> lengths = LengthsToChange(options, experiment, *typed);
-  if (!lengths) return lengths.error();
-  if (lengths->empty()) return Ok{};
+  TRY(const std::vector<std::string> typed, JoinSets(options.experiment.sets, extra));
+  if (typed.empty() && options.experiment.seed.empty()) return Ok{};
+  TRY(const std::vector<std::string> lengths, LengthsToChange(options, experiment, typed));
+  if (lengths.empty()) return Ok{};
   const std::string& dir = options.experiment.directory;
-  const Result<std::string> change = context.campaigns.Extend(dir, *lengths, StopSignal::Requested);
+  const Result<std::string> change = context.campaigns.Extend(dir, lengths, StopSignal::Requested);
   if (!change) return AsTyped(change.error(), extra);
   if (!options.serving.quiet) PrintMessage(context, fmt::format("{} goes on: {}", dir, *change));
   return Ok{};
 }
 
-ExitCode RunMaster(CommandContext& context, const MasterOptions& options) {
+Result<ExitCode> RunMaster(CommandContext& context, const MasterOptions& options) {
   const std::string& wanted = options.experiment.directory;
   if (options.resume && wanted.empty())
-    return Fail(context, InvalidInput("--resume needs --dir: which campaign is to go on?"));
-  const Result<Experiment> experiment = LoadExperimentWith(options.experiment, SetsOf(options.size));
-  if (!experiment) return Fail(context, experiment.error());
+    return InvalidInput("--resume needs --dir: which campaign is to go on?");
+  TRY(const Experiment experiment, LoadExperimentWith(options.experiment, SetsOf(options.size)));
   const bool goes_on = options.resume && CampaignDirectory::IsCampaign(wanted);
-  const Result<std::string> directory =
-      goes_on ? Result<std::string>(wanted) : NewDirectory(wanted, *experiment);
-  if (!directory) return Fail(context, directory.error());
+  TRY(const std::string directory, goes_on ? Result<std::string>(wanted) : NewDirectory(wanted, experiment));
 
   CampaignRun campaign;
-  campaign.directory = *directory;
+  campaign.directory = directory;
   campaign.session.workers = 0;
   campaign.serving = options.serving;
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) -> Result<SessionReport> {
-    if (!goes_on) return context.campaigns.Start(*directory, {{"", *experiment}}, session);
-    if (Status obeyed = Obey(context, options, *experiment); !obeyed) return obeyed.error();
-    return context.campaigns.Resume(*directory, session);
+    if (!goes_on) return context.campaigns.Start(directory, {{"", experiment}}, session);
+    TRY(Obey(context, options, experiment));
+    return context.campaigns.Resume(directory, session);
   };
   return RunCampaign(context, campaign);
 }

@@ -144,11 +144,10 @@ Status KeepFiles(const Minimisation& one) {
 // Prints and keeps what is left; kExitUsage when every case was refused.
 Result<ExitCode> Conclude(CommandContext& context, const MinimiseOptions& options,
                           const QuestionedCampaign& questioned) {
-  const Result<std::vector<Minimisation>> known = ReadMinimisations(options.directory);
-  if (!known) return known.error();
-  const std::vector<Minimisation> cases = AnswersTo(questioned, options.shorten, *known);
+  TRY(const std::vector<Minimisation> known, ReadMinimisations(options.directory));
+  const std::vector<Minimisation> cases = AnswersTo(questioned, options.shorten, known);
   for (const Minimisation& one : cases) {
-    if (const Status kept = KeepFiles(one); !kept) return kept.error();
+    TRY(KeepFiles(one));
   }
   context.out << (options.json ? JsonText(JsonOf(cases)) : TextOf(context, cases)) << std::flush;
   const bool any =
@@ -156,30 +155,21 @@ Result<ExitCode> Conclude(CommandContext& context, const MinimiseOptions& option
   return any ? kExitDone : kExitUsage;
 }
 
-ExitCode RunMinimise(CommandContext& context, const MinimiseOptions& options) {
-  const Result<int> workers = ParseWorkers(options.workers);
-  if (!workers) return Fail(context, workers.error());
-  const Result<QuestionedCampaign> questioned = GivenCases(context, options.directory, options.cases);
-  if (!questioned) return Fail(context, questioned.error());
-  if (const Status obstacles = CheckHaveObstacles(*questioned); !obstacles)
-    return Fail(context, obstacles.error());
-  const Result<std::vector<Minimisation>> known = ReadMinimisations(options.directory);
-  if (!known) return Fail(context, known.error());
-  const CallPlan plan = PlanMinimisation(options.directory, *questioned, options.shorten, *known);
-  if (plan.searches.empty()) {
-    const Result<ExitCode> code = Conclude(context, options, *questioned);
-    return code ? *code : Fail(context, code.error());
-  }
-  CampaignRun campaign = RunOfCall(context, plan, *workers, options);
+Result<ExitCode> RunMinimise(CommandContext& context, const MinimiseOptions& options) {
+  TRY(const int workers, ParseWorkers(options.workers));
+  TRY(const QuestionedCampaign questioned, GivenCases(context, options.directory, options.cases));
+  TRY(CheckHaveObstacles(questioned));
+  TRY(const std::vector<Minimisation> known, ReadMinimisations(options.directory));
+  const CallPlan plan = PlanMinimisation(options.directory, questioned, options.shorten, known);
+  if (plan.searches.empty()) return Conclude(context, options, questioned);
+  CampaignRun campaign = RunOfCall(context, plan, workers, options);
   ExitCode concluded = kExitDone;
   campaign.report = [&](const SessionReport& report) -> Status {
     if (report.end == CampaignEnd::kStopped) return Ok{};
-    const Result<ExitCode> code = Conclude(context, options, *questioned);
-    if (!code) return code.error();
-    concluded = *code;
+    TRY(concluded, Conclude(context, options, questioned));
     return Ok{};
   };
-  const ExitCode code = RunCampaign(context, campaign);
+  TRY(const ExitCode code, RunCampaign(context, campaign));
   return code == kExitDone ? concluded : code;
 }
 

@@ -89,22 +89,19 @@ std::string Text(const CampaignReplay& replay, const analysis::RunFigure& figure
 }
 
 // kExitNegative when the run is not reproduced or does not read back.
-ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
-  const Result<std::uint64_t> run = ParseRunId(options.run);
-  if (!run) return Fail(context, run.error());
-  if (const Status own_files = CheckOwnFiles(options); !own_files) return Fail(context, own_files.error());
-  const Result<CampaignReplay> replay = context.campaigns.Replay(options.directory, *run, options.scratch);
-  if (!replay) return Fail(context, replay.error());
-  PrintAsOf(context, options.directory, replay->as_of);
-  if (!replay->report.damage.empty()) {  // what does not read back did not reproduce
-    PrintMessage(context, replay->report.damage);
+Result<ExitCode> RunReplay(CommandContext& context, const ReplayOptions& options) {
+  TRY(const std::uint64_t run, ParseRunId(options.run));
+  TRY(CheckOwnFiles(options));
+  TRY(const CampaignReplay replay, context.campaigns.Replay(options.directory, run, options.scratch));
+  PrintAsOf(context, options.directory, replay.as_of);
+  if (!replay.report.damage.empty()) {  // what does not read back did not reproduce
+    PrintMessage(context, replay.report.damage);
     return kExitNegative;
   }
-  const analysis::RunFigure figure = FigureOf(replay->experiment.name, replay->report);
+  const analysis::RunFigure figure = FigureOf(replay.experiment.name, replay.report);
   if (!options.timeline.empty() && !analysis::HasTimeline(figure)) {
-    return Fail(context,
-                InvalidInput(fmt::format("--timeline: runs of {} do not say what their robots did when",
-                                         figure.spec.scenario)));
+    return InvalidInput(
+        fmt::format("--timeline: runs of {} do not say what their robots did when", figure.spec.scenario));
   }
   const std::pair<const std::string&, std::function<std::string()>> outputs[] = {
       {options.svg, [&] { return analysis::DrawRun(figure); }},
@@ -112,14 +109,13 @@ ExitCode RunReplay(CommandContext& context, const ReplayOptions& options) {
       {options.csv, [&] { return analysis::WriteTrajectoryCsv(figure.result.trajectory); }}};
   for (const auto& [path, content] : outputs) {
     if (path.empty()) continue;
-    if (const Status written = WriteOutputFile(path, content()); !written)
-      return Fail(context, written.error());
+    TRY(WriteOutputFile(path, content()));
     PrintMessage(context, fmt::format("wrote {}", path));
   }
-  context.out << (options.json ? ReplayJson(replay->report) : Text(*replay, figure)) << std::flush;
-  if (replay->report.differences.empty()) return kExitDone;
-  PrintMessage(context, fmt::format("run {} of {} was not reproduced: {}", *run, options.directory,
-                                    replay->report.differences.front()));
+  context.out << (options.json ? ReplayJson(replay.report) : Text(replay, figure)) << std::flush;
+  if (replay.report.differences.empty()) return kExitDone;
+  PrintMessage(context, fmt::format("run {} of {} was not reproduced: {}", run, options.directory,
+                                    replay.report.differences.front()));
   return kExitNegative;
 }
 

@@ -33,16 +33,13 @@ Result<std::size_t> ShownRunsOf(const std::string& text) {
   return *number;
 }
 
-ExitCode RunReport(CommandContext& context, const ReportCommandOptions& options) {
-  const Result<std::size_t> shown_runs = ShownRunsOf(options.runs);
-  if (!shown_runs) return Fail(context, shown_runs.error());
-  const Result<Report> report = GatherReport(options.sets, *shown_runs);
-  if (!report) return Fail(context, report.error());
-  const std::string page = ReportPage(*report);
-  if (const Status written = WriteOutputFile(options.out, page); !written)
-    return Fail(context, written.error());
+Result<ExitCode> RunReport(CommandContext& context, const ReportCommandOptions& options) {
+  TRY(const std::size_t shown_runs, ShownRunsOf(options.runs));
+  TRY(const Report report, GatherReport(options.sets, shown_runs));
+  const std::string page = ReportPage(report);
+  TRY(WriteOutputFile(options.out, page));
   std::size_t troubles = 0;
-  for (const CampaignPages& pages : report->campaigns) {
+  for (const CampaignPages& pages : report.campaigns) {
     for (const std::string& note : pages.facts.notes) PrintMessage(context, note);
     troubles += static_cast<std::size_t>(
         std::ranges::count_if(pages.shown, [](const ShownRun& shown) { return !shown.trouble.empty(); }));

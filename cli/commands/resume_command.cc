@@ -30,11 +30,9 @@ Status Extend(CommandContext& context, const ResumeOptions& options) {
   std::vector<ExtraSet> extra;
   if (!options.generations.empty())
     extra.push_back({"--generations", "search.generations", options.generations});
-  const Result<std::vector<std::string>> sets = JoinSets(options.sets, extra);
-  if (!sets) return sets.error();
-  if (sets->empty()) return Ok{};
-  const Result<std::string> change =
-      context.campaigns.Extend(options.directory, *sets, StopSignal::Requested);
+  TRY(const std::vector<std::string> sets, JoinSets(options.sets, extra));
+  if (sets.empty()) return Ok{};
+  const Result<std::string> change = context.campaigns.Extend(options.directory, sets, StopSignal::Requested);
   if (!change) return AsTyped(change.error(), extra);
   if (options.running.quiet) return Ok{};
   PrintMessage(context, change->empty() ? fmt::format("{} is that long already", options.directory)
@@ -44,9 +42,8 @@ Status Extend(CommandContext& context, const ResumeOptions& options) {
 
 Status CheckNoMasterJob(CommandContext& context, const std::string& directory,
                         const slurm::SlurmCampaign& campaign) {
-  const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*context.slurm());
-  if (!jobs) return jobs.error();
-  for (const slurm::JobStatus& job : *jobs) {
+  TRY(const std::vector<slurm::JobStatus> jobs, campaign.LivingJobs(*context.slurm()));
+  for (const slurm::JobStatus& job : jobs) {
     if (job.name != campaign.master_job_name()) continue;
     return Error{ErrorKind::kInUse,
                  fmt::format("job {} ({}) is the campaign's master already; see: {} status {}", job.id,
@@ -61,31 +58,30 @@ std::string JobOfThisProcess() {
 }
 
 // The master's job of a submitted campaign, handed to Slurm again unless it is there.
-ExitCode SubmitAgain(CommandContext& context, const ResumeOptions& options,
-                     const slurm::SlurmCampaign& campaign) {
+Result<ExitCode> SubmitAgain(CommandContext& context, const ResumeOptions& options,
+                             const slurm::SlurmCampaign& campaign) {
   const std::string& directory = options.directory;
-  const Result<CampaignSummary> summary = context.campaigns.Read(directory);
-  if (!summary) return Fail(context, summary.error());
-  if (summary->finished) {
-    const Status printed = PrintFinished(context, *summary, directory, options.running);
-    return printed ? kExitDone : Fail(context, printed.error());
+  TRY(const CampaignSummary summary, context.campaigns.Read(directory));
+  if (summary.finished) {
+    TRY(PrintFinished(context, summary, directory, options.running));
+    return kExitDone;
   }
-  if (Status free = CheckNoMasterJob(context, directory, campaign); !free) return Fail(context, free.error());
-  const Result<std::string> job = SubmitMasterJob(context, directory, campaign);
-  if (!job) return Fail(context, job.error());
-  context.out << fmt::format("{} goes on as job {}\n", directory, *job) << std::flush;
+  TRY(CheckNoMasterJob(context, directory, campaign));
+  TRY(const std::string job, SubmitMasterJob(context, directory, campaign));
+  context.out << fmt::format("{} goes on as job {}\n", directory, job) << std::flush;
   return kExitDone;
 }
 
-ExitCode ResumeSubmitted(CommandContext& context, const ResumeOptions& options,
-                         const slurm::SlurmCampaign& campaign) {
+Result<ExitCode> ResumeSubmitted(CommandContext& context, const ResumeOptions& options,
+                                 const slurm::SlurmCampaign& campaign) {
   const Status extended = [&] {
     const StopSignal handlers;
     return Extend(context, options);
   }();
   if (!extended) {
-    const ExitCode code = Fail(context, extended.error());
-    return StopSignal::Requested() ? kExitStopped : code;
+    if (!StopSignal::Requested()) return extended.error();
+    PrintMessage(context, extended.error().message);
+    return kExitStopped;
   }
   if (options.as_job)
     return ServeSubmitted(context, options.running, options.directory, campaign, JobOfThisProcess());
@@ -98,69 +94,61 @@ ExitCode ResumeSubmitted(CommandContext& context, const ResumeOptions& options,
 Result<bool> IsSimulated(const Study& study, const std::string& directory) {
   for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
     if (std::ranges::count(study.parts, stage, &StageOf) == 0) continue;
-    const Result<StageState> state = LookAtStage(study, directory, stage);
-    if (!state) return state.error();
-    if (!state->finished) return false;
+    TRY(const StageState state, LookAtStage(study, directory, stage));
+    if (!state.finished) return false;
   }
   return true;
 }
 
 // A study's directory holds campaigns, of a length that its file says.
-ExitCode ResumeStudy(CommandContext& context, const ResumeOptions& options) {
+Result<ExitCode> ResumeStudy(CommandContext& context, const ResumeOptions& options) {
   const std::string& directory = options.directory;
   if (!options.generations.empty() || !options.sets.empty() || !options.bind.endpoint.empty()) {
-    return Fail(context,
-                InvalidInput(fmt::format("{} holds a study: its file says how long its searches are, and "
-                                         "its workers are of this machine or of Slurm",
-                                         directory)));
+    return InvalidInput(
+        fmt::format("{} holds a study: its file says how long its searches are, and "
+                    "its workers are of this machine or of Slurm",
+                    directory));
   }
-  const Result<Study> study = OpenStudy(directory);
-  if (!study) return Fail(context, study.error());
-  const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
-  if (!submitted) return Fail(context, submitted.error());
-  if (!submitted->has_value() && options.as_job)
-    return Fail(context, InvalidInput(fmt::format("--as-job: {} was not submitted to Slurm", directory)));
-  const Result<bool> simulated = IsSimulated(*study, directory);
-  if (!simulated) return Fail(context, simulated.error());
+  TRY(const Study study, OpenStudy(directory));
+  TRY(const std::optional<slurm::SlurmCampaign> submitted, slurm::SlurmCampaign::Find(directory));
+  if (!submitted.has_value() && options.as_job)
+    return InvalidInput(fmt::format("--as-job: {} was not submitted to Slurm", directory));
+  TRY(const bool simulated, IsSimulated(study, directory));
   StudyRun run{directory, options.running, "", nullptr, ""};
-  if (!submitted->has_value() || !options.running.workers.empty() || *simulated)
-    return RunStudyIn(context, *study, run);
-  run.submitted = &**submitted;
+  if (!submitted.has_value() || !options.running.workers.empty() || simulated)
+    return RunStudyIn(context, study, run);
+  run.submitted = &*submitted;
   if (options.as_job) {
     run.batch_job = JobOfThisProcess();
-    return RunStudyIn(context, *study, run);
+    return RunStudyIn(context, study, run);
   }
-  if ((*submitted)->settings().master == slurm::MasterPlace::kHere) return RunStudyIn(context, *study, run);
-  if (Status free = CheckNoMasterJob(context, directory, **submitted); !free)
-    return Fail(context, free.error());
-  return SubmitStudyJob(context, directory, **submitted, options.running.json);
+  if (submitted->settings().master == slurm::MasterPlace::kHere) return RunStudyIn(context, study, run);
+  TRY(CheckNoMasterJob(context, directory, *submitted));
+  return SubmitStudyJob(context, directory, *submitted, options.running.json);
 }
 
-ExitCode RunResume(CommandContext& context, const ResumeOptions& options) {
+Result<ExitCode> RunResume(CommandContext& context, const ResumeOptions& options) {
   if (IsStudy(options.directory)) return ResumeStudy(context, options);
   const bool bound = !options.bind.endpoint.empty();
   if (!bound && options.running.workers.empty()) {
-    const Result<std::optional<slurm::SlurmCampaign>> submitted =
-        slurm::SlurmCampaign::Find(options.directory);
-    if (!submitted) return Fail(context, submitted.error());
-    if (submitted->has_value()) return ResumeSubmitted(context, options, **submitted);
+    TRY(const std::optional<slurm::SlurmCampaign> submitted, slurm::SlurmCampaign::Find(options.directory));
+    if (submitted.has_value()) return ResumeSubmitted(context, options, *submitted);
   }
   if (options.as_job)
-    return Fail(context,
-                InvalidInput(fmt::format("--as-job: {} was not submitted to Slurm, or --workers or --bind "
-                                         "is given; use 'submit'",
-                                         options.directory)));
+    return InvalidInput(
+        fmt::format("--as-job: {} was not submitted to Slurm, or --workers or --bind "
+                    "is given; use 'submit'",
+                    options.directory));
   // With --bind workers come from elsewhere, unless some are asked for.
   const bool none = bound && options.running.workers.empty();
-  const Result<int> workers = none ? Result<int>(0) : ParseWorkers(options.running.workers);
-  if (!workers) return Fail(context, workers.error());
+  TRY(const int workers, none ? Result<int>(0) : ParseWorkers(options.running.workers));
   CampaignRun campaign;
   campaign.directory = options.directory;
-  campaign.session.workers = *workers;
+  campaign.session.workers = workers;
   campaign.serving = options.running;
   campaign.bind = options.bind;
   campaign.run = [&](const SessionOptions& session) -> Result<SessionReport> {
-    if (Status extended = Extend(context, options); !extended) return extended.error();
+    TRY(Extend(context, options));
     return context.campaigns.Resume(options.directory, session);
   };
   return RunCampaign(context, campaign);

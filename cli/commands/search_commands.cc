@@ -27,33 +27,31 @@ Status CheckEmptyArenas(const std::vector<SearchPlan>& searches) {
   for (const SearchPlan& search : searches) {
     const Experiment& experiment = search.experiment;
     if (RowOf(experiment).members != "elites" || !checked.insert(experiment.controller).second) continue;
-    if (Status sound = CheckEmptyArena(experiment); !sound) return sound;
+    TRY(CheckEmptyArena(experiment));
   }
   return Ok{};
 }
 
 // Runs the experiment with `extra` settings, once or as a sweep.
-ExitCode RunSearches(CommandContext& context, const SearchOptions& options,
-                     const std::vector<ExtraSet>& extra) {
+Result<ExitCode> RunSearches(CommandContext& context, const SearchOptions& options,
+                             const std::vector<ExtraSet>& extra) {
   std::vector<ExtraSet> all = SetsOf(options.size);
   all.insert(all.end(), extra.begin(), extra.end());
-  const Result<std::vector<SearchPlan>> searches = PlanSearches(options.experiment, all, options.sweep);
-  if (!searches) return Fail(context, searches.error());
-  if (const Status sound = CheckEmptyArenas(*searches); !sound) return Fail(context, sound.error());
-  Result<CampaignRun> campaign = LocalRun(*searches, options);
-  if (!campaign) return Fail(context, campaign.error());
-  if (options.dry_run) return PrintDryRun(context, *campaign, *searches);
-  campaign->run = [&](const SessionOptions& session) {
-    return context.campaigns.Start(campaign->directory, *searches, session);
+  TRY(const std::vector<SearchPlan> searches, PlanSearches(options.experiment, all, options.sweep));
+  TRY(CheckEmptyArenas(searches));
+  TRY(CampaignRun campaign, LocalRun(searches, options));
+  if (options.dry_run) return PrintDryRun(context, campaign, searches);
+  campaign.run = [&](const SessionOptions& session) {
+    return context.campaigns.Start(campaign.directory, searches, session);
   };
-  return RunCampaign(context, *campaign);
+  return RunCampaign(context, campaign);
 }
 
-ExitCode RunEvolve(CommandContext& context, const SearchOptions& options) {
+Result<ExitCode> RunEvolve(CommandContext& context, const SearchOptions& options) {
   return RunSearches(context, options, {});
 }
 
-ExitCode RunRandom(CommandContext& context, const RandomOptions& options) {
+Result<ExitCode> RunRandom(CommandContext& context, const RandomOptions& options) {
   std::vector<ExtraSet> extra = {{"random", "search.algorithm", "random"}};
   if (!options.cases.empty()) extra.push_back({"--cases", "search.cases", options.cases});
   return RunSearches(context, options, extra);

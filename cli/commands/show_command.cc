@@ -18,40 +18,34 @@ struct ShowOptions {
 };
 
 // The summary's JSON, continued by all runs, of one and the same moment.
-ExitCode ShowWithRuns(CommandContext& context, const ShowOptions& options) {
-  const Result<StoredCampaign> campaign = OpenStoredCampaign(options.directory);
-  if (!campaign) return Fail(context, campaign.error());
-  const Result<CampaignSummary> summary = Summarise(campaign->plans, *campaign->view.store);
-  if (!summary) return Fail(context, summary.error());
+Result<ExitCode> ShowWithRuns(CommandContext& context, const ShowOptions& options) {
+  TRY(const StoredCampaign campaign, OpenStoredCampaign(options.directory));
+  TRY(const CampaignSummary summary, Summarise(campaign.plans, *campaign.view.store));
   std::string text;
-  const Result<ExportReport> written =
-      WriteTable(*campaign, {.what = Exported::kRuns, .format = TableFormat::kJson},
-                 SummaryJson(*summary, {}, options.directory), [&](std::string_view bytes) -> Status {
+  TRY(WriteTable(campaign, {.what = Exported::kRuns, .format = TableFormat::kJson},
+                 SummaryJson(summary, {}, options.directory), [&](std::string_view bytes) -> Status {
                    text += bytes;
                    return Ok{};
-                 });
-  if (!written) return Fail(context, written.error());
-  PrintAsOf(context, options.directory, campaign->view.as_of);
+                 }));
+  PrintAsOf(context, options.directory, campaign.view.as_of);
   context.out << text << std::flush;
   return kExitDone;
 }
 
-ExitCode RunShow(CommandContext& context, const ShowOptions& options) {
+Result<ExitCode> RunShow(CommandContext& context, const ShowOptions& options) {
   if (IsStudy(options.directory)) {
-    return Fail(context,
-                InvalidInput(fmt::format("{0} holds a study: its campaigns are {0}/searches and "
-                                         "{0}/evaluations, its report is given by 'gauntlet resume {0}'",
-                                         options.directory)));
+    return InvalidInput(
+        fmt::format("{0} holds a study: its campaigns are {0}/searches and "
+                    "{0}/evaluations, its report is given by 'gauntlet resume {0}'",
+                    options.directory));
   }
   if (options.runs && !options.json)
-    return Fail(context,
-                InvalidInput("--runs lists every run: it needs --json, or use 'export --format csv'"));
+    return InvalidInput("--runs lists every run: it needs --json, or use 'export --format csv'");
   if (options.runs) return ShowWithRuns(context, options);
-  const Result<CampaignSummary> summary = context.campaigns.Read(options.directory);
-  if (!summary) return Fail(context, summary.error());
-  PrintAsOf(context, options.directory, summary->as_of);
-  const Status printed = PrintSummary(context, *summary, options.directory, options.json);
-  return printed ? kExitDone : Fail(context, printed.error());
+  TRY(const CampaignSummary summary, context.campaigns.Read(options.directory));
+  PrintAsOf(context, options.directory, summary.as_of);
+  TRY(PrintSummary(context, summary, options.directory, options.json));
+  return kExitDone;
 }
 
 }  // namespace

@@ -141,9 +141,8 @@ void AddJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, Json
 // What a campaign does now, and the jobs of a submitted one that no master serves: for a person, or as one
 // JSON document.
 Result<std::string> CurrentStatus(CommandContext& context, const std::string& directory, bool json) {
-  Result<std::string> text = context.campaigns.ReadStatus(directory);
-  if (!text) return text;
-  Json status = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  TRY(std::string text, context.campaigns.ReadStatus(directory));
+  Json status = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!status.is_object()) return Error{ErrorKind::kCorrupt, "the status does not parse"};
   const std::string state = status.value("state", "");
   if (state == "stopped" || state == "finished") {
@@ -156,24 +155,21 @@ Result<std::string> CurrentStatus(CommandContext& context, const std::string& di
   return json ? text : StatusText(status, directory);
 }
 
-ExitCode RunStatus(CommandContext& context, const StatusOptions& options) {
-  const Result<std::string> text = CurrentStatus(context, options.directory, options.json);
-  if (!text) return Fail(context, text.error());
-  context.out << *text << std::flush;
+Result<ExitCode> RunStatus(CommandContext& context, const StatusOptions& options) {
+  TRY(const std::string text, CurrentStatus(context, options.directory, options.json));
+  context.out << text << std::flush;
   return kExitDone;
 }
 
-ExitCode RunWatch(CommandContext& context, const StatusOptions& options) {
+Result<ExitCode> RunWatch(CommandContext& context, const StatusOptions& options) {
   constexpr int kMilliseconds = 1000;
   const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
   while (true) {
-    const Result<bool> lives = context.campaigns.MasterLives(options.directory);
-    if (!lives) return Fail(context, lives.error());
-    const Result<std::string> text = CurrentStatus(context, options.directory, /*json=*/false);
-    if (!text) return Fail(context, text.error());
+    TRY(const bool lives, context.campaigns.MasterLives(options.directory));
+    TRY(const std::string text, CurrentStatus(context, options.directory, /*json=*/false));
     // The screen is cleared on a terminal; elsewhere the states follow each other.
-    context.out << (context.out_is_terminal ? "\x1b[H\x1b[2J" : "") << *text << std::flush;
-    if (!*lives || StopSignal::ComesWithin(kMilliseconds)) return kExitDone;
+    context.out << (context.out_is_terminal ? "\x1b[H\x1b[2J" : "") << text << std::flush;
+    if (!lives || StopSignal::ComesWithin(kMilliseconds)) return kExitDone;
   }
 }
 

@@ -43,42 +43,38 @@ Result<std::string> ServedIn(CommandContext& context, const std::string& directo
     const std::string campaign = CampaignOf(directory, stage);
     std::error_code error;
     if (!std::filesystem::exists(campaign, error)) continue;
-    const Result<bool> lives = context.campaigns.MasterLives(campaign);
-    if (!lives) return lives.error();
-    if (*lives) return campaign;
+    TRY(const bool lives, context.campaigns.MasterLives(campaign));
+    if (lives) return campaign;
     last = campaign;
   }
   return last;
 }
 
 // Returns when the master is gone.
-ExitCode StopCampaign(CommandContext& context, const StopOptions& options) {
+Result<ExitCode> StopCampaign(CommandContext& context, const StopOptions& options) {
   constexpr int kPollMilliseconds = 100;
-  Result<bool> lives = context.campaigns.MasterLives(options.directory);
-  if (!lives) return Fail(context, lives.error());
-  if (!*lives) {
+  TRY(bool lives, context.campaigns.MasterLives(options.directory));
+  if (!lives) {
     PrintMessage(context, fmt::format("no master serves {}: there is nothing to stop", options.directory));
     return CancelLeftovers(context, options.directory) ? kExitDone : kExitUsage;
   }
-  if (const Status asked = context.campaigns.RequestStop(options.directory); !asked)
-    return Fail(context, asked.error());
+  TRY(context.campaigns.RequestStop(options.directory));
   PrintMessage(context, "the master lets the runs that have begun end, then stops (Ctrl-C: wait no longer)");
   const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
-  while (*lives) {
+  while (lives) {
     if (StopSignal::ComesWithin(kPollMilliseconds)) return kExitDone;
-    lives = context.campaigns.MasterLives(options.directory);
-    if (!lives) return Fail(context, lives.error());
+    TRY(lives, context.campaigns.MasterLives(options.directory));
   }
   const bool clean = CancelLeftovers(context, options.directory);
   PrintMessage(context, "stopped");
   return clean ? kExitDone : kExitUsage;
 }
 
-ExitCode RunStop(CommandContext& context, const StopOptions& options) {
-  const Result<std::string> served = ServedIn(context, options.directory);
-  if (!served) return Fail(context, served.error());
-  if (*served == options.directory) return StopCampaign(context, options);
-  const ExitCode code = StopCampaign(context, {*served});
+Result<ExitCode> RunStop(CommandContext& context, const StopOptions& options) {
+  TRY(const std::string served, ServedIn(context, options.directory));
+  if (served == options.directory) return StopCampaign(context, options);
+  const Result<ExitCode> stopped = StopCampaign(context, {served});
+  const ExitCode code = stopped ? *stopped : Fail(context, stopped.error());
   // The master's job of a study belongs to the study.
   return CancelLeftovers(context, options.directory) ? code : kExitUsage;
 }

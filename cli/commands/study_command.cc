@@ -14,12 +14,10 @@ struct StudyOptions {
   StudyStartOptions start;
 };
 
-ExitCode RunStudy(CommandContext& context, const StudyOptions& options) {
-  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.start.plugins);
-  if (!plugins) return Fail(context, plugins.error());
-  const Result<Study> study = LoadStudy(options.study, {}, *plugins);
-  if (!study) return Fail(context, study.error());
-  return StartStudy(context, *study, options.start);
+Result<ExitCode> RunStudy(CommandContext& context, const StudyOptions& options) {
+  TRY(const std::vector<std::string> plugins, AddPluginFiles(options.start.plugins));
+  TRY(const Study study, LoadStudy(options.study, {}, plugins));
+  return StartStudy(context, study, options.start);
 }
 
 }  // namespace

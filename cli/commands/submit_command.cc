@@ -26,51 +26,42 @@ struct SubmitOptions {
 };
 
 // Hands the master's job to Slurm and says how to follow it.
-ExitCode SubmitAndReturn(CommandContext& context, const SubmitOptions& options, const std::string& directory,
-                         const slurm::SlurmCampaign& campaign) {
-  const Result<std::string> job = SubmitMasterJob(context, directory, campaign);
-  if (!job) return Fail(context, job.error());
+Result<ExitCode> SubmitAndReturn(CommandContext& context, const SubmitOptions& options,
+                                 const std::string& directory, const slurm::SlurmCampaign& campaign) {
+  TRY(const std::string job, SubmitMasterJob(context, directory, campaign));
   if (options.messages.json) {
-    context.out << JsonText({{"directory", directory}, {"job", *job}});
+    context.out << JsonText({{"directory", directory}, {"job", job}});
   } else {
     context.out << fmt::format(
         "{0}: job {1} is the master; its workers will be {2}w*\n\n  {3} status {4}\n  {3} stop {4}\n",
-        directory, *job, campaign.job_prefix(), context.program, PastedPath(directory));
+        directory, job, campaign.job_prefix(), context.program, PastedPath(directory));
   }
   context.out << std::flush;
   return kExitDone;
 }
 
-ExitCode RunSubmit(CommandContext& context, const SubmitOptions& options) {
-  const Result<std::vector<SearchPlan>> searches =
-      PlanSearches(options.experiment, SetsOf(options.size), options.sweep);
-  if (!searches) return Fail(context, searches.error());
-  const Experiment& experiment = searches->front().experiment;
-  const Result<ExperimentText> text = ReadExperimentText(options.experiment.experiment);
-  if (!text) return Fail(context, text.error());
-  const Result<slurm::SlurmSettings> settings = ReadSlurmOptions(
-      options.slurm, slurm::SlurmSource{text->text, text->file_name, false}, experiment.name);
-  if (!settings) return Fail(context, settings.error());
-  const Result<std::string> directory = NewDirectory(options.experiment.directory, experiment);
-  if (!directory) return Fail(context, directory.error());
-  const Result<slurm::SlurmCampaign> campaign = slurm::SlurmCampaign::Make(*settings, *directory);
-  if (!campaign) return Fail(context, campaign.error());
+Result<ExitCode> RunSubmit(CommandContext& context, const SubmitOptions& options) {
+  TRY(const std::vector<SearchPlan> searches,
+      PlanSearches(options.experiment, SetsOf(options.size), options.sweep));
+  const Experiment& experiment = searches.front().experiment;
+  TRY(const ExperimentText text, ReadExperimentText(options.experiment.experiment));
+  TRY(const slurm::SlurmSettings settings,
+      ReadSlurmOptions(options.slurm, slurm::SlurmSource{text.text, text.file_name, false}, experiment.name));
+  TRY(const std::string directory, NewDirectory(options.experiment.directory, experiment));
+  TRY(const slurm::SlurmCampaign campaign, slurm::SlurmCampaign::Make(settings, directory));
 
-  if (Status possible = TestJobs(context, *campaign, options.dry_run); !possible)
-    return Fail(context, possible.error());
+  TRY(TestJobs(context, campaign, options.dry_run));
   if (options.dry_run) return kExitDone;
-  const bool as_job = settings->master == slurm::MasterPlace::kJob;
+  const bool as_job = settings.master == slurm::MasterPlace::kJob;
   if (!as_job) {
-    if (const Status free = TryToListen(settings->bind); !free) return Fail(context, free.error());
+    TRY(TryToListen(settings.bind));
   }
-  const Status prepared =
-      context.campaigns.Prepare(*directory, *searches, slurm::WriteSlurmSettings(*settings));
-  if (!prepared) return Fail(context, prepared.error());
-  if (as_job) return SubmitAndReturn(context, options, *directory, *campaign);
+  TRY(context.campaigns.Prepare(directory, searches, slurm::WriteSlurmSettings(settings)));
+  if (as_job) return SubmitAndReturn(context, options, directory, campaign);
   if (!options.messages.quiet)
-    PrintMessage(context, fmt::format("{}: workers come from Slurm as {}w*; see: {} status {}", *directory,
-                                      campaign->job_prefix(), context.program, PastedPath(*directory)));
-  return ServeSubmitted(context, {options.messages, "", ""}, *directory, *campaign, "");
+    PrintMessage(context, fmt::format("{}: workers come from Slurm as {}w*; see: {} status {}", directory,
+                                      campaign.job_prefix(), context.program, PastedPath(directory)));
+  return ServeSubmitted(context, {options.messages, "", ""}, directory, campaign, "");
 }
 
 }  // namespace

@@ -27,19 +27,18 @@ bool IsTuning(const Study& study) {
 }
 
 Result<Study> LoadTuning(const TuneOptions& options) {
-  const Result<std::vector<std::string>> plugins = AddPluginFiles(options.start.plugins);
-  if (!plugins) return plugins.error();
+  TRY(const std::vector<std::string> plugins, AddPluginFiles(options.start.plugins));
   const std::vector<std::string> shipped = ShippedStudies();
   const std::string own = "tune-" + options.experiment;
   if (options.candidates.empty() && std::ranges::count(shipped, own) > 0)
-    return LoadStudy(own, {"", options.repeats, options.sets}, *plugins);
+    return LoadStudy(own, {"", options.repeats, options.sets}, plugins);
   std::string experiment = options.experiment;
   // A file is found again by whoever goes on, from wherever that is.
   std::error_code error;
   const bool is_file = experiment.find('/') != std::string::npos || experiment.ends_with(".toml");
   if (is_file) experiment = std::filesystem::absolute(experiment, error).string();
   Result<Study> study = LoadStudy(options.candidates.empty() ? kCandidates : options.candidates,
-                                  {experiment, options.repeats, options.sets}, *plugins);
+                                  {experiment, options.repeats, options.sets}, plugins);
   if (study && !IsTuning(*study)) {
     return InvalidInput(fmt::format("--candidates {}: the study has no table [tune.NAME] with candidates",
                                     options.candidates));
@@ -47,10 +46,9 @@ Result<Study> LoadTuning(const TuneOptions& options) {
   return study;
 }
 
-ExitCode RunTune(CommandContext& context, const TuneOptions& options) {
-  const Result<Study> study = LoadTuning(options);
-  if (!study) return Fail(context, study.error());
-  return StartStudy(context, *study, options.start);
+Result<ExitCode> RunTune(CommandContext& context, const TuneOptions& options) {
+  TRY(const Study study, LoadTuning(options));
+  return StartStudy(context, study, options.start);
 }
 
 }  // namespace

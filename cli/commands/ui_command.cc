@@ -17,26 +17,23 @@ struct UiOptions {
   std::string port;
 };
 
-ExitCode RunUi(CommandContext& context, const UiOptions& options) {
-  const Result<int> port = ParsePort("--port", options.port);
-  if (!port) return Fail(context, port.error());
-  const Result<std::unique_ptr<ServedCampaigns>> served =
-      ServedCampaigns::Open(options.sets, context.campaigns);
-  if (!served) return Fail(context, served.error());
+Result<ExitCode> RunUi(CommandContext& context, const UiOptions& options) {
+  TRY(const int port, ParsePort("--port", options.port));
+  TRY(const std::unique_ptr<ServedCampaigns> served, ServedCampaigns::Open(options.sets, context.campaigns));
   const StopSignal handlers(/*announced=*/false);
   const std::string token = NewToken();
   constexpr std::size_t kAnsweringThreads = 16;  // a browser keeps up to six connections open
-  const Result<std::unique_ptr<HttpServer>> server =
-      HttpServer::Start({.port = *port, .answering_threads = kAnsweringThreads},
-                        [&campaigns = **served, &token](const HttpRequest& request) {
+  Result<std::unique_ptr<HttpServer>> server =
+      HttpServer::Start({.port = port, .answering_threads = kAnsweringThreads},
+                        [&campaigns = *served, &token](const HttpRequest& request) {
                           const Admission admission = Admit(request, token);
                           return admission.refusal ? *admission.refusal : campaigns.Answer(admission.path);
                         });
   if (!server) {
-    Error error = server.error();
+    Error error = std::move(server).error();
     if (error.kind == ErrorKind::kInUse)
       error.message += ": give --port another number, or 0 for any free one";
-    return Fail(context, error);
+    return error;
   }
   context.out << AddressOf((*server)->port(), token) << "\n" << std::flush;
   PrintMessage(context, "open this address in a browser of this machine; Ctrl-C ends it");

@@ -209,22 +209,17 @@ Error AsTyped(Error error, const std::vector<ExtraSet>& extra) {
 }
 
 Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const std::vector<ExtraSet>& extra) {
-  const Result<std::uint64_t> seed = options.seed.empty() ? 0 : ParseSeed(options.seed);
-  if (!seed) return seed.error();
-  const Result<std::vector<std::string>> sets = JoinSets(options.sets, extra);
-  if (!sets) return sets.error();
-  const Result<ExperimentText> text = ReadExperimentText(options.experiment);
-  if (!text) return text.error();
-  Result<std::vector<std::string>> files = PluginFilesOf(*text);
-  if (!files) return files.error();
-  files->insert(files->end(), options.plugins.begin(), options.plugins.end());
-  Result<std::vector<std::string>> plugins = AddPluginFiles(*files);
-  if (!plugins) return plugins.error();
+  TRY(const std::uint64_t seed, options.seed.empty() ? 0 : ParseSeed(options.seed));
+  TRY(const std::vector<std::string> sets, JoinSets(options.sets, extra));
+  TRY(const ExperimentText text, ReadExperimentText(options.experiment));
+  TRY(std::vector<std::string> files, PluginFilesOf(text));
+  files.insert(files.end(), options.plugins.begin(), options.plugins.end());
+  TRY(std::vector<std::string> plugins, AddPluginFiles(files));
   Catalogue catalogue = BuiltInCatalogue();
-  catalogue.plugins = *std::move(plugins);
-  Result<Experiment> experiment = ParseExperiment(text->text, text->file_name, *sets, catalogue);
+  catalogue.plugins = std::move(plugins);
+  Result<Experiment> experiment = ParseExperiment(text.text, text.file_name, sets, catalogue);
   if (!experiment) return AsTyped(experiment.error(), extra);
-  if (!options.seed.empty()) experiment->seed = *seed;
+  if (!options.seed.empty()) experiment->seed = seed;
   return experiment;
 }
 
@@ -238,7 +233,7 @@ std::string DefaultDirectory(const std::string& experiment_name, std::time_t now
 
 Result<std::string> NewDirectory(const std::string& wanted, const Experiment& experiment) {
   if (wanted.empty()) return DefaultDirectory(experiment.name, std::time(nullptr));
-  if (Status creatable = CampaignDirectory::CheckCreatable(wanted); !creatable) return creatable.error();
+  TRY(CampaignDirectory::CheckCreatable(wanted));
   return wanted;
 }
 

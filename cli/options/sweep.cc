@@ -57,12 +57,11 @@ Result<Sweep> ParseSweep(const std::string& text) {
 Result<std::vector<Sweep>> ParseSweeps(const std::vector<std::string>& texts) {
   std::vector<Sweep> sweeps;
   for (const std::string& text : texts) {
-    Result<Sweep> sweep = ParseSweep(text);
-    if (!sweep) return sweep.error();
-    if (std::ranges::count(sweeps, sweep->key, &Sweep::key) > 0)
+    TRY(Sweep sweep, ParseSweep(text));
+    if (std::ranges::count(sweeps, sweep.key, &Sweep::key) > 0)
       return InvalidInput(
-          fmt::format("--sweep {}: {} is swept already; give all its values at once", text, sweep->key));
-    sweeps.push_back(*std::move(sweep));
+          fmt::format("--sweep {}: {} is swept already; give all its values at once", text, sweep.key));
+    sweeps.push_back(std::move(sweep));
   }
   return sweeps;
 }
@@ -144,37 +143,34 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
                                              const std::vector<ExtraSet>& extra, const SweepOptions& sweep) {
   if (!sweep.seeds.empty() && !options.seed.empty())
     return InvalidInput(fmt::format("--seed {} and --seeds {}: give one of them", options.seed, sweep.seeds));
-  const Result<std::vector<Sweep>> sweeps = ParseSweeps(sweep.sweeps);
-  if (!sweeps) return sweeps.error();
-  const Result<std::vector<std::uint64_t>> seeds = ParseSeeds(sweep.seeds);
-  if (!seeds) return seeds.error();
-  if (Status few = CheckNumber(*sweeps, *seeds); !few) return few.error();
+  TRY(const std::vector<Sweep> sweeps, ParseSweeps(sweep.sweeps));
+  TRY(const std::vector<std::uint64_t> seeds, ParseSeeds(sweep.seeds));
+  TRY(CheckNumber(sweeps, seeds));
 
   std::vector<SearchPlan> plans;
-  for (const std::vector<ExtraSet>& combination : Combinations(*sweeps)) {
+  for (const std::vector<ExtraSet>& combination : Combinations(sweeps)) {
     std::vector<ExtraSet> all = extra;
     SearchPlan plan;
     for (const ExtraSet& set : combination) {
       plan.settings += fmt::format("{}{}={}", plan.settings.empty() ? "" : ", ", set.key, set.value);
       all.push_back(set);
     }
-    const Result<Experiment> experiment = LoadExperimentWith(options, all);
-    if (!experiment) return experiment.error();
-    if (RowOf(*experiment).given_cases)
+    TRY(const Experiment experiment, LoadExperimentWith(options, all));
+    if (RowOf(experiment).given_cases)
       return InvalidInput(fmt::format("search.algorithm = {} needs a list of cases: use '{}'",
-                                      experiment->search.algorithm, RowOf(*experiment).command));
-    plan.experiment = *experiment;
+                                      experiment.search.algorithm, RowOf(experiment).command));
+    plan.experiment = experiment;
     // A seed that was drawn (--seed random) is that of them all.
-    if (!plans.empty() && seeds->empty()) plan.experiment.seed = plans.front().experiment.seed;
-    std::ranges::move(WithSeeds(plan, *seeds), std::back_inserter(plans));
+    if (!plans.empty() && seeds.empty()) plan.experiment.seed = plans.front().experiment.seed;
+    std::ranges::move(WithSeeds(plan, seeds), std::back_inserter(plans));
   }
 
   std::vector<ExtraSet> settings = extra;
   for (const std::string& set : options.sets)
     settings.push_back({"--set", set.substr(0, set.find('=')), set});
-  for (const Sweep& one : *sweeps)
+  for (const Sweep& one : sweeps)
     settings.push_back({"--sweep", one.key, fmt::format("{}={}", one.key, fmt::join(one.values, ","))});
-  if (Status meant = CheckSettings(settings, plans); !meant) return meant.error();
+  TRY(CheckSettings(settings, plans));
   if (plans.size() == 1) plans.front().settings.clear();
   return plans;
 }

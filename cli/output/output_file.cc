@@ -27,7 +27,7 @@ Result<OutputFile> OutputFile::Open(const std::string& path) {
   }
   errno = 0;
   output.stream_.open(path, std::ios::binary | std::ios::trunc);
-  if (Status opened = output.OfStream(); !opened) return opened.error();
+  TRY(output.OfStream());
   return output;
 }
 
@@ -57,10 +57,9 @@ Status OutputFile::OfStream() const {
 }
 
 Status WriteOutputFile(const std::string& path, std::string_view content) {
-  Result<OutputFile> output = OutputFile::Open(path);
-  if (!output) return output.error();
-  if (Status written = output->Write(content); !written) return written;
-  return output->Close();
+  TRY(OutputFile output, OutputFile::Open(path));
+  TRY(output.Write(content));
+  return output.Close();
 }
 
 Result<std::uint64_t> WriteOutputDirectory(

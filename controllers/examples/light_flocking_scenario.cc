@@ -55,11 +55,10 @@ Result<std::vector<sim::Pose>> LightFlockingScenario::StartPoses() const {
 }
 
 Result<std::vector<sim::RobotSetup>> LightFlockingScenario::CreateSwarm(const sim::Headquarters&) {
-  if (const Status checked = robots_.Check(arena_); !checked.ok()) return checked.error();
-  const auto poses = StartPoses();
-  if (!poses.ok()) return poses.error();
+  TRY(robots_.Check(arena_));
+  TRY(const auto poses, StartPoses());
   std::vector<sim::RobotSetup> swarm;
-  for (const sim::Pose& pose : *poses) {
+  for (const sim::Pose& pose : poses) {
     const auto robot = static_cast<sim::RobotIndex>(swarm.size());
     swarm.push_back({.pose = pose,
                      .beacon = kFlockmateColor,

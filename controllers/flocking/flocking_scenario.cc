@@ -50,7 +50,7 @@ FlockingScenario::FlockingScenario(const sim::TestCase& test_case, const Flockin
 }
 
 Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::Headquarters& headquarters) {
-  if (const Status checked = birds_.Check(arena_); !checked.ok()) return checked.error();
+  TRY(birds_.Check(arena_));
   if (settings_.birds < settings_.min_swarm || settings_.birds > kMaxBirds) {
     return InvalidInput("swarm-size: " + std::to_string(settings_.birds) +
                         " birds; from min_swarm = " + std::to_string(settings_.min_swarm) + " to " +
@@ -66,12 +66,11 @@ Result<std::vector<sim::RobotSetup>> FlockingScenario::CreateSwarm(const sim::He
                                      .robot_radius = sim::foot_bot::kRadius,
                                      .occupied = {start_},
                                      .start = start_};
-  const auto poses = start_poses_.empty() ? sim::Spawn(request, arena_, seed_) : start_poses_;
-  if (!poses.ok()) return poses.error();
+  TRY(const auto poses, start_poses_.empty() ? sim::Spawn(request, arena_, seed_) : start_poses_);
 
   std::vector<sim::RobotSetup> swarm;
   swarm.reserve(static_cast<std::size_t>(settings_.birds) + 1);
-  for (const sim::Pose& pose : *poses) {
+  for (const sim::Pose& pose : poses) {
     const auto bird = static_cast<sim::RobotIndex>(swarm.size());
     swarm.push_back(
         {pose, kBirdColor, settings_.camera_range, birds_.create({.robot = bird, .start = pose})});

@@ -33,19 +33,18 @@ ForagingScenario::ForagingScenario(const sim::TestCase& test_case, const Foragin
 
 Result<std::vector<sim::RobotSetup>> ForagingScenario::CreateSwarm(
     const sim::Headquarters& /*headquarters*/) {
-  if (const Status checked = CheckSite("food"); !checked.ok()) return checked.error();
-  if (const Status checked = controller_.Check(arena_); !checked.ok()) return checked.error();
+  TRY(CheckSite("food"));
+  TRY(controller_.Check(arena_));
   const sim::SpawnRequest request = {.count = site_.robots,
                                      .area = spawn_area_,
                                      .disc = spawn_disc_,
                                      .robot_radius = sim::foot_bot::kRadius,
                                      .start = nest_};
-  const auto poses = start_poses_.empty() ? sim::Spawn(request, arena_, seed_) : start_poses_;
-  if (!poses.ok()) return poses.error();
+  TRY(const auto poses, start_poses_.empty() ? sim::Spawn(request, arena_, seed_) : start_poses_);
 
   std::vector<sim::RobotSetup> swarm;
-  swarm.reserve(poses->size());
-  for (const sim::Pose& pose : *poses) {
+  swarm.reserve(poses.size());
+  for (const sim::Pose& pose : poses) {
     swarm.push_back(SetUp(pose, {.robot = static_cast<sim::RobotIndex>(swarm.size())}));
     swarm.back().bodies_block_radio = bodies_block_radio_;
   }

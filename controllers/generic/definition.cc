@@ -149,17 +149,14 @@ Result<sim::Parameters> Given(std::span<const ParameterInfo> keys, const std::st
   if (FindByName(keys, key) == nullptr) return InvalidInput(UnknownName("key", key, keys));
   sim::Parameters given;
   if (key == kColor) {
-    const Result<double> color = ColorNumber(value);
-    if (!color.ok()) return color.error();
-    given[key] = *color;
+    TRY(given[key], ColorNumber(value));
     return given;
   }
   const auto* number = std::get_if<double>(&value);
   if (number == nullptr)
     return InvalidInput(key + " = " + Quoted(std::get<std::string>(value)) + ", expected a number");
   given[key] = *number;
-  const Result<sim::Parameters> in_range = ResolveParameters(keys, given);
-  if (!in_range.ok()) return in_range.error();
+  TRY(ResolveParameters(keys, given));
   return given;
 }
 
@@ -212,20 +209,18 @@ Status DefinitionReader::Set(std::string_view path, const DefinitionValue& value
 }
 
 Status DefinitionReader::Begin(std::string_view path) {
-  const Result<ElementPath> element = ReadElementPath(path);
-  if (!element.ok()) return element.error();
-  elements_[element->table->name][element->number];
+  TRY(const ElementPath element, ReadElementPath(path));
+  elements_[element.table->name][element.number];
   return Ok{};
 }
 
 Status DefinitionReader::SetInElement(std::string_view path, const DefinitionValue& value) {
   const std::size_t dot = path.rfind('.');
-  const Result<ElementPath> element = ReadElementPath(path.substr(0, dot));
-  if (!element.ok()) return element.error();
-  const Result<sim::Parameters> given = Given(element->table->keys, std::string(path.substr(dot + 1)), value);
+  TRY(const ElementPath element, ReadElementPath(path.substr(0, dot)));
+  const Result<sim::Parameters> given = Given(element.table->keys, std::string(path.substr(dot + 1)), value);
   if (!given.ok()) return InvalidInput(std::string(path.substr(0, dot)) + ": " + given.error().message);
-  elements_[element->table->name][element->number].insert_or_assign(given->begin()->first,
-                                                                    given->begin()->second);
+  elements_[element.table->name][element.number].insert_or_assign(given->begin()->first,
+                                                                  given->begin()->second);
   return Ok{};
 }
 
@@ -263,8 +258,7 @@ Result<Definition> DefinitionReader::Finish() const {
 }
 
 Result<std::string> DefinitionReader::Text() const {
-  const Result<Definition> whole = Finish();
-  if (!whole.ok()) return whole.error();
+  TRY(Finish());
   std::string text;
   for (const FormulaKey& key : kFormulas) {
     const auto found = formulas_.find(key.name);
@@ -304,11 +298,10 @@ Result<std::vector<DefinitionEntry>> EntriesOf(std::string_view text) {
 }
 
 Result<Definition> ParseDefinition(std::string_view text) {
-  const Result<std::vector<DefinitionEntry>> entries = EntriesOf(text);
-  if (!entries.ok()) return entries.error();
+  TRY(const std::vector<DefinitionEntry> entries, EntriesOf(text));
   DefinitionReader reader;
-  for (const auto& [path, value] : *entries) {
-    if (const Status set = reader.Set(path, value); !set.ok()) return set.error();
+  for (const auto& [path, value] : entries) {
+    TRY(reader.Set(path, value));
   }
   return reader.Finish();
 }

@@ -82,8 +82,7 @@ const ScenarioInfo& GenericScenarioInfo() {
       .failure_place = FailurePlace{"center_x", "center_y", 0.6},
       .any_controller = true,
       .check_definition = [](std::string_view definition) -> Status {
-        const Result<Definition> parsed = ParseDefinition(definition);
-        if (!parsed.ok()) return parsed.error();
+        TRY(ParseDefinition(definition));
         return Ok{};
       },
       .descriptor_axes = kGenericDescriptorAxes,

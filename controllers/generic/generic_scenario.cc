@@ -97,15 +97,13 @@ Status GenericScenario::Check() const {
                         PointText(arena_.interior_max().x(), arena_.interior_max().y()) + " m");
   };
   for (std::size_t i = 0; i < definition_.lights.size(); ++i) {
-    const Status light = inside("light", i, definition_.lights[i].position);
-    if (!light.ok()) return light;
+    TRY(inside("light", i, definition_.lights[i].position));
   }
   for (const auto& [what, areas] : {std::pair{"ground", &definition_.ground},
                                     {"source", &definition_.sources},
                                     {"nest", &definition_.nests}}) {
     for (std::size_t i = 0; i < areas->size(); ++i) {
-      const Status area = inside(what, i, {(*areas)[i].x, (*areas)[i].y});
-      if (!area.ok()) return area;
+      TRY(inside(what, i, {(*areas)[i].x, (*areas)[i].y}));
     }
   }
   return Ok{};
@@ -117,24 +115,22 @@ Result<std::vector<sim::Pose>> GenericScenario::StartPoses() const {
                                      .area = spawn_area_,
                                      .robot_radius = sim::foot_bot::kRadius,
                                      .start = start_};
-  Result<std::vector<sim::Pose>> poses = sim::Spawn(request, arena_, seed_);
-  if (!poses.ok()) return poses;
-  for (sim::Pose& pose : *poses) {
+  TRY(std::vector<sim::Pose> poses, sim::Spawn(request, arena_, seed_));
+  for (sim::Pose& pose : poses) {
     pose.heading = sim::WrapAngle(settings_.heading + pose.heading * (settings_.heading_spread / sim::kPi));
   }
   return poses;
 }
 
 Result<std::vector<sim::RobotSetup>> GenericScenario::CreateSwarm(const sim::Headquarters& headquarters) {
-  if (const Status checked = Check(); !checked.ok()) return checked.error();
-  if (const Status checked = robots_.Check(arena_); !checked.ok()) return checked.error();
-  const auto poses = StartPoses();
-  if (!poses.ok()) return poses.error();
+  TRY(Check());
+  TRY(robots_.Check(arena_));
+  TRY(const auto poses, StartPoses());
   const double pickup_distance =
       definition_.sources.empty() ? 0.0 : definition_.sources.front().HalfExtents().minCoeff();
   std::vector<sim::RobotSetup> swarm;
   std::vector<bool> grips;
-  for (const sim::Pose& pose : *poses) {
+  for (const sim::Pose& pose : poses) {
     const auto robot = static_cast<sim::RobotIndex>(swarm.size());
     sim::RobotSetup setup;
     setup.pose = pose;

@@ -47,13 +47,13 @@ PartitioningScenario::PartitioningScenario(const sim::TestCase& test_case,
 }
 
 Status PartitioningScenario::CheckSettings() const {
-  if (Status checked = CheckSite("source"); !checked.ok()) return checked;
+  TRY(CheckSite("source"));
   const sim::Vec2& lamp = lights_[0].position;
   if (!arena_.InInterior(lamp)) {
     return InvalidInput("light-outside: the light is at " + PointText(lamp.x(), lamp.y()) +
                         " m, outside the walls; it belongs above the nest");
   }
-  if (Status checked = controller_.Check(arena_); !checked.ok()) return checked;
+  TRY(controller_.Check(arena_));
   if (spawn_area_ && start_ == StartMode::kSteadyState) {
     return InvalidInput(
         "start-mode: the test case brings its own spawn area, but robots of the steady state (start_mode = "
@@ -86,28 +86,24 @@ Result<std::vector<sim::Pose>> PartitioningScenario::StartPoses() const {
   std::vector<sim::Pose> poses;
   if (const int at_center = site_.robots / 2; at_center > 0) {
     around((nest_ + food_) / 2.0, at_center);
-    auto spawned = sim::Spawn(request, grid, random);
-    if (!spawned.ok()) return spawned.error();
-    poses = *std::move(spawned);
+    TRY(poses, sim::Spawn(request, grid, random));
   }
   around(food_, site_.robots - static_cast<int>(poses.size()));
   for (const sim::Pose& pose : poses) request.occupied.push_back(pose.position);
-  auto spawned = sim::Spawn(request, grid, random);
-  if (!spawned.ok()) return spawned.error();
-  poses.insert(poses.end(), spawned->begin(), spawned->end());
+  TRY(auto spawned, sim::Spawn(request, grid, random));
+  poses.insert(poses.end(), spawned.begin(), spawned.end());
   return poses;
 }
 
 Result<std::vector<sim::RobotSetup>> PartitioningScenario::CreateSwarm(
     const sim::Headquarters& headquarters) {
-  if (const Status checked = CheckSettings(); !checked.ok()) return checked.error();
-  const auto poses = StartPoses();
-  if (!poses.ok()) return poses.error();
+  TRY(CheckSettings());
+  TRY(const auto poses, StartPoses());
 
   const bool in_relay = start_ == StartMode::kSteadyState;
   std::vector<sim::RobotSetup> swarm;
-  swarm.reserve(poses->size());
-  for (const sim::Pose& pose : *poses) {
+  swarm.reserve(poses.size());
+  for (const sim::Pose& pose : poses) {
     const auto robot = static_cast<sim::RobotIndex>(swarm.size());
     swarm.push_back(SetUp(pose, {.robot = robot,
                                  .nest_lamp = {lights_[0].height, lights_[0].intensity},

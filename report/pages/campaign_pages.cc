@@ -10,15 +10,11 @@ bool CampaignPages::HasPage(RunId run) const {
 }
 
 Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown) {
-  Result<CampaignFacts> facts = ReadFacts(dir);
-  if (!facts) return facts.error();
-  CampaignPages pages{.facts = *std::move(facts), .courses = {}, .maps = {}, .shown = {}};
+  TRY(CampaignFacts facts, ReadFacts(dir));
+  CampaignPages pages{.facts = std::move(facts), .courses = {}, .maps = {}, .shown = {}};
   pages.courses = CoursesOf(pages.facts);
   pages.maps = MapsOf(pages.facts);
-  Result<std::vector<ShownRun>> shown =
-      ShowRuns(pages.facts, RunsToShow(pages.facts, pages.maps, most_shown));
-  if (!shown) return shown.error();
-  pages.shown = *std::move(shown);
+  TRY(pages.shown, ShowRuns(pages.facts, RunsToShow(pages.facts, pages.maps, most_shown)));
   return pages;
 }
 

@@ -130,9 +130,8 @@ Result<Named> WhatSetsName(const std::vector<std::string>& sets) {
       for (const std::string& campaign : campaigns) AddOnce(campaign, named.campaigns);
       continue;
     }
-    const Result<std::vector<SetPart>> parts = SplitSet(set);
-    if (!parts) return parts.error();
-    for (const SetPart& part : *parts) AddOnce(part.path, named.campaigns);
+    TRY(const std::vector<SetPart> parts, SplitSet(set));
+    for (const SetPart& part : parts) AddOnce(part.path, named.campaigns);
     named.compared.push_back(set);
   }
   return named;
@@ -141,30 +140,24 @@ Result<Named> WhatSetsName(const std::vector<std::string>& sets) {
 }  // namespace
 
 Result<Report> GatherReport(const std::vector<std::string>& sets, std::size_t shown_runs) {
-  const Result<Named> named = WhatSetsName(sets);
-  if (!named) return named.error();
+  TRY(const Named named, WhatSetsName(sets));
   Report report;
-  for (const std::string& directory : named->studies) {
-    Result<StudyPages> study = GatherStudy(directory);
-    if (!study) return study.error();
-    report.studies.push_back(*std::move(study));
+  for (const std::string& directory : named.studies) {
+    TRY(StudyPages study, GatherStudy(directory));
+    report.studies.push_back(std::move(study));
   }
-  for (const std::string& directory : named->campaigns) {
-    Result<CampaignPages> pages = GatherPages(directory, shown_runs / named->campaigns.size());
-    if (!pages) return pages.error();
-    report.campaigns.push_back(*std::move(pages));
+  for (const std::string& directory : named.campaigns) {
+    TRY(CampaignPages pages, GatherPages(directory, shown_runs / named.campaigns.size()));
+    report.campaigns.push_back(std::move(pages));
   }
-  if (named->compared.size() < 2) return report;
-  Result<SetComparisons> comparisons = CompareSets(named->compared);
-  if (!comparisons) return comparisons.error();
-  report.comparisons = *std::move(comparisons);
+  if (named.compared.size() < 2) return report;
+  TRY(report.comparisons, CompareSets(named.compared));
   return report;
 }
 
 Result<std::vector<std::string>> CampaignsNamed(const std::vector<std::string>& sets) {
-  Result<Named> named = WhatSetsName(sets);
-  if (!named) return named.error();
-  return std::move(named->campaigns);
+  TRY(Named named, WhatSetsName(sets));
+  return std::move(named.campaigns);
 }
 
 std::string ReportPage(const Report& report) {

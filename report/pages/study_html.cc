@@ -123,18 +123,14 @@ std::string ParametersHtml(const StudyPages& study) {
 }
 
 Result<StudyPages> GatherStudy(const std::string& dir) {
-  const Result<Study> study = OpenStudy(dir);
-  if (!study) return study.error();
-  StudyPages pages{.directory = dir, .name = study->name, .description = study->description, .report = {}};
+  TRY(const Study study, OpenStudy(dir));
+  StudyPages pages{.directory = dir, .name = study.name, .description = study.description, .report = {}};
   for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
-    if (std::ranges::count(study->parts, stage, &StageOf) == 0) continue;
-    const Result<StageState> state = LookAtStage(*study, dir, stage);
-    if (!state) return state.error();
-    if (!state->finished) return pages;
+    if (std::ranges::count(study.parts, stage, &StageOf) == 0) continue;
+    TRY(const StageState state, LookAtStage(study, dir, stage));
+    if (!state.finished) return pages;
   }
-  Result<StudyReport> report = MakeStudyReport(*study, dir);
-  if (!report) return report.error();
-  pages.report = *std::move(report);
+  TRY(pages.report, MakeStudyReport(study, dir));
   return pages;
 }
 

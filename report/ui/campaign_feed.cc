@@ -14,12 +14,9 @@ CampaignFeed::CampaignFeed(std::string directory) {
 }
 
 Status CampaignFeed::Look() {
-  const Result<CampaignView> campaign = ViewCampaign(facts_.directory, Checked::kTotals);
-  if (!campaign) return campaign.error();
-  SqliteStore& store = *campaign->store;
-  Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-  if (!plans) return plans.error();
-  facts_.plans = *std::move(plans);
+  TRY(const CampaignView campaign, ViewCampaign(facts_.directory, Checked::kTotals));
+  SqliteStore& store = *campaign.store;
+  TRY(facts_.plans, ReadSearchPlans(campaign.directory));
   if (store.meta().campaign_id != campaign_id_) {
     campaign_id_ = store.meta().campaign_id;
     facts_.runs.clear();
@@ -27,12 +24,11 @@ Status CampaignFeed::Look() {
   }
   for (SearchId search = 1; search <= facts_.plans.size(); ++search) {
     if (seen_.size() < search) seen_.push_back(RunIdOf(search, 1) - 1);
-    if (Status read = ReadRunsOf(search, store); !read) return read;
+    TRY(ReadRunsOf(search, store));
   }
-  Result<std::vector<StoredEvent>> events = store.LoadEvents();
-  if (!events) return events.error();
-  const std::size_t dropped = events->size() - std::min(kMostEvents, events->size());
-  events_.assign(events->begin() + static_cast<std::ptrdiff_t>(dropped), events->end());
+  TRY(std::vector<StoredEvent> events, store.LoadEvents());
+  const std::size_t dropped = events.size() - std::min(kMostEvents, events.size());
+  events_.assign(events.begin() + static_cast<std::ptrdiff_t>(dropped), events.end());
   return Ok{};
 }
 

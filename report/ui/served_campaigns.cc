@@ -61,7 +61,7 @@ struct ServedCampaigns::Followed {
     if (looks > 0 &&
         since < (news ? Monotonic::duration(kBetweenLooks) : Monotonic::duration(kLongestBetweenLooks)))
       return Ok{};
-    if (Status read = feed.Look(); !read) return read;
+    TRY(feed.Look());
     ++looks;
     looked = Monotonic::now();
     runs_then = runs;
@@ -74,9 +74,8 @@ struct ServedCampaigns::Followed {
     const std::lock_guard lock(mutex);
     if (facts != nullptr && std::ranges::find(facts->runs, run, &RunFacts::id) != facts->runs.end())
       return facts;
-    Result<CampaignFacts> read = ReadFacts(directory);
-    if (!read) return read.error();
-    facts = std::make_shared<const CampaignFacts>(*std::move(read));
+    TRY(CampaignFacts read, ReadFacts(directory));
+    facts = std::make_shared<const CampaignFacts>(std::move(read));
     return facts;
   }
 
@@ -97,8 +96,7 @@ struct ServedCampaigns::Followed {
 
 Result<std::unique_ptr<ServedCampaigns>> ServedCampaigns::Open(const std::vector<std::string>& sets,
                                                                CampaignService& campaigns) {
-  const Result<Report> report = GatherReport(sets, 0);
-  if (!report) return report.error();
+  TRY(GatherReport(sets, 0));
   return std::unique_ptr<ServedCampaigns>(new ServedCampaigns(sets, campaigns));
 }
 

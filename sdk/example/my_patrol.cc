@@ -107,11 +107,10 @@ class PatrolScenario : public sim::Scenario {
   sim::Tick tick_limit() const override { return settings_.tick_limit; }
 
   Result<std::vector<sim::RobotSetup>> CreateSwarm(const sim::Headquarters&) override {
-    if (const gauntlet::Status right = robots_.Check(arena_); !right) return right.error();
-    const Result<std::vector<sim::Pose>> poses = StartPoses();
-    if (!poses) return poses.error();
+    TRY(robots_.Check(arena_));
+    TRY(const std::vector<sim::Pose> poses, StartPoses());
     std::vector<sim::RobotSetup> swarm;
-    for (const sim::Pose& pose : *poses) {
+    for (const sim::Pose& pose : poses) {
       const auto robot = static_cast<sim::RobotIndex>(swarm.size());
       swarm.push_back({.pose = pose,
                        .beacon = sim::Color::kRed,

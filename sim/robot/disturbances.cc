@@ -92,9 +92,8 @@ Result<std::vector<RobotFault>> ParseFaults(std::string_view text) {
     if (begin == std::string_view::npos) return faults;
     text.remove_prefix(begin);
     const std::size_t end = std::min(text.find(' '), text.size());
-    const Result<RobotFault> fault = ParseFault(text.substr(0, end));
-    if (!fault.ok()) return fault.error();
-    faults.push_back(*fault);
+    TRY(const RobotFault fault, ParseFault(text.substr(0, end)));
+    faults.push_back(fault);
     text.remove_prefix(end);
   }
 }

@@ -84,7 +84,7 @@ int PrintBeginning(const std::string& spec, const PluginSettings& plugins,
   for (const PluginFile& file : *files) names += (names.empty() ? "" : " with ") + file.name;
   return PrintAnswer(names, "when it was asked how a run begins", [&]() -> Result<std::string> {
     for (const PluginFile& file : *files) {
-      if (const Status loaded = plugins.load(file); !loaded) return loaded.error();
+      TRY(plugins.load(file));
     }
     return describe(*asked);
   });

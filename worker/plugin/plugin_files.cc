@@ -27,9 +27,8 @@ Status WriteAll(int fd, std::string_view bytes) {
 
 // Error: it cannot be read, or its hash is another one.
 Result<std::string> ReadPlugin(const std::string& path, const std::string& hash) {
-  Result<std::string> bytes = ReadSmallFile(path, proto::kMaxPluginBytes);
-  if (!bytes) return bytes;
-  if (const std::string found = Sha256(*bytes); found != hash) {
+  TRY(std::string bytes, ReadSmallFile(path, proto::kMaxPluginBytes));
+  if (const std::string found = Sha256(bytes); found != hash) {
     return InvalidInput(fmt::format(
         "{} is not the plug-in that the run was made for: its SHA-256 is {}, not {}", path, found, hash));
   }
@@ -54,7 +53,7 @@ Result<PluginFile> PluginFiles::Open(const std::string& hash) {
     if (!bytes) return bytes.error();
     UniqueFd memory(memfd_create("plug-in", MFD_CLOEXEC));
     if (!memory.valid()) return SystemError("cannot make a file in memory", errno);
-    if (const Status written = WriteAll(memory.get(), *bytes); !written) return written.error();
+    TRY(WriteAll(memory.get(), *bytes));
     copies_[hash] = {std::move(name), std::move(memory)};
   }
   const Copy& copy = copies_.at(hash);
@@ -66,9 +65,8 @@ Result<std::vector<PluginFile>> PluginFiles::Of(const sim::RunSpec& spec) {
   std::vector<PluginFile> files;
   for (const std::string& hash : std::set{spec.plugin, spec.scenario_plugin}) {
     if (hash.empty()) continue;
-    Result<PluginFile> file = Open(hash);
-    if (!file) return file.error();
-    files.push_back(*std::move(file));
+    TRY(PluginFile file, Open(hash));
+    files.push_back(std::move(file));
   }
   return files;
 }

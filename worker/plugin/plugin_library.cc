@@ -87,16 +87,15 @@ void AskWithoutObstacles(ScenarioInfo& row) {
 }
 
 Result<Loaded> Load(const PluginFile& file) {
-  const Result<const sdk::Plugin*> plugin = Open(file);
-  if (!plugin) return plugin.error();
+  TRY(const sdk::Plugin* plugin, Open(file));
   Loaded loaded;
   try {
-    if ((*plugin)->controllers != nullptr) loaded.controllers = (*plugin)->controllers();
+    if (plugin->controllers != nullptr) loaded.controllers = plugin->controllers();
   } catch (const std::exception& error) {
     return Refusal(file.name, fmt::format("its list of controllers throws: {}", error.what()));
   }
   try {
-    if ((*plugin)->scenarios != nullptr) loaded.scenarios = (*plugin)->scenarios();
+    if (plugin->scenarios != nullptr) loaded.scenarios = plugin->scenarios();
   } catch (const std::exception& error) {
     return Refusal(file.name, fmt::format("its list of scenarios throws: {}", error.what()));
   }
@@ -117,27 +116,24 @@ Result<Loaded> Load(const PluginFile& file) {
 }  // namespace
 
 Status LoadPlugin(const PluginFile& file) {
-  Result<Loaded> loaded = Load(file);
-  if (!loaded) return loaded.error();
+  TRY(Loaded loaded, Load(file));
   return controllers::AddPlugin(
-      {file.hash, file.name, "", std::move(loaded->controllers), std::move(loaded->scenarios)});
+      {file.hash, file.name, "", std::move(loaded.controllers), std::move(loaded.scenarios)});
 }
 
 Result<std::string> DescribePlugin(const PluginFile& file) {
-  const Result<Loaded> loaded = Load(file);
-  if (!loaded) return loaded.error();
-  return proto::WriteDescription(loaded->description);
+  TRY(const Loaded loaded, Load(file));
+  return proto::WriteDescription(loaded.description);
 }
 
 Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {
-  const Result<sim::RunBeginning> beginning = controllers::BeginningOf(spec);
-  if (!beginning) return beginning.error();
-  if (const Status right = proto::CheckBeginning(*beginning); !right) {
+  TRY(const sim::RunBeginning beginning, controllers::BeginningOf(spec));
+  if (const Status right = proto::CheckBeginning(beginning); !right) {
     const controllers::PluginInfo* plugin = controllers::FindPlugin(spec.scenario_plugin);
     return Refusal(plugin == nullptr ? "" : plugin->file,
                    fmt::format("scenario '{}': {}", spec.scenario, right.error().message));
   }
-  return proto::WriteBeginning(*beginning);
+  return proto::WriteBeginning(beginning);
 }
 
 }  // namespace gauntlet::worker

@@ -266,16 +266,15 @@ bool DieWithParent(pid_t parent) {
 
 Result<std::unique_ptr<ForkServer>> ForkServer::Start(const RunFunction& run, const PluginSettings& plugins) {
   CheckSingleThreaded();
-  Result<SocketPair> control = MakeSocketPair(SOCK_SEQPACKET);
-  if (!control.ok()) return control.error();
+  TRY(SocketPair control, MakeSocketPair(SOCK_SEQPACKET));
   const pid_t supervisor = getpid();
   const pid_t pid = fork();
   if (pid < 0) return SystemError("cannot start a process", errno);
   if (pid == 0) {
-    control->first.Reset();
-    ForkServerMain(std::move(control->second), supervisor, run, plugins);
+    control.first.Reset();
+    ForkServerMain(std::move(control.second), supervisor, run, plugins);
   }
-  return std::unique_ptr<ForkServer>(new ForkServer(pid, std::move(control->first)));
+  return std::unique_ptr<ForkServer>(new ForkServer(pid, std::move(control.first)));
 }
 
 ForkServer::~ForkServer() {

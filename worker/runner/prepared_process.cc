@@ -95,9 +95,8 @@ bool HasChildren() {
 
 Result<SeparateOutcome> PreparedProcess::Call(const std::string& request, const SeparateOptions& options) {
   if (process_ == 0 && !for_each_call_) {
-    Result<std::optional<SeparateOutcome>> ended = Start(options);
-    if (!ended) return ended.error();
-    if (*ended) return **std::move(ended);
+    TRY(std::optional<SeparateOutcome> ended, Start(options));
+    if (ended) return *std::move(ended);
   }
   if (for_each_call_) {
     return CallInSeparateProcess(
@@ -109,7 +108,7 @@ Result<SeparateOutcome> PreparedProcess::Call(const std::string& request, const 
   }
   SeparateOptions with_folder = options;
   if (options.scratch.empty()) {
-    if (const Status renewed = RenewFolder(); !renewed) return renewed.error();
+    TRY(RenewFolder());
     with_folder.scratch = folder_->path();
   }
   std::optional<std::string> answer;
@@ -119,19 +118,18 @@ Result<SeparateOutcome> PreparedProcess::Call(const std::string& request, const 
 }
 
 Result<std::optional<SeparateOutcome>> PreparedProcess::Start(const SeparateOptions& options) {
-  if (const Status renewed = RenewFolder(); !renewed) return renewed.error();
-  Result<SocketPair> pipe = MakeSocketPair(SOCK_STREAM);
-  if (!pipe) return pipe.error();
+  TRY(RenewFolder());
+  TRY(SocketPair pipe, MakeSocketPair(SOCK_STREAM));
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) return SystemError("cannot start a process", errno);
   if (child == 0) {
-    pipe->first.Reset();
-    Live(std::move(pipe->second), parent, options);
+    pipe.first.Reset();
+    Live(std::move(pipe.second), parent, options);
   }
   process_ = child;
-  pipe->second.Reset();
-  pipe_ = std::move(pipe->first);
+  pipe.second.Reset();
+  pipe_ = std::move(pipe.first);
   answers_ = FrameBuffer();
   const std::optional<std::string> answer = Answer();
   if (!answer) return std::optional(Reap());
@@ -204,9 +202,8 @@ void PreparedProcess::End() {
 Status PreparedProcess::RenewFolder() {
   if (folder_ && folder_->HoldsOnlyEmpty(kOutputFile)) return Ok{};
   folder_.reset();
-  Result<ScratchFolder> made = ScratchFolder::Make("");
-  if (!made) return made.error();
-  folder_.emplace(*std::move(made));
+  TRY(ScratchFolder made, ScratchFolder::Make(""));
+  folder_.emplace(std::move(made));
   return Ok{};
 }
 

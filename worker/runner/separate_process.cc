@@ -175,19 +175,18 @@ std::string CallOrEnd(const std::function<std::string()>& work) {
 
 Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>& work,
                                               const SeparateOptions& options) {
-  const Result<ScratchFolder> scratch = ScratchFolder::Make(options.scratch);
-  if (!scratch) return scratch.error();
+  TRY(const ScratchFolder scratch, ScratchFolder::Make(options.scratch));
   const UniqueFd result(memfd_create("result", MFD_CLOEXEC));
   if (!result.valid()) return SystemError("cannot make a file in memory", errno);
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) return SystemError("cannot start a process", errno);
-  if (child == 0) LiveSeparately(work, options, parent, scratch->path(), result.get());
+  if (child == 0) LiveSeparately(work, options, parent, scratch.path(), result.get());
 
   SeparateOutcome outcome;
   outcome.wait_status = WaitForGroup(child);
   if (outcome.wait_status == 0) outcome.bytes = ReadResult(result.get());
-  if (!outcome.bytes) outcome.output_tail = OutputTail(scratch->path());
+  if (!outcome.bytes) outcome.output_tail = OutputTail(scratch.path());
   return outcome;
 }
 
