@@ -50,9 +50,8 @@ const Catalogue& BuiltInCatalogue() {
 }
 
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {
-  const Result<std::size_t> robots = controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed));
-  if (!robots.ok()) return robots.error();
-  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, *robots)) {
+  TRY(const auto robots, controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed)));
+  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, robots)) {
     return InvalidInput(*refused);
   }
   return Ok{};
@@ -69,11 +68,8 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment
   if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
     return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};
   const sim::TestCase empty = EmptyArena(experiment.arena);
-  const Result<sim::ArenaRequirements> requirements =
-      controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed));
-  if (!requirements.ok()) return requirements.error();
-  auto search = row.make({experiment, *requirements, search_id, {}});
-  if (!search.ok()) return search;
+  TRY(const auto requirements, controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed)));
+  TRY(auto search, row.make({experiment, requirements, search_id, {}}));
   // Without this every run of the search would be refused for the same reason.
   if (const Status fits = CheckSwarmFits(experiment, empty); !fits.ok()) {
     return InvalidInput("no run can begin, even without obstacles: " + fits.error().message);

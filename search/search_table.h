@@ -61,9 +61,8 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment
 // SearchRow::make of a class with a static Create.
 template <typename Search>
 Result<std::unique_ptr<SearchAlgorithm>> Make(const SearchSetup& setup) {
-  Result<std::unique_ptr<Search>> search = Search::Create(setup);
-  if (!search.ok()) return search.error();
-  return std::unique_ptr<SearchAlgorithm>(std::move(*search));
+  TRY(auto search, Search::Create(setup));
+  return std::unique_ptr<SearchAlgorithm>(std::move(search));
 }
 
 }  // namespace gauntlet

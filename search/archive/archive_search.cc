@@ -116,7 +116,7 @@ Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& 
   double& clearance = kept_out.requirements.clearance;
   clearance = std::max(clearance, Get(setup.experiment, kKeepOut));
   sim::RandomStream random = GenomeStream(SearchSeed(setup), 1);
-  if (const auto trial = MakeGenerator(kept_out).RandomTestCase(random); !trial.ok()) return trial.error();
+  TRY(MakeGenerator(kept_out).RandomTestCase(random));
   return std::unique_ptr<ArchiveSearch>(new ArchiveSearch(kept_out, *scenario));
 }
 

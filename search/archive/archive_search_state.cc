@@ -33,10 +33,9 @@ void ArchiveSearch::SaveFinding(const Finding& finding, CanonicalEncoder& encode
 }
 
 Result<Finding> ArchiveSearch::RestoreFinding(CanonicalDecoder& decoder) const {
-  Result<std::vector<Individual>> individual = RestoreIndividuals(1, next_id_, decoder);
-  if (!individual.ok()) return individual.error();
+  TRY(auto individual, RestoreIndividuals(1, next_id_, decoder));
   Finding finding;
-  finding.individual = std::move(individual->front());
+  finding.individual = std::move(individual.front());
   finding.tally.failures = static_cast<int>(decoder.Int());
   finding.tally.passes = static_cast<int>(decoder.Int());
   finding.tally.errors = static_cast<int>(decoder.Int());
@@ -70,13 +69,9 @@ Status ArchiveSearch::RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const {
   slot.emitter = *emitter;
   slot.cell = decoder.Uint();
   slot.parent = decoder.Uint();
-  Result<Finding> finding = RestoreFinding(decoder);
-  if (!finding.ok()) return finding.error();
-  slot.finding = *std::move(finding);
+  TRY(slot.finding, RestoreFinding(decoder));
   if (decoder.Bool()) {
-    Result<Finding> root = RestoreFinding(decoder);
-    if (!root.ok()) return root.error();
-    slot.root = *std::move(root);
+    TRY(slot.root, RestoreFinding(decoder));
   }
   for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
     const std::optional<Emitter> planned = RestoreEmitter(decoder);
@@ -115,9 +110,8 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
   for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
     std::vector<Finding>& shelf = shelves[decoder.Uint()];
     for (std::uint64_t findings = decoder.Uint(); findings > 0 && decoder.ok(); --findings) {
-      Result<Finding> finding = RestoreFinding(decoder);
-      if (!finding.ok()) return finding.error();
-      shelf.push_back(*std::move(finding));
+      TRY(auto finding, RestoreFinding(decoder));
+      shelf.push_back(std::move(finding));
     }
     if (shelf.empty()) return Damaged("a cell of its archive is empty");
   }
@@ -126,7 +120,7 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
   }
   archive_.Restore(std::move(shelves));
   for (Slot& slot : slots_) {
-    if (const Status restored = RestoreSlot(decoder, slot); !restored.ok()) return restored;
+    TRY(RestoreSlot(decoder, slot));
   }
   for (std::size_t& slot : waiting_) {
     slot = decoder.Uint();

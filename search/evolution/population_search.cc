@@ -207,7 +207,7 @@ Status PopulationSearch::Restore(CanonicalDecoder& decoder, const History& histo
                     evaluations_done_, planned, length));
   }
   newborns_.clear();
-  if (Status rest = RestoreRest(decoder, history); !rest) return rest;
+  TRY(RestoreRest(decoder, history));
   return decoder.ok() ? Status(Ok{}) : Damaged("it is cut off");
 }
 

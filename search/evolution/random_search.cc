@@ -23,7 +23,7 @@ std::uint64_t PlannedCases(const Experiment& experiment) {
 Result<std::unique_ptr<RandomSearch>> RandomSearch::Create(const SearchSetup& setup) {
   std::unique_ptr<RandomSearch> search(new RandomSearch(setup));
   for (IndividualId id = 1; id <= std::min(kTrialCases, search->Planned()); ++id) {
-    if (const auto trial = search->DrawCase(id); !trial.ok()) return trial.error();
+    TRY(search->DrawCase(id));
   }
   return search;
 }
