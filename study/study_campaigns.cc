@@ -64,7 +64,7 @@ std::vector<SearchPlan> ExpectedPlans(const Study& study, StudyStage stage) {
                        part.experiment,
                        {}});
       Experiment& experiment = plans.back().experiment;
-      if (RowOf(source->experiment).members == "population") experiment.search.algorithm = "resimulation";
+      if (RowOf(source->experiment).Related()) experiment.search.algorithm = "resimulation";
       experiment.seed = part.seeds.front() + i;
     }
   }
@@ -388,7 +388,7 @@ Result<PartCost> StudyRuns::CostOf(const std::string& name) {
     TRY(const auto individuals, store.LoadIndividuals(one.search));
     cost.distinct_cases += CountDistinctGenomes(individuals);
     const Experiment& experiment = campaign.opened.plans[one.search - 1].experiment;
-    const bool breeds = RowOf(experiment).members == "population" && !RowOf(experiment).given_cases;
+    const bool breeds = RowOf(experiment).Breeds();
     cost.cases += breeds ? static_cast<std::uint64_t>(experiment.search.population) : individuals.size();
   }
   return cost;

@@ -23,7 +23,7 @@ constexpr std::uint64_t kSeedsOfAPart = 1000;
 constexpr std::uint64_t kFirstAgain = 1'000'000;
 
 std::vector<Key> AllKeys(const Experiment& experiment) {
-  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  std::vector<Key> keys = BuiltInKeys();
   const auto add = [&](std::vector<Key> more) { std::ranges::move(more, std::back_inserter(keys)); };
   if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin))
     add(ScenarioParameterKeys(*scenario));
@@ -58,7 +58,7 @@ class Expander {
     TRY(ReadNumbers());
     TRY(auto baseline, LoadExperiment(tuning_.experiment, sets_, catalogue_));
     const SearchRow& search = RowOf(baseline);
-    if (search.members != "population" || search.given_cases) {
+    if (!search.Breeds()) {
       return InvalidInput(
           fmt::format("{}: search.algorithm = \"{}\" has no population: tuning is for genetic "
                       "and steady-state searches",

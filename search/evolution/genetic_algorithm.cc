@@ -125,7 +125,7 @@ SearchRow GeneticRow() {
                    .check = CheckBreeding},
           .number = 0,
           .title = "genetic search",
-          .members = "population",
+          .individuals = Individuals::kPopulation,
           .plan =
               [](const Experiment& e) {
                 return fmt::format("{} test cases x {} generation{}", e.search.population,

@@ -85,9 +85,10 @@ SearchRow RandomRow() {
                    .check = CheckObjective},
           .number = 1,
           .title = "random search",
-          .members = "cases",
           .plan = [](const Experiment& e) { return FormatCount(PlannedCases(e)) + " test cases"; },
-          .make = Make<RandomSearch>};
+          .make = Make<RandomSearch>,
+          .command = "random",
+          .length_option = "--cases"};
 }
 
 }  // namespace gauntlet

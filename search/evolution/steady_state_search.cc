@@ -135,7 +135,7 @@ SearchRow SteadyStateRow() {
                    .check = CheckSteadyState},
           .number = 0,  // the first population is that of the genetic search
           .title = "steady-state genetic search",
-          .members = "population",
+          .individuals = Individuals::kPopulation,
           .plan =
               [](const Experiment& e) {
                 const auto cases = static_cast<std::uint64_t>(e.search.population) *

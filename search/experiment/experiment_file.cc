@@ -220,16 +220,14 @@ class Reader {
       return InvalidInput(fmt::format("{}: scenario is missing; known: {}", PlaceOf("scenario"),
                                       NamesOf(catalogue_.scenarios)));
     }
-    TRY(const auto named, ResolveRow<controllers::ScenarioInfo>(
-                              "scenario", experiment_.scenario, catalogue_.scenarios,
-                              &controllers::PluginInfo::scenarios, experiment_.scenario_plugin));
-    scenario_ = named;
+    TRY(scenario_, ResolveRow<controllers::ScenarioInfo>(
+                       "scenario", experiment_.scenario, catalogue_.scenarios,
+                       &controllers::PluginInfo::scenarios, experiment_.scenario_plugin));
     const controllers::ScenarioInfo* scenario = scenario_;
     if (experiment_.controller.empty()) experiment_.controller = scenario->default_controller;
-    TRY(const auto found,
+    TRY(const auto controller,
         ResolveRow<controllers::ControllerInfo>("controller", experiment_.controller, catalogue_.controllers,
                                                 &controllers::PluginInfo::controllers, experiment_.plugin));
-    const controllers::ControllerInfo* controller = found;
     if (!scenario->Takes(*controller)) {
       return InvalidInput(fmt::format("{}: controller '{}' is written for the scenario '{}', not for '{}'",
                                       PlaceOf("controller"), controller->name, controller->scenario,

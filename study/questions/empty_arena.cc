@@ -4,7 +4,7 @@
 
 #include "search/failure_tally.h"
 #include "search/given/confirmation_search.h"
-#include "search/search_setup.h"
+#include "search/search_table.h"
 
 namespace gauntlet {
 namespace {

@@ -11,7 +11,7 @@
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
 #include "search/failure_tally.h"
-#include "search/search_setup.h"
+#include "search/search_table.h"
 #include "study/sets/subset.h"
 
 namespace gauntlet {
@@ -79,7 +79,7 @@ RunId RunOfName(const std::string& name) {
 
 std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case) {
   Fnv1a64 hash;
-  hash.AddBytes(SearchIdentity({about, {}, kOnlySearch, {test_case}}));
+  hash.AddBytes(SearchIdentity(SetupOf(about, {}, kOnlySearch, {test_case})));
   return hash.value();
 }
 

@@ -22,8 +22,6 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::string_view kElites = "elites";  // SearchRow::members of a search that chooses its failures
-
 // What is looked at of a campaign.
 struct Candidates {
   bool elites = false;  // else all cases that failed
@@ -31,7 +29,7 @@ struct Candidates {
 };
 
 Result<Candidates> CandidatesOf(const std::string& dir, const std::vector<SearchPlan>& plans) {
-  const bool elites = RowOf(plans.front().experiment).members == kElites;
+  const bool elites = RowOf(plans.front().experiment).individuals == Individuals::kElites;
   TRY(auto cases, elites ? PopulationCases(dir) : FailingCases(dir));
   return Candidates{elites, std::move(cases)};
 }
@@ -74,7 +72,7 @@ std::string FirstDifference(const std::string& first, const std::string& second)
 
 std::string IdentityBesideSeed(Experiment experiment) {
   experiment.seed = 0;
-  return SearchIdentity({experiment, {}, kOnlySearch, {}});
+  return SearchIdentity(SetupOf(experiment));
 }
 
 std::string WhatIsTested(const Experiment& experiment) {

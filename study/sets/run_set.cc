@@ -33,7 +33,7 @@ Status AddSearch(const SubsetSearch& search, ResultStore& store, const Subset& s
         fmt::format("{}: {} of {} runs are left out: without a result, or without a value of {}",
                     search.place, left_out, runs.size(), metric));
   }
-  const bool evolves = RowOf(search.experiment).members == "population";
+  const bool evolves = RowOf(search.experiment).Related();
   AddClusters(runs, evolves, set);
   const std::string unit = evolves ? "evolution" : "case";
   set.unit = set.unit.empty() || set.unit == unit ? unit : "evolution or case";
