@@ -34,9 +34,9 @@ std::string SetValue(const std::vector<std::string>& sets, const std::string& ke
 
 std::vector<std::pair<std::string, std::string>> SettingsOf(const Experiment& experiment) {
   std::vector<std::pair<std::string, std::string>> settings;
-  for (const Key& key : CommonKeys(BuiltInCatalogue())) {
+  for (const Key& key : BuiltInKeys()) {
     const bool always = key.path == "scenario" || key.path == "controller" || key.path == "physics";
-    if (always || (IsDisturbance(key) && key.get(experiment) != key.default_value))
+    if (always || (key.disturbs && key.get(experiment) != key.default_value))
       settings.emplace_back(key.path, Unquoted(ToToml(key.get(experiment))));
   }
   const auto add = [&](const std::string& table, const sim::Parameters& parameters) {

@@ -45,9 +45,7 @@ Result<Access> ParseAccess(const std::string& text, const std::string& place) {
   const auto wrong = [&](const std::string& what) {
     return InvalidInput(fmt::format("{}: {}", place, what));
   };
-  const Result<nlohmann::json> parsed = ParseJson(text, place);
-  if (!parsed) return parsed.error();
-  const nlohmann::json& json = *parsed;
+  TRY(const auto json, ParseJson(text, place));
   if (!json.is_object()) return wrong("an object is needed");
   const auto member = [&](const char* name) { return json.contains(name) ? json[name] : nlohmann::json(); };
 
@@ -121,9 +119,8 @@ Result<Access> ReadAccess(const std::string& path) {
         "write it",
         path, status.st_mode & 0777));
   }
-  const Result<std::string> text = ReadAll(file.get(), path, kMaxBytes);
-  if (!text.ok()) return text.error();
-  Result<Access> access = ParseAccess(*text, path);
+  TRY(const auto text, ReadAll(file.get(), path, kMaxBytes));
+  Result<Access> access = ParseAccess(text, path);
   if (access.ok() && access->curve && (status.st_mode & 077) != 0) {
     return InvalidInput(fmt::format(
         "{} holds keys and has mode {:03o}: others may read it; make it 600 (chmod 600), or better "

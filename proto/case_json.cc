@@ -264,11 +264,10 @@ nlohmann::ordered_json JsonOf(const CaseLineage& lineage) {
 }  // namespace
 
 Result<CaseDocument> ParseCaseDocument(const std::string& text, const std::string& file_name) {
-  const Result<Json> json = ParseJson(text, file_name);
-  if (!json) return json.error();
+  TRY(const auto json, ParseJson(text, file_name));
   CaseDocument document;
   CaseReader reader;
-  reader.Read(*json, document);
+  reader.Read(json, document);
   if (reader.complaint()) return InvalidInput(Printable(file_name + ": " + *reader.complaint()));
   sim::TestCase& test_case = document.test_case;
   if (!test_case.robots && !test_case.start_poses.empty())
@@ -283,9 +282,8 @@ std::string WriteCaseDocument(const CaseDocument& document) {
 }
 
 Result<sim::TestCase> ParseCaseJson(const std::string& text, const std::string& file_name) {
-  Result<CaseDocument> document = ParseCaseDocument(text, file_name);
-  if (!document) return document.error();
-  return std::move(document->test_case);
+  TRY(auto document, ParseCaseDocument(text, file_name));
+  return std::move(document.test_case);
 }
 
 std::string WriteCaseJson(const sim::TestCase& test_case) {

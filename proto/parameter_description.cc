@@ -39,7 +39,7 @@ Error WrongName(std::string_view what, const std::string& name) {
 Status CheckParameters(const std::vector<DescribedParameter>& parameters) {
   std::set<std::string> names;
   for (const DescribedParameter& parameter : parameters) {
-    if (Status right = CheckParameter(parameter); !right) return right;
+    TRY(CheckParameter(parameter));
     if (!names.insert(parameter.name).second)
       return InvalidInput(fmt::format("parameter '{}' is given twice", parameter.name));
   }

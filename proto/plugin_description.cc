@@ -31,13 +31,13 @@ Status CheckDescription(const PluginDescription& description) {
     return InvalidInput("it brings neither a controller nor a scenario");
   std::set<std::string> names;
   for (const DescribedController& controller : description.controllers) {
-    if (Status right = CheckController(controller); !right) return right;
+    TRY(CheckController(controller));
     if (!names.insert(controller.name).second)
       return InvalidInput(fmt::format("two of its controllers are called '{}'", controller.name));
   }
   names.clear();
   for (const DescribedScenario& scenario : description.scenarios) {
-    if (Status right = CheckScenario(scenario); !right) return right;
+    TRY(CheckScenario(scenario));
     if (!names.insert(scenario.name).second)
       return InvalidInput(fmt::format("two of its scenarios are called '{}'", scenario.name));
   }
@@ -60,20 +60,19 @@ std::string WriteDescription(const PluginDescription& description) {
 }
 
 Result<PluginDescription> ReadDescription(std::string_view text, const std::string& place) {
-  const Result<nlohmann::json> json = ParseJson(text, place);
-  if (!json) return json.error();
+  TRY(const auto json, ParseJson(text, place));
   PluginDescription description;
   try {
-    if (json->at("format") != kDescriptionFormat)
+    if (json.at("format") != kDescriptionFormat)
       return InvalidInput(
           fmt::format("{}: no description of a plug-in in format {}", place, kDescriptionFormat));
-    for (const nlohmann::json& controller : json->at("controllers")) {
+    for (const nlohmann::json& controller : json.at("controllers")) {
       description.controllers.push_back({.name = controller.at("name"),
                                          .scenario = controller.at("scenario"),
                                          .description = controller.at("description"),
                                          .parameters = ReadParameters(controller.at("parameters"))});
     }
-    if (const auto scenarios = json->find("scenarios"); scenarios != json->end()) {
+    if (const auto scenarios = json.find("scenarios"); scenarios != json.end()) {
       for (const nlohmann::json& scenario : *scenarios)
         description.scenarios.push_back(ReadScenario(scenario));
     }

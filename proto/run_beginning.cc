@@ -151,21 +151,20 @@ std::string WriteBeginning(const sim::RunBeginning& beginning) {
 }
 
 Result<sim::RunBeginning> ReadBeginning(std::string_view text, const std::string& place) {
-  const Result<Json> json = ParseJson(text, place);
-  if (!json) return json.error();
+  TRY(const auto json, ParseJson(text, place));
   sim::RunBeginning beginning{{}, InvalidInput("")};
   try {
-    if (json->at("format") != kBeginningFormat)
+    if (json.at("format") != kBeginningFormat)
       return InvalidInput(fmt::format("{}: no beginning of a run in format {}", place, kBeginningFormat));
-    const Json& asked = json->at("requirements");
+    const Json& asked = json.at("requirements");
     beginning.requirements = {.start = PointOf(asked.at("start")),
                               .goal = PointOf(asked.at("goal")),
                               .clearance = asked.at("clearance"),
                               .inflation = asked.at("inflation")};
-    if (const auto refused = json->find("refused"); refused != json->end()) {
+    if (const auto refused = json.find("refused"); refused != json.end()) {
       beginning.start = InvalidInput(refused->get<std::string>());
     } else {
-      beginning.start = StartOf(json->at("start"));
+      beginning.start = StartOf(json.at("start"));
     }
   } catch (const Json::exception&) {
     return InvalidInput(fmt::format("{}: no beginning of a run", place));

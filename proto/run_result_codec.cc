@@ -172,7 +172,7 @@ Result<sim::RunResult> Decode(std::string_view bytes, Trust trust) {
   result.trajectory_hash = message.trajectory_hash();
   result.hash = message.hash();
   if (message.has_trajectory()) {
-    if (Status read = TrajectoryFromProto(message.trajectory(), result); !read) return read.error();
+    TRY(TrajectoryFromProto(message.trajectory(), result));
   }
   result.cpu_seconds = message.cpu_seconds();
   result.without_ways = message.without_ways();
@@ -180,7 +180,7 @@ Result<sim::RunResult> Decode(std::string_view bytes, Trust trust) {
   if (result.without_ways && HasWays(result))
     return Corrupt("the run result has ways that it is said to be without");
   if (trust == Trust::kGuarded && result.without_ways) return result;
-  if (const Status right = CheckHash(result); !right) return right.error();
+  TRY(CheckHash(result));
   return result;
 }
 

@@ -85,14 +85,14 @@ Status CheckFailures(const DescribedScenario& scenario) {
       return InvalidInput(fmt::format("failure type {} is given twice", one.type));
   }
   for (const DescribedFailureKind& kind : scenario.failure_kinds) {
-    if (Status known = RequireMetric(scenario, "a failure kind", kind.metric); !known) return known;
+    TRY(RequireMetric(scenario, "a failure kind", kind.metric));
     if (!std::isfinite(kind.at_most))
       return InvalidInput(
           fmt::format("the failure kind of '{}' is one up to {}", kind.metric, NumberText(kind.at_most)));
   }
   if (!scenario.failure_place) return Ok{};
   for (const std::string& name : {scenario.failure_place->x, scenario.failure_place->y}) {
-    if (Status known = RequireMetric(scenario, "the failure's place", name); !known) return known;
+    TRY(RequireMetric(scenario, "the failure's place", name));
   }
   const double same_within = scenario.failure_place->same_within;
   if (same_within > 0.0 && std::isfinite(same_within)) return Ok{};
@@ -102,7 +102,7 @@ Status CheckFailures(const DescribedScenario& scenario) {
 
 Status CheckAxes(const DescribedScenario& scenario) {
   for (const DescribedAxis& axis : scenario.descriptor_axes) {
-    if (Status known = RequireMetric(scenario, "a descriptor axis", axis.metric); !known) return known;
+    TRY(RequireMetric(scenario, "a descriptor axis", axis.metric));
     const bool right = std::isfinite(axis.min) && std::isfinite(axis.max) && axis.min < axis.max;
     if (!right || axis.parts < 1 || axis.parts > kMostParts) {
       return InvalidInput(

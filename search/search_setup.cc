@@ -6,7 +6,7 @@
 
 #include "base/check.h"
 #include "base/hash.h"
-#include "search/search_table.h"
+#include "search/search_row.h"
 #include "sim/arena/genome.h"
 
 namespace gauntlet {
@@ -56,15 +56,7 @@ GenomeGenerator MakeGenerator(const SearchSetup& setup) {
 
 std::uint64_t SearchSeed(const SearchSetup& setup) {
   return sim::DeriveSeed(setup.experiment.seed, sim::SeedPurpose::kSearch, setup.search_id,
-                         /*individual=*/0, /*evaluation=*/0, RowOf(setup.experiment).number);
-}
-
-std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
-                      std::uint32_t evaluation, std::uint32_t replicate) {
-  constexpr std::uint32_t kSearch = 1;  // every search counts as the first of its campaign
-  const SearchRow& row = RowOf(experiment);
-  const std::uint64_t who = row.seeds_of_cases ? CaseHash(test_case) : individual;
-  return sim::DeriveSeed(experiment.seed, row.purpose, kSearch, who, evaluation, replicate);
+                         /*individual=*/0, /*evaluation=*/0, setup.row->number);
 }
 
 sim::RandomStream GenomeStream(std::uint64_t search_seed, std::uint64_t id) {
@@ -73,21 +65,15 @@ sim::RandomStream GenomeStream(std::uint64_t search_seed, std::uint64_t id) {
 }
 
 std::string SearchIdentity(const SearchSetup& setup) {
-  static const std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
   const Experiment& experiment = setup.experiment;
-  const SearchRow& row = RowOf(experiment);
+  const SearchInfo& search = setup.row->info;
   const auto matters = [&](const Key& key) {
-    if (key.for_people || key.path == row.info.length) return false;
-    if (key.path == "search.algorithm") return true;
-    const bool of_searches = key.path.starts_with("search.") || key.path.starts_with("genome.");
-    if (of_searches && !Reads(row.info, key.path)) return false;
-    // Of what came later than stored campaigns, only what was asked for.
-    const bool if_asked_for =
-        IsDisturbance(key) || key.path == "search.objective" || key.path == "search.cells";
-    return !if_asked_for || key.get(experiment) != key.default_value;
+    if (key.for_people || key.path == search.length) return false;
+    if (key.of_searches && !Reads(search, key.path)) return false;
+    return !key.came_later || key.get(experiment) != key.default_value;
   };
   std::string identity = fmt::format("search = {}\n", setup.search_id);
-  for (const Key& key : keys) {
+  for (const Key& key : setup.keys) {
     if (matters(key)) identity += fmt::format("{} = {}\n", key.path, ToToml(key.get(experiment)));
   }
   const auto add = [&](std::string_view table, const sim::Parameters& parameters) {
@@ -99,7 +85,7 @@ std::string SearchIdentity(const SearchSetup& setup) {
   if (!experiment.definition.empty()) identity += fmt::format("definition = {}\n", experiment.definition);
   add("scenario_parameters", experiment.scenario_parameters);
   add("controller_parameters", experiment.controller_parameters);
-  if (row.given_cases) {
+  if (setup.row->given_cases) {
     identity +=
         fmt::format("list of cases = {} with hash {:016x}\n", setup.cases.size(), HashOf(setup.cases));
   }

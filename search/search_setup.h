@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,17 @@
 
 namespace gauntlet {
 
+struct SearchRow;
+struct Key;
+
+// search_table.h makes one: SetupOf.
 struct SearchSetup {
   Experiment experiment;
   sim::ArenaRequirements requirements;  // of the experiment's scenario for its empty arena
   std::uint32_t search_id = 1;          // within the campaign
   std::vector<sim::TestCase> cases;     // of a search through given cases
+  const SearchRow* row = nullptr;       // of the experiment's search
+  std::span<const Key> keys;            // of all experiments
 };
 
 // Of the arena, its robots and obstacles: equal for the same case under another name.
@@ -32,14 +39,6 @@ GenomeGenerator MakeGenerator(const SearchSetup& setup);
 // that random search and the initial population of an evolution share no case. No run has this seed: runs
 // belong to individuals from 1 on.
 std::uint64_t SearchSeed(const SearchSetup& setup);
-
-// The seed of replicate 0, 1, ... of an evaluation of an individual. It depends on these numbers and the
-// experiment's seed alone, so a search of a sweep has the seeds that it would have in a campaign of its own.
-// Where seeds are those of cases (SearchRow::seeds_of_cases) the arena, robots and obstacles count instead of
-// the individual's number, so that a case has the same seeds at any place of the list (and the same case
-// given twice, whatever its name, the same runs).
-std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
-                      std::uint32_t evaluation, std::uint32_t replicate);
 
 // The random stream of the case that individual `id` starts life with.
 sim::RandomStream GenomeStream(std::uint64_t search_seed, std::uint64_t id);

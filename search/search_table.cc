@@ -21,6 +21,11 @@
 
 namespace gauntlet {
 
+std::string_view NameOf(Individuals individuals) {
+  constexpr std::array<std::string_view, 3> kNames = {"cases", "population", "elites"};
+  return kNames[static_cast<std::size_t>(individuals)];
+}
+
 std::span<const SearchRow> Searches() {
   static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
                                   RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
@@ -49,10 +54,27 @@ const Catalogue& BuiltInCatalogue() {
   return catalogue;
 }
 
+const std::vector<Key>& BuiltInKeys() {
+  static const std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  return keys;
+}
+
+SearchSetup SetupOf(const Experiment& experiment, const sim::ArenaRequirements& requirements,
+                    std::uint32_t search_id, std::vector<sim::TestCase> cases) {
+  return {experiment, requirements, search_id, std::move(cases), &RowOf(experiment), BuiltInKeys()};
+}
+
+std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
+                      std::uint32_t evaluation, std::uint32_t replicate) {
+  constexpr std::uint32_t kSearch = 1;  // every search counts as the first of its campaign
+  const SearchRow& row = RowOf(experiment);
+  const std::uint64_t who = row.seeds_of_cases ? CaseHash(test_case) : individual;
+  return sim::DeriveSeed(experiment.seed, row.purpose, kSearch, who, evaluation, replicate);
+}
+
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {
-  const Result<std::size_t> robots = controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed));
-  if (!robots.ok()) return robots.error();
-  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, *robots)) {
+  TRY(const auto robots, controllers::CountSwarm(SpecOf(experiment, test_case, experiment.seed)));
+  if (const auto refused = sim::RefuseDisturbances(experiment.disturbances, robots)) {
     return InvalidInput(*refused);
   }
   return Ok{};
@@ -62,18 +84,15 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment
                                                     std::vector<sim::TestCase> cases) {
   const SearchRow& row = RowOf(experiment);
   if (row.given_cases) {
-    if (!cases.empty()) return row.make({experiment, {}, search_id, std::move(cases)});
+    if (!cases.empty()) return row.make(SetupOf(experiment, {}, search_id, std::move(cases)));
     return InvalidInput(fmt::format("search.algorithm = \"{}\" needs a list of test cases: use `gauntlet {}`",
                                     row.info.name, row.command));
   }
   if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
     return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};
   const sim::TestCase empty = EmptyArena(experiment.arena);
-  const Result<sim::ArenaRequirements> requirements =
-      controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed));
-  if (!requirements.ok()) return requirements.error();
-  auto search = row.make({experiment, *requirements, search_id, {}});
-  if (!search.ok()) return search;
+  TRY(const auto requirements, controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed)));
+  TRY(auto search, row.make(SetupOf(experiment, requirements, search_id)));
   // Without this every run of the search would be refused for the same reason.
   if (const Status fits = CheckSwarmFits(experiment, empty); !fits.ok()) {
     return InvalidInput("no run can begin, even without obstacles: " + fits.error().message);

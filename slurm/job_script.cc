@@ -110,13 +110,12 @@ long SignalMargin(const std::string& time_limit) {
 }
 
 Result<std::string> Script(std::string_view job_template, Values values, const JobRequest& request) {
-  const Result<std::string> directives = Directives(request);
-  if (!directives) return directives.error();
-  values["DIRECTIVES"] = *directives;
+  TRY(const auto directives, Directives(request));
+  values["DIRECTIVES"] = directives;
   values["SETUP"] = request.setup;
   values["TIME"] = request.time_limit;
   values["MARGIN"] = std::to_string(SignalMargin(request.time_limit));
-  if (const Status checked = CheckOneLine(values); !checked) return checked.error();
+  TRY(CheckOneLine(values));
   return Fill(job_template, values);
 }
 

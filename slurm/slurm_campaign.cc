@@ -60,7 +60,7 @@ Result<SlurmCampaign> SlurmCampaign::Make(const SlurmSettings& settings, const s
   const std::filesystem::path absolute = std::filesystem::weakly_canonical(directory, error);
   if (error) return SystemError(fmt::format("cannot find {}", directory), error.value());
   SlurmCampaign campaign(settings, absolute.string());
-  if (Status made = campaign.MakeScripts(); !made) return made.error();
+  TRY(campaign.MakeScripts());
   return campaign;
 }
 
@@ -72,12 +72,10 @@ Result<std::optional<SlurmCampaign>> SlurmCampaign::Find(const std::string& dire
   if (!text && text.error().kind == ErrorKind::kNotFound) return std::optional<SlurmCampaign>();
   if (!text) return text.error();
   const std::array<std::string_view, 1> obeyed = {kSettingsFile};
-  if (const Status trusted = CheckOnlyWeWrite(directory, obeyed); !trusted) return trusted.error();
-  const Result<SlurmSettings> settings = ReadSlurmSettings({{*text, path, true}}, {});
-  if (!settings) return settings.error();
-  Result<SlurmCampaign> campaign = Make(*settings, directory);
-  if (!campaign) return campaign.error();
-  return std::optional(*std::move(campaign));
+  TRY(CheckOnlyWeWrite(directory, obeyed));
+  TRY(const auto settings, ReadSlurmSettings({{*text, path, true}}, {}));
+  TRY(auto campaign, Make(settings, directory));
+  return std::optional(std::move(campaign));
 }
 
 WorkerJob SlurmCampaign::WorkersJob() const {
@@ -90,17 +88,10 @@ WorkerJob SlurmCampaign::WorkersJob() const {
 }
 
 Status SlurmCampaign::MakeScripts() {
-  Result<std::string> worker_template =
-      Template(settings_.worker_template, kWorkerTemplate, "worker_template");
-  if (!worker_template) return worker_template.error();
-  worker_template_ = *std::move(worker_template);
-  Result<std::string> worker = WorkerScript(worker_template_, WorkersJob(), settings_.worker_job);
-  if (!worker) return worker.error();
-  worker_script_ = *std::move(worker);
+  TRY(worker_template_, Template(settings_.worker_template, kWorkerTemplate, "worker_template"));
+  TRY(worker_script_, WorkerScript(worker_template_, WorkersJob(), settings_.worker_job));
 
-  const Result<std::string> master_template =
-      Template(settings_.master_template, kMasterTemplate, "master_template");
-  if (!master_template) return master_template.error();
+  TRY(const auto master_template, Template(settings_.master_template, kMasterTemplate, "master_template"));
   // Of what the workers ask for, the master needs the account and the software.
   JobRequest request;
   request.account = settings_.worker_job.account;
@@ -109,14 +100,12 @@ Status SlurmCampaign::MakeScripts() {
   request.partition =
       settings_.master_partition.empty() ? settings_.worker_job.partition : settings_.master_partition;
   request.time_limit = settings_.master_time_limit;
-  Result<std::string> master =
-      MasterScript(*master_template,
+  TRY(master_script_,
+      MasterScript(master_template,
                    {.name = master_job_name(),
                     .command = {MasterProgramPath(), "resume", directory_, "--as-job", "--no-progress"},
                     .log_directory = directory_ + "/log"},
-                   request);
-  if (!master) return master.error();
-  master_script_ = *std::move(master);
+                   request));
   return Ok{};
 }
 
@@ -136,13 +125,12 @@ Result<std::vector<JobStatus>> SlurmCampaign::LivingJobs(SlurmClient& client) co
 }
 
 Result<std::vector<std::string>> SlurmCampaign::CancelJobs(SlurmClient& client) const {
-  const Result<std::vector<JobStatus>> jobs = LivingJobs(client);
-  if (!jobs) return jobs.error();
+  TRY(const auto jobs, LivingJobs(client));
   std::vector<std::string> ids;
-  for (const JobStatus& job : *jobs) {
+  for (const JobStatus& job : jobs) {
     if (job.phase != JobPhase::kEnding) ids.push_back(job.id);
   }
-  if (Status cancelled = client.Cancel(ids); !cancelled) return cancelled.error();
+  TRY(client.Cancel(ids));
   return ids;
 }
 

@@ -99,29 +99,25 @@ std::string NextStep(std::string_view words) {
 
 Result<std::string> CommandLineSlurm::Submit(const std::string& script,
                                              const std::vector<std::string>& options) {
-  const Result<CallOutput> output = CallSlurm(Sbatch({"--parsable"}, options), script, deadline_);
-  if (!output) return output.error();
-  if (output->exit_code != 0) return Refusal("sbatch", *output);
-  return ParseJobId(output->out);
+  TRY(const auto output, CallSlurm(Sbatch({"--parsable"}, options), script, deadline_));
+  if (output.exit_code != 0) return Refusal("sbatch", output);
+  return ParseJobId(output.out);
 }
 
 Result<std::string> CommandLineSlurm::TestOnly(const std::string& script,
                                                const std::vector<std::string>& options) {
-  const Result<CallOutput> output =
-      CallSlurm(Sbatch({"--test-only"}, options), script, kTestOnlyCalls * deadline_);
-  if (!output) return output.error();
-  if (output->exit_code != 0) return Refusal("sbatch", *output);
-  return WordsOf("sbatch", output->err + output->out);
+  TRY(const auto output, CallSlurm(Sbatch({"--test-only"}, options), script, kTestOnlyCalls * deadline_));
+  if (output.exit_code != 0) return Refusal("sbatch", output);
+  return WordsOf("sbatch", output.err + output.out);
 }
 
 Result<std::vector<JobStatus>> CommandLineSlurm::Queue(const std::string& name_prefix) {
-  const Result<CallOutput> output = CallSlurm(
-      {"squeue", "--me", "--noheader", "--array", "--states=all", "--format=" + std::string(kQueueFormat)},
-      "", deadline_);
-  if (!output) return output.error();
-  if (output->exit_code != 0)
-    return Error{ErrorKind::kIo, "squeue: " + WordsOf("squeue", output->err + output->out)};
-  Result<std::vector<JobStatus>> jobs = ParseQueue(output->out);
+  TRY(const auto output, CallSlurm({"squeue", "--me", "--noheader", "--array", "--states=all",
+                                    "--format=" + std::string(kQueueFormat)},
+                                   "", deadline_));
+  if (output.exit_code != 0)
+    return Error{ErrorKind::kIo, "squeue: " + WordsOf("squeue", output.err + output.out)};
+  Result<std::vector<JobStatus>> jobs = ParseQueue(output.out);
   if (jobs) std::erase_if(*jobs, [&](const JobStatus& job) { return !job.name.starts_with(name_prefix); });
   return jobs;
 }
@@ -130,10 +126,9 @@ Status CommandLineSlurm::Cancel(const std::vector<std::string>& jobs) {
   if (jobs.empty()) return Ok{};
   std::vector<std::string> arguments = {"scancel"};
   arguments.insert(arguments.end(), jobs.begin(), jobs.end());
-  const Result<CallOutput> output = CallSlurm(arguments, "", deadline_);
-  if (!output) return output.error();
-  if (output->exit_code != 0)
-    return Error{ErrorKind::kIo, "scancel: " + WordsOf("scancel", output->err + output->out)};
+  TRY(const auto output, CallSlurm(arguments, "", deadline_));
+  if (output.exit_code != 0)
+    return Error{ErrorKind::kIo, "scancel: " + WordsOf("scancel", output.err + output.out)};
   return Ok{};
 }
 

@@ -44,12 +44,11 @@ template <typename Part>
 SlurmKey Text(std::string_view name, std::string_view description, std::string Part::*member,
               Status (*check)(const std::string&) = nullptr) {
   const auto set = [=](SlurmSettings& settings, const Assignment& assignment) -> Status {
-    const Result<std::string> text = TextOf(assignment, description);
-    if (!text) return text.error();
+    TRY(const auto text, TextOf(assignment, description));
     if (check != nullptr) {
-      if (Status right = check(*text); !right) return right;
+      TRY(check(text));
     }
-    PartOf<Part>(settings).*member = *text;
+    PartOf<Part>(settings).*member = text;
     return Ok{};
   };
   return {name, description, set,
@@ -114,9 +113,8 @@ SlurmKey MasterKey() {
 SlurmKey ExtraKey() {
   constexpr std::string_view kDescription = "further sbatch options, \"--exclusive --mail-type=FAIL\"";
   const auto set = [=](SlurmSettings& settings, const Assignment& assignment) -> Status {
-    const Result<std::string> text = TextOf(assignment, kDescription);
-    if (!text) return text.error();
-    settings.worker_job.extra = SplitOptions(*text);
+    TRY(const auto text, TextOf(assignment, kDescription));
+    settings.worker_job.extra = SplitOptions(text);
     return Ok{};
   };
   return {"extra", kDescription, set, [](const SlurmSettings& settings) {
@@ -177,23 +175,20 @@ Result<SlurmSettings> ReadSlurmSettings(const std::vector<SlurmSource>& files,
   constexpr std::string_view kTable = "slurm.";
   SlurmSettings settings;
   for (const SlurmSource& file : files) {
-    const Result<std::vector<Assignment>> assignments = ReadToml(file.text, file.name);
-    if (!assignments) return assignments.error();
-    for (const Assignment& assignment : *assignments) {
+    TRY(const auto assignments, ReadToml(file.text, file.name));
+    for (const Assignment& assignment : assignments) {
       std::string_view name = assignment.path;
       if (!file.whole_file) {
         if (!name.starts_with(kTable)) continue;
         name.remove_prefix(kTable.size());
       }
-      if (const Status assigned = Assign(settings, assignment, name); !assigned) return assigned.error();
+      TRY(Assign(settings, assignment, name));
     }
   }
   for (const std::string& set : sets) {
-    Result<Assignment> assignment = ReadSet(set);
-    if (!assignment) return assignment.error();
-    assignment->where = "--slurm " + set;
-    if (const Status assigned = Assign(settings, *assignment, assignment->path); !assigned)
-      return assigned.error();
+    TRY(auto assignment, ReadSet(set));
+    assignment.where = "--slurm " + set;
+    TRY(Assign(settings, assignment, assignment.path));
   }
   return settings;
 }

@@ -59,17 +59,15 @@ Result<std::pair<PartCost, PartCost>> CostsOf(const Desk& desk, const std::strin
   std::set<std::string> sources;
   for (const StudySet& one : SplitStudySets(set)) {
     const std::string source = desk.runs.SourceOf(one.part);
-    const Result<PartCost> cost = desk.runs.CostOf(source);
-    if (!cost) return cost.error();
+    TRY(const auto cost, desk.runs.CostOf(source));
     if (sources.insert(source).second) {
-      made.runs += cost->runs;
-      made.cases += cost->cases;
-      made.distinct_cases += cost->distinct_cases;
+      made.runs += cost.runs;
+      made.cases += cost.cases;
+      made.distinct_cases += cost.distinct_cases;
     }
     if (source == one.part) continue;
-    const Result<PartCost> second = desk.runs.CostOf(one.part);
-    if (!second) return second.error();
-    again.runs += second->runs;
+    TRY(const auto second, desk.runs.CostOf(one.part));
+    again.runs += second.runs;
   }
   return std::pair(made, again);
 }
@@ -82,9 +80,8 @@ Status AddBudget(const Desk& desk, const std::vector<std::pair<std::string, std:
   const char* names[] = {"first", "second"};
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const auto& [set, compared] = sets[i];
-    const auto costs = CostsOf(desk, set);
-    if (!costs) return costs.error();
-    const auto& [made, again] = *costs;
+    TRY(const auto costs, CostsOf(desk, set));
+    const auto& [made, again] = costs;
     table.rows.push_back({set, FormatCount(made.runs), FormatCount(made.distinct_cases),
                           FormatCount(made.cases), FormatCount(again.runs), FormatCount(compared)});
     desk.Add(fmt::format("{}.budget", names[i]),
@@ -116,19 +113,15 @@ void AddSetFigures(const Desk& desk, const std::string& which, const RunSet& set
 }
 
 Status Compare(const Desk& desk) {
-  const Result<RunSet> first = desk.runs.Set(desk.analysis.Key("first"), desk.Metric());
-  if (!first) return first.error();
-  const Result<RunSet> second = desk.runs.Set(desk.analysis.Key("second"), desk.Metric());
-  if (!second) return second.error();
-  const Result<analysis::Comparison> computed = analysis::Compare(first->values, second->values);
-  if (!computed) return computed.error();
-  const analysis::Comparison& c = *computed;
-  desk.section.compared = ComparedSets{desk.Metric(), {first->values, second->values}};
+  TRY(const auto first, desk.runs.Set(desk.analysis.Key("first"), desk.Metric()));
+  TRY(const auto second, desk.runs.Set(desk.analysis.Key("second"), desk.Metric()));
+  TRY(const auto c, analysis::Compare(first.values, second.values));
+  desk.section.compared = ComparedSets{desk.Metric(), {first.values, second.values}};
   StudyTable sets{
       {"set", ">n", ">units", ">mean", ">sd", ">median", ">zero %", ">rank sum", ">mean rank", ">U"}, {}};
   // The thesis prints n1 n2 + n1 (n1 + 1) / 2 - R1 as the U of the first set, which is our U of the second.
-  AddSetFigures(desk, "first", *first, c.first, c.test.rank_sum1, c.test.u2, sets);
-  AddSetFigures(desk, "second", *second, c.second, c.test.rank_sum2, c.test.u1, sets);
+  AddSetFigures(desk, "first", first, c.first, c.test.rank_sum1, c.test.u2, sets);
+  AddSetFigures(desk, "second", second, c.second, c.test.rank_sum2, c.test.u1, sets);
   desk.section.tables.push_back(std::move(sets));
 
   const std::string expect = desk.analysis.Key("expect");
@@ -151,8 +144,8 @@ Status Compare(const Desk& desk) {
         fmt::format("A share z = {:.3f} of the second set is zero too, so A cannot be below z / 2 = {:.3f}.",
                     zeros, zeros / 2.0));
   }
-  desk.AddNotes(*first);
-  desk.AddNotes(*second);
+  desk.AddNotes(first);
+  desk.AddNotes(second);
   if (!expect.empty()) {
     bool holds = p < kThesisLevel;
     if (const auto effect = ParseNumber<double>(desk.analysis.Key("effect"))) {
@@ -192,20 +185,18 @@ Result<Bounds> BoundsOf(const StudyAnalysis& analysis) {
 
 // How many runs of one set, or of two, have a value within bounds.
 Status Count(const Desk& desk) {
-  const Result<Bounds> bounds = BoundsOf(desk.analysis);
-  if (!bounds) return bounds.error();
+  TRY(const auto bounds, BoundsOf(desk.analysis));
   StudyTable table{{"set", ">runs", ">" + desk.analysis.Key("what"), ">%", ">95 % interval (Wilson)"}, {}};
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shares;
   std::vector<std::pair<std::string, std::size_t>> sets;
   for (const char* which : {"first", "second"}) {
     const std::string name = desk.analysis.Key(which);
     if (name.empty()) continue;
-    const Result<RunSet> set = desk.runs.Set(name, desk.Metric());
-    if (!set) return set.error();
-    const std::vector<double> values = ValuesOf(*set);
+    TRY(const auto set, desk.runs.Set(name, desk.Metric()));
+    const std::vector<double> values = ValuesOf(set);
     if (values.empty()) return InvalidInput(name + ": no run has a value of " + desk.Metric());
     const auto hits = static_cast<std::uint32_t>(
-        std::ranges::count_if(values, [&](double value) { return bounds->Holds(value); }));
+        std::ranges::count_if(values, [&](double value) { return bounds.Holds(value); }));
     const auto of = static_cast<std::uint32_t>(values.size());
     const double percent = 100.0 * hits / of;
     const analysis::Interval interval = analysis::WilsonInterval(hits, of, analysis::kConfidence);
@@ -243,15 +234,13 @@ Status Types(const Desk& desk) {
   for (std::size_t i = 0; i < 2; ++i) {
     const std::string which = i == 0 ? "first" : "second";
     const std::string set_name = desk.analysis.Key(which);
-    const Result<RunSet> failures = desk.runs.Set(set_name, "total_failure");
-    if (!failures) return failures.error();
-    const Result<RunSet> types = desk.runs.Set(set_name, "failure_type");
-    if (!types) return types.error();
+    TRY(const auto failures, desk.runs.Set(set_name, "total_failure"));
+    TRY(const auto types, desk.runs.Set(set_name, "failure_type"));
     counts[i].assign(names.size(), 0);
-    for (const double type : ValuesOf(*types)) {
+    for (const double type : ValuesOf(types)) {
       if (type < static_cast<double>(names.size())) ++counts[i][static_cast<std::size_t>(type)];
     }
-    const std::vector<double> flags = ValuesOf(*failures);
+    const std::vector<double> flags = ValuesOf(failures);
     const auto failed = std::ranges::count(flags, 1.0);
     const analysis::UnseenTypes unseen = analysis::EstimateUnseenTypes(counts[i]);
     for (std::size_t type = 0; type < names.size(); ++type) {
@@ -292,22 +281,21 @@ Status Types(const Desk& desk) {
 
 // In which generation the searches' populations have the most types of failure, on average.
 Status Peak(const Desk& desk) {
-  const auto searches = desk.runs.TypesByGeneration(desk.analysis.Key("part"));
-  if (!searches) return searches.error();
+  TRY(const auto searches, desk.runs.TypesByGeneration(desk.analysis.Key("part")));
   std::size_t generations = std::numeric_limits<std::size_t>::max();
-  for (const auto& search : *searches) generations = std::min(generations, search.size());
+  for (const auto& search : searches) generations = std::min(generations, search.size());
   StudyTable table{{">generation", ">types in it, mean", ">types so far, mean"}, {}};
   std::size_t best = 0;
   double most = -1.0;
   for (std::size_t generation = 0; generation < generations; ++generation) {
     double in_it = 0.0;
     double so_far = 0.0;
-    for (const auto& search : *searches) {
+    for (const auto& search : searches) {
       const std::set<int> types(search[generation].begin(), search[generation].end());
       std::set<int> all;
       for (std::size_t i = 0; i <= generation; ++i) all.insert(search[i].begin(), search[i].end());
-      in_it += static_cast<double>(types.size()) / static_cast<double>(searches->size());
-      so_far += static_cast<double>(all.size()) / static_cast<double>(searches->size());
+      in_it += static_cast<double>(types.size()) / static_cast<double>(searches.size());
+      so_far += static_cast<double>(all.size()) / static_cast<double>(searches.size());
     }
     if (in_it > most) {
       most = in_it;
@@ -322,7 +310,7 @@ Status Peak(const Desk& desk) {
   desk.Add("types", most, fmt::format("{:.2f}", most));
   desk.section.tables.push_back(std::move(table));
   desk.section.sentences.push_back(fmt::format(
-      "The mean of {} searches is largest in generation {}: {:.2f} types.", searches->size(), best, most));
+      "The mean of {} searches is largest in generation {}: {:.2f} types.", searches.size(), best, most));
   return Ok{};
 }
 
@@ -330,16 +318,15 @@ Status Peak(const Desk& desk) {
 Status Windows(const Desk& desk) {
   const auto seconds = ParseNumber<double>(desk.analysis.Key("seconds"));
   if (!seconds || *seconds <= 0.0) return InvalidInput("seconds have to be a number above 0");
-  const auto runs = desk.runs.Windows(desk.analysis.Key("first"), desk.analysis.Key("prefix"));
-  if (!runs) return runs.error();
-  const std::size_t windows = runs->front().size();
+  TRY(const auto runs, desk.runs.Windows(desk.analysis.Key("first"), desk.analysis.Key("prefix")));
+  const std::size_t windows = runs.front().size();
   std::vector<double> means(windows, 0.0);
   StudyTable table{{">minutes", ">25 %", ">50 %", ">75 %", ">95 %", ">mean"}, {}};
   double highest_quarter = 0.0;
   double highest_three_quarters = 0.0;
   for (std::size_t window = 0; window < windows; ++window) {
     std::vector<double> values;
-    for (const auto& run : *runs) {
+    for (const auto& run : runs) {
       if (window < run.size()) values.push_back(run[window]);
     }
     for (const double value : values) means[window] += value / static_cast<double>(values.size());
@@ -359,7 +346,7 @@ Status Windows(const Desk& desk) {
   const std::size_t late = windows - windows / 3;
   double plateau = 0.0;
   std::vector<double> late_values;
-  for (const auto& run : *runs)
+  for (const auto& run : runs)
     late_values.insert(late_values.end(),
                        run.begin() + static_cast<std::ptrdiff_t>(std::min(late, run.size())), run.end());
   for (const double value : late_values) plateau += value / static_cast<double>(late_values.size());
@@ -370,7 +357,7 @@ Status Windows(const Desk& desk) {
       steady = static_cast<double>(window) * *seconds / 60.0;
   }
   const double median = analysis::Quantile(late_values, 0.5);
-  const auto nothing = std::ranges::count_if(*runs, [](const auto& run) {
+  const auto nothing = std::ranges::count_if(runs, [](const auto& run) {
     return std::ranges::all_of(run, [](double value) { return value == 0.0; });
   });
   const auto moves = [](double highest) {
@@ -390,7 +377,7 @@ Status Windows(const Desk& desk) {
       fmt::format("{} runs. Mean of the last third {:.2f} per {} s; steady (three windows of at least 90 % "
                   "of it) {}; nothing "
                   "at all in {} runs.",
-                  runs->size(), plateau, NumberText(*seconds),
+                  runs.size(), plateau, NumberText(*seconds),
                   steady ? fmt::format("from {} min", NumberText(*steady)) : "never", nothing));
   return Ok{};
 }
@@ -415,8 +402,7 @@ Result<StudySection> Analyse(const StudyAnalysis& analysis, StudyRuns& runs, Stu
   section.title = analysis.Key("title");
   for (const AnalysisKind& kind : kKinds) {
     if (kind.name != analysis.kind) continue;
-    if (Status computed = kind.compute({analysis, runs, figures, section}); !computed)
-      return computed.error();
+    TRY(kind.compute({analysis, runs, figures, section}));
   }
   return section;
 }

@@ -64,7 +64,7 @@ std::vector<SearchPlan> ExpectedPlans(const Study& study, StudyStage stage) {
                        part.experiment,
                        {}});
       Experiment& experiment = plans.back().experiment;
-      if (RowOf(source->experiment).members == "population") experiment.search.algorithm = "resimulation";
+      if (RowOf(source->experiment).Related()) experiment.search.algorithm = "resimulation";
       experiment.seed = part.seeds.front() + i;
     }
   }
@@ -88,7 +88,7 @@ Status WriteStudy(const std::string& dir, const Study& study) {
   if (!study.plugins.empty()) json["plugins"] = study.plugins;
   // The libraries first: a study whose file is there is whole.
   for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
-    if (Status kept = KeepPlugins(PluginsOf(dir), ExpectedPlans(study, stage)); !kept) return kept;
+    TRY(KeepPlugins(PluginsOf(dir), ExpectedPlans(study, stage)));
   }
   return WriteFileAtomically(StudyFile(dir), JsonText(json), kReadableByAll);
 }
@@ -128,17 +128,16 @@ bool IsStudy(const std::string& dir) {
 Status BeginStudy(const std::string& dir, const Study& study) {
   std::error_code error;
   if (IsStudy(dir)) {
-    const Result<Study> there = OpenStudy(dir);
-    if (!there) return there.error();
-    if (there->name != study.name) {
-      return InvalidInput(fmt::format("{} holds the study '{}': name another --dir", dir, there->name));
+    TRY(const auto there, OpenStudy(dir));
+    if (there.name != study.name) {
+      return InvalidInput(fmt::format("{} holds the study '{}': name another --dir", dir, there.name));
     }
     for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
       if (const Result<StageState> fits = LookAtStage(study, dir, stage); !fits) return fits.error();
     }
     // What is computed from the same runs may change.
     const bool same =
-        there->texts == study.texts && there->changes == study.changes && there->plugins == study.plugins;
+        there.texts == study.texts && there.changes == study.changes && there.plugins == study.plugins;
     return same ? Status(Ok{}) : WriteStudy(dir, study);
   }
   if (fs::exists(dir, error)) {
@@ -158,10 +157,9 @@ Status BeginStudy(const std::string& dir, const Study& study) {
 
 Result<Study> OpenStudy(const std::string& dir) {
   constexpr std::string_view kFiles[] = {"study.json"};
-  if (Status ours = CheckOnlyWeWrite(dir, kFiles); !ours) return ours.error();
-  const Result<std::string> text = ReadRegularFile(StudyFile(dir));
-  if (!text) return text.error();
-  const nlohmann::json json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  TRY(CheckOnlyWeWrite(dir, kFiles));
+  TRY(const auto text, ReadRegularFile(StudyFile(dir)));
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   const Error damaged{ErrorKind::kCorrupt,
                       fmt::format("{} is no study in format {}", StudyFile(dir), kFormat)};
   if (!json.is_object() || json.value("format", nlohmann::json()) != kFormat || !json.contains("files") ||
@@ -184,7 +182,7 @@ Result<Study> OpenStudy(const std::string& dir) {
       changes.sets.push_back(set.get<std::string>());
     }
   }
-  if (Status known = KnowPlugins(PluginsOf(dir)); !known) return known.error();
+  TRY(KnowPlugins(PluginsOf(dir)));
   std::vector<std::string> plugins;
   for (const nlohmann::json& hash : json.value("plugins", nlohmann::json::array())) {
     if (!hash.is_string() || controllers::FindPlugin(hash.get<std::string>()) == nullptr) return damaged;
@@ -198,8 +196,7 @@ Result<std::vector<SearchPlan>> PlanSearchStage(const Study& study) {
 }
 
 Result<std::vector<SearchPlan>> PlanEvaluationStage(const Study& study, const std::string& dir) {
-  const Result<OpenedSubset> searches = OpenStage(dir, StudyStage::kSearches);
-  if (!searches) return searches.error();
+  TRY(const auto searches, OpenStage(dir, StudyStage::kSearches));
   std::map<std::string, SearchId> first_of_part;
   SearchId next = 1;
   for (const StudyPart& part : study.parts) {
@@ -213,13 +210,11 @@ Result<std::vector<SearchPlan>> PlanEvaluationStage(const Study& study, const st
     if (IsFirst(part)) continue;
     const auto source = std::ranges::find(study.parts, part.from, &StudyPart::name);
     for (std::size_t i = 0; i < SearchesOf(*source); ++i, ++plan) {
-      Result<Subset> subset = ParseSubset(part.subset, part.where);
-      if (!subset) return subset.error();
-      subset->search = first_of_part.at(part.from) + static_cast<SearchId>(i);
-      Result<std::vector<CaseSet>> sets =
-          CasesOf(searches->plans, *searches->campaign.store, fmt::format("part '{}'", part.name), *subset);
-      if (!sets) return sets.error();
-      for (Individual& member : sets->front().members) {
+      TRY(auto subset, ParseSubset(part.subset, part.where));
+      subset.search = first_of_part.at(part.from) + static_cast<SearchId>(i);
+      TRY(auto sets,
+          CasesOf(searches.plans, *searches.campaign.store, fmt::format("part '{}'", part.name), subset));
+      for (Individual& member : sets.front().members) {
         member.test_case.name =
             fmt::format("{} individual {}", Settings(*source, source->seeds[i]), member.id);
         plans[plan].cases.push_back(std::move(member.test_case));
@@ -254,32 +249,27 @@ Result<StageState> LookAtStage(const Study& study, const std::string& dir, Study
   const std::string campaign = CampaignOf(dir, stage);
   std::error_code error;
   if (!fs::exists(campaign, error)) return StageState{};
-  const Result<CampaignView> view = ViewCampaign(campaign, Checked::kTotals);
-  if (!view) return view.error();
-  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(view->directory);
-  if (!plans) return plans.error();
+  TRY(const auto view, ViewCampaign(campaign, Checked::kTotals));
+  TRY(const auto plans, ReadSearchPlans(view.directory));
   std::vector<SearchPlan> expected = ExpectedPlans(study, stage);
   if (expected.size() == 1) expected.front().settings.clear();
-  if (!AreSameSearches(*plans, expected)) {
+  if (!AreSameSearches(plans, expected)) {
     return InvalidInput(fmt::format(
         "{} was begun with other parts or settings than the study has now: name another --dir", campaign));
   }
-  const Result<CampaignSummary> totals = SummariseTotals(*plans, *view->store);
-  if (!totals) return totals.error();
-  return StageState{true, totals->finished};
+  TRY(const auto totals, SummariseTotals(plans, *view.store));
+  return StageState{true, totals.finished};
 }
 
 Result<StudyRuns> StudyRuns::Open(const Study& study, const std::string& dir) {
   StudyRuns runs(study);
   for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
     if (std::ranges::count(study.parts, stage, &StageOf) == 0) continue;
-    Result<OpenedSubset> opened = OpenStage(dir, stage);
-    if (!opened) return opened.error();
-    const CampaignMeta& meta = opened->campaign.store->meta();
-    Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(meta.golden_hashes);
-    if (!hashes) return hashes.error();
-    RunOrigin origin{gauntlet::CampaignOf(dir, stage), {}, meta.software_version, *std::move(hashes)};
-    runs.campaigns_.push_back({*std::move(opened), std::move(origin)});
+    TRY(auto opened, OpenStage(dir, stage));
+    const CampaignMeta& meta = opened.campaign.store->meta();
+    TRY(auto hashes, proto::ReadGoldenHashes(meta.golden_hashes));
+    RunOrigin origin{gauntlet::CampaignOf(dir, stage), {}, meta.software_version, std::move(hashes)};
+    runs.campaigns_.push_back({std::move(opened), std::move(origin)});
   }
   return runs;
 }
@@ -306,15 +296,13 @@ Result<RunSet> StudyRuns::Set(const std::string& text, const std::string& metric
   RunSet set;
   set.values.name = text;
   for (const StudySet& one : SplitStudySets(text)) {
-    Result<Subset> subset = ParseSubset(one.subset, one.part);
-    if (!subset) return subset.error();
+    TRY(auto subset, ParseSubset(one.subset, one.part));
     const Range range = RangeOf(one.part);
     Campaign& campaign = CampaignOf(range);
     for (SearchId id = range.first; id < range.end; ++id) {
-      subset->search = id;
-      const Status added = AddRuns(campaign.opened.plans, *campaign.opened.campaign.store, campaign.origin,
-                                   *subset, metric, set);
-      if (!added) return added.error();
+      subset.search = id;
+      TRY(AddRuns(campaign.opened.plans, *campaign.opened.campaign.store, campaign.origin, subset, metric,
+                  set));
     }
   }
   return set;
@@ -390,20 +378,18 @@ Result<PartCost> StudyRuns::CostOf(const std::string& name) {
   const Range range = RangeOf(name);
   Campaign& campaign = CampaignOf(range);
   ResultStore& store = *campaign.opened.campaign.store;
-  const Result<std::vector<SearchTotals>> totals = store.LoadTotals();
-  if (!totals) return totals.error();
+  TRY(const auto totals, store.LoadTotals());
   PartCost cost;
   cost.part = name;
   cost.searches = range.end - range.first;
-  for (const SearchTotals& one : *totals) {
+  for (const SearchTotals& one : totals) {
     if (one.search < range.first || one.search >= range.end) continue;
     cost.runs += one.runs;
-    const Result<std::vector<Individual>> individuals = store.LoadIndividuals(one.search);
-    if (!individuals) return individuals.error();
-    cost.distinct_cases += CountDistinctGenomes(*individuals);
+    TRY(const auto individuals, store.LoadIndividuals(one.search));
+    cost.distinct_cases += CountDistinctGenomes(individuals);
     const Experiment& experiment = campaign.opened.plans[one.search - 1].experiment;
-    const bool breeds = RowOf(experiment).members == "population" && !RowOf(experiment).given_cases;
-    cost.cases += breeds ? static_cast<std::uint64_t>(experiment.search.population) : individuals->size();
+    const bool breeds = RowOf(experiment).Breeds();
+    cost.cases += breeds ? static_cast<std::uint64_t>(experiment.search.population) : individuals.size();
   }
   return cost;
 }
@@ -432,14 +418,13 @@ Result<ClockTime> StudyRuns::TimeOf(StudyStage stage) {
   ClockTime time;
   const std::size_t index = stage == StudyStage::kSearches ? 0 : 1;
   if (index >= campaigns_.size()) return time;
-  const Result<std::vector<StoredEvent>> events = campaigns_[index].opened.campaign.store->LoadEvents();
-  if (!events) return events.error();
+  TRY(const auto events, campaigns_[index].opened.campaign.store->LoadEvents());
   // From each start of a master to its end, or to its last event where it was killed.
   std::int64_t total = 0;
   std::int64_t started = 0;
   std::int64_t last = 0;
   bool ended = true;
-  for (const StoredEvent& one : *events) {
+  for (const StoredEvent& one : events) {
     if (one.kind == event::kStart || one.kind == event::kResume) {
       total += last - started;
       started = one.unix_ms;

@@ -96,10 +96,9 @@ std::vector<std::pair<std::string, std::string>> StudyFileTable::Nested(const st
 }
 
 Result<StudyFileContent> ReadStudyFile(const std::string& text, const std::string& file) {
-  const Result<std::vector<Assignment>> assignments = ReadToml(text, file);
-  if (!assignments) return assignments.error();
+  TRY(const auto assignments, ReadToml(text, file));
   StudyFileContent content;
-  for (const Assignment& assignment : *assignments) {
+  for (const Assignment& assignment : assignments) {
     if (const auto* other = std::get_if<OtherToml>(&assignment.value)) {
       return InvalidInput(fmt::format("{}: {} is {}, expected a text or a number", assignment.where,
                                       assignment.path, other->kind));

@@ -45,10 +45,10 @@ class Reader {
 
   Result<Study> Read(const std::string& main_file) {
     study_.main_file = main_file;
-    if (Status read = ReadFile(main_file, /*main=*/true); !read) return read.error();
+    TRY(ReadFile(main_file, /*main=*/true));
     if (study_.name.empty()) return InvalidInput(main_file + ": the study has no name");
     if (study_.parts.empty()) return InvalidInput(main_file + ": the study has no parts");
-    if (Status whole = CheckAnalyses(); !whole) return whole.error();
+    TRY(CheckAnalyses());
     std::erase_if(study_.plugins, [this](const std::string& hash) {
       return std::ranges::none_of(study_.parts, [&](const StudyPart& part) {
         return part.experiment.plugin == hash || part.experiment.scenario_plugin == hash;
@@ -65,31 +65,29 @@ class Reader {
  private:
   Status ReadFile(const std::string& file, bool main) {
     if (study_.texts.contains(file)) return InvalidInput(fmt::format("{} is included twice", file));
-    Result<std::string> text = read_(file);
-    if (!text) return text.error();
-    study_.texts[file] = *text;
-    Result<StudyFileContent> content = ReadStudyFile(*text, file);
-    if (!content) return content.error();
+    TRY(auto text, read_(file));
+    study_.texts[file] = text;
+    TRY(auto content, ReadStudyFile(text, file));
     if (main) {
-      study_.name = content->top["name"];
-      study_.description = content->top["description"];
+      study_.name = content.top["name"];
+      study_.description = content.top["description"];
     }
-    for (const std::string& name : ListItems(content->top["include"])) {
-      if (Status included = ReadFile(name + ".toml", /*main=*/false); !included) return included;
+    for (const std::string& name : ListItems(content.top["include"])) {
+      TRY(ReadFile(name + ".toml", /*main=*/false));
     }
     std::map<std::string, PublishedNote> notes;
-    for (const StudyFileTable& table : content->tables) {
+    for (const StudyFileTable& table : content.tables) {
       if (table.kind->name == "note") {
         notes[table.name] = {table.Key("text"), table.Key("always") == "true"};
       } else if (table.kind->name == "part") {
-        if (Status added = AddPart(table); !added) return added;
+        TRY(AddPart(table));
       } else if (Status added = AddAnalysis(table); !added) {
         return added;
       }
     }
     if (!study_.changes.experiment.empty() || !study_.changes.sets.empty()) return Ok{};
-    for (const std::string& published : ListItems(content->top["published"])) {
-      if (Status added = AddPublished(published, notes); !added) return added;
+    for (const std::string& published : ListItems(content.top["published"])) {
+      TRY(AddPublished(published, notes));
     }
     return Ok{};
   }
@@ -139,9 +137,9 @@ class Reader {
     }
     part.seeds = *numbers;
     if (evaluates) {
-      if (Status known = SetSource(table, part); !known) return known;
+      TRY(SetSource(table, part));
     }
-    if (Status loaded = SetExperiment(table, part); !loaded) return loaded;
+    TRY(SetExperiment(table, part));
     study_.parts.push_back(std::move(part));
     return Ok{};
   }
@@ -165,11 +163,10 @@ class Reader {
       return InvalidInput(fmt::format("{}: '{}' simulates cases of '{}' itself; take them from there", where,
                                       part.from, source->from));
     }
-    const Result<Subset> subset = ParseSubset(part.subset, where);
-    if (!subset) return subset.error();
-    if (subset->search > 0) {
+    TRY(const auto subset, ParseSubset(part.subset, where));
+    if (subset.search > 0) {
       return InvalidInput(
-          fmt::format("{}: a part is taken as a whole, not search {} of it", where, subset->search));
+          fmt::format("{}: a part is taken as a whole, not search {} of it", where, subset.search));
     }
     return Ok{};
   }
@@ -197,7 +194,7 @@ class Reader {
       });
       sets.emplace_back("search.algorithm=cases");
     }
-    if (const Status added = AddLibrariesOf(name); !added) return added;
+    TRY(AddLibrariesOf(name));
     Result<Experiment> experiment = LoadExperiment(name, sets, catalogue_);
     if (!experiment) {
       return Error{experiment.error().kind,
@@ -223,7 +220,7 @@ class Reader {
     if (!files) return Ok{};
     for (const std::string& file : *files) {
       if (!named_libraries_.insert(file).second) continue;
-      if (const Status added = AddPluginFile(file, study_.plugins); !added) return added;
+      TRY(AddPluginFile(file, study_.plugins));
     }
     catalogue_.plugins = study_.plugins;
     return Ok{};
@@ -241,27 +238,24 @@ class Reader {
     if (analysis.kind != "tune") return Ok{};
     const std::string& experiment =
         study_.changes.experiment.empty() ? table.Key("experiment") : study_.changes.experiment;
-    if (const Status added = AddLibrariesOf(experiment); !added) return added;
-    Result<ExpandedTuning> expanded = ExpandTuning(table, study_.changes, catalogue_);
-    if (!expanded) return expanded.error();
-    analysis.tuning = std::move(expanded->tuning);
-    std::ranges::move(expanded->parts, std::back_inserter(study_.parts));
+    TRY(AddLibrariesOf(experiment));
+    TRY(auto expanded, ExpandTuning(table, study_.changes, catalogue_));
+    analysis.tuning = std::move(expanded.tuning);
+    std::ranges::move(expanded.parts, std::back_inserter(study_.parts));
     return Ok{};
   }
 
   Status AddPublished(const std::string& file, const std::map<std::string, PublishedNote>& notes) {
-    Result<std::string> text = read_(file);
-    if (!text) return text.error();
-    study_.texts[file] = *text;
-    const Result<std::vector<std::vector<std::string>>> rows = ReadCsvCells(*text, file);
-    if (!rows) return rows.error();
+    TRY(auto text, read_(file));
+    study_.texts[file] = text;
+    TRY(const auto rows, ReadCsvCells(text, file));
     const std::vector<std::string> header = {"section", "quantity", "condition", "value",
                                              "figure",  "rule",     "note"};
-    if (rows->empty() || rows->front() != header) {
+    if (rows.empty() || rows.front() != header) {
       return InvalidInput(fmt::format("{}:1: the columns have to be {}", file, fmt::join(header, ",")));
     }
-    for (std::size_t i = 1; i < rows->size(); ++i) {
-      const std::vector<std::string>& cells = (*rows)[i];
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const std::vector<std::string>& cells = rows[i];
       PublishedRow row{cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], {}};
       if (!cells[6].empty()) {
         const auto note = notes.find(cells[6]);
@@ -285,8 +279,7 @@ class Reader {
             return InvalidInput(
                 fmt::format("{}: {}: {}", analysis.where, key, UnknownName("part", set.part, study_.parts)));
           }
-          const Result<Subset> subset = ParseSubset(set.subset, fmt::format("{}: {}", analysis.where, key));
-          if (!subset) return subset.error();
+          TRY(ParseSubset(set.subset, fmt::format("{}: {}", analysis.where, key)));
           if (!analysis.keys.contains("metric")) continue;
           const Status known = CheckMetric(FindPart(set.part)->experiment, analysis.Key("metric"));
           if (!known) return InvalidInput(fmt::format("{}: {}", analysis.where, known.error().message));
@@ -368,15 +361,14 @@ std::vector<std::string> ShippedStudies() {
 
 Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes,
                         const std::vector<std::string>& plugins) {
-  const Result<fs::path> path = PathOf(name_or_path);
-  if (!path) return path.error();
+  TRY(const auto path, PathOf(name_or_path));
   const auto read = [&](const std::string& file) -> Result<std::string> {
-    Result<std::string> text = ReadSmallFile((path->parent_path() / file).string());
+    Result<std::string> text = ReadSmallFile((path.parent_path() / file).string());
     if (text || text.error().kind != ErrorKind::kNotFound) return text;
     return Error{ErrorKind::kNotFound,
-                 fmt::format("there is no study file '{}'", (path->parent_path() / file).string())};
+                 fmt::format("there is no study file '{}'", (path.parent_path() / file).string())};
   };
-  return Reader(read, changes, plugins, Reader::Libraries::kGivenAndNamed).Read(path->filename().string());
+  return Reader(read, changes, plugins, Reader::Libraries::kGivenAndNamed).Read(path.filename().string());
 }
 
 Result<Study> ReadStudy(const std::map<std::string, std::string>& texts, const std::string& main_file,

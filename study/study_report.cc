@@ -23,46 +23,41 @@ std::string CommandOf(const Study& study) {
 }  // namespace
 
 Result<StudyReport> MakeStudyReport(const Study& study, const std::string& dir) {
-  Result<StudyRuns> runs = StudyRuns::Open(study, dir);
-  if (!runs) return runs.error();
+  TRY(auto runs, StudyRuns::Open(study, dir));
   StudyReport report;
   report.name = study.name;
   report.description = study.description;
   report.command = CommandOf(study);
   report.version = GAUNTLET_VERSION;
   for (const StudyPart& part : study.parts) {
-    Result<PartCost> cost = runs->CostOf(part.name);
-    if (!cost) return cost.error();
-    const Result<double> seconds = runs->CpuSecondsOf(part.name);
-    if (!seconds) return seconds.error();
-    cost->cpu_seconds = *seconds;
-    if (!part.group.empty()) cost->part = part.group;
-    const auto group = std::ranges::find(report.parts, cost->part, &PartCost::part);
+    TRY(auto cost, runs.CostOf(part.name));
+    TRY(const auto seconds, runs.CpuSecondsOf(part.name));
+    cost.cpu_seconds = seconds;
+    if (!part.group.empty()) cost.part = part.group;
+    const auto group = std::ranges::find(report.parts, cost.part, &PartCost::part);
     if (group == report.parts.end()) {
-      report.parts.push_back(*cost);
+      report.parts.push_back(cost);
     } else {
-      *group += *cost;
+      *group += cost;
     }
   }
   for (const auto& [stage, time] : {std::pair(StudyStage::kSearches, &report.searching),
                                     std::pair(StudyStage::kEvaluations, &report.evaluating)}) {
-    const Result<ClockTime> measured = runs->TimeOf(stage);
-    if (!measured) return measured.error();
-    *time = *measured;
+    TRY(const auto measured, runs.TimeOf(stage));
+    *time = measured;
   }
   for (const StudyAnalysis& analysis : study.analyses) {
-    Result<StudySection> section = Analyse(analysis, *runs, report.figures);
+    Result<StudySection> section = Analyse(analysis, runs, report.figures);
     if (!section) {
       return Error{section.error().kind, analysis.where + ": " + section.error().message};
     }
     report.sections.push_back(*std::move(section));
   }
   for (const PublishedRow& row : study.published) {
-    Result<JudgedRow> judged = Judge(row, report.figures);
-    if (!judged) return judged.error();
+    TRY(auto judged, Judge(row, report.figures));
     const auto section =
         std::ranges::find(report.sections, row.figure.substr(0, row.figure.find('.')), &StudySection::name);
-    (section == report.sections.end() ? report.elsewhere : section->published).push_back(*std::move(judged));
+    (section == report.sections.end() ? report.elsewhere : section->published).push_back(std::move(judged));
   }
   return report;
 }

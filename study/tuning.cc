@@ -23,7 +23,7 @@ constexpr std::uint64_t kSeedsOfAPart = 1000;
 constexpr std::uint64_t kFirstAgain = 1'000'000;
 
 std::vector<Key> AllKeys(const Experiment& experiment) {
-  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  std::vector<Key> keys = BuiltInKeys();
   const auto add = [&](std::vector<Key> more) { std::ranges::move(more, std::back_inserter(keys)); };
   if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin))
     add(ScenarioParameterKeys(*scenario));
@@ -55,18 +55,17 @@ class Expander {
   }
 
   Result<ExpandedTuning> Expand() {
-    if (Status read = ReadNumbers(); !read) return read.error();
-    Result<Experiment> baseline = LoadExperiment(tuning_.experiment, sets_, catalogue_);
-    if (!baseline) return baseline.error();
-    const SearchRow& search = RowOf(*baseline);
-    if (search.members != "population" || search.given_cases) {
+    TRY(ReadNumbers());
+    TRY(auto baseline, LoadExperiment(tuning_.experiment, sets_, catalogue_));
+    const SearchRow& search = RowOf(baseline);
+    if (!search.Breeds()) {
       return InvalidInput(
           fmt::format("{}: search.algorithm = \"{}\" has no population: tuning is for genetic "
                       "and steady-state searches",
                       tuning_.experiment, search.info.name));
     }
     tuning_.baseline_part = table_.name + ".baseline";
-    if (Status added = AddParts(tuning_.baseline_part, *baseline, {}); !added) return added.error();
+    TRY(AddParts(tuning_.baseline_part, baseline, {}));
     const auto candidates = table_.Nested("candidates");
     if (candidates.empty()) {
       return InvalidInput(fmt::format(
@@ -74,7 +73,7 @@ class Expander {
           table_.where, table_.name));
     }
     for (const auto& [key, values] : candidates) {
-      if (Status added = AddParameter(*baseline, key, ListItems(values)); !added) return added.error();
+      TRY(AddParameter(baseline, key, ListItems(values)));
     }
     return ExpandedTuning{std::move(tuning_), std::move(parts_)};
   }
@@ -120,9 +119,7 @@ class Expander {
     sets.insert(sets.end(), change.begin(), change.end());
     std::erase_if(sets, [](const std::string& set) { return set.starts_with("search."); });
     sets.emplace_back("search.algorithm=cases");
-    Result<Experiment> loaded = LoadExperiment(tuning_.experiment, sets, catalogue_);
-    if (!loaded) return loaded.error();
-    again.experiment = *std::move(loaded);
+    TRY(again.experiment, LoadExperiment(tuning_.experiment, sets, catalogue_));
     again.experiment.search.replicates = 1;
     parts_.push_back(std::move(evolutions));
     parts_.push_back(std::move(again));
@@ -157,8 +154,7 @@ class Expander {
           is_baseline ? tuning_.baseline_part : fmt::format("{}.{}={}", table_.name, key, value);
       parameter.values.push_back({value, part});
       if (is_baseline) continue;
-      const Status added = AddParts(part, *changed, {fmt::format("{}={}", key, candidate)});
-      if (!added) return added;
+      TRY(AddParts(part, *changed, {fmt::format("{}={}", key, candidate)}));
     }
     if (!has_baseline)
       parameter.values.insert(parameter.values.begin(), {parameter.baseline, tuning_.baseline_part});

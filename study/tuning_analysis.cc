@@ -20,14 +20,12 @@ struct Evolutions {
 };
 
 Result<Evolutions> EvolutionsOf(StudyRuns& runs, const std::string& part, StudySection& section) {
-  const Result<RunSet> set = runs.Set(AgainPart(part), "fitness");
-  if (!set) return set.error();
-  section.sentences.insert(section.sentences.end(), set->notes.begin(), set->notes.end());
-  const Result<PartCost> cost = runs.CostOf(part);
-  if (!cost) return cost.error();
+  TRY(const auto set, runs.Set(AgainPart(part), "fitness"));
+  section.sentences.insert(section.sentences.end(), set.notes.begin(), set.notes.end());
+  TRY(const auto cost, runs.CostOf(part));
   Evolutions evolutions;
-  evolutions.simulations = cost->runs / std::max<std::uint64_t>(cost->searches, 1);
-  for (const std::vector<double>& population : set->values.clusters) {
+  evolutions.simulations = cost.runs / std::max<std::uint64_t>(cost.searches, 1);
+  for (const std::vector<double>& population : set.values.clusters) {
     const double sum = std::accumulate(population.begin(), population.end(), 0.0);
     evolutions.values.push_back(sum / static_cast<double>(population.size()));
   }
@@ -204,8 +202,7 @@ Result<StudySection> AnalyseTuning(const StudyAnalysis& analysis, StudyRuns& run
   StudySection section;
   section.name = analysis.name;
   section.title = analysis.Key("title");
-  const Result<Evolutions> baseline = EvolutionsOf(runs, tuning.baseline_part, section);
-  if (!baseline) return baseline.error();
+  TRY(const auto baseline, EvolutionsOf(runs, tuning.baseline_part, section));
   TuningResult& result = section.tuning.emplace();
   std::vector<std::vector<double>> changed;
   for (const TunedParameter& parameter : tuning.parameters) {
@@ -214,20 +211,17 @@ Result<StudySection> AnalyseTuning(const StudyAnalysis& analysis, StudyRuns& run
     tried.baseline = parameter.baseline;
     for (const TunedValue& value : parameter.values) {
       if (value.part == tuning.baseline_part) {
-        tried.values.push_back(Describe(value.value, *baseline));
+        tried.values.push_back(Describe(value.value, baseline));
         tried.values.back().is_baseline = true;
         continue;
       }
-      const Result<Evolutions> evolutions = EvolutionsOf(runs, value.part, section);
-      if (!evolutions) return evolutions.error();
-      tried.values.push_back(Describe(value.value, *evolutions));
-      changed.push_back(evolutions->values);
+      TRY(const auto evolutions, EvolutionsOf(runs, value.part, section));
+      tried.values.push_back(Describe(value.value, evolutions));
+      changed.push_back(evolutions.values);
     }
   }
-  const Result<std::vector<analysis::Robustness>> robustness =
-      analysis::AnalyseRobustness(baseline->values, changed);
-  if (!robustness) return robustness.error();
-  auto next = robustness->begin();
+  TRY(const auto robustness, analysis::AnalyseRobustness(baseline.values, changed));
+  auto next = robustness.begin();
   for (TriedParameter& parameter : result.parameters) {
     for (TriedValue& value : parameter.values) {
       if (value.is_baseline) continue;
@@ -244,7 +238,7 @@ Result<StudySection> AnalyseTuning(const StudyAnalysis& analysis, StudyRuns& run
     Recommend(parameter);
     figures[fmt::format("{}.{}", analysis.name, parameter.key)] = {std::nullopt, parameter.recommended};
   }
-  AddConsistency(baseline->values, tuning, result);
+  AddConsistency(baseline.values, tuning, result);
   if (result.enough) {
     figures[analysis.name + ".enough"] = {static_cast<double>(*result.enough),
                                           fmt::format("{}", *result.enough)};

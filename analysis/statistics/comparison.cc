@@ -71,8 +71,8 @@ std::string IntervalText(const std::optional<Interval>& interval) {
 Result<Comparison> Compare(const ComparedSet& first, const ComparedSet& second) {
   const std::vector<double> values1 = ValuesOf(first.clusters);
   const std::vector<double> values2 = ValuesOf(second.clusters);
-  if (Status whole = CheckSample(values1, first.name); !whole) return whole.error();
-  if (Status whole = CheckSample(values2, second.name); !whole) return whole.error();
+  TRY(CheckSample(values1, first.name));
+  TRY(CheckSample(values2, second.name));
   Comparison comparison;
   comparison.first = Describe(values1);
   comparison.second = Describe(values2);

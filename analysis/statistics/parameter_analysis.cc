@@ -67,11 +67,10 @@ Result<std::vector<Robustness>> AnalyseRobustness(const std::vector<double>& bas
   std::vector<Robustness> all;
   std::vector<double> p;
   for (const std::vector<double>& values : changed) {
-    Result<Comparison> comparison =
-        Compare(Singletons("the baseline", baseline), Singletons("a changed parameter", values));
-    if (!comparison) return comparison.error();
+    TRY(auto comparison,
+        Compare(Singletons("the baseline", baseline), Singletons("a changed parameter", values)));
     Robustness& one = all.emplace_back();
-    one.comparison = *std::move(comparison);
+    one.comparison = std::move(comparison);
     one.exceeds = Exceeds(one.comparison.test.a);
     p.push_back(one.comparison.p_two_sided);
   }

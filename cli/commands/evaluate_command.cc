@@ -105,7 +105,7 @@ Result<CaseList> CasesOfCampaigns(CommandContext& context, const EvaluateOptions
                       set.experiment.scenario, experiment.name, experiment.scenario));
     }
     SearchPlan plan{sets.size() > 1 ? set.place : "", experiment};
-    if (RowOf(set.experiment).members == "population") plan.experiment.search.algorithm = "resimulation";
+    if (RowOf(set.experiment).Related()) plan.experiment.search.algorithm = "resimulation";
     plan.experiment.seed += list.searches.size();
     list.searches.push_back(std::move(plan));
     list.place_of_case.emplace_back();

@@ -36,7 +36,7 @@ struct ListOptions {
 
 // What the search reads, keys of searches first.
 std::vector<Key> KeysOf(const SearchInfo& search) {
-  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  std::vector<Key> keys = BuiltInKeys();
   std::erase_if(keys, [&](const Key& key) { return !Reads(search, key.path); });
   std::stable_partition(keys.begin(), keys.end(),
                         [](const Key& key) { return key.path.starts_with("search."); });
@@ -44,8 +44,8 @@ std::vector<Key> KeysOf(const SearchInfo& search) {
 }
 
 std::vector<Key> DisturbanceKeys() {
-  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
-  std::erase_if(keys, std::not_fn(IsDisturbance));
+  std::vector<Key> keys = BuiltInKeys();
+  std::erase_if(keys, std::not_fn(&Key::disturbs));
   return keys;
 }
 

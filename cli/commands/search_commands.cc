@@ -26,7 +26,9 @@ Status CheckEmptyArenas(const std::vector<SearchPlan>& searches) {
   std::set<std::string> checked;  // controllers
   for (const SearchPlan& search : searches) {
     const Experiment& experiment = search.experiment;
-    if (RowOf(experiment).members != "elites" || !checked.insert(experiment.controller).second) continue;
+    if (RowOf(experiment).individuals != Individuals::kElites ||
+        !checked.insert(experiment.controller).second)
+      continue;
     TRY(CheckEmptyArena(experiment));
   }
   return Ok{};

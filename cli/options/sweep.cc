@@ -126,10 +126,13 @@ Status CheckSettings(const std::vector<ExtraSet>& settings, const std::vector<Se
   for (const auto& [option, key, value] : settings) {
     if (!key.starts_with("search.") || key == "search.algorithm" || read(key)) continue;
     std::string known;
-    for (const Key& one : CommonKeys(BuiltInCatalogue())) {
+    for (const Key& one : BuiltInKeys()) {
       if (!one.path.starts_with("search.") || !Reads(search, one.path)) continue;
       known += (known.empty() ? "" : ", ") + one.path;
-      if (one.path == "search.cases") known += " (random --cases N)";
+      for (const SearchRow& row : Searches()) {
+        if (row.info.length != one.path || row.length_option.empty()) continue;
+        known += fmt::format(" ({} {} N)", row.command, row.length_option);
+      }
     }
     return InvalidInput(fmt::format("{} {}: the search '{}' does not read {}; it reads {}", option, value,
                                     search.name, key, known));

@@ -45,10 +45,10 @@ std::string Overview(const CampaignSummary& summary) {
   table.AddRow({"runs", runs});
   table.AddRow({"test cases", fmt::format("{} different", FormatCount(summary.distinct_individuals))});
   table.AddRow(
-      {"fitness",
-       fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
-                   FormatFitness(summary.best_fitness), FormatFitness(summary.mean_fitness),
-                   FormatFitness(summary.worst_fitness), search == nullptr ? "cases" : search->members)});
+      {"fitness", fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
+                              FormatFitness(summary.best_fitness), FormatFitness(summary.mean_fitness),
+                              FormatFitness(summary.worst_fitness),
+                              NameOf(search == nullptr ? Individuals::kCases : search->individuals))});
   if (!summary.failing.empty()) {
     table.AddRow({"failing",
                   fmt::format("{}: {}", RunsText(summary.failing_runs, summary.runs_done), summary.failing)});

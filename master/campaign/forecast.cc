@@ -76,7 +76,7 @@ std::vector<sim::RunSpec> FirstRuns(const Experiment& experiment, SearchAlgorith
 bool AllCasesDiffer(const std::vector<SearchPlan>& plans) {
   std::set<std::uint64_t> seeds;
   return std::ranges::all_of(plans, [&](const SearchPlan& plan) {
-    return RowOf(plan.experiment).members != "population" && seeds.insert(plan.experiment.seed).second;
+    return !RowOf(plan.experiment).Related() && seeds.insert(plan.experiment.seed).second;
   });
 }
 

@@ -24,9 +24,8 @@ std::string_view LengthKeyOf(const SearchPlan& plan) {
 }
 
 KeyValue LengthOf(const SearchPlan& plan) {
-  static const std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
-  const auto key = std::ranges::find(keys, LengthKeyOf(plan), &Key::path);
-  GAUNTLET_CHECK(key != keys.end(), std::string(LengthKeyOf(plan)));
+  const auto key = std::ranges::find(BuiltInKeys(), LengthKeyOf(plan), &Key::path);
+  GAUNTLET_CHECK(key != BuiltInKeys().end(), std::string(LengthKeyOf(plan)));
   return key->get(plan.experiment);
 }
 
@@ -82,11 +81,7 @@ Result<std::vector<SearchPlan>> WithLength(const std::vector<SearchPlan>& plans,
 }
 
 bool AreSameSearches(const std::vector<SearchPlan>& some, const std::vector<SearchPlan>& others) {
-  const auto course = [](const SearchPlan& plan) {
-    SearchSetup setup;
-    setup.experiment = plan.experiment;
-    return SearchIdentity(setup);
-  };
+  const auto course = [](const SearchPlan& plan) { return SearchIdentity(SetupOf(plan.experiment)); };
   const auto same = [&](const SearchPlan& one, const SearchPlan& other) {
     return one.settings == other.settings && course(one) == course(other);
   };

@@ -8,7 +8,7 @@
 
 #include "master/campaign/stored_search.h"
 #include "proto/run_codec.h"
-#include "search/search_setup.h"
+#include "search/search_table.h"
 
 namespace gauntlet {
 namespace {

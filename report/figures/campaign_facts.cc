@@ -92,9 +92,8 @@ Result<std::vector<CaseFacts>> CasesOf(const CampaignFacts& facts, ResultStore& 
   }
   std::vector<CaseFacts> all;
   for (SearchId search = 1; search <= facts.plans.size(); ++search) {
-    const Result<std::vector<Individual>> individuals = store.LoadIndividuals(search);
-    if (!individuals) return individuals.error();
-    for (const Individual& individual : *individuals) {
+    TRY(const auto individuals, store.LoadIndividuals(search));
+    for (const Individual& individual : individuals) {
       const auto found = cases.find({search, individual.id});
       if (found == cases.end()) continue;
       CaseFacts& one = all.emplace_back(std::move(found->second));
@@ -121,13 +120,12 @@ std::string HostOf(const std::string& text) {
 }
 
 Result<CampaignHistory> HistoryOf(SqliteStore& store) {
-  const Result<std::vector<StoredEvent>> events = store.LoadEvents();
-  if (!events) return events.error();
+  TRY(const auto events, store.LoadEvents());
   CampaignHistory history{.created_unix_ms = store.meta().created_unix_ms};
   history.last_unix_ms = history.created_unix_ms;
   std::set<std::string> hosts;
   std::int64_t since = 0;
-  for (const StoredEvent& one : *events) {
+  for (const StoredEvent& one : events) {
     const bool starts = one.kind == event::kStart || one.kind == event::kResume;
     if (starts) {
       ++history.sessions;
@@ -190,48 +188,34 @@ RunFacts FactsOfRow(const StoredRun& run) {
 }
 
 Result<CampaignFacts> ReadFacts(const std::string& dir) {
-  const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
-  if (!campaign) return campaign.error();
-  SqliteStore& store = *campaign->view.store;
+  TRY(const auto campaign, OpenStoredCampaign(dir));
+  SqliteStore& store = *campaign.view.store;
   CampaignFacts facts;
   facts.directory = dir;
   facts.software_version = store.meta().software_version;
   facts.golden_hashes = store.meta().golden_hashes;
-  facts.experiment_toml = TextOfFile(campaign->view.directory.experiment_path());
-  facts.plans = campaign->plans;
-  Result<CampaignSummary> summary = Summarise(facts.plans, store);
-  if (!summary) return summary.error();
-  facts.summary = *std::move(summary);
-  Result<CampaignAnswers> answers = ReadAnswers(dir);
-  if (!answers) return answers.error();
-  facts.answers = *std::move(answers);
-  Result<std::vector<Blame>> blames = ReadAllBlames(dir);
-  if (!blames) return blames.error();
-  facts.blames = *std::move(blames);
-  Result<CampaignHistory> history = HistoryOf(store);
-  if (!history) return history.error();
-  facts.history = *std::move(history);
+  facts.experiment_toml = TextOfFile(campaign.view.directory.experiment_path());
+  facts.plans = campaign.plans;
+  TRY(facts.summary, Summarise(facts.plans, store));
+  TRY(facts.answers, ReadAnswers(dir));
+  TRY(facts.blames, ReadAllBlames(dir));
+  TRY(facts.history, HistoryOf(store));
   for (std::size_t i = 0; i < facts.plans.size(); ++i) {
-    const Status added = AddRuns(facts.plans[i], static_cast<SearchId>(i + 1), store, facts.runs);
-    if (!added) return added.error();
+    TRY(AddRuns(facts.plans[i], static_cast<SearchId>(i + 1), store, facts.runs));
   }
-  Result<std::vector<CaseFacts>> cases = CasesOf(facts, store);
-  if (!cases) return cases.error();
-  facts.cases = *std::move(cases);
-  facts.notes = NotesOf(facts, campaign->being_written);
+  TRY(facts.cases, CasesOf(facts, store));
+  facts.notes = NotesOf(facts, campaign.being_written);
   return facts;
 }
 
 Result<std::vector<StoredRun>> ReadRuns(const std::string& dir, const std::vector<RunId>& ids) {
-  const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kTotals);
-  if (!campaign) return campaign.error();
+  TRY(const auto campaign, ViewCampaign(dir, Checked::kTotals));
   std::vector<StoredRun> runs;
   for (const RunId id : ids) {
-    Result<std::optional<StoredRun>> run = campaign->store->LoadRun(id);
-    if (!run) return run.error();
-    if (!run->has_value())
+    TRY(auto run, campaign.store->LoadRun(id));
+    if (!run.has_value())
       return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", id, dir)};
-    runs.push_back(std::move(**run));
+    runs.push_back(std::move(*run));
   }
   return runs;
 }

@@ -15,11 +15,10 @@ namespace {
 constexpr std::size_t kMostInAllPairs = 4;
 
 Result<ComparedPair> Compared(const std::vector<RunSet>& sets, std::size_t first, std::size_t second) {
-  Result<analysis::Comparison> comparison = analysis::Compare(sets[first].values, sets[second].values);
-  if (!comparison) return comparison.error();
+  TRY(auto comparison, analysis::Compare(sets[first].values, sets[second].values));
   ComparedPair pair{.first = first,
                     .second = second,
-                    .comparison = *std::move(comparison),
+                    .comparison = std::move(comparison),
                     .p_adjusted = 0.0,
                     .words = "",
                     .differences = WhatDiffers(sets[first], sets[second])};
@@ -32,9 +31,8 @@ Result<SetComparison> ComparisonOf(const std::string& scenario, std::vector<RunS
   const std::size_t count = comparison.sets.size();
   for (std::size_t first = 0; first < (count <= kMostInAllPairs ? count : 1); ++first) {
     for (std::size_t second = first + 1; second < count; ++second) {
-      Result<ComparedPair> pair = Compared(comparison.sets, first, second);
-      if (!pair) return pair.error();
-      comparison.pairs.push_back(*std::move(pair));
+      TRY(auto pair, Compared(comparison.sets, first, second));
+      comparison.pairs.push_back(std::move(pair));
     }
   }
   std::vector<double> p;
@@ -86,15 +84,14 @@ Result<SetComparisons> CompareSets(const std::vector<std::string>& names) {
   using NameAndPlugin = std::pair<std::string, std::string>;
   std::map<NameAndPlugin, std::vector<RunSet>> by_scenario;
   for (const std::string& name : names) {
-    Result<RunSet> set = ReadRunSet(name, "fitness");
-    if (!set) return set.error();
-    for (const std::string& note : set->notes) all.notes.push_back(note);
-    if (set->values.clusters.empty()) {
+    TRY(auto set, ReadRunSet(name, "fitness"));
+    for (const std::string& note : set.notes) all.notes.push_back(note);
+    if (set.values.clusters.empty()) {
       all.notes.push_back(fmt::format("{} has no run with a fitness: it is not compared", name));
       continue;
     }
-    const Experiment experiment = set->origins.empty() ? Experiment() : set->origins.front().experiment;
-    by_scenario[{experiment.scenario, experiment.scenario_plugin}].push_back(*std::move(set));
+    const Experiment experiment = set.origins.empty() ? Experiment() : set.origins.front().experiment;
+    by_scenario[{experiment.scenario, experiment.scenario_plugin}].push_back(std::move(set));
   }
   for (auto& [name_and_plugin, sets] : by_scenario) {
     const std::string& scenario = name_and_plugin.first;
@@ -105,9 +102,8 @@ Result<SetComparisons> CompareSets(const std::vector<std::string>& names) {
       }
       continue;
     }
-    Result<SetComparison> comparison = ComparisonOf(scenario, std::move(sets));
-    if (!comparison) return comparison.error();
-    all.comparisons.push_back(*std::move(comparison));
+    TRY(auto comparison, ComparisonOf(scenario, std::move(sets)));
+    all.comparisons.push_back(std::move(comparison));
   }
   return all;
 }

@@ -59,20 +59,19 @@ std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunM
 
 Result<std::vector<ShownRun>> ShowRuns(const CampaignFacts& facts, const std::vector<RunId>& ids) {
   if (ids.empty()) return std::vector<ShownRun>{};
-  Result<std::vector<StoredRun>> runs = ReadRuns(facts.directory, ids);
-  if (!runs) return runs.error();
-  std::vector<std::optional<Result<ShownRun>>> shown(runs->size());
+  TRY(auto runs, ReadRuns(facts.directory, ids));
+  std::vector<std::optional<Result<ShownRun>>> shown(runs.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
-    for (std::size_t i = next++; i < runs->size(); i = next++) {
-      const std::string& name = facts.plans.at((*runs)[i].search - 1).experiment.name;
-      shown[i] = ShowRun(name, std::move((*runs)[i]));
+    for (std::size_t i = next++; i < runs.size(); i = next++) {
+      const std::string& name = facts.plans.at(runs[i].search - 1).experiment.name;
+      shown[i] = ShowRun(name, std::move(runs[i]));
     }
   };
   {
     std::vector<std::jthread> threads;
     const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-    while (threads.size() + 1 < std::min(cores, runs->size())) threads.emplace_back(work);
+    while (threads.size() + 1 < std::min(cores, runs.size())) threads.emplace_back(work);
     work();
   }
   std::vector<ShownRun> all;

@@ -86,10 +86,11 @@ std::string AgainCommand(const CampaignFacts& facts) {
   const SearchRow& row = RowOf(facts.plans.front().experiment);
   if (facts.plans.size() != 1 || row.given_cases) return "";
   const std::string toml = PastedPath(facts.directory + "/experiment.toml");
-  if (row.info.name == "random")
-    return fmt::format("gauntlet random {} --cases {} --dir again", toml,
-                       facts.summary.progress.evaluations_planned);
-  return fmt::format("gauntlet evolve {} --dir again", toml);
+  const std::string length =
+      row.length_option.empty()
+          ? ""
+          : fmt::format(" {} {}", row.length_option, facts.summary.progress.evaluations_planned);
+  return fmt::format("gauntlet {} {}{} --dir again", row.command, toml, length);
 }
 
 std::string CommandsHtml(const CampaignFacts& facts) {

@@ -48,11 +48,10 @@ Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chos
                      const std::function<Status(const StoredRun&)>& visit) {
   SqliteStore& store = *campaign.view.store;
   for (const RunId id : chosen) {
-    const Result<std::optional<StoredRun>> run = store.LoadRun(id);
-    if (!run) return run.error();
-    if (!run->has_value())
+    TRY(const auto run, store.LoadRun(id));
+    if (!run.has_value())
       return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", id)};
-    if (Status visited = visit(**run); !visited) return visited;
+    TRY(visit(*run));
   }
   if (!chosen.empty()) return Ok{};
   for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
@@ -69,9 +68,8 @@ Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chos
 Status WriteRuns(const StoredCampaign& campaign, const std::set<RunId>& chosen, const RunTable& runs,
                  DataTable& table) {
   return ForEachChosen(campaign, chosen, [&](const StoredRun& run) -> Status {
-    const Result<std::vector<Cell>> row = runs.Row(run);
-    if (!row) return row.error();
-    return table.AddRow(*row);
+    TRY(const auto row, runs.Row(run));
+    return table.AddRow(row);
   });
 }
 
@@ -92,9 +90,8 @@ std::vector<Cell> ObstacleCells(const sim::ObstacleGene& gene, std::size_t numbe
 
 Status WriteCases(const StoredCampaign& campaign, const SearchColumns& searches, DataTable& table) {
   for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
-    const Result<std::vector<Individual>> individuals = campaign.view.store->LoadIndividuals(search);
-    if (!individuals) return individuals.error();
-    for (const Individual& individual : *individuals) {
+    TRY(const auto individuals, campaign.view.store->LoadIndividuals(search));
+    for (const Individual& individual : individuals) {
       std::vector<Cell> of_case = searches.CellsOf(search);
       of_case.insert(of_case.end(), {individual.id, std::uint64_t{individual.birth_generation},
                                      TextCell(fmt::format("{}", fmt::join(individual.parents, " "))),
@@ -107,7 +104,7 @@ Status WriteCases(const StoredCampaign& campaign, const SearchColumns& searches,
           row.insert(row.end(), obstacle.begin(), obstacle.end());
         }
         row.resize(searches.columns().size() + kCaseColumns.size());
-        if (Status written = table.AddRow(row); !written) return written;
+        TRY(table.AddRow(row));
       }
     }
   }
@@ -119,11 +116,9 @@ Result<sim::RunResult> WithWays(const StoredRun& run, std::uint64_t& simulated) 
   Result<sim::RunResult> stored = proto::DecodeStoredResult(run.result);
   if (!stored || stored->verdict != sim::Verdict::kCompleted) return stored;
   if (!stored->robots.empty() && !stored->robots.front().waypoints.empty()) return stored;
-  const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
-  if (!spec) return spec.error();
-  Result<sim::RunResult> again = SimulateInRunner(*spec);
-  if (!again) return again;
-  if (again->hash != run.hash)
+  TRY(const auto spec, proto::DecodeRunSpec(run.spec));
+  TRY(auto again, SimulateInRunner(spec));
+  if (again.hash != run.hash)
     return Error{ErrorKind::kCorrupt, "it does not end as it did; `gauntlet replay` says what differs"};
   ++simulated;
   return again;
@@ -138,8 +133,7 @@ Status WriteTrajectories(const StoredCampaign& campaign, const std::set<RunId>& 
       const std::vector<sim::Vec2>& way = result->robots[robot].waypoints;
       for (std::size_t i = 0; i < way.size(); ++i) {
         const double time = static_cast<double>(i * sim::kSummaryTicks) / sim::kTicksPerSecond;
-        const Status written = table.AddRow({run.id, std::uint64_t{robot}, time, way[i].x(), way[i].y()});
-        if (!written) return written;
+        TRY(table.AddRow({run.id, std::uint64_t{robot}, time, way[i].x(), way[i].y()}));
       }
     }
     return Ok{};
@@ -147,12 +141,11 @@ Status WriteTrajectories(const StoredCampaign& campaign, const std::set<RunId>& 
 }
 
 Status WriteEvents(const StoredCampaign& campaign, DataTable& table) {
-  const Result<std::vector<StoredEvent>> events = campaign.view.store->LoadEvents();
-  if (!events) return events.error();
-  for (const StoredEvent& event : *events) {
+  TRY(const auto events, campaign.view.store->LoadEvents());
+  for (const StoredEvent& event : events) {
     const std::string time =
         fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(event.unix_ms / 1000), event.unix_ms % 1000);
-    if (Status written = table.AddRow({time, event.kind, event.text}); !written) return written;
+    TRY(table.AddRow({time, event.kind, event.text}));
   }
   return Ok{};
 }
@@ -170,17 +163,16 @@ Result<ExportReport> WriteTable(const StoredCampaign& campaign, const ExportOpti
   const auto write = [&](const char* name, const std::vector<Column>& columns,
                          const std::function<Status(DataTable&)>& rows) -> Result<ExportReport> {
     DataTable table(options.format, columns, sink, head, name);
-    if (Status written = rows(table); !written) return written.error();
-    if (Status finished = table.Finish(); !finished) return finished.error();
+    TRY(rows(table));
+    TRY(table.Finish());
     report.rows = table.rows();
     return report;
   };
   switch (options.what) {
     case Exported::kRuns: {
-      const Result<RunTable> runs = RunTable::Make(campaign.plans, *campaign.view.store);
-      if (!runs) return runs.error();
-      return write("runs", runs->columns(),
-                   [&](DataTable& table) { return WriteRuns(campaign, options.runs, *runs, table); });
+      TRY(const auto runs, RunTable::Make(campaign.plans, *campaign.view.store));
+      return write("runs", runs.columns(),
+                   [&](DataTable& table) { return WriteRuns(campaign, options.runs, runs, table); });
     }
     case Exported::kCases: {
       const SearchColumns searches(campaign.plans);

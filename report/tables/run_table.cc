@@ -63,9 +63,8 @@ Result<std::vector<std::string>> MetricsOf(SearchId search, ResultStore& store) 
   if (!read) return read.error();
   std::vector<std::string> names;
   if (!completed) return names;
-  const Result<std::optional<StoredRun>> run = store.LoadRun(*completed);
-  if (!run) return run.error();
-  const Result<sim::RunResult> result = proto::DecodeStoredResult((*run)->result);
+  TRY(const auto run, store.LoadRun(*completed));
+  const Result<sim::RunResult> result = proto::DecodeStoredResult(run->result);
   if (!result) return InRun(*completed, result.error());
   for (const auto& [name, value] : result->metrics) names.push_back(name);
   return names;
@@ -83,9 +82,8 @@ RunColumns CommonRunColumns() {
 Result<RunTable> RunTable::Make(const std::vector<SearchPlan>& plans, ResultStore& store) {
   std::vector<std::vector<std::string>> metrics;
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    Result<std::vector<std::string>> names = MetricsOf(static_cast<SearchId>(i + 1), store);
-    if (!names) return names.error();
-    metrics.push_back(*std::move(names));
+    TRY(auto names, MetricsOf(static_cast<SearchId>(i + 1), store));
+    metrics.push_back(std::move(names));
   }
   return RunTable(plans, metrics);
 }

@@ -14,7 +14,7 @@ namespace gauntlet {
 namespace {
 
 std::vector<Key> KeysOf(const Experiment& experiment) {
-  std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  std::vector<Key> keys = BuiltInKeys();
   const auto add = [&](std::vector<Key> more) { keys.insert(keys.end(), more.begin(), more.end()); };
   if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin))
     add(ScenarioParameterKeys(*scenario));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "base/check.h"
 #include "base/number_text.h"
@@ -32,19 +34,14 @@ double Get(const Experiment& experiment, Parameter parameter) {
   return ValueOf(kArchiveParameters[parameter], experiment.search.parameters);
 }
 
-constexpr std::string_view kRandomDeletion = "random-deletion";
-
 std::string PlanOf(const Experiment& experiment) {
   return FormatCount(static_cast<std::uint64_t>(Get(experiment, kRuns))) + " runs";
 }
 
-// A case is admitted after so many failures at the earliest.
-constexpr int kFewestFailures = 3;
-
 std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
   if (std::optional<BrokenRule> cells = CheckCells(experiment)) return cells;
   const int replicates = experiment.search.replicates;
-  const int rounds = (kFewestFailures + replicates - 1) / replicates;
+  const int rounds = (ArchiveJudge::kFewestFailures + replicates - 1) / replicates;
   const double needed = ((rounds - 1) * Get(experiment, kSlots) + 1) * replicates;
   if (Get(experiment, kRuns) >= needed) return std::nullopt;
   return BrokenRule{
@@ -52,50 +49,41 @@ std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
       fmt::format("search.runs = {} cannot fill a cell: a case has to fail in {} runs, and all "
                   "search.slots = {} cases have a run before one of them has its next; use {} runs or more, "
                   "or fewer slots",
-                  Get(experiment, kRuns), kFewestFailures, Get(experiment, kSlots), needed)};
+                  Get(experiment, kRuns), ArchiveJudge::kFewestFailures, Get(experiment, kSlots), needed)};
 }
 
-// To take the place of an elite of as many obstacles: of many that are tried some fail three times by luck.
-constexpr int kFailuresToShorten = 5;
-constexpr int kMaxRuns = 8;                   // of an elite; then it is known well enough
-constexpr double kReliable = 0.6;             // of its runs an elite has to be expected to fail
-constexpr double kBeyondDoubt = 0.8;          // with less it is run again before anything new begins
-constexpr std::ptrdiff_t kMostElsewhere = 1;  // failures of a layout outside its cell, when it is admitted
-constexpr std::ptrdiff_t kEnoughWithOneElsewhere = 5;
+// Whether the axes are the coordinates of where the scenario's failures happen.
+bool ArePlaces(const std::vector<CellAxis>& axes, const controllers::ScenarioInfo& scenario) {
+  return scenario.failure_place && axes.size() == 2 && axes[0].metric == scenario.failure_place->x &&
+         axes[1].metric == scenario.failure_place->y;
+}
 
-Race Judge(const FailureTally& tally) {
-  const int passes = tally.passes + tally.errors;
-  if (tally.failures == 0 || passes >= 2) return Race::kDrop;
-  if ((tally.failures >= kFewestFailures && passes == 0) || tally.failures >= 4) return Race::kAdmit;
-  return Race::kOpen;
+// Nothing: the number is no emitter's.
+std::optional<Emitter> RestoreEmitter(CanonicalDecoder& decoder) {
+  const std::uint64_t number = decoder.Uint();
+  if (number >= kEmitters) return std::nullopt;
+  return static_cast<Emitter>(number);
 }
 
 }  // namespace
 
-std::string_view NameOf(Emitter emitter) {
-  constexpr std::array<std::string_view, kEmitters> names = {"random", "nearest",  "without", "mirrored",
-                                                             "across", "jittered", "recheck"};
-  return names[static_cast<std::size_t>(emitter)];
-}
-
-ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario)
+ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario,
+                             LinePolicy policy)
     : PopulationSearch(setup),
-      only_deletion_(setup.experiment.search.algorithm == kRandomDeletion),
+      only_deletion_(policy == LinePolicy::kDeletionOnly),
       failing_(scenario.failing),
-      requirements_(setup.requirements),
-      way_{setup.requirements.start, setup.requirements.goal},
       archive_(CellsOf(setup.experiment)),
+      places_(!only_deletion_ && ArePlaces(archive_.grid().axes(), scenario)),
+      proposer_(setup_, generator_, places_, archive_),
+      judge_(archive_, prior_, !only_deletion_),
       slots_(static_cast<std::size_t>(Get(setup.experiment, kSlots))) {
-  const std::vector<CellAxis>& axes = archive_.grid().axes();
-  places_ = !only_deletion_ && scenario.failure_place && axes.size() == 2 &&
-            axes[0].metric == scenario.failure_place->x && axes[1].metric == scenario.failure_place->y;
   for (std::size_t i = 0; i < slots_.size(); ++i) {
     BeginAnew(slots_[i]);
     waiting_.push_back(i);
   }
 }
 
-Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& setup) {
+Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& setup, LinePolicy policy) {
   const Experiment& experiment = setup.experiment;
   const controllers::ScenarioInfo* scenario =
       controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
@@ -116,8 +104,8 @@ Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& 
   double& clearance = kept_out.requirements.clearance;
   clearance = std::max(clearance, Get(setup.experiment, kKeepOut));
   sim::RandomStream random = GenomeStream(SearchSeed(setup), 1);
-  if (const auto trial = MakeGenerator(kept_out).RandomTestCase(random); !trial.ok()) return trial.error();
-  return std::unique_ptr<ArchiveSearch>(new ArchiveSearch(kept_out, *scenario));
+  TRY(MakeGenerator(kept_out).RandomTestCase(random));
+  return std::unique_ptr<ArchiveSearch>(new ArchiveSearch(kept_out, *scenario, policy));
 }
 
 std::uint64_t ArchiveSearch::Planned() const {
@@ -209,18 +197,13 @@ void ArchiveSearch::Continue(Slot& slot) {
     return BeginAnew(slot);
   }
   const bool first_run = finding.tally.runs() + finding.tally.errors == spec().replicates;
-  Race race = Judge(finding.tally);
-  if (finding.failures.empty()) race = Race::kDrop;  // nothing to say in which cell it belongs
+  Race race = ArchiveJudge::OfRuns(finding);
   if (race != Race::kDrop && !only_deletion_ && slot.emitter == Emitter::kRandom && first_run) {
     PlanNearest(slot);
     if (BeginPlanned(slot)) return;
     return BeginAnew(slot);
   }
-  if (race != Race::kDrop && !Matters(archive_.grid().CellOf(finding.Middle()), finding.size())) {
-    race = Race::kDrop;
-  }
-  if (race == Race::kAdmit) race = JudgePlace(finding);
-  if (race == Race::kAdmit && !only_deletion_) race = JudgeShortening(finding);
+  if (race != Race::kDrop) race = judge_.InItsCell(finding, Late());
   if (race == Race::kOpen) return;
   if (race == Race::kAdmit) {
     slot.plan.clear();
@@ -232,53 +215,53 @@ void ArchiveSearch::Continue(Slot& slot) {
   if (!BeginPlanned(slot)) BeginAnew(slot);
 }
 
-bool ArchiveSearch::Matters(std::size_t cell, const LayoutSize& size) const {
-  return only_deletion_ || archive_.WouldWin(cell, size);
-}
-
-Race ArchiveSearch::JudgeShortening(const Finding& finding) const {
-  const Finding* elite = archive_.EliteOf(archive_.grid().CellOf(finding.Middle()));
-  if (elite == nullptr || elite->size().obstacles != finding.size().obstacles) return Race::kAdmit;
-  if (finding.tally.failures < kFailuresToShorten) return Race::kOpen;
-  if (!Late() || prior_.Expected(finding.tally) >= prior_.Expected(elite->tally)) return Race::kAdmit;
-  return finding.tally.runs() + finding.tally.errors < kMaxRuns ? Race::kOpen : Race::kDrop;
-}
-
-Race ArchiveSearch::JudgePlace(const Finding& finding) const {
-  const std::size_t cell = archive_.grid().CellOf(finding.Middle());
-  const auto elsewhere = std::ranges::count_if(
-      finding.failures, [&](const Descriptor& failure) { return archive_.grid().CellOf(failure) != cell; });
-  if (elsewhere == 0) return Race::kAdmit;
-  if (elsewhere > kMostElsewhere) return Race::kDrop;
-  return std::ssize(finding.failures) >= kEnoughWithOneElsewhere ? Race::kAdmit : Race::kOpen;
-}
-
 void ArchiveSearch::Rechecked(Slot& slot) {
   Finding& elite = slot.finding;
-  const double expected = prior_.Expected(elite.tally);
-  const Finding* next = archive_.EliteOf(archive_.grid().CellOf(elite.Middle()));
-  const bool gives_way = Late() && next != nullptr && next->size().obstacles <= elite.size().obstacles &&
-                         expected < kBeyondDoubt && expected < prior_.Expected(next->tally);
+  const bool stays = judge_.Stays(elite, Late());
   if (Late()) elite.mirrored = false;
-  if (expected >= kReliable && !gives_way) archive_.Add(std::move(elite));
+  if (stays) archive_.Add(std::move(elite));
   UpdatePopulation();
 }
 
-void ArchiveSearch::Begin(Slot& slot, Emitter emitter, sim::Genome obstacles, IndividualId parent) {
-  slot.emitter = emitter;
+void ArchiveSearch::PlanNearest(Slot& slot) {
+  const Individual& random_case = slot.finding.individual;
+  const Descriptor& failure = slot.finding.failures.front();
+  slot.cell = archive_.grid().CellOf(failure);
+  slot.parent = random_case.id;
+  for (sim::Genome& part : proposer_.PartsNear(random_case.test_case.obstacles, failure)) {
+    slot.plan.push_back({Emitter::kNearest, std::move(part)});
+  }
+  slot.root = std::move(slot.finding);
+}
+
+void ArchiveSearch::PlanWithout(Slot& slot, const Finding& found) {
+  const sim::Genome& obstacles = found.individual.test_case.obstacles;
+  slot.cell = archive_.grid().CellOf(found.Middle());
+  slot.parent = found.individual.id;
+  if (obstacles.size() < 2 || slot.emitter == Emitter::kMirrored) return;
+  for (sim::Genome& part : proposer_.PartsWithoutOne(obstacles, found.Middle())) {
+    slot.plan.push_back({Emitter::kWithout, std::move(part)});
+  }
+}
+
+bool ArchiveSearch::Begin(Slot& slot, std::optional<Proposal> proposal) {
+  if (!proposal) return false;
+  slot.emitter = proposal->emitter;
+  if (proposal->cell) slot.cell = *proposal->cell;
   slot.finding = {};
-  slot.finding.individual = MakeIndividual(next_id_++, generator_.WithObstacles(std::move(obstacles)));
-  if (parent != 0) slot.finding.individual.parents = {parent};
-  ++accounts_[static_cast<std::size_t>(emitter)].layouts;
+  Individual& individual = slot.finding.individual;
+  individual = MakeIndividual(next_id_++, generator_.WithObstacles(std::move(proposal->obstacles)));
+  if (proposal->parent != 0) individual.parents = {proposal->parent};
+  ++accounts_[static_cast<std::size_t>(slot.emitter)].layouts;
+  return true;
 }
 
 bool ArchiveSearch::BeginPlanned(Slot& slot) {
   while (!slot.plan.empty()) {
-    Step step = std::move(slot.plan.front());
+    auto [emitter, obstacles] = std::move(slot.plan.front());
     slot.plan.pop_front();
-    if (!Matters(slot.cell, SizeOf(step.obstacles))) continue;
-    Begin(slot, step.emitter, std::move(step.obstacles), slot.parent);
-    return true;
+    if (!judge_.Matters(slot.cell, SizeOf(obstacles))) continue;
+    return Begin(slot, Proposal{emitter, std::move(obstacles), slot.parent});
   }
   if (!slot.root || !archive_.WouldWin(slot.cell, slot.root->size())) return false;
   slot.finding = *std::move(slot.root);
@@ -290,36 +273,28 @@ bool ArchiveSearch::BeginPlanned(Slot& slot) {
 void ArchiveSearch::BeginAnew(Slot& slot) {
   slot.plan.clear();
   slot.root.reset();
-  if (!only_deletion_ && BeginRecheck(slot, kBeyondDoubt)) return;
-  if (places_ && BeginMirrored(slot)) return;
+  if (!only_deletion_ && BeginRecheck(slot, ArchiveJudge::kBeyondDoubt)) return;
+  if (places_ && Begin(slot, proposer_.Mirrored())) return;
   sim::RandomStream random(search_seed_, sim::StreamPurpose::kVariation,
                            static_cast<std::uint32_t>(evaluations_done_),
                            static_cast<std::uint32_t>(&slot - slots_.data()));
   if (!only_deletion_ && BeginDrawn(slot, random)) return;
-  BeginRandom(slot, random);
+  Begin(slot, proposer_.Random(random));
 }
 
 bool ArchiveSearch::BeginDrawn(Slot& slot, sim::RandomStream& random) {
   const double draw = random.Uniform();
   const Experiment& e = setup_.experiment;
-  const double across = way_.start != way_.goal ? Get(e, kAcrossShare) : 0.0;
+  const double across = proposer_.HasWay() ? Get(e, kAcrossShare) : 0.0;
   const double jittered = across + Get(e, kJitteredShare);
   const double recheck = jittered + Get(e, kRecheckShare);
-  if (draw < across) return BeginAcross(slot, random);
+  if (draw < across) return Begin(slot, proposer_.Across(Late(), random));
   if (draw >= recheck || archive_.shelves().empty()) return false;
-  return draw < jittered ? BeginJittered(slot, random) : BeginRecheck(slot, 1.0);
+  return draw < jittered ? Begin(slot, proposer_.Jittered(random)) : BeginRecheck(slot, 1.0);
 }
 
 bool ArchiveSearch::BeginRecheck(Slot& slot, double below) {
-  const Finding* worst = nullptr;
-  double least = below;
-  for (const auto& [size, shelf] : archive_.shelves()) {
-    const Finding& elite = shelf.front();
-    const double expected = prior_.Expected(elite.tally);
-    if (elite.tally.runs() >= kMaxRuns || expected >= least) continue;
-    least = expected;
-    worst = &elite;
-  }
+  const Finding* worst = judge_.MostDoubtful(below);
   if (worst == nullptr) return false;
   slot.finding = archive_.Take(worst->individual.id);
   slot.emitter = Emitter::kRecheck;
@@ -334,6 +309,121 @@ void ArchiveSearch::UpdatePopulation() {
   }
 }
 
+void ArchiveSearch::SaveFinding(const Finding& finding, CanonicalEncoder& encoder) {
+  SaveIndividuals({finding.individual}, encoder);
+  encoder.Int(finding.tally.failures);
+  encoder.Int(finding.tally.passes);
+  encoder.Int(finding.tally.errors);
+  encoder.Bool(finding.mirrored);
+  encoder.Uint(finding.failures.size());
+  for (const Descriptor& failure : finding.failures) {
+    for (const double value : failure) encoder.Double(value);
+  }
+}
+
+Result<Finding> ArchiveSearch::RestoreFinding(CanonicalDecoder& decoder) const {
+  TRY(auto individual, RestoreIndividuals(1, next_id_, decoder));
+  Finding finding;
+  finding.individual = std::move(individual.front());
+  finding.tally.failures = static_cast<int>(decoder.Int());
+  finding.tally.passes = static_cast<int>(decoder.Int());
+  finding.tally.errors = static_cast<int>(decoder.Int());
+  finding.mirrored = decoder.Bool();
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    Descriptor& failure = finding.failures.emplace_back(archive_.grid().axes().size());
+    for (double& value : failure) value = decoder.Double();
+  }
+  return finding;
+}
+
+void ArchiveSearch::SaveSlot(const Slot& slot, CanonicalEncoder& encoder) {
+  encoder.Uint(static_cast<std::uint64_t>(slot.emitter));
+  encoder.Uint(slot.cell);
+  encoder.Uint(slot.parent);
+  SaveFinding(slot.finding, encoder);
+  encoder.Bool(slot.root.has_value());
+  if (slot.root) SaveFinding(*slot.root, encoder);
+  encoder.Uint(slot.plan.size());
+  for (const Step& step : slot.plan) {
+    encoder.Uint(static_cast<std::uint64_t>(step.emitter));
+    sim::EncodeGenome(step.obstacles, encoder);
+  }
+}
+
+Status ArchiveSearch::RestoreSlot(CanonicalDecoder& decoder, Slot& slot) const {
+  slot.plan.clear();
+  slot.root.reset();
+  const std::optional<Emitter> emitter = RestoreEmitter(decoder);
+  if (!emitter) return Damaged("a layout comes from nowhere");
+  slot.emitter = *emitter;
+  slot.cell = decoder.Uint();
+  slot.parent = decoder.Uint();
+  TRY(slot.finding, RestoreFinding(decoder));
+  if (decoder.Bool()) {
+    TRY(slot.root, RestoreFinding(decoder));
+  }
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    const std::optional<Emitter> planned = RestoreEmitter(decoder);
+    if (!planned) return Damaged("a planned layout comes from nowhere");
+    slot.plan.push_back({*planned, sim::DecodeGenome(decoder)});
+  }
+  return Ok{};
+}
+
+void ArchiveSearch::SaveRest(CanonicalEncoder& encoder) const {
+  encoder.Uint(next_id_);
+  for (const EmitterAccount& account : accounts_) {
+    encoder.Uint(account.runs);
+    encoder.Uint(account.layouts);
+    encoder.Uint(account.elites);
+  }
+  encoder.Uint(archive_.shelves().size());
+  for (const auto& [cell, shelf] : archive_.shelves()) {
+    encoder.Uint(cell);
+    encoder.Uint(shelf.size());
+    for (const Finding& finding : shelf) SaveFinding(finding, encoder);
+  }
+  for (const Slot& slot : slots_) SaveSlot(slot, encoder);
+  for (const std::size_t slot : waiting_) encoder.Uint(slot);
+  prior_.Save(encoder);
+}
+
+Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*history*/) {
+  next_id_ = decoder.Uint();
+  for (EmitterAccount& account : accounts_) {
+    account.runs = decoder.Uint();
+    account.layouts = decoder.Uint();
+    account.elites = decoder.Uint();
+  }
+  FailureArchive::Shelves shelves;
+  for (std::uint64_t left = decoder.Uint(); left > 0 && decoder.ok(); --left) {
+    std::vector<Finding>& shelf = shelves[decoder.Uint()];
+    for (std::uint64_t findings = decoder.Uint(); findings > 0 && decoder.ok(); --findings) {
+      TRY(auto finding, RestoreFinding(decoder));
+      shelf.push_back(std::move(finding));
+    }
+    if (shelf.empty()) return Damaged("a cell of its archive is empty");
+  }
+  if (!shelves.empty() && shelves.rbegin()->first >= archive_.grid().cells()) {
+    return Damaged("its archive has a cell that is none");
+  }
+  archive_.Restore(std::move(shelves));
+  for (Slot& slot : slots_) {
+    TRY(RestoreSlot(decoder, slot));
+  }
+  for (std::size_t& slot : waiting_) {
+    slot = decoder.Uint();
+    if (slot >= slots_.size()) return Damaged(fmt::format("slot {} waits", slot));
+  }
+  if (!decoder.AtEnd()) prior_.Restore(decoder);  // states of earlier versions end here
+  if (std::set<std::size_t>(waiting_.begin(), waiting_.end()).size() != slots_.size()) {
+    return Damaged("a slot does not wait");
+  }
+  asked_ = 0;
+  UpdatePopulation();
+  return Ok{};
+}
+
 SearchRow ArchiveRow() {
   return {.info = {.name = "archive",
                    .description = "many different failures, each with as few obstacles as possible",
@@ -343,14 +433,14 @@ SearchRow ArchiveRow() {
                    .check = CheckArchive},
           .number = 8,
           .title = "archive search",
-          .members = "elites",
+          .individuals = Individuals::kElites,
           .plan = PlanOf,
           .make = Make<ArchiveSearch>};
 }
 
 SearchRow RandomDeletionRow() {
   return {
-      .info = {.name = kRandomDeletion,
+      .info = {.name = "random-deletion",
                .description = "random cases and, as long as they fail, without one obstacle after the other",
                .keys = {"search.replicates", "search.cells", "search.runs", "search.slots", "search.keep_out",
                         "genome."},
@@ -358,9 +448,9 @@ SearchRow RandomDeletionRow() {
                .check = CheckArchive},
       .number = 9,
       .title = "random search with deletion",
-      .members = "elites",
+      .individuals = Individuals::kElites,
       .plan = PlanOf,
-      .make = Make<ArchiveSearch>};
+      .make = Make<ArchiveSearch, LinePolicy::kDeletionOnly>};
 }
 
 }  // namespace gauntlet

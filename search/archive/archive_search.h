@@ -11,18 +11,14 @@
 #include <string_view>
 #include <vector>
 
-#include "search/archive/archive_emitters.h"
+#include "search/archive/archive_judge.h"
 #include "search/archive/failure_archive.h"
 #include "search/archive/failure_prior.h"
+#include "search/archive/layout_proposer.h"
 #include "search/evolution/population_search.h"
-#include "search/search_table.h"
+#include "search/search_row.h"
 
 namespace gauntlet {
-
-// Where a layout came from. Saved states depend on the order.
-enum class Emitter : std::uint8_t { kRandom, kNearest, kWithout, kMirrored, kAcross, kJittered, kRecheck };
-inline constexpr std::size_t kEmitters = 7;
-std::string_view NameOf(Emitter emitter);
 
 // What an emitter has cost and given.
 struct EmitterAccount {
@@ -31,7 +27,8 @@ struct EmitterAccount {
   std::uint64_t elites = 0;  // layouts that became the smallest of their cell
 };
 
-enum class Race { kOpen, kAdmit, kDrop };
+// Which lines of layouts an archive search follows.
+enum class LinePolicy : std::uint8_t { kAll, kDeletionOnly };
 
 // search.slots layouts are under test at a time, each with one run outstanding, so what is asked depends on
 // exactly the results 1 .. k - slots, for any number of workers. A layout is dropped when its first run
@@ -44,7 +41,7 @@ enum class Race { kOpen, kAdmit, kDrop };
 // fewer than 60 % are, or when the next of their cell has as few obstacles and is expected to fail more
 // often. What is only shorter than an elite is admitted when it is expected to fail as often.
 //
-// As "random-deletion", the baseline, it knows nothing of cells: random cases alone, each run until it is
+// With kDeletionOnly, the baseline, it knows nothing of cells: random cases alone, each run until it is
 // admitted or dropped and then shortened by one obstacle, the farthest from the way first, as long as what is
 // left is admitted. The archive only collects what comes of it.
 //
@@ -52,7 +49,8 @@ enum class Race { kOpen, kAdmit, kDrop };
 class ArchiveSearch : public PopulationSearch {
  public:
   // Error: the scenario has no axes, or the ranges leave no room for a valid case.
-  static Result<std::unique_ptr<ArchiveSearch>> Create(const SearchSetup& setup);
+  static Result<std::unique_ptr<ArchiveSearch>> Create(const SearchSetup& setup,
+                                                       LinePolicy policy = LinePolicy::kAll);
 
   std::vector<EvaluationRequest> Ask() override;
   bool WantsMetrics() const override { return true; }
@@ -82,7 +80,7 @@ class ArchiveSearch : public PopulationSearch {
     IndividualId parent = 0;      // of what follows; 0 = none
   };
 
-  ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario);
+  ArchiveSearch(const SearchSetup& setup, const controllers::ScenarioInfo& scenario, LinePolicy policy);
 
   void Told(const EvaluationOutcome& outcome) override;
   void SaveRest(CanonicalEncoder& encoder) const override;
@@ -94,40 +92,18 @@ class ArchiveSearch : public PopulationSearch {
   void Count(const EvaluationOutcome& outcome, Finding& finding) const;
   // Makes the slot's next layout, when what it has is decided.
   void Continue(Slot& slot);
-  void Begin(Slot& slot, Emitter emitter, sim::Genome obstacles, IndividualId parent);
+  // False: there is no proposal.
+  bool Begin(Slot& slot, std::optional<Proposal> proposal);
   bool BeginPlanned(Slot& slot);
   void BeginAnew(Slot& slot);
   // One of the kinds of lines that have a share; false: it is not their turn, or there is nothing to begin
   // with.
   bool BeginDrawn(Slot& slot, sim::RandomStream& random);
-  void BeginRandom(Slot& slot, sim::RandomStream& random);
-  // What could be won along the shortest way through the arena.
-  double Promise(const sim::TestCase& test_case) const;
-  bool BeginMirrored(Slot& slot);
-  bool BeginAcross(Slot& slot, sim::RandomStream& random);
-  // With no more obstacles in a row than win a cell; one alone is nearly as long as any may be.
-  bool BeginNeeded(Slot& slot, sim::RandomStream& random);
-  std::uint32_t MostAcross() const;  // obstacles in a row
-  // The most obstacles that would win a cell, which is drawn from those that hold none or more than one. 0:
-  // there is none.
-  std::uint32_t DrawMostAcross(sim::RandomStream& random) const;
-  bool BeginJittered(Slot& slot, sim::RandomStream& random);
   // Of the elite that is expected to fail least, if that is less than `below`.
   bool BeginRecheck(Slot& slot, double below);
   void PlanNearest(Slot& slot);
   void PlanWithout(Slot& slot, const Finding& found);
-  // Whether it is worth knowing that a layout of this size fails in the cell.
-  bool Matters(std::size_t cell, const LayoutSize& size) const;
-  // Of what is to be admitted: when it has as many obstacles as the elite of its cell, it has to be as
-  // reliable.
-  Race JudgeShortening(const Finding& finding) const;
-  // Whether a layout that fails often enough does so in one cell.
-  Race JudgePlace(const Finding& finding) const;
   void Rechecked(Slot& slot);
-  // The obstacles in the order in which they are probably needed.
-  std::vector<std::size_t> Order(const sim::Genome& obstacles, const Descriptor& failure) const;
-  const Finding& DrawElite(sim::RandomStream& random) const;
-  const Finding* DrawEliteOfOne(sim::RandomStream& random) const;  // nullptr: there is none
   void UpdatePopulation();
   static void SaveFinding(const Finding& finding, CanonicalEncoder& encoder);
   Result<Finding> RestoreFinding(CanonicalDecoder& decoder) const;
@@ -136,11 +112,11 @@ class ArchiveSearch : public PopulationSearch {
 
   const bool only_deletion_;
   const std::string_view failing_;
-  const sim::ArenaRequirements requirements_;
-  const Way way_;
-  bool places_ = false;  // the axes are the coordinates of a place
   FailureArchive archive_;
+  const bool places_;  // the axes are the coordinates of a place
+  LayoutProposer proposer_;
   FailurePrior prior_;
+  const ArchiveJudge judge_;
   std::vector<Slot> slots_;
   std::deque<std::size_t> waiting_;  // slots whose run is asked for or about to be, in order
   std::size_t asked_ = 0;            // of waiting_, from its front

@@ -140,7 +140,7 @@ Result<std::string> ArgosControllerTable(const std::string& text, const std::str
     return ErrorAt(text, file_name, offset, message);
   };
   pugi::xml_document document;
-  if (Status parsed = Parse(text, file_name, document); !parsed) return parsed.error();
+  TRY(Parse(text, file_name, document));
   const pugi::xml_node root = document.document_element();
   if (std::string_view(root.name()) != "argos-configuration") {
     return fail(root.offset_debug(),
@@ -190,7 +190,7 @@ Result<ArgosControllers> ReadArgosControllers(const std::string& text, const std
     return ErrorAt(text, file_name, offset, message);
   };
   pugi::xml_document document;
-  if (Status parsed = Parse(text, file_name, document); !parsed) return parsed.error();
+  TRY(Parse(text, file_name, document));
   const pugi::xml_node root = document.document_element();
   const bool bare = std::string_view(root.name()) == "controllers";
   const std::vector<pugi::xml_node> sections = ElementsOf(bare ? root : root.child("controllers"));

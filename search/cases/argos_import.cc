@@ -62,9 +62,9 @@ class Importer {
     for (const pugi::xml_node child : root.children()) {
       if (child.type() == pugi::node_element && child != arena) Ignore(child.name());
     }
-    if (Status read = ReadArena(arena); !read) return read.error();
+    TRY(ReadArena(arena));
     SeparateWalls();
-    if (Status read = ReadOwn(own); !read) return read.error();
+    TRY(ReadOwn(own));
     return LoadedCase{test_case_, Notice()};
   }
 
@@ -132,18 +132,15 @@ class Importer {
   }
 
   Status ReadArena(const pugi::xml_node& arena) {
-    const Result<Triple> size = ReadTriple(arena, "size", "x,y,z in m", arena);
-    if (!size) return size.error();
-    const Result<Triple> center = ReadTripleOrZero(arena, "center", "x,y,z in m", arena);
-    if (!center) return center.error();
+    TRY(const auto size, ReadTriple(arena, "size", "x,y,z in m", arena));
+    TRY(const auto center, ReadTripleOrZero(arena, "center", "x,y,z in m", arena));
     test_case_.name = file_name_;
-    test_case_.side_x = (*size)[0];
-    test_case_.side_y = (*size)[1];
-    center_ = {(*center)[0], (*center)[1]};
+    test_case_.side_x = size[0];
+    test_case_.side_y = size[1];
+    center_ = {center[0], center[1]};
     for (const pugi::xml_node child : arena.children()) {
       if (child.type() != pugi::node_element) continue;
-      Status read = ReadEntity(child);
-      if (!read) return read;
+      TRY(ReadEntity(child));
     }
     if (robots_ > kMostRobots) {
       return Fail(arena, fmt::format("{} foot-bots; at most {} can be meant", robots_, kMostRobots));
@@ -176,49 +173,43 @@ class Importer {
     ++robots_;
     const pugi::xml_node body = node.child("body");
     if (!body) return Fail(node, fmt::format("{} has no <body>", Called(node)));
-    const Result<Triple> position = ReadTripleOrZero(body, "position", "x,y,z in m", node);
-    if (!position) return position.error();
-    const Result<double> heading = ReadHeading(body, node);
-    if (!heading) return heading.error();
-    poses_.push_back({sim::Vec2{(*position)[0], (*position)[1]} - center_, *heading});
+    TRY(const auto position, ReadTripleOrZero(body, "position", "x,y,z in m", node));
+    TRY(const auto heading, ReadHeading(body, node));
+    poses_.push_back({sim::Vec2{position[0], position[1]} - center_, heading});
     return Ok{};
   }
 
   // rad: the rotation about z, which `<body orientation>` names first, with more digits than a double has.
   Result<double> ReadHeading(const pugi::xml_node& body, const pugi::xml_node& owner) const {
-    const Result<Triple> orientation = ReadTripleOrZero(body, "orientation", "z,y,x in degrees", owner);
-    if (!orientation) return orientation.error();
+    TRY(ReadTripleOrZero(body, "orientation", "z,y,x in degrees", owner));
     const std::string_view text = body.attribute("orientation").value();
     const auto degrees = ReadNumber<long double>(text.substr(0, text.find(',')));
     return sim::WrapAngle(HeadingOf(degrees.value_or(0.0L)));
   }
 
   Status ReadBox(const pugi::xml_node& node) {
-    const Result<Triple> size = ReadTriple(node, "size", "length,width,height in m", node);
-    if (!size) return size.error();
+    TRY(const auto size, ReadTriple(node, "size", "length,width,height in m", node));
     const pugi::xml_node body = node.child("body");
     if (!body) return Fail(node, fmt::format("{} has no <body>", Called(node)));
-    const Result<Triple> position = ReadTripleOrZero(body, "position", "x,y,z in m", node);
-    if (!position) return position.error();
-    const Result<Triple> orientation = ReadTripleOrZero(body, "orientation", "z,y,x in degrees", node);
-    if (!orientation) return orientation.error();
-    if (std::fmod((*orientation)[1], 360.0) != 0.0 || std::fmod((*orientation)[2], 360.0) != 0.0) {
+    TRY(const auto position, ReadTripleOrZero(body, "position", "x,y,z in m", node));
+    TRY(const auto orientation, ReadTripleOrZero(body, "orientation", "z,y,x in degrees", node));
+    if (std::fmod(orientation[1], 360.0) != 0.0 || std::fmod(orientation[2], 360.0) != 0.0) {
       return Fail(
           body, fmt::format("{} has orientation=\"{}\": boxes may be rotated about z only, the first number",
                             Called(node), body.attribute("orientation").value()));
     }
-    double degrees = std::fmod((*orientation)[0], 360.0);
+    double degrees = std::fmod(orientation[0], 360.0);
     if (degrees < 0.0) degrees += 360.0;
     if (degrees >= 360.0) degrees = 0.0;
     Box& box = boxes_.emplace_back();
     box.id = node.attribute("id").value();
-    box.gene.x = (*position)[0] - center_.x();
-    box.gene.y = (*position)[1] - center_.y();
-    box.gene.length = (*size)[0];
-    box.gene.width = (*size)[1];
+    box.gene.x = position[0] - center_.x();
+    box.gene.y = position[1] - center_.y();
+    box.gene.length = size[0];
+    box.gene.width = size[1];
     box.gene.orientation_deg = degrees;
     if (node.attribute("movable").as_bool()) ++movable_;
-    if ((*position)[2] + (*size)[2] < kCameraHeight) ++low_;
+    if (position[2] + size[2] < kCameraHeight) ++low_;
     return Ok{};
   }
 
@@ -250,16 +241,14 @@ class Importer {
   }
 
   Status AddSpawnArea(const pugi::xml_node& position) {
-    const Result<Triple> min = ReadTriple(position, "min", "x,y,z in m", position);
-    if (!min) return min.error();
-    const Result<Triple> max = ReadTriple(position, "max", "x,y,z in m", position);
-    if (!max) return max.error();
-    if ((*min)[0] > (*max)[0] || (*min)[1] > (*max)[1]) {
+    TRY(const auto min, ReadTriple(position, "min", "x,y,z in m", position));
+    TRY(const auto max, ReadTriple(position, "max", "x,y,z in m", position));
+    if (min[0] > max[0] || min[1] > max[1]) {
       return Fail(position,
                   fmt::format("<position> has min=\"{}\" beyond max=\"{}\"",
                               position.attribute("min").value(), position.attribute("max").value()));
     }
-    sim::Rectangle area{sim::Vec2{(*min)[0], (*min)[1]} - center_, sim::Vec2{(*max)[0], (*max)[1]} - center_};
+    sim::Rectangle area{sim::Vec2{min[0], min[1]} - center_, sim::Vec2{max[0], max[1]} - center_};
     if (test_case_.spawn_area) {
       area.min = area.min.cwiseMin(test_case_.spawn_area->min);
       area.max = area.max.cwiseMax(test_case_.spawn_area->max);
@@ -320,26 +309,23 @@ class Importer {
   Status ReadOwn(const pugi::xml_node& own) {
     if (const pugi::xml_attribute name = own.attribute("name")) test_case_.name = name.value();
     if (own.attribute("spawn_area")) {
-      const auto area = ReadNumbers<4>(own, "spawn_area", "min x,min y,max x,max y in m", own);
-      if (!area) return area.error();
-      test_case_.spawn_area = sim::Rectangle{{(*area)[0], (*area)[1]}, {(*area)[2], (*area)[3]}};
+      TRY(const auto area, ReadNumbers<4>(own, "spawn_area", "min x,min y,max x,max y in m", own));
+      test_case_.spawn_area = sim::Rectangle{{area[0], area[1]}, {area[2], area[3]}};
     }
     for (const pugi::xml_node obstacle : own.children("obstacle")) {
       const auto found = std::ranges::find(obstacle_ids_, obstacle.attribute("id").value());
       if (found == obstacle_ids_.end())
         return Fail(obstacle,
                     fmt::format("{} of <{}> is no box of the arena", Called(obstacle), kOwnElement));
-      Status read = ReadMotionAndLight(
-          obstacle, test_case_.obstacles[static_cast<std::size_t>(found - obstacle_ids_.begin())]);
-      if (!read) return read;
+      TRY(ReadMotionAndLight(obstacle,
+                             test_case_.obstacles[static_cast<std::size_t>(found - obstacle_ids_.begin())]));
     }
     return Ok{};
   }
 
   Status ReadMotionAndLight(const pugi::xml_node& node, sim::ObstacleGene& obstacle) const {
-    const auto numbers = ReadNumbers<1>(node, "speed", "m/s", node);
-    if (!numbers) return numbers.error();
-    obstacle.speed = (*numbers)[0];
+    TRY(const auto numbers, ReadNumbers<1>(node, "speed", "m/s", node));
+    obstacle.speed = numbers[0];
     const std::optional<sim::Color> light = sim::ColorNamed(node.attribute("light").value());
     if (!light) {
       return Fail(node, fmt::format("{} has light=\"{}\", expected one of {}", Called(node),
@@ -349,9 +335,9 @@ class Importer {
     const std::string_view path = node.attribute("path").value();
     for (std::size_t begin = 0; begin < path.size();) {
       const std::size_t end = std::min(path.find(' ', begin), path.size());
-      const auto point = NumbersIn<2>(path.substr(begin, end - begin), node, "path", "x,y x,y in m", node);
-      if (!point) return point.error();
-      obstacle.path.emplace_back((*point)[0], (*point)[1]);
+      TRY(const auto point,
+          NumbersIn<2>(path.substr(begin, end - begin), node, "path", "x,y x,y in m", node));
+      obstacle.path.emplace_back(point[0], point[1]);
       begin = end + 1;
     }
     return Ok{};

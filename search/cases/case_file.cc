@@ -44,18 +44,15 @@ bool IsArgos(const std::filesystem::path& path, const std::string& text) {
 }  // namespace
 
 Result<LoadedCase> LoadCase(const std::filesystem::path& path) {
-  const Result<std::string> text = ReadFile(path);
-  if (!text) return text.error();
+  TRY(const auto text, ReadFile(path));
   LoadedCase loaded;
-  if (IsArgos(path, *text)) {
-    Result<LoadedCase> imported = ParseArgos(*text, path.string());
-    if (!imported) return imported.error();
-    loaded = std::move(*imported);
+  if (IsArgos(path, text)) {
+    TRY(loaded, ParseArgos(text, path.string()));
     loaded.test_case.name = path.filename().string();
   } else {
-    Result<proto::CaseDocument> parsed = proto::ParseCaseDocument(*text, path.string());
+    Result<proto::CaseDocument> parsed = proto::ParseCaseDocument(text, path.string());
     if (!parsed) {
-      Result<CorpusCase> kept = ParseCorpusCase(*text, path.string());
+      Result<CorpusCase> kept = ParseCorpusCase(text, path.string());
       if (!kept) return parsed.error();
       parsed = std::move(kept->document);
     }

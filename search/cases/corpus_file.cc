@@ -121,31 +121,26 @@ std::string WriteCorpusCase(const CorpusCase& one) {
 }
 
 Result<CorpusCase> ParseCorpusCase(const std::string& text, const std::string& file_name) {
-  const Result<nlohmann::json> json = ParseJson(text, file_name);
-  if (!json) return json.error();
-  if (const Status keys = CheckKeys(*json, file_name); !keys) return keys.error();
+  TRY(const auto json, ParseJson(text, file_name));
+  TRY(CheckKeys(json, file_name));
   CorpusCase one;
-  one.name = TextAt(*json, "name");
+  one.name = TextAt(json, "name");
   const bool names_a_file =
       !one.name.empty() && one.name.front() != '.' &&
       std::ranges::none_of(one.name, [](unsigned char c) { return c == '/' || c < ' '; });
   if (!names_a_file) {
     return Wrong(file_name, fmt::format("name = '{}': a text that can name a file is needed", one.name));
   }
-  one.expected = TextAt(*json, "expected");
+  one.expected = TextAt(json, "expected");
   if (std::ranges::find(kExpectations, one.expected) == std::end(kExpectations)) {
     return Wrong(file_name, fmt::format("expected = '{}': one of fail, flaky, pass is needed", one.expected));
   }
-  if (json->contains("found_in") && !(*json)["found_in"].is_string())
+  if (json.contains("found_in") && !json["found_in"].is_string())
     return Wrong(file_name, "found_in is no text");
-  one.found_in = TextAt(*json, "found_in");
-  if (const Status found = ReadFound(*json, file_name, one); !found) return found.error();
-  if (const Status settings = ReadSettings((*json)["experiment"], file_name, one); !settings)
-    return settings.error();
-  Result<proto::CaseDocument> document =
-      proto::ParseCaseDocument((*json)["case"].dump(), file_name + ": case");
-  if (!document) return document.error();
-  one.document = *std::move(document);
+  one.found_in = TextAt(json, "found_in");
+  TRY(ReadFound(json, file_name, one));
+  TRY(ReadSettings(json["experiment"], file_name, one));
+  TRY(one.document, proto::ParseCaseDocument(json["case"].dump(), file_name + ": case"));
   return one;
 }
 
@@ -175,21 +170,19 @@ Result<std::vector<CorpusEntry>> ReadCorpus(const std::string& directory) {
   std::vector<CorpusEntry> corpus;
   std::map<std::string, std::string> file_of;
   for (const std::string& file : files) {
-    const Result<std::string> text = ReadSmallFile(file, kMostCorpusBytes);
-    if (!text) return text.error();
-    Result<CorpusCase> one = ParseCorpusCase(*text, file);
-    if (!one) return one.error();
-    const auto [other, is_new] = file_of.try_emplace(one->name, file);
+    TRY(const auto text, ReadSmallFile(file, kMostCorpusBytes));
+    TRY(auto one, ParseCorpusCase(text, file));
+    const auto [other, is_new] = file_of.try_emplace(one.name, file);
     if (!is_new) {
       return InvalidInput(Printable(fmt::format(
-          "{} and {} are both called '{}': give one of them another name", other->second, file, one->name)));
+          "{} and {} are both called '{}': give one of them another name", other->second, file, one.name)));
     }
-    if (!corpus.empty() && SettingOf(corpus.front().content, "scenario") != SettingOf(*one, "scenario")) {
+    if (!corpus.empty() && SettingOf(corpus.front().content, "scenario") != SettingOf(one, "scenario")) {
       return InvalidInput(Printable(fmt::format(
           "{} is of the scenario '{}', {} of '{}': a corpus holds cases of one scenario", corpus.front().file,
-          SettingOf(corpus.front().content, "scenario"), file, SettingOf(*one, "scenario"))));
+          SettingOf(corpus.front().content, "scenario"), file, SettingOf(one, "scenario"))));
     }
-    corpus.push_back({file, *std::move(one)});
+    corpus.push_back({file, std::move(one)});
   }
   return corpus;
 }

@@ -15,9 +15,8 @@ std::vector<std::pair<std::string, double>> BreedingSearch::Statistics() const {
 Result<std::vector<Individual>> BreedingSearch::InitialPopulation() const {
   std::vector<Individual> population;
   for (IndividualId id = 1; id <= PopulationSize(); ++id) {
-    Result<sim::TestCase> test_case = DrawCase(id);
-    if (!test_case.ok()) return test_case.error();
-    population.push_back(MakeIndividual(id, std::move(*test_case)));
+    TRY(auto test_case, DrawCase(id));
+    population.push_back(MakeIndividual(id, std::move(test_case)));
   }
   return population;
 }

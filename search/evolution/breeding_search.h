@@ -12,7 +12,6 @@
 
 #include "search/evolution/population_search.h"
 #include "search/evolution/variation.h"
-#include "search/search_table.h"
 
 namespace gauntlet {
 

@@ -14,9 +14,7 @@ Result<std::unique_ptr<GeneticAlgorithm>> GeneticAlgorithm::Create(const SearchS
   const int size = setup.experiment.search.population;
   GAUNTLET_CHECK(size >= 4 && size % 2 == 0, fmt::format("population {}", size));
   std::unique_ptr<GeneticAlgorithm> search(new GeneticAlgorithm(setup));
-  Result<std::vector<Individual>> population = search->InitialPopulation();
-  if (!population.ok()) return population.error();
-  search->population_ = std::move(*population);
+  TRY(search->population_, search->InitialPopulation());
   search->next_id_ += search->PopulationSize();
   return search;
 }
@@ -113,9 +111,7 @@ void GeneticAlgorithm::SaveRest(CanonicalEncoder& encoder) const {
 Status GeneticAlgorithm::RestoreRest(CanonicalDecoder& decoder, const History& /*history*/) {
   generation_ = static_cast<std::uint32_t>(decoder.Uint());
   RestoreBirths(decoder);
-  Result<std::vector<Individual>> population = RestoreIndividuals(PopulationSize(), next_id_, decoder);
-  if (!population) return population.error();
-  population_ = *std::move(population);
+  TRY(population_, RestoreIndividuals(PopulationSize(), next_id_, decoder));
   return Ok{};
 }
 
@@ -129,7 +125,7 @@ SearchRow GeneticRow() {
                    .check = CheckBreeding},
           .number = 0,
           .title = "genetic search",
-          .members = "population",
+          .individuals = Individuals::kPopulation,
           .plan =
               [](const Experiment& e) {
                 return fmt::format("{} test cases x {} generation{}", e.search.population,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "search/evolution/breeding_search.h"
+#include "search/search_row.h"
 
 namespace gauntlet {
 

@@ -9,7 +9,7 @@
 
 #include "base/check.h"
 #include "search/failure_tally.h"
-#include "search/search_table.h"
+#include "search/search_row.h"
 #include "sim/arena/genome.h"
 
 namespace gauntlet {
@@ -101,9 +101,8 @@ PopulationSearch::PopulationSearch(const SearchSetup& setup)
     : setup_(setup),
       generator_(MakeGenerator(setup)),
       search_seed_(SearchSeed(setup)),
-      objective_(Reads(RowOf(setup.experiment).info, "search.objective")
-                     ? ObjectiveOf(setup.experiment.search)
-                     : Objective::kFitness),
+      objective_(Reads(setup.row->info, "search.objective") ? ObjectiveOf(setup.experiment.search)
+                                                            : Objective::kFitness),
       identity_(SearchIdentity(setup)) {}
 
 Individual PopulationSearch::MakeIndividual(IndividualId id, sim::TestCase test_case) {
@@ -198,8 +197,8 @@ Status PopulationSearch::Restore(CanonicalDecoder& decoder, const History& histo
   evaluations_done_ = decoder.Uint();
   if (const std::uint64_t planned = Progress().evaluations_planned; evaluations_done_ > planned) {
     std::string length;
-    for (const Key& key : CommonKeys(BuiltInCatalogue())) {
-      if (key.path != RowOf(setup_.experiment).info.length) continue;
+    for (const Key& key : setup_.keys) {
+      if (key.path != setup_.row->info.length) continue;
       length = fmt::format(": {} = {}", key.path, ToToml(key.get(setup_.experiment)));
     }
     return InvalidInput(
@@ -207,7 +206,7 @@ Status PopulationSearch::Restore(CanonicalDecoder& decoder, const History& histo
                     evaluations_done_, planned, length));
   }
   newborns_.clear();
-  if (Status rest = RestoreRest(decoder, history); !rest) return rest;
+  TRY(RestoreRest(decoder, history));
   return decoder.ok() ? Status(Ok{}) : Damaged("it is cut off");
 }
 

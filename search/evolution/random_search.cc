@@ -23,7 +23,7 @@ std::uint64_t PlannedCases(const Experiment& experiment) {
 Result<std::unique_ptr<RandomSearch>> RandomSearch::Create(const SearchSetup& setup) {
   std::unique_ptr<RandomSearch> search(new RandomSearch(setup));
   for (IndividualId id = 1; id <= std::min(kTrialCases, search->Planned()); ++id) {
-    if (const auto trial = search->DrawCase(id); !trial.ok()) return trial.error();
+    TRY(search->DrawCase(id));
   }
   return search;
 }
@@ -85,9 +85,10 @@ SearchRow RandomRow() {
                    .check = CheckObjective},
           .number = 1,
           .title = "random search",
-          .members = "cases",
           .plan = [](const Experiment& e) { return FormatCount(PlannedCases(e)) + " test cases"; },
-          .make = Make<RandomSearch>};
+          .make = Make<RandomSearch>,
+          .command = "random",
+          .length_option = "--cases"};
 }
 
 }  // namespace gauntlet

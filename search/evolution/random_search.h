@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "search/evolution/population_search.h"
-#include "search/search_table.h"
+#include "search/search_row.h"
 
 namespace gauntlet {
 

@@ -44,9 +44,7 @@ Result<std::unique_ptr<SteadyStateSearch>> SteadyStateSearch::Create(const Searc
   const std::optional<BrokenRule> broken = CheckSteadyState(setup.experiment);
   GAUNTLET_CHECK(!broken, broken->message);
   std::unique_ptr<SteadyStateSearch> search(new SteadyStateSearch(setup));
-  Result<std::vector<Individual>> initial = search->InitialPopulation();
-  if (!initial.ok()) return initial.error();
-  search->initial_ = std::move(*initial);
+  TRY(search->initial_, search->InitialPopulation());
   search->Release();
   return search;
 }
@@ -116,14 +114,10 @@ Status SteadyStateSearch::RestoreRest(CanonicalDecoder& decoder, const History& 
   if (next_id_ != evaluations_done_ + Lag() + 1) {
     return Damaged("its numbers contradict each other");
   }
-  Result<std::vector<Individual>> population =
-      RestoreIndividuals(std::min(evaluations_done_, PopulationSize()), evaluations_done_ + 1, decoder);
-  if (!population) return population.error();
-  population_ = *std::move(population);
-  Result<std::vector<Individual>> waiting =
-      RestoreIndividuals(next_id_ - evaluations_done_ - 1, next_id_, decoder);
-  if (!waiting) return waiting.error();
-  waiting_.assign(std::make_move_iterator(waiting->begin()), std::make_move_iterator(waiting->end()));
+  TRY(population_,
+      RestoreIndividuals(std::min(evaluations_done_, PopulationSize()), evaluations_done_ + 1, decoder));
+  TRY(auto waiting, RestoreIndividuals(next_id_ - evaluations_done_ - 1, next_id_, decoder));
+  waiting_.assign(std::make_move_iterator(waiting.begin()), std::make_move_iterator(waiting.end()));
   for (std::size_t i = 0; i < waiting_.size(); ++i) {
     if (waiting_[i].id != evaluations_done_ + 1 + i) {
       return Damaged(fmt::format("individual {} waits", waiting_[i].id));
@@ -141,7 +135,7 @@ SearchRow SteadyStateRow() {
                    .check = CheckSteadyState},
           .number = 0,  // the first population is that of the genetic search
           .title = "steady-state genetic search",
-          .members = "population",
+          .individuals = Individuals::kPopulation,
           .plan =
               [](const Experiment& e) {
                 const auto cases = static_cast<std::uint64_t>(e.search.population) *

@@ -75,7 +75,7 @@ Result<std::string> ReadDefinition(std::span<const Assignment> assignments, cons
   DefinitionReader reader;
   for (const Assignment& assignment : assignments) {
     if (!assignment.path.starts_with(kBegin)) continue;
-    if (const Status set = Set(assignment, reader); !set.ok()) return set.error();
+    TRY(Set(assignment, reader));
   }
   Result<std::string> text = reader.Text();
   if (!text.ok()) return InvalidInput(fmt::format("{}: {}", file_name, text.error().message));

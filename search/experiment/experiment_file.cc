@@ -109,10 +109,10 @@ class Reader {
     for (Key& key : CommonKeys(catalogue_)) AddWithDefault(std::move(key));
     AddWithDefault(PluginKey());
     AddWithDefault(ScenarioPluginKey());
-    if (Status status = AssignAll(/*base=*/true); !status.ok()) return status.error();
-    if (Status status = ResolveNames(); !status.ok()) return status.error();
-    if (Status status = AssignAll(/*base=*/false); !status.ok()) return status.error();
-    if (Status status = Define(); !status.ok()) return status.error();
+    TRY(AssignAll(/*base=*/true));
+    TRY(ResolveNames());
+    TRY(AssignAll(/*base=*/false));
+    TRY(Define());
     if (experiment_.name.empty()) experiment_.name = NameFromFile(file_name_);
     if (const std::optional<BrokenRule> broken = CheckRules(experiment_, catalogue_)) {
       return InvalidInput(fmt::format("{}: {}", PlaceOf(broken->path), broken->message));
@@ -126,7 +126,7 @@ class Reader {
     for (const Assignment& assignment : assignments_) {
       const bool is_base = std::ranges::count(kBaseKeys, assignment.path) > 0;
       if (base != is_base || InDefinition(assignment.path)) continue;
-      if (Status status = Assign(assignment); !status.ok()) return status;
+      TRY(Assign(assignment));
     }
     return Ok{};
   }
@@ -220,18 +220,14 @@ class Reader {
       return InvalidInput(fmt::format("{}: scenario is missing; known: {}", PlaceOf("scenario"),
                                       NamesOf(catalogue_.scenarios)));
     }
-    const auto named = ResolveRow<controllers::ScenarioInfo>(
-        "scenario", experiment_.scenario, catalogue_.scenarios, &controllers::PluginInfo::scenarios,
-        experiment_.scenario_plugin);
-    if (!named) return named.error();
-    scenario_ = *named;
+    TRY(scenario_, ResolveRow<controllers::ScenarioInfo>(
+                       "scenario", experiment_.scenario, catalogue_.scenarios,
+                       &controllers::PluginInfo::scenarios, experiment_.scenario_plugin));
     const controllers::ScenarioInfo* scenario = scenario_;
     if (experiment_.controller.empty()) experiment_.controller = scenario->default_controller;
-    const auto found =
+    TRY(const auto controller,
         ResolveRow<controllers::ControllerInfo>("controller", experiment_.controller, catalogue_.controllers,
-                                                &controllers::PluginInfo::controllers, experiment_.plugin);
-    if (!found) return found.error();
-    const controllers::ControllerInfo* controller = *found;
+                                                &controllers::PluginInfo::controllers, experiment_.plugin));
     if (!scenario->Takes(*controller)) {
       return InvalidInput(fmt::format("{}: controller '{}' is written for the scenario '{}', not for '{}'",
                                       PlaceOf("controller"), controller->name, controller->scenario,
@@ -245,9 +241,7 @@ class Reader {
   // What [generic] says, of the scenario that it is for.
   Status Define() {
     if (scenario_->check_definition) {
-      Result<std::string> definition = ReadDefinition(assignments_, file_name_);
-      if (!definition.ok()) return definition.error();
-      experiment_.definition = *std::move(definition);
+      TRY(experiment_.definition, ReadDefinition(assignments_, file_name_));
       return Ok{};
     }
     const auto stray = std::ranges::find_if(assignments_, InDefinition, &Assignment::path);

@@ -41,12 +41,11 @@ Result<std::vector<CellAxis>> ParseCells(const std::string& text, const controll
   double cells = 1.0;
   std::istringstream stream(text);
   for (std::string word; stream >> word;) {
-    Result<CellAxis> axis = ParseAxis(word, scenario);
-    if (!axis) return axis.error();
-    if (std::ranges::find(axes, axis->metric, &CellAxis::metric) != axes.end())
-      return InvalidInput(fmt::format("search.cells: '{}' stands twice", axis->metric));
-    cells *= axis->parts;
-    axes.push_back(*std::move(axis));
+    TRY(auto axis, ParseAxis(word, scenario));
+    if (std::ranges::find(axes, axis.metric, &CellAxis::metric) != axes.end())
+      return InvalidInput(fmt::format("search.cells: '{}' stands twice", axis.metric));
+    cells *= axis.parts;
+    axes.push_back(std::move(axis));
   }
   if (cells > kMostCells)
     return InvalidInput(fmt::format("search.cells: {} cells; {} are the most", cells, kMostCells));

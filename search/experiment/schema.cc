@@ -55,6 +55,16 @@ Key FieldKey(const std::string& path, const std::string& description) {
   return key;
 }
 
+Key ForPeople(Key key) {
+  key.for_people = true;
+  return key;
+}
+
+Key CameLater(Key key) {
+  key.came_later = true;
+  return key;
+}
+
 // The same of numbers, whole ones and others.
 template <auto... Path>
 Key NumberKey(const std::string& path, const std::string& unit, double min, double max,
@@ -218,11 +228,10 @@ std::vector<Key> ParameterKeys(std::string_view table, std::span<const controlle
   return keys;
 }
 
-// Of what all searches together read.
+// Of what all searches together read of their own table.
 std::vector<Key> SearchKeys(const Catalogue& catalogue) {
   constexpr auto kSearch = &Experiment::search;
   std::vector<Key> keys = {
-      AlgorithmKey(catalogue),
       NumberKey<kSearch, &SearchSpec::population>("search.population", "", 4, 10000,
                                                   "individuals, an even number (thesis Table 4.1)"),
       NumberKey<kSearch, &SearchSpec::generations>("search.generations", "", 1, 1e6,
@@ -239,13 +248,13 @@ std::vector<Key> SearchKeys(const Catalogue& catalogue) {
       ChoiceKey<kSearch, &SearchSpec::reevaluation>(
           "search.reevaluation", {"scheme", "population", "children"},
           "who is simulated in a generation; scheme = the children in AllParent-BestHalf, else everybody"),
-      FieldKey<kSearch, &SearchSpec::cells>(
+      CameLater(FieldKey<kSearch, &SearchSpec::cells>(
           "search.cells",
           "METRIC:FROM:TO:PARTS, with spaces between several: how failures are told apart, instead of the "
-          "scenario's own cells"),
+          "scenario's own cells")),
       ChoiceKey<kSearch, &SearchSpec::aggregation>("search.fitness_aggregation", {"mean", "last"},
                                                    "how an individual's evaluations make its fitness"),
-      ObjectiveKey(),
+      CameLater(ObjectiveKey()),
       NumberKey<kSearch, &SearchSpec::replicates>("search.replicates", "", 1, 10000,
                                                   "runs per evaluation, each with its own seed"),
       NumberKey<kSearch, &SearchSpec::variation_tries>(
@@ -260,16 +269,19 @@ std::vector<Key> SearchKeys(const Catalogue& catalogue) {
   return keys;
 }
 
-// Of arena and genomes.
-std::vector<Key> GenomeKeys() {
+std::vector<Key> ArenaKeys() {
   constexpr auto kArena = &Experiment::arena;
-  constexpr auto kGenome = &Experiment::genome;
   return {
       NumberKey<kArena, &ArenaSpec::side>("arena.side", "m", 1.0, 50.0,
                                           "between the centre lines of opposite walls (thesis 4.5.3)"),
       NumberKey<kArena, &ArenaSpec::wall_thickness>("arena.wall_thickness", "m", 0.01, 1.0,
                                                     "half of it stands inside the centre lines"),
+  };
+}
 
+std::vector<Key> GenomeKeys() {
+  constexpr auto kGenome = &Experiment::genome;
+  return {
       NumberKey<kGenome, &GenomeSpec::genes>("genome.genes", "", 0, 64,
                                              "obstacles per test case (thesis Table 4.1)"),
       NumberKey<kGenome, &GenomeSpec::position_min>("genome.position_min", "m", -25.0, 25.0,
@@ -302,25 +314,35 @@ std::vector<Key> GenomeKeys() {
 
 std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   std::vector<Key> keys = {
-      FieldKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -"),
-      FieldKey<&Experiment::description>("description", "one line for people"),
+      ForPeople(
+          FieldKey<&Experiment::name>("name", "names the campaign's folder; letters, digits and . _ -")),
+      ForPeople(FieldKey<&Experiment::description>("description", "one line for people")),
       NumberKey<&Experiment::seed>("seed", "", 0.0, 18446744073709551615.0,
                                    "all seeds of test cases, variation and runs derive from it"),
       FieldKey<&Experiment::scenario>("scenario", "what the swarm has to do"),
       FieldKey<&Experiment::controller>("controller",
                                         "the algorithm under test; default: the scenario's own"),
       PhysicsKey(),
-      FaultsKey(),
   };
-  for (std::vector<Key>& more : std::array{GenomeKeys(), SearchKeys(catalogue), NoiseKeys()}) {
-    std::move(more.begin(), more.end(), std::back_inserter(keys));
-  }
-  keys.push_back(FieldKey<&Experiment::store, &StoreSpec::trajectories>(
-      "store.trajectories",
-      "keep every robot's way and the annotations of each run; without them replay computes them anew"));
+  const auto add = [&](std::vector<Key> more, bool Key::*flag) {
+    for (Key& key : more) {
+      if (flag != nullptr) key.*flag = true;
+      keys.push_back(std::move(key));
+    }
+  };
+  add({FaultsKey()}, &Key::disturbs);
+  add(ArenaKeys(), nullptr);
+  add(GenomeKeys(), &Key::of_searches);
+  add({AlgorithmKey(catalogue)}, nullptr);
+  add(SearchKeys(catalogue), &Key::of_searches);
+  add(NoiseKeys(), &Key::disturbs);
+  add({FieldKey<&Experiment::store, &StoreSpec::trajectories>(
+          "store.trajectories",
+          "keep every robot's way and the annotations of each run; without them replay computes them anew")},
+      &Key::for_people);
   for (Key& key : keys) {
     key.default_value = key.get(Experiment{});
-    key.for_people = key.path == "name" || key.path == "description" || key.path.starts_with("store.");
+    key.came_later = key.came_later || key.disturbs;
   }
   return keys;
 }
@@ -360,10 +382,6 @@ std::string_view NameOf(KeyType type) {
 double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& given) {
   const auto found = given.find(std::string(info.name));
   return found == given.end() ? info.default_value : found->second;
-}
-
-bool IsDisturbance(const Key& key) {
-  return key.path == "faults" || key.path.starts_with("noise.");
 }
 
 bool Reads(const SearchInfo& search, std::string_view path) {

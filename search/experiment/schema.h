@@ -40,7 +40,10 @@ struct Key {
   std::vector<std::string> unlisted_choices = {};  // taken as well, named nowhere
   std::string description;                         // one line
   KeyValue default_value;
-  bool for_people = false;  // has no influence on any run
+  bool for_people = false;   // has no influence on any run
+  bool of_searches = false;  // has none where the search does not read it (Reads)
+  bool disturbs = false;     // says what is wrong with robots: "faults", "noise.DEVICE.NAME"
+  bool came_later = false;   // than stored campaigns: left out of identities where it has its default
   std::function<std::optional<std::string>(const KeyValue&)>
       check;  // what is wrong with a text; may be empty
   std::function<KeyValue(const Experiment&)> get;
@@ -80,8 +83,6 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue);
 Key PluginKey();
 // "scenario_plugin": the one that brings the scenario. Likewise.
 Key ScenarioPluginKey();
-// Whether the key is about what is wrong with robots: "faults", "noise.DEVICE.NAME".
-bool IsDisturbance(const Key& key);
 // A parameter's value, or its default when it was not given.
 double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& given);
 // One key per parameter: "scenario_parameters.NAME" and "controller_parameters.NAME".

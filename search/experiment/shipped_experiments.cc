@@ -76,16 +76,14 @@ std::vector<ShippedExperiment> ListExperiments(const Catalogue& catalogue) {
 
 Result<Experiment> LoadExperiment(const std::string& name_or_path, const std::vector<std::string>& sets,
                                   const Catalogue& catalogue) {
-  const Result<ExperimentText> source = ReadExperimentText(name_or_path);
-  if (!source) return source.error();
-  return ParseExperiment(source->text, source->file_name, sets, catalogue);
+  TRY(const auto source, ReadExperimentText(name_or_path));
+  return ParseExperiment(source.text, source.file_name, sets, catalogue);
 }
 
 Result<ExperimentText> ReadExperimentText(const std::string& name_or_path) {
   const auto read = [](const fs::path& path) -> Result<ExperimentText> {
-    Result<std::string> text = ReadFile(path);
-    if (!text) return text.error();
-    return ExperimentText{*std::move(text), path.string()};
+    TRY(auto text, ReadFile(path));
+    return ExperimentText{std::move(text), path.string()};
   };
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
     return read(name_or_path);

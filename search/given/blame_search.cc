@@ -36,7 +36,6 @@ SearchRow BlameRow() {
                    .parameters = kBlameParameters},
           .number = 6,
           .title = "blame of obstacles",
-          .members = "cases",
           .plan = [](const Experiment& e) { return fmt::format("{} runs of each part", PartRuns(e)); },
           .make = Make<BlameSearch>,
           .purpose = sim::SeedPurpose::kBlame,

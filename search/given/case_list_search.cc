@@ -46,11 +46,11 @@ SearchRow CaseListRow() {
                    .keys = {"search.replicates"}},
           .number = 2,
           .title = "given cases",
-          .members = "cases",
           .plan = [](const Experiment& e) { return fmt::format("{} runs each", e.search.replicates); },
           .make = Make<CaseListSearch>,
           .purpose = sim::SeedPurpose::kEvaluate,
           .given_cases = true,
+          .command = "evaluate",
           .seeds_of_cases = true};
 }
 
@@ -60,11 +60,12 @@ SearchRow ResimulationRow() {
                    .keys = {"search.replicates"}},
           .number = 3,
           .title = "a population simulated again",
-          .members = "population",
+          .individuals = Individuals::kPopulation,
           .plan = [](const Experiment& e) { return fmt::format("{} runs each", e.search.replicates); },
           .make = Make<CaseListSearch>,
           .purpose = sim::SeedPurpose::kFinalResimulation,
-          .given_cases = true};
+          .given_cases = true,
+          .command = "evaluate"};
 }
 
 }  // namespace gauntlet

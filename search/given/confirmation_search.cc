@@ -110,7 +110,6 @@ SearchRow ConfirmationRow() {
                    .parameters = kConfirmationParameters},
           .number = 4,
           .title = "confirmation of cases",
-          .members = "cases",
           .plan = Plan,
           .make = Make<ConfirmationSearch>,
           .purpose = sim::SeedPurpose::kConfirm,

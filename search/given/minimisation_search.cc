@@ -34,7 +34,6 @@ SearchRow MinimisationRow() {
                    .parameters = kMinimisationParameters},
           .number = 5,
           .title = "minimisation of cases",
-          .members = "cases",
           .plan = [](const Experiment&) { return std::string("about 100 runs each"); },
           .make = Make<MinimisationSearch>,
           .purpose = sim::SeedPurpose::kMinimise,

@@ -5,7 +5,7 @@
 
 #include "search/given/case_minimiser.h"
 #include "search/given/layout_search.h"
-#include "search/search_table.h"
+#include "search/search_row.h"
 
 namespace gauntlet {
 

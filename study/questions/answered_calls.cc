@@ -40,20 +40,17 @@ bool HasNothingYet(const Error& error) {
 
 Status ForEachAnswer(const std::string& directory,
                      const std::function<Status(const AnsweredSearch& answered)>& visit) {
-  const Result<CampaignView> campaign = ViewCampaign(directory);
-  if (!campaign) return campaign.error();
-  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-  if (!plans) return plans.error();
-  ResultStore& store = *campaign->store;
-  for (std::size_t i = 0; i < plans->size(); ++i) {
+  TRY(const auto campaign, ViewCampaign(directory));
+  TRY(const auto plans, ReadSearchPlans(campaign.directory));
+  ResultStore& store = *campaign.store;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
-    const Experiment& experiment = (*plans)[i].experiment;
-    const auto search = MakeStoredSearch(experiment, id, store);
-    if (!search) return search.error();
-    if (const auto restored = RestoreSearch(id, store, **search); !restored) return restored.error();
-    if (!(*search)->Progress().finished) continue;
+    const Experiment& experiment = plans[i].experiment;
+    TRY(const auto search, MakeStoredSearch(experiment, id, store));
+    TRY(RestoreSearch(id, store, *search));
+    if (!search->Progress().finished) continue;
     const auto first_message = [&store, id](IndividualId one) { return FirstMessage(store, id, one); };
-    if (Status visited = visit({id, experiment, **search, store, first_message}); !visited) return visited;
+    TRY(visit({id, experiment, *search, store, first_message}));
   }
   return Ok{};
 }

@@ -171,11 +171,11 @@ Result<std::vector<Blame>> ReadBlames(const std::string& directory) {
         if (part.without.size() == 1) blame.singles.push_back(PartOf(part, blame.whole));
         if (part.without.size() == 2) blame.pairs.push_back(PartOf(part, blame.whole));
       }
-      if (Status added = AddWaysOfRuns(answered, i + 1, blame); !added) return added;
+      TRY(AddWaysOfRuns(answered, i + 1, blame));
     }
     return Ok{};
   };
-  if (Status read = ForEachAnswer(directory, add); !read) return read.error();
+  TRY(ForEachAnswer(directory, add));
   return all;
 }
 

@@ -32,15 +32,14 @@ class CaseRuns {
 
   // Error: the run does not read back.
   Status Add(const StoredRun& run) {
-    const Result<RunOutcome> outcome = OutcomeOf(run, /*with_metrics=*/true);
-    if (!outcome) return outcome.error();
+    TRY(const auto outcome, OutcomeOf(run, /*with_metrics=*/true));
     const int failures = tally_.failures;
-    tally_.Add(*outcome, failing_);
+    tally_.Add(outcome, failing_);
     if (message_.empty()) message_ = run.message;
     if (tally_.failures == failures || !ways_of_) return Ok{};
-    ways_.push_back(ways_of_->Of(outcome->metrics));
+    ways_.push_back(ways_of_->Of(outcome.metrics));
     failed_.push_back(run.id);
-    if (std::optional<Descriptor> failure = grid_->Describe(*outcome))
+    if (std::optional<Descriptor> failure = grid_->Describe(outcome))
       failures_.push_back(*std::move(failure));
     return Ok{};
   }
@@ -78,10 +77,9 @@ class CaseRuns {
 // The confirmations of one search. Error: what is stored does not read back.
 Status AddConfirmations(const Experiment& experiment, SearchId search, const std::string& campaign,
                         ResultStore& store, std::map<std::uint64_t, Confirmation>& known) {
-  const Result<std::vector<Individual>> cases = store.LoadIndividuals(search);
-  if (!cases) return cases.error();
+  TRY(const auto cases, store.LoadIndividuals(search));
   std::vector<CaseRuns> runs_of;
-  for (const Individual& one : *cases) runs_of.emplace_back(experiment, one.test_case);
+  for (const Individual& one : cases) runs_of.emplace_back(experiment, one.test_case);
   Status whole = Ok{};
   Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
     if (whole && run.individual >= 1 && run.individual <= runs_of.size())
@@ -90,7 +88,7 @@ Status AddConfirmations(const Experiment& experiment, SearchId search, const std
   if (!read) return read;
   if (!whole) return whole;
   for (std::size_t i = 0; i < runs_of.size(); ++i) {
-    Confirmation one = runs_of[i].Conclude(experiment, (*cases)[i].test_case, campaign);
+    Confirmation one = runs_of[i].Conclude(experiment, cases[i].test_case, campaign);
     if (one.verdict == FailureVerdict::kOpen) continue;
     Confirmation& best = known[one.key];
     if (best.key == 0 || one.tally.runs() > best.tally.runs()) best = std::move(one);
@@ -119,13 +117,10 @@ const SmallestLayout* Smaller(const SmallestLayout* one, const SmallestLayout* o
 Status AddConfirmationsOf(const std::string& dir, std::map<std::uint64_t, Confirmation>& known) {
   const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
   if (!campaign) return HasNothingYet(campaign.error()) ? Status(Ok{}) : campaign.error();
-  const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-  if (!plans) return plans.error();
-  if (Status whole = CheckStored(*plans, *campaign->store, Checked::kRows); !whole) return whole;
-  for (std::size_t i = 0; i < plans->size(); ++i) {
-    Status added =
-        AddConfirmations((*plans)[i].experiment, static_cast<SearchId>(i + 1), dir, *campaign->store, known);
-    if (!added) return added;
+  TRY(const auto plans, ReadSearchPlans(campaign->directory));
+  TRY(CheckStored(plans, *campaign->store, Checked::kRows));
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    TRY(AddConfirmations(plans[i].experiment, static_cast<SearchId>(i + 1), dir, *campaign->store, known));
   }
   return Ok{};
 }
@@ -139,7 +134,7 @@ std::uint64_t ConfirmationKey(const Experiment& experiment, const sim::TestCase&
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
   std::map<std::uint64_t, Confirmation> known;
   for (const std::string& call : CallsIn(dir + kFolder)) {
-    if (Status added = AddConfirmationsOf(call, known); !added) return added.error();
+    TRY(AddConfirmationsOf(call, known));
   }
   std::vector<Confirmation> confirmations;
   for (auto& [key, one] : known) confirmations.push_back(std::move(one));

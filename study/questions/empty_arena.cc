@@ -4,7 +4,7 @@
 
 #include "search/failure_tally.h"
 #include "search/given/confirmation_search.h"
-#include "search/search_setup.h"
+#include "search/search_table.h"
 
 namespace gauntlet {
 namespace {
@@ -20,11 +20,9 @@ Status CheckEmptyArena(const Experiment& experiment,
   FailureTally tally;
   for (std::uint32_t run = 0; run < kRuns; ++run) {
     const std::uint64_t seed = RunSeed(asked, /*individual=*/1, empty, run, /*replicate=*/0);
-    const Result<sim::RunResult> result = simulate(SpecOf(asked, empty, seed));
-    if (!result) return result.error();
-    tally.Add(
-        {.verdict = result->verdict, .total_failure = result->failure.total, .metrics = result->metrics},
-        FailingOf(experiment));
+    TRY(const auto result, simulate(SpecOf(asked, empty, seed)));
+    tally.Add({.verdict = result.verdict, .total_failure = result.failure.total, .metrics = result.metrics},
+              FailingOf(experiment));
     if (tally.passes + tally.errors > 0) return Ok{};
   }
   return InvalidInput(fmt::format(

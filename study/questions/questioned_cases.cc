@@ -11,7 +11,7 @@
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
 #include "search/failure_tally.h"
-#include "search/search_setup.h"
+#include "search/search_table.h"
 #include "study/sets/subset.h"
 
 namespace gauntlet {
@@ -20,52 +20,43 @@ namespace {
 constexpr std::string_view kOfRun = "run ";  // begins the name of a run's case
 
 Result<CaseInQuestion> CaseOfRun(ResultStore& store, RunId id, const std::string& dir) {
-  const Result<std::optional<StoredRun>> run = store.LoadRun(id);
-  if (!run) return run.error();
-  if (!run->has_value()) return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", id, dir)};
-  Result<sim::RunSpec> spec = proto::DecodeRunSpec((*run)->spec);
-  if (!spec) return spec.error();
-  return CaseInQuestion{fmt::format("{}{}", kOfRun, id), (*run)->search - 1, std::move(spec->test_case)};
+  TRY(const auto run, store.LoadRun(id));
+  if (!run.has_value()) return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", id, dir)};
+  TRY(auto spec, proto::DecodeRunSpec(run->spec));
+  return CaseInQuestion{fmt::format("{}{}", kOfRun, id), run->search - 1, std::move(spec.test_case)};
 }
 
 // Every different case of a subset, named by its first run in it.
 Result<QuestionedCampaign> CasesOfSubset(const std::string& dir, const std::string& subset,
                                          bool only_failing) {
-  const Result<OpenedSubset> opened = OpenSubset({dir, subset});
-  if (!opened) return opened.error();
-  ResultStore& store = *opened->campaign.store;
-  QuestionedCampaign questioned{opened->plans, {}};
+  TRY(const auto opened, OpenSubset({dir, subset}));
+  ResultStore& store = *opened.campaign.store;
+  QuestionedCampaign questioned{opened.plans, {}};
   const auto add = [&](const SubsetSearch& search) -> Status {
     const std::string failing(FailingOf(search.experiment));
-    const Result<std::vector<SelectedRun>> runs = SelectRuns(search, store, opened->subset, failing);
-    if (!runs) return runs.error();
+    TRY(const auto runs, SelectRuns(search, store, opened.subset, failing));
     std::set<IndividualId> individuals;
     std::set<std::uint64_t> cases;
-    for (const SelectedRun& run : *runs) {
+    for (const SelectedRun& run : runs) {
       if ((only_failing && run.value != 1.0) || !individuals.insert(run.individual).second) continue;
-      Result<CaseInQuestion> one = CaseOfRun(store, run.run, dir);
-      if (!one) return one.error();
-      if (cases.insert(CaseHash(one->test_case)).second) questioned.cases.push_back(*std::move(one));
+      TRY(auto one, CaseOfRun(store, run.run, dir));
+      if (cases.insert(CaseHash(one.test_case)).second) questioned.cases.push_back(std::move(one));
     }
     return Ok{};
   };
-  if (Status visited = ForEachSearch(opened->plans, store, dir, opened->subset, add); !visited)
-    return visited.error();
+  TRY(ForEachSearch(opened.plans, store, dir, opened.subset, add));
   return questioned;
 }
 
 }  // namespace
 
 Result<QuestionedCampaign> CasesOfRuns(const std::string& dir, const std::vector<RunId>& runs) {
-  const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
-  if (!campaign) return campaign.error();
-  Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-  if (!plans) return plans.error();
-  QuestionedCampaign questioned{*std::move(plans), {}};
+  TRY(const auto campaign, ViewCampaign(dir, Checked::kRows));
+  TRY(auto plans, ReadSearchPlans(campaign.directory));
+  QuestionedCampaign questioned{std::move(plans), {}};
   for (const RunId id : runs) {
-    Result<CaseInQuestion> one = CaseOfRun(*campaign->store, id, dir);
-    if (!one) return one.error();
-    questioned.cases.push_back(*std::move(one));
+    TRY(auto one, CaseOfRun(*campaign.store, id, dir));
+    questioned.cases.push_back(std::move(one));
   }
   return questioned;
 }
@@ -88,7 +79,7 @@ RunId RunOfName(const std::string& name) {
 
 std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case) {
   Fnv1a64 hash;
-  hash.AddBytes(SearchIdentity({about, {}, kOnlySearch, {test_case}}));
+  hash.AddBytes(SearchIdentity(SetupOf(about, {}, kOnlySearch, {test_case})));
   return hash.value();
 }
 

@@ -22,8 +22,6 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::string_view kElites = "elites";  // SearchRow::members of a search that chooses its failures
-
 // What is looked at of a campaign.
 struct Candidates {
   bool elites = false;  // else all cases that failed
@@ -31,10 +29,9 @@ struct Candidates {
 };
 
 Result<Candidates> CandidatesOf(const std::string& dir, const std::vector<SearchPlan>& plans) {
-  const bool elites = RowOf(plans.front().experiment).members == kElites;
-  Result<QuestionedCampaign> cases = elites ? PopulationCases(dir) : FailingCases(dir);
-  if (!cases) return cases.error();
-  return Candidates{elites, *std::move(cases)};
+  const bool elites = RowOf(plans.front().experiment).individuals == Individuals::kElites;
+  TRY(auto cases, elites ? PopulationCases(dir) : FailingCases(dir));
+  return Candidates{elites, std::move(cases)};
 }
 
 // The number within its search of the run from which on the search knew that the case fails. Every layout
@@ -75,7 +72,7 @@ std::string FirstDifference(const std::string& first, const std::string& second)
 
 std::string IdentityBesideSeed(Experiment experiment) {
   experiment.seed = 0;
-  return SearchIdentity({experiment, {}, kOnlySearch, {}});
+  return SearchIdentity(SetupOf(experiment));
 }
 
 std::string WhatIsTested(const Experiment& experiment) {
@@ -83,29 +80,26 @@ std::string WhatIsTested(const Experiment& experiment) {
 }
 
 Status AddCampaign(const std::string& dir, YieldSet& set) {
-  const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
-  if (!campaign) return campaign.error();
-  const std::vector<SearchPlan>& plans = campaign->plans;
-  const Result<Candidates> candidates = CandidatesOf(dir, plans);
-  if (!candidates) return candidates.error();
-  const Result<std::vector<Confirmation>> confirmations = ReadConfirmations(dir);
-  if (!confirmations) return confirmations.error();
+  TRY(const auto campaign, OpenStoredCampaign(dir));
+  const std::vector<SearchPlan>& plans = campaign.plans;
+  TRY(const auto candidates, CandidatesOf(dir, plans));
+  TRY(const auto confirmations, ReadConfirmations(dir));
   std::map<std::uint64_t, const Confirmation*> known;
-  for (const Confirmation& one : *confirmations) known[one.key] = &one;
+  for (const Confirmation& one : confirmations) known[one.key] = &one;
 
   std::vector<FindingRuns> finding_runs(plans.size());
   const std::size_t first = set.searches.size();
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
     const auto add = [&](const StoredRun& run) { finding_runs[i].Add(run); };
-    if (Status read = campaign->view.store->ForEachRow(id, 0, add); !read) return read;
+    TRY(campaign.view.store->ForEachRow(id, 0, add));
     set.searches.push_back({.place = plans.size() > 1 ? fmt::format("{}:search:{}", dir, id) : dir,
                             .experiment = plans[i].experiment,
                             .runs = finding_runs[i].runs(),
                             .confirmed = {}});
   }
   std::size_t unconfirmed = 0;
-  for (const CaseInQuestion& one : candidates->cases.cases) {
+  for (const CaseInQuestion& one : candidates.cases.cases) {
     SearchYield& yield = set.searches[first + one.search];
     ++yield.cases;
     const auto found = known.find(ConfirmationKey(yield.experiment, one.test_case));
@@ -117,13 +111,13 @@ Status AddCampaign(const std::string& dir, YieldSet& set) {
     if (confirmation.verdict != FailureVerdict::kFail || !confirmation.middle) continue;
     const DescriptorGrid grid(CellsOf(yield.experiment));
     yield.confirmed.push_back({grid.CellOf(*confirmation.middle), one.test_case.obstacles.size(),
-                               finding_runs[one.search].Of(RunOfName(one.name), candidates->elites)});
+                               finding_runs[one.search].Of(RunOfName(one.name), candidates.elites)});
   }
   if (unconfirmed == 0) return Ok{};
   return InvalidInput(fmt::format(
       "{}: {} of its {} {} have not been simulated again with fresh seeds: `gauntlet confirm {} {}`", dir,
-      unconfirmed, candidates->cases.cases.size(), candidates->elites ? "elites" : "failing cases",
-      PastedPath(dir), candidates->elites ? "--elites" : "--all-failing"));
+      unconfirmed, candidates.cases.cases.size(), candidates.elites ? "elites" : "failing cases",
+      PastedPath(dir), candidates.elites ? "--elites" : "--all-failing"));
 }
 
 Status CheckAxes(const SearchYield& yield) {
@@ -158,17 +152,16 @@ std::optional<std::uint64_t> RunsUntil(const SearchYield& yield, std::size_t cel
 }
 
 Result<YieldSet> ReadYields(const std::string& text) {
-  const Result<std::vector<SetPart>> parts = SplitSet(text);
-  if (!parts) return parts.error();
+  TRY(const auto parts, SplitSet(text));
   YieldSet set{.name = text, .title = {}, .searches = {}};
-  for (const SetPart& part : *parts) {
+  for (const SetPart& part : parts) {
     if (!part.rest.empty())
       return InvalidInput(
           fmt::format("{}:{}: whole campaigns are compared, without ':{}'", part.path, part.rest, part.rest));
-    if (Status added = AddCampaign(part.path, set); !added) return added.error();
+    TRY(AddCampaign(part.path, set));
   }
   const SearchYield& first = set.searches.front();
-  if (Status axes = CheckAxes(first); !axes) return axes.error();
+  TRY(CheckAxes(first));
   for (const SearchYield& one : set.searches) {
     const std::string difference =
         FirstDifference(IdentityBesideSeed(first.experiment), IdentityBesideSeed(one.experiment));

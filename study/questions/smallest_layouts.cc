@@ -52,12 +52,10 @@ Result<std::vector<SmallestLayout>> ReadSmallestLayouts(const std::string& dir) 
       const std::string file = entry.path().string();
       const RunId run = RunOfFile(file);
       if (run == 0) continue;
-      const Result<std::string> text = ReadSmallFile(file);
-      if (!text) return text.error();
-      Result<proto::CaseDocument> document = proto::ParseCaseDocument(*text, file);
-      if (!document) return document.error();
-      if (!document->lineage) continue;  // somebody else's
-      SmallestLayout one{run, file, *std::move(document)};
+      TRY(const auto text, ReadSmallFile(file));
+      TRY(auto document, proto::ParseCaseDocument(text, file));
+      if (!document.lineage) continue;  // somebody else's
+      SmallestLayout one{run, file, std::move(document)};
       const auto [known, is_new] = smallest.try_emplace(run, one);
       if (!is_new && Obstacles(one) < Obstacles(known->second)) known->second = std::move(one);
     }

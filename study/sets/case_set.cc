@@ -13,14 +13,12 @@ Result<std::vector<CaseSet>> CasesOf(const std::vector<SearchPlan>& plans, Resul
                                      const std::string& place, const Subset& subset) {
   std::vector<CaseSet> sets;
   const auto add = [&](const SubsetSearch& search) -> Status {
-    const Result<std::vector<SelectedRun>> runs = SelectRuns(search, store, subset, "fitness");
-    if (!runs) return runs.error();
+    TRY(const auto runs, SelectRuns(search, store, subset, "fitness"));
     std::set<IndividualId> wanted;
-    for (const SelectedRun& run : *runs) wanted.insert(run.individual);
-    Result<std::vector<Individual>> individuals = store.LoadIndividuals(search.id);
-    if (!individuals) return individuals.error();
+    for (const SelectedRun& run : runs) wanted.insert(run.individual);
+    TRY(auto individuals, store.LoadIndividuals(search.id));
     CaseSet& set = sets.emplace_back(CaseSet{search.place, search.experiment, {}, {}});
-    for (Individual& one : *individuals) {
+    for (Individual& one : individuals) {
       if (wanted.contains(one.id)) set.members.push_back(std::move(one));
     }
     if (!search.finished) {
@@ -30,26 +28,22 @@ Result<std::vector<CaseSet>> CasesOf(const std::vector<SearchPlan>& plans, Resul
     }
     return Ok{};
   };
-  if (Status visited = ForEachSearch(plans, store, place, subset, add); !visited) return visited.error();
+  TRY(ForEachSearch(plans, store, place, subset, add));
   return sets;
 }
 
 Result<std::vector<CaseSet>> ReadCaseSets(const std::string& text) {
-  const Result<std::vector<SetPart>> parts = SplitSet(text);
-  if (!parts) return parts.error();
+  TRY(const auto parts, SplitSet(text));
   std::vector<CaseSet> all;
-  for (const SetPart& part : *parts) {
+  for (const SetPart& part : parts) {
     if (std::error_code error; !std::filesystem::is_directory(part.path, error)) {
       return InvalidInput(
           fmt::format("{}: cases come from a campaign's directory, not from a file", part.path));
     }
-    const Result<OpenedSubset> opened = OpenSubset(part);
-    if (!opened) return opened.error();
-    Result<std::vector<CaseSet>> sets =
-        CasesOf(opened->plans, *opened->campaign.store, part.path, opened->subset);
-    if (!sets) return sets;
-    if (!opened->note.empty()) sets->front().notes.push_back(opened->note);
-    std::ranges::move(*sets, std::back_inserter(all));
+    TRY(const auto opened, OpenSubset(part));
+    TRY(auto sets, CasesOf(opened.plans, *opened.campaign.store, part.path, opened.subset));
+    if (!opened.note.empty()) sets.front().notes.push_back(opened.note);
+    std::ranges::move(sets, std::back_inserter(all));
   }
   return all;
 }

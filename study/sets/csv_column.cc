@@ -62,28 +62,25 @@ Result<std::vector<Line>> LinesOf(std::string_view text, const std::string& path
 }  // namespace
 
 Result<std::vector<std::vector<std::string>>> ReadCsvCells(std::string_view text, const std::string& path) {
-  Result<std::vector<Line>> lines = LinesOf(text, path);
-  if (!lines) return lines.error();
+  TRY(auto lines, LinesOf(text, path));
   std::vector<std::vector<std::string>> rows;
-  for (Line& line : *lines) rows.push_back(std::move(line.cells));
+  for (Line& line : lines) rows.push_back(std::move(line.cells));
   return rows;
 }
 
 Result<CsvColumn> ReadCsvColumn(const std::string& path, const std::string& column) {
-  const Result<std::string> text = ReadRegularFile(path, kLargestFile);
-  if (!text) return text.error();
-  const Result<std::vector<Line>> lines = LinesOf(*text, path);
-  if (!lines) return lines.error();
+  TRY(const auto text, ReadRegularFile(path, kLargestFile));
+  TRY(const auto lines, LinesOf(text, path));
   std::vector<std::string> columns;
-  for (const std::string& cell : lines->front().cells) columns.push_back(Printable(cell));
-  const auto found = std::ranges::find(lines->front().cells, column);
-  if (found == lines->front().cells.end()) {
+  for (const std::string& cell : lines.front().cells) columns.push_back(Printable(cell));
+  const auto found = std::ranges::find(lines.front().cells, column);
+  if (found == lines.front().cells.end()) {
     return InvalidInput(fmt::format("{}: {}", path, UnknownName("column", Printable(column), columns)));
   }
-  const auto wanted = static_cast<std::size_t>(found - lines->front().cells.begin());
+  const auto wanted = static_cast<std::size_t>(found - lines.front().cells.begin());
   CsvColumn read;
-  for (std::size_t i = 1; i < lines->size(); ++i) {
-    const Line& line = (*lines)[i];
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const Line& line = lines[i];
     if (line.cells[wanted].empty()) {
       ++read.empty_cells;
       continue;

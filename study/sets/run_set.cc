@@ -26,41 +26,37 @@ void AddClusters(const std::vector<SelectedRun>& runs, bool evolves, RunSet& set
 
 Status AddSearch(const SubsetSearch& search, ResultStore& store, const Subset& subset,
                  const std::string& metric, RunSet& set) {
-  const Result<std::vector<SelectedRun>> runs = SelectRuns(search, store, subset, metric);
-  if (!runs) return runs.error();
-  const auto left_out = std::ranges::count_if(*runs, [](const SelectedRun& run) { return !run.value; });
+  TRY(const auto runs, SelectRuns(search, store, subset, metric));
+  const auto left_out = std::ranges::count_if(runs, [](const SelectedRun& run) { return !run.value; });
   if (left_out > 0) {
     set.notes.push_back(
         fmt::format("{}: {} of {} runs are left out: without a result, or without a value of {}",
-                    search.place, left_out, runs->size(), metric));
+                    search.place, left_out, runs.size(), metric));
   }
-  const bool evolves = RowOf(search.experiment).members == "population";
-  AddClusters(*runs, evolves, set);
+  const bool evolves = RowOf(search.experiment).Related();
+  AddClusters(runs, evolves, set);
   const std::string unit = evolves ? "evolution" : "case";
   set.unit = set.unit.empty() || set.unit == unit ? unit : "evolution or case";
   return Ok{};
 }
 
 Status AddCampaign(const SetPart& part, const std::string& metric, RunSet& set) {
-  const Result<OpenedSubset> opened = OpenSubset(part);
-  if (!opened) return opened.error();
-  if (!opened->note.empty()) set.notes.push_back(opened->note);
-  SqliteStore& store = *opened->campaign.store;
-  Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(store.meta().golden_hashes);
-  if (!hashes) return hashes.error();
-  const RunOrigin campaign{part.path, {}, store.meta().software_version, *std::move(hashes)};
-  return AddRuns(opened->plans, store, campaign, opened->subset, metric, set);
+  TRY(const auto opened, OpenSubset(part));
+  if (!opened.note.empty()) set.notes.push_back(opened.note);
+  SqliteStore& store = *opened.campaign.store;
+  TRY(auto hashes, proto::ReadGoldenHashes(store.meta().golden_hashes));
+  const RunOrigin campaign{part.path, {}, store.meta().software_version, std::move(hashes)};
+  return AddRuns(opened.plans, store, campaign, opened.subset, metric, set);
 }
 
 Status AddCsv(const SetPart& part, const std::string& metric, RunSet& set) {
   const std::string& name = part.rest.empty() ? metric : part.rest;
-  const Result<CsvColumn> column = ReadCsvColumn(part.path, name);
-  if (!column) return column.error();
-  if (column->empty_cells > 0) {
+  TRY(const auto column, ReadCsvColumn(part.path, name));
+  if (column.empty_cells > 0) {
     set.notes.push_back(fmt::format("{}: {} of {} rows are left out: their cell of {} is empty", part.path,
-                                    column->empty_cells, column->empty_cells + column->values.size(), name));
+                                    column.empty_cells, column.empty_cells + column.values.size(), name));
   }
-  for (const double value : column->values) set.values.clusters.push_back({value});
+  for (const double value : column.values) set.values.clusters.push_back({value});
   set.unit = set.unit.empty() || set.unit == "row" ? "row" : set.unit + " or row";
   return Ok{};
 }
@@ -79,7 +75,7 @@ std::map<std::string, std::string> ScenarioSettings(const Experiment& experiment
 Status AddRuns(const std::vector<SearchPlan>& plans, ResultStore& store, const RunOrigin& campaign,
                const Subset& subset, const std::string& metric, RunSet& set) {
   return ForEachSearch(plans, store, campaign.place, subset, [&](const SubsetSearch& search) -> Status {
-    if (Status added = AddSearch(search, store, subset, metric, set); !added) return added;
+    TRY(AddSearch(search, store, subset, metric, set));
     if (!search.finished) {
       set.notes.push_back(search.place + " is half-finished: what it has so far is compared");
     }
@@ -93,13 +89,11 @@ Status AddRuns(const std::vector<SearchPlan>& plans, ResultStore& store, const R
 Result<RunSet> ReadRunSet(const std::string& text, const std::string& metric) {
   RunSet set;
   set.values.name = text;
-  const Result<std::vector<SetPart>> parts = SplitSet(text);
-  if (!parts) return parts.error();
-  for (const SetPart& part : *parts) {
+  TRY(const auto parts, SplitSet(text));
+  for (const SetPart& part : parts) {
     std::error_code error;
-    const Status added = std::filesystem::is_directory(part.path, error) ? AddCampaign(part, metric, set)
-                                                                         : AddCsv(part, metric, set);
-    if (!added) return added.error();
+    TRY(std::filesystem::is_directory(part.path, error) ? AddCampaign(part, metric, set)
+                                                        : AddCsv(part, metric, set));
   }
   return set;
 }

@@ -79,14 +79,12 @@ Result<std::vector<SelectedRun>> LoadValues(const Experiment& experiment, Search
 // Of the newest evaluation of each member of the population.
 Result<std::vector<SelectedRun>> FinalValues(const Experiment& experiment, SearchId id, ResultStore& store,
                                              const std::vector<SelectedRun>& all) {
-  const Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(experiment, id, store);
-  if (!search) return search.error();
-  const Result<SavedProgress> saved = RestoreSearch(id, store, **search);
-  if (!saved) return saved.error();
+  TRY(const auto search, MakeStoredSearch(experiment, id, store));
+  TRY(const auto saved, RestoreSearch(id, store, *search));
   std::map<IndividualId, std::uint32_t> newest;
-  for (const Individual& individual : (*search)->Population()) newest[individual.id] = 0;
+  for (const Individual& individual : search->Population()) newest[individual.id] = 0;
   const auto counts = [&](const SelectedRun& run) {
-    return run.run <= saved->last_run && newest.contains(run.individual);
+    return run.run <= saved.last_run && newest.contains(run.individual);
   };
   for (const SelectedRun& run : all) {
     if (counts(run)) newest[run.individual] = std::max(newest[run.individual], run.evaluation);
@@ -108,7 +106,7 @@ Status CheckEnough(const std::vector<SelectedRun>& runs, std::uint64_t count, co
 Result<std::vector<SelectedRun>> Drawn(std::vector<SelectedRun> all, std::uint64_t count, std::uint64_t seed,
                                        const std::string& place) {
   std::erase_if(all, [](const SelectedRun& run) { return !run.value; });
-  if (Status enough = CheckEnough(all, count, place); !enough) return enough.error();
+  TRY(CheckEnough(all, count, place));
   sim::RandomStream random(seed, sim::StreamPurpose::kStatistics, 0, 1);  // the bootstrap's have b = 0
   for (std::size_t i = 0; i < count; ++i) {
     std::swap(all[i], all[i + random.Below(static_cast<std::uint32_t>(all.size() - i))]);
@@ -122,7 +120,7 @@ Result<std::vector<SelectedRun>> Drawn(std::vector<SelectedRun> all, std::uint64
 Result<std::vector<SelectedRun>> Lowest(std::vector<SelectedRun> all, std::uint64_t count,
                                         const std::string& place) {
   std::erase_if(all, [](const SelectedRun& run) { return !run.value; });
-  if (Status enough = CheckEnough(all, count, place); !enough) return enough.error();
+  TRY(CheckEnough(all, count, place));
   std::ranges::stable_sort(all, {}, [](const SelectedRun& run) { return *run.value; });
   all.resize(count);
   std::ranges::sort(all, {}, &SelectedRun::run);
@@ -181,25 +179,22 @@ Result<std::vector<SetPart>> SplitSet(const std::string& text) {
   std::error_code error;
   std::vector<SetPart> parts;
   for (const std::string& one : fs::exists(text, error) ? std::vector{text} : Split(text, ',')) {
-    Result<SetPart> part = SplitPart(one);
-    if (!part) return part.error();
+    TRY(auto part, SplitPart(one));
     const auto same = [&](const SetPart& other) {
-      return other.rest == part->rest && fs::equivalent(other.path, part->path, error);
+      return other.rest == part.rest && fs::equivalent(other.path, part.path, error);
     };
     if (std::ranges::any_of(parts, same))
       return InvalidInput(fmt::format("{} is in the set '{}' twice: its runs would count twice", one, text));
-    parts.push_back(*std::move(part));
+    parts.push_back(std::move(part));
   }
   return parts;
 }
 
 Result<OpenedSubset> OpenSubset(const SetPart& part) {
-  const Result<Subset> subset = ParseSubset(part.rest, part.path);
-  if (!subset) return subset.error();
-  Result<StoredCampaign> stored = OpenStoredCampaign(part.path);
-  if (!stored) return stored.error();
-  return OpenedSubset{std::move(stored->view), std::move(stored->plans), *subset,
-                      std::move(stored->being_written)};
+  TRY(const auto subset, ParseSubset(part.rest, part.path));
+  TRY(auto stored, OpenStoredCampaign(part.path));
+  return OpenedSubset{std::move(stored.view), std::move(stored.plans), subset,
+                      std::move(stored.being_written)};
 }
 
 Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, const std::string& place,
@@ -208,18 +203,16 @@ Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, c
     return InvalidInput(
         fmt::format("{} has no search {}: its searches are 1 to {}", place, subset.search, plans.size()));
   }
-  const Result<std::vector<StoredSearch>> stored = store.LoadSearches();
-  if (!stored) return stored.error();
+  TRY(const auto stored, store.LoadSearches());
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
     if (subset.search != 0 && subset.search != id) continue;
-    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(plans[i].experiment, id, store);
-    if (!search) return search.error();
-    const bool finished = std::ranges::any_of(*stored, [&](const StoredSearch& one) {
-      return one.id == id && HasFinished(one, plans[i].experiment, **search);
+    TRY(const auto search, MakeStoredSearch(plans[i].experiment, id, store));
+    const bool finished = std::ranges::any_of(stored, [&](const StoredSearch& one) {
+      return one.id == id && HasFinished(one, plans[i].experiment, *search);
     });
     const std::string name = plans.size() > 1 ? fmt::format("{}:search:{}", place, id) : place;
-    if (Status visited = visit({id, plans[i].experiment, name, finished}); !visited) return visited;
+    TRY(visit({id, plans[i].experiment, name, finished}));
   }
   return Ok{};
 }
@@ -237,7 +230,7 @@ Status CheckMetric(const Experiment& experiment, const std::string& metric) {
 
 Result<std::vector<SelectedRun>> SelectRuns(const SubsetSearch& search, ResultStore& store,
                                             const Subset& subset, const std::string& metric) {
-  if (Status known = CheckMetric(search.experiment, metric); !known) return known.error();
+  TRY(CheckMetric(search.experiment, metric));
   // What is chosen by its fitness is chosen before the metric is looked at.
   const bool worst = subset.kind == Subset::Kind::kWorst;
   Result<std::vector<SelectedRun>> runs = LoadValues(search.experiment, search.id, store, metric);

@@ -21,14 +21,14 @@ constexpr int kSlots = 20;
 SearchSetup ArchiveSetup(int runs) {
   SearchSetup setup = ToySetup();
   setup.experiment.scenario = "flocking";
-  setup.experiment.search.algorithm = "archive";
+  SetAlgorithm(setup, "archive");
   setup.experiment.search.parameters["runs"] = runs;
   setup.experiment.search.parameters["slots"] = kSlots;
   return setup;
 }
 
-std::unique_ptr<ArchiveSearch> MakeArchive(const SearchSetup& setup) {
-  return std::move(ArchiveSearch::Create(setup)).value();
+std::unique_ptr<ArchiveSearch> MakeArchive(const SearchSetup& setup, LinePolicy policy = LinePolicy::kAll) {
+  return std::move(ArchiveSearch::Create(setup, policy)).value();
 }
 
 // A swarm that breaks at the first obstacle within 0.3 m of the line from start to goal.
@@ -238,8 +238,8 @@ bool IsOneLess(const sim::Genome& fewer, const sim::Genome& more) {
 
 TEST(ArchiveSearchTest, RandomDeletionOnlyDrawsCasesAndTakesObstaclesAway) {
   SearchSetup setup = ArchiveSetup(1000);
-  setup.experiment.search.algorithm = "random-deletion";
-  const auto search = MakeArchive(setup);
+  SetAlgorithm(setup, "random-deletion");
+  const auto search = MakeArchive(setup, LinePolicy::kDeletionOnly);
   std::map<IndividualId, sim::Genome> seen;
   std::size_t deletions = 0;
   for (const EvaluationRequest& request : Drive(*search, 5, BreaksAtTraps)) {

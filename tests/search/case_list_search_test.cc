@@ -18,7 +18,7 @@ std::vector<sim::TestCase> ThreeCases() {
 
 std::unique_ptr<CaseListSearch> MakeList(std::vector<sim::TestCase> cases, int replicates) {
   SearchSetup setup = ToySetup();
-  setup.experiment.search.algorithm = "cases";
+  SetAlgorithm(setup, "cases");
   setup.experiment.search.replicates = replicates;
   setup.cases = std::move(cases);
   return std::move(CaseListSearch::Create(setup)).value();

@@ -14,6 +14,7 @@ namespace {
 SearchSetup SetupOfCases(std::size_t cases, int replicates = 0) {
   SearchSetup setup = ToySetup();
   setup.experiment = ConfirmationOf(setup.experiment, replicates);
+  setup.row = &RowOf(setup.experiment);
   for (std::size_t i = 0; i < cases; ++i) {
     setup.cases.emplace_back().obstacles = {{.x = static_cast<double>(i), .length = 1, .width = 0.2}};
   }

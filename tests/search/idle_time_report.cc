@@ -34,7 +34,7 @@ void Table(int population, int generations, const std::vector<int>& lags) {
   setup.experiment.search.population = population;
   setup.experiment.search.generations = generations;
   Row("generational", setup);
-  setup.experiment.search.algorithm = "steady-state";
+  SetAlgorithm(setup, "steady-state");
   for (const int lag : lags) {
     setup.experiment.search.parameters["lag"] = lag;
     char name[32];
@@ -47,7 +47,7 @@ void ArchiveTable() {
   std::printf("\n| 600 runs | 2 workers | 4 | 8 | 16 | 64 |\n|---|---|---|---|---|---|\n");
   SearchSetup setup = ReportSetup();
   setup.experiment.scenario = "flocking";
-  setup.experiment.search.algorithm = "archive";
+  SetAlgorithm(setup, "archive");
   setup.experiment.search.parameters["runs"] = 600;
   for (const int slots : {32, 64, 128}) {
     setup.experiment.search.parameters["slots"] = slots;

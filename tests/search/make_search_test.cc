@@ -19,7 +19,7 @@ TEST(MakeSearchTest, MakesTheSearchOfTheExperiment) {
   EXPECT_EQ((*genetic)->Progress().evaluations_planned, 1000U);
   EXPECT_GE(StatisticOf(**genetic, "clone_rate"), 0.0);
 
-  spec.algorithm = "random";
+  SetAlgorithm(setup, "random");
   spec.parameters["cases"] = 12;
   const auto random = RowOf(setup.experiment).make(setup);
   ASSERT_TRUE(random.ok());

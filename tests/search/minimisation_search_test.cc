@@ -16,6 +16,7 @@ using testing::ElementsAre;
 SearchSetup SetupToShorten(std::size_t cases) {
   SearchSetup setup = ToySetup();
   setup.experiment = MinimisationOf(setup.experiment, false);
+  setup.row = &RowOf(setup.experiment);
   for (std::size_t i = 0; i < cases; ++i) {
     sim::TestCase& one = setup.cases.emplace_back();
     one.side_x = 6.0 + static_cast<double>(i);

@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 
 SearchSetup SetupOf(int cases) {
   SearchSetup setup = ToySetup();
-  setup.experiment.search.algorithm = "random";
+  SetAlgorithm(setup, "random");
   setup.experiment.search.parameters["cases"] = cases;
   return setup;
 }

@@ -77,7 +77,7 @@ TEST(SearchObjectiveTest, EvolutionFollowsIt) {
 
 TEST(SearchObjectiveTest, StoredSearchesDoNotKnowTheKey) {
   const auto identity = [](const std::string& objective) {
-    return SearchIdentity({Flocking("genetic", objective), {}, 1, {}});
+    return SearchIdentity(SetupOf(Flocking("genetic", objective)));
   };
   EXPECT_THAT(identity("fitness"), Not(HasSubstr("objective")));
   EXPECT_THAT(identity("failure-probability"), HasSubstr("search.objective = \"failure-probability\""));

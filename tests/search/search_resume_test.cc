@@ -39,7 +39,7 @@ SearchSetup GeneticSetup(ParentSelection selection) {
 
 SearchSetup RandomSetup(int cases) {
   SearchSetup setup = ToySetup();
-  setup.experiment.search.algorithm = "random";
+  SetAlgorithm(setup, "random");
   setup.experiment.search.parameters["cases"] = cases;
   return setup;
 }
@@ -52,7 +52,7 @@ Factory Genetic(ParentSelection selection) {
 Factory SteadyState(ParentSelection selection) {
   return [selection] {
     SearchSetup setup = GeneticSetup(selection);
-    setup.experiment.search.algorithm = "steady-state";
+    SetAlgorithm(setup, "steady-state");
     setup.experiment.search.parameters["lag"] = 3;
     return std::move(SteadyStateSearch::Create(setup)).value();
   };
@@ -60,7 +60,7 @@ Factory SteadyState(ParentSelection selection) {
 
 std::unique_ptr<SearchAlgorithm> ListOf(std::vector<sim::TestCase> cases) {
   SearchSetup setup = ToySetup();
-  setup.experiment.search.algorithm = "cases";
+  SetAlgorithm(setup, "cases");
   setup.experiment.search.replicates = 2;
   setup.cases = std::move(cases);
   return std::move(CaseListSearch::Create(setup)).value();
@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(
                            [] {
                              SearchSetup setup = ToySetup();
                              setup.experiment.scenario = "flocking";
-                             setup.experiment.search.algorithm = "archive";
+                             SetAlgorithm(setup, "archive");
                              setup.experiment.search.parameters = {{"runs", 300.0}, {"slots", 20.0}};
                              return std::move(ArchiveSearch::Create(setup)).value();
                            }},
@@ -241,7 +241,7 @@ TEST(SearchRestoreTest, ASearchThatGoesOnForLongerEqualsOneThatWasThatLong) {
           ParentSelection::kTwoRandomParentsTwoWorseAway}) {
       const auto of_length = [&](int generations) {
         SearchSetup setup = GeneticSetup(selection);
-        setup.experiment.search.algorithm = algorithm;
+        SetAlgorithm(setup, algorithm);
         setup.experiment.search.generations = generations;
         setup.experiment.search.parameters["cases"] = 100.0 * generations;
         return std::move(RowOf(setup.experiment).make(setup)).value();

@@ -10,7 +10,7 @@ namespace {
 StateGrowth GrowthOver(const char* algorithm, int runs) {
   SearchSetup setup = ToySetup();
   SearchSpec& spec = setup.experiment.search;
-  spec.algorithm = algorithm;
+  SetAlgorithm(setup, algorithm);
   spec.population = 8;
   spec.generations = runs / spec.population;
   spec.parameters["cases"] = runs;

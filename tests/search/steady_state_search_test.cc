@@ -22,7 +22,7 @@ constexpr int kGenerations = 6;
 
 SearchSetup SteadySetup(int lag, ParentSelection selection = ParentSelection::kAllParentBestHalf) {
   SearchSetup setup = ToySetup();
-  setup.experiment.search.algorithm = "steady-state";
+  SetAlgorithm(setup, "steady-state");
   setup.experiment.search.parameters["lag"] = lag;
   setup.experiment.search.parent_selection = selection;
   setup.experiment.search.population = kPopulation;
@@ -134,7 +134,7 @@ TEST(SteadyStateSearchTest, BeginsWithTheCasesOfTheGenerationalSearch) {
   const auto search = MakeSteady(SteadySetup(4));
   const std::vector<EvaluationRequest> asked = Drive(*search, 1, SumOfX);
   SearchSetup setup = SteadySetup(4);
-  setup.experiment.search.algorithm = "genetic";
+  SetAlgorithm(setup, "genetic");
   const auto generational = std::move(GeneticAlgorithm::Create(setup)).value();
   const std::vector<EvaluationRequest> initial = generational->Ask();
   ASSERT_EQ(initial.size(), static_cast<std::size_t>(kPopulation));
@@ -157,7 +157,7 @@ TEST(SteadyStateSearchTest, WorkersAreIdleLessTheLargerTheLag) {
   constexpr int kWorkers = 4;
   const auto idle = [&](const char* algorithm, int lag) {
     SearchSetup setup = SteadySetup(lag);
-    setup.experiment.search.algorithm = algorithm;
+    SetAlgorithm(setup, algorithm);
     setup.experiment.search.generations = 30;
     const auto search = RowOf(setup.experiment).make(setup);
     return RunOnCluster(**search, kWorkers, HeavyTailed, SumOfX).idle_share;

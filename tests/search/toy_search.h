@@ -7,19 +7,26 @@
 #include "base/canonical_encoder.h"
 #include "base/hash.h"
 #include "search/search_algorithm.h"
-#include "search/search_setup.h"
+#include "search/search_table.h"
 
 namespace gauntlet {
 
 // The experiment of a toy; the thesis' arena and genome; start and goal in opposite corners as in flocking.
 inline SearchSetup ToySetup() {
-  SearchSetup setup;
-  setup.experiment.name = "toy";
-  setup.experiment.scenario = "toy";
-  setup.experiment.seed = 7;
+  Experiment experiment;
+  experiment.name = "toy";
+  experiment.scenario = "toy";
+  experiment.seed = 7;
+  SearchSetup setup = SetupOf(experiment);
   setup.requirements.start = {2.5, 2.5};
   setup.requirements.goal = {-2.5, -2.5};
   return setup;
+}
+
+// Of another search.
+inline void SetAlgorithm(SearchSetup& setup, const std::string& algorithm) {
+  setup.experiment.search.algorithm = algorithm;
+  setup.row = &RowOf(setup.experiment);
 }
 
 using ToyFitness = std::function<double(const EvaluationRequest&)>;

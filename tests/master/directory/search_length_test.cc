@@ -72,7 +72,7 @@ TEST(SearchLengthTest, WhatWouldMakeAnotherSearchIsRefused) {
               StartsWith("--set search.replicates=2: of a campaign that exists only its length may change, "
                          "search.generations"));
   EXPECT_THAT(Refusal(genetic, {"search.generations=x"}), StartsWith("--set search.generations=x: "));
-  for (const Key& key : CommonKeys(BuiltInCatalogue())) {
+  for (const Key& key : BuiltInKeys()) {
     if (key.path == "search.generations") continue;
     EXPECT_THAT(Refusal(genetic, {key.path + "=1"}), HasSubstr("would no longer be the same search"))
         << key.path;

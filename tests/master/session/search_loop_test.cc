@@ -10,7 +10,7 @@
 
 #include "master/campaign/campaign_summary.h"
 #include "proto/run_codec.h"
-#include "search/search_setup.h"
+#include "search/search_table.h"
 #include "tests/master/session/toy_campaign.h"
 
 namespace gauntlet {

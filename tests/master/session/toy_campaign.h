@@ -48,8 +48,7 @@ inline Experiment ToyExperiment(std::uint64_t seed = 7) {
 }
 
 inline std::unique_ptr<SearchAlgorithm> MakeToySearch(const Experiment& experiment) {
-  SearchSetup setup;
-  setup.experiment = experiment;
+  SearchSetup setup = SetupOf(experiment);
   setup.requirements.start = {2.5, 2.5};
   setup.requirements.goal = {-2.5, -2.5};
   return std::move(RowOf(experiment).make(setup)).value();

@@ -1,10 +1,11 @@
-// Where the lines of layouts of an archive search begin, and how they go on.
+#include "search/archive/layout_proposer.h"
+
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <set>
 #include <utility>
 
-#include "search/archive/archive_search.h"
 #include "sim/arena/arena.h"
 #include "sim/arena/path_planner.h"
 
@@ -22,7 +23,22 @@ constexpr double kPathStep = 0.2;  // m, between the points of a path that are l
 
 }  // namespace
 
-void ArchiveSearch::BeginRandom(Slot& slot, sim::RandomStream& random) {
+std::string_view NameOf(Emitter emitter) {
+  constexpr std::array<std::string_view, kEmitters> names = {"random", "nearest",  "without", "mirrored",
+                                                             "across", "jittered", "recheck"};
+  return names[static_cast<std::size_t>(emitter)];
+}
+
+LayoutProposer::LayoutProposer(const SearchSetup& setup, const GenomeGenerator& generator, bool places,
+                               FailureArchive& archive)
+    : spec_(setup.experiment.genome),
+      generator_(generator),
+      places_(places),
+      way_{setup.requirements.start, setup.requirements.goal},
+      inflation_(setup.requirements.inflation),
+      archive_(archive) {}
+
+Proposal LayoutProposer::Random(sim::RandomStream& random) const {
   std::optional<sim::TestCase> best;
   double most = -1.0;
   const int draws = places_ && !archive_.shelves().empty() ? kDraws : 1;
@@ -35,11 +51,11 @@ void ArchiveSearch::BeginRandom(Slot& slot, sim::RandomStream& random) {
     most = promise;
     best = *std::move(test_case);
   }
-  Begin(slot, Emitter::kRandom, std::move(best->obstacles), 0);
+  return {Emitter::kRandom, std::move(best->obstacles)};
 }
 
-double ArchiveSearch::Promise(const sim::TestCase& test_case) const {
-  const sim::OccupancyGrid grid(sim::Arena(test_case), requirements_.inflation);
+double LayoutProposer::Promise(const sim::TestCase& test_case) const {
+  const sim::OccupancyGrid grid(sim::Arena(test_case), inflation_);
   std::set<std::size_t> cells;
   const std::vector<sim::Vec2> path = sim::PlanPath(grid, way_.start, way_.goal);
   for (std::size_t i = 1; i < path.size(); ++i) {
@@ -53,38 +69,35 @@ double ArchiveSearch::Promise(const sim::TestCase& test_case) const {
   double promise = 0.0;
   for (const std::size_t cell : cells) {
     const Finding* elite = archive_.EliteOf(cell);
-    const std::size_t obstacles = elite == nullptr
-                                      ? 2 * static_cast<std::size_t>(setup_.experiment.genome.genes)
-                                      : elite->size().obstacles;
+    const std::size_t obstacles =
+        elite == nullptr ? 2 * static_cast<std::size_t>(spec_.genes) : elite->size().obstacles;
     promise += static_cast<double>(obstacles - 1);
   }
   return promise;
 }
 
-bool ArchiveSearch::BeginMirrored(Slot& slot) {
+std::optional<Proposal> LayoutProposer::Mirrored() {
   for (const auto& [cell, shelf] : archive_.shelves()) {
     const Finding& elite = shelf.front();
     if (elite.mirrored) continue;
     const Descriptor middle = elite.Middle();
-    const sim::Vec2 target = Mirrored({middle[0], middle[1]}, way_);
+    const sim::Vec2 target = gauntlet::Mirrored({middle[0], middle[1]}, way_);
     const std::size_t target_cell = archive_.grid().CellOf({target.x(), target.y()});
     if (!archive_.WouldWin(target_cell, elite.size())) continue;
     archive_.SetMirrored(cell);
     std::optional<sim::Genome> mirrored =
-        Mirrored(elite.individual.test_case.obstacles, way_, setup_.experiment.genome, generator_);
+        gauntlet::Mirrored(elite.individual.test_case.obstacles, way_, spec_, generator_);
     if (!mirrored) continue;
-    slot.cell = target_cell;
-    Begin(slot, Emitter::kMirrored, *std::move(mirrored), elite.individual.id);
-    return true;
+    return Proposal{Emitter::kMirrored, *std::move(mirrored), elite.individual.id, target_cell};
   }
-  return false;
+  return std::nullopt;
 }
 
-std::uint32_t ArchiveSearch::MostAcross() const {
-  return std::min(kMostAcross, static_cast<std::uint32_t>(setup_.experiment.genome.genes));
+std::uint32_t LayoutProposer::MostAcross() const {
+  return std::min(kMostAcross, static_cast<std::uint32_t>(spec_.genes));
 }
 
-std::uint32_t ArchiveSearch::DrawMostAcross(sim::RandomStream& random) const {
+std::uint32_t LayoutProposer::DrawMostAcross(sim::RandomStream& random) const {
   std::vector<std::uint32_t> most;
   for (const auto& [size, shelf] : archive_.shelves()) {
     const auto fewer = static_cast<std::uint32_t>(shelf.front().size().obstacles - 1);
@@ -96,44 +109,42 @@ std::uint32_t ArchiveSearch::DrawMostAcross(sim::RandomStream& random) const {
   return cell < empty ? MostAcross() : most[cell - empty];
 }
 
-bool ArchiveSearch::BeginAcross(Slot& slot, sim::RandomStream& random) {
-  if (places_ && Late()) return BeginNeeded(slot, random);
+std::optional<Proposal> LayoutProposer::Across(bool needed, sim::RandomStream& random) const {
+  if (places_ && needed) return Needed(random);
   for (int i = 0; i < kTries; ++i) {
-    const sim::Vec2 place = way_.start + (way_.goal - way_.start) * random.Uniform();
+    const sim::Vec2 place = DrawPlace(random);
     const auto count = static_cast<int>(1 + random.Below(MostAcross()));
     // One obstacle breaks a swarm where it stands, if anywhere.
     const Finding* elite =
         places_ && count == 1 ? archive_.EliteOf(archive_.grid().CellOf({place.x(), place.y()})) : nullptr;
     if (elite != nullptr && elite->size().obstacles == 1) continue;
-    std::optional<sim::Genome> row = Across(place, count, way_, setup_.experiment.genome, generator_, random);
+    std::optional<sim::Genome> row = gauntlet::Across(place, count, way_, spec_, generator_, random);
     if (!row) continue;
-    Begin(slot, Emitter::kAcross, *std::move(row), 0);
-    return true;
+    return Proposal{Emitter::kAcross, *std::move(row)};
   }
-  return false;
+  return std::nullopt;
 }
 
-bool ArchiveSearch::BeginNeeded(Slot& slot, sim::RandomStream& random) {
-  const GenomeSpec& spec = setup_.experiment.genome;
+std::optional<Proposal> LayoutProposer::Needed(sim::RandomStream& random) const {
   const std::uint32_t most = DrawMostAcross(random);
   for (int i = 0; i < kTries && most > 0; ++i) {
     const auto count = static_cast<int>(1 + random.Below(most));
     const Finding* elite = count == 1 && random.Chance(kOfOne) ? DrawEliteOfOne(random) : nullptr;
-    const sim::Vec2 place = way_.start + (way_.goal - way_.start) * random.Uniform();
+    const sim::Vec2 place = DrawPlace(random);
     std::optional<sim::Genome> row =
-        elite == nullptr ? Across(place, count, way_, spec, generator_, random)
-                         : Jittered(elite->individual.test_case.obstacles, spec, generator_, random);
-    if (row && count == 1) row = Longest(*row, spec, generator_, random);
+        elite == nullptr
+            ? gauntlet::Across(place, count, way_, spec_, generator_, random)
+            : gauntlet::Jittered(elite->individual.test_case.obstacles, spec_, generator_, random);
+    if (row && count == 1) row = Longest(*row, spec_, generator_, random);
     if (!row) continue;
-    if (elite != nullptr) slot.cell = archive_.grid().CellOf(elite->Middle());
-    Begin(slot, elite == nullptr ? Emitter::kAcross : Emitter::kJittered, *std::move(row),
-          elite == nullptr ? 0 : elite->individual.id);
-    return true;
+    if (elite == nullptr) return Proposal{Emitter::kAcross, *std::move(row)};
+    return Proposal{Emitter::kJittered, *std::move(row), elite->individual.id,
+                    archive_.grid().CellOf(elite->Middle())};
   }
-  return false;
+  return std::nullopt;
 }
 
-const Finding* ArchiveSearch::DrawEliteOfOne(sim::RandomStream& random) const {
+const Finding* LayoutProposer::DrawEliteOfOne(sim::RandomStream& random) const {
   std::vector<const Finding*> elites;
   for (const auto& [size, shelf] : archive_.shelves()) {
     if (shelf.front().size().obstacles == 1) elites.push_back(&shelf.front());
@@ -141,36 +152,38 @@ const Finding* ArchiveSearch::DrawEliteOfOne(sim::RandomStream& random) const {
   return elites.empty() ? nullptr : elites[random.Below(static_cast<std::uint32_t>(elites.size()))];
 }
 
-const Finding& ArchiveSearch::DrawElite(sim::RandomStream& random) const {
+const Finding& LayoutProposer::DrawElite(sim::RandomStream& random) const {
   const auto index = random.Below(static_cast<std::uint32_t>(archive_.shelves().size()));
   return std::next(archive_.shelves().begin(), index)->second.front();
 }
 
-bool ArchiveSearch::BeginJittered(Slot& slot, sim::RandomStream& random) {
+std::optional<Proposal> LayoutProposer::Jittered(sim::RandomStream& random) const {
   for (int i = 0; i < kTries; ++i) {
     const Finding& elite = DrawElite(random);
     sim::Genome obstacles = elite.individual.test_case.obstacles;
     if (obstacles.size() < 2) continue;
     obstacles = Without(obstacles, random.Below(static_cast<std::uint32_t>(obstacles.size())));
-    std::optional<sim::Genome> jittered = Jittered(obstacles, setup_.experiment.genome, generator_, random);
+    std::optional<sim::Genome> jittered = gauntlet::Jittered(obstacles, spec_, generator_, random);
     if (!jittered) continue;
-    slot.cell = archive_.grid().CellOf(elite.Middle());
-    Begin(slot, Emitter::kJittered, *std::move(jittered), elite.individual.id);
-    return true;
+    return Proposal{Emitter::kJittered, *std::move(jittered), elite.individual.id,
+                    archive_.grid().CellOf(elite.Middle())};
   }
-  return false;
+  return std::nullopt;
 }
 
-std::vector<std::size_t> ArchiveSearch::Order(const sim::Genome& obstacles, const Descriptor& failure) const {
+sim::Vec2 LayoutProposer::DrawPlace(sim::RandomStream& random) const {
+  return way_.start + (way_.goal - way_.start) * random.Uniform();
+}
+
+std::vector<std::size_t> LayoutProposer::Order(const sim::Genome& obstacles,
+                                               const Descriptor& failure) const {
   if (places_) return ByDistance(obstacles, {failure[0], failure[1]});
   return ByDistanceToWay(obstacles, way_);
 }
 
-void ArchiveSearch::PlanNearest(Slot& slot) {
-  const sim::Genome& obstacles = slot.finding.individual.test_case.obstacles;
-  const Descriptor& failure = slot.finding.failures.front();
-  slot.cell = archive_.grid().CellOf(failure);
-  slot.parent = slot.finding.individual.id;
+std::vector<sim::Genome> LayoutProposer::PartsNear(const sim::Genome& obstacles,
+                                                   const Descriptor& failure) const {
+  std::vector<sim::Genome> parts;
   const std::vector<std::size_t> nearest = Order(obstacles, failure);
   const std::vector<std::size_t> in_the_way = ByDistanceToWay(obstacles, way_);
   for (const auto& [near, on_way] : kFirstTried) {
@@ -182,21 +195,18 @@ void ArchiveSearch::PlanNearest(Slot& slot) {
       --missing;
     }
     if (kept.size() >= obstacles.size()) break;
-    slot.plan.push_back({Emitter::kNearest, Keep(obstacles, std::move(kept))});
+    parts.push_back(Keep(obstacles, std::move(kept)));
   }
-  slot.root = std::move(slot.finding);
+  return parts;
 }
 
-void ArchiveSearch::PlanWithout(Slot& slot, const Finding& found) {
-  const sim::Genome& obstacles = found.individual.test_case.obstacles;
-  slot.cell = archive_.grid().CellOf(found.Middle());
-  slot.parent = found.individual.id;
-  if (obstacles.size() < 2 || slot.emitter == Emitter::kMirrored) return;
-  std::vector<std::size_t> order = Order(obstacles, found.Middle());
+std::vector<sim::Genome> LayoutProposer::PartsWithoutOne(const sim::Genome& obstacles,
+                                                         const Descriptor& failure) const {
+  std::vector<std::size_t> order = Order(obstacles, failure);
   std::ranges::reverse(order);
-  for (const std::size_t index : order) {
-    slot.plan.push_back({Emitter::kWithout, Without(obstacles, index)});
-  }
+  std::vector<sim::Genome> parts;
+  for (const std::size_t index : order) parts.push_back(Without(obstacles, index));
+  return parts;
 }
 
 }  // namespace gauntlet
