@@ -39,9 +39,10 @@ Result<std::vector<NamedRun>> FirstRuns(const StoredCampaign& campaign) {
   std::vector<NamedRun> runs;
   for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
     std::map<IndividualId, RunId> first;
-    const Status read = campaign.view.store->ForEachRow(
-        search, 0, [&](const StoredRun& run) { first.try_emplace(run.individual, run.id); });
-    if (!read) return read.error();
+    TRY(campaign.view.store->ForEachRow(search, 0, [&](const StoredRun& run) {
+      first.try_emplace(run.individual, run.id);
+      return Ok{};
+    }));
     const std::string of_search = campaign.plans.size() > 1 ? fmt::format("search-{}-", search) : "";
     // As many digits for all, so that files sort by number.
     const std::size_t digits = first.empty() ? 1 : fmt::formatted_size("{}", first.rbegin()->first);

@@ -315,18 +315,16 @@ Result<std::vector<std::vector<double>>> StudyRuns::Windows(const std::string& t
     const Range range = RangeOf(one.part);
     Campaign& campaign = CampaignOf(range);
     for (SearchId id = range.first; id < range.end; ++id) {
-      std::string damage;
-      const Status read = campaign.opened.campaign.store->ForEachRun(id, 0, [&](const StoredRun& run) {
+      TRY(campaign.opened.campaign.store->ForEachRun(id, 0, [&](const StoredRun& run) -> Status {
         const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
-        if (!result) damage = result.error().message;
-        if (!result || result->verdict != sim::Verdict::kCompleted) return;
+        if (!result) return Error{ErrorKind::kCorrupt, result.error().message};
+        if (result->verdict != sim::Verdict::kCompleted) return Ok{};
         std::vector<double>& windows = all.emplace_back();
         for (const auto& [name, value] : result->metrics) {
           if (name == fmt::format("{}{}", prefix, windows.size() + 1)) windows.push_back(value);
         }
-      });
-      if (!read) return read.error();
-      if (!damage.empty()) return Error{ErrorKind::kCorrupt, damage};
+        return Ok{};
+      }));
     }
   }
   if (all.empty() || all.front().empty()) {
@@ -341,13 +339,13 @@ Result<std::vector<std::vector<std::vector<int>>>> StudyRuns::TypesByGeneration(
   Campaign& campaign = CampaignOf(range);
   for (SearchId id = range.first; id < range.end; ++id) {
     std::vector<std::vector<int>>& generations = searches.emplace_back();
-    const Status read = campaign.opened.campaign.store->ForEachRow(id, 0, [&](const StoredRun& run) {
-      if (run.generation == 0) return;
+    TRY(campaign.opened.campaign.store->ForEachRow(id, 0, [&](const StoredRun& run) {
+      if (run.generation == 0) return Ok{};
       if (generations.size() < run.generation) generations.resize(run.generation);
       if (run.total_failure && run.failure_type >= 0)
         generations[run.generation - 1].push_back(run.failure_type);
-    });
-    if (!read) return read.error();
+      return Ok{};
+    }));
   }
   return searches;
 }
@@ -398,18 +396,12 @@ Result<double> StudyRuns::CpuSecondsOf(const std::string& part) {
   const Range range = RangeOf(part);
   ResultStore& store = *CampaignOf(range).opened.campaign.store;
   double seconds = 0.0;
-  Status damage = Ok{};
   for (SearchId id = range.first; id < range.end; ++id) {
-    const Status read = store.ForEachRun(id, 0, [&](const StoredRun& run) {
-      const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
-      if (result) {
-        seconds += result->cpu_seconds;
-      } else {
-        damage = result.error();
-      }
-    });
-    if (!read) return read.error();
-    if (!damage) return damage.error();
+    TRY(store.ForEachRun(id, 0, [&](const StoredRun& run) -> Status {
+      TRY(const sim::RunResult result, proto::DecodeStoredResult(run.result));
+      seconds += result.cpu_seconds;
+      return Ok{};
+    }));
   }
   return seconds;
 }

@@ -114,25 +114,21 @@ Result<CorpusReport> ReadReport(CommandContext& context, const CheckOptions& opt
                             .interval = {0.0, 1.0},
                             .message = {}});
   const std::string_view failing = FailingOf(plan.experiments.front());
-  std::optional<Error> damage;
-  const Status read = context.campaigns.ForEachRun(plan.directory, [&](const StoredRun& run) {
+  TRY(context.campaigns.ForEachRun(plan.directory, [&](const StoredRun& run) -> Status {
     const Result<RunOutcome> outcome = OutcomeOf(run, FailingNeedsMetrics(failing));
     const bool known = run.search >= 1 && run.search <= plan.entry_of.size() && run.individual >= 1 &&
                        run.individual <= plan.entry_of[run.search - 1].size();
-    if (!outcome || !known) {
-      damage =
-          Error{ErrorKind::kCorrupt, fmt::format("run {} of {} does not read back", run.id, plan.directory)};
-      return;
-    }
+    if (!outcome || !known)
+      return Error{ErrorKind::kCorrupt,
+                   fmt::format("run {} of {} does not read back", run.id, plan.directory)};
     CheckedCase& one =
         report.cases[plan.entry_of[run.search - 1][static_cast<std::size_t>(run.individual) - 1]];
     const int passes = one.tally.passes;
     one.tally.Add(*outcome, failing);
     if (one.tally.passes == passes && one.run == 0) one.run = run.id;
     if (one.message.empty()) one.message = run.message;
-  });
-  if (!read) return read.error();
-  if (damage) return *damage;
+    return Ok{};
+  }));
   for (CheckedCase& one : report.cases) {
     one.verdict = VerdictOf(one.tally, 0);
     one.interval = FailureInterval(one.tally);

@@ -141,24 +141,18 @@ void NoteRefusal(EvaluatedCase& evaluated) {
 }
 
 Status AddRuns(CommandContext& context, const std::string& directory, CaseList& list) {
-  std::optional<Error> damaged;
-  const Status read = context.campaigns.ForEachRun(directory, [&](const StoredRun& stored) {
+  TRY(context.campaigns.ForEachRun(directory, [&](const StoredRun& stored) -> Status {
     Result<sim::RunResult> result = proto::DecodeStoredResult(stored.result);
-    if (damaged) return;
     const bool known = stored.search >= 1 && stored.search <= list.searches.size() &&
                        stored.individual >= 1 &&
                        stored.individual <= list.place_of_case[stored.search - 1].size();
-    if (!result || !known) {
-      damaged =
-          Error{ErrorKind::kCorrupt, fmt::format("run {} of {} does not read back", stored.id, directory)};
-      return;
-    }
+    if (!result || !known)
+      return Error{ErrorKind::kCorrupt, fmt::format("run {} of {} does not read back", stored.id, directory)};
     const std::size_t place =
         list.place_of_case[stored.search - 1][static_cast<std::size_t>(stored.individual) - 1];
     list.cases[place].runs.push_back({stored.id, stored.seed, std::move(*result)});
-  });
-  if (!read) return read;
-  if (damaged) return *damaged;
+    return Ok{};
+  }));
   for (EvaluatedCase& evaluated : list.cases) NoteRefusal(evaluated);
   return Ok{};
 }

@@ -180,24 +180,18 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
 
   std::map<IndividualId, std::vector<RunId>> runs_of;
   std::map<std::uint32_t, GenerationSummary> generations;
-  std::optional<Error> damage;
-  const auto take = [&](const StoredRun& run) {
+  const auto take = [&](const StoredRun& run) -> Status {
     ++summary.runs_done;
     runs_of[run.individual].push_back(run.id);
     AddToFailures(run, summary);
     AddToRunsWithoutResult(run, summary.runs_without_result);
     AddToGeneration(run, generations);
-    if (summary.failing.empty()) return;
-    const Result<bool> failing = IsFailing(run, experiment);
-    if (!failing)
-      damage = failing.error();
-    else if (*failing)
-      ++summary.failing_runs;
+    if (summary.failing.empty()) return Ok{};
+    TRY(const bool failing, IsFailing(run, experiment));
+    if (failing) ++summary.failing_runs;
+    return Ok{};
   };
-  const Status read =
-      summary.failing.empty() ? store.ForEachRow(search_id, 0, take) : store.ForEachRun(search_id, 0, take);
-  if (!read) return read.error();
-  if (damage) return *damage;
+  TRY(summary.failing.empty() ? store.ForEachRow(search_id, 0, take) : store.ForEachRun(search_id, 0, take));
   std::ranges::stable_sort(summary.runs_without_result, std::greater(), &RunsWithoutResult::runs);
   for (const auto& [number, generation] : generations) summary.generations.push_back(generation);
 

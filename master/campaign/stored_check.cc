@@ -111,24 +111,18 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
     return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
                                run, (*state)->generation, last_seen));
   };
-  std::optional<Error> damage;
   RunId expected = RunIdOf(search, 1);
-  const auto check = [&](const StoredRun& run) {
-    if (damage) return;
-    if (run.id != expected && expected <= last_seen) {
-      damage = missing(expected);
-      return;
-    }
+  const auto check = [&](const StoredRun& run) -> Status {
+    if (run.id != expected && expected <= last_seen) return missing(expected);
     expected = run.id + 1;
-    Status whole = CheckSeed(experiment, run);
-    if (whole && everything) whole = CheckRecord(run);
-    if (whole && everything) whole = CheckTestCase(test_cases, run);
-    if (!whole) damage = whole.error();
+    TRY(CheckSeed(experiment, run));
+    if (!everything) return Ok{};
+    TRY(CheckRecord(run));
+    TRY(CheckTestCase(test_cases, run));
     test_cases.erase(run.individual);
+    return Ok{};
   };
-  const Status read = everything ? store.ForEachRun(search, 0, check) : store.ForEachRow(search, 0, check);
-  if (!read) return read;
-  if (damage) return *damage;
+  TRY(everything ? store.ForEachRun(search, 0, check) : store.ForEachRow(search, 0, check));
   if (expected <= last_seen) return missing(expected);
   if (finished_with > last_seen) {
     return Damaged(fmt::format(

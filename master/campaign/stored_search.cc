@@ -59,29 +59,22 @@ Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgor
 
   const History history = [&](const std::function<void(const EvaluationOutcome&)>& visit) -> Status {
     EvaluationOutcome next;  // its runs stand one behind the other
-    std::optional<Error> damage;
     const auto tell = [&] {
       if (next.runs.empty()) return;
       visit(OutcomeOfRuns(next.individual, next.evaluation, std::exchange(next.runs, {})));
     };
     const bool with_metrics = search.WantsMetrics();  // they stand in the results
     const bool with_ways = search.WantsWays();
-    const auto take = [&](const StoredRun& run) {
-      if (damage || run.id > saved.last_run) return;
+    const auto take = [&](const StoredRun& run) -> Status {
+      if (run.id > saved.last_run) return Ok{};
       if (run.individual != next.individual || run.evaluation != next.evaluation) tell();
       next.individual = run.individual;
       next.evaluation = run.evaluation;
-      Result<RunOutcome> outcome = OutcomeOf(run, with_metrics, with_ways);
-      if (!outcome) {
-        damage = outcome.error();
-      } else {
-        next.runs.push_back(*std::move(outcome));
-      }
+      TRY(RunOutcome outcome, OutcomeOf(run, with_metrics, with_ways));
+      next.runs.push_back(std::move(outcome));
+      return Ok{};
     };
-    const Status read =
-        with_metrics || with_ways ? store.ForEachRun(id, 0, take) : store.ForEachRow(id, 0, take);
-    if (!read) return read;
-    if (damage) return *damage;
+    TRY(with_metrics || with_ways ? store.ForEachRun(id, 0, take) : store.ForEachRow(id, 0, take));
     tell();
     return Ok{};
   };

@@ -216,7 +216,7 @@ class Campaigns final : public CampaignService {
     return summary;
   }
 
-  Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) override {
+  Status ForEachRun(const std::string& dir, const RunVisitor& visit) override {
     const Result<CampaignView> campaign = ViewCampaign(dir);
     if (!campaign) return campaign.error();
     const Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();

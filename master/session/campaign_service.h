@@ -77,7 +77,7 @@ class CampaignService {
   // Checks and summarises what is stored, but for specs and results in full (Resume checks them too).
   virtual Result<CampaignSummary> Read(const std::string& dir) = 0;
   // The runs of a campaign in logical order, search by search.
-  virtual Status ForEachRun(const std::string& dir, const std::function<void(const StoredRun&)>& visit) = 0;
+  virtual Status ForEachRun(const std::string& dir, const RunVisitor& visit) = 0;
   // `scratch`: as SimulateInRunner has it (master/dispatch/pool/worker_program.h).
   virtual Result<CampaignReplay> Replay(const std::string& dir, RunId run, const std::string& scratch) = 0;
 

@@ -43,8 +43,10 @@ Status SearchDriver::Restore() {
     total_failures_ = mine.total_failures;
     runs_failed_ = mine.runs_failed;
   }
-  return parts_.store.ForEachRun(parts_.search_id, saved_until_,
-                                 [this](const StoredRun& run) { stored_ahead_.emplace(run.id, run); });
+  return parts_.store.ForEachRun(parts_.search_id, saved_until_, [this](const StoredRun& run) {
+    stored_ahead_.emplace(run.id, run);
+    return Ok{};
+  });
 }
 
 double SearchDriver::PredictedLength(const EvaluationRequest& request) const {

@@ -83,6 +83,8 @@ enum class Checked {
   kEverything,  // every byte
 };
 
+using RunVisitor = std::function<Status(const StoredRun& run)>;
+
 class ResultStore {
  public:
   virtual ~ResultStore() = default;
@@ -114,12 +116,11 @@ class ResultStore {
   // the runs.
   virtual Result<std::vector<Individual>> LoadIndividuals(SearchId search) = 0;
   virtual Result<std::optional<SavedState>> LoadNewestState(SearchId search) = 0;
-  // Runs of a search with id > after, in id order. Error: kCorrupt, naming the first that was changed.
-  virtual Status ForEachRun(SearchId search, RunId after,
-                            const std::function<void(const StoredRun&)>& visit) = 0;
+  // Runs of a search with id > after, in id order. Error: that of a visit, which is the last one then, or
+  // kCorrupt, naming the first run that was changed.
+  virtual Status ForEachRun(SearchId search, RunId after, const RunVisitor& visit) = 0;
   // The same without specs and results, which is ten times as fast.
-  virtual Status ForEachRow(SearchId search, RunId after,
-                            const std::function<void(const StoredRun&)>& visit) = 0;
+  virtual Status ForEachRow(SearchId search, RunId after, const RunVisitor& visit) = 0;
   virtual Result<std::optional<StoredRun>> LoadRun(RunId run) = 0;
   virtual Result<std::vector<StoredEvent>> LoadEvents() = 0;
 };

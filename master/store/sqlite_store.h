@@ -88,12 +88,10 @@ class SqliteStore final : public ResultStore {
     return Tables()->LoadNewestState(search);
   }
   // `visit` must not call the store.
-  Status ForEachRun(SearchId search, RunId after,
-                    const std::function<void(const StoredRun&)>& visit) override {
+  Status ForEachRun(SearchId search, RunId after, const RunVisitor& visit) override {
     return Tables()->ForEachRun(search, after, visit);
   }
-  Status ForEachRow(SearchId search, RunId after,
-                    const std::function<void(const StoredRun&)>& visit) override {
+  Status ForEachRow(SearchId search, RunId after, const RunVisitor& visit) override {
     return Tables()->ForEachRow(search, after, visit);
   }
   Result<std::optional<StoredRun>> LoadRun(RunId run) override { return Tables()->LoadRun(run); }

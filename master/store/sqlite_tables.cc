@@ -411,8 +411,7 @@ Result<StoredRun> SqliteTables::ReadRun(const SqliteStatement& row, bool whole) 
   return run;
 }
 
-Status SqliteTables::ForEach(SearchId search, RunId after, bool whole,
-                             const std::function<void(const StoredRun&)>& visit) {
+Status SqliteTables::ForEach(SearchId search, RunId after, bool whole, const RunVisitor& visit) {
   // The ids of a search's runs stand together: that is the index.
   const RunId before_first = RunIdOf(search, 1) - 1;
   const RunId last = before_first + (1ULL << kSequenceBits) - 1;
@@ -422,20 +421,16 @@ Status SqliteTables::ForEach(SearchId search, RunId after, bool whole,
   if (!query) return query.error();
   query->Bind(std::max(after, before_first), last);
   return query->ForEachRow([&]() -> Status {
-    const Result<StoredRun> run = ReadRun(*query, whole);
-    if (!run) return run.error();
-    visit(*run);
-    return Ok{};
+    TRY(const StoredRun run, ReadRun(*query, whole));
+    return visit(run);
   });
 }
 
-Status SqliteTables::ForEachRun(SearchId search, RunId after,
-                                const std::function<void(const StoredRun&)>& visit) {
+Status SqliteTables::ForEachRun(SearchId search, RunId after, const RunVisitor& visit) {
   return ForEach(search, after, /*whole=*/true, visit);
 }
 
-Status SqliteTables::ForEachRow(SearchId search, RunId after,
-                                const std::function<void(const StoredRun&)>& visit) {
+Status SqliteTables::ForEachRow(SearchId search, RunId after, const RunVisitor& visit) {
   return ForEach(search, after, /*whole=*/false, visit);
 }
 

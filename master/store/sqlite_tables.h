@@ -1,7 +1,6 @@
 // The rows of a campaign's database: writing and reading every kind of record.
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -55,8 +54,8 @@ class SqliteTables {
   Result<std::vector<SearchTotals>> LoadTotals();
   Result<std::vector<Individual>> LoadIndividuals(SearchId search);
   Result<std::optional<SavedState>> LoadNewestState(SearchId search);
-  Status ForEachRun(SearchId search, RunId after, const std::function<void(const StoredRun&)>& visit);
-  Status ForEachRow(SearchId search, RunId after, const std::function<void(const StoredRun&)>& visit);
+  Status ForEachRun(SearchId search, RunId after, const RunVisitor& visit);
+  Status ForEachRow(SearchId search, RunId after, const RunVisitor& visit);
   Result<std::optional<StoredRun>> LoadRun(RunId run);
   Result<std::vector<StoredEvent>> LoadEvents();
 
@@ -67,8 +66,7 @@ class SqliteTables {
   // The first of its kind becomes what later ones are packed with.
   Status Learn(Packing& packing, const char* kind, std::string_view example);
   Result<StoredRun> ReadRun(const SqliteStatement& row, bool whole);
-  Status ForEach(SearchId search, RunId after, bool whole,
-                 const std::function<void(const StoredRun&)>& visit);
+  Status ForEach(SearchId search, RunId after, bool whole, const RunVisitor& visit);
 
   Status Insert(SearchId search, const Individual& individual);
   // The newest state of `search` with last_run <= `until`.

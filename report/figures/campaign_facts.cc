@@ -53,19 +53,12 @@ Result<RunFacts> FactsOf(const StoredRun& run,
 
 Status AddRuns(const SearchPlan& plan, SearchId search, ResultStore& store, std::vector<RunFacts>& runs) {
   const auto descriptors = DescriptorsOf(plan.experiment);
-  Status decoded = Ok{};
-  const auto add = [&](const StoredRun& run) {
-    if (!decoded) return;
-    Result<RunFacts> facts = FactsOf(run, descriptors);
-    if (facts) {
-      runs.push_back(*std::move(facts));
-    } else {
-      decoded = facts.error();
-    }
+  const auto add = [&](const StoredRun& run) -> Status {
+    TRY(RunFacts facts, FactsOf(run, descriptors));
+    runs.push_back(std::move(facts));
+    return Ok{};
   };
-  const Status read =
-      descriptors.empty() ? store.ForEachRow(search, 0, add) : store.ForEachRun(search, 0, add);
-  return read ? decoded : read;
+  return descriptors.empty() ? store.ForEachRow(search, 0, add) : store.ForEachRun(search, 0, add);
 }
 
 void AddRun(const RunFacts& run, CaseFacts& of_case) {

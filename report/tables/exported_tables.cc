@@ -44,8 +44,7 @@ const std::vector<Column> kEventColumns = {{"time", "", "UTC, ISO 8601"},
                                            {"text", "", "the same in words"}};
 
 // Visits the runs that were asked for, in logical order, until `visit` gives an error, which is returned.
-Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chosen,
-                     const std::function<Status(const StoredRun&)>& visit) {
+Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chosen, const RunVisitor& visit) {
   SqliteStore& store = *campaign.view.store;
   for (const RunId id : chosen) {
     TRY(const auto run, store.LoadRun(id));
@@ -55,12 +54,7 @@ Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chos
   }
   if (!chosen.empty()) return Ok{};
   for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
-    Status visited = Ok{};
-    const Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
-      if (visited) visited = visit(run);
-    });
-    if (!visited) return visited;
-    if (!read) return read;
+    TRY(store.ForEachRun(search, 0, visit));
   }
   return Ok{};
 }

@@ -57,10 +57,10 @@ Error InRun(RunId run, const Error& error) {
 // The metrics of the search's first completed run, in the scenario's order; none when it has no such run.
 Result<std::vector<std::string>> MetricsOf(SearchId search, ResultStore& store) {
   std::optional<RunId> completed;
-  const Status read = store.ForEachRow(search, 0, [&](const StoredRun& run) {
+  TRY(store.ForEachRow(search, 0, [&](const StoredRun& run) {
     if (!completed && run.verdict == static_cast<int>(sim::Verdict::kCompleted)) completed = run.id;
-  });
-  if (!read) return read.error();
+    return Ok{};
+  }));
   std::vector<std::string> names;
   if (!completed) return names;
   TRY(const auto run, store.LoadRun(*completed));

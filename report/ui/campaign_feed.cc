@@ -35,9 +35,10 @@ Status CampaignFeed::Look() {
 Status CampaignFeed::ReadRunsOf(SearchId search, ResultStore& store) {
   RunId& seen = seen_[search - 1];
   return store.ForEachRow(search, seen, [&](const StoredRun& run) {
-    if (run.id != seen + 1) return;
+    if (run.id != seen + 1) return Ok{};
     facts_.runs.push_back(FactsOfRow(run));
     seen = run.id;
+    return Ok{};
   });
 }
 

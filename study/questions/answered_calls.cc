@@ -19,6 +19,7 @@ std::string FirstMessage(ResultStore& store, SearchId search, IndividualId indiv
   std::string message;
   const Status read = store.ForEachRow(search, 0, [&](const StoredRun& run) {
     if (run.individual == individual && message.empty()) message = run.message;
+    return Ok{};
   });
   return read ? message : read.error().message;
 }

@@ -49,19 +49,14 @@ void AddWays(const RunOutcome& run, bool failed, Blame& blame) {
 
 Status AddWaysOfRuns(const AnsweredSearch& answered, IndividualId individual, Blame& blame) {
   const std::string_view failing = FailingOf(answered.experiment);
-  Status all = Ok{};
-  const Status read = answered.store.ForEachRun(answered.id, 0, [&](const StoredRun& stored) {
-    if (stored.individual != individual || !all) return;
-    const Result<RunOutcome> run = OutcomeOf(stored, /*with_metrics=*/true, /*with_ways=*/true);
-    if (!run) {
-      all = run.error();
-      return;
-    }
+  return answered.store.ForEachRun(answered.id, 0, [&](const StoredRun& stored) -> Status {
+    if (stored.individual != individual) return Ok{};
+    TRY(const RunOutcome run, OutcomeOf(stored, /*with_metrics=*/true, /*with_ways=*/true));
     FailureTally tally;
-    tally.Add(*run, failing);
-    AddWays(*run, tally.failures > 0, blame);
+    tally.Add(run, failing);
+    AddWays(run, tally.failures > 0, blame);
+    return Ok{};
   });
-  return read ? all : read;
 }
 
 std::string Numbers(const std::vector<std::size_t>& obstacles) {

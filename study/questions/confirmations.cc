@@ -80,13 +80,10 @@ Status AddConfirmations(const Experiment& experiment, SearchId search, const std
   TRY(const auto cases, store.LoadIndividuals(search));
   std::vector<CaseRuns> runs_of;
   for (const Individual& one : cases) runs_of.emplace_back(experiment, one.test_case);
-  Status whole = Ok{};
-  Status read = store.ForEachRun(search, 0, [&](const StoredRun& run) {
-    if (whole && run.individual >= 1 && run.individual <= runs_of.size())
-      whole = runs_of[run.individual - 1].Add(run);
-  });
-  if (!read) return read;
-  if (!whole) return whole;
+  TRY(store.ForEachRun(search, 0, [&](const StoredRun& run) -> Status {
+    if (run.individual < 1 || run.individual > runs_of.size()) return Ok{};
+    return runs_of[run.individual - 1].Add(run);
+  }));
   for (std::size_t i = 0; i < runs_of.size(); ++i) {
     Confirmation one = runs_of[i].Conclude(experiment, cases[i].test_case, campaign);
     if (one.verdict == FailureVerdict::kOpen) continue;

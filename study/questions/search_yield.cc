@@ -91,8 +91,10 @@ Status AddCampaign(const std::string& dir, YieldSet& set) {
   const std::size_t first = set.searches.size();
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
-    const auto add = [&](const StoredRun& run) { finding_runs[i].Add(run); };
-    TRY(campaign.view.store->ForEachRow(id, 0, add));
+    TRY(campaign.view.store->ForEachRow(id, 0, [&](const StoredRun& run) {
+      finding_runs[i].Add(run);
+      return Ok{};
+    }));
     set.searches.push_back({.place = plans.size() > 1 ? fmt::format("{}:search:{}", dir, id) : dir,
                             .experiment = plans[i].experiment,
                             .runs = finding_runs[i].runs(),

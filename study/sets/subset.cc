@@ -53,26 +53,19 @@ Result<std::vector<SelectedRun>> LoadValues(const Experiment& experiment, Search
       controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
   const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, metric);
   std::vector<SelectedRun> values;
-  std::optional<Error> damage;
-  const auto take = [&](const StoredRun& run) {
+  const auto take = [&](const StoredRun& run) -> Status {
     SelectedRun& value = values.emplace_back(
         SelectedRun{run.id, run.individual, run.evaluation, run.generation, std::nullopt});
-    if (damage || run.verdict != static_cast<int>(sim::Verdict::kCompleted)) return;
+    if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) return Ok{};
     if (IsColumn(metric)) {
       value.value = ColumnOf(run, metric);
-      return;
+      return Ok{};
     }
-    const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
-    if (!result) {
-      damage = result.error();
-    } else {
-      value.value = MetricOf(*result, info, metric);
-    }
+    TRY(const sim::RunResult result, proto::DecodeStoredResult(run.result));
+    value.value = MetricOf(result, info, metric);
+    return Ok{};
   };
-  const Status read =
-      IsColumn(metric) ? store.ForEachRow(search, 0, take) : store.ForEachRun(search, 0, take);
-  if (!read) return read.error();
-  if (damage) return *damage;
+  TRY(IsColumn(metric) ? store.ForEachRow(search, 0, take) : store.ForEachRun(search, 0, take));
   return values;
 }
 

@@ -66,8 +66,10 @@ class FakeCampaigns : public CampaignService {
     return Serve(dir, options);
   }
   Result<CampaignSummary> Read(const std::string& /*dir*/) override { return Answer(report.summary); }
-  Status ForEachRun(const std::string& /*dir*/, const std::function<void(const StoredRun&)>& visit) override {
-    std::ranges::for_each(stored, visit);
+  Status ForEachRun(const std::string& /*dir*/, const RunVisitor& visit) override {
+    for (const StoredRun& run : stored) {
+      TRY(visit(run));
+    }
     return Ok{};
   }
   Result<CampaignReplay> Replay(const std::string& /*dir*/, RunId run,

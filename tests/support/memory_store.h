@@ -102,19 +102,18 @@ class MemoryStore final : public ResultStore {
     const std::vector<SavedState>& all = states[search];
     return all.empty() ? std::optional<SavedState>() : all.back();
   }
-  Status ForEachRun(SearchId search, RunId after,
-                    const std::function<void(const StoredRun&)>& visit) override {
+  Status ForEachRun(SearchId search, RunId after, const RunVisitor& visit) override {
     for (auto run = runs.upper_bound(after); run != runs.end(); ++run) {
-      if (run->second.search == search) visit(run->second);
+      if (run->second.search != search) continue;
+      TRY(visit(run->second));
     }
     return Ok{};
   }
-  Status ForEachRow(SearchId search, RunId after,
-                    const std::function<void(const StoredRun&)>& visit) override {
+  Status ForEachRow(SearchId search, RunId after, const RunVisitor& visit) override {
     return ForEachRun(search, after, [&visit](StoredRun run) {
       run.spec.clear();
       run.result.clear();
-      visit(run);
+      return visit(run);
     });
   }
   Result<std::optional<StoredRun>> LoadRun(RunId run) override {

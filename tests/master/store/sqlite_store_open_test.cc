@@ -137,7 +137,7 @@ RC_GTEST_PROP(DamagedStoreTest, NeverCrashesAndNeverRepairsInSilence, ()) {
   WriteFile(scratch / "campaign.db", bytes);
   Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(scratch / "campaign.db");
   if (store.ok()) {
-    (void)(*store)->ForEachRun(1, 0, [](const StoredRun&) {});
+    (void)(*store)->ForEachRun(1, 0, [](const StoredRun&) { return Ok{}; });
     (void)(*store)->LoadNewestState(1);
     (void)(*store)->LoadIndividuals(1);
   }

@@ -82,7 +82,10 @@ TEST_F(SqliteStoreTest, RunsAreVisitedInIdOrderWhateverOrderTheyCameIn) {
   }
   Flush();
   std::vector<RunId> ids;
-  const auto collect = [&ids](const StoredRun& run) { ids.push_back(run.id); };
+  const auto collect = [&ids](const StoredRun& run) {
+    ids.push_back(run.id);
+    return Ok{};
+  };
   ASSERT_TRUE(store_->ForEachRun(1, 0, collect).ok());
   EXPECT_THAT(ids, testing::ElementsAre(1, 2, 8, 9, 30));
   ids.clear();
@@ -94,6 +97,20 @@ TEST_F(SqliteStoreTest, RunsAreVisitedInIdOrderWhateverOrderTheyCameIn) {
   ids.clear();
   ASSERT_TRUE(store_->ForEachRun(3, 0, collect).ok());
   EXPECT_THAT(ids, testing::IsEmpty());
+}
+
+TEST_F(SqliteStoreTest, AVisitThatFailsIsTheLast) {
+  for (const RunId id : {RunId{1}, RunId{2}, RunId{3}}) store_->AddRun(MakeRun(id));
+  Flush();
+  int visits = 0;
+  const Status read = store_->ForEachRun(1, 0, [&](const StoredRun& run) -> Status {
+    ++visits;
+    if (run.id < 2) return Ok{};
+    return InvalidInput("enough");
+  });
+  ASSERT_FALSE(read.ok());
+  EXPECT_EQ(read.error().message, "enough");
+  EXPECT_EQ(visits, 2);
 }
 
 TEST_F(SqliteStoreTest, SearchesAreFinishedByARowOfTheirOwn) {

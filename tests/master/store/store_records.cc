@@ -150,7 +150,10 @@ void CreateStoreWithSearch(const std::string& path) {
 
 std::vector<StoredRun> RunsOf(ResultStore& store, SearchId search) {
   std::vector<StoredRun> runs;
-  const Status read = store.ForEachRun(search, 0, [&runs](const StoredRun& run) { runs.push_back(run); });
+  const Status read = store.ForEachRun(search, 0, [&runs](const StoredRun& run) {
+    runs.push_back(run);
+    return Ok{};
+  });
   GAUNTLET_CHECK(read.ok(), read.error().message);
   return runs;
 }

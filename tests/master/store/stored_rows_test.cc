@@ -83,6 +83,7 @@ TEST_F(StoredRowsTest, WithoutRecordsRunsAreTheSame) {
     expected.spec.clear();
     expected.result.clear();
     EXPECT_TRUE(SameRun(run, expected)) << run.id;
+    return Ok{};
   });
   EXPECT_TRUE(read.ok());
   EXPECT_EQ(next, 51U);
@@ -149,7 +150,7 @@ TEST_F(StoredRowsTest, EveryColumnOfARunIsGuarded) {
     Alter(fmt::format("UPDATE runs SET {} WHERE id = 7", change));
     const Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(path_, Checked::kRows);
     ASSERT_TRUE(store.ok()) << store.error().message;
-    const Status read = (*store)->ForEachRow(1, 0, [](const StoredRun&) {});
+    const Status read = (*store)->ForEachRow(1, 0, [](const StoredRun&) { return Ok{}; });
     ASSERT_FALSE(read.ok()) << change;
     EXPECT_THAT(read.error().message, HasSubstr("the row of run 7 was changed")) << change;
     EXPECT_FALSE((*store)->LoadRun(7).ok()) << change;
