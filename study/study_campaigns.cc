@@ -133,7 +133,7 @@ Status BeginStudy(const std::string& dir, const Study& study) {
       return InvalidInput(fmt::format("{} holds the study '{}': name another --dir", dir, there.name));
     }
     for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
-      if (const Result<StageState> fits = LookAtStage(study, dir, stage); !fits) return fits.error();
+      TRY(LookAtStage(study, dir, stage));
     }
     // What is computed from the same runs may change.
     const bool same =

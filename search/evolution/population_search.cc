@@ -214,11 +214,10 @@ Status PopulationSearch::Recall(const History& history,
                                 const std::function<void(const EvaluationOutcome&)>& recall) const {
   std::uint64_t told = 0;
   bool known = true;  // only individuals that have been asked for
-  Status read = history([&](const EvaluationOutcome& outcome) {
+  TRY(history([&](const EvaluationOutcome& outcome) {
     known = known && outcome.individual >= 1 && outcome.individual <= evaluations_done_;
     if (known && ++told <= evaluations_done_) recall(outcome);
-  });
-  if (!read) return read;
+  }));
   if (known && told == evaluations_done_) return Ok{};
   return Damaged(
       fmt::format("it has seen {} evaluations, but the runs of {} are stored", evaluations_done_, told));

@@ -131,15 +131,14 @@ Status LayoutSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const History& h
   std::vector<EvaluationRequest> asked = Ask();
   std::size_t next = 0;
   bool known = true;
-  const Status read = history([&](const EvaluationOutcome& outcome) {
+  TRY(history([&](const EvaluationOutcome& outcome) {
     known = known && next < asked.size() && next < told && asked[next].individual == outcome.individual &&
             asked[next].evaluation == outcome.evaluation;
     if (!known) return;
     ++next;
     Tell(outcome);
     std::ranges::move(Ask(), std::back_inserter(asked));
-  });
-  if (!read) return read;
+  }));
   newborns_.clear();
   if (known && evaluations_done_ == told && Progress().finished) return Ok{};
   return Damaged("its evaluations are not those that it would ask for");
