@@ -174,15 +174,15 @@ Status CheckFields(const ordered_json& object, std::span<const Field> fields, co
 }  // namespace
 
 Status CheckStatus(const ordered_json& status) {
-  if (Status own = CheckFields(status, kStatusFields, ""); !own) return own;
+  TRY(CheckFields(status, kStatusFields, ""));
   if (const auto master = status.find("master"); master != status.end() && master->is_object()) {
-    if (Status own = CheckFields(*master, kMasterFields, "master."); !own) return own;
+    TRY(CheckFields(*master, kMasterFields, "master."));
   }
   const auto check_each = [](const ordered_json& object, const char* list, const std::string& place,
                              const auto& check) -> Status {
     const auto found = object.find(list);
     for (std::size_t i = 0; found != object.end() && i < found->size(); ++i) {
-      if (Status right = check((*found)[i], fmt::format("{}{}[{}].", place, list, i)); !right) return right;
+      TRY(check((*found)[i], fmt::format("{}{}[{}].", place, list, i)));
     }
     return Ok{};
   };
@@ -193,10 +193,10 @@ Status CheckStatus(const ordered_json& status) {
     return CheckFields(run, kRunFields, place);
   };
   const auto check_worker = [&](const ordered_json& worker, const std::string& place) -> Status {
-    if (Status own = CheckFields(worker, kWorkerFields, place); !own) return own;
+    TRY(CheckFields(worker, kWorkerFields, place));
     return check_each(worker, "runs", place, check_run);
   };
-  if (Status right = check_each(status, "allocations", "", check_allocation); !right) return right;
+  TRY(check_each(status, "allocations", "", check_allocation));
   return check_each(status, "worker_list", "", check_worker);
 }
 

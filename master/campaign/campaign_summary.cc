@@ -57,10 +57,9 @@ void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
 }
 
 Result<bool> IsFailing(const StoredRun& run, const Experiment& experiment) {
-  const Result<RunOutcome> outcome = OutcomeOf(run, /*with_metrics=*/true);
-  if (!outcome) return outcome.error();
+  TRY(const RunOutcome outcome, OutcomeOf(run, /*with_metrics=*/true));
   FailureTally tally;
-  tally.Add(*outcome, FailingOf(experiment));
+  tally.Add(outcome, FailingOf(experiment));
   return tally.failures > 0;
 }
 
@@ -147,9 +146,8 @@ CampaignSummary TotalsOf(const std::vector<CampaignSummary>& searches) {
 }
 
 Result<std::uint64_t> CountEvents(ResultStore& store, const char* kind) {
-  const Result<std::vector<StoredEvent>> events = store.LoadEvents();
-  if (!events) return events.error();
-  return static_cast<std::uint64_t>(std::ranges::count(*events, kind, &StoredEvent::kind));
+  TRY(const std::vector<StoredEvent> events, store.LoadEvents());
+  return static_cast<std::uint64_t>(std::ranges::count(events, kind, &StoredEvent::kind));
 }
 
 }  // namespace
@@ -170,12 +168,10 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   summary.seed = experiment.seed;
   TakeFromScenario(experiment, summary);
 
-  const Result<SavedProgress> saved = RestoreSearch(search_id, store, search);
-  if (!saved) return saved.error();
+  TRY(const SavedProgress saved, RestoreSearch(search_id, store, search));
   {
-    const Result<std::vector<Individual>> individuals = store.LoadIndividuals(search_id);
-    if (!individuals) return individuals.error();
-    summary.distinct_individuals = CountDistinctGenomes(*individuals);
+    TRY(const std::vector<Individual> individuals, store.LoadIndividuals(search_id));
+    summary.distinct_individuals = CountDistinctGenomes(individuals);
   }
 
   std::map<IndividualId, std::vector<RunId>> runs_of;
@@ -218,50 +214,39 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
   if (counted > 0.0) summary.mean_fitness = sum / counted;
 
   summary.state_hash =
-      StateHash(EncodeExperiment(experiment), saved->results, EncodePopulation(population), saved->state);
-  const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
-  if (!nondeterministic) return nondeterministic.error();
-  summary.nondeterministic = *nondeterministic;
+      StateHash(EncodeExperiment(experiment), saved.results, EncodePopulation(population), saved.state);
+  TRY(summary.nondeterministic, CountNondeterministic(store));
   if (!experiment.plugin.empty()) summary.plugin_controllers.insert(experiment.controller);
-  const Result<std::uint64_t> lone_verdicts = CountLoneVerdicts(store);
-  if (!lone_verdicts) return lone_verdicts.error();
-  summary.lone_verdicts = *lone_verdicts;
-  Result<std::vector<StoredSearch>> searches = store.LoadSearches();
-  if (!searches) return searches.error();
-  summary.finished = std::ranges::any_of(*searches, [&](const StoredSearch& stored) {
+  TRY(summary.lone_verdicts, CountLoneVerdicts(store));
+  TRY(std::vector<StoredSearch> searches, store.LoadSearches());
+  summary.finished = std::ranges::any_of(searches, [&](const StoredSearch& stored) {
     return stored.id == search_id && HasFinished(stored, experiment, search);
   });
   return summary;
 }
 
 Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, ResultStore& store) {
-  const Result<std::vector<SearchTotals>> totals = store.LoadTotals();
-  if (!totals) return totals.error();
-  const Result<std::vector<StoredSearch>> stored = store.LoadSearches();
-  if (!stored) return stored.error();
+  TRY(const std::vector<SearchTotals> totals, store.LoadTotals());
+  TRY(const std::vector<StoredSearch> stored, store.LoadSearches());
   std::vector<CampaignSummary> searches(plans.size());
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
     CampaignSummary& summary = searches[i];
     summary.experiment = plans[i].experiment.name;
-    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(plans[i].experiment, id, store);
-    if (!search) return search.error();
-    const Result<std::optional<SavedState>> state = store.LoadNewestState(id);
-    if (!state) return state.error();
-    summary.progress = (*search)->Progress();
-    if (*state) summary.progress.generation = (*state)->generation;
-    const auto mine = std::ranges::find(*totals, id, &SearchTotals::search);
-    if (mine == totals->end()) continue;
+    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i].experiment, id, store));
+    TRY(const std::optional<SavedState> state, store.LoadNewestState(id));
+    summary.progress = search->Progress();
+    if (state) summary.progress.generation = state->generation;
+    const auto mine = std::ranges::find(totals, id, &SearchTotals::search);
+    if (mine == totals.end()) continue;
     summary.runs_done = mine->runs;
     summary.runs_failed = mine->runs_failed;
     summary.total_failures = mine->total_failures;
-    const auto known = std::ranges::find(*stored, id, &StoredSearch::id);
-    summary.finished = known != stored->end() && HasFinished(*known, plans[i].experiment, **search);
+    const auto known = std::ranges::find(stored, id, &StoredSearch::id);
+    summary.finished = known != stored.end() && HasFinished(*known, plans[i].experiment, *search);
   }
   CampaignSummary all = TotalsOf(searches);
-  const Result<std::uint64_t> nondeterministic = CountNondeterministic(store);
-  if (!nondeterministic) return nondeterministic.error();
-  all.nondeterministic = *nondeterministic;
+  TRY(all.nondeterministic, CountNondeterministic(store));
   return all;
 }
 
@@ -269,12 +254,10 @@ Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultSt
   std::vector<CampaignSummary> searches;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
-    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeStoredSearch(plans[i].experiment, id, store);
-    if (!search) return search.error();
-    Result<CampaignSummary> summary = Summarise(plans[i].experiment, id, **search, store);
-    if (!summary) return summary;
-    summary->settings = plans[i].settings;
-    searches.push_back(*std::move(summary));
+    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i].experiment, id, store));
+    TRY(CampaignSummary summary, Summarise(plans[i].experiment, id, *search, store));
+    summary.settings = plans[i].settings;
+    searches.push_back(std::move(summary));
   }
   if (plans.size() == 1) return std::move(searches.front());
   CampaignSummary totals = TotalsOf(searches);

@@ -92,14 +92,12 @@ Result<Forecast> MakeForecast(const std::vector<SearchPlan>& plans,
   std::vector<std::vector<sim::RunSpec>> first_runs;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const Experiment& experiment = plans[i].experiment;
-    const Result<std::unique_ptr<SearchAlgorithm>> search =
-        MakeSearch(experiment, kOnlySearch, plans[i].cases);
-    if (!search) return search.error();
-    const SearchProgress planned = (*search)->Progress();
+    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeSearch(experiment, kOnlySearch, plans[i].cases));
+    const SearchProgress planned = search->Progress();
     forecast.runs += planned.evaluations_planned * static_cast<std::uint64_t>(experiment.search.replicates);
     forecast.cases += planned.individuals_planned;
     if (first_runs.size() < sampled && i == first_runs.size() * plans.size() / sampled)
-      first_runs.push_back(FirstRuns(experiment, **search, runs_each));
+      first_runs.push_back(FirstRuns(experiment, *search, runs_each));
   }
 
   PackedSize size;
@@ -109,15 +107,14 @@ Result<Forecast> MakeForecast(const std::vector<SearchPlan>& plans,
       const std::vector<sim::RunSpec>& runs = first_runs[search];
       if (i >= runs.size() || (seconds > kEnoughSeconds && forecast.measured_runs >= kLeastMeasured))
         continue;
-      const Result<sim::RunResult> result = simulate(runs[i]);
-      if (!result) return result.error();
-      seconds += result->cpu_seconds;
+      TRY(const sim::RunResult result, simulate(runs[i]));
+      seconds += result.cpu_seconds;
       ++forecast.measured_runs;
-      if (result->verdict != sim::Verdict::kCompleted) {
+      if (result.verdict != sim::Verdict::kCompleted) {
         ++forecast.measured_without_result;
-        forecast.why_without_result = result->message;
+        forecast.why_without_result = result.message;
       }
-      size.Add(runs[i], *result, plans[search * plans.size() / sampled].experiment.store.trajectories);
+      size.Add(runs[i], result, plans[search * plans.size() / sampled].experiment.store.trajectories);
     }
   }
   forecast.seconds_per_run = seconds / static_cast<double>(forecast.measured_runs);

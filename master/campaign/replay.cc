@@ -43,11 +43,10 @@ std::vector<std::string> DifferencesOf(const sim::RunResult& stored, const sim::
 }  // namespace
 
 Result<ReplayReport> ReplayRun(ResultStore& store, RunId run, const std::string& scratch) {
-  Result<std::optional<StoredRun>> loaded = store.LoadRun(run);
-  if (!loaded) return loaded.error();
-  if (!loaded->has_value())
+  TRY(std::optional<StoredRun> loaded, store.LoadRun(run));
+  if (!loaded.has_value())
     return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", run)};
-  return ReplayRun(std::move(**loaded), scratch);
+  return ReplayRun(std::move(*loaded), scratch);
 }
 
 Result<ReplayReport> ReplayRun(StoredRun stored, const std::string& scratch) {
@@ -67,13 +66,11 @@ Result<ReplayReport> ReplayRun(StoredRun stored, const std::string& scratch) {
     return report;
   }
   report.stored_result = std::move(*stored_result);
-  if (Status same = CheckCopies(report.stored, report.stored_result); !same) return same.error();
+  TRY(CheckCopies(report.stored, report.stored_result));
 
   sim::RunSpec recorded = report.spec;
   recorded.record_trajectory = true;
-  Result<sim::RunResult> replayed = SimulateInRunner(recorded, scratch);
-  if (!replayed) return replayed.error();
-  report.replayed = std::move(*replayed);
+  TRY(report.replayed, SimulateInRunner(recorded, scratch));
 
   if (const std::uint64_t hash = SpecHash(report.stored.spec); hash != report.stored.spec_hash) {
     report.differences.push_back(

@@ -9,17 +9,15 @@
 namespace gauntlet {
 
 Result<StoredCampaign> OpenStoredCampaign(const std::string& dir) {
-  Result<CampaignView> view = ViewCampaign(dir, Checked::kRows);
-  if (!view) return view.error();
-  Result<std::vector<SearchPlan>> plans = ReadSearchPlans(view->directory);
-  if (!plans) return plans.error();
-  if (Status whole = CheckStored(*plans, *view->store, Checked::kRows); !whole) return whole.error();
+  TRY(CampaignView view, ViewCampaign(dir, Checked::kRows));
+  TRY(std::vector<SearchPlan> plans, ReadSearchPlans(view.directory));
+  TRY(CheckStored(plans, *view.store, Checked::kRows));
   std::string being_written;
-  if (view->lock == nullptr) {
+  if (view.lock == nullptr) {
     being_written = fmt::format("{} is being written: its runs {}", dir,
-                                view->as_of.empty() ? "as they were stored just now" : view->as_of);
+                                view.as_of.empty() ? "as they were stored just now" : view.as_of);
   }
-  return StoredCampaign{*std::move(view), *std::move(plans), std::move(being_written)};
+  return StoredCampaign{std::move(view), std::move(plans), std::move(being_written)};
 }
 
 }  // namespace gauntlet

@@ -66,8 +66,8 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
     return Damaged(fmt::format("run {} has fitness {} in its row, {} in its result", run.id, run.fitness,
                                result.fitness));
   }
-  if (Status same = Same(run, "message", run.message, result.message); !same) return same;
-  if (Status same = Same(run, "total_failure", run.total_failure, result.failure.total); !same) return same;
+  TRY(Same(run, "message", run.message, result.message));
+  TRY(Same(run, "total_failure", run.total_failure, result.failure.total));
   return Same(run, "failure_type", run.failure_type, result.failure.type);
 }
 
@@ -87,29 +87,26 @@ Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
 }
 
 Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store, Checked what) {
-  Result<std::vector<StoredSearch>> searches = store.LoadSearches();
-  if (!searches) return searches.error();
+  TRY(std::vector<StoredSearch> searches, store.LoadSearches());
   RunId finished_with = 0;
-  for (const StoredSearch& stored : *searches) {
+  for (const StoredSearch& stored : searches) {
     if (stored.id == search) finished_with = stored.finished_with;
   }
-  Result<std::optional<SavedState>> state = store.LoadNewestState(search);
-  if (!state) return state.error();
-  if (finished_with > 0 && !state->has_value())
+  TRY(std::optional<SavedState> state, store.LoadNewestState(search));
+  if (finished_with > 0 && !state.has_value())
     return Damaged("the search has finished, but its states are missing");
-  const RunId last_seen = state->has_value() ? (*state)->last_run : 0;
+  const RunId last_seen = state.has_value() ? state->last_run : 0;
 
   const bool everything = what == Checked::kEverything;
   std::map<IndividualId, sim::TestCase> test_cases;
   if (everything) {
-    Result<std::vector<Individual>> individuals = store.LoadIndividuals(search);
-    if (!individuals) return individuals.error();
-    for (Individual& individual : *individuals)
+    TRY(std::vector<Individual> individuals, store.LoadIndividuals(search));
+    for (Individual& individual : individuals)
       test_cases.emplace(individual.id, std::move(individual.test_case));
   }
   const auto missing = [&](RunId run) {
     return Damaged(fmt::format("run {} is missing: the state after generation {} has seen all up to run {}",
-                               run, (*state)->generation, last_seen));
+                               run, state->generation, last_seen));
   };
   RunId expected = RunIdOf(search, 1);
   const auto check = [&](const StoredRun& run) -> Status {
@@ -134,8 +131,7 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
 
 Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store, Checked what) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    const Status whole = CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store, what);
-    if (!whole) return whole;
+    TRY(CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store, what));
   }
   return Ok{};
 }

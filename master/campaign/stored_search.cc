@@ -12,14 +12,13 @@ namespace gauntlet {
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, SearchId id,
                                                           ResultStore& store) {
   if (!RowOf(experiment).given_cases) return MakeSearch(experiment, kOnlySearch);
-  Result<std::vector<Individual>> individuals = store.LoadIndividuals(id);
-  if (!individuals) return individuals.error();
-  if (individuals->empty()) {
+  TRY(std::vector<Individual> individuals, store.LoadIndividuals(id));
+  if (individuals.empty()) {
     return Error{ErrorKind::kCorrupt,
                  "the campaign was stopped before its cases were stored: evaluate them anew"};
   }
   std::vector<sim::TestCase> cases;
-  for (Individual& individual : *individuals) {
+  for (Individual& individual : individuals) {
     if (individual.parents.empty())
       cases.push_back(std::move(individual.test_case));  // others were born later
   }
@@ -38,24 +37,20 @@ Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics, bool with_
                      .total_failure = run.total_failure,
                      .failure_type = run.failure_type};
   if (!with_metrics && !with_ways) return outcome;
-  Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
-  if (!result) return result.error();
-  if (with_metrics) outcome.metrics = std::move(result->metrics);
-  if (with_ways) outcome.robots = std::move(result->robots);
+  TRY(sim::RunResult result, proto::DecodeStoredResult(run.result));
+  if (with_metrics) outcome.metrics = std::move(result.metrics);
+  if (with_ways) outcome.robots = std::move(result.robots);
   return outcome;
 }
 
 Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgorithm& search) {
   SavedProgress saved;
   saved.last_run = RunIdOf(id, 1) - 1;
-  Result<std::optional<SavedState>> newest = store.LoadNewestState(id);
-  if (!newest) return newest.error();
-  if (!newest->has_value()) return saved;
-  saved.last_run = (*newest)->last_run;
-  saved.state = std::move((*newest)->state);
-  Result<ResultsDigest> results = ResultsDigest::Restore((*newest)->results_digest);
-  if (!results) return results.error();
-  saved.results = *results;
+  TRY(std::optional<SavedState> newest, store.LoadNewestState(id));
+  if (!newest.has_value()) return saved;
+  saved.last_run = newest->last_run;
+  saved.state = std::move(newest->state);
+  TRY(saved.results, ResultsDigest::Restore(newest->results_digest));
 
   const History history = [&](const std::function<void(const EvaluationOutcome&)>& visit) -> Status {
     EvaluationOutcome next;  // its runs stand one behind the other
@@ -79,7 +74,7 @@ Result<SavedProgress> RestoreSearch(SearchId id, ResultStore& store, SearchAlgor
     return Ok{};
   };
   CanonicalDecoder decoder(saved.state);
-  if (Status restored = search.Restore(decoder, history); !restored) return restored.error();
+  TRY(search.Restore(decoder, history));
   return saved;
 }
 

@@ -68,7 +68,7 @@ Status MakeDirectories(const std::string& path) {
   }
   if (error) return SystemError(fmt::format("cannot make the directory {}", path), error.value());
   for (auto place = missing.rbegin(); place != missing.rend(); ++place) {
-    if (Status made = MakeDirectory(place->string()); !made) return made;
+    TRY(MakeDirectory(place->string()));
   }
   for (const fs::path& made : missing) (void)SyncDirectory(made.parent_path());
   return Ok{};
@@ -123,7 +123,7 @@ Status CampaignDirectory::CheckCreatable(const std::string& dir) {
   if (!fs::is_directory(directory.path_, error)) {
     return InvalidInput(fmt::format("{} is a file; a campaign needs a directory", directory.path_));
   }
-  if (Status trusted = directory.CheckTrusted(); !trusted) return trusted;
+  TRY(directory.CheckTrusted());
   if (fs::exists(directory.database_path(), error)) {
     return InvalidInput(
         fmt::format("{} holds a campaign already; go on with it by `gauntlet resume {}`, or choose another "
@@ -142,9 +142,9 @@ Status CampaignDirectory::CheckCreatable(const std::string& dir) {
 }
 
 Result<CampaignDirectory> CampaignDirectory::Create(const std::string& dir) {
-  if (Status creatable = CheckCreatable(dir); !creatable) return creatable.error();
+  TRY(CheckCreatable(dir));
   CampaignDirectory directory(WithoutSlash(dir));
-  if (Status made = MakeDirectories(directory.path_); !made) return made.error();
+  TRY(MakeDirectories(directory.path_));
   return directory;
 }
 
@@ -193,8 +193,7 @@ Result<std::uint64_t> CampaignDirectory::StartEpoch() {
       ParseEpoch(ReadRegularFile(epoch_path(), kLongestEpoch), epoch_path(), kLastEpoch - 1);
   if (!newest && newest.error().kind != ErrorKind::kNotFound) return newest.error();
   const std::uint64_t epoch = newest ? *newest + 1 : 1;
-  const Status written = WriteFileAtomically(epoch_path(), fmt::format("{}\n", epoch), kReadableByAll);
-  if (!written) return written.error();
+  TRY(WriteFileAtomically(epoch_path(), fmt::format("{}\n", epoch), kReadableByAll));
   epoch_file_ = VersionOf(epoch_path());
   return epoch;
 }
@@ -210,15 +209,14 @@ Status CampaignDirectory::CheckEpoch(std::uint64_t mine) const {
   if (!text && text.error().kind == ErrorKind::kNoSpace && epoch_file_ &&
       VersionOf(epoch_path()) == epoch_file_)
     return Ok{};
-  const Result<std::uint64_t> newest = ParseEpoch(text, epoch_path(), kLastEpoch);
-  if (!newest) return newest.error();
-  if (*newest == mine) return Ok{};
+  TRY(const std::uint64_t newest, ParseEpoch(text, epoch_path(), kLastEpoch));
+  if (newest == mine) return Ok{};
   return Error{
       ErrorKind::kInUse,
       fmt::format(
           "campaign {} was taken over by a newer master (start number {}; this one is number {}); this one "
           "stops",
-          path_, *newest, mine)};
+          path_, newest, mine)};
 }
 
 std::string NewCampaignId() {

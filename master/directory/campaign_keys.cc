@@ -23,8 +23,7 @@ Result<CampaignKeys> Make(const std::string& path) {
                                        {"server_secret", keys.master.secret_key},
                                        {"worker_public", keys.worker.public_key},
                                        {"worker_secret", keys.worker.secret_key}};
-  if (Status written = WriteFileAtomically(path, JsonText(json), kOwnerOnly); !written)
-    return written.error();
+  TRY(WriteFileAtomically(path, JsonText(json), kOwnerOnly));
   return keys;
 }
 

@@ -113,12 +113,10 @@ CampaignLock::CampaignLock(std::string path, std::string campaign, LockOptions o
 Result<std::unique_ptr<CampaignLock>> CampaignLock::Acquire(const std::string& path,
                                                             const std::string& campaign,
                                                             const LockOptions& options) {
-  Result<std::unique_ptr<CampaignLock>> lock = Wait(path, campaign, options, /*exclusive=*/true);
-  if (!lock) return lock;
-  CampaignLock& taken = **lock;
+  TRY(std::unique_ptr<CampaignLock> lock, Wait(path, campaign, options, /*exclusive=*/true));
+  CampaignLock& taken = *lock;
   taken.identity_ = IdentifyThisProcess();
-  Status written = taken.WriteOwner(WriteContent(*taken.identity_, taken.options_.unix_time()));
-  if (!written) return written.error();
+  TRY(taken.WriteOwner(WriteContent(*taken.identity_, taken.options_.unix_time())));
   if (options.heartbeat_every.count() > 0)
     taken.heartbeat_ = std::thread([&taken] { taken.HeartbeatLoop(); });
   return lock;

@@ -66,18 +66,16 @@ Result<Recorded> Parse(const std::string& text, const std::string& path) {
 
 Result<CampaignOrigin> ConfirmOrigin(const CampaignDirectory& directory, const std::string& born_as) {
   const std::string path = directory.origin_path();
-  const Result<Inodes> inodes = InodesOf(directory);
-  if (!inodes) return inodes.error();
+  TRY(const Inodes inodes, InodesOf(directory));
   const Result<std::string> text = ReadRegularFile(path);
   if (!text && text.error().kind != ErrorKind::kNotFound) return text.error();
   if (!text) {
     // Just made, or made before there was such a file.
-    if (Status written = Write(path, {born_as, *inodes}); !written) return written.error();
+    TRY(Write(path, {born_as, inodes}));
     return CampaignOrigin{born_as};
   }
-  const Result<Recorded> recorded = Parse(*text, path);
-  if (!recorded) return recorded.error();
-  if (recorded->inodes == *inodes) return CampaignOrigin{recorded->campaign_id};
+  TRY(const Recorded recorded, Parse(*text, path));
+  if (recorded.inodes == inodes) return CampaignOrigin{recorded.campaign_id};
 
   const std::string id = NewCampaignId();
   // The file last: a kill in between is noticed as a copy again.
@@ -86,8 +84,8 @@ Result<CampaignOrigin> ConfirmOrigin(const CampaignDirectory& directory, const s
     std::filesystem::remove(secret, error);
     if (error) return SystemError(fmt::format("cannot remove {}", secret), error.value());
   }
-  if (Status written = Write(path, {id, *inodes}); !written) return written.error();
-  return CampaignOrigin{id, recorded->campaign_id};
+  TRY(Write(path, {id, inodes}));
+  return CampaignOrigin{id, recorded.campaign_id};
 }
 
 bool IsUntakenCopy(const CampaignDirectory& directory) {

@@ -36,16 +36,16 @@ LockOptions OptionsFor(const CampaignDirectory& directory) {
 
 Status CheckOwned(const CampaignDirectory& directory, const std::optional<OpenedFiles>& identity,
                   KeptFiles& kept, CampaignLock& lock, std::uint64_t epoch) {
-  if (Status held = lock.Check(); !held) return held;
+  TRY(lock.Check());
   if (identity) {
-    if (Status same = identity->Check(); !same) return same;
+    TRY(identity->Check());
   }
-  if (Status restored = kept.Restore(); !restored) return restored;
+  TRY(kept.Restore());
   Status newest = directory.CheckEpoch(epoch);
   if (newest || newest.error().kind != ErrorKind::kNotFound) return newest;
   // Somebody has deleted it. The lock file is the one that we hold and still names us, so no other master can
   // have counted since.
-  if (Status held = lock.Heartbeat(); !held) return held;
+  TRY(lock.Heartbeat());
   return directory.RestoreEpoch(epoch);
 }
 
@@ -55,52 +55,46 @@ struct Birth {
 };
 
 Status FillDraft(const std::string& draft, const std::function<Status(ResultStore&)>& fill) {
-  const Result<std::unique_ptr<SqliteStore>> store = SqliteStore::Open(draft, {});
-  if (!store) return store.error();
-  if (Status filled = fill(**store); !filled) return filled;
-  return (*store)->Flush();
+  TRY(const std::unique_ptr<SqliteStore> store, SqliteStore::Open(draft, {}));
+  TRY(fill(*store));
+  return store->Flush();
 }
 
 // Counts the epoch, makes the database of a campaign that begins (`born` says what it is), and opens it: in
 // this order, for from the epoch on no former master commits anything that we might not have read.
 Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<CampaignLock> lock,
                               const Birth* born) {
-  const Result<std::uint64_t> epoch = directory.StartEpoch();
-  if (!epoch) return epoch.error();
+  TRY(const std::uint64_t epoch, directory.StartEpoch());
   if (born != nullptr) {
     std::function<Status(const std::string&)> fill;
     if (born->fill) fill = [born](const std::string& draft) { return FillDraft(draft, born->fill); };
-    if (Status made = CreateDatabase(directory.database_path(), born->meta, fill); !made) return made.error();
+    TRY(CreateDatabase(directory.database_path(), born->meta, fill));
   }
   // Of the files as they are once the store has them open.
   const auto identity = std::make_shared<std::optional<OpenedFiles>>();
   const auto kept = std::make_shared<KeptFiles>(
       std::vector{directory.experiment_path(), directory.searches_path(), directory.slurm_path()});
-  const auto check = [directory, identity, kept, lock = lock.get(), epoch = *epoch] {
+  const auto check = [directory, identity, kept, lock = lock.get(), epoch] {
     return CheckOwned(directory, *identity, *kept, *lock, epoch);
   };
   SqliteStore::Options options;
   options.guard = check;
-  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::Open(directory.database_path(), options);
-  if (!store) return store.error();
-  Result<OpenedFiles> opened = OpenedFiles::Of(directory);
-  if (!opened) return opened.error();
-  *identity = *std::move(opened);
-  Result<CampaignOrigin> origin = ConfirmOrigin(directory, (*store)->meta().campaign_id);
-  if (!origin) return origin.error();
-  if (!origin->copied_from.empty()) {
-    (*store)->AddEvent({UnixMilliseconds(), event::kCopied,
-                        fmt::format("this directory is a copy of campaign {}; it is campaign {} from now on",
-                                    origin->copied_from, origin->campaign_id)});
+  TRY(std::unique_ptr<SqliteStore> store, SqliteStore::Open(directory.database_path(), options));
+  TRY(OpenedFiles opened, OpenedFiles::Of(directory));
+  *identity = std::move(opened);
+  TRY(CampaignOrigin origin, ConfirmOrigin(directory, store->meta().campaign_id));
+  if (!origin.copied_from.empty()) {
+    store->AddEvent({UnixMilliseconds(), event::kCopied,
+                     fmt::format("this directory is a copy of campaign {}; it is campaign {} from now on",
+                                 origin.copied_from, origin.campaign_id)});
   }
-  return CampaignOwnership{std::move(directory), std::move(lock), *epoch,
-                           *std::move(origin),   check,           *std::move(store)};
+  return CampaignOwnership{std::move(directory), std::move(lock), epoch,
+                           std::move(origin),    check,           std::move(store)};
 }
 
 Result<CampaignView> ViewBesideMaster(const CampaignDirectory& directory, Checked what) {
-  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenBesideMaster(directory.database_path(), what);
-  if (!store) return store.error();
-  return CampaignView{directory, nullptr, *std::move(store)};
+  TRY(std::unique_ptr<SqliteStore> store, SqliteStore::OpenBesideMaster(directory.database_path(), what));
+  return CampaignView{directory, nullptr, std::move(store)};
 }
 
 // `in_use`: what there is to say without a snapshot.
@@ -113,9 +107,8 @@ Result<CampaignView> ViewSnapshot(const CampaignDirectory& directory, Checked wh
                                   "; it has published nothing yet that could be read from this machine: "
                                   "try again in a moment"};
   }
-  Result<std::unique_ptr<SqliteStore>> store = SqliteStore::OpenReadOnly(path, what);
-  if (!store) return store.error();
-  return CampaignView{directory, nullptr, *std::move(store),
+  TRY(std::unique_ptr<SqliteStore> store, SqliteStore::OpenReadOnly(path, what));
+  return CampaignView{directory, nullptr, std::move(store),
                       fmt::format("as of {:%H:%M}, on {}", fmt::localtime(info.st_mtim.tv_sec), host)};
 }
 
@@ -123,78 +116,70 @@ Result<CampaignView> ViewSnapshot(const CampaignDirectory& directory, Checked wh
 
 Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignTexts& texts,
                                          CampaignMeta meta, const std::function<Status(ResultStore&)>& fill) {
-  Result<CampaignDirectory> directory = CampaignDirectory::Create(dir);
-  if (!directory) return directory.error();
-  Result<std::unique_ptr<CampaignLock>> lock =
-      CampaignLock::Acquire(directory->lock_path(), directory->path());
-  if (!lock) return lock.error();
+  TRY(CampaignDirectory directory, CampaignDirectory::Create(dir));
+  TRY(std::unique_ptr<CampaignLock> lock, CampaignLock::Acquire(directory.lock_path(), directory.path()));
   // Another master may have made the campaign, and left it, between the two lines above.
-  if (Result<CampaignDirectory> unchanged = CampaignDirectory::Create(dir); !unchanged)
-    return unchanged.error();
+  TRY(CampaignDirectory::Create(dir));
 
   meta.campaign_id = NewCampaignId();
   meta.created_unix_ms = UnixMilliseconds();
-  for (const auto& [path, text] : {std::pair(directory->experiment_path(), texts.experiment),
-                                   std::pair(directory->searches_path(), texts.searches),
-                                   std::pair(directory->slurm_path(), texts.slurm)}) {
+  for (const auto& [path, text] : {std::pair(directory.experiment_path(), texts.experiment),
+                                   std::pair(directory.searches_path(), texts.searches),
+                                   std::pair(directory.slurm_path(), texts.slurm)}) {
     if (text.empty()) continue;
-    if (Status written = WriteFileAtomically(path, text, kReadableByAll); !written) return written.error();
+    TRY(WriteFileAtomically(path, text, kReadableByAll));
   }
   if (texts.others) {
-    if (Status written = texts.others(*directory); !written) return written.error();
+    TRY(texts.others(directory));
   }
   const Birth birth{std::move(meta), fill};
-  return Own(*std::move(directory), *std::move(lock), &birth);
+  return Own(std::move(directory), std::move(lock), &birth);
 }
 
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other,
                                        const std::function<bool()>& give_up) {
-  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
-  if (!directory) return directory.error();
-  if (Status trusted = directory->CheckTrusted(); !trusted) return trusted.error();
-  LockOptions options = OptionsFor(*directory);
+  TRY(CampaignDirectory directory, CampaignDirectory::Open(dir));
+  TRY(directory.CheckTrusted());
+  LockOptions options = OptionsFor(directory);
   options.patience = kReadersPatience;
   options.give_up = give_up;
   Result<std::unique_ptr<CampaignLock>> lock =
-      CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
+      CampaignLock::Acquire(directory.lock_path(), directory.path(), options);
   if (!lock && lock.error().kind == ErrorKind::kInUse && other == LivingMaster::kFence) {
-    if (Result<std::uint64_t> fence = directory->StartEpoch(); !fence) return fence.error();
+    TRY(directory.StartEpoch());
     const auto deadline =
         std::chrono::steady_clock::now() + CampaignLock::kStaleAfter + std::chrono::seconds(10);
     while (!lock && lock.error().kind == ErrorKind::kInUse && !give_up() &&
            std::chrono::steady_clock::now() < deadline) {
       std::this_thread::sleep_for(std::chrono::milliseconds(200));
-      lock = CampaignLock::Acquire(directory->lock_path(), directory->path(), options);
+      lock = CampaignLock::Acquire(directory.lock_path(), directory.path(), options);
     }
   }
   if (!lock) return lock.error();
   // What a former master has left. Whoever asks from now on means this one.
   std::error_code ignored;
-  std::filesystem::remove(directory->stop_path(), ignored);
-  std::filesystem::remove(directory->status_path(), ignored);
-  std::filesystem::remove(directory->snapshot_path(), ignored);
-  return Own(*std::move(directory), *std::move(lock), nullptr);
+  std::filesystem::remove(directory.stop_path(), ignored);
+  std::filesystem::remove(directory.status_path(), ignored);
+  std::filesystem::remove(directory.snapshot_path(), ignored);
+  return Own(std::move(directory), *std::move(lock), nullptr);
 }
 
 Result<CampaignView> ViewCampaign(const std::string& dir, Checked what) {
-  Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
-  if (!directory) return directory.error();
+  TRY(CampaignDirectory directory, CampaignDirectory::Open(dir));
   const auto deadline = std::chrono::steady_clock::now() + kMastersPatience;
   while (true) {
     Result<std::unique_ptr<CampaignLock>> lock =
-        CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), OptionsFor(*directory));
+        CampaignLock::AcquireForReading(directory.lock_path(), directory.path(), OptionsFor(directory));
     if (lock) {
-      Result<std::unique_ptr<SqliteStore>> store =
-          SqliteStore::OpenReadOnly(directory->database_path(), what);
-      if (!store) return store.error();
-      return CampaignView{*std::move(directory), *std::move(lock), *std::move(store)};
+      TRY(std::unique_ptr<SqliteStore> store, SqliteStore::OpenReadOnly(directory.database_path(), what));
+      return CampaignView{std::move(directory), *std::move(lock), std::move(store)};
     }
     if (lock.error().kind != ErrorKind::kInUse) return lock.error();
-    const std::optional<ProcessIdentity> owner = CampaignLock::OwnerOf(directory->lock_path());
+    const std::optional<ProcessIdentity> owner = CampaignLock::OwnerOf(directory.lock_path());
     if (!owner) return lock.error();
     const bool here = LivenessOf(*owner, IdentifyThisProcess()) == Liveness::kAlive;
     Result<CampaignView> view =
-        here ? ViewBesideMaster(*directory, what) : ViewSnapshot(*directory, what, owner->host, lock.error());
+        here ? ViewBesideMaster(directory, what) : ViewSnapshot(directory, what, owner->host, lock.error());
     // A master that has just ended, or taken its snapshot away, is looked for anew.
     const bool may_change =
         !view && (view.error().kind == ErrorKind::kInUse || view.error().kind == ErrorKind::kIo);

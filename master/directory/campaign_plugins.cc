@@ -37,9 +37,8 @@ std::set<std::string> PluginsOf(const std::vector<SearchPlan>& plans) {
 
 // Error: the file holds something else.
 Result<std::string> ReadPlugin(const std::string& path, const std::string& hash) {
-  Result<std::string> bytes = ReadSmallFile(path, proto::kMaxPluginBytes);
-  if (!bytes) return bytes;
-  if (const std::string found = Sha256(*bytes); found != hash) {
+  TRY(std::string bytes, ReadSmallFile(path, proto::kMaxPluginBytes));
+  if (const std::string found = Sha256(bytes); found != hash) {
     return InvalidInput(fmt::format(
         "{} is another plug-in now: its SHA-256 is {}, the searches were begun with {}", path, found, hash));
   }
@@ -58,11 +57,9 @@ Status KeepAnswers(const std::string& folder, const std::string& hash) {
 Status KnowAnswers(const std::string& path, const std::string& hash) {
   std::error_code missing;
   if (!std::filesystem::exists(path, missing)) return Ok{};
-  const Result<std::string> text = ReadRegularFile(path);
-  if (!text) return text.error();
-  const Result<nlohmann::json> answers = ParseJson(*text, path);
-  if (!answers) return answers.error();
-  for (const auto& [spec, answer] : answers->items()) {
+  TRY(const std::string text, ReadRegularFile(path));
+  TRY(const nlohmann::json answers, ParseJson(text, path));
+  for (const auto& [spec, answer] : answers.items()) {
     if (IsSha256(spec) && answer.is_string()) AddAnswer(hash, spec, answer.get<std::string>());
   }
   return Ok{};
@@ -74,15 +71,13 @@ Status KeepPlugins(const std::string& folder, const std::vector<SearchPlan>& pla
   for (const std::string& hash : PluginsOf(plans)) {
     const controllers::PluginInfo* plugin = controllers::FindPlugin(hash);
     GAUNTLET_CHECK(plugin != nullptr, hash);
-    const Result<std::string> library = ReadPlugin(plugin->file, hash);
-    if (!library) return library.error();
-    if (Status made = MakeDirectory(folder); !made) return made;
-    for (const auto& [ending, content] : {std::pair<const char*, const std::string&>(kLibrary, *library),
+    TRY(const std::string library, ReadPlugin(plugin->file, hash));
+    TRY(MakeDirectory(folder));
+    for (const auto& [ending, content] : {std::pair<const char*, const std::string&>(kLibrary, library),
                                           {kDescription, plugin->description}}) {
-      if (Status kept = WriteFileAtomically(PathOf(folder, hash, ending), content, kReadableByAll); !kept)
-        return kept;
+      TRY(WriteFileAtomically(PathOf(folder, hash, ending), content, kReadableByAll));
     }
-    if (Status kept = KeepAnswers(folder, hash); !kept) return kept;
+    TRY(KeepAnswers(folder, hash));
   }
   return Ok{};
 }
@@ -95,20 +90,16 @@ Status KnowPlugins(const std::string& folder) {
     const fs::path& path = entry->path();
     const std::string hash = path.stem();
     if (path.extension() != kDescription || !IsSha256(hash)) continue;
-    const Result<std::string> description = ReadRegularFile(path);
-    if (!description) return description.error();
-    const Status known =
-        AddDescribedPlugin(hash, PathOf(folder, hash, kLibrary), *description, path.string());
-    if (!known) return known;
-    if (Status answers = KnowAnswers(PathOf(folder, hash, kBeginnings), hash); !answers) return answers;
+    TRY(const std::string description, ReadRegularFile(path));
+    TRY(AddDescribedPlugin(hash, PathOf(folder, hash, kLibrary), description, path.string()));
+    TRY(KnowAnswers(PathOf(folder, hash, kBeginnings), hash));
   }
   return Ok{};
 }
 
 Status CheckPlugins(const std::string& folder, const std::vector<SearchPlan>& plans) {
   for (const std::string& hash : PluginsOf(plans)) {
-    if (const Result<std::string> read = ReadPlugin(PathOf(folder, hash, kLibrary), hash); !read)
-      return read.error();
+    TRY(ReadPlugin(PathOf(folder, hash, kLibrary), hash));
   }
   return Ok{};
 }

@@ -19,7 +19,7 @@ Status KeptFiles::Look(File& file) {
   struct stat info {};
   if (lstat(file.path.c_str(), &info) != 0) {
     if (errno != ENOENT || file.inode == 0) return Ok{};
-    if (Status written = WriteFileAtomically(file.path, file.text, kReadableByAll); !written) return written;
+    TRY(WriteFileAtomically(file.path, file.text, kReadableByAll));
     if (lstat(file.path.c_str(), &info) != 0) return Ok{};
   }
   const std::int64_t changed = std::int64_t{1'000'000'000} * info.st_mtim.tv_sec + info.st_mtim.tv_nsec;
@@ -36,7 +36,7 @@ Status KeptFiles::Look(File& file) {
 Status KeptFiles::Restore() {
   const std::lock_guard lock(mutex_);
   for (File& file : files_) {
-    if (Status looked = Look(file); !looked) return looked;
+    TRY(Look(file));
   }
   return Ok{};
 }

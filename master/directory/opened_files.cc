@@ -37,10 +37,9 @@ Result<OpenedFiles> OpenedFiles::Of(const CampaignDirectory& directory) {
            {database + "-shm", database + "-shm", "Nothing is lost: " + go_on},
            {directory.lock_path(), directory.lock_path(),
             "Another master may have begun since. Nothing is lost: " + go_on}}) {
-    const Result<std::optional<FileId>> id = IdentifyFile(file.path);
-    if (!id) return id.error();
-    if (!*id) continue;
-    file.id = **id;
+    TRY(const std::optional<FileId> id, IdentifyFile(file.path));
+    if (!id) continue;
+    file.id = *id;
     opened.files_.push_back(std::move(file));
   }
   return opened;
@@ -48,13 +47,12 @@ Result<OpenedFiles> OpenedFiles::Of(const CampaignDirectory& directory) {
 
 Status OpenedFiles::Check() const {
   for (const File& file : files_) {
-    const Result<std::optional<FileId>> now = IdentifyFile(file.path);
-    if (!now) return now.error();
-    if (*now == file.id) continue;
+    TRY(const std::optional<FileId> now, IdentifyFile(file.path));
+    if (now == file.id) continue;
     return Error{
         ErrorKind::kNotFound,
         fmt::format("{} {} while this master served the campaign, so it stops. {}", file.name,
-                    *now ? "is gone, and another one has its name," : "is gone, deleted or moved away,",
+                    now ? "is gone, and another one has its name," : "is gone, deleted or moved away,",
                     file.loss)};
   }
   return Ok{};

@@ -58,10 +58,9 @@ Result<sim::RunBeginning> Begin(const sim::RunSpec& spec) {
   if (const auto known = AllAnswers().Find(spec.scenario_plugin, key)) {
     if (Result<sim::RunBeginning> beginning = proto::ReadBeginning(*known, place)) return beginning;
   }
-  const Result<std::string> answer = DescribeBeginning(spec);
-  if (!answer) return answer.error();
-  Result<sim::RunBeginning> beginning = proto::ReadBeginning(*answer, place);
-  if (beginning) AllAnswers().Add(spec.scenario_plugin, key, *answer);
+  TRY(const std::string answer, DescribeBeginning(spec));
+  Result<sim::RunBeginning> beginning = proto::ReadBeginning(answer, place);
+  if (beginning) AllAnswers().Add(spec.scenario_plugin, key, answer);
   return beginning;
 }
 
@@ -83,17 +82,15 @@ Result<std::string> AddPluginFile(const std::string& file) {
   if (!bytes) return InvalidInput("plug-in: " + bytes.error().message);
   std::string hash = Sha256(*bytes);
   if (controllers::FindPlugin(hash) != nullptr) return hash;
-  const Result<std::string> description = DescribePlugin(file);
-  if (!description) return description.error();
-  if (Status added = AddDescribedPlugin(hash, file, *description, file); !added) return added.error();
+  TRY(const std::string description, DescribePlugin(file));
+  TRY(AddDescribedPlugin(hash, file, description, file));
   return hash;
 }
 
 Status AddPluginFile(const std::string& file, std::vector<std::string>& hashes) {
-  const Result<std::string> hash = AddPluginFile(file);
-  if (!hash) return hash.error();
-  if (std::ranges::count(hashes, *hash) > 0) return Ok{};
-  const controllers::PluginInfo& added = *controllers::FindPlugin(*hash);
+  TRY(const std::string hash, AddPluginFile(file));
+  if (std::ranges::count(hashes, hash) > 0) return Ok{};
+  const controllers::PluginInfo& added = *controllers::FindPlugin(hash);
   for (const std::string& other : hashes) {
     const controllers::PluginInfo& known = *controllers::FindPlugin(other);
     for (const ControllerInfo& controller : added.controllers) {
@@ -105,14 +102,14 @@ Status AddPluginFile(const std::string& file, std::vector<std::string>& hashes) 
         return TakenTwice(known.file, file, "scenario", scenario.name);
     }
   }
-  hashes.push_back(*hash);
+  hashes.push_back(hash);
   return Ok{};
 }
 
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files) {
   std::vector<std::string> hashes;
   for (const std::string& file : files) {
-    if (const Status added = AddPluginFile(file, hashes); !added) return added.error();
+    TRY(AddPluginFile(file, hashes));
   }
   return hashes;
 }
@@ -120,12 +117,11 @@ Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& 
 Status AddDescribedPlugin(const std::string& hash, const std::string& file, const std::string& description,
                           const std::string& place) {
   if (controllers::FindPlugin(hash) != nullptr) return Ok{};
-  Result<proto::PluginDescription> read = proto::ReadDescription(description, place);
-  if (!read) return read.error();
+  TRY(proto::PluginDescription read, proto::ReadDescription(description, place));
   controllers::PluginInfo plugin{.hash = hash, .file = file, .description = description, .controllers = {}};
-  for (proto::DescribedController& controller : read->controllers)
+  for (proto::DescribedController& controller : read.controllers)
     plugin.controllers.push_back(RowOf(std::move(controller)));
-  for (proto::DescribedScenario& scenario : read->scenarios)
+  for (proto::DescribedScenario& scenario : read.scenarios)
     plugin.scenarios.push_back(RowOf(std::move(scenario)));
   if (!plugin.scenarios.empty()) plugin.begin = Begin;
   return controllers::AddPlugin(std::move(plugin));

@@ -60,7 +60,7 @@ Status CheckIsLength(const std::vector<SearchPlan>& plans, const std::string& se
 Result<std::vector<SearchPlan>> WithLength(const std::vector<SearchPlan>& plans,
                                            const std::vector<std::string>& sets) {
   for (const std::string& set : sets) {
-    if (Status length = CheckIsLength(plans, set); !length) return length.error();
+    TRY(CheckIsLength(plans, set));
   }
   std::vector<SearchPlan> longer = plans;
   for (SearchPlan& plan : longer) {
@@ -69,10 +69,8 @@ Result<std::vector<SearchPlan>> WithLength(const std::vector<SearchPlan>& plans,
                          [&](const std::string& set) { return KeyOf(set) == LengthKeyOf(plan); });
     if (own.empty()) continue;
     const KeyValue before = LengthOf(plan);
-    Result<Experiment> experiment = ParseExperiment(WriteExperiment(plan.experiment, {}, BuiltInCatalogue()),
-                                                    "experiment.toml", own, BuiltInCatalogue());
-    if (!experiment) return experiment.error();
-    plan.experiment = *std::move(experiment);
+    TRY(plan.experiment, ParseExperiment(WriteExperiment(plan.experiment, {}, BuiltInCatalogue()),
+                                         "experiment.toml", own, BuiltInCatalogue()));
     if (!(LengthOf(plan) < before)) continue;
     return InvalidInput(fmt::format("--set {}: the campaign has {} = {}, and can be made longer only",
                                     own.back(), LengthKeyOf(plan), ToToml(before)));

@@ -31,22 +31,20 @@ std::string WriteSearchPlans(const std::vector<SearchPlan>& plans) {
 }
 
 Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directory) {
-  if (const Status known = KnowPlugins(directory.plugins_path()); !known) return known.error();
+  TRY(KnowPlugins(directory.plugins_path()));
   std::vector<SearchPlan> plans;
   const auto add = [&](const std::string& settings, const std::string& text,
                        const std::string& place) -> Status {
-    Result<Experiment> experiment = ParseExperiment(text, place, {}, BuiltInCatalogue());
-    if (!experiment) return experiment.error();
-    plans.push_back({settings, *std::move(experiment)});
+    TRY(Experiment experiment, ParseExperiment(text, place, {}, BuiltInCatalogue()));
+    plans.push_back({settings, std::move(experiment)});
     return Ok{};
   };
   const std::string path = directory.searches_path();
   const Result<std::string> list = ReadRegularFile(path, kMostListBytes);
   if (!list) {
     if (list.error().kind != ErrorKind::kNotFound) return list.error();
-    const Result<std::string> text = ReadRegularFile(directory.experiment_path());
-    if (!text) return text.error();
-    if (Status added = add("", *text, directory.experiment_path()); !added) return added.error();
+    TRY(const std::string text, ReadRegularFile(directory.experiment_path()));
+    TRY(add("", text, directory.experiment_path()));
     return plans;
   }
   const nlohmann::json json = nlohmann::json::parse(*list, nullptr, /*allow_exceptions=*/false);
@@ -57,17 +55,15 @@ Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directo
     const auto is_text = [&](const char* key) { return search.contains(key) && search[key].is_string(); };
     if (!search.is_object() || !is_text("experiment") || !is_text("settings"))
       return BadList(path, "a search without settings or an experiment");
-    const Status added = add(search["settings"], search["experiment"], path);
-    if (!added) return added.error();
+    TRY(add(search["settings"], search["experiment"], path));
   }
   if (plans.empty()) return BadList(path, "no searches");
   return plans;
 }
 
 Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store) {
-  const Result<std::vector<StoredSearch>> known = store.LoadSearches();
-  if (!known) return known.error();
-  for (std::size_t i = known->size(); i < plans.size(); ++i) {
+  TRY(const std::vector<StoredSearch> known, store.LoadSearches());
+  for (std::size_t i = known.size(); i < plans.size(); ++i) {
     const Experiment& experiment = plans[i].experiment;
     std::string name = experiment.name;
     if (!plans[i].settings.empty()) name += ": " + plans[i].settings;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "master/dispatch/leases/worker_record.h"
+#include "master/dispatch/trust/worker_record.h"
 #include "master/store/event_kinds.h"
 #include "proto/messages.h"
 #include "sim/run_result.h"

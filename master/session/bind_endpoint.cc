@@ -96,8 +96,7 @@ Status CheckBindEndpoint(const std::string& endpoint, ListenOn where) {
 Status TryToListen(const std::string& endpoint) {
   ZmqTransportOptions options;
   options.endpoint = endpoint;
-  const Result<std::unique_ptr<ZmqTransport>> transport = ZmqTransport::Bind(options);
-  if (!transport) return transport.error();
+  TRY(ZmqTransport::Bind(options));
   return Ok{};
 }
 

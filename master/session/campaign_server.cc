@@ -93,12 +93,11 @@ CampaignServer::Files::~Files() {
 }
 
 Result<SessionReport> CampaignServer::Serve() {
-  if (Status logging = OpenMasterLog(campaign_.directory.log_path() + "/master.log"); !logging)
-    return logging.error();
+  TRY(OpenMasterLog(campaign_.directory.log_path() + "/master.log"));
   spdlog::info("master {} of campaign {} with {}", view_.epoch, view_.campaign_id, DescribePool(options_));
   for (const auto step : {&CampaignServer::MakeSearches, &CampaignServer::Listen, &CampaignServer::StartPool,
                           &CampaignServer::RestoreSearches, &CampaignServer::Announce}) {
-    if (Status done = (this->*step)(); !done) return done.error();
+    TRY((this->*step)());
   }
   const Result<CampaignEnd> end = Run();
   LetWorkersGo(end);
@@ -109,12 +108,11 @@ Result<SessionReport> CampaignServer::Serve() {
 
 Status CampaignServer::MakeSearches() {
   // A master may have died between creating the campaign and storing its searches.
-  if (Status added = AddSearches(plans_, *campaign_.store); !added) return added;
+  TRY(AddSearches(plans_, *campaign_.store));
   for (std::size_t i = 0; i < plans_.size(); ++i) {
-    Result<std::unique_ptr<SearchAlgorithm>> search =
-        MakeStoredSearch(plans_[i].experiment, static_cast<SearchId>(i + 1), *campaign_.store);
-    if (!search) return search.error();
-    searches_.push_back(*std::move(search));
+    TRY(std::unique_ptr<SearchAlgorithm> search,
+        MakeStoredSearch(plans_[i].experiment, static_cast<SearchId>(i + 1), *campaign_.store));
+    searches_.push_back(std::move(search));
   }
   return Ok{};
 }
@@ -130,15 +128,11 @@ Status CampaignServer::Listen() {
   ZmqTransportOptions transport;
   transport.endpoint = options_.bind;
   if (!options_.insecure) {
-    Result<CampaignKeys> keys = LoadOrMakeKeys(campaign_.directory.key_path());
-    if (!keys) return keys.error();
-    access.curve =
-        proto::CurveKeys{keys->master.public_key, keys->worker.public_key, keys->worker.secret_key};
-    transport.curve = CurveServer{keys->master, {keys->worker.public_key}};
+    TRY(CampaignKeys keys, LoadOrMakeKeys(campaign_.directory.key_path()));
+    access.curve = proto::CurveKeys{keys.master.public_key, keys.worker.public_key, keys.worker.secret_key};
+    transport.curve = CurveServer{keys.master, {keys.worker.public_key}};
   }
-  Result<std::unique_ptr<ZmqTransport>> bound = ZmqTransport::Bind(transport);
-  if (!bound) return bound.error();
-  transport_ = *std::move(bound);
+  TRY(transport_, ZmqTransport::Bind(transport));
   access.endpoints = ReachableEndpoints(transport_->endpoint());
   if (options_.insecure) {
     spdlog::warn("INSECURE: whoever reaches {} can read this campaign and feed it results",
@@ -157,9 +151,7 @@ Status CampaignServer::StartPool() {
     local.workers = options_.workers;
     local.access_file = campaign_.directory.access_path();
     local.log_directory = campaign_.directory.log_path();
-    Result<std::unique_ptr<LocalPool>> pool = LocalPool::Start(local, clock_.Now());
-    if (!pool) return pool.error();
-    pool_ = *std::move(pool);
+    TRY(pool_, LocalPool::Start(local, clock_.Now()));
   }
   return Ok{};
 }
@@ -182,7 +174,7 @@ Status CampaignServer::RestoreSearches() {
     parts.searches.push_back(&drivers_.back());
   }
   loop_.emplace(parts);
-  if (Status restored = loop_->Restore(); !restored) return restored;
+  TRY(loop_->Restore());
   runs_before_ = loop_->runs_done();
   return Ok{};
 }
@@ -193,12 +185,8 @@ Status CampaignServer::Announce() {
     spdlog::info("copied: the directory is a copy of campaign {}", campaign_.origin.copied_from);
   NoteEvent(view_.epoch == 1 ? event::kStart : event::kResume,
             fmt::format("master {} with {}", view_.epoch, DescribePool(options_)));
-  const Result<std::uint64_t> nondeterministic = CountNondeterministic(*campaign_.store);
-  if (!nondeterministic) return nondeterministic.error();
-  view_.nondeterministic_before = *nondeterministic;
-  const Result<std::uint64_t> lone_verdicts = CountLoneVerdicts(*campaign_.store);
-  if (!lone_verdicts) return lone_verdicts.error();
-  view_.lone_verdicts_before = *lone_verdicts;
+  TRY(view_.nondeterministic_before, CountNondeterministic(*campaign_.store));
+  TRY(view_.lone_verdicts_before, CountLoneVerdicts(*campaign_.store));
   snapshots_.emplace(SnapshotOptions{.database = campaign_.directory.database_path(),
                                      .snapshot = campaign_.directory.snapshot_path(),
                                      .commits = [this] { return campaign_.store->Commits(); }});
@@ -270,14 +258,12 @@ Result<SessionReport> CampaignServer::Report(CampaignEnd end) {
   }
   NoteEvent(end == CampaignEnd::kFinished ? event::kFinished : event::kStop,
             fmt::format("{} runs stored", loop_->runs_done()));
-  if (Status flushed = campaign_.store->Flush(); !flushed) return flushed.error();
-  if (Status ours = campaign_.check(); !ours) return ours.error();
+  TRY(campaign_.store->Flush());
+  TRY(campaign_.check());
   report.runs_this_session = loop_->runs_done() - runs_before_;
   report.wall_seconds = std::chrono::duration<double>(clock_.Now() - started_).count();
   report.master_cpu_seconds = CostOfThisProcess().cpu_seconds - cpu_before_;
-  Result<CampaignSummary> summary = Summarise(plans_, *campaign_.store);
-  if (!summary) return summary.error();
-  report.summary = *std::move(summary);
+  TRY(report.summary, Summarise(plans_, *campaign_.store));
   return report;
 }
 

@@ -32,11 +32,9 @@ using nlohmann::ordered_json;
 // The golden hashes that the campaign was begun with. They decide whether this machine computes the bits that
 // it has stored so far.
 Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
-  Result<proto::GoldenHashes> begun_with = proto::ReadGoldenHashes(meta.golden_hashes);
-  if (!begun_with) return begun_with;
-  const Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine(proto::ControllersOf(*begun_with));
-  if (!ours) return ours;
-  const auto difference = proto::FirstDifference(*begun_with, *ours);
+  TRY(proto::GoldenHashes begun_with, proto::ReadGoldenHashes(meta.golden_hashes));
+  TRY(const proto::GoldenHashes ours, GoldenHashesOfThisMachine(proto::ControllersOf(begun_with)));
+  const auto difference = proto::FirstDifference(begun_with, ours);
   if (!difference) return begun_with;
   if (!difference->offered) {
     return Error{
@@ -66,10 +64,9 @@ std::string GoldenControllerOf(const Experiment& experiment) {
 Result<proto::GoldenHashes> GoldenHashesFor(const std::vector<SearchPlan>& plans) {
   std::set<std::string> used;
   for (const SearchPlan& plan : plans) used.insert(GoldenControllerOf(plan.experiment));
-  Result<proto::GoldenHashes> ours = GoldenHashesOfThisMachine({used.begin(), used.end()});
-  if (!ours) return ours;
+  TRY(proto::GoldenHashes ours, GoldenHashesOfThisMachine({used.begin(), used.end()}));
   for (const std::string& controller : used) {
-    if (ours->contains(controller)) continue;
+    if (ours.contains(controller)) continue;
     return Error{ErrorKind::kVersion,
                  fmt::format("gauntlet-worker was built without the controller '{}'", controller)};
   }
@@ -108,34 +105,31 @@ CampaignTexts TextsOf(const std::vector<SearchPlan>& plans, const std::string& v
 
 // The searches, and the cases of those that are given some.
 Status AddPlans(const std::vector<SearchPlan>& plans, ResultStore& store) {
-  if (Status added = AddSearches(plans, store); !added) return added;
+  TRY(AddSearches(plans, store));
   for (std::size_t i = 0; i < plans.size(); ++i) {
     if (plans[i].cases.empty()) continue;
-    const Result<std::unique_ptr<SearchAlgorithm>> search =
-        MakeSearch(plans[i].experiment, kOnlySearch, plans[i].cases);
-    if (!search) return search.error();
-    store.AddIndividuals(static_cast<SearchId>(i + 1), (*search)->Population());
+    TRY(const std::unique_ptr<SearchAlgorithm> search,
+        MakeSearch(plans[i].experiment, kOnlySearch, plans[i].cases));
+    store.AddIndividuals(static_cast<SearchId>(i + 1), search->Population());
   }
   return Ok{};
 }
 
 Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
                            const std::string& slurm) {
-  if (Status possible = CheckSearches(plans); !possible) return possible.error();
-  Result<proto::GoldenHashes> golden_hashes = GoldenHashesFor(plans);
-  if (!golden_hashes) return golden_hashes.error();
+  TRY(CheckSearches(plans));
+  TRY(proto::GoldenHashes golden_hashes, GoldenHashesFor(plans));
   CampaignMeta meta;
   meta.software_version = GAUNTLET_VERSION;
-  meta.golden_hashes = proto::WriteGoldenHashes(*golden_hashes);
-  CampaignTexts texts = TextsOf(plans, meta.software_version, *golden_hashes);
+  meta.golden_hashes = proto::WriteGoldenHashes(golden_hashes);
+  CampaignTexts texts = TextsOf(plans, meta.software_version, golden_hashes);
   texts.slurm = slurm;
   texts.others = [&](const CampaignDirectory& directory) {
     return KeepPlugins(directory.plugins_path(), plans);
   };
-  Result<CampaignOwnership> campaign =
-      CreateCampaign(dir, texts, meta, [&](ResultStore& store) { return AddPlans(plans, store); });
-  if (!campaign) return campaign.error();
-  return NewCampaign{*std::move(campaign), *std::move(golden_hashes)};
+  TRY(CampaignOwnership campaign,
+      CreateCampaign(dir, texts, meta, [&](ResultStore& store) { return AddPlans(plans, store); }));
+  return NewCampaign{std::move(campaign), std::move(golden_hashes)};
 }
 
 class Campaigns final : public CampaignService {
@@ -143,128 +137,107 @@ class Campaigns final : public CampaignService {
   Result<SessionReport> Start(const std::string& dir, const std::vector<SearchPlan>& searches,
                               const SessionOptions& options) override {
     // Before anything is made: the corrected command is to find the directory as this one did.
-    if (Status possible = TryToListen(options.bind); !possible) return possible.error();
-    Result<NewCampaign> created = Create(dir, searches, "");
-    if (!created) return created.error();
-    return CampaignServer(created->ownership, searches, created->golden_hashes, options).Serve();
+    TRY(TryToListen(options.bind));
+    TRY(NewCampaign created, Create(dir, searches, ""));
+    return CampaignServer(created.ownership, searches, created.golden_hashes, options).Serve();
   }
 
   Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,
                  const std::string& slurm) override {
-    const Result<NewCampaign> created = Create(dir, searches, slurm);
-    if (!created) return created.error();
+    TRY(Create(dir, searches, slurm));
     return Ok{};
   }
 
   Result<std::string> Extend(const std::string& dir, const std::vector<std::string>& sets,
                              const std::function<bool()>& give_up) override {
-    const Result<CampaignOwnership> campaign = TakeCampaign(dir, LivingMaster::kRespect, give_up);
-    if (!campaign) return campaign.error();
-    const CampaignDirectory& directory = campaign->directory;
-    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(directory);
-    if (!plans) return plans.error();
-    const Result<std::vector<SearchPlan>> longer = WithLength(*plans, sets);
-    if (!longer) return longer.error();
-    std::string change = DescribeLengths(*plans, *longer);
+    TRY(const CampaignOwnership campaign, TakeCampaign(dir, LivingMaster::kRespect, give_up));
+    const CampaignDirectory& directory = campaign.directory;
+    TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(directory));
+    TRY(const std::vector<SearchPlan> longer, WithLength(plans, sets));
+    std::string change = DescribeLengths(plans, longer);
     if (change.empty()) return change;
-    const CampaignMeta& meta = campaign->store->meta();
-    const Result<proto::GoldenHashes> begun_with = CheckGoldenHashes(meta);
-    if (!begun_with) return begun_with.error();
-    if (const std::string controller = GoldenControllerOf(longer->front().experiment);
-        !begun_with->contains(controller)) {
+    const CampaignMeta& meta = campaign.store->meta();
+    TRY(const proto::GoldenHashes begun_with, CheckGoldenHashes(meta));
+    if (const std::string controller = GoldenControllerOf(longer.front().experiment);
+        !begun_with.contains(controller)) {
       return Error{ErrorKind::kCorrupt,
                    fmt::format("{} names the controller '{}', with which the campaign has not begun",
                                directory.experiment_path(), controller)};
     }
-    const CampaignTexts texts = TextsOf(*longer, meta.software_version, *begun_with);
+    const CampaignTexts texts = TextsOf(longer, meta.software_version, begun_with);
     // Of a sweep searches.json decides; experiment.toml is for people there, and follows.
     for (const auto& [path, text] : {std::pair(directory.searches_path(), texts.searches),
                                      std::pair(directory.experiment_path(), texts.experiment)}) {
       if (text.empty()) continue;
-      if (Status written = WriteFileAtomically(path, text, kReadableByAll); !written) return written.error();
+      TRY(WriteFileAtomically(path, text, kReadableByAll));
     }
-    campaign->store->AddEvent({UnixMilliseconds(), event::kExtended, change});
-    if (Status flushed = campaign->store->Flush(); !flushed) return flushed.error();
+    campaign.store->AddEvent({UnixMilliseconds(), event::kExtended, change});
+    TRY(campaign.store->Flush());
     return change;
   }
 
   Result<SessionReport> Resume(const std::string& dir, const SessionOptions& options) override {
-    Result<CampaignOwnership> campaign =
+    TRY(CampaignOwnership campaign,
         TakeCampaign(dir, options.batch_job.empty() ? LivingMaster::kRespect : LivingMaster::kFence,
-                     options.stop_requested);
-    if (!campaign) return campaign.error();
-    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-    if (!plans) return plans.error();
-    const Result<proto::GoldenHashes> golden_hashes = CheckGoldenHashes(campaign->store->meta());
-    if (!golden_hashes) return golden_hashes.error();
-    if (Status same = CheckPlugins(campaign->directory.plugins_path(), *plans); !same) return same.error();
-    if (Status whole = CheckStored(*plans, *campaign->store); !whole) return whole.error();
-    const Result<CampaignSummary> totals = SummariseTotals(*plans, *campaign->store);
-    if (!totals) return totals.error();
-    if (!totals->finished) return CampaignServer(*campaign, *plans, *golden_hashes, options).Serve();
-    Result<CampaignSummary> summary = Summarise(*plans, *campaign->store);
-    if (!summary) return summary.error();
-    return SessionReport{.summary = *std::move(summary)};
+                     options.stop_requested));
+    TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(campaign.directory));
+    TRY(const proto::GoldenHashes golden_hashes, CheckGoldenHashes(campaign.store->meta()));
+    TRY(CheckPlugins(campaign.directory.plugins_path(), plans));
+    TRY(CheckStored(plans, *campaign.store));
+    TRY(const CampaignSummary totals, SummariseTotals(plans, *campaign.store));
+    if (!totals.finished) return CampaignServer(campaign, plans, golden_hashes, options).Serve();
+    TRY(CampaignSummary summary, Summarise(plans, *campaign.store));
+    return SessionReport{.summary = std::move(summary)};
   }
 
   Result<CampaignSummary> Read(const std::string& dir) override {
-    const Result<StoredCampaign> campaign = OpenStoredCampaign(dir);
-    if (!campaign) return campaign.error();
-    Result<CampaignSummary> summary = Summarise(campaign->plans, *campaign->view.store);
-    if (!summary) return summary;
-    summary->as_of = campaign->view.as_of;
+    TRY(const StoredCampaign campaign, OpenStoredCampaign(dir));
+    TRY(CampaignSummary summary, Summarise(campaign.plans, *campaign.view.store));
+    summary.as_of = campaign.view.as_of;
     return summary;
   }
 
   Status ForEachRun(const std::string& dir, const RunVisitor& visit) override {
-    const Result<CampaignView> campaign = ViewCampaign(dir);
-    if (!campaign) return campaign.error();
-    const Result<std::vector<StoredSearch>> searches = campaign->store->LoadSearches();
-    if (!searches) return searches.error();
-    for (const StoredSearch& search : *searches) {
-      if (Status read = campaign->store->ForEachRun(search.id, 0, visit); !read) return read;
+    TRY(const CampaignView campaign, ViewCampaign(dir));
+    TRY(const std::vector<StoredSearch> searches, campaign.store->LoadSearches());
+    for (const StoredSearch& search : searches) {
+      TRY(campaign.store->ForEachRun(search.id, 0, visit));
     }
     return Ok{};
   }
 
   Result<CampaignReplay> Replay(const std::string& dir, RunId run, const std::string& scratch) override {
-    const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
-    if (!campaign) return campaign.error();
-    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-    if (!plans) return plans.error();
-    Result<ReplayReport> report = ReplayRun(*campaign->store, run, scratch);
-    if (!report) return report.error();
+    TRY(const CampaignView campaign, ViewCampaign(dir, Checked::kRows));
+    TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(campaign.directory));
+    TRY(ReplayReport report, ReplayRun(*campaign.store, run, scratch));
     const std::size_t search = SearchOf(run) - 1;
-    if (search >= plans->size())
+    if (search >= plans.size())
       return Error{ErrorKind::kCorrupt,
                    fmt::format("run {} is of a search that the campaign does not have", run)};
-    const Experiment& experiment = (*plans)[search].experiment;
-    if (report->damage.empty()) {
-      if (Status belongs = CheckSeed(experiment, report->stored); !belongs) return belongs.error();
+    const Experiment& experiment = plans[search].experiment;
+    if (report.damage.empty()) {
+      TRY(CheckSeed(experiment, report.stored));
     }
-    return CampaignReplay{experiment, *std::move(report), campaign->as_of};
+    return CampaignReplay{experiment, std::move(report), campaign.as_of};
   }
 
   Result<bool> MasterLives(const std::string& dir) override {
-    const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
-    if (!directory) return directory.error();
+    TRY(const CampaignDirectory directory, CampaignDirectory::Open(dir));
     LockOptions options;
     options.patience = std::chrono::milliseconds(0);
-    options.is_copy = [&directory] { return IsUntakenCopy(*directory); };
+    options.is_copy = [&directory] { return IsUntakenCopy(directory); };
     const Result<std::unique_ptr<CampaignLock>> lock =
-        CampaignLock::AcquireForReading(directory->lock_path(), directory->path(), options);
+        CampaignLock::AcquireForReading(directory.lock_path(), directory.path(), options);
     if (lock) return false;
     if (lock.error().kind == ErrorKind::kInUse) return true;
     return lock.error();
   }
 
   Result<std::string> ReadStatus(const std::string& dir) override {
-    const Result<bool> lives = MasterLives(dir);
-    if (!lives) return lives.error();
-    const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
-    if (!directory) return directory.error();
-    if (*lives) {
-      const Result<std::string> text = ReadRegularFile(directory->status_path(), 16U << 20);
+    TRY(const bool lives, MasterLives(dir));
+    TRY(const CampaignDirectory directory, CampaignDirectory::Open(dir));
+    if (lives) {
+      const Result<std::string> text = ReadRegularFile(directory.status_path(), 16U << 20);
       if (!text) {
         if (text.error().kind != ErrorKind::kNotFound) return text.error();
         return JsonText({{"state", "starting"},
@@ -273,43 +246,39 @@ class Campaigns final : public CampaignService {
       }
       ordered_json json = ordered_json::parse(*text, nullptr, /*allow_exceptions=*/false);
       if (!json.is_object()) {
-        return Error{ErrorKind::kCorrupt, fmt::format("{} does not parse", directory->status_path())};
+        return Error{ErrorKind::kCorrupt, fmt::format("{} does not parse", directory.status_path())};
       }
       if (const Status right = CheckStatus(json); !right) {
         return Error{right.error().kind, fmt::format("{} is none that a master of this version writes: {}",
-                                                     directory->status_path(), right.error().message)};
+                                                     directory.status_path(), right.error().message)};
       }
       json["status_age_seconds"] =
           static_cast<double>(UnixMilliseconds() - json.value("unix_ms", std::int64_t{0})) / 1000.0;
       return JsonText(json);
     }
-    const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kTotals);
-    if (!campaign) return campaign.error();
-    const Result<std::vector<SearchPlan>> plans = ReadSearchPlans(campaign->directory);
-    if (!plans) return plans.error();
-    const Result<CampaignSummary> summary = SummariseTotals(*plans, *campaign->store);
-    if (!summary) return summary.error();
-    return JsonText({{"state", summary->finished ? "finished" : "stopped"},
-                     {"experiment", summary->experiment},
+    TRY(const CampaignView campaign, ViewCampaign(dir, Checked::kTotals));
+    TRY(const std::vector<SearchPlan> plans, ReadSearchPlans(campaign.directory));
+    TRY(const CampaignSummary summary, SummariseTotals(plans, *campaign.store));
+    return JsonText({{"state", summary.finished ? "finished" : "stopped"},
+                     {"experiment", summary.experiment},
                      {"master", nullptr},
-                     {"generation", summary->progress.generation},
-                     {"generations", summary->progress.generations},
-                     {"runs_done", summary->runs_done},
-                     {"total_failures", summary->total_failures},
-                     {"runs_failed", summary->runs_failed},
+                     {"generation", summary.progress.generation},
+                     {"generations", summary.progress.generations},
+                     {"runs_done", summary.runs_done},
+                     {"total_failures", summary.total_failures},
+                     {"runs_failed", summary.runs_failed},
                      {"workers", 0},
-                     {"nondeterministic", summary->nondeterministic},
-                     {"verdicts_of_one_worker", summary->lone_verdicts},
+                     {"nondeterministic", summary.nondeterministic},
+                     {"verdicts_of_one_worker", summary.lone_verdicts},
                      {"why_nothing_runs",
-                      summary->finished ? "the search has finished"
-                                        : "no master serves the campaign: go on with `gauntlet resume DIR`"},
+                      summary.finished ? "the search has finished"
+                                       : "no master serves the campaign: go on with `gauntlet resume DIR`"},
                      {"worker_list", ordered_json::array()}});
   }
 
   Status RequestStop(const std::string& dir) override {
-    const Result<CampaignDirectory> directory = CampaignDirectory::Open(dir);
-    if (!directory) return directory.error();
-    return ReplaceFile(directory->stop_path(), "stop\n", kReadableByAll);
+    TRY(const CampaignDirectory directory, CampaignDirectory::Open(dir));
+    return ReplaceFile(directory.stop_path(), "stop\n", kReadableByAll);
   }
 };
 

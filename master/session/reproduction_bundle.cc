@@ -28,17 +28,16 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
                    const FinishedRun& finished) {
   const std::filesystem::path folder = std::filesystem::path(context.directory) / BundleName(run.id);
   for (const std::filesystem::path& part : {folder.parent_path(), folder}) {
-    if (Status made = MakeDirectory(part.string()); !made) return made;
+    TRY(MakeDirectory(part.string()));
   }
-  const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
-  if (!spec) return spec.error();
+  TRY(const sim::RunSpec spec, proto::DecodeRunSpec(run.spec));
   std::string command = fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
                                     context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
-  for (const std::string& plugin : std::set{spec->plugin, spec->scenario_plugin}) {
+  for (const std::string& plugin : std::set{spec.plugin, spec.scenario_plugin}) {
     if (!plugin.empty()) command += fmt::format(" --plugin ../../plugins/{}.so", plugin);
   }
   const proto::GoldenHashes& known = context.campaign.golden_hashes;
-  const auto golden = known.find(spec->controller);
+  const auto golden = known.find(spec.controller);
   const std::string readme = fmt::format(
       "Run {} of the campaign {} {} ({}), in every attempt; the last was on worker {}.\n\n"
       "See it again, in this folder:\n    {} > result\n"
@@ -50,15 +49,14 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
       "experiment.toml  the experiment, every default written out\n"
       "stderr.txt       what the last attempt printed\n",
       run.id, context.campaign.campaign_id, finished.result.message, NameOf(finished.result.verdict),
-      finished.worker, command, spec->scenario, spec->controller, run.seed, run.individual, run.evaluation,
+      finished.worker, command, spec.scenario, spec.controller, run.seed, run.individual, run.evaluation,
       run.replicate, context.campaign.software_version, golden == known.end() ? 0 : golden->second);
   for (const auto& [name, text] : {std::pair<const char*, std::string>("run.spec", run.spec),
-                                   {"case.json", proto::WriteCaseJson(spec->test_case)},
+                                   {"case.json", proto::WriteCaseJson(spec.test_case)},
                                    {"experiment.toml", WriteExperiment(experiment, {}, BuiltInCatalogue())},
                                    {"stderr.txt", finished.stderr_tail},
                                    {"README.txt", readme}}) {
-    const Status written = ReplaceFile((folder / name).string(), text, kReadableByAll);
-    if (!written) return written;
+    TRY(ReplaceFile((folder / name).string(), text, kReadableByAll));
   }
   return Ok{};
 }

@@ -31,13 +31,11 @@ SearchDriver::SearchDriver(const Parts& parts)
       saved_until_(last_asked_) {}
 
 Status SearchDriver::Restore() {
-  Result<SavedProgress> saved = RestoreSearch(parts_.search_id, parts_.store, parts_.search);
-  if (!saved) return saved.error();
-  digest_ = saved->results;
-  last_asked_ = last_told_ = saved_until_ = saved->last_run;
-  const Result<std::vector<SearchTotals>> totals = parts_.store.LoadTotals();
-  if (!totals) return totals.error();
-  for (const SearchTotals& mine : *totals) {
+  TRY(SavedProgress saved, RestoreSearch(parts_.search_id, parts_.store, parts_.search));
+  digest_ = saved.results;
+  last_asked_ = last_told_ = saved_until_ = saved.last_run;
+  TRY(const std::vector<SearchTotals> totals, parts_.store.LoadTotals());
+  for (const SearchTotals& mine : totals) {
     if (mine.search != parts_.search_id) continue;
     runs_done_ = mine.runs;
     total_failures_ = mine.total_failures;
@@ -91,12 +89,11 @@ Status SearchDriver::Ask() {
                   "another version, or its files were changed",
                   run.id)};
         }
-        Result<RunOutcome> outcome =
-            OutcomeOf(stored->second, parts_.search.WantsMetrics(), parts_.search.WantsWays());
-        if (!outcome) return outcome.error();
+        TRY(RunOutcome outcome,
+            OutcomeOf(stored->second, parts_.search.WantsMetrics(), parts_.search.WantsWays()));
         stored->second.spec.clear();
         stored->second.result.clear();
-        evaluation.runs.push_back({std::move(stored->second), *std::move(outcome), true});
+        evaluation.runs.push_back({std::move(stored->second), std::move(outcome), true});
         stored_ahead_.erase(stored);
       }
     }
@@ -209,7 +206,7 @@ void SearchDriver::SaveState() {
 
 Status SearchDriver::Advance() {
   TellCompleted();
-  if (Status asked = Ask(); !asked) return asked;
+  TRY(Ask());
   TellCompleted();  // what a former session had stored may complete evaluations at once
   return Ok{};
 }

@@ -21,12 +21,11 @@ constexpr std::size_t kSearchesAtOnce = 64;
 }  // namespace
 
 Status SearchLoop::Restore() {
-  const Result<std::vector<StoredSearch>> stored = parts_.store.LoadSearches();
-  if (!stored) return stored.error();
+  TRY(const std::vector<StoredSearch> stored, parts_.store.LoadSearches());
   for (SearchDriver* search : parts_.searches) {
-    if (Status restored = search->Restore(); !restored) return restored;
+    TRY(search->Restore());
     const bool has_ended =
-        search->finished() && std::ranges::any_of(*stored, [search](const StoredSearch& one) {
+        search->finished() && std::ranges::any_of(stored, [search](const StoredSearch& one) {
           return one.id == search->id() && one.finished_with == search->last_told();
         });
     if (!has_ended) waiting_.push_back(search);
@@ -41,7 +40,7 @@ Status SearchLoop::Advance() {
     waiting_.pop_front();
   }
   for (SearchDriver* search : running_) {
-    if (Status advanced = search->Advance(); !advanced) return advanced;
+    TRY(search->Advance());
     if (search->finished()) parts_.store.MarkFinished(search->id(), search->last_told());
   }
   const std::size_t before = running_.size();
@@ -57,11 +56,10 @@ void SearchLoop::StoreEvents() {
 }
 
 Status SearchLoop::ApplyCommits() {
-  Result<std::vector<RunId>> committed = parts_.store.Committed();
-  if (!committed) return committed.error();
-  if (committed->empty()) return Ok{};
-  for (const RunId id : *committed) DriverOf(id).Committed(id);
-  parts_.backend.Acknowledge(*committed);
+  TRY(std::vector<RunId> committed, parts_.store.Committed());
+  if (committed.empty()) return Ok{};
+  for (const RunId id : committed) DriverOf(id).Committed(id);
+  parts_.backend.Acknowledge(committed);
   return Ok{};
 }
 
@@ -127,8 +125,8 @@ void SearchLoop::StoreResults(std::vector<FinishedRun> finished) {
 
 // What is durable is told once more, and what follows from it is stored.
 Status SearchLoop::EndSession() {
-  if (Status flushed = parts_.store.Flush(); !flushed) return flushed;
-  if (Status applied = ApplyCommits(); !applied) return applied;
+  TRY(parts_.store.Flush());
+  TRY(ApplyCommits());
   for (SearchDriver* search : running_) search->TellCompleted();
   return parts_.store.Flush();
 }
@@ -138,8 +136,8 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
   const TimePoint started = parts_.clock.Now();
   TimePoint last_report = started - kPollTime;
   while (true) {
-    if (Status applied = ApplyCommits(); !applied) return applied.error();
-    if (Status advanced = Advance(); !advanced) return advanced.error();
+    TRY(ApplyCommits());
+    TRY(Advance());
     if (const TimePoint now = parts_.clock.Now(); now - last_report >= kPollTime) {
       on_progress(Progress(started));
       last_report = now;
@@ -149,19 +147,19 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
     const StopWish wish = stop();
     if (wish == StopWish::kAfterRuns) parts_.backend.StopLeasing();
     if (wish == StopWish::kNow || (wish == StopWish::kAfterRuns && parts_.backend.Statistics().busy == 0)) {
-      if (Status ended = EndSession(); !ended) return ended.error();
+      TRY(EndSession());
       return searched ? CampaignEnd::kFinished : CampaignEnd::kStopped;
     }
     if (!searched && std::ranges::none_of(running_, &SearchDriver::pending)) continue;
     Result<std::vector<FinishedRun>> finished = parts_.backend.Poll(kPollTime);
     if (!finished) {
-      if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();
+      TRY(parts_.store.Flush());
       return finished.error();
     }
     StoreResults(*std::move(finished));
     StoreEvents();
   }
-  if (Status flushed = parts_.store.Flush(); !flushed) return flushed.error();
+  TRY(parts_.store.Flush());
   on_progress(Progress(started));
   return CampaignEnd::kFinished;
 }

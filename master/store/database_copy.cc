@@ -28,15 +28,14 @@ Status DatabaseCopy::CopyInto(const std::string& from, const std::string& draft)
   {
     const std::lock_guard lock(mutex_);
     if (cancelled_) return Error{ErrorKind::kInternal, "the copy was cancelled"};
-    Result<SqliteConnection> opened =
-        SqliteConnection::Open(SqliteUri(from, ""), SqliteConnection::Mode::kReadOnly);
-    if (!opened) return opened.error();
-    connection_.emplace(*std::move(opened));
+    TRY(SqliteConnection opened,
+        SqliteConnection::Open(SqliteUri(from, ""), SqliteConnection::Mode::kReadOnly));
+    connection_.emplace(std::move(opened));
   }
   connection_->CheckpointOnClose(false);
   const auto copy = [&]() -> Status {
-    Result<SqliteStatement> vacuum = connection_->Prepare("VACUUM INTO ?");
-    return vacuum ? vacuum->Run(draft) : vacuum.error();
+    TRY(SqliteStatement vacuum, connection_->Prepare("VACUUM INTO ?"));
+    return vacuum.Run(draft);
   };
   const Status copied = copy();
   const std::lock_guard lock(mutex_);

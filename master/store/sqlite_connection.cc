@@ -142,12 +142,10 @@ Result<SqliteStatement> SqliteConnection::Prepare(std::string_view sql) {
 }
 
 Result<std::int64_t> SqliteConnection::QueryInt(std::string_view sql) {
-  Result<SqliteStatement> statement = Prepare(sql);
-  if (!statement) return statement.error();
-  Result<bool> row = statement->Step();
-  if (!row) return row.error();
-  if (!*row) return Error{ErrorKind::kCorrupt, fmt::format("no answer to {}", sql)};
-  return statement->Int(0);
+  TRY(SqliteStatement statement, Prepare(sql));
+  TRY(bool row, statement.Step());
+  if (!row) return Error{ErrorKind::kCorrupt, fmt::format("no answer to {}", sql)};
+  return statement.Int(0);
 }
 
 void SqliteConnection::Interrupt() const {

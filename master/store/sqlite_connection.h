@@ -39,10 +39,9 @@ class SqliteStatement {
   template <typename Visit>
   Status ForEachRow(const Visit& visit) {
     while (true) {
-      Result<bool> row = Step();
-      if (!row) return row.error();
-      if (!*row) return Ok{};
-      if (Status visited = visit(); !visited) return visited;
+      TRY(bool row, Step());
+      if (!row) return Ok{};
+      TRY(visit());
     }
   }
   // Steps a statement that returns no rows, with these values, and resets it whatever came of it.

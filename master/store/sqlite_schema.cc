@@ -143,16 +143,21 @@ Error WithPath(const std::string& path, const Error& error) {
   return {error.kind, fmt::format("{}: {}", path, error.message)};
 }
 
+template <typename T>
+Result<T> WithPath(const std::string& path, Result<T> result) {
+  if (!result) return WithPath(path, result.error());
+  return result;
+}
+
 // SQLite takes an empty or missing file for a new database, and would wait for the other end of a named pipe;
 // here neither is a database.
 Status CheckHeader(const std::string& path) {
-  const Result<UniqueFd> file = OpenRegularFile(path, O_RDONLY);
-  if (!file) return file.error();
+  TRY(const UniqueFd file, OpenRegularFile(path, O_RDONLY));
   for (const char* beside : kBesideTheDatabase) {
-    if (Status regular = CheckRegularFile(path + beside); !regular) return regular;
+    TRY(CheckRegularFile(path + beside));
   }
   std::array<char, kHeaderSize> header{};
-  const ssize_t size = pread(file->get(), header.data(), header.size(), 0);
+  const ssize_t size = pread(file.get(), header.data(), header.size(), 0);
   if (size != static_cast<ssize_t>(header.size()) ||
       std::string_view(header.data(), kMagic.size()) != kMagic) {
     return Error{
@@ -164,57 +169,50 @@ Status CheckHeader(const std::string& path) {
 
 // Formats in one sentence: kVersion for a newer one.
 Status CheckFormat(SqliteConnection& connection, const std::string& path) {
-  Result<std::int64_t> application = connection.QueryInt("PRAGMA application_id");
-  if (!application) return WithPath(path, application.error());
-  if (*application != kStoreApplicationId) {
+  TRY(const std::int64_t application, WithPath(path, connection.QueryInt("PRAGMA application_id")));
+  if (application != kStoreApplicationId) {
     return Error{ErrorKind::kInvalidInput,
                  fmt::format("{} is a database, but not a campaign's (application id {:#x} instead of {:#x})",
-                             path, *application, kStoreApplicationId)};
+                             path, application, kStoreApplicationId)};
   }
-  Result<std::int64_t> format = connection.QueryInt("PRAGMA user_version");
-  if (!format) return WithPath(path, format.error());
-  if (*format > kStoreFormat) {
+  TRY(const std::int64_t format, WithPath(path, connection.QueryInt("PRAGMA user_version")));
+  if (format > kStoreFormat) {
     return Error{
         ErrorKind::kVersion,
         fmt::format("{} has format {}, made by a newer gauntlet; this one reads format {}: use the newer "
                     "version (nothing was changed)",
-                    path, *format, kStoreFormat)};
+                    path, format, kStoreFormat)};
   }
-  if (*format < 1) {
+  if (format < 1) {
     return Error{ErrorKind::kCorrupt,
-                 fmt::format("{} is damaged (format {} never existed); it was left as it is", path, *format)};
+                 fmt::format("{} is damaged (format {} never existed); it was left as it is", path, format)};
   }
-  if (*format < kStoreFormat) {
+  if (format < kStoreFormat) {
     return Error{ErrorKind::kVersion,
                  fmt::format("{} has format {}, made by an older gauntlet; this one reads format {}: use the "
                              "older version (nothing was changed)",
-                             path, *format, kStoreFormat)};
+                             path, format, kStoreFormat)};
   }
   return Ok{};
 }
 
 Status CheckIntegrity(SqliteConnection& connection, const std::string& of) {
-  Result<SqliteStatement> check = connection.Prepare(fmt::format("PRAGMA integrity_check({})", of));
-  if (!check) return check.error();
-  Result<bool> row = check->Step();
-  if (!row) return row.error();
+  TRY(SqliteStatement check, connection.Prepare(fmt::format("PRAGMA integrity_check({})", of)));
+  TRY(bool row, check.Step());
   std::string answer = "no answer";
-  if (*row) check->Read(answer);
+  if (row) check.Read(answer);
   if (answer != "ok") return Error{ErrorKind::kCorrupt, answer};
   return Ok{};
 }
 
 // Pages, the order of rows, types, and that every index holds every row.
 Status CheckPages(SqliteConnection& connection, const std::string& path, Checked what) {
-  if (what == Checked::kEverything) {
-    const Status whole = CheckIntegrity(connection, "1");
-    return whole ? whole : WithPath(path, whole.error());
-  }
+  if (what == Checked::kEverything) return WithPath(path, CheckIntegrity(connection, "1"));
   std::vector<std::string> tables = {"meta", "searches", "finished", "totals"};
   if (what == Checked::kRows)
     tables.insert(tables.end(), {"individuals", "runs", "states", "events", "examples"});
   for (const std::string& table : tables) {
-    if (Status whole = CheckIntegrity(connection, table); !whole) return WithPath(path, whole.error());
+    TRY(WithPath(path, CheckIntegrity(connection, table)));
   }
   return Ok{};
 }
@@ -229,27 +227,23 @@ std::array<std::pair<std::string_view, Text*>, 4> FieldsOf(Meta& meta, Text& cre
 }
 
 Status FillDatabase(const std::string& path, const CampaignMeta& meta) {
-  Result<SqliteConnection> opened =
-      SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kCreate);
-  if (!opened) return WithPath(path, opened.error());
-  SqliteConnection& connection = *opened;
+  TRY(SqliteConnection connection,
+      SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kCreate));
   const std::string sql = fmt::format(
       "PRAGMA page_size = {}; PRAGMA locking_mode = EXCLUSIVE; PRAGMA synchronous = FULL; PRAGMA "
       "journal_mode = WAL;"
       "BEGIN; PRAGMA application_id = {}; PRAGMA user_version = {};\n{}{}",
       kPageSize, kStoreApplicationId, kStoreFormat, kTables, InsertOnlyTriggers());
-  if (Status made = connection.Execute(sql); !made) return WithPath(path, made.error());
-  Result<SqliteStatement> insert = connection.Prepare("INSERT INTO meta (key, value) VALUES (?, ?)");
-  if (!insert) return WithPath(path, insert.error());
+  TRY(connection.Execute(sql));
+  TRY(SqliteStatement insert, connection.Prepare("INSERT INTO meta (key, value) VALUES (?, ?)"));
   const std::string created = std::to_string(meta.created_unix_ms);
   for (const auto& [key, value] : FieldsOf(meta, created)) {
-    if (Status inserted = insert->Run(key, *value); !inserted) return WithPath(path, inserted.error());
+    TRY(insert.Run(key, *value));
   }
   // The checkpoint, unlike the one that closing would do, reports its errors; it ends with a synchronised
   // database.
-  if (Status committed = connection.Execute("COMMIT"); !committed) return WithPath(path, committed.error());
-  Result<std::int64_t> busy = connection.QueryInt("PRAGMA wal_checkpoint(TRUNCATE)");
-  if (!busy) return WithPath(path, busy.error());
+  TRY(connection.Execute("COMMIT"));
+  TRY(connection.QueryInt("PRAGMA wal_checkpoint(TRUNCATE)"));
   return Ok{};
 }
 
@@ -266,7 +260,7 @@ Status CreateDatabase(const std::string& path, const CampaignMeta& meta,
     return Error{ErrorKind::kInUse, fmt::format("{} exists already", path)};
   const std::string draft = path + ".new";
   RemoveDatabase(draft);  // of a master that was killed here
-  Status filled = FillDatabase(draft, meta);
+  Status filled = WithPath(draft, FillDatabase(draft, meta));
   if (filled && fill) filled = fill(draft);
   // What is still in the log would be left behind.
   struct stat log {};
@@ -285,50 +279,47 @@ Status CreateDatabase(const std::string& path, const CampaignMeta& meta,
 }
 
 Result<SqliteConnection> OpenCheckedForReading(const std::string& path, Checked what) {
-  if (Status header = CheckHeader(path); !header) return header.error();
+  TRY(CheckHeader(path));
   // Without a log the file alone is the database, and "immutable" keeps SQLite from creating one. With a log,
   // exclusive mode keeps the log's index in memory; the VFS without locks allows it on a file that is only
   // read.
   struct stat log {};
   const bool has_log = stat((path + "-wal").c_str(), &log) == 0 && log.st_size > 0;
-  Result<SqliteConnection> opened =
-      has_log ? SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadOnly, "unix-none")
-              : SqliteConnection::Open(SqliteUri(path, "immutable=1"), SqliteConnection::Mode::kReadOnly);
-  if (!opened) return WithPath(path, opened.error());
-  opened->CheckpointOnClose(false);
-  if (Status set = opened->Execute("PRAGMA locking_mode = EXCLUSIVE; PRAGMA query_only = ON"); !set) {
-    return WithPath(path, set.error());
-  }
-  if (Status format = CheckFormat(*opened, path); !format) return format.error();
-  if (Status pages = CheckPages(*opened, path, what); !pages) return pages.error();
+  TRY(SqliteConnection opened,
+      WithPath(path, SqliteConnection::Open(SqliteUri(path, has_log ? "" : "immutable=1"),
+                                            SqliteConnection::Mode::kReadOnly, has_log ? "unix-none" : "")));
+  opened.CheckpointOnClose(false);
+  TRY(WithPath(path, opened.Execute("PRAGMA locking_mode = EXCLUSIVE; PRAGMA query_only = ON")));
+  TRY(CheckFormat(opened, path));
+  TRY(CheckPages(opened, path, what));
   return opened;
 }
 
 Result<SqliteConnection> OpenCheckedBesideWriter(const std::string& path, Checked what) {
-  Result<SqliteConnection> opened =
-      SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadOnly);
-  if (!opened) return WithPath(path, opened.error());
-  opened->CheckpointOnClose(false);
+  TRY(SqliteConnection opened,
+      WithPath(path, SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadOnly)));
+  opened.CheckpointOnClose(false);
   const std::string sql =
       fmt::format("PRAGMA busy_timeout = {}; PRAGMA query_only = ON; BEGIN", kBusyMilliseconds);
-  if (Status set = opened->Execute(sql); !set) return WithPath(path, set.error());
-  if (Status format = CheckFormat(*opened, path); !format) return format.error();
-  if (Status pages = CheckPages(*opened, path, what); !pages) return pages.error();
+  TRY(WithPath(path, opened.Execute(sql)));
+  TRY(CheckFormat(opened, path));
+  TRY(CheckPages(opened, path, what));
   return opened;
 }
 
 Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const std::string& vfs,
                                                int checkpoint_pages) {
-  if (Result<SqliteConnection> checked = OpenCheckedForReading(path, Checked::kEverything); !checked)
-    return checked.error();
-  Result<SqliteConnection> opened =
-      SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadWrite, vfs);
-  if (!opened) return WithPath(path, opened.error());
+  {
+    // Ends with these braces: nobody writes while it holds the file.
+    TRY(OpenCheckedForReading(path, Checked::kEverything));
+  }
+  TRY(SqliteConnection opened,
+      WithPath(path, SqliteConnection::Open(SqliteUri(path, ""), SqliteConnection::Mode::kReadWrite, vfs)));
   // cache_spill: before a commit nothing reaches the file, so that a commit that is refused leaves no trace.
   // recursive_triggers: without it INSERT OR REPLACE would delete a row behind the triggers' back.
   // journal_size_limit: a reader that took long lets the log grow; afterwards it shrinks again.
   const auto begin = [&](const char* locking_mode) {
-    return opened->Execute(fmt::format(
+    return opened.Execute(fmt::format(
         "PRAGMA locking_mode = {}; PRAGMA busy_timeout = {}; PRAGMA journal_mode = WAL; PRAGMA synchronous = "
         "FULL;"
         "PRAGMA foreign_keys = ON; PRAGMA recursive_triggers = ON; PRAGMA cache_spill = OFF;"
@@ -338,23 +329,21 @@ Result<SqliteConnection> OpenCheckedForWriting(const std::string& path, const st
   };
   Status set = begin("NORMAL");
   if (!set && set.error().kind == ErrorKind::kIo) set = begin("EXCLUSIVE");  // there is no memory to share
-  if (!set) return WithPath(path, set.error());
-  if (Status format = CheckFormat(*opened, path); !format) return format.error();
+  TRY(WithPath(path, std::move(set)));
+  TRY(CheckFormat(opened, path));
   return opened;
 }
 
 Result<CampaignMeta> ReadMeta(SqliteConnection& connection) {
-  Result<SqliteStatement> query = connection.Prepare("SELECT value FROM meta WHERE key = ?");
-  if (!query) return query.error();
+  TRY(SqliteStatement query, connection.Prepare("SELECT value FROM meta WHERE key = ?"));
   CampaignMeta meta;
   std::string created;
   for (const auto& [key, field] : FieldsOf(meta, created)) {
-    query->Bind(key);
-    Result<bool> row = query->Step();
-    if (!row) return row.error();
-    if (!*row) return Error{ErrorKind::kCorrupt, fmt::format("the table meta has no {}", key)};
-    query->Read(*field);
-    query->Reset();
+    query.Bind(key);
+    TRY(bool row, query.Step());
+    if (!row) return Error{ErrorKind::kCorrupt, fmt::format("the table meta has no {}", key)};
+    query.Read(*field);
+    query.Reset();
   }
   meta.created_unix_ms = std::strtoll(created.c_str(), nullptr, 10);
   return meta;

@@ -10,29 +10,25 @@
 namespace gauntlet {
 
 Result<std::unique_ptr<SqliteStore>> SqliteStore::Open(const std::string& path, Options options) {
-  Result<SqliteConnection> connection = OpenCheckedForWriting(path, options.vfs, options.checkpoint_pages);
-  if (!connection) return connection.error();
-  Result<std::unique_ptr<SqliteStore>> store =
-      Make(path, *std::move(connection), std::move(options), Checked::kEverything);
-  if (!store) return store;
-  (*store)->notifier_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if ((*store)->notifier_ < 0) {
+  TRY(SqliteConnection connection, OpenCheckedForWriting(path, options.vfs, options.checkpoint_pages));
+  TRY(std::unique_ptr<SqliteStore> store,
+      Make(path, std::move(connection), std::move(options), Checked::kEverything));
+  store->notifier_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+  if (store->notifier_ < 0) {
     return Error{ErrorKind::kIo, fmt::format("{}: no eventfd: {}", path, std::strerror(errno))};
   }
-  (*store)->writer_ = std::thread([raw = store->get()] { raw->WriteLoop(); });
+  store->writer_ = std::thread([raw = store.get()] { raw->WriteLoop(); });
   return store;
 }
 
 Result<std::unique_ptr<SqliteStore>> SqliteStore::OpenReadOnly(const std::string& path, Checked what) {
-  Result<SqliteConnection> connection = OpenCheckedForReading(path, what);
-  if (!connection) return connection.error();
-  return Make(path, *std::move(connection), {}, what);
+  TRY(SqliteConnection connection, OpenCheckedForReading(path, what));
+  return Make(path, std::move(connection), {}, what);
 }
 
 Result<std::unique_ptr<SqliteStore>> SqliteStore::OpenBesideMaster(const std::string& path, Checked what) {
-  Result<SqliteConnection> connection = OpenCheckedBesideWriter(path, what);
-  if (!connection) return connection.error();
-  return Make(path, *std::move(connection), {}, what);
+  TRY(SqliteConnection connection, OpenCheckedBesideWriter(path, what));
+  return Make(path, std::move(connection), {}, what);
 }
 
 Result<std::unique_ptr<SqliteStore>> SqliteStore::Make(const std::string& path, SqliteConnection connection,

@@ -151,9 +151,8 @@ Error Conflict(const std::string& what) {
 }  // namespace
 
 Result<SqliteTables> SqliteTables::Open(SqliteConnection& connection) {
-  Result<TotalsTable> totals = TotalsTable::Open(connection);
-  if (!totals) return totals.error();
-  SqliteTables tables(connection, *std::move(totals));
+  TRY(TotalsTable totals, TotalsTable::Open(connection));
+  SqliteTables tables(connection, std::move(totals));
   const std::pair<SqliteStatement*, std::string> statements[] = {
       {&tables.insert_search_, "INSERT INTO searches (id, name, algorithm, seed) VALUES (?, ?, ?, ?)"},
       {&tables.insert_individual_,
@@ -174,22 +173,20 @@ Result<SqliteTables> SqliteTables::Open(SqliteConnection& connection) {
        "SELECT birth_generation, parents, test_case FROM individuals WHERE search = ? AND id = ?"},
   };
   for (const auto& [statement, sql] : statements) {
-    Result<SqliteStatement> prepared = connection.Prepare(sql);
-    if (!prepared) return prepared.error();
-    *statement = *std::move(prepared);
+    TRY(SqliteStatement prepared, connection.Prepare(sql));
+    *statement = std::move(prepared);
   }
-  if (Status loaded = tables.LoadExamples(); !loaded) return loaded.error();
+  TRY(tables.LoadExamples());
   return tables;
 }
 
 Status SqliteTables::LoadExamples() {
-  Result<SqliteStatement> query = connection_->Prepare("SELECT kind, bytes, checksum FROM examples");
-  if (!query) return query.error();
-  return query->ForEachRow([&]() -> Status {
+  TRY(SqliteStatement query, connection_->Prepare("SELECT kind, bytes, checksum FROM examples"));
+  return query.ForEachRow([&]() -> Status {
     std::string kind;
     std::string bytes;
     std::uint64_t checksum = 0;
-    query->Read(kind, bytes, checksum);
+    query.Read(kind, bytes, checksum);
     if (checksum != RowChecksum().Bytes(kind).Bytes(bytes).value())
       return Error{ErrorKind::kCorrupt,
                    fmt::format("the example of a {} was changed: its checksum differs", kind)};
@@ -211,10 +208,9 @@ void SqliteTables::Rollback() {
 }
 
 Status SqliteTables::Insert(const StoredSearch& search) {
-  const Status inserted = insert_search_.Run(search.id, search.name, search.algorithm, search.seed);
-  if (!inserted) return inserted;
+  TRY(insert_search_.Run(search.id, search.name, search.algorithm, search.seed));
   totals_.Of(search.id).search = search.id;
-  return search.finished_with > 0 ? Insert(Finished{search.id, search.finished_with}) : inserted;
+  return search.finished_with > 0 ? Insert(Finished{search.id, search.finished_with}) : Ok{};
 }
 
 Status SqliteTables::Insert(const Finished& finished) {
@@ -225,7 +221,7 @@ Status SqliteTables::Insert(const Finished& finished) {
 
 Status SqliteTables::Insert(const Newborns& newborns) {
   for (const Individual& individual : newborns.individuals) {
-    if (Status inserted = Insert(newborns.search, individual); !inserted) return inserted;
+    TRY(Insert(newborns.search, individual));
   }
   return Ok{};
 }
@@ -234,10 +230,9 @@ Status SqliteTables::Insert(SearchId search, const Individual& individual) {
   const std::string parents = EncodeParents(individual);
   const std::string test_case = EncodeTestCase(individual.test_case);
   const std::string packed = specs_.Pack(test_case);
-  const Status inserted = insert_individual_.Run(
+  TRY(insert_individual_.Run(
       search, individual.id, individual.birth_generation, Blob{parents}, Blob{packed},
-      ChecksumOf(search, individual.id, individual.birth_generation, parents, test_case));
-  if (!inserted) return inserted;
+      ChecksumOf(search, individual.id, individual.birth_generation, parents, test_case)));
   if (connection_->Changes() > 0) {
     ++totals_.Of(search).individuals;
     return Ok{};
@@ -284,16 +279,14 @@ Status SqliteTables::Insert(const StoredRun& run) {
 
 Status SqliteTables::Insert(const SavedState& state) {
   const std::string packed = specs_.Pack(state.state);  // genomes, too
-  const Status inserted = insert_state_.Run(state.search, state.last_run, state.generation, Blob{packed},
-                                            Blob{state.results_digest}, ChecksumOf(state));
-  if (!inserted) return inserted;
+  TRY(insert_state_.Run(state.search, state.last_run, state.generation, Blob{packed},
+                        Blob{state.results_digest}, ChecksumOf(state)));
   if (connection_->Changes() > 0) {
     ++totals_.Of(state.search).states;
     return Ok{};
   }
-  Result<std::optional<SavedState>> stored = LoadState(state.search, state.last_run);
-  if (!stored) return stored.error();
-  if (stored->has_value() && ChecksumOf(**stored) == ChecksumOf(state)) return Ok{};
+  TRY(std::optional<SavedState> stored, LoadState(state.search, state.last_run));
+  if (stored.has_value() && ChecksumOf(*stored) == ChecksumOf(state)) return Ok{};
   return Conflict(fmt::format("the state of search {} after run {}", state.search, state.last_run));
 }
 
@@ -304,17 +297,16 @@ Status SqliteTables::Insert(const StoredEvent& event) {
 }
 
 Result<std::vector<StoredSearch>> SqliteTables::LoadSearches() {
-  Result<SqliteStatement> query = connection_->Prepare(
-      "SELECT id, name, algorithm, seed, coalesce((SELECT max(last_run) FROM finished WHERE search = "
-      "searches.id), 0) FROM searches ORDER BY id");
-  if (!query) return query.error();
+  TRY(SqliteStatement query,
+      connection_->Prepare(
+          "SELECT id, name, algorithm, seed, coalesce((SELECT max(last_run) FROM finished WHERE search = "
+          "searches.id), 0) FROM searches ORDER BY id"));
   std::vector<StoredSearch> searches;
-  const Status read = query->ForEachRow([&]() -> Status {
+  TRY(query.ForEachRow([&]() -> Status {
     StoredSearch& search = searches.emplace_back();
-    query->Read(search.id, search.name, search.algorithm, search.seed, search.finished_with);
+    query.Read(search.id, search.name, search.algorithm, search.seed, search.finished_with);
     return Ok{};
-  });
-  if (!read) return read.error();
+  }));
   return searches;
 }
 
@@ -327,18 +319,17 @@ Result<std::vector<SearchTotals>> SqliteTables::LoadTotals() {
 }
 
 Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
-  Result<SqliteStatement> query = connection_->Prepare(
-      "SELECT id, birth_generation, parents, test_case, checksum FROM individuals WHERE search = ? ORDER BY "
-      "id");
-  if (!query) return query.error();
-  query->Bind(search);
+  TRY(SqliteStatement query, connection_->Prepare("SELECT id, birth_generation, parents, test_case, checksum "
+                                                  "FROM individuals WHERE search = ? ORDER BY "
+                                                  "id"));
+  query.Bind(search);
   std::vector<Individual> individuals;
-  const Status read = query->ForEachRow([&]() -> Status {
+  TRY(query.ForEachRow([&]() -> Status {
     Individual& individual = individuals.emplace_back();
     std::string parents;
     std::string test_case;
     std::uint64_t checksum = 0;
-    query->Read(individual.id, individual.birth_generation, parents, test_case, checksum);
+    query.Read(individual.id, individual.birth_generation, parents, test_case, checksum);
     Result<std::string> unpacked = specs_.Unpack(test_case);
     if (unpacked) test_case = *std::move(unpacked);
     if (checksum != ChecksumOf(search, individual.id, individual.birth_generation, parents, test_case)) {
@@ -348,23 +339,20 @@ Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
     if (DecodeParents(parents, individual) && DecodeTestCase(test_case, individual.test_case)) return Ok{};
     return Error{ErrorKind::kCorrupt,
                  fmt::format("individual {} of search {} does not read back", individual.id, search)};
-  });
-  if (!read) return read.error();
+  }));
   return individuals;
 }
 
 Result<std::optional<SavedState>> SqliteTables::LoadState(SearchId search, RunId until) {
-  Result<SqliteStatement> query = connection_->Prepare(
-      "SELECT search, last_run, generation, state, results_digest, checksum FROM states "
-      "WHERE search = ? AND last_run <= ? ORDER BY last_run DESC LIMIT 1");
-  if (!query) return query.error();
-  query->Bind(search, until);
-  Result<bool> row = query->Step();
-  if (!row) return row.error();
-  if (!*row) return std::optional<SavedState>();
+  TRY(SqliteStatement query,
+      connection_->Prepare("SELECT search, last_run, generation, state, results_digest, checksum FROM states "
+                           "WHERE search = ? AND last_run <= ? ORDER BY last_run DESC LIMIT 1"));
+  query.Bind(search, until);
+  TRY(bool row, query.Step());
+  if (!row) return std::optional<SavedState>();
   SavedState state;
   std::uint64_t checksum = 0;
-  query->Read(state.search, state.last_run, state.generation, state.state, state.results_digest, checksum);
+  query.Read(state.search, state.last_run, state.generation, state.state, state.results_digest, checksum);
   if (Result<std::string> bytes = specs_.Unpack(state.state)) {
     state.state = *std::move(bytes);
     if (checksum == ChecksumOf(state)) return std::optional(std::move(state));
@@ -415,13 +403,12 @@ Status SqliteTables::ForEach(SearchId search, RunId after, bool whole, const Run
   // The ids of a search's runs stand together: that is the index.
   const RunId before_first = RunIdOf(search, 1) - 1;
   const RunId last = before_first + (1ULL << kSequenceBits) - 1;
-  Result<SqliteStatement> query = connection_->Prepare(
-      fmt::format("SELECT {}{} FROM {} WHERE id > ? AND id <= ? ORDER BY id", kRunColumns,
-                  whole ? ", records.spec, records.result" : "", whole ? kWholeRuns : kRuns));
-  if (!query) return query.error();
-  query->Bind(std::max(after, before_first), last);
-  return query->ForEachRow([&]() -> Status {
-    TRY(const StoredRun run, ReadRun(*query, whole));
+  TRY(SqliteStatement query, connection_->Prepare(fmt::format(
+                                 "SELECT {}{} FROM {} WHERE id > ? AND id <= ? ORDER BY id", kRunColumns,
+                                 whole ? ", records.spec, records.result" : "", whole ? kWholeRuns : kRuns)));
+  query.Bind(std::max(after, before_first), last);
+  return query.ForEachRow([&]() -> Status {
+    TRY(const StoredRun run, ReadRun(query, whole));
     return visit(run);
   });
 }
@@ -435,28 +422,24 @@ Status SqliteTables::ForEachRow(SearchId search, RunId after, const RunVisitor& 
 }
 
 Result<std::optional<StoredRun>> SqliteTables::LoadRun(RunId run) {
-  Result<SqliteStatement> query = connection_->Prepare(
-      fmt::format("SELECT {}, records.spec, records.result FROM {} WHERE id = ?", kRunColumns, kWholeRuns));
-  if (!query) return query.error();
-  query->Bind(run);
-  Result<bool> row = query->Step();
-  if (!row) return row.error();
-  if (!*row) return std::optional<StoredRun>();
-  Result<StoredRun> read = ReadRun(*query, /*whole=*/true);
-  if (!read) return read.error();
-  return std::optional(*std::move(read));
+  TRY(SqliteStatement query,
+      connection_->Prepare(fmt::format("SELECT {}, records.spec, records.result FROM {} WHERE id = ?",
+                                       kRunColumns, kWholeRuns)));
+  query.Bind(run);
+  TRY(bool row, query.Step());
+  if (!row) return std::optional<StoredRun>();
+  TRY(StoredRun read, ReadRun(query, /*whole=*/true));
+  return std::optional(std::move(read));
 }
 
 Result<std::vector<StoredEvent>> SqliteTables::LoadEvents() {
-  Result<SqliteStatement> query = connection_->Prepare("SELECT unix_ms, kind, text FROM events ORDER BY id");
-  if (!query) return query.error();
+  TRY(SqliteStatement query, connection_->Prepare("SELECT unix_ms, kind, text FROM events ORDER BY id"));
   std::vector<StoredEvent> events;
-  const Status read = query->ForEachRow([&]() -> Status {
+  TRY(query.ForEachRow([&]() -> Status {
     StoredEvent& event = events.emplace_back();
-    query->Read(event.unix_ms, event.kind, event.text);
+    query.Read(event.unix_ms, event.kind, event.text);
     return Ok{};
-  });
-  if (!read) return read.error();
+  }));
   return events;
 }
 

@@ -46,41 +46,38 @@ constexpr CountedTable kCounted[] = {
 
 Result<TotalsTable> TotalsTable::Open(SqliteConnection& connection) {
   TotalsTable table(connection);
-  Result<SqliteStatement> query = connection.Prepare(
-      "SELECT search, runs, runs_failed, total_failures, individuals, states, finished, events, examples, "
-      "checksum FROM totals");
-  if (!query) return query.error();
-  const Status read = query->ForEachRow([&]() -> Status {
+  TRY(SqliteStatement query, connection.Prepare("SELECT search, runs, runs_failed, total_failures, "
+                                                "individuals, states, finished, events, examples, "
+                                                "checksum FROM totals"));
+  TRY(query.ForEachRow([&]() -> Status {
     Totals totals;
     std::uint64_t checksum = 0;
-    query->Read(totals.search, totals.runs, totals.runs_failed, totals.total_failures, totals.individuals,
-                totals.states, totals.finished, totals.events, totals.examples, checksum);
+    query.Read(totals.search, totals.runs, totals.runs_failed, totals.total_failures, totals.individuals,
+               totals.states, totals.finished, totals.events, totals.examples, checksum);
     if (checksum == ChecksumOf(totals.search, totals)) {
       table.totals_[totals.search] = totals;
       return Ok{};
     }
     return Error{ErrorKind::kCorrupt,
                  fmt::format("the totals of search {} were changed: their checksum differs", totals.search)};
-  });
-  if (!read) return read.error();
-  Result<SqliteStatement> replace = connection.Prepare(
-      "INSERT INTO totals (search, runs, runs_failed, total_failures, individuals, states, finished, events, "
-      "examples, checksum) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET runs = "
-      "excluded.runs, runs_failed = excluded.runs_failed, total_failures = excluded.total_failures, "
-      "individuals = excluded.individuals, states = excluded.states, finished = excluded.finished, "
-      "events = excluded.events, examples = excluded.examples, checksum = excluded.checksum");
-  if (!replace) return replace.error();
-  table.replace_ = *std::move(replace);
+  }));
+  TRY(table.replace_,
+      connection.Prepare(
+          "INSERT INTO totals (search, runs, runs_failed, total_failures, individuals, states, finished, "
+          "events, "
+          "examples, checksum) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO UPDATE SET runs = "
+          "excluded.runs, runs_failed = excluded.runs_failed, total_failures = excluded.total_failures, "
+          "individuals = excluded.individuals, states = excluded.states, finished = excluded.finished, "
+          "events = excluded.events, examples = excluded.examples, checksum = excluded.checksum"));
   return table;
 }
 
 Status TotalsTable::Store() {
   for (const SearchId search : std::exchange(changed_, {})) {
     const Totals& totals = totals_[search];
-    const Status stored = replace_.Run(search, totals.runs, totals.runs_failed, totals.total_failures,
-                                       totals.individuals, totals.states, totals.finished, totals.events,
-                                       totals.examples, ChecksumOf(search, totals));
-    if (!stored) return stored;
+    TRY(replace_.Run(search, totals.runs, totals.runs_failed, totals.total_failures, totals.individuals,
+                     totals.states, totals.finished, totals.events, totals.examples,
+                     ChecksumOf(search, totals)));
   }
   return Ok{};
 }
@@ -90,13 +87,11 @@ Status TotalsTable::Check(Checked what) const {
     if (table.from > what) continue;
     std::uint64_t stored = 0;
     for (const Entry& entry : totals_) stored += table.rows(entry);
-    const Result<std::int64_t> found =
-        connection_->QueryInt(fmt::format("SELECT count(*) FROM {}", table.name));
-    if (!found) return found.error();
-    if (static_cast<std::uint64_t>(*found) == stored) continue;
+    TRY(const std::int64_t found, connection_->QueryInt(fmt::format("SELECT count(*) FROM {}", table.name)));
+    if (static_cast<std::uint64_t>(found) == stored) continue;
     return Error{ErrorKind::kCorrupt,
                  fmt::format("the table {} holds {} rows instead of the {} that were stored", table.name,
-                             *found, stored)};
+                             found, stored)};
   }
   return Ok{};
 }

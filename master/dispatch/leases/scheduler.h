@@ -12,10 +12,8 @@
 // and get a second lease of runs that take unusually long (copy_after), or of finished runs that are to be
 // audited; a finished run is remembered until its audit has been answered.
 //
-// No worker is believed alone while there are others. A run that failed goes to workers that have not failed
-// it, on other hosts first, and becomes a verdict when enough of those that have shown that they can work
-// have failed it, or all there are (scheduler_verdicts.cc). What they have shown is kept of every worker
-// (worker_record.h); one whose runs only fail while others finish them gets no more.
+// No worker is believed alone while there are others: a run that failed goes to workers that have not failed
+// it, and one whose runs only fail while others finish them gets no more (master/dispatch/trust).
 #pragma once
 
 #include <cstdint>
@@ -33,6 +31,7 @@
 #include "master/dispatch/evaluation_backend.h"
 #include "master/dispatch/leases/scheduler_orders.h"
 #include "master/dispatch/leases/scheduler_state.h"
+#include "master/dispatch/trust/trust_policy.h"
 
 namespace gauntlet {
 
@@ -100,67 +99,60 @@ class Scheduler {
   using LeaseState = scheduling::LeaseState;
   using Lease = scheduling::Lease;
   using Place = scheduling::Place;
-  using Attempt = scheduling::Attempt;
   using Run = scheduling::Run;
   using Worker = scheduling::Worker;
-  using Tally = scheduling::Tally;
-  using Others = scheduling::Others;
 
   void Advance(TimePoint now);
+  void ForgetIfDone(RunId id);
+  static Place PlaceOf(RunId id, const Run& run) { return {run.batch, run.length, id}; }
+  bool Standing(InstanceId id, const Worker& worker) const {
+    return !worker.lost && !worker.draining && !trust_.RecordOf(id).quarantined;
+  }
+
+  // lease_assignment.cc
+  void List(InstanceId id, Worker& worker);  // where it belongs in available_, slots_ and busy_
+  bool Slowed(InstanceId id, const Worker& worker) const;
   std::uint32_t Credit() const;  // leases per slot, by the predicted length of a run
   bool ManyWait() const;         // so many that nobody waits for a single one of them
-  void Heard(InstanceId id, Worker& worker);
-  void Reconcile(InstanceId id, Worker& worker, const std::vector<Fence>& held, Duration grace);
-  void List(InstanceId id, Worker& worker);     // puts it where it belongs in available_
-  void Unlist(InstanceId id, Worker& worker);   // takes it out of available_
-  void EraseLive(Worker& worker, Fence fence);  // the next in line begins
-  void Loosen(Fence fence, Lease& lease, LeaseState state);
-  void EndLease(Fence fence);
-  bool Requeue(RunId id, Run& run);
-  void Count(Worker& worker);  // its slots and leases, for the statistics
-  std::vector<RunId> ReleaseAll(Worker& worker);
-  // Or will be before the next check, so that silence is noticed within its limit, not after it.
-  bool IsSilent(const Worker& worker) const;
-  void Lose(InstanceId id, Worker& worker);
-  void Finish(RunId id, Run& run, InstanceId worker, Fence fence);
-  Answer CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);
-  void EndAudit(RunId id, Run& run, InstanceId by);
-  void ForgetIfDone(RunId id);
-  void Purge();
   void Grant(InstanceId worker_id, RunId id);
   void Assign();
+  void AssignFailing();
   void AssignAudits();
   void AssignCopies();
   void MoveWaiting();
+  std::vector<InstanceId> AbleTo(const Run& run) const;  // all but who has kept it too long already
+  std::optional<InstanceId> HelperFor(RunId run, InstanceId owner) const;
   std::size_t FirstWaiting(const Worker& worker) const;  // in its live leases: certainly not begun
   bool Alone(InstanceId worker) const;                   // there is no other worker
 
-  // scheduler_verdicts.cc.
-  static bool Standing(const Worker& worker) {
-    return !worker.lost && !worker.draining && !worker.record.quarantined;
-  }
-  static Place PlaceOf(RunId id, const Run& run) { return {run.batch, run.length, id}; }
-  static bool FailedOn(const Run& run, InstanceId worker);
-  bool PatienceLasts() const;
-  bool Trusted(const Attempt& attempt) const;
-  Tally TallyOf(const Run& run) const;
-  Others OthersFor(const Run& run, const Tally& tally) const;
-  bool Condemned(const Tally& tally, const Others& others) const;
-  void Judge(RunId id);
-  void JudgeAll();
-  void NoteAttempt(RunId id, Run& run, InstanceId worker, std::optional<proto::RunnerFailure> failure);
-  void Praise(InstanceId worker, const std::vector<Attempt>& contradicted);
-  void Strike(InstanceId worker);
-  void QuarantineIfDue(InstanceId id, Worker& worker);
+  // lease_answers.cc
+  void Accept(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);
+  void Finish(RunId id, Run& run, InstanceId worker, Fence fence);
+  Answer CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);
+  void EndAudit(RunId id, Run& run, InstanceId by);
   Answer Misaddressed(InstanceId worker, Fence fence, const Lease& lease);
-  bool Slowed(InstanceId id, const Worker& worker) const;
-  void AssignFailing();
-  std::optional<InstanceId> NextFor(const Run& run) const;
-  std::optional<InstanceId> HelperFor(const Run& run, InstanceId owner) const;
+  void NoteAttempt(RunId id, const Run& run, InstanceId worker, std::optional<proto::RunnerFailure> failure);
+  void Judge(RunId id);
+  void Strike(InstanceId worker);
+  void Quarantine(InstanceId id);
+
+  // lease_expiry.cc
+  void Heard(InstanceId id, Worker& worker);
+  void Reconcile(InstanceId id, Worker& worker, const std::vector<Fence>& held, Duration grace);
+  // Or will be before the next check, so that silence is noticed within its limit, not after it.
+  bool IsSilent(const Worker& worker) const;
+  void Lose(InstanceId id, Worker& worker);
+  std::vector<RunId> ReleaseAll(InstanceId id, Worker& worker, LeaseState state);
+  void Purge();
+  void EraseLive(Worker& worker, Fence fence);  // the next in line begins
+  void Loosen(Fence fence, Lease& lease, LeaseState state);
+  RunId EndLease(Fence fence);  // of this run
+  bool Requeue(RunId id, Run& run);
 
   DispatchOptions options_;
   Fence first_fence_;
   Fence next_fence_;
+  TrustPolicy trust_;
   bool leasing_ = true;
 
   // Time in which the master was listening: it advances by at most one heartbeat per event, so that a master
@@ -172,11 +164,8 @@ class Scheduler {
   double predicted_seconds_ = -1.0;  // of a run; negative: none has ended yet
 
   std::unordered_map<RunId, Run> runs_;
-  std::set<Place> queue_;           // nobody has them, and nobody has failed them
-  std::set<Place> failing_;         // somebody has failed them, and they are unfinished
-  std::vector<RunId> unjudged_;     // of these, that failed since the last decision
-  bool somebody_finished_ = false;  // a run, for this master
-  std::optional<Duration> first_failure_;
+  std::set<Place> queue_;    // nobody has them, and nobody has failed them
+  std::set<Place> failing_;  // somebody has failed them, and they are unfinished
   std::uint64_t batch_ = 0;
   std::size_t unfinished_ = 0;
   std::set<RunId> audits_;  // finished runs that wait for their second lease

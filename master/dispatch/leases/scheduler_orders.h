@@ -5,14 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "master/dispatch/leases/worker_record.h"
+#include "master/dispatch/trust/trust_policy.h"
 #include "proto/messages.h"
 
 namespace gauntlet {
 
 using proto::Fence;
-using proto::InstanceId;
-using proto::RunId;
 
 struct LeaseOrder {
   InstanceId worker = 0;
@@ -24,15 +22,10 @@ struct FenceOrder {
   Fence fence = 0;
 };
 
-// The run ended with a verdict.
-struct RunGivenUp {
+// The run ended with this verdict.
+struct RunGivenUp : Verdict {
   RunId run = 0;
-  InstanceId worker = 0;  // of the failure that is the verdict
   std::uint32_t leases = 1;
-  proto::RunnerFailure failure;  // the last of those that are told alike and most often
-  std::uint32_t alike = 0;       // how many these were
-  std::uint32_t attempts = 0;    // failures of all sorts
-  std::uint32_t workers = 0;     // on which it failed; 1: there was no other to ask
 };
 
 // It gets no more leases, and what it said of unfinished runs does not count.

@@ -2,14 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <string>
 #include <tuple>
 #include <vector>
 
 #include "base/system/clock.h"
 #include "master/dispatch/leases/scheduler_orders.h"
-#include "master/dispatch/leases/worker_record.h"
 
 namespace gauntlet::scheduling {
 
@@ -30,21 +27,13 @@ struct Place {  // in the queue
     return std::tie(batch, other.length, run) < std::tie(other.batch, length, other.run);
   }
 };
-// An answer to a lease of an unfinished run that was no result.
-struct Attempt {
-  InstanceId worker = 0;
-  std::string host;
-  bool trusted = false;                         // the worker, then
-  std::optional<proto::RunnerFailure> failure;  // none: the answer could not be read
-};
 struct Run {
   proto::EncodedSpec spec;  // empty when the run has finished and its audit is not open
   std::uint64_t batch = 0;
   double length = 0.0;
   std::vector<Fence> fences;  // live, orphaned and cancelled leases
   std::uint32_t live = 0;
-  std::uint32_t leases = 0;       // given so far
-  std::vector<Attempt> attempts;  // that failed, while it is unfinished
+  std::uint32_t leases = 0;  // given so far
   bool finished = false;
   bool given_up = false;
   bool acknowledged = false;
@@ -62,10 +51,8 @@ struct Worker {
   Duration excused{};  // value of listening_ at the last excuse
   bool lost = false;
   bool draining = false;
-  bool blocked = false;  // the last lease could not be delivered
-  bool filled = false;   // was given as many leases as it may have, and has not worked off half of them
-  std::string host;
-  WorkerRecord record;
+  bool blocked = false;     // the last lease could not be delivered
+  bool filled = false;      // was given as many leases as it may have, and has not worked off half of them
   Duration slowed_until{};  // when it next gets a lease if it is a black hole
   // Its part in the sums slots_ and busy_.
   std::uint32_t counted_slots = 0;
@@ -73,18 +60,6 @@ struct Worker {
   // Its place in available_, when it has one.
   bool listed = false;
   std::uint32_t level = 0;
-};
-
-struct Tally {                           // of a run's failed attempts
-  std::uint32_t failures = 0;            // that count
-  std::uint32_t workers = 0;             // different ones
-  std::uint32_t trusted = 0;             // of these
-  std::optional<std::string> only_host;  // all were there; none: on several
-};
-struct Others {  // workers that could do a run and have neither failed it nor kept it too long
-  std::uint32_t all = 0;
-  std::uint32_t untried = 0;  // that have neither finished nor failed anything yet
-  bool elsewhere = false;     // some on another host than all that failed it
 };
 
 }  // namespace gauntlet::scheduling

@@ -78,7 +78,7 @@ Result<std::unique_ptr<LocalPool>> LocalPool::Start(const LocalPoolOptions& opti
   }
   std::unique_ptr<LocalPool> pool(new LocalPool(options));
   for (Slot& slot : pool->slots_) {
-    if (Status started = pool->StartWorker(slot, now); !started) return started.error();
+    TRY(pool->StartWorker(slot, now));
   }
   return pool;
 }
@@ -111,12 +111,11 @@ LocalPool::~LocalPool() {
 Status LocalPool::StartWorker(Slot& slot, TimePoint now) {
   const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
   if (!nothing.valid()) return SystemError("cannot open /dev/null", errno);
-  const Result<UniqueFd> log = OpenRegularFile(slot.log_file, O_WRONLY | O_CREAT | O_APPEND, kReadableByAll);
-  if (!log) return log.error();
+  TRY(const UniqueFd log, OpenRegularFile(slot.log_file, O_WRONLY | O_CREAT | O_APPEND, kReadableByAll));
   const int failed =
       Spawn({options_.program, "--access", options_.access_file, "--die-with-parent",
              std::to_string(getpid()), "--quiet", "--log", slot.log_file},
-            {.streams = {nothing.get(), log->get(), log->get()}, .flags = POSIX_SPAWN_SETSID}, slot.pid);
+            {.streams = {nothing.get(), log.get(), log.get()}, .flags = POSIX_SPAWN_SETSID}, slot.pid);
   if (failed != 0) {
     slot.pid = -1;
     return SystemError(fmt::format("cannot start {}", options_.program), failed);

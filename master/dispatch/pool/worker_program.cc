@@ -32,13 +32,12 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
   const std::string program = WorkerProgramPath();
   arguments.insert(arguments.begin(), program);
   for (int attempt = 1;; ++attempt) {
-    Result<CallOutput> output = CallProcess(arguments, input, options);
-    if (!output) return output.error();
-    if (output->exit_code == 0) return std::move(output->out);
-    if (output->signal == SIGKILL && attempt < kTries) continue;
+    TRY(CallOutput output, CallProcess(arguments, input, options));
+    if (output.exit_code == 0) return std::move(output.out);
+    if (output.signal == SIGKILL && attempt < kTries) continue;
     return Error{ErrorKind::kInternal,
-                 fmt::format("{} ended {} {}", program, output->signal != 0 ? "by signal" : "with status",
-                             output->signal != 0 ? output->signal : output->exit_code)};
+                 fmt::format("{} ended {} {}", program, output.signal != 0 ? "by signal" : "with status",
+                             output.signal != 0 ? output.signal : output.exit_code)};
   }
 }
 
@@ -56,7 +55,7 @@ Status AddPlugins(const sim::RunSpec& spec, std::vector<std::string>& arguments)
   for (const std::string& hash : std::set{spec.plugin, spec.scenario_plugin}) {
     const auto* plugin = controllers::FindPlugin(hash);
     if (plugin == nullptr) continue;
-    if (Status ours = CheckPluginIsOurs(plugin->file); !ours) return ours;
+    TRY(CheckPluginIsOurs(plugin->file));
     arguments.insert(arguments.end(), {"--plugin", plugin->file});
   }
   return Ok{};
@@ -68,10 +67,9 @@ Result<std::string> AskPlugin(std::vector<std::string> arguments, std::string_vi
   // The worker has limits of its own; this one is for a worker that is stuck.
   const CallOptions options{.deadline = std::chrono::seconds(60)};
   arguments.insert(arguments.begin(), WorkerProgramPath());
-  const Result<CallOutput> output = CallProcess(arguments, input, options);
-  if (!output) return output.error();
-  if (output->exit_code == 0) return output->out;
-  std::string_view why = output->err;
+  TRY(const CallOutput output, CallProcess(arguments, input, options));
+  if (output.exit_code == 0) return output.out;
+  std::string_view why = output.err;
   constexpr std::string_view kWho = "gauntlet-worker: ";
   if (why.starts_with(kWho)) why.remove_prefix(kWho.size());
   while (why.ends_with('\n')) why.remove_suffix(1);
@@ -85,21 +83,20 @@ Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::str
   const std::string cpu_limit =
       fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters, spec.scenario_plugin));
   std::vector<std::string> arguments = {"--run-spec", "-", "--cpu-limit", cpu_limit, "--quiet"};
-  if (const Status added = AddPlugins(spec, arguments); !added) return added.error();
+  TRY(AddPlugins(spec, arguments));
   if (!scratch.empty()) arguments.insert(arguments.end(), {"--scratch", scratch});
-  Result<std::string> output = RunWorkerProgram(std::move(arguments), proto::EncodeRunSpec(spec));
-  if (!output) return output.error();
-  return proto::DecodeRunResult(*output);
+  TRY(std::string output, RunWorkerProgram(std::move(arguments), proto::EncodeRunSpec(spec)));
+  return proto::DecodeRunResult(output);
 }
 
 Result<std::string> DescribePlugin(const std::string& file) {
-  if (const Status ours = CheckPluginIsOurs(file); !ours) return ours.error();
+  TRY(CheckPluginIsOurs(file));
   return AskPlugin({"--describe-plugin", file}, {}, file);
 }
 
 Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {
   std::vector<std::string> arguments = {"--describe-beginning", "-"};
-  if (const Status added = AddPlugins(spec, arguments); !added) return added.error();
+  TRY(AddPlugins(spec, arguments));
   return AskPlugin(std::move(arguments), proto::EncodeRunSpec(spec),
                    controllers::FindPlugin(spec.scenario_plugin)->file);
 }
@@ -107,10 +104,9 @@ Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {
 Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers) {
   std::vector<std::string> arguments = {"--golden"};
   arguments.insert(arguments.end(), controllers.begin(), controllers.end());
-  const Result<std::string> output = RunWorkerProgram(std::move(arguments), {});
-  if (!output) return output.error();
-  if (output->empty()) return proto::GoldenHashes();
-  Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(*output);
+  TRY(const std::string output, RunWorkerProgram(std::move(arguments), {}));
+  if (output.empty()) return proto::GoldenHashes();
+  Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(output);
   if (hashes) return hashes;
   return Error{ErrorKind::kInternal, "gauntlet-worker --golden: " + hashes.error().message};
 }

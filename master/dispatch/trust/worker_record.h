@@ -24,6 +24,7 @@ struct WorkerRecord {
   bool quarantined = false;
 
   std::uint64_t faults() const { return contradicted + strikes; }
+  bool black_hole() const { return failed_in_a_row >= kBlackHole; }
   bool tried() const { return finished + failed > 0; }
   // Has it worked well enough for its failures to be believed?
   bool trusted() const {

@@ -1,9 +1,40 @@
-// Which worker gets which lease.
+// Who can take a lease, and which worker gets which.
 #include <algorithm>
 
 #include "master/dispatch/leases/scheduler.h"
 
 namespace gauntlet {
+
+void Scheduler::List(InstanceId id, Worker& worker) {
+  const std::uint32_t slots = Standing(id, worker) ? worker.slots : 0;
+  const auto busy = static_cast<std::uint32_t>(std::min<std::size_t>(slots, worker.live.size()));
+  slots_ = slots_ - std::exchange(worker.counted_slots, slots) + slots;
+  busy_ = busy_ - std::exchange(worker.counted_busy, busy) + busy;
+  if (std::exchange(worker.listed, false)) available_.erase({worker.level, id});
+  if (slots == 0 || worker.blocked || Slowed(id, worker)) return;
+  // Work is only given ahead to who has done some.
+  const std::uint32_t credit = trust_.RecordOf(id).finished > 0 ? Credit() : options_.credit;
+  const std::size_t least = std::size_t{worker.slots} * options_.credit;
+  const std::size_t most = std::max(least, std::min(std::size_t{worker.slots} * credit, kMostAtAWorker));
+  // Many short runs are leased at once, when half of them are done: then a message costs a fraction.
+  worker.filled = worker.live.size() >= most ||
+                  (worker.filled && credit > options_.credit && worker.live.size() > most / 2);
+  if (worker.filled) return;
+  worker.level = static_cast<std::uint32_t>(worker.live.size() / worker.slots);
+  worker.listed = true;
+  available_.emplace(worker.level, id);
+}
+
+// A worker on which one run after the other fails is free again at once, and would draw most of the work. It
+// is given one run per heartbeat as long as others do better, or may.
+bool Scheduler::Slowed(InstanceId id, const Worker& worker) const {
+  if (!trust_.RecordOf(id).black_hole()) return false;
+  if (worker.live.empty() && listening_ >= worker.slowed_until) return false;
+  return trust_.PatienceLasts(listening_) || std::ranges::any_of(workers_, [&](const auto& other) {
+           return other.first != id && Standing(other.first, other.second) &&
+                  !trust_.RecordOf(other.first).black_hole();
+         });
+}
 
 std::uint32_t Scheduler::Credit() const {
   if (predicted_seconds_ < 0.0) return options_.credit;
@@ -40,61 +71,6 @@ void Scheduler::Grant(InstanceId worker_id, RunId id) {
   orders_.leases.push_back({worker_id, {fence, id, run.spec, run.leases, result_wait}});
 }
 
-// A run that failed goes to who has not failed it, even if that one is busy now; to another host first.
-std::optional<InstanceId> Scheduler::NextFor(const Run& run) const {
-  const Tally tally = TallyOf(run);
-  const Others others = OthersFor(run, tally);
-  const bool enough = tally.failures >= options_.attempts;
-  if (enough && others.all == 0) return std::nullopt;  // it waits to be judged
-  std::optional<InstanceId> best;
-  std::pair<bool, std::ptrdiff_t> best_rank;
-  for (const auto& [level, id] : available_) {
-    const Worker& worker = workers_.at(id);
-    const bool trusted = worker.record.trusted();
-    if (others.all > 0) {
-      if (FailedOn(run, id) || (others.elsewhere && worker.host == *tally.only_host)) continue;
-      // Whom nobody trusts yet can say little, and may earn trust meanwhile. Where nobody has finished
-      // anything, those who have failed something have said enough.
-      const bool said_enough =
-          !somebody_finished_ && worker.record.tried() && tally.workers >= options_.attempts;
-      if (enough && !trusted && (!queue_.empty() || said_enough)) continue;
-    }
-    // Trusted ones first, then those that have tried it least often.
-    const std::pair rank{trusted, -std::ranges::count(run.attempts, id, &Attempt::worker)};
-    if (best && rank <= best_rank) continue;
-    best = id;
-    best_rank = rank;
-  }
-  return best;
-}
-
-void Scheduler::AssignFailing() {
-  for (const Place& place : failing_) {
-    if (available_.empty()) return;
-    const Run& run = runs_.at(place.run);
-    if (run.live > 0) continue;
-    if (const std::optional<InstanceId> next = NextFor(run)) Grant(*next, place.run);
-  }
-}
-
-// An idle worker for a second lease: one that is known to bring results, if there is one, and rather none
-// that has failed the run.
-std::optional<InstanceId> Scheduler::HelperFor(const Run& run, InstanceId owner) const {
-  std::optional<InstanceId> best;
-  std::pair<bool, bool> best_rank;
-  for (const auto& [level, id] : available_) {
-    const Worker& worker = workers_.at(id);
-    if (id == owner || worker.live.size() >= worker.slots) continue;
-    const bool failed = FailedOn(run, id);
-    if (failed && TallyOf(run).failures >= options_.attempts) continue;
-    const std::pair rank{!failed, worker.record.trusted()};
-    if (best && rank <= best_rank) continue;
-    best = id;
-    best_rank = rank;
-  }
-  return best;
-}
-
 void Scheduler::Assign() {
   if (!leasing_) return;
   AssignFailing();
@@ -103,6 +79,44 @@ void Scheduler::Assign() {
     queue_.erase(queue_.begin());
     Grant(available_.begin()->second, id);
   }
+}
+
+void Scheduler::AssignFailing() {
+  for (const Place& place : failing_) {
+    if (available_.empty()) return;
+    const Run& run = runs_.at(place.run);
+    if (run.live > 0) continue;
+    std::vector<InstanceId> free;
+    for (const auto& [level, id] : available_) free.push_back(id);
+    const auto next = trust_.NextFor(place.run, free, AbleTo(run), !queue_.empty());
+    if (next) Grant(*next, place.run);
+  }
+}
+
+std::vector<InstanceId> Scheduler::AbleTo(const Run& run) const {
+  const Duration longest = std::chrono::duration_cast<Duration>(
+      std::chrono::duration<double>(std::max(options_.cpu_limit_seconds, 1.0)));
+  const auto keeps_it_too_long = [&](InstanceId id) {
+    return std::ranges::any_of(run.fences, [&](Fence fence) {
+      const Lease& lease = leases_.at(fence);
+      return lease.worker == id && lease.state == LeaseState::kLive && listening_ - lease.granted > longest;
+    });
+  };
+  std::vector<InstanceId> able;
+  for (const auto& [id, worker] : workers_) {
+    if (Standing(id, worker) && !keeps_it_too_long(id)) able.push_back(id);
+  }
+  return able;
+}
+
+// An idle worker for a second lease.
+std::optional<InstanceId> Scheduler::HelperFor(RunId run, InstanceId owner) const {
+  std::vector<InstanceId> idle;
+  for (const auto& [level, id] : available_) {
+    const Worker& worker = workers_.at(id);
+    if (id != owner && worker.live.size() < worker.slots) idle.push_back(id);
+  }
+  return trust_.HelperFor(run, idle);
 }
 
 std::size_t Scheduler::FirstWaiting(const Worker& worker) const {
@@ -125,7 +139,7 @@ void Scheduler::MoveWaiting() {
       for (std::size_t i = FirstWaiting(worker); i < worker.live.size(); ++i) {
         const RunId run_id = leases_.at(worker.live[i]).run;
         const Run& run = runs_.at(run_id);
-        if (run.finished || run.live != 1 || !run.attempts.empty() ||
+        if (run.finished || run.live != 1 || trust_.InDoubt(run_id) ||
             (first && !(PlaceOf(run_id, run) < *first)))
           continue;
         first = PlaceOf(run_id, run);
@@ -134,7 +148,7 @@ void Scheduler::MoveWaiting() {
     }
     if (!first) return;
     Lease& lease = leases_.at(moved);
-    const std::optional<InstanceId> idle = HelperFor(runs_.at(first->run), lease.worker);
+    const std::optional<InstanceId> idle = HelperFor(first->run, lease.worker);
     if (!idle) return;
     orders_.cancels.push_back({lease.worker, moved});
     Loosen(moved, lease, LeaseState::kCancelled);
@@ -143,8 +157,8 @@ void Scheduler::MoveWaiting() {
 }
 
 bool Scheduler::Alone(InstanceId worker) const {
-  return std::none_of(workers_.begin(), workers_.end(), [worker](const auto& other) {
-    return other.first != worker && Standing(other.second);
+  return std::none_of(workers_.begin(), workers_.end(), [&](const auto& other) {
+    return other.first != worker && Standing(other.first, other.second);
   });
 }
 
@@ -187,7 +201,7 @@ void Scheduler::AssignCopies() {
   });
   for (const Slow& one : slow) {
     if (available_.empty()) return;
-    const std::optional<InstanceId> idle = HelperFor(runs_.at(one.run), one.owner);
+    const std::optional<InstanceId> idle = HelperFor(one.run, one.owner);
     if (!idle) continue;
     ++statistics_.copies;
     Grant(*idle, one.run);

@@ -1,0 +1,127 @@
+// Who is believed when runs fail, and who gets nothing more to do. It is told what workers say of runs, and
+// answers; what becomes of leases and runs is the scheduler's business (master/dispatch/leases).
+//
+// A run that fails on every worker is at fault itself, one that fails on a single worker among many is not.
+// So each failed attempt is remembered with its worker, and the run goes to others. It is given up
+//   - when `attempts` workers that have shown that they can work have failed it, not all of them on one host
+//     while there are others;
+//   - or when nobody is left to ask, after `attempts` attempts on those there are;
+//   - and while no run at all has been finished, only after some patience, once every worker has had a run: a
+//     bad worker may be the first to say hello.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "base/system/clock.h"
+#include "master/dispatch/trust/worker_record.h"
+#include "proto/messages.h"
+
+namespace gauntlet {
+
+using proto::InstanceId;
+using proto::RunId;
+
+// How a run is said to have failed in the end.
+struct Verdict {
+  InstanceId worker = 0;         // of the failure that is the verdict
+  proto::RunnerFailure failure;  // the last of those that are told alike and most often
+  std::uint32_t alike = 0;       // how many these were
+  std::uint32_t attempts = 0;    // failures of all sorts
+  std::uint32_t workers = 0;     // on which it failed; 1: there was no other to ask
+};
+
+struct TrustOptions {
+  std::uint32_t attempts = 3;  // failures that make a verdict
+  Duration patience{};         // since the first failure, while no run has been finished
+  double audit_share = 0.0;    // of runs that are simulated once more, 0 to 1
+};
+
+// Workers are known from Meet to Forget. Times are those of one clock, which begins anywhere.
+class TrustPolicy {
+ public:
+  using Workers = std::vector<InstanceId>;
+
+  explicit TrustPolicy(const TrustOptions& options) : options_(options) {}
+
+  // Keeps the record of one that is known.
+  void Meet(InstanceId worker, const std::string& host) { witnesses_[worker].host = host; }
+  void Forget(InstanceId worker) { witnesses_.erase(worker); }
+  const WorkerRecord& RecordOf(InstanceId worker) const { return witnesses_.at(worker).record; }
+
+  // The worker brought the run's result, and is right: nothing that failed the run speaks against it any
+  // more, but against the others. Answers with those who are quarantined for it.
+  Workers Finished(InstanceId worker, RunId run);
+  // The run failed on this worker, which is known; without a failure: its answer could not be read.
+  void Failed(InstanceId worker, RunId run, std::optional<proto::RunnerFailure> failure, Duration now);
+  // It said what it cannot know, or what nobody can read. True: it is quarantined for it.
+  bool Strike(InstanceId worker);
+  // What it said of the run does not count. False: it has said nothing.
+  bool Disregard(InstanceId worker, RunId run);
+  // The run has ended with its verdict.
+  void Close(RunId run) { cases_.erase(run); }
+
+  // Has it failed, and neither finished nor ended with a verdict?
+  bool InDoubt(RunId run) const { return cases_.contains(run); }
+  // No run has been finished, and more workers may come.
+  bool PatienceLasts(Duration now) const;
+
+  // Runs of whose failures something new is known since the last call, in its order.
+  std::vector<RunId> TakeUnjudged() { return std::exchange(unjudged_, {}); }
+
+  // Is this run, when it has finished, to be simulated by another worker too? The same runs in every session
+  // and for any number of workers.
+  bool Audits(RunId run) const;
+
+  // `others`: who could be asked for the run at all; `more_to_do`: runs that nobody has failed wait.
+  std::optional<Verdict> Judge(RunId run, const Workers& others, bool more_to_do, Duration now) const;
+  // Who of `free`, the first of equals, is to try a run that is in doubt: those that have not failed it
+  // first, even if they are busy now and it waits for them; on another host first.
+  std::optional<InstanceId> NextFor(RunId run, const Workers& free, const Workers& others,
+                                    bool more_to_do) const;
+  // Who of `free`, the first of equals, is to do a run that another one has: one that is known to bring
+  // results, if there is one, and rather none that has failed the run.
+  std::optional<InstanceId> HelperFor(RunId run, const Workers& free) const;
+
+ private:
+  struct Witness {
+    std::string host;
+    WorkerRecord record;
+  };
+  struct Attempt {
+    InstanceId worker = 0;
+    std::string host;
+    bool trusted = false;                         // the worker, then
+    std::optional<proto::RunnerFailure> failure;  // none: the answer could not be read
+  };
+  using Case = std::vector<Attempt>;
+  struct Picture {                         // of a run that has failed
+    std::uint32_t failures = 0;            // that count
+    std::uint32_t workers = 0;             // different ones on which it failed
+    std::uint32_t trusted = 0;             // of these
+    std::optional<std::string> only_host;  // all were there; none: on several
+    std::uint32_t unasked = 0;             // others, that have not failed it
+    std::uint32_t untried = 0;             // of these, that have neither finished nor failed anything yet
+    bool elsewhere = false;                // some of these are on another host than all that failed it
+  };
+
+  const Case& CaseOf(RunId run) const;
+  static bool FailedOn(const Case& attempts, InstanceId worker);
+  bool Trusted(const Attempt& attempt) const;
+  Picture PictureOf(const Case& attempts, const Workers& others) const;
+  bool Condemned(const Picture& picture, bool more_to_do, Duration now) const;
+
+  TrustOptions options_;
+  std::map<InstanceId, Witness> witnesses_;
+  std::unordered_map<RunId, Case> cases_;  // of runs that have failed and are unfinished
+  std::vector<RunId> unjudged_;            // of these, about which something new is known
+  bool somebody_finished_ = false;         // a run, for this master
+  std::optional<Duration> first_failure_;
+};
+
+}  // namespace gauntlet
