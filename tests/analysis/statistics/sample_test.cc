@@ -98,7 +98,8 @@ TEST(BoxPlotTest, AgreesWithRAndNamesItsRule) {
     EXPECT_NEAR(other.lower_whisker, row.Number("whisker_lo_type7"), 1e-12) << name;
     EXPECT_NEAR(other.upper_whisker, row.Number("whisker_hi_type7"), 1e-12) << name;
   }
-  EXPECT_THAT(std::string(NameOf(BoxRule::kTukeyHinges)), testing::HasSubstr("Tukey"));
+  EXPECT_EQ(std::string(NameOf(BoxRule::kTukeyHinges)),
+            "Tukey's hinges; whiskers to the last value within 1.5 box lengths");
 }
 
 RC_GTEST_PROP(QuantileProperty, LiesInsideTheValuesAndRisesWithTheProbability, (std::vector<int> whole)) {
