@@ -124,7 +124,8 @@ TEST_F(MetricsServerTest, APortThatIsTakenIsNamed) {
   const Result<std::unique_ptr<MetricsServer>> second = MetricsServer::Start(server_->port());
   ASSERT_FALSE(second.ok());
   EXPECT_EQ(second.error().kind, ErrorKind::kInUse);
-  EXPECT_THAT(second.error().message, HasSubstr("127.0.0.1:" + std::to_string(server_->port())));
+  EXPECT_EQ(second.error().message, "cannot serve metrics on 127.0.0.1:" + std::to_string(server_->port()) +
+                                        ": Address already in use");
 }
 
 }  // namespace
