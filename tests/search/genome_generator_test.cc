@@ -29,7 +29,6 @@ bool InRanges(const sim::Genome& genome, const GenomeSpec& spec) {
   });
 }
 
-
 GenomeGenerator Generator(const GenomeSpec& spec) {
   SearchSetup setup = ToySetup();
   setup.experiment.genome = spec;

@@ -17,7 +17,6 @@
 namespace gauntlet::sim {
 namespace {
 
-
 struct Moments {
   double mean = 0.0;
   double deviation = 0.0;
