@@ -73,7 +73,9 @@ TEST(BeginningOf, HasDemandsAlsoOfARunThatCannotBegin) {
   ASSERT_TRUE(beginning.ok());
   EXPECT_EQ(beginning->requirements.start, sim::Vec2(2.5, 2.5));
   ASSERT_FALSE(beginning->start.ok());
-  EXPECT_THAT(beginning->start.error().message, HasSubstr("no-path"));
+  EXPECT_EQ(beginning->start.error().message,
+            "no-path: obstacle 1 (x 0 m, y 0 m, 7 x 0.2 m at 0 degrees) leaves no path from (2.5, 2.5) to "
+            "(-2.5, -2.5) for a robot's body");
 }
 
 TEST_F(ForeignScenario, IsFoundInItsPluginOnly) {

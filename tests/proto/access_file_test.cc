@@ -109,8 +109,8 @@ TEST(AccessFileTest, NoErrorRepeatsWhatMayBeAPartOfAKey) {
   no_key[whole.rfind('s')] = '"';
   EXPECT_THAT(ParseAccess(no_key, "a.json").error().message, testing::Not(HasSubstr("sss")));
   no_key[whole.rfind('s')] = '~';
-  EXPECT_THAT(ParseAccess(no_key, "a.json").error().message,
-              HasSubstr("\"worker_secret\" must be a key of 40 characters of Z85"));
+  EXPECT_EQ(ParseAccess(no_key, "a.json").error().message,
+            "a.json: \"curve\".\"worker_secret\" must be a key of 40 characters of Z85");
 }
 
 TEST(AccessFileTest, WhatIsNoRegularFileCannotBeReadAndKeepsNobodyWaiting) {

@@ -29,9 +29,11 @@ TEST(CaseJsonTest, AnObstacleMayMoveAndShine) {
   EXPECT_EQ(read->obstacles[0].speed, 0.02);
   EXPECT_EQ(read->obstacles[0].path, (std::vector<sim::Vec2>{{1.0, 2.0}, {-1.0, 0.0}}));
   EXPECT_TRUE(read->obstacles[1].Plain());
-  EXPECT_THAT(CaseError(R"({"obstacles": [{"light": "mauve"}]})"),
-              HasSubstr("case.json: obstacles[0].light: 'mauve' is no colour of lights; known: black, red,"));
-  EXPECT_THAT(CaseError(R"({"obstacles": [{"motion": {"speeed": 1}}]})"), HasSubstr("speeed"));
+  EXPECT_EQ(CaseError(R"({"obstacles": [{"light": "mauve"}]})"),
+            "case.json: obstacles[0].light: 'mauve' is no colour of lights; known: black, red, green, blue, "
+            "yellow, white, magenta, cyan, orange");
+  EXPECT_EQ(CaseError(R"({"obstacles": [{"motion": {"speeed": 1}}]})"),
+            "case.json: obstacles[0].motion: unknown key 'speeed'; did you mean 'speed'?");
 }
 
 TEST(CaseJsonTest, ACaseSurvivesTheRoundTrip) {
@@ -66,10 +68,11 @@ TEST(CaseJsonTest, ALineageSurvivesTheRoundTrip) {
   EXPECT_EQ(read->lineage->verified.failures, 29);
   EXPECT_EQ(WriteCaseDocument(*read), text);
   EXPECT_EQ(ParseCaseJson(text, "case.json")->obstacles, document.test_case.obstacles);
-  EXPECT_THAT(CaseError(R"({"lineage": {"parent": {"lineage": {}}}})"),
-              HasSubstr("case.json: lineage.parent: unknown key 'lineage'"));
-  EXPECT_THAT(CaseError(R"({"lineage": {"verified": {"interval": [1]}}})"),
-              HasSubstr("lineage.verified.interval must be a list of two numbers"));
+  EXPECT_EQ(CaseError(R"({"lineage": {"parent": {"lineage": {}}}})"),
+            "case.json: lineage.parent: unknown key 'lineage'; known: name, side_x, side_y, wall_thickness, "
+            "obstacles, spawn_area, robots, start_poses");
+  EXPECT_EQ(CaseError(R"({"lineage": {"verified": {"interval": [1]}}})"),
+            "case.json: lineage.verified.interval must be a list of two numbers, not a list");
 }
 
 RC_GTEST_PROP(CaseJsonProperty, EveryGeneComesBackBitForBit,
@@ -116,7 +119,7 @@ TEST(CaseJsonTest, MalformedTextIsRefusedWithLineAndColumn) {
             "case.json:1:17: invalid string: surrogate U+D800..U+DBFF must be followed by U+DC00..U+DFFF");
   EXPECT_EQ(CaseError("{\"side_x\": 1,\n \"side_x\": 2}"), "case.json: side_x is given twice");
   EXPECT_EQ(CaseError("{\"side_x\": 1, \"sideX\": 2}"), "case.json: side_x is given under two spellings");
-  EXPECT_THAT(CaseError(std::string(100, '[')), HasSubstr("nested deeper than 64 levels"));
+  EXPECT_EQ(CaseError(std::string(100, '[')), "case.json: nested deeper than 64 levels");
 }
 
 TEST(CaseJsonTest, StartPosesGiveTheNumberOfRobots) {

@@ -118,21 +118,22 @@ TEST(MessageCodecTest, RefusesHeartbeatsThatWouldFloodOrNeverCome) {
     envelope.mutable_welcome()->set_heartbeat_ms(heartbeat);
     const auto decoded = DecodeMasterMessage(envelope.SerializeAsString());
     ASSERT_FALSE(decoded.ok());
-    EXPECT_THAT(decoded.error().message, HasSubstr("heartbeat_ms is " + std::to_string(heartbeat)));
+    EXPECT_EQ(decoded.error().message,
+              "welcome: heartbeat_ms is " + std::to_string(heartbeat) + ", 10 to 600000 is possible");
   }
 }
 
 TEST(MessageCodecTest, RefusesAnUnknownMessageOfALaterVersion) {
   v1::Envelope envelope;
   envelope.GetReflection()->MutableUnknownFields(&envelope)->AddLengthDelimited(99, "future");
-  EXPECT_THAT(DecodeMasterMessage(envelope.SerializeAsString()).error().message,
-              HasSubstr("this version knows"));
+  EXPECT_EQ(DecodeMasterMessage(envelope.SerializeAsString()).error().message,
+            "an envelope without a message that this version knows");
   EXPECT_FALSE(DecodeMasterMessage("").ok());
 }
 
 TEST(MessageCodecTest, RefusesAnOversizedMessage) {
-  EXPECT_THAT(DecodeMasterMessage(std::string(kMaxMessageBytes + 1, 'x')).error().message,
-              HasSubstr("16777216 are allowed"));
+  EXPECT_EQ(DecodeMasterMessage(std::string(kMaxMessageBytes + 1, 'x')).error().message,
+            "a message of 16777217 bytes, 16777216 are allowed");
 }
 
 TEST(MessageCodecTest, WhatAWorkerSaysReachesTheMasterAsItWas) {
@@ -173,9 +174,10 @@ TEST(MessageCodecTest, TheMasterReadsLenientlyWhatAWorkerSays) {
   EXPECT_EQ(std::get<LeaseResult>(*result).failure->kind, FailureKind::kExternal);
   EXPECT_EQ(std::get<LeaseResult>(*result).failure->stderr_tail, std::string(kMaxStderrTail, 'y'));
 
-  EXPECT_THAT(DecodeWorkerMessage(EncodeMasterMessage(Cancel{3})).error().message,
-              HasSubstr("only a master sends"));
-  EXPECT_THAT(DecodeWorkerMessage("").error().message, HasSubstr("this version knows"));
+  EXPECT_EQ(DecodeWorkerMessage(EncodeMasterMessage(Cancel{3})).error().message,
+            "is a message that only a master sends");
+  EXPECT_EQ(DecodeWorkerMessage("").error().message,
+            "is an envelope with no message that this version knows");
 }
 
 RC_GTEST_PROP(MessageCodecProperty, GarbageIsAnErrorNeverACrash, (const std::string& bytes)) {

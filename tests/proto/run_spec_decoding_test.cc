@@ -14,7 +14,6 @@ namespace gauntlet::proto {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 rc::Gen<double> FiniteDouble() {
   return rc::gen::suchThat(rc::gen::map(rc::gen::arbitrary<std::uint64_t>(),
@@ -150,33 +149,33 @@ TEST(RunCodecTest, RefusesMoreObstaclesThanAnArenaMayHave) {
     wire.mutable_test_case()->add_obstacles()->set_length(1.0);
   EXPECT_EQ(ErrorOf(wire), "");
   wire.mutable_test_case()->add_obstacles();
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("1001 obstacles, 1000 are possible"));
+  EXPECT_EQ(ErrorOf(wire), "1001 obstacles, 1000 are possible");
 }
 
 TEST(RunCodecTest, RefusesMoreParametersThanThereCanBe) {
   v1::RunSpec wire;
   for (int i = 0; i <= kMaxParameters; ++i) wire.add_controller_parameters()->set_name(std::to_string(i));
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("1001 parameters"));
+  EXPECT_EQ(ErrorOf(wire), "1001 parameters, 1000 are possible");
 }
 
 TEST(RunCodecTest, RefusesNumbersThatAreNotFiniteByName) {
   v1::RunSpec wire;
   wire.mutable_test_case()->add_obstacles()->set_width(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("an obstacle's width is nan"));
+  EXPECT_EQ(ErrorOf(wire), "an obstacle's width is nan, a finite number is needed");
   wire.Clear();
   wire.mutable_test_case()->set_side_x(std::numeric_limits<double>::infinity());
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("side_x is inf"));
+  EXPECT_EQ(ErrorOf(wire), "side_x is inf, a finite number is needed");
   wire.Clear();
   wire.add_scenario_parameters()->set_name("duration");
   wire.mutable_scenario_parameters(0)->set_value(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("duration is nan"));
+  EXPECT_EQ(ErrorOf(wire), "duration is nan, a finite number is needed");
 }
 
 TEST(RunCodecTest, RefusesAParameterThatIsGivenTwice) {
   v1::RunSpec wire;
   wire.add_controller_parameters()->set_name("speed");
   wire.add_controller_parameters()->set_name("speed");
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("controller parameter 'speed' is given twice"));
+  EXPECT_EQ(ErrorOf(wire), "controller parameter 'speed' is given twice");
 }
 
 TEST(RunCodecTest, ObstaclesThatMoveAndShineDecodeToWhatWasSent) {
@@ -194,12 +193,14 @@ TEST(RunCodecTest, ObstaclesThatMoveAndShineDecodeToWhatWasSent) {
   EXPECT_EQ(gene.path, (std::vector<sim::Vec2>{{0.0, 2.0}}));
 
   obstacle.set_light("mauve");
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("obstacle 1: 'mauve' is no colour of lights; known: black, red,"));
+  EXPECT_EQ(ErrorOf(wire),
+            "obstacle 1: 'mauve' is no colour of lights; known: black, red, green, blue, yellow, white, "
+            "magenta, cyan, orange");
   obstacle.clear_light();
   obstacle.mutable_motion()->mutable_path(0)->set_x(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("x of a path is nan"));
+  EXPECT_EQ(ErrorOf(wire), "x of a path is nan, a finite number is needed");
   for (int i = 0; i < 16; ++i) obstacle.mutable_motion()->add_path();
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("17 points of a path, 16 are possible"));
+  EXPECT_EQ(ErrorOf(wire), "17 points of a path, 16 are possible");
 }
 
 TEST(RunCodecTest, DisturbancesDecodeToWhatWasSent) {
@@ -223,29 +224,29 @@ TEST(RunCodecTest, DisturbancesDecodeToWhatWasSent) {
 TEST(RunCodecTest, RefusesDisturbancesThatItDoesNotKnow) {
   v1::RunSpec wire;
   wire.add_noise()->set_device("sonar");
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("noise of 'sonar', which is no device"));
+  EXPECT_EQ(ErrorOf(wire), "noise of 'sonar', which is no device");
   wire.mutable_noise(0)->set_device("light");
   wire.mutable_noise(0)->set_uniform(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("uniform noise is nan"));
+  EXPECT_EQ(ErrorOf(wire), "uniform noise is nan, a finite number is needed");
   wire.mutable_noise(0)->set_uniform(0.1);
   wire.add_noise()->set_device("light");
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("noise of light is given twice"));
+  EXPECT_EQ(ErrorOf(wire), "noise of light is given twice");
   wire.Clear();
   wire.add_faults()->set_device("sonar");
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("a fault of 'sonar', which is no device"));
+  EXPECT_EQ(ErrorOf(wire), "a fault of 'sonar', which is no device");
 }
 
 TEST(RunCodecTest, RefusesNamesBeyondReason) {
   v1::RunSpec wire;
   wire.set_scenario(std::string(kMaxNameBytes + 1, 'x'));
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("a scenario's name of 4097 bytes"));
+  EXPECT_EQ(ErrorOf(wire), "a scenario's name of 4097 bytes, 4096 are possible");
 }
 
 TEST(RunCodecTest, RefusesFieldsOfALaterVersion) {
   v1::RunSpec wire;
   v1::TestCase& test_case = *wire.mutable_test_case();
   test_case.GetReflection()->MutableUnknownFields(&test_case)->AddVarint(77, 1);
-  EXPECT_THAT(ErrorOf(wire), HasSubstr("test_case has fields that this version does not know"));
+  EXPECT_EQ(ErrorOf(wire), "test_case has fields that this version does not know");
 }
 
 sim::RunResult ExampleResult() {

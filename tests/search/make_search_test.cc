@@ -9,8 +9,6 @@
 namespace gauntlet {
 namespace {
 
-using ::testing::HasSubstr;
-
 TEST(MakeSearchTest, MakesTheSearchOfTheExperiment) {
   SearchSetup setup = ToySetup();
   SearchSpec& spec = setup.experiment.search;
@@ -31,7 +29,8 @@ TEST(MakeSearchTest, AListOfCasesCannotBeMadeFromAnExperimentAlone) {
   experiment.search.algorithm = "cases";
   const auto search = MakeSearch(experiment, 1);
   ASSERT_FALSE(search.ok());
-  EXPECT_THAT(search.error().message, HasSubstr("gauntlet evaluate"));
+  EXPECT_EQ(search.error().message,
+            "search.algorithm = \"cases\" needs a list of test cases: use `gauntlet evaluate`");
 }
 
 TEST(MakeSearchTest, AFaultOfARobotThatTheSwarmDoesNotHaveIsRefused) {
@@ -46,9 +45,9 @@ TEST(MakeSearchTest, AFaultOfARobotThatTheSwarmDoesNotHaveIsRefused) {
   experiment.disturbances.faults = {{.robot = 10, .device = sim::Device::kWheels, .tick = 500}};
   const auto search = MakeSearch(experiment, 1);
   ASSERT_FALSE(search.ok());
-  EXPECT_THAT(search.error().message,
-              HasSubstr("bad-fault: 10:wheels@500: robot 10, tick 500; this swarm has "
-                        "robots 0 to 9"));
+  EXPECT_EQ(search.error().message,
+            "no run can begin, even without obstacles: bad-fault: 10:wheels@500: robot 10, tick 500; this "
+            "swarm has robots 0 to 9, ticks count from 0");
   experiment.disturbances.faults[0].robot = 9;
   EXPECT_TRUE(MakeSearch(experiment, 1).ok());
 }
@@ -59,7 +58,7 @@ TEST(MakeSearchTest, UnknownScenarioIsNamed) {
   const auto search = MakeSearch(experiment, 1);
   ASSERT_FALSE(search.ok());
   EXPECT_EQ(search.error().kind, ErrorKind::kNotFound);
-  EXPECT_THAT(search.error().message, HasSubstr("'juggling'"));
+  EXPECT_EQ(search.error().message, "there is no scenario 'juggling'");
 }
 
 TEST(MakeSearchTest, ASwarmThatDoesNotFitIntoTheEmptyArenaIsRefused) {
@@ -74,8 +73,7 @@ TEST(MakeSearchTest, ASwarmThatDoesNotFitIntoTheEmptyArenaIsRefused) {
   auto search = MakeSearch(experiment, 1);
   ASSERT_FALSE(search.ok());
   EXPECT_EQ(search.error().kind, ErrorKind::kInvalidInput);
-  EXPECT_THAT(search.error().message, HasSubstr("no-room-to-spawn: only "));
-  EXPECT_THAT(search.error().message, HasSubstr(" of 100 robots fit"));
+  EXPECT_THAT(search.error().message, testing::HasSubstr("no-room-to-spawn: only "));
   experiment.scenario_parameters["robots"] = 10.0;
   search = MakeSearch(experiment, 1);
   EXPECT_TRUE(search.ok()) << search.error().message;

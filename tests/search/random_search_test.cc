@@ -8,8 +8,6 @@
 namespace gauntlet {
 namespace {
 
-using ::testing::HasSubstr;
-
 SearchSetup SetupOf(int cases) {
   SearchSetup setup = ToySetup();
   SetAlgorithm(setup, "random");
@@ -96,7 +94,8 @@ TEST(RandomSearchTest, AStateWhoseRunsAreMissingIsRefused) {
   const Status restored = RestoreState(*MakeRandom(SetupOf(30)), StateOf(*search), told);
   ASSERT_FALSE(restored.ok());
   EXPECT_EQ(restored.error().kind, ErrorKind::kCorrupt);
-  EXPECT_THAT(restored.error().message, HasSubstr("has seen 30 evaluations, but the runs of 29 are stored"));
+  EXPECT_EQ(restored.error().message,
+            "the saved search state is damaged: it has seen 30 evaluations, but the runs of 29 are stored");
 }
 
 TEST(RandomSearchTest, AsksNoMoreThanTheLookaheadAheadOfTheOutcomes) {
@@ -139,7 +138,9 @@ TEST(RandomSearchTest, RangesWithoutRoomAreRefusedAtOnce) {
   setup.experiment.genome.tries_per_gene = 3;
   const auto search = RandomSearch::Create(setup);
   ASSERT_FALSE(search.ok());
-  EXPECT_THAT(search.error().message, HasSubstr("no valid test case found"));
+  EXPECT_EQ(search.error().message,
+            "no valid test case found in 100 starts with genome.genes = 8, positions -3 to 3 m, lengths 20 "
+            "to 20 m, widths 20 to 20 m in an arena of 6 x 6 m: use fewer or smaller obstacles");
 }
 
 }  // namespace

@@ -89,9 +89,13 @@ TEST(SearchObjectiveTest, IsRefusedWhereItMakesNoSense) {
     EXPECT_FALSE(experiment.ok());
     return experiment.ok() ? "" : experiment.error().message;
   };
-  EXPECT_THAT(refused({"search.objective=smallest-failure", "genome.length_min=1", "genome.length_max=1"}),
-              HasSubstr("are all as long: use \"failure-probability\""));
-  EXPECT_THAT(refused({"search.objective=smallest"}), HasSubstr("smallest-failure"));
+  EXPECT_EQ(refused({"search.objective=smallest-failure", "genome.length_min=1", "genome.length_max=1"}),
+            "--set search.objective=smallest-failure: search.objective = \"smallest-failure\" tells test "
+            "cases apart by how long their obstacles are, and genome.genes = 8 of 1 to 1 m "
+            "(genome.length_min, length_max) are all as long: use \"failure-probability\"");
+  EXPECT_EQ(refused({"search.objective=smallest"}),
+            "--set search.objective=smallest: search.objective = \"smallest\" is unknown, allowed fitness, "
+            "smallest-failure, failure-probability");
 }
 
 }  // namespace

@@ -187,27 +187,34 @@ TEST(SearchRestoreTest, StateOfAnotherExperimentIsRefusedByTheLineThatDiffers) {
   Status restored = RestoreState(*std::move(GeneticAlgorithm::Create(other)).value(), state);
   ASSERT_FALSE(restored.ok());
   EXPECT_EQ(restored.error().kind, ErrorKind::kInvalidInput);
-  EXPECT_THAT(restored.error().message, AllOf(HasSubstr("'search.mutation_probability = 0.05'"),
-                                              HasSubstr("'search.mutation_probability = 0.07'")));
+  EXPECT_EQ(restored.error().message,
+            "the saved search state belongs to another experiment: it has 'search.mutation_probability = "
+            "0.05', this one has 'search.mutation_probability = 0.07'");
 
   other = setup;
   other.experiment.seed = 99;
   restored = RestoreState(*std::move(GeneticAlgorithm::Create(other)).value(), state);
   ASSERT_FALSE(restored.ok());
-  EXPECT_THAT(restored.error().message, AllOf(HasSubstr("'seed = 7'"), HasSubstr("'seed = 99'")));
+  EXPECT_EQ(
+      restored.error().message,
+      "the saved search state belongs to another experiment: it has 'seed = 7', this one has 'seed = 99'");
 
   other = setup;
   other.experiment.scenario_parameters["birds"] = 12;
   restored = RestoreState(*std::move(GeneticAlgorithm::Create(other)).value(), state);
   ASSERT_FALSE(restored.ok());
-  EXPECT_THAT(restored.error().message, HasSubstr("'scenario_parameters.birds = 12'"));
+  EXPECT_EQ(restored.error().message,
+            "the saved search state belongs to another experiment: it has '', this one has "
+            "'scenario_parameters.birds = 12'");
 }
 
 TEST(SearchRestoreTest, RandomSearchRefusesTheStateOfAGeneticAlgorithm) {
   const std::string state = StateAfterOneGeneration(GeneticSetup(ParentSelection::kAllParentBestHalf));
   const Status restored = RestoreState(*std::move(RandomSearch::Create(RandomSetup(10))).value(), state);
   ASSERT_FALSE(restored.ok());
-  EXPECT_THAT(restored.error().message, HasSubstr("search.algorithm"));
+  EXPECT_EQ(restored.error().message,
+            "the saved search state belongs to another experiment: it has 'search.algorithm = \"genetic\"', "
+            "this one has 'search.algorithm = \"random\"'");
 }
 
 TEST(SearchRestoreTest, AFinishedSearchMayGoOnForMoreGenerationsButNotEndEarlier) {
@@ -228,8 +235,9 @@ TEST(SearchRestoreTest, AFinishedSearchMayGoOnForMoreGenerationsButNotEndEarlier
   setup.experiment.search.generations = 3;
   const Status restored = RestoreState(*std::move(GeneticAlgorithm::Create(setup)).value(), state);
   ASSERT_FALSE(restored.ok());
-  EXPECT_THAT(restored.error().message,
-              HasSubstr("has 32 evaluations, but the experiment ends after 24: search.generations = 3"));
+  EXPECT_EQ(
+      restored.error().message,
+      "the saved search state has 32 evaluations, but the experiment ends after 24: search.generations = 3");
 }
 
 // A state says nothing of how long the search was to be: every search goes on from its end as if it had been
@@ -284,7 +292,7 @@ TEST(SearchRestoreTest, StateOfANewerFormatIsRefusedAsSuch) {
   const Status restored = RestoreState(*std::move(GeneticAlgorithm::Create(setup)).value(), state);
   ASSERT_FALSE(restored.ok());
   EXPECT_EQ(restored.error().kind, ErrorKind::kVersion);
-  EXPECT_THAT(restored.error().message, HasSubstr("format 3, this version reads 2"));
+  EXPECT_EQ(restored.error().message, "the saved search state has format 3, this version reads 2");
 }
 
 TEST(SearchRestoreTest, CaseListRefusesTheStateOfAnotherList) {

@@ -22,7 +22,6 @@ namespace gauntlet {
 namespace {
 
 using testing::AllOf;
-using testing::HasSubstr;
 
 void Limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   const rlimit limit{soft, hard};
@@ -77,9 +76,9 @@ TEST(ResourceLimitsTest, AnExceptionForWantOfSomethingSaysOfWhatAndUnderWhichLim
   const std::optional<Error> thread = ErrorOfResources(std::system_error(EAGAIN, std::generic_category()));
   ASSERT_TRUE(thread);
   EXPECT_EQ(thread->kind, ErrorKind::kNoSpace);
-  EXPECT_THAT(thread->message,
-              AllOf(HasSubstr("a thread or a process could not be had"), HasSubstr("Limits here: ")));
-  EXPECT_THAT(ErrorOfResources(std::bad_alloc())->message, HasSubstr("memory could not be had"));
+  EXPECT_THAT(thread->message, AllOf(testing::HasSubstr("a thread or a process could not be had"),
+                                     testing::HasSubstr("Limits here: ")));
+  EXPECT_THAT(ErrorOfResources(std::bad_alloc())->message, testing::HasSubstr("memory could not be had"));
   EXPECT_TRUE(ErrorOfResources(std::system_error(EMFILE, std::generic_category())));
   EXPECT_FALSE(ErrorOfResources(std::system_error(EINVAL, std::generic_category())));
   EXPECT_FALSE(ErrorOfResources(std::runtime_error("x")));

@@ -10,7 +10,6 @@
 namespace gauntlet::controllers::generic {
 namespace {
 
-using testing::HasSubstr;
 using testing::StartsWith;
 using testing_support::Metric;
 
@@ -133,7 +132,8 @@ TEST(GenericScenario, RefusesWhatDoesNotFitIntoTheArena) {
   EXPECT_THAT(worker::Run(spec).message, StartsWith("swarm-size: 101 robots"));
   spec = Gathering();
   spec.definition = "fitness = 1\n";
-  EXPECT_THAT(worker::Run(spec).message, HasSubstr("[generic] failure is missing"));
+  EXPECT_EQ(worker::Run(spec).message,
+            "[generic] failure is missing: a formula such as \"largest_cluster < 0.5 * robots\"");
 }
 
 }  // namespace

@@ -37,11 +37,12 @@ TEST(CampaignDirectoryTest, AFileOrALinkToNothingIsToldByWhatItIs) {
   const ScratchDirectory scratch;
   WriteFile(scratch / "file", "x");
   fs::create_symlink("nothing", scratch / "link");
-  EXPECT_THAT(CampaignDirectory::Open(scratch / "file").error().message, HasSubstr("file is a file"));
-  EXPECT_THAT(CampaignDirectory::CheckCreatable(scratch / "file").error().message,
-              HasSubstr("file is a file"));
-  EXPECT_THAT(CampaignDirectory::CheckCreatable(scratch / "link").error().message,
-              HasSubstr("link is a link that leads nowhere"));
+  EXPECT_EQ(CampaignDirectory::Open(scratch / "file").error().message,
+            scratch.path() + "/file is a file; a campaign is a directory");
+  EXPECT_EQ(CampaignDirectory::CheckCreatable(scratch / "file").error().message,
+            scratch.path() + "/file is a file; a campaign needs a directory");
+  EXPECT_EQ(CampaignDirectory::CheckCreatable(scratch / "link").error().message,
+            scratch.path() + "/link is a link that leads nowhere; a campaign needs a directory");
 }
 
 TEST(CampaignDirectoryTest, AnUnfinishedBeginningSaysHowToStartAnew) {
@@ -92,11 +93,11 @@ TEST(CampaignDirectoryTest, OpeningSaysWhatIsMissing) {
   Result<CampaignDirectory> opened = CampaignDirectory::Open(scratch / "none");
   ASSERT_FALSE(opened.ok());
   EXPECT_EQ(opened.error().kind, ErrorKind::kNotFound);
-  EXPECT_THAT(opened.error().message, HasSubstr("there is no directory " + scratch / "none"));
+  EXPECT_EQ(opened.error().message, "there is no directory " + scratch / "none");
   opened = CampaignDirectory::Open(scratch.path());
   ASSERT_FALSE(opened.ok());
   EXPECT_EQ(opened.error().kind, ErrorKind::kNotFound);
-  EXPECT_THAT(opened.error().message, HasSubstr("is not a campaign"));
+  EXPECT_EQ(opened.error().message, scratch.path() + " is not a campaign: it holds no campaign.db");
 }
 
 class EpochTest : public testing::Test {
@@ -185,7 +186,11 @@ TEST(CampaignDirectoryTest, IsMadeForItsOwnerToWriteAloneAndNotMadeWhereOthersWr
   const Result<CampaignDirectory> again = CampaignDirectory::Create(scratch / "a/b");
   ASSERT_FALSE(again.ok());
   EXPECT_EQ(again.error().kind, ErrorKind::kInvalidInput);
-  EXPECT_THAT(again.error().message, HasSubstr("a/b has mode 777: other users may write it"));
+  EXPECT_EQ(again.error().message,
+            scratch.path() +
+                "/a/b has mode 777: other users may write it, who so would decide what this command does in "
+                "your name. If it holds what you left there: `chmod go-w " +
+                scratch.path() + "/a/b`");
 }
 
 TEST(CampaignIdTest, IsNewEveryTime) {

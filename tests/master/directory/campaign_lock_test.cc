@@ -149,7 +149,9 @@ TEST_F(CampaignLockTest, AnOwnerElsewhereCountsAsDeadAfterAMinute) {
     Result<std::unique_ptr<CampaignLock>> lock = reading ? Read() : Acquire();
     ASSERT_FALSE(lock.ok());
     EXPECT_EQ(lock.error().kind, ErrorKind::kInUse);
-    EXPECT_THAT(lock.error().message, HasSubstr("host node17, pid 4711, last sign of life 59 s ago"));
+    EXPECT_EQ(lock.error().message,
+              "campaign camp is in use by a master elsewhere (host node17, pid 4711, last sign of life 59 s "
+              "ago; it counts as dead after 60 s without one); stop it there with Ctrl-C or `kill 4711`");
     EXPECT_THAT(lock.error().message, HasSubstr("60 s"));
   }
   ++now_;
@@ -236,7 +238,9 @@ TEST_F(CampaignLockTest, AMasterThatWasTakenForDeadLearnsIt) {
   Status beaten = (*lock)->Heartbeat();
   ASSERT_FALSE(beaten.ok());
   EXPECT_EQ(beaten.error().kind, ErrorKind::kInUse);
-  EXPECT_THAT(beaten.error().message, HasSubstr("taken over by another master (host node17, pid 4711)"));
+  EXPECT_EQ(beaten.error().message,
+            "campaign camp was taken over by another master (host node17, pid 4711) while this one gave no "
+            "sign of life; this one stops");
   EXPECT_FALSE((*lock)->Check().ok());
   lock->reset();
   EXPECT_EQ(OwnerNow()["host"], "node17") << "the loser released the winner's lock";
@@ -288,8 +292,9 @@ TEST_F(CampaignLockTest, AMasterThatIsToldToStopWaitsForNobody) {
   const Result<std::unique_ptr<CampaignLock>> master = CampaignLock::Acquire(path_, "camp", options);
   ASSERT_FALSE(master.ok());
   EXPECT_EQ(master.error().kind, ErrorKind::kInUse);
-  EXPECT_THAT(master.error().message,
-              HasSubstr("camp is held by another process, and this one was told to stop"));
+  EXPECT_EQ(master.error().message,
+            "campaign camp is held by another process, and this one was told to stop while it waited for it; "
+            "nothing was changed");
   EXPECT_EQ(asked, 3);
 }
 
@@ -301,7 +306,7 @@ TEST_F(CampaignLockTest, ReadingNeedsNoLockFile) {
 TEST_F(CampaignLockTest, AMissingDirectoryIsAnErrorWithItsPath) {
   Result<std::unique_ptr<CampaignLock>> lock = CampaignLock::Acquire("/nonexistent/lock", "camp", Options());
   ASSERT_FALSE(lock.ok());
-  EXPECT_THAT(lock.error().message, HasSubstr("/nonexistent/lock"));
+  EXPECT_EQ(lock.error().message, "cannot open /nonexistent/lock: No such file or directory");
 }
 
 }  // namespace

@@ -78,10 +78,14 @@ TEST(SearchLengthTest, WhatWouldMakeAnotherSearchIsRefused) {
         << key.path;
   }
   const std::vector<SearchPlan> cases = {PlanOf("", {"search.algorithm=cases"})};
-  EXPECT_THAT(Refusal(cases, {"search.generations=9"}), HasSubstr("ends with the last of its given cases"));
+  EXPECT_EQ(Refusal(cases, {"search.generations=9"}),
+            "--set search.generations=9: this campaign ends with the last of its given cases, and nothing "
+            "makes it longer: begin a new one");
   const std::vector<SearchPlan> sweep = {PlanOf("search.generations=5, seed 1", {"search.generations=5"}),
                                          PlanOf("search.generations=6, seed 1", {"search.generations=6"})};
-  EXPECT_THAT(Refusal(sweep, {"search.generations=9"}), HasSubstr("are told apart by search.generations"));
+  EXPECT_EQ(Refusal(sweep, {"search.generations=9"}),
+            "--set search.generations=9: the searches of this campaign are told apart by search.generations "
+            "(search.generations=5, seed 1), so none can be made longer: begin a new campaign");
 }
 
 }  // namespace

@@ -126,7 +126,9 @@ TEST_F(RemoteBackendTest, WhatAStrangerSaysOfItselfIsShownAsOneLineOfUtf8) {
   hello.set_campaign_id("\x1b[2J\nNONDETERMINISTIC");
   SayHello("b", hello);
   Poll();
-  EXPECT_THAT(backend_->Describe().last_refusal, HasSubstr("\\x1b[2J\\nNONDETERMINISTIC"));
+  EXPECT_EQ(backend_->Describe().last_refusal,
+            "this worker belongs to campaign '\\x1b[2J\\nNONDETERMINISTIC', this master serves campaign "
+            "'campaign-1'");
   for (const DispatchEvent& event : backend_->TakeEvents()) EXPECT_EQ(event.text, Printable(event.text));
 }
 
@@ -145,7 +147,9 @@ TEST_F(RemoteBackendTest, StrangersCannotFillTheLog) {
   clock_.Advance(std::chrono::minutes(1));
   const auto [count, told] = refused(1);
   EXPECT_EQ(count, 1);
-  EXPECT_THAT(told, HasSubstr("(and 40 others since the last that was told)"));
+  EXPECT_EQ(told,
+            "worker 000000000000000a@node7 was refused: this worker belongs to campaign 'other', this master "
+            "serves campaign 'campaign-1' (and 40 others since the last that was told)\n");
 }
 
 }  // namespace

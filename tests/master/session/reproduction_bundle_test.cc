@@ -84,7 +84,8 @@ TEST_F(ReproductionBundleTest, WithoutAPlaceItIsAnErrorThatNamesIt) {
   WriteFile(scratch_ / "bundles", "a file");
   const Status written = WriteBundle(context_, experiment_, run_, finished_);
   ASSERT_FALSE(written.ok());
-  EXPECT_THAT(written.error().message, HasSubstr((scratch_ / "bundles") + " is a file"));
+  EXPECT_EQ(written.error().message,
+            (scratch_ / "bundles") + " is a file; here belongs a directory, or nothing");
 }
 
 TEST(LeavesBundleTest, WhatFailedOfItselfButNoRefusal) {

@@ -278,7 +278,7 @@ TEST_F(SqliteStoreTest, AStateWhoseBitsHaveTurnedIsReported) {
   Result<std::optional<SavedState>> state = store_->LoadNewestState(1);
   ASSERT_FALSE(state.ok());
   EXPECT_EQ(state.error().kind, ErrorKind::kCorrupt);
-  EXPECT_THAT(state.error().message, HasSubstr("the state of search 1 after run 20 is damaged"));
+  EXPECT_EQ(state.error().message, "the state of search 1 after run 20 is damaged: its checksum differs");
 }
 
 TEST(SearchOf, IsTheSearchOfItsRunIds) {

@@ -7,7 +7,6 @@
 namespace gauntlet {
 namespace {
 
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -27,9 +26,8 @@ TEST(ExperimentErrorsTest, UnknownKeysComeWithTheNearestKnownOne) {
             "'controller_parameters.speed'?");
   EXPECT_EQ(ErrorOf(Marching("population = 4\n")),
             "toy.toml:2:1: unknown key 'population'; did you mean 'search.population'?");
-  EXPECT_THAT(ErrorOf(Marching("[controller_parameters]\nquux = 0.1\n")),
-              AllOf(StartsWith("toy.toml:3:1: unknown key 'controller_parameters.quux'"),
-                    HasSubstr("known: controller_parameters.speed")));
+  EXPECT_EQ(ErrorOf(Marching("[controller_parameters]\nquux = 0.1\n")),
+            "toy.toml:3:1: unknown key 'controller_parameters.quux'; known: controller_parameters.speed");
   EXPECT_EQ(ErrorOf(Marching("[search]\nlength_max = 3\n")),
             "toy.toml:3:1: unknown key 'search.length_max'; did you mean 'genome.length_max'?");
   EXPECT_EQ(ErrorOf(Marching("quux = 3\n")),
@@ -40,12 +38,14 @@ TEST(ExperimentErrorsTest, UnknownKeysComeWithTheNearestKnownOne) {
 }
 
 TEST(ExperimentErrorsTest, ParametersOfAnotherControllerAreUnknown) {
-  EXPECT_THAT(ErrorOf(Marching("controller = 'runner'\n[controller_parameters]\nspeed = 0.1\n")),
-              HasSubstr("toy.toml:4:1: unknown key 'controller_parameters.speed'"));
+  EXPECT_EQ(ErrorOf(Marching("controller = 'runner'\n[controller_parameters]\nspeed = 0.1\n")),
+            "toy.toml:4:1: unknown key 'controller_parameters.speed'; known: controller_parameters.gain");
 }
 
 TEST(ExperimentErrorsTest, UnknownTablesAreRefusedEvenWhenEmpty) {
-  EXPECT_THAT(ErrorOf(Marching("[simulator]\n")), HasSubstr("toy.toml:2:2: unknown key 'simulator'"));
+  EXPECT_EQ(ErrorOf(Marching("[simulator]\n")),
+            "toy.toml:2:2: unknown key 'simulator'; known at the top: name, description, seed, scenario, "
+            "controller, physics, faults, plugins");
   EXPECT_EQ(ErrorOf(Marching("[search]\n[controller_parameters]\n")), "");
   EXPECT_EQ(ErrorOf("scenario = 'waiting'\n[controller_parameters]\n"), "");
 }
@@ -79,13 +79,16 @@ TEST(ExperimentErrorsTest, DotsInTextsNumbersAndCommentsAreNoKeys) {
 }
 
 TEST(ExperimentErrorsTest, KindsThatWouldPuzzleAreNamedMoreClosely) {
-  EXPECT_THAT(ErrorOf(kMarching, {"search.generations=99999999999999999999999"}),
-              HasSubstr("search.generations is a number beyond 64 bits, expected a whole number"));
-  EXPECT_THAT(ErrorOf(Marching("seed = -5")),
-              HasSubstr("seed is a negative number, expected a whole number, 0 to"));
-  EXPECT_THAT(ErrorOf(Marching("[[search]]\npopulation = 4")),
-              HasSubstr("search is a table of keys such as search."));
-  EXPECT_THAT(ErrorOf(kMarching, {"search=3"}), HasSubstr("not a whole number"));
+  EXPECT_EQ(ErrorOf(kMarching, {"search.generations=99999999999999999999999"}),
+            "--set search.generations=99999999999999999999999: search.generations is a number beyond 64 "
+            "bits, expected a whole number, 1 to 1000000");
+  EXPECT_EQ(ErrorOf(Marching("seed = -5")),
+            "toy.toml:2:1: seed is a negative number, expected a whole number, 0 to 18446744073709551615 (as "
+            "text from 9223372036854775808 on)");
+  EXPECT_EQ(ErrorOf(Marching("[[search]]\npopulation = 4")),
+            "toy.toml:2:1: search is a table of keys such as search.algorithm, not a list of tables");
+  EXPECT_EQ(ErrorOf(kMarching, {"search=3"}),
+            "--set search=3: search is a table of keys such as search.algorithm, not a whole number");
 }
 
 TEST(ExperimentErrorsTest, ValuesOutOfRangeComeWithTheRange) {
@@ -115,11 +118,18 @@ TEST(ExperimentErrorsTest, WrongTypesNameWhatWasExpected) {
   EXPECT_EQ(ErrorOf(Marching("[scenario_parameters]\nheadwind = 2\n")),
             "toy.toml:3:1: scenario_parameters.headwind is a whole number, expected true or false");
   EXPECT_EQ(ErrorOf("scenario = 5"), "toy.toml:1:1: scenario is a whole number, expected text");
-  EXPECT_THAT(ErrorOf(Marching("seed = -1\n")),
-              HasSubstr("expected a whole number, 0 to 18446744073709551615"));
-  EXPECT_THAT(ErrorOf(Marching("seed = '18446744073709551616'\n")), HasSubstr("toy.toml:2:1: seed is text"));
-  EXPECT_THAT(ErrorOf(kMarching, {"seed=12x"}), HasSubstr("--set seed=12x: seed is text"));
-  EXPECT_THAT(ErrorOf(kMarching, {"search.population=4\nseed=3"}), HasSubstr("search.population is text"));
+  EXPECT_EQ(ErrorOf(Marching("seed = -1\n")),
+            "toy.toml:2:1: seed is a negative number, expected a whole number, 0 to 18446744073709551615 (as "
+            "text from 9223372036854775808 on)");
+  EXPECT_EQ(ErrorOf(Marching("seed = '18446744073709551616'\n")),
+            "toy.toml:2:1: seed is text, expected a whole number, 0 to 18446744073709551615 (as text from "
+            "9223372036854775808 on)");
+  EXPECT_EQ(ErrorOf(kMarching, {"seed=12x"}),
+            "--set seed=12x: seed is text, expected a whole number, 0 to 18446744073709551615 (as text from "
+            "9223372036854775808 on)");
+  EXPECT_EQ(
+      ErrorOf(kMarching, {"search.population=4\nseed=3"}),
+      "--set search.population=4\\nseed=3: search.population is text, expected a whole number, 4 to 10000");
 }
 
 TEST(ExperimentErrorsTest, MalformedTomlIsPlacedByLineAndColumn) {
@@ -137,7 +147,8 @@ TEST(ExperimentErrorsTest, SetsNeedAKeyAndAValue) {
   EXPECT_EQ(ErrorOf(kMarching, {"generations"}),
             "--set generations: expected key=value, such as search.generations=10");
   EXPECT_THAT(ErrorOf(kMarching, {"=3"}), StartsWith("--set =3: expected key=value"));
-  EXPECT_THAT(ErrorOf(kMarching, {"description=\xFF"}), HasSubstr("not valid UTF-8"));
+  EXPECT_EQ(ErrorOf(kMarching, {"description=\xFF"}),
+            "--set description=\\xff: the value is not valid UTF-8 text");
 }
 
 TEST(ExperimentErrorsTest, DisturbancesAreCheckedBeforeAnythingStarts) {
@@ -155,10 +166,9 @@ TEST(ExperimentErrorsTest, DisturbancesAreCheckedBeforeAnythingStarts) {
   EXPECT_EQ(
       ErrorOf(kMarching, {"faults=3:whels@500"}),
       "--set faults=3:whels@500: faults: '3:whels@500': no device is called 'whels'; did you mean 'wheels'?");
-  EXPECT_THAT(ErrorOf(Marching("faults = '3:wheels@-5'\n")),
-              HasSubstr("toy.toml:2:1: faults: '3:wheels@-5': the tick is a whole number, 0 to 1000000000"));
-  EXPECT_THAT(ErrorOf(Marching("faults = 3\n")),
-              HasSubstr("toy.toml:2:1: faults is a whole number, expected text"));
+  EXPECT_EQ(ErrorOf(Marching("faults = '3:wheels@-5'\n")),
+            "toy.toml:2:1: faults: '3:wheels@-5': the tick is a whole number, 0 to 1000000000");
+  EXPECT_EQ(ErrorOf(Marching("faults = 3\n")), "toy.toml:2:1: faults is a whole number, expected text");
 }
 
 TEST(ExperimentErrorsTest, ScenarioAndControllerMustExistAndFit) {
@@ -190,7 +200,8 @@ TEST(ExperimentErrorsTest, RulesThatSpanKeysPointAtOneOfThem) {
 }
 
 TEST(ExperimentErrorsTest, WhatIsQuotedStaysInOneLine) {
-  EXPECT_THAT(ErrorOf(Marching("controller = \"a\\nb\\u001b[31m\"\n")), HasSubstr("'a\\nb\\x1b[31m'"));
+  EXPECT_EQ(ErrorOf(Marching("controller = \"a\\nb\\u001b[31m\"\n")),
+            "toy.toml:2:1: unknown controller 'a\\nb\\x1b[31m'; known: walker, runner, waiter");
 }
 
 }  // namespace

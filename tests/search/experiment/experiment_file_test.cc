@@ -257,13 +257,15 @@ TEST(ExperimentFileTest, FindsScenarioAndControllerInAPlugin) {
 TEST(ExperimentFileTest, NamesTheScenarioNearestToAPluginsAndTheLibraryThatIsNotHere) {
   Catalogue catalogue = ToyCatalogue();
   catalogue.plugins = {KnowPatrol()};
-  EXPECT_THAT(ParseExperiment("scenario = 'patrols'", "toy.toml", {}, catalogue).error().message,
-              HasSubstr("unknown scenario 'patrols'; did you mean 'patrol'?"));
-  EXPECT_THAT(ErrorOf("scenario = 'patrol'"), HasSubstr("unknown scenario 'patrol'"));
+  EXPECT_EQ(ParseExperiment("scenario = 'patrols'", "toy.toml", {}, catalogue).error().message,
+            "toy.toml:1:1: unknown scenario 'patrols'; did you mean 'patrol'?");
+  EXPECT_EQ(ErrorOf("scenario = 'patrol'"),
+            "toy.toml:1:1: unknown scenario 'patrol'; known: marching, waiting");
   const std::string elsewhere = "scenario = 'patrol'\nscenario_plugin = '" + std::string(64, 'e') + "'";
   EXPECT_THAT(ErrorOf(elsewhere), HasSubstr("toy.toml:2:1: scenario_plugin = \"eeee"));
-  EXPECT_THAT(ErrorOf("scenario = 'patrol'\nscenario_plugin = 'libpatrol.so'"),
-              HasSubstr("scenario_plugin = \"libpatrol.so\" is no SHA-256"));
+  EXPECT_EQ(ErrorOf("scenario = 'patrol'\nscenario_plugin = 'libpatrol.so'"),
+            "toy.toml:2:1: scenario_plugin = \"libpatrol.so\" is no SHA-256 of 64 hexadecimal digits; name "
+            "files by plugins = [\"FILE\"]");
 }
 
 TEST(ExperimentFileTest, SaysNothingOfAPluginWhereTheScenarioIsBuiltIn) {

@@ -267,27 +267,39 @@ TEST(IncrementalValidityTest, MotionBeyondTheLimitsIsNamed) {
   gene.speed = 0.05;
   EXPECT_EQ(judge(gene, CornerToCorner()), "valid");
   gene.speed = 0.06;
-  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("limits: obstacle 1 "));
-  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("moves at 0.06 m/s; want 0 to 0.05 m/s"));
+  EXPECT_EQ(
+      judge(gene, CornerToCorner()),
+      "limits: obstacle 1 (x 0 m, y 0 m, 1 x 0.2 m at 0 degrees) moves at 0.06 m/s; want 0 to 0.05 m/s");
   gene.speed = 0.0;
-  EXPECT_THAT(judge(gene, CornerToCorner()),
-              ::testing::HasSubstr("a path of 1 points and a speed of 0 m/s; want both or neither"));
+  EXPECT_EQ(judge(gene, CornerToCorner()),
+            "limits: obstacle 1 (x 0 m, y 0 m, 1 x 0.2 m at 0 degrees) has a path of 1 points and a speed of "
+            "0 m/s; want both or neither");
   gene.speed = -0.01;
-  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("moves at -0.01 m/s"));
+  EXPECT_EQ(
+      judge(gene, CornerToCorner()),
+      "limits: obstacle 1 (x 0 m, y 0 m, 1 x 0.2 m at 0 degrees) moves at -0.01 m/s; want 0 to 0.05 m/s");
   gene.speed = std::nan("");
-  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("finite-numbers: obstacle 1 "));
+  EXPECT_EQ(judge(gene, CornerToCorner()),
+            "finite-numbers: obstacle 1 (x 0 m, y 0 m, 1 x 0.2 m at 0 degrees) moves along numbers that are "
+            "not finite");
   gene.speed = 0.05;
   gene.path = {{0.0, 1e6}};
-  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("moves to (0, 1e+06) m"));
+  EXPECT_EQ(judge(gene, CornerToCorner()),
+            "limits: obstacle 1 (x 0 m, y 0 m, 1 x 0.2 m at 0 degrees) moves to (0, 1e+06) m; want paths "
+            "within 1000 m of the origin");
   gene.path.assign(kMaxObstaclePath + 1, {0.0, 1.0});
-  EXPECT_THAT(judge(gene, CornerToCorner()), ::testing::HasSubstr("a path of 17 points; want at most 16"));
+  EXPECT_EQ(
+      judge(gene, CornerToCorner()),
+      "limits: obstacle 1 (x 0 m, y 0 m, 1 x 0.2 m at 0 degrees) has a path of 17 points; want at most 16");
 
   ArenaRequirements keep_away = CornerToCorner();
   keep_away.clearance = 0.5;
   gene.path = {{0.0, 1.0}};
   EXPECT_EQ(judge(gene, keep_away), "valid");
   gene.path = {keep_away.goal};
-  EXPECT_THAT(judge(gene, keep_away), ::testing::HasSubstr("clearance: obstacle 1 "));
+  EXPECT_EQ(judge(gene, keep_away),
+            "clearance: obstacle 1 (x 0 m, y 0 m, 1 x 0.2 m at 0 degrees) is 0 m from the goal (-2.5, -2.5); "
+            "want at least 0.5 m");
 }
 
 TEST(IncrementalValidityTest, CopiesContinueIndependently) {
