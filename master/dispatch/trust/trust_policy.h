@@ -54,8 +54,8 @@ class TrustPolicy {
   void Forget(InstanceId worker) { witnesses_.erase(worker); }
   const WorkerRecord& RecordOf(InstanceId worker) const { return witnesses_.at(worker).record; }
 
-  // The worker brought the run's result, and is right: nothing that failed the run speaks against it any
-  // more, but against the others. Answers with those who are quarantined for it.
+  // The worker brought the run's result: those who failed the run were wrong, unless it is quarantined itself
+  // or unknown. Answers with those who are quarantined for it.
   Workers Finished(InstanceId worker, RunId run);
   // The run failed on this worker, which is known; without a failure: its answer could not be read.
   void Failed(InstanceId worker, RunId run, std::optional<proto::RunnerFailure> failure, Duration now);
@@ -73,7 +73,6 @@ class TrustPolicy {
 
   // Runs of whose failures something new is known since the last call, in its order.
   std::vector<RunId> TakeUnjudged() { return std::exchange(unjudged_, {}); }
-
   // Is this run, when it has finished, to be simulated by another worker too? The same runs in every session
   // and for any number of workers.
   bool Audits(RunId run) const;
