@@ -162,7 +162,7 @@ Result<ExitCode> RunExport(CommandContext& context, const ExportCommandOptions& 
       WriteTableFile(campaign, judged, HeadJson(campaign, options.directory, condition), options.out));
   if (report.simulated > 0)
     PrintMessage(context,
-                 fmt::format("{} runs, whose ways were not kept, were simulated again: each ended as "
+                 fmt::format("{} runs, whose trajectories were not kept, were simulated again: each ended as "
                              "it had",
                              FormatCount(report.simulated)));
   PrintMessage(context, fmt::format("wrote {} rows to {}", FormatCount(report.rows), options.out));
@@ -222,7 +222,7 @@ Examples:
   gauntlet export campaigns/sweep --format csv --out runs.csv
   gauntlet export DIR --format json --what cases --out cases && gauntlet evaluate flocking --case cases/*.json
   gauntlet export DIR --format argos --run 812 --controller-file my_experiment.argos --out for-argos
-  gauntlet export DIR --format csv --what trajectories --run 812 --out ways.csv)");
+  gauntlet export DIR --format csv --what trajectories --run 812 --out trajectories.csv)");
 }
 
 }  // namespace gauntlet

@@ -43,7 +43,7 @@ using Listed = std::vector<std::pair<std::string, std::string>>;
 // Of every campaign, by what is said about them.
 Listed FiguresOfMore() {
   return {{"comparison", "with --with SET: box plots of several sets of runs"},
-          {"run-ID", "of a run: everybody's way"},
+          {"run-ID", "of a run: every robot's trajectory"},
           {"motion-ID", "of a run: how the swarm moved, over time"},
           {"states-ID", "of a run: what every robot did when (foraging, task-partitioning)"}};
 }

@@ -127,7 +127,7 @@ void AddReplay(CommandParser& parser) {
   AddDirectory(command, options.directory);
   command.add_option("RUN_ID", options.run, "number of the run, as 'show' names it")->required();
   AddValue(command, "--svg", "F", options.svg,
-           "write a picture: arena, every robot's way, where the swarm split");
+           "write a picture: arena, every robot's trajectory, where the swarm split");
   AddValue(command, "--timeline", "F", options.timeline,
            "write a picture: what every robot did when (foraging, task-partitioning)");
   AddValue(command, "--csv", "F", options.csv, "write every pose of every tick");

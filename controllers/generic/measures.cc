@@ -40,7 +40,7 @@ constexpr std::array<MomentInfo, kMoments> kMomentInfos = {{
 
 constexpr std::array kWholeInfos = std::to_array<MetricInfo>({
     {"displacement", "m", {}, "mean distance of a robot's end from its start", true},
-    {"path_length", "m", {}, "mean length of a robot's way"},
+    {"path_length", "m", {}, "mean length of a robot's trajectory"},
     {"covered_area", "m^2", {}, "squares of 0.25 m that a robot's centre was in", true},
     {"collisions", "", {}, "times that a robot began to touch a robot, an obstacle or a wall"},
     {"trapped", "", {}, "robots that kept within trapped_radius for the last trapped_window", true},

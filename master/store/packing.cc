@@ -17,7 +17,7 @@ constexpr char kWithExample = 'e';  // Zstandard, the example as its dictionary
 
 // Zstandard's own default; higher ones saved less than 2 % of flocking's runs and took longer.
 constexpr int kLevel = 3;
-// Of what is unpacked: far above any result with every robot's way.
+// Of what is unpacked: far above any result with every robot's trajectory.
 constexpr std::uint64_t kMostBytes = 256U << 20;
 
 Error Damaged(const std::string& what) {

@@ -82,7 +82,7 @@ std::vector<NamedFigure> FiguresOf(const ShownRun& shown) {
   const RunId id = shown.report.stored.id;
   if (figure.result.trajectory.empty()) return {};
   std::vector<NamedFigure> figures = {
-      {fmt::format("run-{}", id), fmt::format("Run {}: everybody's way", id),
+      {fmt::format("run-{}", id), fmt::format("Run {}: every robot's trajectory", id),
        "The arena from above: obstacles, where each robot went (its line grows stronger with time), who was "
        "lost, and where the swarm broke.",
        [&figure] { return analysis::DrawRun(figure); },

@@ -61,7 +61,7 @@ std::string CommandsHtml(const CampaignFacts& facts, RunId id) {
          "<p>Which of its obstacles does it take?</p>\n" +
          CommandHtml(fmt::format("gauntlet minimise {} {}", dir, id)) +
          "<p>How much does each of them do?</p>\n" +
-         CommandHtml(fmt::format("gauntlet blame {} {}", dir, id)) + "<p>Its ways as a table:</p>\n" +
+         CommandHtml(fmt::format("gauntlet blame {} {}", dir, id)) + "<p>Its trajectories as a table:</p>\n" +
          CommandHtml(fmt::format(
              "gauntlet export {} --format csv --what trajectories --run {} --out run-{}.csv", dir, id, id));
 }

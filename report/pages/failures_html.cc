@@ -51,7 +51,8 @@ std::string MapHtml(const CampaignPages& pages, std::size_t number, const RunMap
 
 std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
   std::string html =
-      "<h3>What it looks like</h3>\n<p>The arena of each run from above, with everybody's way. Blue ways are "
+      "<h3>What it looks like</h3>\n<p>The arena of each run from above, with every robot's trajectory. Blue "
+      "ones are "
       "of robots that did well, red ones of those that were lost, green is a guide; dots are where they "
       "ended. "
       "A click leads to the run.</p>\n<ul class=\"thumbs\">\n";

@@ -338,7 +338,8 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   add(NoiseKeys(), &Key::disturbs);
   add({FieldKey<&Experiment::store, &StoreSpec::trajectories>(
           "store.trajectories",
-          "keep every robot's way and the annotations of each run; without them replay computes them anew")},
+          "keep every robot's trajectory and the annotations of each run; without them replay computes them "
+          "anew")},
       &Key::for_people);
   for (Key& key : keys) {
     key.default_value = key.get(Experiment{});

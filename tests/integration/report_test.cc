@@ -98,7 +98,7 @@ TEST(FigureTest, NamesWhatThereIs) {
             "  failure-types  Types of total failure\n"
             "  behaviour      How the swarms behaved\n"
             "  comparison     with --with SET: box plots of several sets of runs\n"
-            "  run-ID         of a run: everybody's way\n"
+            "  run-ID         of a run: every robot's trajectory\n"
             "  motion-ID      of a run: how the swarm moved, over time\n"
             "  states-ID      of a run: what every robot did when (foraging, task-partitioning)\n");
   const ProcessResult wrong = Gauntlet({"figure", Campaign(), "progres"});

@@ -7,7 +7,7 @@
 
 namespace gauntlet::analysis {
 
-// An SVG document without words: the arena, everybody's way and end, goal, nest and food. `pixels`: of its
+// An SVG document without words: the arena, every robot's trajectory and end, goal, nest and food. `pixels`: of its
 // longer side.
 std::string DrawThumbnail(const RunFigure& figure, double pixels);
 
