@@ -7,8 +7,8 @@
 
 namespace gauntlet::analysis {
 
-// An SVG document without words: the arena, every robot's trajectory and end, goal, nest and food. `pixels`: of its
-// longer side.
+// An SVG document without words: the arena, every robot's trajectory and end, goal, nest and food. `pixels`:
+// of its longer side.
 std::string DrawThumbnail(const RunFigure& figure, double pixels);
 
 }  // namespace gauntlet::analysis
