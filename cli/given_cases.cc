@@ -33,8 +33,7 @@ void AskOnce(CommandContext& context, QuestionedCampaign& questioned) {
 }  // namespace
 
 std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case) {
-  if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
-    return std::nullopt;
+  if (controllers::FindScenario(experiment) == nullptr) return std::nullopt;
   const auto requirements = controllers::RequirementsOf(SpecOf(experiment, test_case, experiment.seed));
   if (!requirements) return CaseRefusal{"", requirements.error().message};
   if (const auto violation = sim::CheckValidity(test_case, *requirements))

@@ -103,6 +103,14 @@ const ControllerInfo* FindController(std::string_view name, std::string_view plu
   return known == nullptr ? nullptr : FindByName(std::span<const ControllerInfo>(known->controllers), name);
 }
 
+const ScenarioInfo* FindScenario(const sim::RunSettings& settings) {
+  return FindScenario(settings.scenario, settings.scenario_plugin);
+}
+
+const ControllerInfo* FindController(const sim::RunSettings& settings) {
+  return FindController(settings.controller, settings.plugin);
+}
+
 Status AddPlugin(PluginInfo plugin) {
   if (FindPlugin(plugin.hash) != nullptr) return Ok{};
   for (const ControllerInfo& controller : plugin.controllers) {
@@ -120,8 +128,8 @@ const PluginInfo* FindPlugin(std::string_view hash) {
   return found == Plugins().end() ? nullptr : &*found;
 }
 
-Result<const ScenarioInfo*> ScenarioOf(const sim::RunSpec& spec) {
-  return RowOf<ScenarioInfo>("scenario", spec.scenario, spec.scenario_plugin, Scenarios(),
+Result<const ScenarioInfo*> ScenarioOf(const sim::RunSettings& settings) {
+  return RowOf<ScenarioInfo>("scenario", settings.scenario, settings.scenario_plugin, Scenarios(),
                              &PluginInfo::scenarios);
 }
 

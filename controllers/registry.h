@@ -42,9 +42,12 @@ const PluginInfo* FindPlugin(std::string_view hash);  // nullptr when it is not 
 // nullptr when there is none of that name. `plugin`: the hash of the plug-in to look in; "": those built in.
 const ScenarioInfo* FindScenario(std::string_view name, std::string_view plugin = "");
 const ControllerInfo* FindController(std::string_view name, std::string_view plugin = "");
+// The one that the settings name; nullptr when there is none, or its plug-in is not known here.
+const ScenarioInfo* FindScenario(const sim::RunSettings& settings);
+const ControllerInfo* FindController(const sim::RunSettings& settings);
 
-// The spec's scenario. Error: there is none of that name, or its plug-in is not known here.
-Result<const ScenarioInfo*> ScenarioOf(const sim::RunSpec& spec);
+// The settings' scenario. Error: there is none of that name, or its plug-in is not known here.
+Result<const ScenarioInfo*> ScenarioOf(const sim::RunSettings& settings);
 
 // The metric `name` of a scenario, or the family it belongs to; nullptr when the scenario reports none such.
 const MetricInfo* FindMetric(const ScenarioInfo& scenario, std::string_view name);

@@ -13,8 +13,8 @@ constexpr int kEnoughPasses = 6;
 
 }  // namespace
 
-std::string_view FailingOf(const Experiment& experiment) {
-  const auto* info = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+std::string_view FailingOf(const sim::RunSettings& settings) {
+  const auto* info = controllers::FindScenario(settings);
   return info == nullptr ? kTotalFailure : info->failing;
 }
 

@@ -9,7 +9,7 @@
 namespace gauntlet {
 
 // What the experiment's scenario calls failing (controllers::ScenarioInfo::failing).
-std::string_view FailingOf(const Experiment& experiment);
+std::string_view FailingOf(const sim::RunSettings& settings);
 // Whether deciding it needs the metrics of runs (RunOutcome::metrics).
 bool FailingNeedsMetrics(std::string_view failing);
 

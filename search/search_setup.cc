@@ -55,7 +55,7 @@ GenomeGenerator MakeGenerator(const SearchSetup& setup) {
 }
 
 std::uint64_t SearchSeed(const SearchSetup& setup) {
-  return sim::DeriveSeed(setup.experiment.seed, sim::SeedPurpose::kSearch, setup.search_id,
+  return sim::DeriveSeed(setup.experiment.seed, sim::SeedPurpose::kSearchNumber, kSearchNumber,
                          /*individual=*/0, /*evaluation=*/0, setup.row->number);
 }
 
@@ -72,7 +72,7 @@ std::string SearchIdentity(const SearchSetup& setup) {
     if (key.of_searches && !Reads(search, key.path)) return false;
     return !key.came_later || key.get(experiment) != key.default_value;
   };
-  std::string identity = fmt::format("search = {}\n", setup.search_id);
+  std::string identity = fmt::format("search = {}\n", kSearchNumber);
   for (const Key& key : setup.keys) {
     if (matters(key)) identity += fmt::format("{} = {}\n", key.path, ToToml(key.get(experiment)));
   }

@@ -14,6 +14,10 @@
 
 namespace gauntlet {
 
+// Part of the keys of all random numbers of a search and of its runs, and of its state: every search counts
+// as the first of its campaign.
+inline constexpr std::uint32_t kSearchNumber = 1;
+
 struct SearchRow;
 struct Key;
 
@@ -21,7 +25,6 @@ struct Key;
 struct SearchSetup {
   Experiment experiment;
   sim::ArenaRequirements requirements;  // of the experiment's scenario for its empty arena
-  std::uint32_t search_id = 1;          // within the campaign
   std::vector<sim::TestCase> cases;     // of a search through given cases
   const SearchRow* row = nullptr;       // of the experiment's search
   std::span<const Key> keys;            // of all experiments
@@ -35,7 +38,7 @@ sim::TestCase EmptyArena(const ArenaSpec& arena);
 
 GenomeGenerator MakeGenerator(const SearchSetup& setup);
 
-// The seed of a search's random streams: different for every campaign seed, search and SearchRow::number, so
+// The seed of a search's random streams: different for every campaign seed and SearchRow::number, so
 // that random search and the initial population of an evolution share no case. No run has this seed: runs
 // belong to individuals from 1 on.
 std::uint64_t SearchSeed(const SearchSetup& setup);

@@ -60,16 +60,20 @@ const std::vector<Key>& BuiltInKeys() {
 }
 
 SearchSetup SetupOf(const Experiment& experiment, const sim::ArenaRequirements& requirements,
-                    std::uint32_t search_id, std::vector<sim::TestCase> cases) {
-  return {experiment, requirements, search_id, std::move(cases), &RowOf(experiment), BuiltInKeys()};
+                    std::vector<sim::TestCase> cases) {
+  return {experiment, requirements, std::move(cases), &RowOf(experiment), BuiltInKeys()};
 }
 
-std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
-                      std::uint32_t evaluation, std::uint32_t replicate) {
-  constexpr std::uint32_t kSearch = 1;  // every search counts as the first of its campaign
+std::uint64_t RunSeed(const Experiment& experiment, const EvaluationRequest& evaluation,
+                      std::uint32_t replicate) {
   const SearchRow& row = RowOf(experiment);
-  const std::uint64_t who = row.seeds_of_cases ? CaseHash(test_case) : individual;
-  return sim::DeriveSeed(experiment.seed, row.purpose, kSearch, who, evaluation, replicate);
+  const std::uint64_t who = row.seeds_of_cases ? CaseHash(evaluation.test_case) : evaluation.individual;
+  return sim::DeriveSeed(experiment.seed, row.purpose, kSearchNumber, who, evaluation.evaluation, replicate);
+}
+
+sim::RunSpec SpecOfRun(const Experiment& experiment, const EvaluationRequest& evaluation,
+                       std::uint32_t replicate) {
+  return SpecOf(experiment, evaluation.test_case, RunSeed(experiment, evaluation, replicate));
 }
 
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {
@@ -80,19 +84,19 @@ Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_ca
   return Ok{};
 }
 
-Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment, std::uint32_t search_id,
+Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment,
                                                     std::vector<sim::TestCase> cases) {
   const SearchRow& row = RowOf(experiment);
   if (row.given_cases) {
-    if (!cases.empty()) return row.make(SetupOf(experiment, {}, search_id, std::move(cases)));
+    if (!cases.empty()) return row.make(SetupOf(experiment, {}, std::move(cases)));
     return InvalidInput(fmt::format("search.algorithm = \"{}\" needs a list of test cases: use `gauntlet {}`",
                                     row.info.name, row.command));
   }
-  if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
+  if (controllers::FindScenario(experiment) == nullptr)
     return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};
   const sim::TestCase empty = EmptyArena(experiment.arena);
   TRY(const auto requirements, controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed)));
-  TRY(auto search, row.make(SetupOf(experiment, requirements, search_id)));
+  TRY(auto search, row.make(SetupOf(experiment, requirements)));
   // Without this every run of the search would be refused for the same reason.
   if (const Status fits = CheckSwarmFits(experiment, empty); !fits.ok()) {
     return InvalidInput("no run can begin, even without obstacles: " + fits.error().message);

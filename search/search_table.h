@@ -27,25 +27,29 @@ const std::vector<Key>& BuiltInKeys();
 
 // What the search that the experiment describes starts from.
 SearchSetup SetupOf(const Experiment& experiment, const sim::ArenaRequirements& requirements = {},
-                    std::uint32_t search_id = 1, std::vector<sim::TestCase> cases = {});
+                    std::vector<sim::TestCase> cases = {});
 
-// The seed of replicate 0, 1, ... of an evaluation of an individual. It depends on these numbers and the
-// experiment's seed alone, so a search of a sweep has the seeds that it would have in a campaign of its own.
-// Where seeds are those of cases (SearchRow::seeds_of_cases) the arena, robots and obstacles count instead of
-// the individual's number, so that a case has the same seeds at any place of the list (and the same case
-// given twice, whatever its name, the same runs).
-std::uint64_t RunSeed(const Experiment& experiment, IndividualId individual, const sim::TestCase& test_case,
-                      std::uint32_t evaluation, std::uint32_t replicate);
+// The seed of replicate 0, 1, ... of an evaluation. It depends on the numbers of these and of the individual
+// and on the experiment's seed alone, so a search of a sweep has the seeds that it would have in a campaign
+// of its own. Where seeds are those of cases (SearchRow::seeds_of_cases) the arena, robots and obstacles
+// count instead of the individual's number, so that a case has the same seeds at any place of the list (and
+// the same case given twice, whatever its name, the same runs).
+std::uint64_t RunSeed(const Experiment& experiment, const EvaluationRequest& evaluation,
+                      std::uint32_t replicate);
+
+// What is simulated as that replicate: every run of a search has its spec from here.
+sim::RunSpec SpecOfRun(const Experiment& experiment, const EvaluationRequest& evaluation,
+                       std::uint32_t replicate);
 
 // Whether the experiment's swarm, with its noise and faults, can begin in this arena
 // (controllers::CountSwarm).
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case);
 
-// The search that experiment.search describes; `search_id` is its number within the campaign and part of all
-// its random keys; `cases` are for a search through given cases (SearchRow::given_cases), which needs them.
+// The search that experiment.search describes; `cases` are for a search through given cases
+// (SearchRow::given_cases), which needs them.
 // Error: there is no such scenario, no run could begin, or the ranges of genes leave no room for a valid
 // case.
-Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment, std::uint32_t search_id,
+Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment,
                                                     std::vector<sim::TestCase> cases = {});
 
 }  // namespace gauntlet

@@ -18,8 +18,8 @@ using Parameters = std::map<std::string, double>;
 // Which physics simulates a run; see sim/physics/physics_engine.h.
 enum class PhysicsKind { kBox2d, kRelaxation, kImpulse };
 
-struct RunSpec {
-  TestCase test_case;
+// What is tested, and how it is simulated: what runs share that differ in their cases and seeds.
+struct RunSettings {
   std::string scenario;         // registry name
   std::string scenario_plugin;  // SHA-256 of the library that brings the scenario, as `plugin` below
   // What the scenario consists of beyond its parameters, in the form that it writes itself; "": it is built
@@ -29,9 +29,13 @@ struct RunSpec {
   std::string controller;  // registry name of the controller under test
   Parameters controller_parameters;
   std::string plugin;  // SHA-256 of the library that brings the controller, hexadecimal; "": it is built in
-  std::uint64_t seed = 0;
   PhysicsKind physics = PhysicsKind::kImpulse;
   Disturbances disturbances;
+};
+
+struct RunSpec : RunSettings {
+  TestCase test_case;
+  std::uint64_t seed = 0;
   bool record_trajectory = false;  // return every pose of every tick; no influence on the hash
 };
 

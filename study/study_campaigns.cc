@@ -353,7 +353,7 @@ Result<std::vector<std::vector<std::vector<int>>>> StudyRuns::TypesByGeneration(
 std::vector<std::string> StudyRuns::FailureTypes(const std::string& set) const {
   std::vector<std::string> names;
   const Experiment& experiment = Part(SplitStudySets(set).front().part).experiment;
-  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr) return names;
   for (const controllers::FailureType& type : scenario->failure_types) names.push_back(type.name);
   return names;

@@ -25,9 +25,8 @@ constexpr std::uint64_t kFirstAgain = 1'000'000;
 std::vector<Key> AllKeys(const Experiment& experiment) {
   std::vector<Key> keys = BuiltInKeys();
   const auto add = [&](std::vector<Key> more) { std::ranges::move(more, std::back_inserter(keys)); };
-  if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin))
-    add(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
+  if (const auto* scenario = controllers::FindScenario(experiment)) add(ScenarioParameterKeys(*scenario));
+  if (const auto* controller = controllers::FindController(experiment))
     add(ControllerParameterKeys(*controller));
   return keys;
 }

@@ -173,7 +173,7 @@ Result<Outcome> Compute(const CompareOptions& options) {
 std::string AxisName(const Outcome& outcome, const std::string& metric) {
   if (outcome.first.origins.empty()) return metric;
   const Experiment& experiment = outcome.first.origins.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(experiment);
   const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, metric);
   return info == nullptr || info->unit.empty() ? metric : fmt::format("{}, {}", metric, info->unit);
 }

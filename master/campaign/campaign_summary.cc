@@ -25,7 +25,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // What its scenario declares of failures.
 void TakeFromScenario(const Experiment& experiment, CampaignSummary& summary) {
-  if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin)) {
+  if (const auto* scenario = controllers::FindScenario(experiment)) {
     for (const controllers::FailureType& one : scenario->failure_types)
       summary.failure_types.push_back({one.type, one.name});
     summary.untyped = scenario->untyped_failure;
@@ -230,10 +230,10 @@ Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, Re
   TRY(const std::vector<StoredSearch> stored, store.LoadSearches());
   std::vector<CampaignSummary> searches(plans.size());
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    const auto id = static_cast<SearchId>(i + 1);
+    const SearchId id = plans[i].id;
     CampaignSummary& summary = searches[i];
     summary.experiment = plans[i].experiment.name;
-    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i].experiment, id, store));
+    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i], store));
     TRY(const std::optional<SavedState> state, store.LoadNewestState(id));
     summary.progress = search->Progress();
     if (state) summary.progress.generation = state->generation;
@@ -253,8 +253,8 @@ Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, Re
 Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store) {
   std::vector<CampaignSummary> searches;
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    const auto id = static_cast<SearchId>(i + 1);
-    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i].experiment, id, store));
+    const SearchId id = plans[i].id;
+    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i], store));
     TRY(CampaignSummary summary, Summarise(plans[i].experiment, id, *search, store));
     summary.settings = plans[i].settings;
     searches.push_back(std::move(summary));

@@ -64,9 +64,7 @@ std::vector<sim::RunSpec> FirstRuns(const Experiment& experiment, SearchAlgorith
   std::vector<sim::RunSpec> runs;
   for (const EvaluationRequest& request : search.Ask()) {
     for (std::uint32_t i = 0; i < request.replicates && runs.size() < number; ++i) {
-      const std::uint64_t seed =
-          RunSeed(experiment, request.individual, request.test_case, request.evaluation, i);
-      runs.push_back(SpecOf(experiment, request.test_case, seed));
+      runs.push_back(SpecOfRun(experiment, request, i));
     }
   }
   return runs;
@@ -92,7 +90,7 @@ Result<Forecast> MakeForecast(const std::vector<SearchPlan>& plans,
   std::vector<std::vector<sim::RunSpec>> first_runs;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const Experiment& experiment = plans[i].experiment;
-    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeSearch(experiment, kOnlySearch, plans[i].cases));
+    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeSearch(experiment, plans[i].cases));
     const SearchProgress planned = search->Progress();
     forecast.runs += planned.evaluations_planned * static_cast<std::uint64_t>(experiment.search.replicates);
     forecast.cases += planned.individuals_planned;

@@ -72,21 +72,22 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
 }
 
 Status CheckSeed(const Experiment& experiment, const StoredRun& run) {
-  sim::TestCase test_case;
+  EvaluationRequest asked{.individual = run.individual, .evaluation = run.evaluation};
   if (RowOf(experiment).seeds_of_cases) {
     if (run.spec.empty()) return Ok{};  // rows alone are looked at
     Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
     if (!spec) return Damaged(fmt::format("the spec of run {}: {}", run.id, spec.error().message));
-    test_case = std::move(spec->test_case);
+    asked.test_case = std::move(spec->test_case);
   }
-  const std::uint64_t seed = RunSeed(experiment, run.individual, test_case, run.evaluation, run.replicate);
+  const std::uint64_t seed = RunSeed(experiment, asked, run.replicate);
   if (seed == run.seed) return Ok{};
   return Damaged(fmt::format(
       "run {} has seed {}, but replicate {} of evaluation {} of individual {} has {} (campaign seed {})",
       run.id, run.seed, run.replicate, run.evaluation, run.individual, seed, experiment.seed));
 }
 
-Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store, Checked what) {
+Status CheckStored(const SearchPlan& plan, ResultStore& store, Checked what) {
+  const SearchId search = plan.id;
   TRY(std::vector<StoredSearch> searches, store.LoadSearches());
   RunId finished_with = 0;
   for (const StoredSearch& stored : searches) {
@@ -112,7 +113,7 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
   const auto check = [&](const StoredRun& run) -> Status {
     if (run.id != expected && expected <= last_seen) return missing(expected);
     expected = run.id + 1;
-    TRY(CheckSeed(experiment, run));
+    TRY(CheckSeed(plan.experiment, run));
     if (!everything) return Ok{};
     TRY(CheckRecord(run));
     TRY(CheckTestCase(test_cases, run));
@@ -130,8 +131,8 @@ Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& s
 }
 
 Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store, Checked what) {
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    TRY(CheckStored(plans[i].experiment, static_cast<SearchId>(i + 1), store, what));
+  for (const SearchPlan& plan : plans) {
+    TRY(CheckStored(plan, store, what));
   }
   return Ok{};
 }

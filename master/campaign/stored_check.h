@@ -23,8 +23,7 @@ Status CheckSeed(const Experiment& experiment, const StoredRun& run);
 // of a finished search it has seen all); with kEverything also against their own results and specs, and
 // against the individuals' test cases, for which every run is decoded once. Error: kCorrupt, naming the first
 // damage; or reading failed.
-Status CheckStored(const Experiment& experiment, SearchId search, ResultStore& store,
-                   Checked what = Checked::kEverything);
+Status CheckStored(const SearchPlan& plan, ResultStore& store, Checked what = Checked::kEverything);
 // The same of every search.
 Status CheckStored(const std::vector<SearchPlan>& plans, ResultStore& store,
                    Checked what = Checked::kEverything);

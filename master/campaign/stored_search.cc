@@ -9,10 +9,9 @@
 
 namespace gauntlet {
 
-Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, SearchId id,
-                                                          ResultStore& store) {
-  if (!RowOf(experiment).given_cases) return MakeSearch(experiment, kOnlySearch);
-  TRY(std::vector<Individual> individuals, store.LoadIndividuals(id));
+Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store) {
+  if (!RowOf(plan.experiment).given_cases) return MakeSearch(plan.experiment);
+  TRY(std::vector<Individual> individuals, store.LoadIndividuals(plan.id));
   if (individuals.empty()) {
     return Error{ErrorKind::kCorrupt,
                  "the campaign was stopped before its cases were stored: evaluate them anew"};
@@ -22,7 +21,7 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& expe
     if (individual.parents.empty())
       cases.push_back(std::move(individual.test_case));  // others were born later
   }
-  return MakeSearch(experiment, kOnlySearch, std::move(cases));
+  return MakeSearch(plan.experiment, std::move(cases));
 }
 
 bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const SearchAlgorithm& search) {

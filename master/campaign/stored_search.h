@@ -6,16 +6,15 @@
 
 #include "base/result.h"
 #include "master/campaign/state_digest.h"
+#include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
-#include "search/experiment/experiment.h"
 #include "search/search_algorithm.h"
 
 namespace gauntlet {
 
 // The search as it was before its first evaluation. kCorrupt when it is a list of given test cases and the
 // store does not hold them.
-Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, SearchId id,
-                                                          ResultStore& store);
+Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store);
 
 // Whether the search has come to the end of the length that its experiment gives it now: one that was made
 // longer since it ended has not. Takes no look at its runs.

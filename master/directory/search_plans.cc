@@ -22,6 +22,11 @@ Error BadList(const std::string& path, const std::string& what) {
 
 }  // namespace
 
+std::vector<SearchPlan> Numbered(std::vector<SearchPlan> plans) {
+  for (std::size_t i = 0; i < plans.size(); ++i) plans[i].id = static_cast<SearchId>(i + 1);
+  return plans;
+}
+
 std::string WriteSearchPlans(const std::vector<SearchPlan>& plans) {
   nlohmann::ordered_json searches = nlohmann::ordered_json::array();
   for (const SearchPlan& plan : plans)
@@ -45,7 +50,7 @@ Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directo
     if (list.error().kind != ErrorKind::kNotFound) return list.error();
     TRY(const std::string text, ReadRegularFile(directory.experiment_path()));
     TRY(add("", text, directory.experiment_path()));
-    return plans;
+    return Numbered(std::move(plans));
   }
   const nlohmann::json json = nlohmann::json::parse(*list, nullptr, /*allow_exceptions=*/false);
   const bool is_list = json.is_object() && json.contains("format") && json["format"] == kListFormat &&
@@ -58,7 +63,7 @@ Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directo
     TRY(add(search["settings"], search["experiment"], path));
   }
   if (plans.empty()) return BadList(path, "no searches");
-  return plans;
+  return Numbered(std::move(plans));
 }
 
 Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store) {
@@ -67,7 +72,7 @@ Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store) {
     const Experiment& experiment = plans[i].experiment;
     std::string name = experiment.name;
     if (!plans[i].settings.empty()) name += ": " + plans[i].settings;
-    store.AddSearch({static_cast<SearchId>(i + 1), name, experiment.search.algorithm, experiment.seed});
+    store.AddSearch({plans[i].id, name, experiment.search.algorithm, experiment.seed});
   }
   return Ok{};
 }

@@ -17,16 +17,20 @@ struct SearchPlan {
   Experiment experiment;
   // Of a new search through given cases, what it goes through; afterwards the store holds them.
   std::vector<sim::TestCase> cases = {};
+  SearchId id = 0;  // within its campaign: 1, 2, ...; 0 = not numbered yet
 };
+
+// The plans of one campaign with the numbers that their order gives them.
+std::vector<SearchPlan> Numbered(std::vector<SearchPlan> plans);
 
 // The text of searches.json, in the order of the searches' numbers.
 std::string WriteSearchPlans(const std::vector<SearchPlan>& plans);
 
-// Of searches.json, or of experiment.toml when there is none. Error: kCorrupt, kIo, or an experiment that
-// this version does not take.
+// Numbered; of searches.json, or of experiment.toml when there is none. Error: kCorrupt, kIo, or an
+// experiment that this version does not take.
 Result<std::vector<SearchPlan>> ReadSearchPlans(const CampaignDirectory& directory);
 
-// Adds the searches that the store does not know yet.
+// Adds those of the searches that the store does not know yet. They are numbered.
 Status AddSearches(const std::vector<SearchPlan>& plans, ResultStore& store);
 
 }  // namespace gauntlet

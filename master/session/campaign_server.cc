@@ -36,10 +36,7 @@ DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_sha
   limits.without_ways =
       std::ranges::none_of(plans, [](const SearchPlan& plan) { return plan.experiment.store.trajectories; });
   for (const SearchPlan& plan : plans) {
-    const Experiment& experiment = plan.experiment;
-    limits.cpu_limit_seconds = std::max(
-        limits.cpu_limit_seconds,
-        CpuLimitSeconds(experiment.scenario, experiment.scenario_parameters, experiment.scenario_plugin));
+    limits.cpu_limit_seconds = std::max(limits.cpu_limit_seconds, CpuLimitSeconds(plan.experiment));
   }
   return limits;
 }
@@ -109,9 +106,8 @@ Result<SessionReport> CampaignServer::Serve() {
 Status CampaignServer::MakeSearches() {
   // A master may have died between creating the campaign and storing its searches.
   TRY(AddSearches(plans_, *campaign_.store));
-  for (std::size_t i = 0; i < plans_.size(); ++i) {
-    TRY(std::unique_ptr<SearchAlgorithm> search,
-        MakeStoredSearch(plans_[i].experiment, static_cast<SearchId>(i + 1), *campaign_.store));
+  for (const SearchPlan& plan : plans_) {
+    TRY(std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plan, *campaign_.store));
     searches_.push_back(std::move(search));
   }
   return Ok{};
@@ -163,8 +159,7 @@ Status CampaignServer::RestoreSearches() {
   for (std::size_t i = 0; i < plans_.size(); ++i) {
     const Experiment& experiment = plans_[i].experiment;
     drivers_.emplace_back(
-        SearchDriver::Parts{.experiment = experiment,
-                            .search_id = static_cast<SearchId>(i + 1),
+        SearchDriver::Parts{.plan = plans_[i],
                             .search = *searches_[i],
                             .backend = *backend_,
                             .store = *campaign_.store,

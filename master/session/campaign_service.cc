@@ -81,8 +81,7 @@ struct NewCampaign {
 // Whether every search can begin, asked before anything is written.
 Status CheckSearches(const std::vector<SearchPlan>& plans) {
   for (const SearchPlan& plan : plans) {
-    const Result<std::unique_ptr<SearchAlgorithm>> search =
-        MakeSearch(plan.experiment, kOnlySearch, plan.cases);
+    const Result<std::unique_ptr<SearchAlgorithm>> search = MakeSearch(plan.experiment, plan.cases);
     if (search) continue;
     if (plan.settings.empty()) return search.error();
     return Error{search.error().kind, fmt::format("{}: {}", plan.settings, search.error().message)};
@@ -106,11 +105,10 @@ CampaignTexts TextsOf(const std::vector<SearchPlan>& plans, const std::string& v
 // The searches, and the cases of those that are given some.
 Status AddPlans(const std::vector<SearchPlan>& plans, ResultStore& store) {
   TRY(AddSearches(plans, store));
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    if (plans[i].cases.empty()) continue;
-    TRY(const std::unique_ptr<SearchAlgorithm> search,
-        MakeSearch(plans[i].experiment, kOnlySearch, plans[i].cases));
-    store.AddIndividuals(static_cast<SearchId>(i + 1), search->Population());
+  for (const SearchPlan& plan : plans) {
+    if (plan.cases.empty()) continue;
+    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeSearch(plan.experiment, plan.cases));
+    store.AddIndividuals(plan.id, search->Population());
   }
   return Ok{};
 }
@@ -138,13 +136,14 @@ class Campaigns final : public CampaignService {
                               const SessionOptions& options) override {
     // Before anything is made: the corrected command is to find the directory as this one did.
     TRY(TryToListen(options.bind));
-    TRY(NewCampaign created, Create(dir, searches, ""));
-    return CampaignServer(created.ownership, searches, created.golden_hashes, options).Serve();
+    const std::vector<SearchPlan> plans = Numbered(searches);
+    TRY(NewCampaign created, Create(dir, plans, ""));
+    return CampaignServer(created.ownership, plans, created.golden_hashes, options).Serve();
   }
 
   Status Prepare(const std::string& dir, const std::vector<SearchPlan>& searches,
                  const std::string& slurm) override {
-    TRY(Create(dir, searches, slurm));
+    TRY(Create(dir, Numbered(searches), slurm));
     return Ok{};
   }
 

@@ -26,22 +26,22 @@ StoredRun AsOnlySearch(const StoredRun& run) {
 SearchDriver::SearchDriver(const Parts& parts)
     : parts_(parts),
       has_generations_(parts.search.Progress().generations > 1),
-      last_asked_(RunIdOf(parts.search_id, 1) - 1),
+      last_asked_(RunIdOf(parts.plan.id, 1) - 1),
       last_told_(last_asked_),
       saved_until_(last_asked_) {}
 
 Status SearchDriver::Restore() {
-  TRY(SavedProgress saved, RestoreSearch(parts_.search_id, parts_.store, parts_.search));
+  TRY(SavedProgress saved, RestoreSearch(id(), parts_.store, parts_.search));
   digest_ = saved.results;
   last_asked_ = last_told_ = saved_until_ = saved.last_run;
   TRY(const std::vector<SearchTotals> totals, parts_.store.LoadTotals());
   for (const SearchTotals& mine : totals) {
-    if (mine.search != parts_.search_id) continue;
+    if (mine.search != id()) continue;
     runs_done_ = mine.runs;
     total_failures_ = mine.total_failures;
     runs_failed_ = mine.runs_failed;
   }
-  return parts_.store.ForEachRun(parts_.search_id, saved_until_, [this](const StoredRun& run) {
+  return parts_.store.ForEachRun(id(), saved_until_, [this](const StoredRun& run) {
     stored_ahead_.emplace(run.id, run);
     return Ok{};
   });
@@ -62,17 +62,16 @@ Status SearchDriver::Ask() {
   for (EvaluationRequest& request : parts_.search.Ask()) {
     PendingEvaluation evaluation;
     const double length = PredictedLength(request);
-    proto::SeededSpecs specs(SpecOf(parts_.experiment, request.test_case, 0));
+    proto::SeededSpecs specs(SpecOfRun(parts_.plan.experiment, request, 0));
     for (std::uint32_t replicate = 0; replicate < request.replicates; ++replicate) {
       StoredRun run;
       run.id = ++last_asked_;
-      run.search = parts_.search_id;
+      run.search = id();
       run.individual = request.individual;
       run.evaluation = request.evaluation;
       run.replicate = replicate;
       run.generation = request.generation;
-      run.seed =
-          RunSeed(parts_.experiment, request.individual, request.test_case, request.evaluation, replicate);
+      run.seed = RunSeed(parts_.plan.experiment, request, replicate);
       run.spec = specs.Encode(run.seed);
       run.spec_hash = SpecHash(run.spec);
 
@@ -129,7 +128,7 @@ void SearchDriver::Store(FinishedRun finished) {
   if (has_generations_) ticks_[run.individual] = static_cast<double>(finished.result.ticks);
   if (parts_.on_run) parts_.on_run(run, finished);
   // Encoded anew: what a worker may have put in beside the result is not stored.
-  run.result = parts_.experiment.store.trajectories
+  run.result = parts_.plan.experiment.store.trajectories
                    ? proto::EncodeRunResult(finished.result, proto::TrajectoryEncoding::kLeaveOut)
                    : proto::EncodeWithoutWays(finished.result);
   run.message = finished.result.message;
@@ -177,9 +176,9 @@ void SearchDriver::TellCompleted() {
 }
 
 void SearchDriver::SaveState() {
-  parts_.store.AddIndividuals(parts_.search_id, parts_.search.TakeNewborns());
+  parts_.store.AddIndividuals(id(), parts_.search.TakeNewborns());
   SavedState state;
-  state.search = parts_.search_id;
+  state.search = id();
   state.generation = parts_.search.Progress().generation;
   state.last_run = last_told_;
   CanonicalEncoder encoder;
@@ -213,7 +212,7 @@ Status SearchDriver::Advance() {
 
 std::uint64_t SearchDriver::runs_planned() const {
   return parts_.search.Progress().evaluations_planned *
-         static_cast<std::uint64_t>(parts_.experiment.search.replicates);
+         static_cast<std::uint64_t>(parts_.plan.experiment.search.replicates);
 }
 
 }  // namespace gauntlet

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "master/campaign/state_digest.h"
+#include "master/directory/search_plans.h"
 #include "master/dispatch/evaluation_backend.h"
 #include "master/store/result_store.h"
 #include "master/store/run_numbers.h"
-#include "search/experiment/experiment.h"
 #include "search/search_algorithm.h"
 
 namespace gauntlet {
@@ -22,8 +22,7 @@ namespace gauntlet {
 class SearchDriver {
  public:
   struct Parts {
-    const Experiment& experiment;
-    SearchId search_id = kOnlySearch;
+    const SearchPlan& plan;
     SearchAlgorithm& search;
     EvaluationBackend& backend;
     ResultStore& store;
@@ -46,7 +45,7 @@ class SearchDriver {
   // Advance, for the last time: tells what is complete without asking for more.
   void TellCompleted();
 
-  SearchId id() const { return parts_.search_id; }
+  SearchId id() const { return parts_.plan.id; }
   bool finished() const { return pending_.empty() && parts_.search.Progress().finished; }
   // The last run of the newest evaluation that the search was told; before the first run: one less than its
   // id.

@@ -15,8 +15,7 @@ constexpr const char* kTitle = "The fewest obstacles that break the swarm";
 
 // Whether the axes are the coordinates of the place of the failure.
 bool ArePlaces(const ArchiveView& archive, const Experiment& experiment) {
-  const controllers::ScenarioInfo* scenario =
-      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   return scenario != nullptr && scenario->failure_place &&
          archive.axes[0].metric == scenario->failure_place->x &&
          archive.axes[1].metric == scenario->failure_place->y;

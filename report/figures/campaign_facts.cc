@@ -27,7 +27,7 @@ constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 // The descriptors of an experiment's scenario, nullptr where there are none.
 std::vector<const controllers::MetricInfo*> DescriptorsOf(const Experiment& experiment) {
   std::vector<const controllers::MetricInfo*> descriptors;
-  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr) return descriptors;
   for (const controllers::MetricInfo& metric : scenario->metrics) {
     if (metric.descriptor) descriptors.push_back(&metric);
@@ -51,14 +51,14 @@ Result<RunFacts> FactsOf(const StoredRun& run,
   return facts;
 }
 
-Status AddRuns(const SearchPlan& plan, SearchId search, ResultStore& store, std::vector<RunFacts>& runs) {
+Status AddRuns(const SearchPlan& plan, ResultStore& store, std::vector<RunFacts>& runs) {
   const auto descriptors = DescriptorsOf(plan.experiment);
   const auto add = [&](const StoredRun& run) -> Status {
     TRY(RunFacts facts, FactsOf(run, descriptors));
     runs.push_back(std::move(facts));
     return Ok{};
   };
-  return descriptors.empty() ? store.ForEachRow(search, 0, add) : store.ForEachRun(search, 0, add);
+  return descriptors.empty() ? store.ForEachRow(plan.id, 0, add) : store.ForEachRun(plan.id, 0, add);
 }
 
 void AddRun(const RunFacts& run, CaseFacts& of_case) {
@@ -193,8 +193,8 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
   TRY(facts.answers, ReadAnswers(dir));
   TRY(facts.blames, ReadAllBlames(dir));
   TRY(facts.history, HistoryOf(store));
-  for (std::size_t i = 0; i < facts.plans.size(); ++i) {
-    TRY(AddRuns(facts.plans[i], static_cast<SearchId>(i + 1), store, facts.runs));
+  for (const SearchPlan& plan : facts.plans) {
+    TRY(AddRuns(plan, store, facts.runs));
   }
   TRY(facts.cases, CasesOf(facts, store));
   facts.notes = NotesOf(facts, campaign.being_written);

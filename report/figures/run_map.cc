@@ -206,7 +206,7 @@ std::uint64_t LargestCount(const RunMap& map) {
 
 std::vector<RunMap> MapsOf(const CampaignFacts& facts) {
   const Experiment& first = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(first.scenario, first.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(first);
   const bool one_scenario = std::ranges::all_of(facts.plans, [&](const SearchPlan& plan) {
     return plan.experiment.scenario == first.scenario &&
            plan.experiment.scenario_plugin == first.scenario_plugin;

@@ -41,8 +41,8 @@ std::string Listed(const std::vector<std::string>& texts) {
 // What was tested.
 std::string TestedHtml(const CampaignFacts& facts) {
   const Experiment& experiment = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
-  const auto* controller = controllers::FindController(experiment.controller, experiment.plugin);
+  const auto* scenario = controllers::FindScenario(experiment);
+  const auto* controller = controllers::FindController(experiment);
   const SearchRow& search = RowOf(experiment);
   const CampaignSummary& summary = facts.summary;
   std::string failed = FormatCount(summary.total_failures);

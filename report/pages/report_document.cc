@@ -113,7 +113,7 @@ const std::vector<std::array<std::string, 2>>& CaseColumns() {
 
 Json CasesJson(const CampaignFacts& facts) {
   const Experiment& experiment = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(experiment);
   Json cases = Json::array();
   for (const CaseFacts& one : facts.cases) {
     Json type;

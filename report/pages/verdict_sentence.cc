@@ -17,7 +17,7 @@ std::string Percent(double share) {
 // "swarm of birds"
 std::string SwarmOf(const CampaignFacts& facts) {
   const Experiment& experiment = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(experiment);
   return scenario == nullptr ? "swarm" : fmt::format("swarm of {}s", scenario->style.member);
 }
 

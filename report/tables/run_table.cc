@@ -81,8 +81,8 @@ RunColumns CommonRunColumns() {
 
 Result<RunTable> RunTable::Make(const std::vector<SearchPlan>& plans, ResultStore& store) {
   std::vector<std::vector<std::string>> metrics;
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    TRY(auto names, MetricsOf(static_cast<SearchId>(i + 1), store));
+  for (const SearchPlan& plan : plans) {
+    TRY(auto names, MetricsOf(plan.id, store));
     metrics.push_back(std::move(names));
   }
   return RunTable(plans, metrics);
@@ -94,7 +94,7 @@ RunTable::RunTable(const std::vector<SearchPlan>& plans, const std::vector<std::
   Append(ColumnsOfTheRun(), columns_);
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const Experiment& experiment = plans[i].experiment;
-    const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+    const auto* scenario = controllers::FindScenario(experiment);
     untyped_failures_.emplace_back(scenario == nullptr ? "" : scenario->untyped_failure);
     for (const std::string& name : metrics[i]) {
       const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, name);

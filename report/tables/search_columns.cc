@@ -16,9 +16,8 @@ namespace {
 std::vector<Key> KeysOf(const Experiment& experiment) {
   std::vector<Key> keys = BuiltInKeys();
   const auto add = [&](std::vector<Key> more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin))
-    add(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
+  if (const auto* scenario = controllers::FindScenario(experiment)) add(ScenarioParameterKeys(*scenario));
+  if (const auto* controller = controllers::FindController(experiment))
     add(ControllerParameterKeys(*controller));
   return keys;
 }

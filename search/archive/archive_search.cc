@@ -85,8 +85,7 @@ ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::Scenar
 
 Result<std::unique_ptr<ArchiveSearch>> ArchiveSearch::Create(const SearchSetup& setup, LinePolicy policy) {
   const Experiment& experiment = setup.experiment;
-  const controllers::ScenarioInfo* scenario =
-      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   GAUNTLET_CHECK(scenario != nullptr, experiment.scenario);
   if (CellsOf(setup.experiment).empty()) {
     return InvalidInput(

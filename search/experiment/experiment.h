@@ -64,40 +64,19 @@ struct StoreSpec {
   bool trajectories = false;  // the robots' waypoints and the annotations too; replay computes them anyway
 };
 
-struct Experiment {
+struct Experiment : sim::RunSettings {
   std::string name;
   std::string description;
-  std::string scenario;
-  std::string scenario_plugin;          // SHA-256 of the plug-in that brings the scenario; "": it is built in
-  sim::Parameters scenario_parameters;  // resolved
-  std::string definition;               // of a scenario that is defined in the experiment, as in sim::RunSpec
-  std::string controller;
-  sim::Parameters controller_parameters;  // resolved
-  std::string plugin;  // SHA-256 of the plug-in that brings the controller; "": it is built in
   ArenaSpec arena;
   GenomeSpec genome;
   SearchSpec search;
   std::uint64_t seed = 1;
-  sim::PhysicsKind physics = sim::PhysicsKind::kImpulse;
-  sim::Disturbances disturbances;
   StoreSpec store;
 };
 
-// A run of the experiment.
+// A run with the experiment's settings. Those that its search asks for: SpecOfRun (search_table.h).
 inline sim::RunSpec SpecOf(const Experiment& experiment, const sim::TestCase& test_case, std::uint64_t seed) {
-  sim::RunSpec spec;
-  spec.test_case = test_case;
-  spec.scenario = experiment.scenario;
-  spec.scenario_plugin = experiment.scenario_plugin;
-  spec.definition = experiment.definition;
-  spec.scenario_parameters = experiment.scenario_parameters;
-  spec.controller = experiment.controller;
-  spec.controller_parameters = experiment.controller_parameters;
-  spec.plugin = experiment.plugin;
-  spec.seed = seed;
-  spec.physics = experiment.physics;
-  spec.disturbances = experiment.disturbances;
-  return spec;
+  return {experiment, test_case, seed};
 }
 
 }  // namespace gauntlet

@@ -345,11 +345,11 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
   };
   const auto* scenario = experiment.scenario_plugin.empty()
                              ? FindByName(catalogue.scenarios, experiment.scenario)
-                             : controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+                             : controllers::FindScenario(experiment);
   if (scenario != nullptr) insert_before_tables(ScenarioParameterKeys(*scenario));
   const auto* controller = experiment.plugin.empty()
                                ? FindByName(catalogue.controllers, experiment.controller)
-                               : controllers::FindController(experiment.controller, experiment.plugin);
+                               : controllers::FindController(experiment);
   if (controller != nullptr) insert_before_tables(ControllerParameterKeys(*controller));
   if (!experiment.plugin.empty())
     keys.insert(std::ranges::find(keys, "controller", &Key::path) + 1, PluginKey());

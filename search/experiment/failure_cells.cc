@@ -53,8 +53,7 @@ Result<std::vector<CellAxis>> ParseCells(const std::string& text, const controll
 }
 
 std::vector<CellAxis> CellsOf(const Experiment& experiment) {
-  const controllers::ScenarioInfo* scenario =
-      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr) return {};
   if (!experiment.search.cells.empty()) return ParseCells(experiment.search.cells, *scenario).value();
   std::vector<CellAxis> axes;
@@ -64,8 +63,7 @@ std::vector<CellAxis> CellsOf(const Experiment& experiment) {
 }
 
 std::optional<BrokenRule> CheckCells(const Experiment& experiment) {
-  const controllers::ScenarioInfo* scenario =
-      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr || experiment.search.cells.empty()) return std::nullopt;
   const Result<std::vector<CellAxis>> cells = ParseCells(experiment.search.cells, *scenario);
   if (!cells) return BrokenRule{"search.cells", cells.error().message};

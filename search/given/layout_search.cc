@@ -29,7 +29,7 @@ std::optional<sim::Vec2> PlaceOfFailure(const RunOutcome& run, const controllers
 }  // namespace
 
 const controllers::FailurePlace* FailurePlaceOf(const Experiment& experiment) {
-  const auto* info = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* info = controllers::FindScenario(experiment);
   return info == nullptr || !info->failure_place ? nullptr : &*info->failure_place;
 }
 

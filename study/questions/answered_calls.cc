@@ -44,14 +44,13 @@ Status ForEachAnswer(const std::string& directory,
   TRY(const auto campaign, ViewCampaign(directory));
   TRY(const auto plans, ReadSearchPlans(campaign.directory));
   ResultStore& store = *campaign.store;
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    const auto id = static_cast<SearchId>(i + 1);
-    const Experiment& experiment = plans[i].experiment;
-    TRY(const auto search, MakeStoredSearch(experiment, id, store));
+  for (const SearchPlan& plan : plans) {
+    const SearchId id = plan.id;
+    TRY(const auto search, MakeStoredSearch(plan, store));
     TRY(RestoreSearch(id, store, *search));
     if (!search->Progress().finished) continue;
     const auto first_message = [&store, id](IndividualId one) { return FirstMessage(store, id, one); };
-    TRY(visit({id, experiment, *search, store, first_message}));
+    TRY(visit({id, plan.experiment, *search, store, first_message}));
   }
   return Ok{};
 }

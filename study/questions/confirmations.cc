@@ -23,8 +23,7 @@ constexpr const char* kFolder = "/confirm";
 class CaseRuns {
  public:
   CaseRuns(const Experiment& experiment, const sim::TestCase& test_case) : failing_(FailingOf(experiment)) {
-    if (const controllers::ScenarioInfo* scenario =
-            controllers::FindScenario(experiment.scenario, experiment.scenario_plugin)) {
+    if (const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment)) {
       ways_of_.emplace(*scenario, experiment.scenario_parameters, test_case);
       grid_.emplace(CellsOf(experiment));
     }
@@ -116,8 +115,8 @@ Status AddConfirmationsOf(const std::string& dir, std::map<std::uint64_t, Confir
   if (!campaign) return HasNothingYet(campaign.error()) ? Status(Ok{}) : campaign.error();
   TRY(const auto plans, ReadSearchPlans(campaign->directory));
   TRY(CheckStored(plans, *campaign->store, Checked::kRows));
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    TRY(AddConfirmations(plans[i].experiment, static_cast<SearchId>(i + 1), dir, *campaign->store, known));
+  for (const SearchPlan& plan : plans) {
+    TRY(AddConfirmations(plan.experiment, plan.id, dir, *campaign->store, known));
   }
   return Ok{};
 }

@@ -19,8 +19,8 @@ Status CheckEmptyArena(const Experiment& experiment,
   const Experiment asked = ConfirmationOf(experiment, kRuns);  // its seeds are no search's
   FailureTally tally;
   for (std::uint32_t run = 0; run < kRuns; ++run) {
-    const std::uint64_t seed = RunSeed(asked, /*individual=*/1, empty, run, /*replicate=*/0);
-    TRY(const auto result, simulate(SpecOf(asked, empty, seed)));
+    const EvaluationRequest evaluation{.individual = 1, .evaluation = run, .test_case = empty};
+    TRY(const auto result, simulate(SpecOfRun(asked, evaluation, /*replicate=*/0)));
     tally.Add({.verdict = result.verdict, .total_failure = result.failure.total, .metrics = result.metrics},
               FailingOf(experiment));
     if (tally.passes + tally.errors > 0) return Ok{};

@@ -33,7 +33,7 @@ Result<QuestionedCampaign> CasesOfSubset(const std::string& dir, const std::stri
   ResultStore& store = *opened.campaign.store;
   QuestionedCampaign questioned{opened.plans, {}};
   const auto add = [&](const SubsetSearch& search) -> Status {
-    const std::string failing(FailingOf(search.experiment));
+    const std::string failing(FailingOf(search.plan.experiment));
     TRY(const auto runs, SelectRuns(search, store, opened.subset, failing));
     std::set<IndividualId> individuals;
     std::set<std::uint64_t> cases;
@@ -79,7 +79,7 @@ RunId RunOfName(const std::string& name) {
 
 std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case) {
   Fnv1a64 hash;
-  hash.AddBytes(SearchIdentity(SetupOf(about, {}, kOnlySearch, {test_case})));
+  hash.AddBytes(SearchIdentity(SetupOf(about, {}, {test_case})));
   return hash.value();
 }
 

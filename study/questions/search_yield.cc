@@ -90,7 +90,7 @@ Status AddCampaign(const std::string& dir, YieldSet& set) {
   std::vector<FindingRuns> finding_runs(plans.size());
   const std::size_t first = set.searches.size();
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    const auto id = static_cast<SearchId>(i + 1);
+    const SearchId id = plans[i].id;
     TRY(campaign.view.store->ForEachRow(id, 0, [&](const StoredRun& run) {
       finding_runs[i].Add(run);
       return Ok{};

@@ -16,8 +16,8 @@ Result<std::vector<CaseSet>> CasesOf(const std::vector<SearchPlan>& plans, Resul
     TRY(const auto runs, SelectRuns(search, store, subset, "fitness"));
     std::set<IndividualId> wanted;
     for (const SelectedRun& run : runs) wanted.insert(run.individual);
-    TRY(auto individuals, store.LoadIndividuals(search.id));
-    CaseSet& set = sets.emplace_back(CaseSet{search.place, search.experiment, {}, {}});
+    TRY(auto individuals, store.LoadIndividuals(search.plan.id));
+    CaseSet& set = sets.emplace_back(CaseSet{search.place, search.plan.experiment, {}, {}});
     for (Individual& one : individuals) {
       if (wanted.contains(one.id)) set.members.push_back(std::move(one));
     }

@@ -33,7 +33,7 @@ Status AddSearch(const SubsetSearch& search, ResultStore& store, const Subset& s
         fmt::format("{}: {} of {} runs are left out: without a result, or without a value of {}",
                     search.place, left_out, runs.size(), metric));
   }
-  const bool evolves = RowOf(search.experiment).Related();
+  const bool evolves = RowOf(search.plan.experiment).Related();
   AddClusters(runs, evolves, set);
   const std::string unit = evolves ? "evolution" : "case";
   set.unit = set.unit.empty() || set.unit == unit ? unit : "evolution or case";
@@ -81,7 +81,7 @@ Status AddRuns(const std::vector<SearchPlan>& plans, ResultStore& store, const R
     }
     RunOrigin& origin = set.origins.emplace_back(campaign);
     origin.place = search.place;
-    origin.experiment = search.experiment;
+    origin.experiment = search.plan.experiment;
     return Ok{};
   });
 }

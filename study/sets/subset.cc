@@ -47,10 +47,9 @@ std::optional<double> MetricOf(const sim::RunResult& result, const controllers::
 }
 
 // One value for each stored run of a search, in logical order.
-Result<std::vector<SelectedRun>> LoadValues(const Experiment& experiment, SearchId search, ResultStore& store,
+Result<std::vector<SelectedRun>> LoadValues(const SearchPlan& plan, ResultStore& store,
                                             const std::string& metric) {
-  const controllers::ScenarioInfo* scenario =
-      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(plan.experiment);
   const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, metric);
   std::vector<SelectedRun> values;
   const auto take = [&](const StoredRun& run) -> Status {
@@ -65,15 +64,15 @@ Result<std::vector<SelectedRun>> LoadValues(const Experiment& experiment, Search
     value.value = MetricOf(result, info, metric);
     return Ok{};
   };
-  TRY(IsColumn(metric) ? store.ForEachRow(search, 0, take) : store.ForEachRun(search, 0, take));
+  TRY(IsColumn(metric) ? store.ForEachRow(plan.id, 0, take) : store.ForEachRun(plan.id, 0, take));
   return values;
 }
 
 // Of the newest evaluation of each member of the population.
-Result<std::vector<SelectedRun>> FinalValues(const Experiment& experiment, SearchId id, ResultStore& store,
+Result<std::vector<SelectedRun>> FinalValues(const SearchPlan& plan, ResultStore& store,
                                              const std::vector<SelectedRun>& all) {
-  TRY(const auto search, MakeStoredSearch(experiment, id, store));
-  TRY(const auto saved, RestoreSearch(id, store, *search));
+  TRY(const auto search, MakeStoredSearch(plan, store));
+  TRY(const auto saved, RestoreSearch(plan.id, store, *search));
   std::map<IndividualId, std::uint32_t> newest;
   for (const Individual& individual : search->Population()) newest[individual.id] = 0;
   const auto counts = [&](const SelectedRun& run) {
@@ -197,22 +196,21 @@ Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, c
         fmt::format("{} has no search {}: its searches are 1 to {}", place, subset.search, plans.size()));
   }
   TRY(const auto stored, store.LoadSearches());
-  for (std::size_t i = 0; i < plans.size(); ++i) {
-    const auto id = static_cast<SearchId>(i + 1);
+  for (const SearchPlan& plan : plans) {
+    const SearchId id = plan.id;
     if (subset.search != 0 && subset.search != id) continue;
-    TRY(const auto search, MakeStoredSearch(plans[i].experiment, id, store));
+    TRY(const auto search, MakeStoredSearch(plan, store));
     const bool finished = std::ranges::any_of(stored, [&](const StoredSearch& one) {
-      return one.id == id && HasFinished(one, plans[i].experiment, *search);
+      return one.id == id && HasFinished(one, plan.experiment, *search);
     });
     const std::string name = plans.size() > 1 ? fmt::format("{}:search:{}", place, id) : place;
-    TRY(visit({id, plans[i].experiment, name, finished}));
+    TRY(visit({plan, name, finished}));
   }
   return Ok{};
 }
 
 Status CheckMetric(const Experiment& experiment, const std::string& metric) {
-  const controllers::ScenarioInfo* scenario =
-      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   if (IsColumn(metric) || scenario == nullptr || controllers::FindMetric(*scenario, metric) != nullptr) {
     return Ok{};
   }
@@ -223,18 +221,18 @@ Status CheckMetric(const Experiment& experiment, const std::string& metric) {
 
 Result<std::vector<SelectedRun>> SelectRuns(const SubsetSearch& search, ResultStore& store,
                                             const Subset& subset, const std::string& metric) {
-  TRY(CheckMetric(search.experiment, metric));
+  TRY(CheckMetric(search.plan.experiment, metric));
   // What is chosen by its fitness is chosen before the metric is looked at.
   const bool worst = subset.kind == Subset::Kind::kWorst;
-  Result<std::vector<SelectedRun>> runs = LoadValues(search.experiment, search.id, store, metric);
+  Result<std::vector<SelectedRun>> runs = LoadValues(search.plan, store, metric);
   if (runs && subset.kind == Subset::Kind::kFinal) {
-    return FinalValues(search.experiment, search.id, store, *runs);
+    return FinalValues(search.plan, store, *runs);
   }
   if (runs && subset.kind == Subset::Kind::kRandom) {
-    return Drawn(*std::move(runs), subset.count, search.experiment.seed, search.place);
+    return Drawn(*std::move(runs), subset.count, search.plan.experiment.seed, search.place);
   }
   if (!runs || !worst) return runs;
-  Result<std::vector<SelectedRun>> by_fitness = LoadValues(search.experiment, search.id, store, kFitness);
+  Result<std::vector<SelectedRun>> by_fitness = LoadValues(search.plan, store, kFitness);
   if (by_fitness) by_fitness = Lowest(*std::move(by_fitness), subset.count, search.place);
   if (!by_fitness) return by_fitness;
   std::erase_if(*runs, [&](const SelectedRun& run) {

@@ -50,8 +50,7 @@ Result<OpenedSubset> OpenSubset(const SetPart& part);
 
 // A search that a subset is about.
 struct SubsetSearch {
-  SearchId id = 0;
-  const Experiment& experiment;
+  const SearchPlan& plan;
   std::string place;  // the campaign's, with the search's number where it has several
   bool finished = false;
 };

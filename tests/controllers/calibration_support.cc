@@ -50,7 +50,7 @@ Specs MakeSpecs(const sim::RunSpec& spec, const Amounts& amounts) {
   specs.empty.assign(static_cast<std::size_t>(amounts.seeds), spec);
   for (std::size_t i = 0; i < specs.empty.size(); ++i) specs.empty[i].seed = 1 + first + i;
   specs.random.assign(static_cast<std::size_t>(amounts.cases), spec);
-  const auto* scenario = controllers::FindScenario(spec.scenario, spec.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(spec);
   const auto parameters = controllers::ResolveParameters(scenario->parameters, spec.scenario_parameters);
   const auto requirements = scenario->requirements(*parameters, spec.test_case);
   for (std::size_t i = 0; i < specs.random.size(); ++i) {

@@ -103,7 +103,7 @@ int Main(int argc, char** argv) {
           sim::RunSpec spec;
           spec.scenario = "flocking";
           spec.controller = name;
-          const auto* scenario = controllers::FindScenario(spec.scenario, spec.scenario_plugin);
+          const auto* scenario = controllers::FindScenario(spec);
           const auto* controller = controllers::FindController(name);
           const auto has = [](const auto& infos, const std::string& key) {
             return std::any_of(infos.begin(), infos.end(),

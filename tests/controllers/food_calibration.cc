@@ -126,7 +126,7 @@ bool Has(std::span<const controllers::ParameterInfo> infos, const std::string& n
 
 void MeasureSettings(const Options& options, sim::RunSpec spec,
                      const std::map<std::string, double>& settings) {
-  const auto* scenario = controllers::FindScenario(spec.scenario, spec.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(spec);
   const auto* controller = controllers::FindController(spec.controller);
   std::printf("%-22s", spec.controller.c_str());
   for (const auto& [name, value] : settings) {

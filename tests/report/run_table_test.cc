@@ -46,7 +46,7 @@ MemoryStore Campaign(const std::vector<SearchPlan>& plans) {
   for (const SearchPlan& plan : plans) experiments.push_back(plan.experiment);
   MemoryStore store;
   ToySession session(experiments, store, TableRun,
-                     [](const Experiment& experiment) { return *MakeSearch(experiment, kOnlySearch); });
+                     [](const Experiment& experiment) { return *MakeSearch(experiment); });
   EXPECT_TRUE(session.Run().ok());
   return store;
 }
@@ -55,7 +55,7 @@ MemoryStore Campaign(const std::vector<SearchPlan>& plans) {
 struct Rows {
   explicit Rows(const std::vector<SearchPlan>& plans, MemoryStore store = {}) {
     if (store.runs.empty()) store = Campaign(plans);
-    const Result<RunTable> table = RunTable::Make(plans, store);
+    const Result<RunTable> table = RunTable::Make(Numbered(plans), store);
     EXPECT_TRUE(table.ok());
     for (const Column& column : table->columns()) names.push_back(column.name);
     for (const auto& [id, run] : store.runs) {
@@ -144,7 +144,7 @@ TEST(RunTable, ACampaignWithoutACompletedRunHasNoMetrics) {
 TEST(RunTable, AResultThatDoesNotReadBackIsNamed) {
   const std::vector<SearchPlan> plans = {Plan("", {})};
   MemoryStore store = Campaign(plans);
-  const Result<RunTable> table = RunTable::Make(plans, store);
+  const Result<RunTable> table = RunTable::Make(Numbered(plans), store);
   StoredRun damaged = store.runs.at(5);
   damaged.result = "nonsense";
   const Result<std::vector<Cell>> row = table->Row(damaged);

@@ -111,8 +111,11 @@ TEST(ConfirmationSearchTest, IsFinishedAgainWhenItsStateIsRestored) {
 TEST(ConfirmationSearchTest, SeedsAreThoseOfTheCaseAndNoSearchHasThem) {
   const SearchSetup setup = SetupOfCases(2);
   const sim::TestCase& one = setup.cases[0];
-  EXPECT_EQ(RunSeed(setup.experiment, 1, one, 0, 0), RunSeed(setup.experiment, 2, one, 0, 0));
-  EXPECT_NE(RunSeed(setup.experiment, 1, one, 0, 0), RunSeed(setup.experiment, 1, setup.cases[1], 0, 0));
+  const auto seed_of = [&](IndividualId individual, const sim::TestCase& test_case) {
+    return RunSeed(setup.experiment, {.individual = individual, .test_case = test_case}, 0);
+  };
+  EXPECT_EQ(seed_of(1, one), seed_of(2, one));
+  EXPECT_NE(seed_of(1, one), seed_of(1, setup.cases[1]));
   for (const SearchRow& row : Searches()) {
     EXPECT_EQ(row.purpose == sim::SeedPurpose::kConfirm, row.info.name == "confirmation") << row.info.name;
   }

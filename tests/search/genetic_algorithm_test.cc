@@ -230,14 +230,10 @@ TEST(GeneticAlgorithmTest, ConvergesOnAToyFitness) {
   }
 }
 
-TEST(GeneticAlgorithmTest, SameSeedSameRequestsOtherSeedOrSearchOthers) {
+TEST(GeneticAlgorithmTest, SameSeedSameRequestsOtherSeedOthers) {
   SearchSetup setup = SetupOf(ParentSelection::kTwoRandomParentsTwoWorseAway, 10, 10);
   const std::vector<EvaluationRequest> requests = RunToEnd(*MakeGenetic(setup), Noise);
   EXPECT_TRUE(SameRequests(RunToEnd(*MakeGenetic(setup), Noise), requests));
-  SearchSetup other_search = setup;
-  other_search.search_id = 2;
-  EXPECT_NE(MakeGenetic(other_search)->Population().front().test_case.obstacles,
-            requests.front().test_case.obstacles);
   SearchSetup other_seed = setup;
   other_seed.experiment.seed = 8;
   EXPECT_NE(MakeGenetic(other_seed)->Population().front().test_case.obstacles,

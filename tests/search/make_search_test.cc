@@ -27,7 +27,7 @@ TEST(MakeSearchTest, MakesTheSearchOfTheExperiment) {
 TEST(MakeSearchTest, AListOfCasesCannotBeMadeFromAnExperimentAlone) {
   Experiment experiment = ToySetup().experiment;
   experiment.search.algorithm = "cases";
-  const auto search = MakeSearch(experiment, 1);
+  const auto search = MakeSearch(experiment);
   ASSERT_FALSE(search.ok());
   EXPECT_EQ(search.error().message,
             "search.algorithm = \"cases\" needs a list of test cases: use `gauntlet evaluate`");
@@ -43,19 +43,19 @@ TEST(MakeSearchTest, AFaultOfARobotThatTheSwarmDoesNotHaveIsRefused) {
   ASSERT_TRUE(parameters.ok());
   experiment.scenario_parameters = *parameters;
   experiment.disturbances.faults = {{.robot = 10, .device = sim::Device::kWheels, .tick = 500}};
-  const auto search = MakeSearch(experiment, 1);
+  const auto search = MakeSearch(experiment);
   ASSERT_FALSE(search.ok());
   EXPECT_EQ(search.error().message,
             "no run can begin, even without obstacles: bad-fault: 10:wheels@500: robot 10, tick 500; this "
             "swarm has robots 0 to 9, ticks count from 0");
   experiment.disturbances.faults[0].robot = 9;
-  EXPECT_TRUE(MakeSearch(experiment, 1).ok());
+  EXPECT_TRUE(MakeSearch(experiment).ok());
 }
 
 TEST(MakeSearchTest, UnknownScenarioIsNamed) {
   Experiment experiment = ToySetup().experiment;
   experiment.scenario = "juggling";
-  const auto search = MakeSearch(experiment, 1);
+  const auto search = MakeSearch(experiment);
   ASSERT_FALSE(search.ok());
   EXPECT_EQ(search.error().kind, ErrorKind::kNotFound);
   EXPECT_EQ(search.error().message, "there is no scenario 'juggling'");
@@ -70,12 +70,12 @@ TEST(MakeSearchTest, ASwarmThatDoesNotFitIntoTheEmptyArenaIsRefused) {
                                                        {{"robots", 100.0}, {"spawn_radius", 0.4}});
   ASSERT_TRUE(defaults.ok());
   experiment.scenario_parameters = *defaults;
-  auto search = MakeSearch(experiment, 1);
+  auto search = MakeSearch(experiment);
   ASSERT_FALSE(search.ok());
   EXPECT_EQ(search.error().kind, ErrorKind::kInvalidInput);
   EXPECT_THAT(search.error().message, testing::HasSubstr("no-room-to-spawn: only "));
   experiment.scenario_parameters["robots"] = 10.0;
-  search = MakeSearch(experiment, 1);
+  search = MakeSearch(experiment);
   EXPECT_TRUE(search.ok()) << search.error().message;
 }
 

@@ -98,8 +98,7 @@ TEST(MinimisationSearchTest, NoTwoRunsHaveTheSameSeed) {
   const SearchSetup setup = SetupToShorten(1);
   std::set<std::uint64_t> seeds;
   for (const EvaluationRequest& request : Drive(*MakeMinimisation(setup), 3)) {
-    const std::uint64_t seed =
-        RunSeed(setup.experiment, request.individual, request.test_case, request.evaluation, 0);
+    const std::uint64_t seed = RunSeed(setup.experiment, request, 0);
     EXPECT_TRUE(seeds.insert(seed).second);
   }
 }

@@ -35,7 +35,7 @@ EvaluationOutcome Outcome(const EvaluationRequest& request, double fails_from) {
 }
 
 std::unique_ptr<SearchAlgorithm> Driven(const Experiment& experiment, double fails_from = 9.0) {
-  std::unique_ptr<SearchAlgorithm> search = MakeSearch(experiment, 1).value();
+  std::unique_ptr<SearchAlgorithm> search = MakeSearch(experiment).value();
   while (!search->Progress().finished) {
     for (const EvaluationRequest& request : search->Ask()) search->Tell(Outcome(request, fails_from));
   }

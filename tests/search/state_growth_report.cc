@@ -19,7 +19,7 @@ void PrintRow(const std::string& algorithm, int runs) {
                       "search.generations=" + std::to_string(runs / kPopulation)},
                      BuiltInCatalogue());
   if (!experiment.ok()) return;
-  const auto search = MakeSearch(*experiment, 1);
+  const auto search = MakeSearch(*experiment);
   if (!search.ok()) return;
   const StateGrowth growth = GrowthOf(**search);
   std::printf("| %s | %llu | %llu | %.1f | %.0f |\n", algorithm.c_str(),

@@ -41,15 +41,14 @@ sim::RunResult SmallRun(const sim::RunSpec& spec) {
 MemoryStore Campaign(const std::vector<Experiment>& experiments) {
   MemoryStore store;
   ToySession session(experiments, store, SmallRun,
-                     [](const Experiment& experiment) { return *MakeSearch(experiment, kOnlySearch); });
+                     [](const Experiment& experiment) { return *MakeSearch(experiment); });
   EXPECT_TRUE(session.Run().ok());
   return store;
 }
 
 RunSet SetOf(const std::vector<Experiment>& experiments, MemoryStore& store, const std::string& subset,
              const std::string& metric = "fitness") {
-  std::vector<SearchPlan> plans;
-  for (const Experiment& experiment : experiments) plans.push_back({"", experiment});
+  const std::vector<SearchPlan> plans = PlansOf(experiments);
   RunSet set;
   const Status added = AddRuns(plans, store, {"c", {}, "1", {}}, *ParseSubset(subset, "c"), metric, set);
   EXPECT_TRUE(added.ok()) << (added.ok() ? "" : added.error().message);
@@ -139,7 +138,7 @@ TEST(AddRunsTest, RandomRunsAreDrawnOnceEachAndTheSameEveryTime) {
   EXPECT_EQ(std::ranges::adjacent_find(drawn), drawn.end());
 
   RunSet set;
-  const Status added = AddRuns({{"", experiments[0]}}, store, {"c", {}, "1", {}},
+  const Status added = AddRuns(PlansOf(experiments), store, {"c", {}, "1", {}},
                                *ParseSubset("random:41", "c"), "fitness", set);
   EXPECT_THAT(added.error().message, HasSubstr("c: 41 runs cannot be taken from "));
 }
@@ -191,7 +190,7 @@ TEST(AddRunsTest, SearchesOfASweepAreUnitsAndCanBeTakenAlone) {
   EXPECT_EQ(SetOf(experiments, store, "search:2").values.clusters,
             (analysis::Clusters{both.values.clusters[1]}));
   RunSet set;
-  const std::vector<SearchPlan> plans = {{"", experiments[0]}, {"", experiments[1]}};
+  const std::vector<SearchPlan> plans = PlansOf(experiments);
   EXPECT_EQ(AddRuns(plans, store, {"c", {}, "1", {}}, *ParseSubset("search:3", "c"), "fitness", set)
                 .error()
                 .message,
@@ -216,7 +215,7 @@ TEST(AddRunsTest, MetricsAreReadAndThoseWithNothingToMeasureLeftOut) {
                 " of 40 runs are left out: without a result, or without a value of split_time");
 
   RunSet set;
-  EXPECT_EQ(AddRuns({{"", experiments[0]}}, store, {}, {}, "birds_lft", set).error().message,
+  EXPECT_EQ(AddRuns(PlansOf(experiments), store, {}, {}, "birds_lft", set).error().message,
             "unknown metric 'birds_lft'; did you mean 'birds_left'?");
 }
 
@@ -230,8 +229,7 @@ TEST(AddRunsTest, HalfACampaignIsNamedAsSuch) {
 
 std::vector<CaseSet> CasesIn(const std::vector<Experiment>& experiments, MemoryStore& store,
                              const std::string& subset) {
-  std::vector<SearchPlan> plans;
-  for (const Experiment& experiment : experiments) plans.push_back({"", experiment});
+  const std::vector<SearchPlan> plans = PlansOf(experiments);
   const auto sets = CasesOf(plans, store, "c", *ParseSubset(subset, "c"));
   EXPECT_TRUE(sets.ok()) << (sets.ok() ? "" : sets.error().message);
   return sets.ok() ? *sets : std::vector<CaseSet>();
@@ -245,7 +243,7 @@ TEST(CasesOfTest, EveryMemberOfThePopulationOnceClonesIncluded) {
   ASSERT_EQ(sets.size(), 2U);
   EXPECT_EQ(sets[0].place, "c:search:1");
   EXPECT_EQ(sets[1].place, "c:search:2");
-  const auto search = MakeStoredSearch(experiments[0], 1, store);
+  const auto search = MakeStoredSearch(PlansOf(experiments)[0], store);
   ASSERT_TRUE(search.ok());
   ASSERT_TRUE(RestoreSearch(1, store, **search).ok());
   std::vector<IndividualId> population;

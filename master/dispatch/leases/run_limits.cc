@@ -8,13 +8,13 @@
 
 namespace gauntlet {
 
-double CpuLimitSeconds(std::string_view scenario, const sim::Parameters& scenario_parameters,
-                       std::string_view plugin) {
+double CpuLimitSeconds(const sim::RunSettings& settings) {
   constexpr double kSecondsPerTick = 0.01;
   const double least = DispatchOptions().cpu_limit_seconds;
-  const controllers::ScenarioInfo* info = controllers::FindScenario(scenario, plugin);
+  const controllers::ScenarioInfo* info = controllers::FindScenario(settings);
   if (info == nullptr) return least;
-  return std::max(least, info->TimeLimit(scenario_parameters) * sim::kTicksPerSecond * kSecondsPerTick);
+  return std::max(least,
+                  info->TimeLimit(settings.scenario_parameters) * sim::kTicksPerSecond * kSecondsPerTick);
 }
 
 }  // namespace gauntlet

@@ -80,8 +80,7 @@ Result<std::string> AskPlugin(std::vector<std::string> arguments, std::string_vi
 }  // namespace
 
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch) {
-  const std::string cpu_limit =
-      fmt::format("{}", CpuLimitSeconds(spec.scenario, spec.scenario_parameters, spec.scenario_plugin));
+  const std::string cpu_limit = fmt::format("{}", CpuLimitSeconds(spec));
   std::vector<std::string> arguments = {"--run-spec", "-", "--cpu-limit", cpu_limit, "--quiet"};
   TRY(AddPlugins(spec, arguments));
   if (!scratch.empty()) arguments.insert(arguments.end(), {"--scratch", scratch});

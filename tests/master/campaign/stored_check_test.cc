@@ -85,10 +85,10 @@ class DamageTest : public testing::TestWithParam<Damage> {};
 
 TEST_P(DamageTest, IsFoundAndNamed) {
   MemoryStore store = FinishedToyCampaign({Toy()});
-  const Status before = CheckStored(Toy(), kOnlySearch, store);
+  const Status before = CheckStored(PlansOf({Toy()}), store);
   ASSERT_TRUE(before.ok()) << before.error().message;
   GetParam().inflict(store);
-  const Status after = CheckStored(Toy(), kOnlySearch, store);
+  const Status after = CheckStored(PlansOf({Toy()}), store);
   ASSERT_FALSE(after.ok());
   EXPECT_EQ(after.error().kind, ErrorKind::kCorrupt);
   EXPECT_THAT(after.error().message, HasSubstr("the campaign's database was changed or is damaged: "));
@@ -106,7 +106,7 @@ TEST(CheckStoredTest, ACampaignThatWasInterruptedAnywhereIsWhole) {
     const Result<CampaignEnd> end =
         session.Run([&] { return store.runs.size() >= results ? StopWish::kNow : StopWish::kNone; });
     ASSERT_TRUE(end.ok());
-    const Status whole = CheckStored(Toy(), kOnlySearch, store);
+    const Status whole = CheckStored(PlansOf({Toy()}), store);
     EXPECT_TRUE(whole.ok()) << results << ": " << whole.error().message;
   }
 }

@@ -42,7 +42,8 @@ TEST(SearchLoopTest, EveryRunIsStoredWithWhatItWasMadeOf) {
   RunId expected = 1;
   for (const auto& [id, run] : store.runs) {
     EXPECT_EQ(id, expected++);
-    EXPECT_EQ(run.seed, RunSeed(experiment, run.individual, {}, run.evaluation, run.replicate));
+    EXPECT_EQ(run.seed, RunSeed(experiment, {.individual = run.individual, .evaluation = run.evaluation},
+                                run.replicate));
     EXPECT_EQ(run.spec_hash, SpecHash(run.spec));
     const Result<sim::RunSpec> spec = proto::DecodeRunSpec(run.spec);
     const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);

@@ -54,6 +54,13 @@ inline std::unique_ptr<SearchAlgorithm> MakeToySearch(const Experiment& experime
   return std::move(RowOf(experiment).make(setup)).value();
 }
 
+// A campaign's searches.
+inline std::vector<SearchPlan> PlansOf(const std::vector<Experiment>& experiments) {
+  std::vector<SearchPlan> plans;
+  for (const Experiment& experiment : experiments) plans.push_back({"", experiment});
+  return Numbered(std::move(plans));
+}
+
 // One process's life with the campaign that a store holds.
 class ToySession {
  public:
@@ -62,17 +69,14 @@ class ToySession {
   ToySession(const std::vector<Experiment>& experiments, testing_support::MemoryStore& store,
              testing_support::FakeBackend::Simulate simulate = ToyRun,
              const MakeSearch& make_search = MakeToySearch)
-      : backend(clock, std::move(simulate)), experiments_(experiments) {
+      : backend(clock, std::move(simulate)), plans_(PlansOf(experiments)) {
     SearchLoop::Parts parts{{}, backend, store, clock};
-    for (std::size_t i = 0; i < experiments_.size(); ++i) {
-      const auto id = static_cast<SearchId>(i + 1);
-      if (store.searches.size() < id) store.searches.push_back({id, "toy", "genetic", experiments_[i].seed});
-      searches_.push_back(make_search(experiments_[i]));
-      drivers.emplace_back(SearchDriver::Parts{.experiment = experiments_[i],
-                                               .search_id = id,
-                                               .search = *searches_.back(),
-                                               .backend = backend,
-                                               .store = store});
+    for (const SearchPlan& plan : plans_) {
+      if (store.searches.size() < plan.id)
+        store.searches.push_back({plan.id, "toy", "genetic", plan.experiment.seed});
+      searches_.push_back(make_search(plan.experiment));
+      drivers.emplace_back(
+          SearchDriver::Parts{.plan = plan, .search = *searches_.back(), .backend = backend, .store = store});
       parts.searches.push_back(&drivers.back());
     }
     loop = std::make_unique<SearchLoop>(parts);
@@ -90,7 +94,7 @@ class ToySession {
   std::vector<CampaignProgress> progress;  // as it was reported
 
  private:
-  const std::vector<Experiment> experiments_;
+  const std::vector<SearchPlan> plans_;
   std::vector<std::unique_ptr<SearchAlgorithm>> searches_;
 };
 

@@ -49,7 +49,7 @@ TEST_F(ShippedExperimentsTest, AllAreReadableNamedAsTheirFileAndSearchable) {
     const Result<Experiment> experiment = LoadExperiment(shipped.name, {}, BuiltInCatalogue());
     ASSERT_TRUE(experiment.ok()) << experiment.error().message;
     EXPECT_EQ(experiment->name, shipped.name);
-    const auto search = MakeSearch(*experiment, 1);
+    const auto search = MakeSearch(*experiment);
     ASSERT_TRUE(search.ok()) << search.error().message;
   }
   EXPECT_THAT(names, ::testing::IsSupersetOf({"flocking", "flocking-improved"}));
