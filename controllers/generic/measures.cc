@@ -34,7 +34,7 @@ constexpr std::array<MomentInfo, kMoments> kMomentInfos = {{
     {"largest_cluster", "", "robots in the largest cluster: linked over link_range and line of sight", true},
     {"clusters", "", "clusters, lone robots among them"},
     {"dispersion", "m", "mean distance of the robots from the swarm's centre", true},
-    {"order", "", "length of the mean heading vector: 1 = all head one way, near 0 = all ways"},
+    {"order", "", "length of the mean heading vector: 1 = all head in one direction, near 0 = in all"},
     {"speed", "m/s", "mean speed of the robots"},
 }};
 
