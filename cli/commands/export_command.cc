@@ -154,8 +154,8 @@ Result<ExitCode> RunExport(CommandContext& context, const ExportCommandOptions& 
     for (const auto& [notice, of_files] : argos_files.notices)
       PrintMessage(context,
                    of_files == files ? notice : fmt::format("{} of {} files: {}", of_files, files, notice));
-    PrintMessage(context, fmt::format("wrote {} case {} into {}", FormatCount(files),
-                                      files == 1 ? "file" : "files", options.out));
+    PrintMessage(context, fmt::format("wrote {} case {} into {}", FormatCount(files), Plural(files, "file"),
+                                      options.out));
     return kExitDone;
   }
   TRY(const ExportReport report,
