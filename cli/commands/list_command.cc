@@ -57,21 +57,16 @@ std::string RangeOf(double min, double max) {
   return fmt::format("{} to {}", Number(min), Number(max));
 }
 
-std::string RangeOf(const Key& key) {
+std::string RangeOf(const KeyInfo& key) {
   if (key.type == KeyType::kChoice) return "a choice";
   if (key.type == KeyType::kFlag) return "true, false";
   if (key.type == KeyType::kText) return "text";
   return RangeOf(key.min, key.max);
 }
 
-std::string DescriptionOf(const Key& key) {
+std::string DescriptionOf(const KeyInfo& key) {
   if (key.type != KeyType::kChoice) return key.description;
   return fmt::format("{} ({})", fmt::join(key.choices, " | "), key.description);
-}
-
-std::string DefaultOf(const Key& key) {
-  const auto* text = std::get_if<std::string>(&key.default_value);
-  return text != nullptr ? *text : ToToml(key.default_value);
 }
 
 Table NewParameterTable() {
@@ -87,10 +82,11 @@ std::string ParameterTable(std::span<const controllers::ParameterInfo> parameter
   return table.ToText(4);
 }
 
-std::string KeyTable(const std::vector<Key>& keys, std::size_t indent) {
+template <typename Keys>
+std::string KeyTable(const Keys& keys, std::size_t indent) {
   Table table = NewParameterTable();
-  for (const Key& key : keys)
-    table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
+  for (const KeyInfo& key : keys)
+    table.AddRow({key.path, ToSet(key.default_value), key.unit, RangeOf(key), DescriptionOf(key)});
   return table.ToText(indent);
 }
 
@@ -223,7 +219,7 @@ Json FailureJson(const controllers::FailureType& failure) {
   return {{"type", failure.type}, {"name", failure.name}};
 }
 
-Json KeyJson(const Key& key) {
+Json KeyJson(const KeyInfo& key) {
   Json json = {{"name", key.path}, {"type", NameOf(key.type)}, {"unit", key.unit}};
   std::visit(
       [&](const auto& value) {

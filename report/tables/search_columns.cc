@@ -6,22 +6,11 @@
 
 #include <fmt/format.h>
 
-#include "controllers/registry.h"
 #include "search/experiment/schema.h"
 #include "search/search_table.h"
 
 namespace gauntlet {
 namespace {
-
-std::vector<Key> KeysOf(const Experiment& experiment) {
-  std::vector<Key> keys = BuiltInKeys();
-  const auto add = [&](std::vector<Key> more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin))
-    add(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
-    add(ControllerParameterKeys(*controller));
-  return keys;
-}
 
 Cell CellOf(const KeyValue& value) {
   return std::visit([](const auto& one) { return Cell(one); }, value);
@@ -48,7 +37,7 @@ std::vector<Setting> SettingsOf(const std::vector<SearchPlan>& plans) {
   std::vector<Setting> settings;
   std::map<std::string, std::size_t> places;
   for (std::size_t search = 0; search < plans.size(); ++search) {
-    for (Key& key : KeysOf(plans[search].experiment)) {
+    for (Key& key : AllKeysOf(plans[search].experiment)) {
       if (key.for_people || key.type == KeyType::kSeed) continue;
       const auto [place, is_new] = places.emplace(key.path, settings.size());
       const Cell value = CellOf(key.get(plans[search].experiment));
