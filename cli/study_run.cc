@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/duration_text.h"
+#include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "cli/output/output_file.h"
@@ -29,8 +30,7 @@ namespace fs = std::filesystem;
 
 // Makes the stage's campaign under another name first, so that one with this name is whole.
 Status MakeStage(CommandContext& context, const Study& study, const StudyRun& run, StudyStage stage) {
-  TRY(const std::vector<SearchPlan> plans,
-      stage == StudyStage::kSearches ? PlanSearchStage(study) : PlanEvaluationStage(study, run.directory));
+  TRY(const std::vector<SearchPlan> plans, PlanStage(study, run.directory, stage));
   const std::string unfinished = UnfinishedCampaignOf(run.directory, stage);
   std::error_code error;
   fs::remove_all(unfinished, error);
@@ -45,11 +45,10 @@ Status MakeStage(CommandContext& context, const Study& study, const StudyRun& ru
 std::string Announcement(const Study& study, const CampaignRun& campaign, const StudyRun& run,
                          StudyStage stage) {
   const int workers = campaign.session.workers;
-  return fmt::format("{}: {}, {}, in {}", study.name,
-                     stage == StudyStage::kSearches ? "searches" : "re-simulations",
-                     run.submitted != nullptr ? std::string("workers from Slurm")
-                                              : fmt::format("{} worker{}", workers, workers == 1 ? "" : "s"),
-                     campaign.directory);
+  return fmt::format(
+      "{}: {}, {}, in {}", study.name, stage == StudyStage::kSearches ? "searches" : "re-simulations",
+      run.submitted != nullptr ? std::string("workers from Slurm") : Counted(workers, "worker"),
+      campaign.directory);
 }
 
 Result<ExitCode> RunStage(CommandContext& context, const Study& study, const StudyRun& run, StudyStage stage,
@@ -121,8 +120,8 @@ Result<ExitCode> PrintForecast(CommandContext& context, const Study& study, cons
     context.out << fmt::format(
                        "{}: a dry run, nothing was made\n\n{}\n  Times are those of up to twelve of the "
                        "first runs of "
-                       "each part, with {} worker{}; later runs may take longer or shorter.\n",
-                       study.name, table.ToText(), workers, workers == 1 ? "" : "s")
+                       "each part, with {}; later runs may take longer or shorter.\n",
+                       study.name, table.ToText(), Counted(workers, "worker"))
                 << std::flush;
   }
   return kExitDone;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -158,45 +159,30 @@ Status Compare(const Desk& desk) {
                    {{desk.analysis.Key("first"), c.first.n}, {desk.analysis.Key("second"), c.second.n}});
 }
 
-struct Bounds {
-  double at_least = -std::numeric_limits<double>::infinity();
-  double at_most = std::numeric_limits<double>::infinity();
-  double above = -std::numeric_limits<double>::infinity();
-  double below = std::numeric_limits<double>::infinity();
-  bool Holds(double value) const {
-    return value >= at_least && value <= at_most && (value > above || std::isinf(above)) &&
-           (value < below || std::isinf(below));
-  }
-};
-
-Result<Bounds> BoundsOf(const StudyAnalysis& analysis) {
-  Bounds bounds;
-  for (const auto& [key, bound] :
-       {std::pair("at_least", &bounds.at_least), std::pair("at_most", &bounds.at_most),
-        std::pair("above", &bounds.above), std::pair("below", &bounds.below)}) {
-    const std::string text = analysis.Key(key);
-    if (text.empty()) continue;
-    const auto number = ParseNumber<double>(text);
-    if (!number) return InvalidInput(fmt::format("{} is '{}', expected a number", key, text));
-    *bound = *number;
-  }
-  return bounds;
+// Whether a value is within what the analysis asks for.
+std::function<bool(double)> BoundsOf(const StudyAnalysis& analysis) {
+  const auto bound = [&](const std::string& key, double otherwise) {
+    return ParseNumber<double>(analysis.Key(key)).value_or(otherwise);
+  };
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  return [at_least = bound("at_least", -kEndless), at_most = bound("at_most", kEndless),
+          above = bound("above", -kEndless), below = bound("below", kEndless)](double value) {
+    return value >= at_least && value <= at_most && value > above && value < below;
+  };
 }
 
 // How many runs of one set, or of two, have a value within bounds.
 Status Count(const Desk& desk) {
-  TRY(const auto bounds, BoundsOf(desk.analysis));
+  const auto in_bounds = BoundsOf(desk.analysis);
   StudyTable table{{"set", ">runs", ">" + desk.analysis.Key("what"), ">%", ">95 % interval (Wilson)"}, {}};
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shares;
-  std::vector<std::pair<std::string, std::size_t>> sets;
   for (const char* which : {"first", "second"}) {
     const std::string name = desk.analysis.Key(which);
     if (name.empty()) continue;
     TRY(const auto set, desk.runs.Set(name, desk.Metric()));
     const std::vector<double> values = ValuesOf(set);
     if (values.empty()) return InvalidInput(name + ": no run has a value of " + desk.Metric());
-    const auto hits = static_cast<std::uint32_t>(
-        std::ranges::count_if(values, [&](double value) { return bounds.Holds(value); }));
+    const auto hits = static_cast<std::uint32_t>(std::ranges::count_if(values, in_bounds));
     const auto of = static_cast<std::uint32_t>(values.size());
     const double percent = 100.0 * hits / of;
     const analysis::Interval interval = analysis::WilsonInterval(hits, of, analysis::kConfidence);
@@ -208,7 +194,6 @@ Status Count(const Desk& desk) {
                           fmt::format("{:.1f}", percent),
                           fmt::format("{:.1f} to {:.1f}", 100.0 * interval.low, 100.0 * interval.high)});
     shares.emplace_back(hits, of);
-    sets.emplace_back(name, of);
   }
   desk.section.tables.push_back(std::move(table));
   if (shares.size() < 2) return Ok{};
@@ -281,30 +266,35 @@ Status Types(const Desk& desk) {
 
 // In which generation the searches' populations have the most types of failure, on average.
 Status Peak(const Desk& desk) {
-  TRY(const auto searches, desk.runs.TypesByGeneration(desk.analysis.Key("part")));
+  TRY(const auto searches, desk.runs.All(desk.analysis.Key("part"), "failure_type"));
   std::size_t generations = std::numeric_limits<std::size_t>::max();
-  for (const auto& search : searches) generations = std::min(generations, search.size());
+  for (const auto& runs : searches) {
+    const auto last = std::ranges::max_element(runs, {}, &SelectedRun::generation);
+    generations = std::min<std::size_t>(generations, last == runs.end() ? 0 : last->generation);
+  }
   StudyTable table{{">generation", ">types in it, mean", ">types so far, mean"}, {}};
   std::size_t best = 0;
   double most = -1.0;
-  for (std::size_t generation = 0; generation < generations; ++generation) {
+  std::vector<std::set<double>> all(searches.size());
+  for (std::size_t generation = 1; generation <= generations; ++generation) {
     double in_it = 0.0;
     double so_far = 0.0;
-    for (const auto& search : searches) {
-      const std::set<int> types(search[generation].begin(), search[generation].end());
-      std::set<int> all;
-      for (std::size_t i = 0; i <= generation; ++i) all.insert(search[i].begin(), search[i].end());
+    for (std::size_t search = 0; search < searches.size(); ++search) {
+      std::set<double> types;
+      for (const SelectedRun& run : searches[search]) {
+        if (run.generation == generation && run.value) types.insert(*run.value);
+      }
+      all[search].insert(types.begin(), types.end());
       in_it += static_cast<double>(types.size()) / static_cast<double>(searches.size());
-      so_far += static_cast<double>(all.size()) / static_cast<double>(searches.size());
+      so_far += static_cast<double>(all[search].size()) / static_cast<double>(searches.size());
     }
     if (in_it > most) {
       most = in_it;
-      best = generation + 1;
+      best = generation;
     }
-    if (generation == 0 || (generation + 1) % 10 == 0) {
+    if (generation == 1 || generation % 10 == 0)
       table.rows.push_back(
-          {fmt::format("{}", generation + 1), fmt::format("{:.2f}", in_it), fmt::format("{:.2f}", so_far)});
-    }
+          {fmt::format("{}", generation), fmt::format("{:.2f}", in_it), fmt::format("{:.2f}", so_far)});
   }
   desk.Add("generation", static_cast<double>(best), fmt::format("{}", best));
   desk.Add("types", most, fmt::format("{:.2f}", most));

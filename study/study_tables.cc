@@ -1,6 +1,7 @@
 #include "study/study_tables.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -8,41 +9,21 @@
 #include "base/number_text.h"
 
 namespace gauntlet {
-namespace {
-
-struct Tally {
-  int agree = 0;
-  int differ = 0;
-  int not_judged = 0;
-  int not_computed = 0;
-};
-
-void Count(const std::vector<JudgedRow>& rows, Tally& tally) {
-  for (const JudgedRow& row : rows) {
-    if (row.verdict == "agrees") ++tally.agree;
-    if (row.verdict == "differs") ++tally.differ;
-    if (row.verdict == "not judged") ++tally.not_judged;
-    if (row.verdict == "not computed") ++tally.not_computed;
-  }
-}
-
-Tally TallyOf(const StudyReport& report) {
-  Tally tally;
-  for (const StudySection& section : report.sections) Count(section.published, tally);
-  Count(report.elsewhere, tally);
-  return tally;
-}
-
-}  // namespace
 
 std::string TallyInWords(const StudyReport& report) {
-  const Tally tally = TallyOf(report);
-  const int all = tally.agree + tally.differ + tally.not_judged + tally.not_computed;
+  std::map<std::string, int> tally;
+  int all = 0;
+  const auto count = [&](const std::vector<JudgedRow>& rows) {
+    for (const JudgedRow& row : rows) ++tally[row.verdict];
+    all += static_cast<int>(rows.size());
+  };
+  for (const StudySection& section : report.sections) count(section.published);
+  count(report.elsewhere);
   if (all == 0) return "";
   return fmt::format(
       "Of {} published figures {} agree with ours, {} differ, {} stand beside ours without being judged, and "
       "{} have no counterpart here.",
-      all, tally.agree, tally.differ, tally.not_judged, tally.not_computed);
+      all, tally["agrees"], tally["differs"], tally["not judged"], tally["not computed"]);
 }
 
 std::string TimeInWords(const StudyReport& report) {
