@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/duration_text.h"
 #include "base/printable.h"
-#include "cli/output/table.h"
 #include "master/campaign/forecast.h"
 #include "proto/json_text.h"
 

@@ -48,10 +48,6 @@ std::vector<double> ValuesOf(const RunSet& set) {
   return values;
 }
 
-std::string Interval(const std::optional<analysis::Interval>& interval) {
-  return interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-";
-}
-
 // The parts whose cases a set consists of, and those that it was simulated in, which may be the same.
 Result<std::pair<PartCost, PartCost>> CostsOf(const Desk& desk, const std::string& set) {
   PartCost made;
@@ -74,16 +70,15 @@ Result<std::pair<PartCost, PartCost>> CostsOf(const Desk& desk, const std::strin
 
 // What the sets have cost: simulations, distinct cases, re-simulations.
 Status AddBudget(const Desk& desk, const std::vector<std::pair<std::string, std::size_t>>& sets) {
-  StudyTable table{
-      {"set", ">simulations", ">distinct cases", ">cases to choose from", ">re-simulations", ">compared"},
-      {}};
+  Table table(
+      {"set", ">simulations", ">distinct cases", ">cases to choose from", ">re-simulations", ">compared"});
   const char* names[] = {"first", "second"};
   for (std::size_t i = 0; i < sets.size(); ++i) {
     const auto& [set, compared] = sets[i];
     TRY(const auto costs, CostsOf(desk, set));
     const auto& [made, again] = costs;
-    table.rows.push_back({set, FormatCount(made.runs), FormatCount(made.distinct_cases),
-                          FormatCount(made.cases), FormatCount(again.runs), FormatCount(compared)});
+    table.AddRow({set, FormatCount(made.runs), FormatCount(made.distinct_cases), FormatCount(made.cases),
+                  FormatCount(again.runs), FormatCount(compared)});
     desk.Add(fmt::format("{}.budget", names[i]),
              fmt::format("{} / {} / {}", made.cases, compared, made.runs));
   }
@@ -92,24 +87,23 @@ Status AddBudget(const Desk& desk, const std::vector<std::pair<std::string, std:
 }
 
 void AddSetFigures(const Desk& desk, const std::string& which, const RunSet& set,
-                   const analysis::Description& description, double rank_sum, double other_u,
-                   StudyTable& table) {
+                   const analysis::Description& description, double rank_sum, double other_u, Table& table) {
   const std::vector<double> values = ValuesOf(set);
   const auto n = static_cast<double>(values.size());
   const double zeros = 100.0 * static_cast<double>(std::ranges::count(values, 0.0)) / n;
   const double sd = description.sd.value_or(0.0);
   desk.Add(which + ".n", n, fmt::format("{}", values.size()));
-  desk.Add(which + ".mean", description.mean, Decimal(description.mean));
-  desk.Add(which + ".sd", sd, Decimal(sd));
+  desk.Add(which + ".mean", description.mean, FormatFitness(description.mean));
+  desk.Add(which + ".sd", sd, FormatFitness(sd));
   desk.Add(which + ".rank_sum", rank_sum, fmt::format("{:.1f}", rank_sum));
   desk.Add(which + ".mean_rank", rank_sum / n, fmt::format("{:.2f}", rank_sum / n));
   desk.Add(which + ".u", other_u, fmt::format("{:.1f}", other_u));
   desk.Add(which + ".zeros", zeros, fmt::format("{:.1f}", zeros));
-  table.rows.push_back({set.values.name, fmt::format("{}", values.size()),
-                        fmt::format("{} ({})", set.values.clusters.size(), set.unit),
-                        Decimal(description.mean), Decimal(sd), Decimal(description.median),
-                        fmt::format("{:.1f}", zeros), fmt::format("{:.1f}", rank_sum),
-                        fmt::format("{:.2f}", rank_sum / n), fmt::format("{:.1f}", other_u)});
+  table.AddRow({set.values.name, fmt::format("{}", values.size()),
+                fmt::format("{} ({})", set.values.clusters.size(), set.unit), FormatFitness(description.mean),
+                FormatFitness(sd), FormatFitness(description.median), fmt::format("{:.1f}", zeros),
+                fmt::format("{:.1f}", rank_sum), fmt::format("{:.2f}", rank_sum / n),
+                fmt::format("{:.1f}", other_u)});
 }
 
 Status Compare(const Desk& desk) {
@@ -117,8 +111,7 @@ Status Compare(const Desk& desk) {
   TRY(const auto second, desk.runs.Set(desk.analysis.Key("second"), desk.Metric()));
   TRY(const auto c, analysis::Compare(first.values, second.values));
   desk.section.compared = ComparedSets{desk.Metric(), {first.values, second.values}};
-  StudyTable sets{
-      {"set", ">n", ">units", ">mean", ">sd", ">median", ">zero %", ">rank sum", ">mean rank", ">U"}, {}};
+  Table sets({"set", ">n", ">units", ">mean", ">sd", ">median", ">zero %", ">rank sum", ">mean rank", ">U"});
   // The thesis prints n1 n2 + n1 (n1 + 1) / 2 - R1 as the U of the first set, which is our U of the second.
   AddSetFigures(desk, "first", first, c.first, c.test.rank_sum1, c.test.u2, sets);
   AddSetFigures(desk, "second", second, c.second, c.test.rank_sum2, c.test.u1, sets);
@@ -136,8 +129,8 @@ Status Compare(const Desk& desk) {
   desk.section.sentences.push_back(fmt::format(
       "A (first exceeds second) {:.3f}, effect: {}; 95 % intervals: {} of single runs, {} of whole units. "
       "One-tailed p (first {}) {:.2g}. Boxes: {}.",
-      c.test.a, c.effect, Interval(c.interval), Interval(c.cluster_interval), less ? "less" : "greater", p,
-      apart ? "no overlap" : "they overlap"));
+      c.test.a, c.effect, IntervalCell(c.interval).text, IntervalCell(c.cluster_interval).text,
+      less ? "less" : "greater", p, apart ? "no overlap" : "they overlap"));
   if (less && c.first.minimum == 0.0) {
     const double zeros = desk.figures.at(desk.analysis.name + ".second.zeros").number.value_or(0.0) / 100.0;
     desk.section.sentences.push_back(
@@ -186,7 +179,7 @@ Result<Bounds> BoundsOf(const StudyAnalysis& analysis) {
 // How many runs of one set, or of two, have a value within bounds.
 Status Count(const Desk& desk) {
   TRY(const auto bounds, BoundsOf(desk.analysis));
-  StudyTable table{{"set", ">runs", ">" + desk.analysis.Key("what"), ">%", ">95 % interval (Wilson)"}, {}};
+  Table table({"set", ">runs", ">" + desk.analysis.Key("what"), ">%", ">95 % interval (Wilson)"});
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shares;
   std::vector<std::pair<std::string, std::size_t>> sets;
   for (const char* which : {"first", "second"}) {
@@ -204,9 +197,8 @@ Status Count(const Desk& desk) {
     desk.Add(fmt::format("{}.of", which), of, fmt::format("{}", of));
     desk.Add(fmt::format("{}.percent", which), percent, fmt::format("{:.1f}", percent));
     desk.Add(fmt::format("{}.none", which), hits == 0 ? "none" : fmt::format("{} of {}", hits, of));
-    table.rows.push_back({name, fmt::format("{}", of), fmt::format("{}", hits),
-                          fmt::format("{:.1f}", percent),
-                          fmt::format("{:.1f} to {:.1f}", 100.0 * interval.low, 100.0 * interval.high)});
+    table.AddRow({name, fmt::format("{}", of), fmt::format("{}", hits), fmt::format("{:.1f}", percent),
+                  fmt::format("{:.1f} to {:.1f}", 100.0 * interval.low, 100.0 * interval.high)});
     shares.emplace_back(hits, of);
     sets.emplace_back(name, of);
   }
@@ -226,9 +218,8 @@ Status Count(const Desk& desk) {
 // Which types of failure two sets have.
 Status Types(const Desk& desk) {
   std::array<std::vector<std::uint64_t>, 2> counts;
-  StudyTable table{{"set", ">runs", ">total failures", ">of a type", ">types",
-                    ">types expected in all (Chao1)", ">chance that the next is new"},
-                   {}};
+  Table table({"set", ">runs", ">total failures", ">of a type", ">types", ">types expected in all (Chao1)",
+               ">chance that the next is new"});
   const std::vector<std::string> names = desk.runs.FailureTypes(desk.analysis.Key("first"));
   std::vector<std::pair<std::string, std::size_t>> sets;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -250,18 +241,17 @@ Status Types(const Desk& desk) {
     desk.Add(which + ".of", static_cast<double>(flags.size()), fmt::format("{}", flags.size()));
     desk.Add(which + ".types", static_cast<double>(unseen.seen), fmt::format("{}", unseen.seen));
     desk.Add(which + ".failures", static_cast<double>(unseen.failures), fmt::format("{}", unseen.failures));
-    table.rows.push_back({set_name, FormatCount(flags.size()),
-                          FormatCount(static_cast<std::uint64_t>(failed)), FormatCount(unseen.failures),
-                          fmt::format("{} of {}", unseen.seen, names.size()),
-                          fmt::format("{:.1f}", unseen.chao1), fmt::format("{:.4f}", unseen.chance_of_new)});
+    table.AddRow({set_name, FormatCount(flags.size()), FormatCount(static_cast<std::uint64_t>(failed)),
+                  FormatCount(unseen.failures), fmt::format("{} of {}", unseen.seen, names.size()),
+                  fmt::format("{:.1f}", unseen.chao1), fmt::format("{:.4f}", unseen.chance_of_new)});
     sets.emplace_back(set_name, flags.size());
   }
   desk.section.tables.push_back(std::move(table));
   bool inside = true;
-  StudyTable by_type{{">type", "what it is", ">first", ">second"}, {}};
+  Table by_type({">type", "what it is", ">first", ">second"});
   for (std::size_t type = 0; type < names.size(); ++type) {
     inside = inside && (counts[1][type] == 0 || counts[0][type] > 0);
-    by_type.rows.push_back(
+    by_type.AddRow(
         {fmt::format("{}", type), names[type], FormatCount(counts[0][type]), FormatCount(counts[1][type])});
   }
   desk.section.tables.push_back(std::move(by_type));
@@ -284,7 +274,7 @@ Status Peak(const Desk& desk) {
   TRY(const auto searches, desk.runs.TypesByGeneration(desk.analysis.Key("part")));
   std::size_t generations = std::numeric_limits<std::size_t>::max();
   for (const auto& search : searches) generations = std::min(generations, search.size());
-  StudyTable table{{">generation", ">types in it, mean", ">types so far, mean"}, {}};
+  Table table({">generation", ">types in it, mean", ">types so far, mean"});
   std::size_t best = 0;
   double most = -1.0;
   for (std::size_t generation = 0; generation < generations; ++generation) {
@@ -302,7 +292,7 @@ Status Peak(const Desk& desk) {
       best = generation + 1;
     }
     if (generation == 0 || (generation + 1) % 10 == 0) {
-      table.rows.push_back(
+      table.AddRow(
           {fmt::format("{}", generation + 1), fmt::format("{:.2f}", in_it), fmt::format("{:.2f}", so_far)});
     }
   }
@@ -321,7 +311,7 @@ Status Windows(const Desk& desk) {
   TRY(const auto runs, desk.runs.Windows(desk.analysis.Key("first"), desk.analysis.Key("prefix")));
   const std::size_t windows = runs.front().size();
   std::vector<double> means(windows, 0.0);
-  StudyTable table{{">minutes", ">25 %", ">50 %", ">75 %", ">95 %", ">mean"}, {}};
+  Table table({">minutes", ">25 %", ">50 %", ">75 %", ">95 %", ">mean"});
   double highest_quarter = 0.0;
   double highest_three_quarters = 0.0;
   for (std::size_t window = 0; window < windows; ++window) {
@@ -336,7 +326,7 @@ Status Windows(const Desk& desk) {
     highest_three_quarters = std::max(highest_three_quarters, three_quarters);
     const double minutes = static_cast<double>(window + 1) * *seconds / 60.0;
     if (std::fmod(minutes, 10.0) == 0.0) {
-      table.rows.push_back(
+      table.AddRow(
           {NumberText(minutes), fmt::format("{:.4g}", quarter),
            fmt::format("{:.4g}", analysis::Quantile(values, 0.5)), fmt::format("{:.4g}", three_quarters),
            fmt::format("{:.4g}", analysis::Quantile(values, 0.95)), fmt::format("{:.2f}", means[window])});
@@ -390,10 +380,6 @@ constexpr AnalysisKind kKinds[] = {
     {"compare", Compare}, {"count", Count}, {"types", Types}, {"peak", Peak}, {"windows", Windows}};
 
 }  // namespace
-
-std::string Decimal(double value) {
-  return fmt::format("{:.3f}", value);
-}
 
 Result<StudySection> Analyse(const StudyAnalysis& analysis, StudyRuns& runs, StudyFigures& figures) {
   if (analysis.tuning) return AnalyseTuning(analysis, runs, figures);
