@@ -84,24 +84,24 @@ SettingsKey<Settings> FieldKey(const std::string& path, const std::string& descr
   constexpr bool kDuration = requires(Place place) {
     place.count();
   };
-  using Value = std::conditional_t<std::is_same_v<Place, int> || kDuration, std::int64_t, Place>;
+  using Held = std::conditional_t<std::is_same_v<Place, int> || kDuration, std::int64_t, Place>;
   SettingsKey<Settings> key;
   key.path = path;
-  key.type = std::is_same_v<Value, std::string>    ? KeyType::kText
-             : std::is_same_v<Value, bool>         ? KeyType::kFlag
-             : std::is_same_v<Value, std::int64_t> ? KeyType::kInteger
-             : std::is_same_v<Value, double>       ? KeyType::kNumber
-                                                   : KeyType::kSeed;
+  key.type = std::is_same_v<Held, std::string>    ? KeyType::kText
+             : std::is_same_v<Held, bool>         ? KeyType::kFlag
+             : std::is_same_v<Held, std::int64_t> ? KeyType::kInteger
+             : std::is_same_v<Held, double>       ? KeyType::kNumber
+                                                  : KeyType::kSeed;
   key.description = description;
   key.get = [](const Settings& settings) -> KeyValue {
     if constexpr (kDuration) {
-      return Value{MemberAt<Path...>(settings).count()};
+      return Held{MemberAt<Path...>(settings).count()};
     } else {
-      return Value{MemberAt<Path...>(settings)};
+      return Held{MemberAt<Path...>(settings)};
     }
   };
   key.set = [](Settings& settings, const KeyValue& value) {
-    MemberAt<Path...>(settings) = static_cast<Place>(std::get<Value>(value));
+    MemberAt<Path...>(settings) = static_cast<Place>(std::get<Held>(value));
   };
   return key;
 }

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/duration_text.h"
 #include "base/number_text.h"
 #include "base/printable.h"
-#include "cli/output/table.h"
 #include "master/campaign/forecast.h"
 #include "proto/json_text.h"
 

@@ -4,13 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "analysis/tables/table.h"
 #include "base/duration_text.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "cli/options/stop_signal.h"
 #include "cli/output/progress.h"
 #include "cli/output/summary.h"
-#include "cli/output/table.h"
 #include "master/directory/campaign_directory.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_page.h"

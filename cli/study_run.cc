@@ -8,13 +8,13 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/duration_text.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "cli/output/output_file.h"
 #include "cli/output/study_output.h"
-#include "cli/output/table.h"
 #include "cli/run_campaign.h"
 #include "cli/submitted_campaign.h"
 #include "master/campaign/forecast.h"

@@ -22,9 +22,14 @@ std::optional<double> NumberOf(std::string text) {
   return ParseNumber<double>(text);
 }
 
+std::optional<double> NumberOf(const Cell& figure) {
+  const auto* number = std::get_if<double>(&figure.value);
+  return number == nullptr ? std::nullopt : std::optional(*number);
+}
+
 std::optional<double> NumberOf(const StudyFigures& figures, const std::string& name) {
   const auto found = figures.find(name);
-  return found == figures.end() ? std::nullopt : found->second.number;
+  return found == figures.end() ? std::nullopt : NumberOf(found->second);
 }
 
 // Two-sided p of Welch's t-test.
@@ -155,7 +160,7 @@ Result<JudgedRow> Judge(const PublishedRow& row, const StudyFigures& figures) {
     return InvalidInput(
         fmt::format("published row '{}, {}': there is no rule '{}'", row.section, row.quantity, words[0]));
   }
-  Compared compared{{}, NumberOf(row.value), figure->second.number, row, figures};
+  Compared compared{{}, NumberOf(row.value), NumberOf(figure->second), row, figures};
   for (const std::string& word : words) {
     if (const auto argument = ParseNumber<double>(word)) compared.arguments.push_back(*argument);
   }

@@ -9,10 +9,10 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
-#include "cli/output/table.h"
 #include "controllers/registry.h"
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"
@@ -277,12 +277,12 @@ Json SearchJson(const SearchInfo& search) {
           {"parameters", JsonOf(KeysOf(search), KeyJson)}};
 }
 
-struct Section {
+struct Listing {
   const char* name;
   std::string (*text)();
   Json (*json)();
 };
-constexpr Section kSections[] = {
+constexpr Listing kSections[] = {
     {"experiments", ExperimentsText,
      [] { return JsonOf(ListExperiments(BuiltInCatalogue()), ExperimentJson); }},
     {"scenarios", ScenariosText, [] { return JsonOf(controllers::Scenarios(), ScenarioJson); }},
@@ -307,7 +307,7 @@ Result<ExitCode> RunList(CommandContext& context, const ListOptions& options) {
   if (!options.plugins.empty()) return ListPlugins(context, options);
   std::string text;
   Json json = Json::object();
-  for (const Section& section : kSections) {
+  for (const Listing& section : kSections) {
     if (!options.section.empty() && section.name != options.section) continue;
     if (options.json) {
       json[section.name] = section.json();
@@ -326,7 +326,7 @@ void AddList(CommandParser& parser) {
   const auto [command, options] = parser.Add(
       "list", "experiments, scenarios, controllers, searches, disturbances; all parameters", RunList);
   std::vector<std::string> names;
-  for (const Section& section : kSections) names.emplace_back(section.name);
+  for (const Listing& section : kSections) names.emplace_back(section.name);
   auto* section =
       command
           .add_option("SECTION", options.section,

@@ -12,19 +12,19 @@
 namespace gauntlet {
 namespace {
 
-Cell CellOf(const KeyValue& value) {
-  return std::visit([](const auto& one) { return Cell(one); }, value);
+Value CellOf(const KeyValue& value) {
+  return std::visit([](const auto& one) { return Value(one); }, value);
 }
 
 // A key, and its value in each search; none where the search does not have it.
 struct Setting {
   Key key;
-  std::vector<Cell> values;
+  std::vector<Value> values;
 
   // Searches that have the key differ in it.
   bool Varies() const {
-    const Cell* first = nullptr;
-    for (const Cell& value : values) {
+    const Value* first = nullptr;
+    for (const Value& value : values) {
       if (std::holds_alternative<std::monostate>(value)) continue;
       if (first == nullptr) first = &value;
       if (value != *first) return true;
@@ -40,8 +40,8 @@ std::vector<Setting> SettingsOf(const std::vector<SearchPlan>& plans) {
     for (Key& key : AllKeysOf(plans[search].experiment)) {
       if (key.for_people || key.type == KeyType::kSeed) continue;
       const auto [place, is_new] = places.emplace(key.path, settings.size());
-      const Cell value = CellOf(key.get(plans[search].experiment));
-      if (is_new) settings.push_back({std::move(key), std::vector<Cell>(plans.size())});
+      const Value value = CellOf(key.get(plans[search].experiment));
+      if (is_new) settings.push_back({std::move(key), std::vector<Value>(plans.size())});
       settings[place->second].values[search] = value;
     }
   }
@@ -50,7 +50,7 @@ std::vector<Setting> SettingsOf(const std::vector<SearchPlan>& plans) {
 
 }  // namespace
 
-std::vector<Column> CommonSearchColumns() {
+std::vector<DataColumn> CommonSearchColumns() {
   return {{"search", "", "number of the search in the campaign, from 1"},
           {"search_name", "", "what tells it from the others; of an only search the experiment's name"},
           {"search_seed", "", "the search's seed, 64 bits"}};
