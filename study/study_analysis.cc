@@ -60,39 +60,30 @@ double PercentOfZeros(const std::vector<double>& values) {
   return 100.0 * static_cast<double>(std::ranges::count(values, 0.0)) / static_cast<double>(values.size());
 }
 
-// The parts whose cases a set consists of, and those that it was simulated in, which may be the same.
-Result<std::pair<PartCost, PartCost>> CostsOf(const Desk& desk, const std::string& set) {
-  PartCost made;
-  PartCost again;
-  std::set<std::string> sources;
-  for (const StudySet& one : SplitStudySets(set)) {
-    const std::string source = desk.runs.SourceOf(one.part);
-    TRY(const auto cost, desk.runs.CostOf(source));
-    if (sources.insert(source).second) {
-      made.runs += cost.runs;
-      made.cases += cost.cases;
-      made.distinct_cases += cost.distinct_cases;
-    }
-    if (source == one.part) continue;
-    TRY(const auto second, desk.runs.CostOf(one.part));
-    again.runs += second.runs;
-  }
-  return std::pair(made, again);
-}
+constexpr std::array kSets = {"first", "second"};
 
-// What the sets have cost: simulations, distinct cases, re-simulations.
-Status AddBudget(const Desk& desk, const std::vector<std::pair<std::string, std::size_t>>& sets) {
+// What the sets have cost, of which so many runs were compared: simulations of the parts that their cases
+// come from, and of those that they were simulated in again.
+Status AddBudget(const Desk& desk, const std::array<std::size_t, 2>& compared) {
   Table table(
       {"set", ">simulations", ">distinct cases", ">cases to choose from", ">re-simulations", ">compared"});
-  const char* names[] = {"first", "second"};
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    const auto& [set, compared] = sets[i];
-    TRY(const auto costs, CostsOf(desk, set));
-    const auto& [made, again] = costs;
+  for (std::size_t i = 0; i < kSets.size(); ++i) {
+    const std::string set = desk.analysis.Key(kSets[i]);
+    PartCost made;
+    PartCost again;
+    std::set<std::string> sources;
+    for (const StudySet& one : SplitStudySets(set)) {
+      const std::string source = desk.runs.SourceOf(one.part);
+      TRY(const auto cost, desk.runs.CostOf(source));
+      if (sources.insert(source).second) made += cost;
+      if (source == one.part) continue;
+      TRY(const auto second, desk.runs.CostOf(one.part));
+      again += second;
+    }
     table.AddRow({set, CountCell(made.runs), CountCell(made.distinct_cases), CountCell(made.cases),
-                  CountCell(again.runs), CountCell(compared)});
-    desk.Add(fmt::format("{}.budget", names[i]),
-             fmt::format("{} / {} / {}", made.cases, compared, made.runs));
+                  CountCell(again.runs), CountCell(compared[i])});
+    desk.Add(fmt::format("{}.budget", kSets[i]),
+             fmt::format("{} / {} / {}", made.cases, compared[i], made.runs));
   }
   desk.section.tables.push_back(std::move(table));
   return Ok{};
@@ -156,8 +147,7 @@ Status Compare(const Desk& desk) {
     }
     desk.Claim(holds);
   }
-  return AddBudget(desk,
-                   {{desk.analysis.Key("first"), c.first.n}, {desk.analysis.Key("second"), c.second.n}});
+  return AddBudget(desk, {c.first.n, c.second.n});
 }
 
 // Whether a value is within what the analysis asks for.
@@ -177,7 +167,7 @@ Status Count(const Desk& desk) {
   const auto in_bounds = BoundsOf(desk.analysis);
   Table table({"set", ">runs", ">" + desk.analysis.Key("what"), ">%", ">95 % interval (Wilson)"});
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shares;
-  for (const char* which : {"first", "second"}) {
+  for (const char* which : kSets) {
     const std::string name = desk.analysis.Key(which);
     if (name.empty()) continue;
     TRY(const auto set, desk.runs.Set(name, desk.Metric()));
@@ -215,9 +205,10 @@ Status Types(const Desk& desk) {
   Table table({"set", ">runs", ">total failures", ">of a type", ">types", ">types expected in all (Chao1)",
                ">chance that the next is new"});
   const std::vector<std::string> names = desk.runs.FailureTypes(desk.analysis.Key("first"));
-  std::vector<std::pair<std::string, std::size_t>> sets;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::string which = i == 0 ? "first" : "second";
+  std::array<std::size_t, 2> compared{};
+  std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();  // failures of a set
+  for (std::size_t i = 0; i < kSets.size(); ++i) {
+    const std::string which = kSets[i];
     const std::string set_name = desk.analysis.Key(which);
     TRY(const auto failures, desk.runs.Set(set_name, "total_failure"));
     TRY(const auto types, desk.runs.Set(set_name, "failure_type"));
@@ -236,7 +227,8 @@ Status Types(const Desk& desk) {
     table.AddRow({set_name, CountCell(flags.size()), CountCell(failed), CountCell(unseen.failures),
                   fmt::format("{} of {}", unseen.seen, names.size()), DecimalCell(unseen.chao1, 1),
                   DecimalCell(unseen.chance_of_new, 4)});
-    sets.emplace_back(set_name, flags.size());
+    compared[i] = flags.size();
+    fewest = std::min<std::uint64_t>(fewest, unseen.failures);
   }
   desk.section.tables.push_back(std::move(table));
   bool inside = true;
@@ -247,8 +239,6 @@ Status Types(const Desk& desk) {
   }
   desk.section.tables.push_back(std::move(by_type));
   desk.Add("second_in_first", inside ? "subset" : "no subset");
-  const std::uint64_t fewest = std::min(analysis::EstimateUnseenTypes(counts[0]).failures,
-                                        analysis::EstimateUnseenTypes(counts[1]).failures);
   const double first = analysis::RarefiedTypes(counts[0], fewest);
   const double second = analysis::RarefiedTypes(counts[1], fewest);
   desk.section.sentences.push_back(fmt::format(
@@ -257,7 +247,7 @@ Status Types(const Desk& desk) {
       inside ? "a subset" : "no subset", FormatCount(fewest), first, second));
   if (desk.analysis.Key("expect") == "greater") desk.Claim(first > second);
   if (desk.analysis.Key("expect") == "subset") desk.Claim(inside);
-  return AddBudget(desk, sets);
+  return AddBudget(desk, compared);
 }
 
 // In which generation the searches' populations have the most types of failure, on average.

@@ -236,14 +236,14 @@ class Reader {
   Status AddPublished(const std::string& file, const std::map<std::string, PublishedNote>& notes) {
     TRY(auto text, read_(file));
     study_.texts[file] = text;
-    TRY(const auto rows, ReadCsvCells(text, file));
+    TRY(const auto rows, ReadCsvLines(text, file));
     const std::vector<std::string> header = {"section", "quantity", "condition", "value",
                                              "figure",  "rule",     "note"};
-    if (rows.empty() || rows.front() != header) {
+    if (rows.empty() || rows.front().cells != header) {
       return InvalidInput(fmt::format("{}:1: the columns have to be {}", file, fmt::join(header, ",")));
     }
     for (std::size_t i = 1; i < rows.size(); ++i) {
-      const std::vector<std::string>& cells = rows[i];
+      const std::vector<std::string>& cells = rows[i].cells;
       PublishedRow row{cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], {}};
       if (!cells[6].empty()) {
         const auto note = notes.find(cells[6]);
@@ -291,28 +291,17 @@ class Reader {
   std::map<std::string, std::pair<std::string, std::vector<std::string>>> sources_;  // by part
 };
 
-std::vector<fs::path> StudyFolders() {
-  std::vector<fs::path> folders = ExperimentDirectories();
-  for (fs::path& folder : folders) folder /= "studies";
-  return folders;
-}
-
 Result<fs::path> PathOf(const std::string& name_or_path) {
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
     return fs::path(name_or_path);
-  std::error_code error;
-  for (const fs::path& folder : StudyFolders()) {
-    fs::path path = folder / (name_or_path + ".toml");
-    if (fs::exists(path, error)) return path;
-  }
-  const std::vector<std::string> shipped = ShippedStudies();
-  if (shipped.empty()) {
-    return Error{
-        ErrorKind::kNotFound,
-        fmt::format("there is no study '{}': no studies are installed beside this program", name_or_path)};
-  }
-  return Error{ErrorKind::kNotFound, fmt::format("{} (a file is named by a path ending in .toml)",
-                                                 UnknownName("study", name_or_path, shipped))};
+  const std::map<std::string, fs::path> shipped = ShippedFiles("studies");
+  if (const auto found = shipped.find(name_or_path); found != shipped.end()) return found->second;
+  const std::string wrong =
+      shipped.empty()
+          ? fmt::format("there is no study '{}': no studies are installed beside this program", name_or_path)
+          : fmt::format("{} (a file is named by a path ending in .toml)",
+                        UnknownName("study", name_or_path, ShippedStudies()));
+  return Error{ErrorKind::kNotFound, wrong};
 }
 
 }  // namespace
@@ -327,14 +316,9 @@ std::vector<StudySet> SplitStudySets(const std::string& text) {
 }
 
 std::vector<std::string> ShippedStudies() {
-  std::set<std::string> names;
-  for (const fs::path& folder : StudyFolders()) {
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-      if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
-    }
-  }
-  return {names.begin(), names.end()};
+  std::vector<std::string> names;
+  for (const auto& [name, path] : ShippedFiles("studies")) names.push_back(name);
+  return names;
 }
 
 Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes,

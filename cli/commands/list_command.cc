@@ -13,6 +13,7 @@
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
+#include "controllers/parameter_key.h"
 #include "controllers/registry.h"
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"
@@ -53,15 +54,11 @@ std::string Number(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-std::string RangeOf(double min, double max) {
-  return fmt::format("{} to {}", Number(min), Number(max));
-}
-
 std::string RangeOf(const KeyInfo& key) {
   if (key.type == KeyType::kChoice) return "a choice";
   if (key.type == KeyType::kFlag) return "true, false";
   if (key.type == KeyType::kText) return "text";
-  return RangeOf(key.min, key.max);
+  return fmt::format("{} to {}", Number(key.min), Number(key.max));
 }
 
 std::string DescriptionOf(const KeyInfo& key) {
@@ -69,25 +66,23 @@ std::string DescriptionOf(const KeyInfo& key) {
   return fmt::format("{} ({})", fmt::join(key.choices, " | "), key.description);
 }
 
-Table NewParameterTable() {
-  return Table({"parameter", ">default", "unit", "range", ""});
-}
-
-std::string ParameterTable(std::span<const controllers::ParameterInfo> parameters) {
-  Table table = NewParameterTable();
-  for (const controllers::ParameterInfo& info : parameters) {
-    table.AddRow({std::string(info.name), Number(info.default_value), std::string(info.unit),
-                  RangeOf(info.min, info.max), std::string(info.description)});
-  }
-  return table.ToText(4);
+std::string DefaultOf(const KeyInfo& key) {
+  const auto* number = std::get_if<double>(&key.default_value);
+  return number != nullptr ? Number(*number) : ToSet(key.default_value);
 }
 
 template <typename Keys>
 std::string KeyTable(const Keys& keys, std::size_t indent) {
-  Table table = NewParameterTable();
+  Table table({"parameter", ">default", "unit", "range", ""});
   for (const KeyInfo& key : keys)
-    table.AddRow({key.path, ToSet(key.default_value), key.unit, RangeOf(key), DescriptionOf(key)});
+    table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
   return table.ToText(indent);
+}
+
+std::string ParameterTable(std::span<const controllers::ParameterInfo> parameters) {
+  std::vector<KeyInfo> keys;
+  for (const controllers::ParameterInfo& info : parameters) keys.push_back(controllers::KeyInfoOf("", info));
+  return KeyTable(keys, 4);
 }
 
 // What an experiment may define of a scenario that is defined by it.
@@ -196,11 +191,10 @@ Json JsonOf(const Items& items, const auto& to_json) {
 }
 
 Json ParameterJson(const controllers::ParameterInfo& info) {
+  const KeyInfo key = controllers::KeyInfoOf("", info);
   return {{"name", info.name},
-          {"type", info.unit == "bool" ? "flag"
-                   : info.integer      ? "integer"
-                                       : "number"},
-          {"unit", info.unit == "bool" ? "" : info.unit},
+          {"type", NameOf(key.type)},
+          {"unit", key.unit},
           {"default", info.default_value},
           {"min", info.min},
           {"max", info.max},
