@@ -16,12 +16,8 @@ std::string ConfirmationsText(const std::vector<Confirmation>& confirmations, st
 // [{run, case, k, n, interval: [lo, hi], verdict, message}]; run is null for a case from a file.
 nlohmann::ordered_json ConfirmationsJson(const std::vector<Confirmation>& confirmations);
 
-// "8 distinct failures (7 confirmed) ..." and a line for each of the `most` toughest, with a command that
-// shows it. "" when there is nothing to tell.
-std::string DistinctFailuresText(const CampaignAnswers& answers, const std::string& program,
-                                 std::size_t most = 20);
-// A list of {what, confirmed, k, n, interval, cases: [...], example: {campaign, run}, smallest: {case,
-// obstacles, k, n, file}}, in the same order; smallest is null until one of the cases is minimised.
-nlohmann::ordered_json DistinctFailuresJson(const CampaignAnswers& answers);
+// "8 distinct failures (7 confirmed) ..." and a line for each of the toughest, with a command that shows it.
+// "" when there is nothing to tell.
+std::string DistinctFailuresText(const CampaignAnswers& answers, const std::string& program);
 
 }  // namespace gauntlet
