@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string_view>
 
 #include "proto/json_text.h"
@@ -43,162 +42,216 @@ ordered_json OrNull(const std::string& text) {
   return text.empty() ? ordered_json(nullptr) : ordered_json(text);
 }
 
-ordered_json Json(const WorkerView& worker) {
-  ordered_json runs = ordered_json::array();
-  for (const WorkerView::Lease& lease : worker.leases) {
-    runs.push_back({{"run", lease.run},
-                    {"lease", fmt::format("{:x}", lease.fence)},
-                    {"attempt", lease.attempt},
-                    {"state", lease.waits ? "waiting" : "running"},
-                    {"seconds", lease.seconds}});
-  }
-  const WorkerRecord& record = worker.record;
-  return {{"worker", worker.label},
-          {"pid", worker.pid},
-          {"slots", worker.slots},
-          {"allocation", worker.allocation},
-          {"state", StateOf(worker)},
-          {"silent_seconds", worker.silent_seconds},
-          {"runs_finished", record.finished},
-          {"runs_failed", record.failed},
-          {"failures_contradicted", record.contradicted},
-          {"bad_answers", record.strikes},
-          {"quarantined", OrNull(record.quarantined ? InWords(record) : "")},
-          {"runs", std::move(runs)}};
-}
-
-ordered_json Json(const AllocationView& allocation) {
-  return {{"job", allocation.job},     {"state", allocation.state},     {"reason", allocation.reason},
-          {"nodes", allocation.nodes}, {"workers", allocation.workers}, {"cancelled", allocation.cancelled}};
-}
-
-enum class Kind { kText, kTextOrNone, kCount, kNumber, kFlag, kObjectOrNone, kList };
-
-struct Field {
-  const char* name;
-  Kind kind;
-  bool required = false;
+// Who reads a field of status.json.
+enum class Use {
+  kNobody,  // of this program's own commands
+  kRead,    // `status` and `watch`, when it is there
+  kNeeded,  // likewise, and it has to be there
+  kAdded,   // likewise, but `status` adds it: no master writes it
 };
 
-constexpr Field kStatusFields[] = {{"state", Kind::kText, true},
-                                   {"master", Kind::kObjectOrNone},
-                                   {"unix_ms", Kind::kCount},
-                                   {"generation", Kind::kCount},
-                                   {"generations", Kind::kCount},
-                                   {"runs_done", Kind::kCount},
-                                   {"runs_running", Kind::kCount},
-                                   {"runs_queued", Kind::kCount},
-                                   {"runs_ahead", Kind::kCount},
-                                   {"runs_per_second", Kind::kNumber},
-                                   {"nondeterministic", Kind::kCount},
-                                   {"verdicts_of_one_worker", Kind::kCount},
-                                   {"why_nothing_runs", Kind::kTextOrNone},
-                                   {"pool_trouble", Kind::kTextOrNone},
-                                   {"allocations", Kind::kList},
-                                   {"worker_list", Kind::kList, true}};
-constexpr Field kMasterFields[] = {{"host", Kind::kText, true},
-                                   {"pid", Kind::kCount, true},
-                                   {"epoch", Kind::kCount, true},
-                                   {"encrypted", Kind::kFlag, true}};
-constexpr Field kAllocationFields[] = {{"job", Kind::kText, true},      {"role", Kind::kText},
-                                       {"state", Kind::kText, true},    {"reason", Kind::kText, true},
-                                       {"nodes", Kind::kText, true},    {"workers", Kind::kCount, true},
-                                       {"cancelled", Kind::kFlag, true}};
-constexpr Field kWorkerFields[] = {{"worker", Kind::kText, true},
-                                   {"state", Kind::kText, true},
-                                   {"silent_seconds", Kind::kNumber, true},
-                                   {"quarantined", Kind::kTextOrNone},
-                                   {"runs", Kind::kList, true}};
-constexpr Field kRunFields[] = {{"run", Kind::kCount, true},
-                                {"state", Kind::kText},
-                                {"attempt", Kind::kCount},
-                                {"seconds", Kind::kNumber, true}};
+// One field of an object in status.json.
+struct Field {
+  const char* name;
+  Use use;
+  // What a master writes. Of one that has nothing to tell it also says which kind of value belongs there,
+  // with null where there may be a text.
+  ordered_json value;
+  MetricSample metric = {};       // what it is as a metric, without the value; without a name when it is none
+  std::vector<Field> parts = {};  // of an object, its fields; of a list, those of each of its objects
+};
+
+ordered_json ObjectOf(std::vector<Field> fields) {
+  ordered_json object = ordered_json::object();
+  for (Field& field : fields) {
+    if (field.use != Use::kAdded) object[field.name] = std::move(field.value);
+  }
+  return object;
+}
+
+// A list with an object for each item.
+template <class Item>
+Field ListOf(const char* name, Use use, const std::vector<Item>& items,
+             std::vector<Field> (*fields_of)(const Item&)) {
+  ordered_json list = ordered_json::array();
+  for (const Item& item : items) list.push_back(ObjectOf(fields_of(item)));
+  return {name, use, std::move(list), {}, fields_of(Item{})};
+}
+
+std::vector<Field> FieldsOfLease(const WorkerView::Lease& lease) {
+  return {{"run", Use::kNeeded, lease.run},
+          {"lease", Use::kNobody, fmt::format("{:x}", lease.fence)},
+          {"attempt", Use::kRead, lease.attempt},
+          {"state", Use::kRead, lease.waits ? "waiting" : "running"},
+          {"seconds", Use::kNeeded, lease.seconds}};
+}
+
+std::vector<Field> FieldsOfWorker(const WorkerView& worker) {
+  const WorkerRecord& record = worker.record;
+  return {{"worker", Use::kNeeded, worker.label},
+          {"pid", Use::kNobody, worker.pid},
+          {"slots", Use::kNobody, worker.slots},
+          {"allocation", Use::kNobody, worker.allocation},
+          {"state", Use::kNeeded, StateOf(worker)},
+          {"silent_seconds", Use::kNeeded, worker.silent_seconds},
+          {"runs_finished", Use::kNobody, record.finished},
+          {"runs_failed", Use::kNobody, record.failed},
+          {"failures_contradicted", Use::kNobody, record.contradicted},
+          {"bad_answers", Use::kNobody, record.strikes},
+          {"quarantined", Use::kRead, OrNull(record.quarantined ? InWords(record) : "")},
+          ListOf("runs", Use::kNeeded, worker.leases, FieldsOfLease)};
+}
+
+std::vector<Field> FieldsOfAllocation(const AllocationView& allocation) {
+  return {{"job", Use::kNeeded, allocation.job},
+          {"role", Use::kAdded, ""},
+          {"state", Use::kNeeded, allocation.state},
+          {"reason", Use::kNeeded, allocation.reason},
+          {"nodes", Use::kNeeded, allocation.nodes},
+          {"workers", Use::kNeeded, allocation.workers},
+          {"cancelled", Use::kNeeded, allocation.cancelled}};
+}
+
+std::vector<Field> FieldsOfMaster(const MasterView& master) {
+  return {{"host", Use::kNeeded, master.host},
+          {"pid", Use::kNeeded, master.pid},
+          {"epoch", Use::kNeeded, master.epoch},
+          {"started_unix_ms", Use::kNobody, master.started_unix_ms},
+          {"endpoints", Use::kNobody, master.endpoints},
+          {"encrypted", Use::kNeeded, master.encrypted},
+          {"batch_job", Use::kNobody, master.batch_job},
+          {"metrics", Use::kNobody, OrNull(master.metrics_url)}};
+}
+
+MetricSample Gauge(const char* name, const char* help, double value = 0.0, std::string labels = "") {
+  return {name, "gauge", help, value, std::move(labels)};
+}
+
+MetricSample Counter(const char* name, const char* help) {
+  return {name, "counter", help};
+}
+
+// What status.json tells of the campaign: its fields, in their order, up to the lists of jobs and workers.
+std::vector<Field> FieldsOfCampaign(const MasterView& master, const CampaignProgress& progress,
+                                    const BackendView& backend) {
+  const WorkerStatistics& workers = progress.workers;
+  return {
+      {"state", Use::kNeeded, master.stopping ? "stopping" : "running"},
+      {"campaign", Use::kNobody, master.campaign_id},
+      {"experiment", Use::kNobody, master.experiment},
+      {"master", Use::kRead, ObjectOf(FieldsOfMaster(master)), {}, FieldsOfMaster({})},
+      {"unix_ms", Use::kRead, master.now_unix_ms},
+      {"generation", Use::kRead, progress.search.generation,
+       Gauge("gauntlet_generation", "Generations that are complete, summed over the searches.")},
+      {"generations", Use::kRead, progress.search.generations,
+       Gauge("gauntlet_generations", "Generations that are planned, summed over the searches.")},
+      {"searches", Use::kNobody, progress.searches},
+      {"searches_finished", Use::kNobody, progress.searches_finished},
+      {"runs_done", Use::kRead, progress.runs_done,
+       Counter("gauntlet_runs_stored_total", "Runs whose result is stored, earlier masters included.")},
+      {"runs_planned", Use::kNobody, progress.runs_planned,
+       Gauge("gauntlet_runs_planned", "Runs of the whole campaign; 0 = unknown.")},
+      {"runs_running", Use::kRead, RunsOf(backend, false)},
+      {"runs_ahead", Use::kRead, RunsOf(backend, true)},
+      {"runs_queued", Use::kRead, backend.queued,
+       Gauge("gauntlet_runs_queued", "Runs that wait for a worker.")},
+      {"runs_per_second", Use::kRead, progress.runs_per_second,
+       Gauge("gauntlet_runs_per_second", "Over the last seconds.")},
+      {"remaining_seconds", Use::kNobody,
+       progress.remaining_seconds ? ordered_json(*progress.remaining_seconds) : nullptr},
+      {"total_failures", Use::kNobody, progress.total_failures,
+       Counter("gauntlet_total_failures_total", "Stored runs in which the whole swarm failed.")},
+      {"runs_failed", Use::kNobody, progress.runs_failed,
+       Counter("gauntlet_runs_failed_total", "Stored runs without a result: crashed, hung, refused.")},
+      {"workers", Use::kNobody, workers.connected},
+      {"workers_busy", Use::kNobody, workers.busy},
+      {"workers_lost", Use::kNobody, workers.lost,
+       Counter("gauntlet_workers_lost_total", "Workers that fell silent or died, since this start.")},
+      {"workers_quarantined", Use::kNobody, workers.quarantined},
+      {"leased_again", Use::kNobody, workers.releases,
+       Counter("gauntlet_runs_leased_again_total", "Leases whose worker was lost, since this start.")},
+      {"duplicates", Use::kNobody, workers.duplicates,
+       Counter("gauntlet_duplicate_results_total", "Second results of a run, compared with the first.")},
+      {"nondeterministic", Use::kRead, master.nondeterministic_before + workers.nondeterministic,
+       Counter("gauntlet_nondeterministic_results_total",
+               "Second results that differed from the first, since the campaign began.")},
+      {"verdicts_of_one_worker", Use::kRead, master.lone_verdicts_before + workers.lone_verdicts,
+       Counter("gauntlet_verdicts_of_one_worker_total",
+               "Runs given up on the word of a single worker, because there was no other, since the campaign "
+               "began.")},
+      {"copies", Use::kNobody, workers.copies},
+      {"audits", Use::kNobody, workers.audits},
+      {"audits_alone", Use::kNobody, workers.audits_alone},
+      {"audits_waiting", Use::kNobody, workers.audits_open},
+      {"worker_seconds", Use::kNobody, workers.slot_seconds},
+      {"worker_seconds_idle", Use::kNobody, workers.idle_seconds},
+      {"worker_seconds_at_barriers", Use::kNobody, workers.barrier_seconds},
+      {"rejected_messages", Use::kNobody, workers.rejected_messages,
+       Counter("gauntlet_rejected_messages_total", "Messages and connections that were dropped.")},
+      {"workers_refused", Use::kNobody, backend.refused_workers},
+      {"connections_with_unknown_keys", Use::kNobody, backend.unknown_keys},
+      {"connections_dropped_in_the_greeting", Use::kNobody, backend.failed_handshakes},
+      {"why_nothing_runs", Use::kRead, OrNull(WhyNothingRuns(master, progress, backend))},
+      {"pool_trouble", Use::kRead, OrNull(backend.pool_trouble)}};
+}
+
+std::vector<Field> AllFields(const MasterView& master, const CampaignProgress& progress,
+                             const BackendView& backend) {
+  std::vector<Field> fields = FieldsOfCampaign(master, progress, backend);
+  fields.push_back(ListOf("allocations", Use::kRead, backend.allocations, FieldsOfAllocation));
+  fields.push_back(ListOf("worker_list", Use::kNeeded, backend.workers, FieldsOfWorker));
+  return fields;
+}
 
 // Whoever adds two counts must not overflow.
 constexpr std::uint64_t kMostCounted = 1ULL << 62;
 
-bool Is(const ordered_json& value, Kind kind) {
-  switch (kind) {
-    case Kind::kText:
-      return value.is_string();
-    case Kind::kTextOrNone:
-      return value.is_string() || value.is_null();
-    case Kind::kCount:
-      return value.is_number_unsigned() && value.get<std::uint64_t>() <= kMostCounted;
-    case Kind::kNumber:
-      return value.is_number();
-    case Kind::kFlag:
-      return value.is_boolean();
-    case Kind::kObjectOrNone:
-      return value.is_object() || value.is_null();
-    case Kind::kList:
-      return value.is_array();
-  }
-  return false;
+// What belongs where a master that has nothing to tell writes `sample`; "" when `value` is that.
+std::string_view Demanded(const ordered_json& sample, const ordered_json& value) {
+  const auto unless = [](bool fits, std::string_view words) { return fits ? "" : words; };
+  if (sample.is_string()) return unless(value.is_string(), "a text");
+  if (sample.is_null()) return unless(value.is_string() || value.is_null(), "a text or null");
+  if (sample.is_number_float()) return unless(value.is_number(), "a number");
+  if (sample.is_boolean()) return unless(value.is_boolean(), "true or false");
+  if (sample.is_object()) return unless(value.is_object() || value.is_null(), "an object or null");
+  if (sample.is_array()) return unless(value.is_array(), "a list");
+  return unless(value.is_number_unsigned() && value.get<std::uint64_t>() <= kMostCounted, "a count");
 }
 
-std::string_view InWords(Kind kind) {
-  switch (kind) {
-    case Kind::kText:
-      return "a text";
-    case Kind::kTextOrNone:
-      return "a text or null";
-    case Kind::kCount:
-      return "a count";
-    case Kind::kNumber:
-      return "a number";
-    case Kind::kFlag:
-      return "true or false";
-    case Kind::kObjectOrNone:
-      return "an object or null";
-    case Kind::kList:
-      return "a list";
-  }
-  return "";
-}
-
-// `place`: of the object, "" or with the point that separates it from its fields.
-Status CheckFields(const ordered_json& object, std::span<const Field> fields, const std::string& place) {
-  if (!object.is_object())
-    return Error{ErrorKind::kCorrupt, fmt::format("{} is no object", place.substr(0, place.size() - 1))};
+// `place`: of the object, "" of the whole.
+Status CheckFields(const ordered_json& object, const std::vector<Field>& fields, const std::string& place) {
+  if (!object.is_object()) return Error{ErrorKind::kCorrupt, fmt::format("{} is no object", place)};
   for (const Field& field : fields) {
     const auto found = object.find(field.name);
-    if (found == object.end() ? !field.required : Is(*found, field.kind)) continue;
-    return Error{ErrorKind::kCorrupt,
-                 fmt::format("{}{} is {}, where {} belongs", place, field.name,
-                             found == object.end() ? "missing" : found->type_name(), InWords(field.kind))};
+    if (field.use == Use::kNobody || (found == object.end() && field.use != Use::kNeeded)) continue;
+    const std::string at = fmt::format("{}{}{}", place, place.empty() ? "" : ".", field.name);
+    const ordered_json& value =
+        found == object.end() ? ordered_json(ordered_json::value_t::discarded) : *found;
+    if (const std::string_view demanded = Demanded(field.value, value); !demanded.empty()) {
+      return Error{ErrorKind::kCorrupt,
+                   fmt::format("{} is {}, where {} belongs", at,
+                               value.is_discarded() ? "missing" : value.type_name(), demanded)};
+    }
+    if (field.value.is_object() && value.is_object()) {
+      TRY(CheckFields(value, field.parts, at));
+    }
+    for (std::size_t i = 0; field.value.is_array() && i < value.size(); ++i) {
+      TRY(CheckFields(value[i], field.parts, fmt::format("{}[{}]", at, i)));
+    }
   }
   return Ok{};
 }
 
-}  // namespace
-
-Status CheckStatus(const ordered_json& status) {
-  TRY(CheckFields(status, kStatusFields, ""));
-  if (const auto master = status.find("master"); master != status.end() && master->is_object()) {
-    TRY(CheckFields(*master, kMasterFields, "master."));
+std::string Labelled(std::string_view label, std::string_view value) {
+  std::string text = fmt::format("{}=\"", label);
+  for (const char c : value) {
+    if (c == '\\' || c == '"') text += '\\';
+    text += c == '\n' ? std::string_view("\\n") : std::string_view(&c, 1);
   }
-  const auto check_each = [](const ordered_json& object, const char* list, const std::string& place,
-                             const auto& check) -> Status {
-    const auto found = object.find(list);
-    for (std::size_t i = 0; found != object.end() && i < found->size(); ++i) {
-      TRY(check((*found)[i], fmt::format("{}{}[{}].", place, list, i)));
-    }
-    return Ok{};
-  };
-  const auto check_allocation = [](const ordered_json& allocation, const std::string& place) {
-    return CheckFields(allocation, kAllocationFields, place);
-  };
-  const auto check_run = [](const ordered_json& run, const std::string& place) {
-    return CheckFields(run, kRunFields, place);
-  };
-  const auto check_worker = [&](const ordered_json& worker, const std::string& place) -> Status {
-    TRY(CheckFields(worker, kWorkerFields, place));
-    return check_each(worker, "runs", place, check_run);
-  };
-  TRY(check_each(status, "allocations", "", check_allocation));
-  return check_each(status, "worker_list", "", check_worker);
+  return text + '"';
 }
+
+}  // namespace
 
 std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& progress,
                            const BackendView& backend) {
@@ -241,60 +294,42 @@ std::string WhyNothingRuns(const MasterView& master, const CampaignProgress& pro
 
 std::string StatusJson(const MasterView& master, const CampaignProgress& progress,
                        const BackendView& backend) {
-  ordered_json workers = ordered_json::array();
-  for (const WorkerView& worker : backend.workers) workers.push_back(Json(worker));
-  ordered_json allocations = ordered_json::array();
-  for (const AllocationView& allocation : backend.allocations) allocations.push_back(Json(allocation));
-  return JsonText({{"state", master.stopping ? "stopping" : "running"},
-                   {"campaign", master.campaign_id},
-                   {"experiment", master.experiment},
-                   {"master",
-                    {{"host", master.host},
-                     {"pid", master.pid},
-                     {"epoch", master.epoch},
-                     {"started_unix_ms", master.started_unix_ms},
-                     {"endpoints", master.endpoints},
-                     {"encrypted", master.encrypted},
-                     {"batch_job", master.batch_job},
-                     {"metrics", OrNull(master.metrics_url)}}},
-                   {"unix_ms", master.now_unix_ms},
-                   {"generation", progress.search.generation},
-                   {"generations", progress.search.generations},
-                   {"searches", progress.searches},
-                   {"searches_finished", progress.searches_finished},
-                   {"runs_done", progress.runs_done},
-                   {"runs_planned", progress.runs_planned},
-                   {"runs_running", RunsOf(backend, false)},
-                   {"runs_ahead", RunsOf(backend, true)},
-                   {"runs_queued", backend.queued},
-                   {"runs_per_second", progress.runs_per_second},
-                   {"remaining_seconds",
-                    progress.remaining_seconds ? ordered_json(*progress.remaining_seconds) : nullptr},
-                   {"total_failures", progress.total_failures},
-                   {"runs_failed", progress.runs_failed},
-                   {"workers", progress.workers.connected},
-                   {"workers_busy", progress.workers.busy},
-                   {"workers_lost", progress.workers.lost},
-                   {"workers_quarantined", progress.workers.quarantined},
-                   {"leased_again", progress.workers.releases},
-                   {"duplicates", progress.workers.duplicates},
-                   {"nondeterministic", master.nondeterministic_before + progress.workers.nondeterministic},
-                   {"verdicts_of_one_worker", master.lone_verdicts_before + progress.workers.lone_verdicts},
-                   {"copies", progress.workers.copies},
-                   {"audits", progress.workers.audits},
-                   {"audits_alone", progress.workers.audits_alone},
-                   {"audits_waiting", progress.workers.audits_open},
-                   {"worker_seconds", progress.workers.slot_seconds},
-                   {"worker_seconds_idle", progress.workers.idle_seconds},
-                   {"worker_seconds_at_barriers", progress.workers.barrier_seconds},
-                   {"rejected_messages", progress.workers.rejected_messages},
-                   {"workers_refused", backend.refused_workers},
-                   {"connections_with_unknown_keys", backend.unknown_keys},
-                   {"connections_dropped_in_the_greeting", backend.failed_handshakes},
-                   {"why_nothing_runs", OrNull(WhyNothingRuns(master, progress, backend))},
-                   {"pool_trouble", OrNull(backend.pool_trouble)},
-                   {"allocations", std::move(allocations)},
-                   {"worker_list", std::move(workers)}});
+  return JsonText(ObjectOf(AllFields(master, progress, backend)));
+}
+
+Status CheckStatus(const ordered_json& status) {
+  return CheckFields(status, AllFields({}, {}, {}), "");
+}
+
+std::vector<MetricSample> StatusMetrics(const MasterView& master, const CampaignProgress& progress,
+                                        const BackendView& backend) {
+  std::vector<MetricSample> metrics = {Gauge(
+      "gauntlet_campaign_info", "Always 1; which campaign this is.", 1,
+      fmt::format("{},{},{},epoch=\"{}\"", Labelled("campaign", master.campaign_id),
+                  Labelled("experiment", master.experiment), Labelled("host", master.host), master.epoch))};
+  for (Field& field : FieldsOfCampaign(master, progress, backend)) {
+    if (field.metric.name == nullptr) continue;
+    field.metric.value = field.value.get<double>();
+    metrics.push_back(std::move(field.metric));
+  }
+  for (const std::string_view state : kWorkerStates) {
+    const auto workers = std::ranges::count(backend.workers, state, StateOf);
+    metrics.push_back(Gauge("gauntlet_workers", "Workers that the master knows, by what they do.",
+                            static_cast<double>(workers), Labelled("state", state)));
+  }
+  const std::uint64_t leased = RunsOf(backend, false) + RunsOf(backend, true);
+  metrics.insert(
+      metrics.end(),
+      {Gauge("gauntlet_runs_leased", "Runs that workers have, those that wait there included.",
+             static_cast<double>(leased)),
+       Gauge("gauntlet_best_fitness", "Lowest fitness of the population (lower = tougher test case).",
+             progress.best_fitness),
+       Gauge("gauntlet_mean_fitness", "Mean fitness of the population.", progress.mean_fitness),
+       Gauge("gauntlet_stopping", "1 while the master lets the runs that have begun end.",
+             master.stopping ? 1 : 0),
+       Gauge("process_start_time_seconds", "When this master began, s since 1970.",
+             static_cast<double>(master.started_unix_ms) / 1000.0)});
+  return metrics;
 }
 
 }  // namespace gauntlet

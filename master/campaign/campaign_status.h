@@ -65,6 +65,18 @@ struct MasterView {
 std::string StatusJson(const MasterView& master, const CampaignProgress& progress,
                        const BackendView& backend);
 
+// One sample for a monitoring system, by the words of Prometheus' text format.
+struct MetricSample {
+  const char* name = nullptr;  // "gauntlet_runs_queued"
+  const char* type = "";       // "counter" or "gauge"
+  const char* help = "";
+  double value = 0.0;
+  std::string labels = "";  // "state=\"idle\"", "" for none
+};
+// Those of the campaign, which stand in docs/operations.md; samples of one name follow each other.
+std::vector<MetricSample> StatusMetrics(const MasterView& master, const CampaignProgress& progress,
+                                        const BackendView& backend);
+
 // kCorrupt when what `status` and `watch` read of such a document is missing or is of another type: it names
 // the place, "worker_list[2].runs". Anybody may have written what claims to be one.
 Status CheckStatus(const nlohmann::ordered_json& status);

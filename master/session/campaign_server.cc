@@ -223,7 +223,7 @@ void CampaignServer::Publish(const CampaignProgress& progress) {
   if (const Status written = ReplaceFile(directory.status_path(), json, kReadableByAll); !written)
     spdlog::debug("status: {}", written.error().message);
   if (options_.metrics != nullptr)
-    options_.metrics->Publish(MetricsText(view_, progress, seen, CostOfThisProcess()));
+    options_.metrics->Publish(MetricsText(StatusMetrics(view_, progress, seen), CostOfThisProcess()));
 }
 
 // Workers from elsewhere outlive this master unless there is nothing left to do, or no more is wanted.

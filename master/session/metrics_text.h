@@ -4,9 +4,9 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "master/campaign/campaign_status.h"
-#include "master/dispatch/evaluation_backend.h"
 
 namespace gauntlet {
 
@@ -17,8 +17,7 @@ struct ProcessCost {
 };
 ProcessCost CostOfThisProcess();
 
-// The metrics stand in docs/operations.md.
-std::string MetricsText(const MasterView& master, const CampaignProgress& progress,
-                        const BackendView& backend, const ProcessCost& cost);
+// The campaign's metrics (StatusMetrics), and those of the process.
+std::string MetricsText(std::vector<MetricSample> metrics, const ProcessCost& cost);
 
 }  // namespace gauntlet

@@ -32,7 +32,7 @@ TEST(MetricsText, NamesWhatRunsAndWhatWasLost) {
   backend.workers.resize(3);
   backend.workers[0].leases.resize(2);
   backend.workers[1].lost = true;
-  const std::string text = MetricsText(master, progress, backend, {1.5, 4096});
+  const std::string text = MetricsText(StatusMetrics(master, progress, backend), {1.5, 4096});
   EXPECT_THAT(text,
               HasSubstr("gauntlet_campaign_info{campaign=\"c1\",experiment=\"with \\\"quotes\\\" and \\\\ "
                         "and\\nlines\",host=\"node1\",epoch=\"3\"} 1\n"));
@@ -48,7 +48,7 @@ TEST(MetricsText, NamesWhatRunsAndWhatWasLost) {
 
 // What a parser of the format demands: every sample has a type before it, no metric is described twice.
 TEST(MetricsText, EverySampleIsDescribedOnce) {
-  std::istringstream lines(MetricsText({}, {}, {}, {}));
+  std::istringstream lines(MetricsText(StatusMetrics({}, {}, {}), {}));
   std::set<std::string> described;
   int samples = 0;
   for (std::string line; std::getline(lines, line);) {
