@@ -21,7 +21,6 @@ constexpr std::size_t kBeacon = 12;                       // its number among th
 
 class Wheels final : public argos::CCI_DifferentialSteeringActuator, public ActuatorLink {
  public:
-  explicit Wheels(RobotParts& /*parts*/) {}
   void Give(sim::Actuators& actuators) override {
     actuators.left_wheel = m_fCurrentVelocity[0] * kMetres;
     actuators.right_wheel = m_fCurrentVelocity[1] * kMetres;
@@ -61,7 +60,6 @@ class Radio final : public argos::CCI_RangeAndBearingActuator, public ActuatorLi
 
 class Gripper final : public argos::CCI_FootBotGripperActuator, public ActuatorLink {
  public:
-  explicit Gripper(RobotParts& /*parts*/) {}
   void Give(sim::Actuators& actuators) override {
     actuators.gripper_closed = m_cAperture.GetAbsoluteValue() / (sim::kPi / 2.0) > 0.5;
   }
@@ -69,7 +67,6 @@ class Gripper final : public argos::CCI_FootBotGripperActuator, public ActuatorL
 
 class SimpleGripper final : public argos::CCI_GripperActuator, public ActuatorLink {
  public:
-  explicit SimpleGripper(RobotParts& /*parts*/) {}
   void Give(sim::Actuators& actuators) override { actuators.gripper_closed = m_fLockState > 0.5; }
 };
 
@@ -89,7 +86,6 @@ class Turret final : public argos::CCI_FootBotTurretActuator, public ActuatorLin
 
 class Scanner final : public argos::CCI_FootBotDistanceScannerActuator, public ActuatorLink {
  public:
-  explicit Scanner(RobotParts& /*parts*/) {}
   void Give(sim::Actuators& actuators) override {
     using Mode = sim::ScannerCommand::Mode;
     actuators.scanner = {};
@@ -100,9 +96,9 @@ class Scanner final : public argos::CCI_FootBotDistanceScannerActuator, public A
 };
 
 template <typename Actuator>
-LinkedActuator Make(RobotParts& parts) {
-  auto* const actuator = new Actuator(parts);
-  return {actuator, actuator};
+Linked<argos::CCI_Actuator, ActuatorLink> Make(RobotParts& parts) {
+  Actuator* const made = NewDevice<Actuator>(parts);
+  return {made, made};
 }
 
 }  // namespace

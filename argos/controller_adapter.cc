@@ -30,16 +30,6 @@ bool Has(const std::vector<std::string>& tags, std::string_view tag) {
   return std::ranges::find(tags, tag) != tags.end();
 }
 
-// A tag of a file that names no device of ours.
-template <typename Rows>
-void RefuseUnknown(const std::vector<std::string>& tags, const Rows& rows, const char* kind) {
-  for (const std::string& tag : tags) {
-    if (std::ranges::none_of(rows, [&](const auto& row) { return row.tag == tag; })) {
-      throw argos::CARGoSException("the robot has no " + std::string(kind) + " \"" + tag + "\"");
-    }
-  }
-}
-
 }  // namespace
 
 ControllerAdapter::ControllerAdapter(const ControllerSection& section, const Robot& robot)
@@ -59,7 +49,7 @@ ControllerAdapter::ControllerAdapter(const ControllerSection& section, const Rob
         section.devices ? nullptr : &controller_->ActuatorsAskedFor());
   Equip(sensors_, controller_->GetAllSensors(), section.devices ? nullptr : &controller_->SensorsAskedFor());
   for (const auto& sensor : sensors_) {
-    if (sensor.devices == sim::Device::kOmnidirectionalCamera) camera_ = sensor.face;
+    if (sensor.row->devices == sim::Device::kOmnidirectionalCamera) camera_ = sensor.face;
   }
 }
 
@@ -70,37 +60,42 @@ ControllerAdapter::~ControllerAdapter() {
 }
 
 void ControllerAdapter::AddDevices(const ControllerSection& section) {
-  if (section.devices) {
-    RefuseUnknown(section.devices->actuators, ActuatorRows(), "actuator");
-    RefuseUnknown(section.devices->sensors, SensorRows(), "sensor");
+  const auto* const named = section.devices ? &*section.devices : nullptr;
+  Add(ActuatorRows(), "actuator", named ? &named->actuators : nullptr, actuators_,
+      controller_->GetAllActuators());
+  Add(SensorRows(), "sensor", named ? &named->sensors : nullptr, sensors_, controller_->GetAllSensors());
+  for (const auto& sensor : sensors_) {
+    if (sensor.row->devices != sim::Device::kOmnidirectionalCamera) sensor.face->Enable();
   }
-  for (const ActuatorRow& row : ActuatorRows()) {
-    if (section.devices && !Has(section.devices->actuators, row.tag)) continue;
-    const LinkedActuator made = row.make(parts_);
-    actuators_.push_back({row.tag.data(), row.devices, made.actuator, made.link});
-    controller_->AddActuator(row.tag.data(), made.actuator);
+}
+
+template <typename Row, typename Parts, typename Map>
+void ControllerAdapter::Add(std::span<const Row> rows, const char* kind,
+                            const std::vector<std::string>* named, Parts& parts, Map& map) {
+  for (const std::string& tag : named ? *named : std::vector<std::string>()) {
+    if (std::ranges::find(rows, tag, &Row::tag) == rows.end())
+      throw argos::CARGoSException("the robot has no " + std::string(kind) + " \"" + tag + "\"");
   }
-  for (const SensorRow& row : SensorRows()) {
-    if (section.devices && !Has(section.devices->sensors, row.tag)) continue;
-    const LinkedSensor made = row.make(parts_);
-    sensors_.push_back({row.tag.data(), row.devices, made.sensor, made.link});
-    controller_->AddSensor(row.tag.data(), made.sensor);
-    if (row.devices != sim::Device::kOmnidirectionalCamera) made.sensor->Enable();
+  for (const Row& row : rows) {
+    if (named && !Has(*named, row.tag)) continue;
+    const auto made = row.make(parts_);
+    parts.push_back({made, &row});
+    map[std::string(row.tag)] = made.face;
   }
 }
 
 template <typename Parts, typename Map>
 void ControllerAdapter::Equip(Parts& parts, Map& map, const std::vector<std::string>* asked_for) {
   std::erase_if(parts, [&](const auto& part) {
-    if (asked_for == nullptr || Has(*asked_for, part.tag)) return false;
-    map.erase(part.tag);
+    if (asked_for == nullptr || Has(*asked_for, part.row->tag)) return false;
+    map.erase(std::string(part.row->tag));
     delete part.face;
     return true;
   });
   for (const auto& part : parts) {
-    devices_ = devices_ | part.devices;
-    if (part.devices == sim::Device::kOmnidirectionalCamera) continue;
-    devices_without_camera_ = devices_without_camera_ | part.devices;
+    devices_ = devices_ | part.row->devices;
+    if (part.row->devices == sim::Device::kOmnidirectionalCamera) continue;
+    devices_without_camera_ = devices_without_camera_ | part.row->devices;
   }
 }
 

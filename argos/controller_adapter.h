@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,14 +58,15 @@ class ControllerAdapter final : public sim::Controller {
  private:
   // One of its devices.
   template <typename Face, typename Link>
-  struct Part {
-    const char* tag;
-    sim::DeviceSet devices;
-    Face* face;
-    Link* link;
+  struct Part : Linked<Face, Link> {
+    const DeviceRow<Face, Link>* row;
   };
 
   void AddDevices(const ControllerSection& section);
+  // Those that are named, or all when null. Throws of a name that is none of ours.
+  template <typename Row, typename Parts, typename Map>
+  void Add(std::span<const Row> rows, const char* kind, const std::vector<std::string>* named, Parts& parts,
+           Map& map);
   // Takes the devices away that were not asked for, unless null; the robot has the rest.
   template <typename Parts, typename Map>
   void Equip(Parts& parts, Map& map, const std::vector<std::string>* asked_for);

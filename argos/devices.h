@@ -4,6 +4,7 @@
 
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 #include "argos/mailbox.h"
 #include "argos/palette.h"
@@ -48,25 +49,30 @@ class ActuatorLink {
 };
 
 // One object seen from both sides; the ARGoS side owns it.
-struct LinkedSensor {
-  argos::CCI_Sensor* sensor = nullptr;
-  SensorLink* link = nullptr;
-};
-struct LinkedActuator {
-  argos::CCI_Actuator* actuator = nullptr;
-  ActuatorLink* link = nullptr;
+template <typename Face, typename Link>
+struct Linked {
+  Face* face = nullptr;
+  Link* link = nullptr;
 };
 
-struct SensorRow {
+template <typename Face, typename Link>
+struct DeviceRow {
   std::string_view tag;
-  sim::DeviceSet devices;  // that it reads
-  LinkedSensor (*make)(RobotParts& parts);
+  sim::DeviceSet devices;  // that it reads or drives
+  Linked<Face, Link> (*make)(RobotParts& parts);
 };
-struct ActuatorRow {
-  std::string_view tag;
-  sim::DeviceSet devices;  // that it drives
-  LinkedActuator (*make)(RobotParts& parts);
-};
+using SensorRow = DeviceRow<argos::CCI_Sensor, SensorLink>;
+using ActuatorRow = DeviceRow<argos::CCI_Actuator, ActuatorLink>;
+
+// A new device, which is given the robot's parts if it wants them.
+template <typename Device>
+Device* NewDevice(RobotParts& parts) {
+  if constexpr (std::is_constructible_v<Device, RobotParts&>) {
+    return new Device(parts);
+  } else {
+    return new Device;
+  }
+}
 
 std::span<const SensorRow> SensorRows();
 std::span<const ActuatorRow> ActuatorRows();

@@ -45,13 +45,13 @@ void SetBearings(Readings& readings) {
 
 class Proximity final : public argos::CCI_FootBotProximitySensor, public SensorLink {
  public:
-  explicit Proximity(RobotParts& /*parts*/) { SetBearings(m_tReadings); }
+  Proximity() { SetBearings(m_tReadings); }
   void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.proximity); }
 };
 
 class Light final : public argos::CCI_FootBotLightSensor, public SensorLink {
  public:
-  explicit Light(RobotParts& /*parts*/) { SetBearings(m_tReadings); }
+  Light() { SetBearings(m_tReadings); }
   void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.light); }
 };
 
@@ -61,19 +61,16 @@ CBearing BearingOf(const sim::Directions& directions, std::size_t i) {
 
 class MotorGround final : public argos::CCI_FootBotMotorGroundSensor, public SensorLink {
  public:
-  explicit MotorGround(RobotParts& /*parts*/) {}
   void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.motor_ground); }
 };
 
 class BaseGround final : public argos::CCI_FootBotBaseGroundSensor, public SensorLink {
  public:
-  explicit BaseGround(RobotParts& /*parts*/) {}
   void Take(const sim::SensorReadings& readings) override { TakeValues(m_tReadings, readings.base_ground); }
 };
 
 class Ground final : public argos::CCI_GroundSensor, public SensorLink {
  public:
-  explicit Ground(RobotParts& /*parts*/) {}
   void Take(const sim::SensorReadings& readings) override {
     const auto next =
         std::copy(readings.motor_ground.begin(), readings.motor_ground.end(), m_tReadings.begin());
@@ -167,7 +164,6 @@ class Positioning final : public argos::CCI_PositioningSensor, public SensorLink
 
 class WheelEncoders final : public argos::CCI_DifferentialSteeringSensor, public SensorLink {
  public:
-  explicit WheelEncoders(RobotParts& /*parts*/) {}
   void Take(const sim::SensorReadings& readings) override {
     m_sReading.VelocityLeftWheel = readings.wheels.left * kCentimetres;
     m_sReading.VelocityRightWheel = readings.wheels.right * kCentimetres;
@@ -178,7 +174,6 @@ class WheelEncoders final : public argos::CCI_DifferentialSteeringSensor, public
 
 class WheelSpeed final : public argos::CCI_FootBotWheelSpeedSensor, public SensorLink {
  public:
-  explicit WheelSpeed(RobotParts& /*parts*/) {}
   void Take(const sim::SensorReadings& readings) override {
     m_sReading.LinearVelocityLeft = readings.wheels.left * kCentimetres;
     m_sReading.LinearVelocityRight = readings.wheels.right * kCentimetres;
@@ -196,13 +191,11 @@ class TurretEncoder final : public argos::CCI_FootBotTurretEncoderSensor, public
 
 class Battery final : public argos::CCI_BatterySensor, public SensorLink {
  public:
-  explicit Battery(RobotParts& /*parts*/) {}
   void Take(const sim::SensorReadings& /*readings*/) override {}
 };
 
 class Scanner final : public argos::CCI_FootBotDistanceScannerSensor, public SensorLink {
  public:
-  explicit Scanner(RobotParts& /*parts*/) {}
   void Take(const sim::SensorReadings& readings) override {
     for (TReadingsMap* const map : {&m_tReadingsMap, &m_tShortReadingsMap, &m_tLongReadingsMap}) Empty(*map);
     for (const sim::ScannerReading& ray : readings.scanner_short) Add(ray, m_tShortReadingsMap);
@@ -236,9 +229,9 @@ class Scanner final : public argos::CCI_FootBotDistanceScannerSensor, public Sen
 };
 
 template <typename Sensor>
-LinkedSensor Make(RobotParts& parts) {
-  auto* const sensor = new Sensor(parts);
-  return {sensor, sensor};
+Linked<argos::CCI_Sensor, SensorLink> Make(RobotParts& parts) {
+  Sensor* const made = NewDevice<Sensor>(parts);
+  return {made, made};
 }
 
 }  // namespace

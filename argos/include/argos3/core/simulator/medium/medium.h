@@ -1,8 +1,4 @@
-// What signals go through. Only its name: sources include this header without use.
+// Only a name.
 #pragma once
 
-namespace argos {
-
-class CMedium {};
-
-}  // namespace argos
+#include <argos3/core/simulator/only_names.h>

@@ -1,8 +1,4 @@
-// A body as the physics have it. Only its name: sources include this header without use.
+// Only a name.
 #pragma once
 
-namespace argos {
-
-class CPhysicsModel {};
-
-}  // namespace argos
+#include <argos3/core/simulator/only_names.h>

@@ -1,10 +1,4 @@
-// A box. Only its name: what stands in the arena is the scenario's matter.
+// Only a name.
 #pragma once
 
-#include <argos3/core/simulator/entity/entity.h>
-
-namespace argos {
-
-class CBoxEntity : public CEntity {};
-
-}  // namespace argos
+#include <argos3/core/simulator/only_names.h>

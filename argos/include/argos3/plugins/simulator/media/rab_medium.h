@@ -1,10 +1,4 @@
-// What range and bearing goes through. Only its name: sources include this header without use.
+// Only a name.
 #pragma once
 
-#include <argos3/core/simulator/medium/medium.h>
-
-namespace argos {
-
-class CRABMedium : public CMedium {};
-
-}  // namespace argos
+#include <argos3/core/simulator/only_names.h>

@@ -1,36 +1,10 @@
-// How bright it is around the robot, in 24 directions.
+// How bright it is around the robot: 0, dark to 1.
 #pragma once
 
-#include <vector>
-
-#include <argos3/core/control_interface/ci_sensor.h>
-#include <argos3/core/utility/datatypes/datatypes.h>
-#include <argos3/core/utility/math/bearing.h>
+#include <argos3/plugins/robots/foot-bot/control_interface/footbot_places.h>
 
 namespace argos {
 
-class CCI_FootBotLightSensor : public CCI_Sensor {
- public:
-  struct SReading {
-    Real Value = 0.0;  // 0, dark to 1
-    CBearing Angle;    // from the heading
-
-    SReading() = default;
-    SReading(Real value, const CRadians& angle) : Value(value), Angle(angle) {}
-  };
-  using TReadings = std::vector<SReading>;
-
-  // Reading i at 7.5 + 15 i degrees, in (-180, 180].
-  CCI_FootBotLightSensor() {
-    for (int i = 0; i < 24; ++i) {
-      m_tReadings.emplace_back(0.0, CRadians((i + 0.5) * ARGOS_PI / 12.0).SignedNormalize());
-    }
-  }
-
-  const TReadings& GetReadings() const { return m_tReadings; }
-
- protected:
-  TReadings m_tReadings;
-};
+class CCI_FootBotLightSensor : public CFootBotRing<CCI_FootBotLightSensor> {};
 
 }  // namespace argos

@@ -1,10 +1,4 @@
-// ARGoS' engine for the plane. Only its name: sources include this header without use.
+// Only a name.
 #pragma once
 
-#include <argos3/core/simulator/physics_engine/physics_engine.h>
-
-namespace argos {
-
-class CDynamics2DEngine : public CPhysicsEngine {};
-
-}  // namespace argos
+#include <argos3/core/simulator/only_names.h>
