@@ -90,7 +90,7 @@ std::string IdOfRun(std::size_t number, RunId run) {
 Table CaseTable(const CampaignPages& pages, std::size_t number, std::size_t most) {
   const CampaignFacts& facts = pages.facts;
   const Experiment& experiment = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const auto* scenario = controllers::FindScenario(experiment);
   Table table({{">case", "case"},
                {">search", "search"},
                {"name", "name"},
