@@ -55,7 +55,7 @@ GenomeGenerator MakeGenerator(const SearchSetup& setup) {
 }
 
 std::uint64_t SearchSeed(const SearchSetup& setup) {
-  return sim::DeriveSeed(setup.experiment.seed, sim::SeedPurpose::kSearchNumber, kSearchNumber,
+  return sim::DeriveSeed(setup.experiment.seed, sim::SeedPurpose::kSearch, kSearchNumber,
                          /*individual=*/0, /*evaluation=*/0, setup.row->number);
 }
 
