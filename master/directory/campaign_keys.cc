@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
@@ -16,13 +18,18 @@ namespace {
 constexpr int kKeysFormat = 1;
 constexpr mode_t kOthers = 077;
 
+// The file's members.
+std::array<std::pair<const char*, std::string*>, 4> FieldsOf(CampaignKeys& keys) {
+  return {{{"server_public", &keys.master.public_key},
+           {"server_secret", &keys.master.secret_key},
+           {"worker_public", &keys.worker.public_key},
+           {"worker_secret", &keys.worker.secret_key}}};
+}
+
 Result<CampaignKeys> Make(const std::string& path) {
-  const CampaignKeys keys{NewCurveKeyPair(), NewCurveKeyPair()};
-  const nlohmann::ordered_json json = {{"format", kKeysFormat},
-                                       {"server_public", keys.master.public_key},
-                                       {"server_secret", keys.master.secret_key},
-                                       {"worker_public", keys.worker.public_key},
-                                       {"worker_secret", keys.worker.secret_key}};
+  CampaignKeys keys{NewCurveKeyPair(), NewCurveKeyPair()};
+  nlohmann::ordered_json json = {{"format", kKeysFormat}};
+  for (const auto& [name, key] : FieldsOf(keys)) json[name] = *key;
   TRY(WriteFileAtomically(path, JsonText(json), kOwnerOnly));
   return keys;
 }
@@ -44,10 +51,7 @@ Result<CampaignKeys> LoadOrMakeKeys(const std::string& path) {
   }
   const nlohmann::json json = nlohmann::json::parse(*text, nullptr, /*allow_exceptions=*/false);
   CampaignKeys keys;
-  for (const auto& [name, key] : {std::pair{"server_public", &keys.master.public_key},
-                                  std::pair{"server_secret", &keys.master.secret_key},
-                                  std::pair{"worker_public", &keys.worker.public_key},
-                                  std::pair{"worker_secret", &keys.worker.secret_key}}) {
+  for (const auto& [name, key] : FieldsOf(keys)) {
     *key = TextAt(json, name);
     if (!proto::IsCurveKey(*key)) {
       return Error{

@@ -8,11 +8,6 @@
 
 namespace gauntlet {
 
-struct CampaignKeys {
-  CurveKeyPair master;
-  CurveKeyPair worker;  // shared by all workers of the campaign
-};
-
 // Reads the file, or makes keys and the file (0600) when there is none. Errors: kInvalidInput when others
 // than its owner may read it, kCorrupt when it does not hold keys. No message repeats a key.
 Result<CampaignKeys> LoadOrMakeKeys(const std::string& path);

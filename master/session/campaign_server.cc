@@ -126,7 +126,7 @@ Status CampaignServer::Listen() {
   if (!options_.insecure) {
     TRY(CampaignKeys keys, LoadOrMakeKeys(campaign_.directory.key_path()));
     access.curve = proto::CurveKeys{keys.master.public_key, keys.worker.public_key, keys.worker.secret_key};
-    transport.curve = CurveServer{keys.master, {keys.worker.public_key}};
+    transport.curve = keys;
   }
   TRY(transport_, ZmqTransport::Bind(transport));
   access.endpoints = ReachableEndpoints(transport_->endpoint());

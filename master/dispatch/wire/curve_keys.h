@@ -12,6 +12,11 @@ struct CurveKeyPair {
   bool operator==(const CurveKeyPair&) const = default;
 };
 
+struct CampaignKeys {
+  CurveKeyPair master;
+  CurveKeyPair worker;  // shared by all workers of the campaign
+};
+
 // From the operating system's random numbers.
 CurveKeyPair NewCurveKeyPair();
 

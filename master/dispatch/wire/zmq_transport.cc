@@ -12,7 +12,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <set>
 #include <string_view>
 #include <utility>
 #include <zmq.hpp>
@@ -125,20 +124,18 @@ class RouterTransport final : public ZmqTransport {
     rejections_.silent += static_cast<std::uint64_t>(closed.silent);
   }
 
-  void UseCurve(const CurveServer& curve) {
-    for (const std::string& key : curve.admitted_keys) {
-      std::string bytes(32, '\0');
-      if (zmq_z85_decode(reinterpret_cast<std::uint8_t*>(bytes.data()), key.c_str()) != nullptr) {
-        admitted_.insert(std::move(bytes));
-      }
-    }
+  void UseCurve(const CampaignKeys& keys) {
+    std::string bytes(32, '\0');
+    const char* admitted = keys.worker.public_key.c_str();
+    if (zmq_z85_decode(reinterpret_cast<std::uint8_t*>(bytes.data()), admitted) != nullptr)
+      admitted_ = std::move(bytes);
     zap_.emplace(context_, zmq::socket_type::rep);
     zap_->set(zmq::sockopt::linger, 0);
     zap_->bind("inproc://zeromq.zap.01");  // the address that ZAP (RFC 27) names
     zap_fd_ = zap_->get(zmq::sockopt::fd);
     AnswerZap();
     router_.set(zmq::sockopt::curve_server, true);
-    router_.set(zmq::sockopt::curve_secretkey, curve.keys.secret_key);
+    router_.set(zmq::sockopt::curve_secretkey, keys.master.secret_key);
     router_.set(zmq::sockopt::zap_domain, "gauntlet");
   }
 
@@ -150,7 +147,7 @@ class RouterTransport final : public ZmqTransport {
       request.assign(1, frame.to_string());
       while (frame.more() && zap_->recv(frame, zmq::recv_flags::dontwait))
         request.push_back(frame.to_string());
-      const bool known = request.size() == 7 && request[5] == "CURVE" && admitted_.contains(request[6]);
+      const bool known = request.size() == 7 && request[5] == "CURVE" && admitted_ == request[6];
       const std::string id = request.size() > 1 ? request[1] : "";
       const std::array<std::string, 6> reply{"1.0", id, known ? "200" : "400", known ? "OK" : "unknown key",
                                              "",    ""};
@@ -177,9 +174,9 @@ class RouterTransport final : public ZmqTransport {
   std::optional<zmq::socket_t> zap_;  // asked by libzmq about every key that connects
   zmq::socket_t router_{context_, zmq::socket_type::router};
   zmq::socket_t monitor_{context_, zmq::socket_type::pair};
-  const UniqueFd wake_up_;          // eventfd
-  int zap_fd_ = -1;                 // -1: no keys, nobody asks
-  std::set<std::string> admitted_;  // public keys, 32 bytes
+  const UniqueFd wake_up_;               // eventfd
+  int zap_fd_ = -1;                      // -1: no keys, nobody asks
+  std::optional<std::string> admitted_;  // the public key of workers, 32 bytes
   const std::size_t max_message_bytes_;
   std::string endpoint_;
   TransportRejections rejections_;

@@ -5,20 +5,12 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "base/result.h"
 #include "master/dispatch/wire/curve_keys.h"
 #include "master/dispatch/wire/transport.h"
 
 namespace gauntlet {
-
-// CURVE for everybody who connects.
-struct CurveServer {
-  CurveKeyPair keys;  // the master's
-  std::vector<std::string>
-      admitted_keys;  // public keys of those who may connect; others end in the handshake
-};
 
 struct ZmqTransportOptions {
   std::string endpoint = "tcp://127.0.0.1:*";  // "*" as port: any free one
@@ -30,7 +22,9 @@ struct ZmqTransportOptions {
   // A connection on which nothing has come for so long is asked for a sign of life, which every peer that
   // speaks ZeroMQ gives by itself, and is closed when none comes in the same time again. 0: never asked.
   std::chrono::milliseconds sign_of_life{30'000};
-  std::optional<CurveServer> curve = std::nullopt;  // none: plaintext, open to whoever reaches the endpoint
+  // CURVE for everybody who connects; others than workers end in the handshake. None: plaintext, open to
+  // whoever reaches the endpoint.
+  std::optional<CampaignKeys> curve = std::nullopt;
 };
 
 class ZmqTransport : public Transport {

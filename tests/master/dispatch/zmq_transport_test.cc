@@ -135,7 +135,7 @@ class CurveTransportTest : public ZmqTransportTest {
  protected:
   void SetUp() override {
     ZmqTransportOptions options;
-    options.curve = CurveServer{server_, {known_.public_key}};
+    options.curve = CampaignKeys{server_, known_};
     transport_.reset();
     Result<std::unique_ptr<ZmqTransport>> transport = ZmqTransport::Bind(options);
     ASSERT_TRUE(transport.ok()) << transport.error().message;
