@@ -26,24 +26,9 @@ constexpr std::array<std::string_view, 14> kOwnNames = {
     "log",           "status.json", "master.key",  "stop",   "slurm.toml",
     "searches.json", "origin.json", "snapshot.db", "plugins"};
 
-// What a master obeys of a campaign, or writes to.
-constexpr std::array<std::string_view, 17> kTrustedNames = {"access.json",
-                                                            "bundles",
-                                                            "campaign.db",
-                                                            "campaign.db-wal",
-                                                            "campaign.db-journal",
-                                                            "epoch",
-                                                            "lock",
-                                                            "experiment.toml",
-                                                            "log",
-                                                            "log/master.log",
-                                                            "master.key",
-                                                            "searches.json",
-                                                            "origin.json",
-                                                            "plugins",
-                                                            "slurm.toml",
-                                                            "snapshot.db",
-                                                            "status.json"};
+// What else a master obeys of a campaign, or writes to.
+constexpr std::array<std::string_view, 4> kBesideOwnNames = {"bundles", "campaign.db-wal",
+                                                             "campaign.db-journal", "log/master.log"};
 
 std::string WithoutSlash(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
@@ -104,13 +89,13 @@ Result<std::uint64_t> ParseEpoch(const Result<std::string>& text, const std::str
                   path, digits.substr(0, 40), largest)};
 }
 
+}  // namespace
+
 std::optional<FileVersion> VersionOf(const std::string& path) {
   struct stat info {};
   if (lstat(path.c_str(), &info) != 0) return std::nullopt;
   return FileVersion{{info.st_dev, info.st_ino}, info.st_mtim.tv_sec, info.st_mtim.tv_nsec};
 }
-
-}  // namespace
 
 Status CampaignDirectory::CheckCreatable(const std::string& dir) {
   const CampaignDirectory directory(WithoutSlash(dir));
@@ -185,7 +170,8 @@ Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
 }
 
 Status CampaignDirectory::CheckTrusted() const {
-  return CheckOnlyWeWrite(path_, kTrustedNames);
+  TRY(CheckOnlyWeWrite(path_, kOwnNames));
+  return CheckOnlyWeWrite(path_, kBesideOwnNames);
 }
 
 Result<std::uint64_t> CampaignDirectory::StartEpoch() {

@@ -19,6 +19,9 @@ struct FileVersion {
   bool operator==(const FileVersion&) const = default;
 };
 
+// Of the file or the link of this name; nothing when there is none, or it cannot be looked at (errno).
+std::optional<FileVersion> VersionOf(const std::string& path);
+
 class CampaignDirectory {
  public:
   // Whether Create would take `dir`; makes nothing. It takes no directory in which others may write.

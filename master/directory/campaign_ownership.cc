@@ -9,13 +9,11 @@
 #include <optional>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
 #include "base/system/process_identity.h"
-#include "master/directory/kept_files.h"
-#include "master/directory/opened_files.h"
+#include "master/directory/owned_files.h"
 #include "master/store/event_kinds.h"
 
 namespace gauntlet {
@@ -34,13 +32,10 @@ LockOptions OptionsFor(const CampaignDirectory& directory) {
   return options;
 }
 
-Status CheckOwned(const CampaignDirectory& directory, const std::optional<OpenedFiles>& identity,
-                  KeptFiles& kept, CampaignLock& lock, std::uint64_t epoch) {
+Status CheckOwned(const CampaignDirectory& directory, OwnedFiles& files, CampaignLock& lock,
+                  std::uint64_t epoch) {
   TRY(lock.Check());
-  if (identity) {
-    TRY(identity->Check());
-  }
-  TRY(kept.Restore());
+  TRY(files.Check());
   Status newest = directory.CheckEpoch(epoch);
   if (newest || newest.error().kind != ErrorKind::kNotFound) return newest;
   // Somebody has deleted it. The lock file is the one that we hold and still names us, so no other master can
@@ -49,39 +44,22 @@ Status CheckOwned(const CampaignDirectory& directory, const std::optional<Opened
   return directory.RestoreEpoch(epoch);
 }
 
-struct Birth {
-  CampaignMeta meta;
-  std::function<Status(ResultStore&)> fill;  // nullptr: the store begins empty
-};
-
-Status FillDraft(const std::string& draft, const std::function<Status(ResultStore&)>& fill) {
-  TRY(const std::unique_ptr<SqliteStore> store, SqliteStore::Open(draft, {}));
-  TRY(fill(*store));
-  return store->Flush();
-}
-
-// Counts the epoch, makes the database of a campaign that begins (`born` says what it is), and opens it: in
-// this order, for from the epoch on no former master commits anything that we might not have read.
+// Counts the epoch, makes the database of a campaign that begins (`make_database`), and opens it: in this
+// order, for from the epoch on no former master commits anything that we might not have read.
 Result<CampaignOwnership> Own(CampaignDirectory directory, std::unique_ptr<CampaignLock> lock,
-                              const Birth* born) {
+                              const std::function<Status()>& make_database = nullptr) {
   TRY(const std::uint64_t epoch, directory.StartEpoch());
-  if (born != nullptr) {
-    std::function<Status(const std::string&)> fill;
-    if (born->fill) fill = [born](const std::string& draft) { return FillDraft(draft, born->fill); };
-    TRY(CreateDatabase(directory.database_path(), born->meta, fill));
+  if (make_database) {
+    TRY(make_database());
   }
-  // Of the files as they are once the store has them open.
-  const auto identity = std::make_shared<std::optional<OpenedFiles>>();
-  const auto kept = std::make_shared<KeptFiles>(
-      std::vector{directory.experiment_path(), directory.searches_path(), directory.slurm_path()});
-  const auto check = [directory, identity, kept, lock = lock.get(), epoch] {
-    return CheckOwned(directory, *identity, *kept, *lock, epoch);
+  const auto files = std::make_shared<OwnedFiles>(directory);
+  const auto check = [directory, files, lock = lock.get(), epoch] {
+    return CheckOwned(directory, *files, *lock, epoch);
   };
   SqliteStore::Options options;
   options.guard = check;
   TRY(std::unique_ptr<SqliteStore> store, SqliteStore::Open(directory.database_path(), options));
-  TRY(OpenedFiles opened, OpenedFiles::Of(directory));
-  *identity = std::move(opened);
+  TRY(files->NoteOpened());
   TRY(CampaignOrigin origin, ConfirmOrigin(directory, store->meta().campaign_id));
   if (!origin.copied_from.empty()) {
     store->AddEvent({UnixMilliseconds(), event::kCopied,
@@ -132,8 +110,14 @@ Result<CampaignOwnership> CreateCampaign(const std::string& dir, const CampaignT
   if (texts.others) {
     TRY(texts.others(directory));
   }
-  const Birth birth{std::move(meta), fill};
-  return Own(std::move(directory), std::move(lock), &birth);
+  const auto fill_draft = [&](const std::string& draft) -> Status {
+    if (!fill) return Ok{};
+    TRY(const std::unique_ptr<SqliteStore> store, SqliteStore::Open(draft, {}));
+    TRY(fill(*store));
+    return store->Flush();
+  };
+  return Own(directory, std::move(lock),
+             [&] { return CreateDatabase(directory.database_path(), meta, fill_draft); });
 }
 
 Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster other,
@@ -161,7 +145,7 @@ Result<CampaignOwnership> TakeCampaign(const std::string& dir, LivingMaster othe
   std::filesystem::remove(directory.stop_path(), ignored);
   std::filesystem::remove(directory.status_path(), ignored);
   std::filesystem::remove(directory.snapshot_path(), ignored);
-  return Own(std::move(directory), *std::move(lock), nullptr);
+  return Own(std::move(directory), *std::move(lock));
 }
 
 Result<CampaignView> ViewCampaign(const std::string& dir, Checked what) {
