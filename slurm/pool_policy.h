@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/system/clock.h"
+#include "master/dispatch/pool/worker_pool.h"
 #include "slurm/job_status.h"
 
 namespace gauntlet::slurm {
@@ -38,19 +39,13 @@ struct Decisions {
   bool query = false;                      // ask squeue
 };
 
-// One allocation as the pool sees it.
-struct Allocation {
-  std::string job;
+// One allocation as the pool sees it; it was `cancelled` by us.
+struct Allocation : AllocationView {
   JobPhase phase = JobPhase::kQueued;
-  std::string state;   // Slurm's word
-  std::string reason;  // Slurm's word
-  std::string nodes;
-  int workers = 0;                         // connected now
   std::optional<TimePoint> running_since;  // first seen running
   std::optional<TimePoint> first_hello;    // of its first worker
   std::optional<TimePoint> silent_since;   // it runs, and none of its workers has been connected since
   std::optional<TimePoint> idle_since;     // none of its workers has had a run since
-  bool cancelled = false;                  // by us
   int missing = 0;                         // queries in a row that did not show it
   bool judged = false;                     // whether its start has failed
 };

@@ -17,7 +17,7 @@ SlurmPool::SlurmPool(SlurmPoolOptions options, std::unique_ptr<SlurmClient> clie
       client_(std::move(client)),
       policy_(options_.limits),
       answer_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  GAUNTLET_CHECK(answer_fd_ >= 0, "no eventfd can be had");
+  GAUNTLET_CHECK(answer_fd_.valid(), "no eventfd can be had");
   thread_ = std::thread([this] { CallSlurm(); });
 }
 
@@ -31,7 +31,6 @@ SlurmPool::~SlurmPool() {
   }
   work_.notify_all();
   thread_.join();
-  close(answer_fd_);
 }
 
 // By name, so that a submission whose answer was lost goes too.
@@ -71,7 +70,7 @@ void SlurmPool::CallSlurm() {
     const std::lock_guard lock(mutex_);
     answers_.push_back(std::move(answer));
     const std::uint64_t one = 1;
-    GAUNTLET_CHECK(write(answer_fd_, &one, sizeof one) == sizeof one, "the eventfd of the pool broke");
+    GAUNTLET_CHECK(write(answer_fd_.get(), &one, sizeof one) == sizeof one, "the eventfd of the pool broke");
   }
 }
 
@@ -81,7 +80,7 @@ void SlurmPool::TakeAnswers(TimePoint now) {
     const std::lock_guard lock(mutex_);
     answers.swap(answers_);
     std::uint64_t count = 0;
-    (void)!read(answer_fd_, &count, sizeof count);
+    (void)!read(answer_fd_.get(), &count, sizeof count);
   }
   for (const auto& answer : answers) answer(now);
 }
@@ -210,12 +209,8 @@ std::string SlurmPool::Trouble(TimePoint now) const {
 }
 
 std::vector<AllocationView> SlurmPool::Allocations() const {
-  std::vector<AllocationView> views;
-  for (const Allocation& allocation : policy_.allocations()) {
-    views.push_back({allocation.job, allocation.state, allocation.reason, allocation.nodes,
-                     allocation.workers, allocation.cancelled});
-  }
-  return views;
+  const std::vector<Allocation> allocations = policy_.allocations();
+  return {allocations.begin(), allocations.end()};
 }
 
 int SlurmPool::running() const {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/system/unique_fd.h"
 #include "master/dispatch/pool/worker_pool.h"
 #include "slurm/job_script.h"
 #include "slurm/pool_policy.h"
@@ -43,7 +44,7 @@ class SlurmPool final : public WorkerPool {
 
   // Never an error: a cluster that starts nothing today may do so tomorrow; Trouble says what is wrong.
   Result<std::vector<pid_t>> Supervise(TimePoint now) override;
-  void AppendWaitFds(std::vector<int>& fds) const override { fds.push_back(answer_fd_); }
+  void AppendWaitFds(std::vector<int>& fds) const override { fds.push_back(answer_fd_.get()); }
   // Allocations that are not yet cancelled or ended.
   int running() const override;
   void StopReplacing() override { stopped_growing_ = true; }
@@ -90,7 +91,7 @@ class SlurmPool final : public WorkerPool {
   std::deque<Task> tasks_;
   std::vector<std::function<void(TimePoint)>> answers_;
   bool leaving_ = false;
-  int answer_fd_ = -1;  // eventfd, readable while there are answers
+  const UniqueFd answer_fd_;  // eventfd, readable while there are answers
   std::thread thread_;
 };
 

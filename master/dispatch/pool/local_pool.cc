@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <spawn.h>
-#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,7 +17,7 @@
 #include "base/system/process_call.h"
 #include "base/system/regular_file.h"
 #include "base/system/resource_limits.h"
-#include "base/system/unique_fd.h"
+#include "master/dispatch/pool/process_watch.h"
 
 namespace gauntlet {
 namespace {
@@ -96,15 +95,14 @@ LocalPool::~LocalPool() {
   const TimePoint deadline = std::chrono::steady_clock::now() + milliseconds(kGraceMilliseconds);
   for (Slot& slot : slots_) {
     if (slot.pid < 0) continue;
-    if (slot.pidfd >= 0) {
+    if (slot.pidfd.valid()) {
       const auto left =
           std::chrono::duration_cast<milliseconds>(deadline - std::chrono::steady_clock::now()).count();
-      pollfd wait{slot.pidfd, POLLIN, 0};
+      pollfd wait{slot.pidfd.get(), POLLIN, 0};
       poll(&wait, 1, static_cast<int>(std::max<std::int64_t>(0, left)));
     }
     kill(-slot.pid, SIGKILL);  // it is not reaped yet, so the process group is still its own
     while (waitpid(slot.pid, nullptr, 0) < 0 && errno == EINTR) continue;
-    if (slot.pidfd >= 0) close(slot.pidfd);
   }
 }
 
@@ -120,17 +118,14 @@ Status LocalPool::StartWorker(Slot& slot, TimePoint now) {
     slot.pid = -1;
     return SystemError(fmt::format("cannot start {}", options_.program), failed);
   }
-  // By number: the header of glibc 2.36 gives pidfd_open C++ linkage. Closed on exec; not there before
-  // Linux 5.3: then Supervise finds out.
-  slot.pidfd = static_cast<int>(syscall(SYS_pidfd_open, slot.pid, 0));
+  slot.pidfd = OpenProcess(slot.pid);  // without one, Supervise finds out
   slot.started = now;
   return Ok{};
 }
 
 void LocalPool::Bury(Slot& slot, int status, TimePoint now) {
-  const pid_t pid = slot.pid;
-  if (slot.pidfd >= 0) close(slot.pidfd);
-  slot.pid = slot.pidfd = -1;
+  const pid_t pid = std::exchange(slot.pid, -1);
+  slot.pidfd.Reset();
   if (!replacing_) return;
 
   // An end from outside says nothing about whether the program can start.
@@ -194,7 +189,7 @@ Result<std::vector<pid_t>> LocalPool::Supervise(TimePoint now) {
 
 void LocalPool::AppendWaitFds(std::vector<int>& fds) const {
   for (const Slot& slot : slots_) {
-    if (slot.pidfd >= 0) fds.push_back(slot.pidfd);
+    if (slot.pidfd.valid()) fds.push_back(slot.pidfd.get());
   }
 }
 

@@ -10,6 +10,7 @@
 #include "base/result.h"
 #include "base/system/clock.h"
 #include "base/system/program_path.h"
+#include "base/system/unique_fd.h"
 #include "master/dispatch/pool/worker_pool.h"
 
 namespace gauntlet {
@@ -50,7 +51,7 @@ class LocalPool final : public WorkerPool {
  private:
   struct Slot {
     pid_t pid = -1;  // -1: not running
-    int pidfd = -1;  // -1: not running, or the kernel has none
+    UniqueFd pidfd;  // invalid: not running, or the kernel has none
     TimePoint started{};
     TimePoint start_again{};
     int failed_starts = 0;

@@ -7,16 +7,18 @@
 #include <vector>
 
 #include "base/system/process_identity.h"
+#include "base/system/unique_fd.h"
 
 namespace gauntlet {
 
-// Thread-safety: one thread. Needs Linux 5.3 (pidfd_open); without it nobody can be watched.
+// Readable when the process has ended, closed on exec. Invalid: there is none, or the kernel is older than
+// Linux 5.3 (pidfd_open).
+UniqueFd OpenProcess(pid_t pid);
+
+// Thread-safety: one thread. Nobody can be watched where OpenProcess has nothing.
 class ProcessWatch {
  public:
   ProcessWatch();
-  ProcessWatch(const ProcessWatch&) = delete;
-  ProcessWatch& operator=(const ProcessWatch&) = delete;
-  ~ProcessWatch();
 
   // From now on the end of the process is told under this name; a former process of the name is forgotten.
   // False, and nothing is watched, unless the process certainly is one of this machine and pid namespace and
@@ -24,7 +26,7 @@ class ProcessWatch {
   bool Watch(std::uint64_t name, const ProcessIdentity& process);
   void Forget(std::uint64_t name);
   // Readable when TakeEnded has something; -1 when nobody can be watched.
-  int fd() const { return epoll_; }
+  int fd() const { return epoll_.get(); }
   // Names of processes that have ended since the last call; they are forgotten.
   std::vector<std::uint64_t> TakeEnded();
 
@@ -35,10 +37,10 @@ class ProcessWatch {
   static constexpr std::size_t kMost = 1024;
 
  private:
-  int epoll_;
+  UniqueFd epoll_;
   ProcessIdentity self_;
   struct Watched {
-    int pidfd;
+    UniqueFd pidfd;
     pid_t pid;
   };
   std::map<std::uint64_t, Watched> watched_;
