@@ -416,7 +416,7 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
     slot = decoder.Uint();
     if (slot >= slots_.size()) return Damaged(fmt::format("slot {} waits", slot));
   }
-  if (!decoder.AtEnd()) prior_.Restore(decoder);  // states of earlier versions end here
+  prior_.Restore(decoder);
   if (std::set<std::size_t>(waiting_.begin(), waiting_.end()).size() != slots_.size()) {
     return Damaged("a slot does not wait");
   }
