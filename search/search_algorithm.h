@@ -38,6 +38,8 @@ struct RunOutcome {
   // By name, in the scenario's order. Only for a search that WantsMetrics.
   std::vector<std::pair<std::string, double>> metrics = {};
   std::vector<sim::RobotSummary> robots = {};  // only for a search that WantsWays
+
+  bool completed() const { return verdict == sim::Verdict::kCompleted; }
 };
 
 // What came of an EvaluationRequest.

@@ -43,12 +43,11 @@ void AddFailure(const StoredRun& run, FailureTypes& types) {
 
 void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
   const std::string& message = run.message;
-  const auto verdict = static_cast<sim::Verdict>(run.verdict);
   const std::string rule = RuleOf(message);
   auto group = std::ranges::find_if(groups, [&](const RunsWithoutResult& one) {
-    return one.verdict == verdict && one.rule == rule && (!rule.empty() || one.message == message);
+    return one.verdict == run.verdict && one.rule == rule && (!rule.empty() || one.message == message);
   });
-  if (group == groups.end()) group = groups.insert(groups.end(), {verdict, rule, message, 0, run.id});
+  if (group == groups.end()) group = groups.insert(groups.end(), {run.verdict, rule, message, 0, run.id});
   ++group->runs;
 }
 

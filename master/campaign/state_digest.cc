@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/canonical_encoder.h"
+#include "master/store/run_numbers.h"
 
 namespace gauntlet {
 namespace {
@@ -43,14 +44,14 @@ std::string ResultsDigest::bytes() const {
 void ResultsDigest::Add(const StoredRun& run) {
   CanonicalEncoder encoder;
   encoder.String(bytes());
-  encoder.Uint(run.search);
-  encoder.Uint(run.id);
+  encoder.Uint(kOnlySearch);
+  encoder.Uint(SequenceOf(run.id));
   encoder.Uint(run.individual);
   encoder.Uint(run.evaluation);
   encoder.Uint(run.replicate);
   encoder.Uint(run.seed);
   encoder.Uint(run.hash);
-  encoder.Int(run.verdict);
+  encoder.Int(static_cast<int>(run.verdict));
   digest_ = HashOf(encoder.bytes());
 }
 

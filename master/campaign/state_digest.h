@@ -19,7 +19,8 @@ class ResultsDigest {
   // kCorrupt when `bytes` are not 32.
   static Result<ResultsDigest> Restore(std::string_view bytes);
 
-  // The next result. Its spec and result may be empty: the digest reads their numbers and the result's hash.
+  // The next result, as if its search were the campaign's only one. Its spec and result may be empty: the
+  // digest reads their numbers and the result's hash.
   void Add(const StoredRun& run);
   std::string bytes() const;
 

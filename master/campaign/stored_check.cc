@@ -58,9 +58,9 @@ Status CheckCopies(const StoredRun& run, const sim::RunResult& result) {
     return Damaged(fmt::format("run {} has hash {:016x} in its row, {:016x} in its result", run.id, run.hash,
                                result.hash));
   }
-  if (run.verdict != static_cast<int>(result.verdict)) {
-    return Damaged(fmt::format("run {} has verdict {} in its row, '{}' in its result", run.id, run.verdict,
-                               NameOf(result.verdict)));
+  if (run.verdict != result.verdict) {
+    return Damaged(fmt::format("run {} has verdict {} in its row, '{}' in its result", run.id,
+                               static_cast<int>(run.verdict), NameOf(result.verdict)));
   }
   if (std::bit_cast<std::uint64_t>(run.fitness) != std::bit_cast<std::uint64_t>(result.fitness)) {
     return Damaged(fmt::format("run {} has fitness {} in its row, {} in its result", run.id, run.fitness,

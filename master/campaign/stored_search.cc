@@ -31,10 +31,7 @@ bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const
 }
 
 Result<RunOutcome> OutcomeOf(const StoredRun& run, bool with_metrics, bool with_ways) {
-  RunOutcome outcome{.verdict = static_cast<sim::Verdict>(run.verdict),
-                     .fitness = run.fitness,
-                     .total_failure = run.total_failure,
-                     .failure_type = run.failure_type};
+  RunOutcome outcome = run;
   if (!with_metrics && !with_ways) return outcome;
   TRY(sim::RunResult result, proto::DecodeStoredResult(run.result));
   if (with_metrics) outcome.metrics = std::move(result.metrics);

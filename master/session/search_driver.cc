@@ -11,17 +11,6 @@
 #include "search/search_table.h"
 
 namespace gauntlet {
-namespace {
-
-// As the campaign's only search would have it.
-StoredRun AsOnlySearch(const StoredRun& run) {
-  StoredRun only = run;
-  only.search = kOnlySearch;
-  only.id = run.id - RunIdOf(run.search, 1) + RunIdOf(kOnlySearch, 1);
-  return only;
-}
-
-}  // namespace
 
 SearchDriver::SearchDriver(const Parts& parts)
     : parts_(parts),
@@ -35,12 +24,8 @@ Status SearchDriver::Restore() {
   digest_ = saved.results;
   last_asked_ = last_told_ = saved_until_ = saved.last_run;
   TRY(const std::vector<SearchTotals> totals, parts_.store.LoadTotals());
-  for (const SearchTotals& mine : totals) {
-    if (mine.search != id()) continue;
-    runs_done_ = mine.runs;
-    total_failures_ = mine.total_failures;
-    runs_failed_ = mine.runs_failed;
-  }
+  if (const auto mine = std::ranges::find(totals, id(), &SearchTotals::search); mine != totals.end())
+    totals_ = *mine;
   return parts_.store.ForEachRun(id(), saved_until_, [this](const StoredRun& run) {
     stored_ahead_.emplace(run.id, run);
     return Ok{};
@@ -78,7 +63,7 @@ Status SearchDriver::Ask() {
       const auto stored = stored_ahead_.find(run.id);
       if (stored == stored_ahead_.end()) {
         submissions.push_back({run.id, run.spec, length});
-        evaluation.runs.push_back({std::move(run), {}, false});
+        evaluation.runs.push_back({std::move(run), false});
       } else {
         if (stored->second.spec != run.spec) {
           return Error{
@@ -88,11 +73,11 @@ Status SearchDriver::Ask() {
                   "another version, or its files were changed",
                   run.id)};
         }
-        TRY(RunOutcome outcome,
+        TRY(static_cast<RunOutcome&>(stored->second),
             OutcomeOf(stored->second, parts_.search.WantsMetrics(), parts_.search.WantsWays()));
         stored->second.spec.clear();
         stored->second.result.clear();
-        evaluation.runs.push_back({std::move(stored->second), std::move(outcome), true});
+        evaluation.runs.push_back({std::move(stored->second), true});
         stored_ahead_.erase(stored);
       }
     }
@@ -114,12 +99,6 @@ SearchDriver::PendingRun* SearchDriver::Find(RunId id) {
   return id < first ? nullptr : &holder->runs[id - first];
 }
 
-void SearchDriver::Count(const StoredRun& run) {
-  ++runs_done_;
-  if (run.total_failure) ++total_failures_;
-  if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) ++runs_failed_;
-}
-
 void SearchDriver::Store(FinishedRun finished) {
   PendingRun* pending = Find(finished.id);
   GAUNTLET_CHECK(pending != nullptr && !pending->durable, fmt::format("run {} finished twice", finished.id));
@@ -135,14 +114,13 @@ void SearchDriver::Store(FinishedRun finished) {
   run.hash = finished.result.hash;
   run.worker = std::move(finished.worker);
   run.attempt = finished.attempt;
-  run.verdict = static_cast<int>(finished.result.verdict);
+  run.verdict = finished.result.verdict;
   run.fitness = finished.result.fitness;
   run.total_failure = finished.result.failure.total;
   run.failure_type = finished.result.failure.type;
-  pending->outcome = *OutcomeOf(run, /*with_metrics=*/false);
-  if (parts_.search.WantsMetrics()) pending->outcome.metrics = std::move(finished.result.metrics);
-  if (parts_.search.WantsWays()) pending->outcome.robots = std::move(finished.result.robots);
   parts_.store.AddRun(run);
+  if (parts_.search.WantsMetrics()) run.metrics = std::move(finished.result.metrics);
+  if (parts_.search.WantsWays()) run.robots = std::move(finished.result.robots);
   run.spec.clear();
   run.result.clear();
 }
@@ -151,7 +129,7 @@ void SearchDriver::Committed(RunId id) {
   PendingRun* pending = Find(id);
   GAUNTLET_CHECK(pending != nullptr, fmt::format("run {} was committed but never asked for", id));
   pending->durable = true;
-  Count(pending->run);
+  totals_.Count(pending->run);
 }
 
 void SearchDriver::TellCompleted() {
@@ -163,8 +141,8 @@ void SearchDriver::TellCompleted() {
       return;
     std::vector<RunOutcome> outcomes;
     for (PendingRun& pending : evaluation.runs) {
-      digest_.Add(AsOnlySearch(pending.run));
-      outcomes.push_back(std::move(pending.outcome));
+      digest_.Add(pending.run);
+      outcomes.push_back(std::move(pending.run));
     }
     const EvaluationOutcome outcome =
         OutcomeOfRuns(evaluation.request.individual, evaluation.request.evaluation, std::move(outcomes));

@@ -57,18 +57,15 @@ class SearchDriver {
 
   SearchProgress Progress() const { return parts_.search.Progress(); }
   std::uint64_t runs_planned() const;
-  std::uint64_t runs_done() const { return runs_done_; }  // stored, earlier sessions included
-  std::uint64_t total_failures() const { return total_failures_; }
-  std::uint64_t runs_failed() const { return runs_failed_; }  // verdict other than completed
+  const SearchTotals& totals() const { return totals_; }  // of the runs stored, earlier sessions included
   // Of the last complete generation; NaN before the first.
   double best_fitness() const { return best_fitness_; }
   double mean_fitness() const { return mean_fitness_; }
 
  private:
-  // The fields of a result that the search and the digest need.
   struct PendingRun {
-    StoredRun run;  // `spec` and `result` are handed to the store and empty afterwards
-    RunOutcome outcome;
+    StoredRun
+        run;  // afterwards without `spec` and `result`, which the store has, and with what the search wants
     bool durable = false;
   };
   struct PendingEvaluation {
@@ -82,7 +79,6 @@ class SearchDriver {
   // Ticks that the individual's runs took so far, or its parents'; 0 = unknown.
   double PredictedLength(const EvaluationRequest& request) const;
   void SaveState();
-  void Count(const StoredRun& run);
   PendingRun* Find(RunId id);
 
   Parts parts_;
@@ -96,9 +92,7 @@ class SearchDriver {
   RunId last_told_;
   RunId saved_until_;
   ResultsDigest digest_;
-  std::uint64_t runs_done_ = 0;
-  std::uint64_t total_failures_ = 0;
-  std::uint64_t runs_failed_ = 0;
+  SearchTotals totals_;
   double best_fitness_ = kNone;
   double mean_fitness_ = kNone;
 };

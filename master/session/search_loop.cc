@@ -65,7 +65,7 @@ Status SearchLoop::ApplyCommits() {
 
 std::uint64_t SearchLoop::runs_done() const {
   std::uint64_t runs = 0;
-  for (const SearchDriver* search : parts_.searches) runs += search->runs_done();
+  for (const SearchDriver* search : parts_.searches) runs += search->totals().runs;
   return runs;
 }
 
@@ -81,8 +81,8 @@ CampaignProgress SearchLoop::Progress(TimePoint started) {
     Add(one, progress.search);
     if (one.finished) ++progress.searches_finished;
     progress.runs_planned += search->runs_planned();
-    progress.total_failures += search->total_failures();
-    progress.runs_failed += search->runs_failed();
+    progress.total_failures += search->totals().total_failures;
+    progress.runs_failed += search->totals().runs_failed;
     if (!std::isfinite(search->best_fitness())) continue;
     progress.best_fitness = std::fmin(progress.best_fitness, search->best_fitness());
     sum += search->mean_fitness();

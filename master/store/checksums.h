@@ -2,6 +2,7 @@
 // against somebody who computes them anew.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
@@ -10,14 +11,11 @@
 
 namespace gauntlet {
 
-// Of a row's values, in their order. Stored: do not change.
-class RowChecksum {
+// Stored: do not change.
+class RowHash {
  public:
-  RowChecksum& Number(std::uint64_t value) {
-    hash_.AddUint64(value);
-    return *this;
-  }
-  RowChecksum& Bytes(std::string_view bytes) {
+  void Add(std::integral auto number) { hash_.AddUint64(static_cast<std::uint64_t>(number)); }
+  void Add(std::string_view bytes) {
     hash_.AddUint64(bytes.size());
     while (!bytes.empty()) {
       std::uint64_t word = 0;
@@ -26,12 +24,19 @@ class RowChecksum {
       hash_.AddUint64(word);
       bytes.remove_prefix(size);
     }
-    return *this;
   }
   std::uint64_t value() const { return hash_.value(); }
 
  private:
   WordHash64 hash_;
 };
+
+// Of a row's values, numbers and bytes, in their order.
+template <typename... Values>
+std::uint64_t RowChecksum(const Values&... values) {
+  RowHash hash;
+  (hash.Add(values), ...);
+  return hash.value();
+}
 
 }  // namespace gauntlet

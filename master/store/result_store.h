@@ -29,7 +29,9 @@ struct StoredSearch {
   RunId finished_with = 0;
 };
 
-struct StoredRun {
+// A run with what came of it. The outcome is a copy of a few fields of the result, so that rows can be
+// queried without decoding any: of its metrics and robots the store knows nothing.
+struct StoredRun : RunOutcome {
   RunId id = 0;
   SearchId search = 0;
   IndividualId individual = 0;
@@ -43,12 +45,6 @@ struct StoredRun {
   std::uint64_t hash = 0;       // of the whole result
   std::string worker;
   std::uint32_t attempt = 1;
-  // Copies of a few result fields, so that they can be queried: what show needs without decoding every
-  // result.
-  int verdict = 0;
-  double fitness = 0.0;
-  bool total_failure = false;
-  int failure_type = -1;
   std::string message;  // of a verdict other than completed
 };
 
@@ -60,6 +56,12 @@ struct SearchTotals {
   std::uint64_t total_failures = 0;
   std::uint64_t individuals = 0;
   std::uint64_t finished = 0;  // how often it came to its end, each time longer than before
+
+  void Count(const RunOutcome& run) {
+    ++runs;
+    if (!run.completed()) ++runs_failed;
+    if (run.total_failure) ++total_failures;
+  }
 };
 
 struct SavedState {

@@ -28,6 +28,11 @@ inline SearchId SearchOf(RunId run) {
   return static_cast<SearchId>(run >> kSequenceBits) + 1;
 }
 
+// The number of a run within its search.
+inline std::uint64_t SequenceOf(RunId run) {
+  return run & ((1ULL << kSequenceBits) - 1);
+}
+
 // StoredRun::spec_hash of a serialized RunSpec.
 inline std::uint64_t SpecHash(std::string_view spec) {
   Fnv1a64 hash;

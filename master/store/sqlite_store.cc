@@ -13,8 +13,8 @@ Result<std::unique_ptr<SqliteStore>> SqliteStore::Open(const std::string& path, 
   TRY(SqliteConnection connection, OpenCheckedForWriting(path, options.vfs, options.checkpoint_pages));
   TRY(std::unique_ptr<SqliteStore> store,
       Make(path, std::move(connection), std::move(options), Checked::kEverything));
-  store->notifier_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (store->notifier_ < 0) {
+  store->notifier_.Reset(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  if (!store->notifier_.valid()) {
     return Error{ErrorKind::kIo, fmt::format("{}: no eventfd: {}", path, std::strerror(errno))};
   }
   store->writer_ = std::thread([raw = store.get()] { raw->WriteLoop(); });
@@ -59,7 +59,6 @@ SqliteStore::~SqliteStore() {
     const bool ours = !failure_ && (!options_.guard || options_.guard().ok());
     if (!ours) connection_.CheckpointOnClose(false);
   }
-  if (notifier_ >= 0) close(notifier_);
 }
 
 std::uint64_t SqliteStore::Commits() const {
@@ -159,13 +158,13 @@ void SqliteStore::Report(const Group& group, const Status& written) {
 void SqliteStore::Notify() const {
   const std::uint64_t one = 1;
   // It can only fail when the counter is full, and then the descriptor is readable anyway.
-  [[maybe_unused]] const ssize_t written = write(notifier_, &one, sizeof one);
+  [[maybe_unused]] const ssize_t written = write(notifier_.get(), &one, sizeof one);
 }
 
 Result<std::vector<RunId>> SqliteStore::Committed() {
-  if (notifier_ >= 0) {
+  if (notifier_.valid()) {
     std::uint64_t count = 0;
-    [[maybe_unused]] const ssize_t size = read(notifier_, &count, sizeof count);
+    [[maybe_unused]] const ssize_t size = read(notifier_.get(), &count, sizeof count);
   }
   std::vector<RunId> committed;
   {

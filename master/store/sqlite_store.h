@@ -15,6 +15,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/system/unique_fd.h"
 #include "master/store/result_store.h"
 #include "master/store/sqlite_connection.h"
 #include "master/store/sqlite_schema.h"
@@ -77,7 +78,7 @@ class SqliteStore final : public ResultStore {
   Result<std::vector<RunId>> Committed() override;
   Status Flush() override;
   void CommitWithin(std::chrono::milliseconds time) override;
-  int CommitNotifier() const override { return notifier_; }
+  int CommitNotifier() const override { return notifier_.get(); }
 
   Result<std::vector<StoredSearch>> LoadSearches() override { return Tables()->LoadSearches(); }
   Result<std::vector<SearchTotals>> LoadTotals() override { return Tables()->LoadTotals(); }
@@ -145,7 +146,7 @@ class SqliteStore final : public ResultStore {
   std::optional<Error> failure_;
   std::uint64_t commits_ = 0;
 
-  int notifier_ = -1;  // eventfd
+  UniqueFd notifier_;  // eventfd
   std::thread writer_;
 };
 

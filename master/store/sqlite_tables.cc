@@ -103,41 +103,16 @@ std::uint64_t ChecksumOf(const SavedState& state) {
   return hash.value();
 }
 
-std::uint64_t RecordHash(std::string_view packed_spec, std::string_view packed_result) {
-  return RowChecksum().Bytes(packed_spec).Bytes(packed_result).value();
+// As the column `verdict` has it.
+int NumberOf(sim::Verdict verdict) {
+  return static_cast<int>(verdict);
 }
 
 std::uint64_t ChecksumOf(const StoredRun& run, std::uint64_t record_hash) {
-  return RowChecksum()
-      .Number(run.id)
-      .Number(run.search)
-      .Number(run.individual)
-      .Number(run.evaluation)
-      .Number(run.replicate)
-      .Number(run.generation)
-      .Number(run.seed)
-      .Number(static_cast<std::uint64_t>(run.verdict))
-      .Number(std::bit_cast<std::uint64_t>(run.fitness))
-      .Number(run.total_failure)
-      .Number(static_cast<std::uint64_t>(run.failure_type))
-      .Bytes(run.message)
-      .Number(run.hash)
-      .Number(run.spec_hash)
-      .Bytes(run.worker)
-      .Number(run.attempt)
-      .Number(record_hash)
-      .value();
-}
-
-std::uint64_t ChecksumOf(SearchId search, IndividualId id, std::uint32_t birth_generation,
-                         std::string_view parents, std::string_view test_case) {
-  return RowChecksum()
-      .Number(search)
-      .Number(id)
-      .Number(birth_generation)
-      .Bytes(parents)
-      .Bytes(test_case)
-      .value();
+  return RowChecksum(run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation,
+                     run.seed, NumberOf(run.verdict), std::bit_cast<std::uint64_t>(run.fitness),
+                     run.total_failure, run.failure_type, run.message, run.hash, run.spec_hash, run.worker,
+                     run.attempt, record_hash);
 }
 
 Error DamagedDatabase(const std::string& what) {
@@ -187,7 +162,7 @@ Status SqliteTables::LoadExamples() {
     std::string bytes;
     std::uint64_t checksum = 0;
     query.Read(kind, bytes, checksum);
-    if (checksum != RowChecksum().Bytes(kind).Bytes(bytes).value())
+    if (checksum != RowChecksum(kind, bytes))
       return Error{ErrorKind::kCorrupt,
                    fmt::format("the example of a {} was changed: its checksum differs", kind)};
     if (kind == kSpec) specs_.Learn(bytes);
@@ -199,7 +174,7 @@ Status SqliteTables::LoadExamples() {
 Status SqliteTables::Learn(Packing& packing, const char* kind, std::string_view example) {
   packing.Learn(example);
   ++totals_.Of(TotalsTable::kNoSearch).examples;
-  return insert_example_.Run(kind, Blob{example}, RowChecksum().Bytes(kind).Bytes(example).value());
+  return insert_example_.Run(kind, Blob{example}, RowChecksum(kind, example));
 }
 
 void SqliteTables::Rollback() {
@@ -232,7 +207,7 @@ Status SqliteTables::Insert(SearchId search, const Individual& individual) {
   const std::string packed = specs_.Pack(test_case);
   TRY(insert_individual_.Run(
       search, individual.id, individual.birth_generation, Blob{parents}, Blob{packed},
-      ChecksumOf(search, individual.id, individual.birth_generation, parents, test_case)));
+      RowChecksum(search, individual.id, individual.birth_generation, parents, test_case)));
   if (connection_->Changes() > 0) {
     ++totals_.Of(search).individuals;
     return Ok{};
@@ -253,27 +228,23 @@ Status SqliteTables::Insert(SearchId search, const Individual& individual) {
 }
 
 Status SqliteTables::Insert(const StoredRun& run) {
-  const bool completed = run.verdict == static_cast<int>(sim::Verdict::kCompleted);
   Status inserted = Ok{};
   if (!specs_.learned()) inserted = Learn(specs_, kSpec, run.spec);
-  if (inserted && completed && !results_.learned()) inserted = Learn(results_, kResult, run.result);
+  if (inserted && run.completed() && !results_.learned()) inserted = Learn(results_, kResult, run.result);
   const std::string spec = specs_.Pack(run.spec);
   const std::string result = results_.Pack(run.result);
-  const std::uint64_t record_hash = RecordHash(spec, result);
+  const std::uint64_t record_hash = RowChecksum(spec, result);
   if (inserted) {
     inserted =
         insert_run_.Run(run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation,
-                        run.seed, run.verdict, std::bit_cast<std::uint64_t>(run.fitness), run.total_failure,
-                        run.failure_type, run.message, run.hash, run.spec_hash, run.worker, run.attempt,
-                        record_hash, ChecksumOf(run, record_hash), run.fitness);
+                        run.seed, NumberOf(run.verdict), std::bit_cast<std::uint64_t>(run.fitness),
+                        run.total_failure, run.failure_type, run.message, run.hash, run.spec_hash, run.worker,
+                        run.attempt, record_hash, ChecksumOf(run, record_hash), run.fitness);
   }
   if (inserted) inserted = insert_record_.Run(run.id, Blob{spec}, Blob{result});
   if (!inserted)
     return Error{inserted.error().kind, fmt::format("run {}: {}", run.id, inserted.error().message)};
-  Totals& totals = totals_.Of(run.search);
-  ++totals.runs;
-  if (!completed) ++totals.runs_failed;
-  if (run.total_failure) ++totals.total_failures;
+  totals_.Of(run.search).Count(run);
   return Ok{};
 }
 
@@ -332,7 +303,7 @@ Result<std::vector<Individual>> SqliteTables::LoadIndividuals(SearchId search) {
     query.Read(individual.id, individual.birth_generation, parents, test_case, checksum);
     Result<std::string> unpacked = specs_.Unpack(test_case);
     if (unpacked) test_case = *std::move(unpacked);
-    if (checksum != ChecksumOf(search, individual.id, individual.birth_generation, parents, test_case)) {
+    if (checksum != RowChecksum(search, individual.id, individual.birth_generation, parents, test_case)) {
       return DamagedDatabase(
           fmt::format("individual {} of search {} was changed: its checksum differs", individual.id, search));
     }
@@ -368,6 +339,7 @@ Result<std::optional<SavedState>> SqliteTables::LoadNewestState(SearchId search)
 
 Result<StoredRun> SqliteTables::ReadRun(const SqliteStatement& row, bool whole) {
   StoredRun run;
+  int verdict = 0;
   std::uint64_t fitness_bits = 0;
   std::uint64_t record_hash = 0;
   std::uint64_t checksum = 0;
@@ -375,19 +347,20 @@ Result<StoredRun> SqliteTables::ReadRun(const SqliteStatement& row, bool whole) 
   std::string result;
   const auto read = [&](auto&... more) {
     row.Read(run.id, run.search, run.individual, run.evaluation, run.replicate, run.generation, run.seed,
-             run.verdict, fitness_bits, run.total_failure, run.failure_type, run.message, run.hash,
-             run.spec_hash, run.worker, run.attempt, record_hash, checksum, more...);
+             verdict, fitness_bits, run.total_failure, run.failure_type, run.message, run.hash, run.spec_hash,
+             run.worker, run.attempt, record_hash, checksum, more...);
   };
   if (whole) {
     read(spec, result);
   } else {
     read();
   }
+  run.verdict = static_cast<sim::Verdict>(verdict);
   run.fitness = std::bit_cast<double>(fitness_bits);
   if (checksum != ChecksumOf(run, record_hash))
     return DamagedDatabase(fmt::format("the row of run {} was changed: its checksum differs", run.id));
   if (!whole) return run;
-  if (record_hash != RecordHash(spec, result))
+  if (record_hash != RowChecksum(spec, result))
     return DamagedDatabase(
         fmt::format("the spec or the result of run {} was changed: their checksum differs", run.id));
   for (const auto& [packing, packed, into] :

@@ -11,17 +11,8 @@ namespace gauntlet {
 namespace {
 
 std::uint64_t ChecksumOf(SearchId search, const Totals& totals) {
-  return RowChecksum()
-      .Number(search)
-      .Number(totals.runs)
-      .Number(totals.runs_failed)
-      .Number(totals.total_failures)
-      .Number(totals.individuals)
-      .Number(totals.states)
-      .Number(totals.finished)
-      .Number(totals.events)
-      .Number(totals.examples)
-      .value();
+  return RowChecksum(search, totals.runs, totals.runs_failed, totals.total_failures, totals.individuals,
+                     totals.states, totals.finished, totals.events, totals.examples);
 }
 
 struct CountedTable {

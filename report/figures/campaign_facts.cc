@@ -164,7 +164,7 @@ RunFacts FactsOfRow(const StoredRun& run) {
           .search = run.search,
           .individual = run.individual,
           .generation = run.generation,
-          .completed = run.verdict == static_cast<int>(sim::Verdict::kCompleted),
+          .completed = run.completed(),
           .total_failure = run.total_failure,
           .failure_type = run.failure_type,
           .fitness = run.fitness,

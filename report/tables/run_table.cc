@@ -58,7 +58,7 @@ Error InRun(RunId run, const Error& error) {
 Result<std::vector<std::string>> MetricsOf(SearchId search, ResultStore& store) {
   std::optional<RunId> completed;
   TRY(store.ForEachRow(search, 0, [&](const StoredRun& run) {
-    if (!completed && run.verdict == static_cast<int>(sim::Verdict::kCompleted)) completed = run.id;
+    if (!completed && run.completed()) completed = run.id;
     return Ok{};
   }));
   std::vector<std::string> names;

@@ -55,7 +55,7 @@ Result<std::vector<SelectedRun>> LoadValues(const SearchPlan& plan, ResultStore&
   const auto take = [&](const StoredRun& run) -> Status {
     SelectedRun& value = values.emplace_back(
         SelectedRun{run.id, run.individual, run.evaluation, run.generation, std::nullopt});
-    if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) return Ok{};
+    if (!run.completed()) return Ok{};
     if (IsColumn(metric)) {
       value.value = ColumnOf(run, metric);
       return Ok{};

@@ -95,7 +95,7 @@ TEST(RunTable, SaysOfEveryRunWhatIsStored) {
     EXPECT_EQ(runs.At(i, "search_seed"), Value("18446744073709551615"));
     EXPECT_EQ(runs.At(i, "seed"), Value(std::to_string(run.seed)));
     EXPECT_EQ(runs.At(i, "individual"), Value(run.individual));
-    const bool failed = run.verdict != static_cast<int>(sim::Verdict::kCompleted);
+    const bool failed = !run.completed();
     EXPECT_EQ(runs.At(i, "verdict"), Value(failed ? "crashed" : "completed"));
     EXPECT_EQ(runs.At(i, "fitness"), failed ? Value() : Value(run.fitness));
     EXPECT_EQ(runs.At(i, "birds_left"), failed ? Value() : Value(4.0));
@@ -134,9 +134,7 @@ TEST(RunTable, EachKeyInWhichSearchesDifferHasAColumn) {
 
 TEST(RunTable, ACampaignWithoutACompletedRunHasNoMetrics) {
   MemoryStore store = Campaign({Plan("", {})});
-  std::erase_if(store.runs, [](const auto& run) {
-    return run.second.verdict == static_cast<int>(sim::Verdict::kCompleted);
-  });
+  std::erase_if(store.runs, [](const auto& run) { return run.second.completed(); });
   ASSERT_FALSE(store.runs.empty());
   EXPECT_THAT(Rows({Plan("", {})}, std::move(store)).names, Each(Not(HasSubstr("birds"))));
 }

@@ -101,7 +101,7 @@ TEST(AddRunsTest, AnEvolutionIsOneUnitAndItsFinalRunsAreTheNewestOfItsMembers) {
   std::vector<double> last;
   std::size_t completed = 0;
   for (const auto& [id, run] : store.runs) {
-    if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) continue;
+    if (!run.completed()) continue;
     ++completed;
     if (id > store.runs.size() - 2 * kPopulation) last.push_back(run.fitness);
   }
@@ -170,8 +170,7 @@ TEST(AddRunsTest, FailuresAndTheirTypesAreMetricsOfEveryScenario) {
   double failures = 0.0;
   for (const double value : Flat(SetOf(experiments, store, "all", "total_failure"))) failures += value;
   EXPECT_EQ(failures, std::ranges::count_if(store.runs, [](const auto& one) {
-              return one.second.total_failure &&
-                     one.second.verdict == static_cast<int>(sim::Verdict::kCompleted);
+              return one.second.total_failure && one.second.completed();
             }));
   EXPECT_GT(failures, 10.0);
   const std::vector<double> types = Flat(SetOf(experiments, store, "all", "failure_type"));

@@ -89,10 +89,7 @@ class MemoryStore final : public ResultStore {
       totals.finished = search.finished_with > 0 ? 1 : 0;
       totals.individuals = individuals[search.id].size();
       for (const auto& [id, run] : runs) {
-        if (run.search != search.id) continue;
-        ++totals.runs;
-        totals.runs_failed += run.verdict != static_cast<int>(sim::Verdict::kCompleted) ? 1 : 0;
-        totals.total_failures += run.total_failure ? 1 : 0;
+        if (run.search == search.id) totals.Count(run);
       }
     }
     return all;

@@ -6,6 +6,8 @@
 
 #include <functional>
 
+#include "master/store/run_numbers.h"
+
 namespace gauntlet {
 namespace {
 
@@ -18,7 +20,6 @@ StoredRun MakeRun(RunId id) {
   run.replicate = 3;
   run.seed = 0xfedcba9876543210ULL;
   run.hash = 0x0123456789abcdefULL;
-  run.verdict = 1;
   return run;
 }
 
@@ -57,19 +58,25 @@ struct Change {
 TEST(ResultsDigestTest, EveryLogicalFieldOfAResultCounts) {
   const std::vector<Change> changes = {
       {"id", [](StoredRun& run) { ++run.id; }},
-      {"search", [](StoredRun& run) { ++run.search; }},
       {"individual", [](StoredRun& run) { ++run.individual; }},
       {"evaluation", [](StoredRun& run) { ++run.evaluation; }},
       {"replicate", [](StoredRun& run) { ++run.replicate; }},
       {"seed", [](StoredRun& run) { ++run.seed; }},
       {"hash", [](StoredRun& run) { ++run.hash; }},
-      {"verdict", [](StoredRun& run) { ++run.verdict; }},
+      {"verdict", [](StoredRun& run) { run.verdict = sim::Verdict::kRefused; }},
   };
   for (const Change& change : changes) {
     StoredRun run = MakeRun(1);
     change.change(run);
     EXPECT_NE(DigestOf({run}).bytes(), DigestOf({MakeRun(1)}).bytes()) << change.name;
   }
+}
+
+TEST(ResultsDigestTest, IsThatOfTheCampaignsOnlySearch) {
+  StoredRun run = MakeRun(RunIdOf(3, 1));
+  run.search = 3;
+  run.individual = MakeRun(1).individual;
+  EXPECT_EQ(DigestOf({run}).bytes(), DigestOf({MakeRun(1)}).bytes());
 }
 
 TEST(ResultsDigestTest, WhoDidItAndHowOftenItWasTriedDoesNotCount) {

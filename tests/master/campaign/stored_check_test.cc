@@ -47,7 +47,7 @@ const std::vector<Damage>& Damages() {
       {"FitnessInTheRow", ToRun5([](StoredRun& run) { run.fitness = 0.5; }),
        "run 5 has fitness 0.5 in its row"},
       {"HashInTheRow", ToRun5([](StoredRun& run) { ++run.hash; }), "run 5 has hash"},
-      {"VerdictInTheRow", ToRun5([](StoredRun& run) { run.verdict = 3; }),
+      {"VerdictInTheRow", ToRun5([](StoredRun& run) { run.verdict = sim::Verdict::kCrashed; }),
        "run 5 has verdict 3 in its row, 'completed' in its result"},
       {"FailureInTheRow", ToRun5([](StoredRun& run) { run.total_failure = !run.total_failure; }),
        "run 5 has total_failure"},

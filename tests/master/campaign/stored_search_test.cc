@@ -54,7 +54,7 @@ StoredRun RunNumber(std::uint64_t number) {
   run.individual = (number + 1) / 2;
   run.replicate = (number + 1) % 2;
   run.hash = result.hash;
-  run.verdict = static_cast<int>(result.verdict);
+  run.verdict = result.verdict;
   run.fitness = result.fitness;
   run.total_failure = result.failure.total;
   run.failure_type = result.failure.type;

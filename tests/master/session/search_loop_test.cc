@@ -86,7 +86,7 @@ TEST(SearchLoopTest, NothingIsAcknowledgedOrToldBeforeItIsDurable) {
   int rounds = 0;
   const Result<CampaignEnd> end = session.Run([&] {
     EXPECT_LE(session.backend.acknowledged.size(), store.runs.size());
-    EXPECT_EQ(session.drivers[0].runs_done(), session.backend.acknowledged.size());
+    EXPECT_EQ(session.drivers[0].totals().runs, session.backend.acknowledged.size());
     if (++rounds % 5 == 0) store.CommitAll();
     return StopWish::kNone;
   });
@@ -296,11 +296,10 @@ TEST(SearchLoopTest, RunsWithoutAResultAreCountedAndDoNotStopIt) {
   const Result<CampaignEnd> end = session.Run();
   ASSERT_TRUE(end.ok()) << end.error().message;
   EXPECT_EQ(*end, CampaignEnd::kFinished);
-  const auto failed = std::ranges::count_if(store.runs, [](const auto& one) {
-    return one.second.verdict != static_cast<int>(sim::Verdict::kCompleted);
-  });
+  const auto failed =
+      std::ranges::count_if(store.runs, [](const auto& one) { return !one.second.completed(); });
   EXPECT_GT(failed, 0);
-  EXPECT_EQ(session.drivers[0].runs_failed(), static_cast<std::uint64_t>(failed));
+  EXPECT_EQ(session.drivers[0].totals().runs_failed, static_cast<std::uint64_t>(failed));
   EXPECT_EQ(session.progress.back().runs_failed, static_cast<std::uint64_t>(failed));
 }
 

@@ -49,7 +49,7 @@ TEST_F(SqliteStoreTest, RunsComeBackBitByBit) {
   extreme.individual = std::numeric_limits<std::uint64_t>::max();
   extreme.evaluation = extreme.replicate = extreme.generation = std::numeric_limits<std::uint32_t>::max();
   extreme.fitness = std::numeric_limits<double>::denorm_min();
-  extreme.verdict = std::numeric_limits<int>::min();
+  extreme.verdict = static_cast<sim::Verdict>(std::numeric_limits<int>::min());
   extreme.spec = "";
   extreme.result = std::string("\0'\"\xff", 4);
   extreme.worker = "";

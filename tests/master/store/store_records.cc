@@ -42,14 +42,14 @@ StoredRun MakeRun(RunId id, std::size_t result_size) {
   run.hash = id * 0xff51afd7ed558ccdULL;
   run.worker = fmt::format("worker-{}@host", id % 64);
   run.attempt = 1 + small % 3;
-  run.verdict = 1 + static_cast<int>(small % 6);
+  run.verdict = static_cast<sim::Verdict>(1 + small % 6);
   run.fitness = 1.0 / static_cast<double>(id + 1);
   if (id % 8 == 1) run.fitness = -0.0;
   if (id % 8 == 3) run.fitness = std::numeric_limits<double>::quiet_NaN();
   if (id % 8 == 5) run.fitness = -std::numeric_limits<double>::infinity();
   run.total_failure = id % 2 == 0;
   run.failure_type = static_cast<int>(small % 21) - 1;
-  if (run.verdict != 1) run.message = fmt::format("rule-{}: as it was said", id % 3);
+  if (!run.completed()) run.message = fmt::format("rule-{}: as it was said", id % 3);
   return run;
 }
 
