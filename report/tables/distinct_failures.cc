@@ -64,7 +64,8 @@ Section TellDistinctFailures(const CampaignAnswers& answers, std::size_t most, c
   const auto confirmed = std::ranges::count(failures, true, &DistinctFailure::confirmed);
   const std::size_t cases = answers.confirmations.size();
   if (failures.empty())
-    return {.title = fmt::format("No distinct failure: none of {} cases failed with fresh seeds", cases)};
+    return {.title = fmt::format("No distinct failure: with fresh seeds no run of {} case{} failed", cases,
+                                 cases == 1 ? "" : "s")};
   Section section{.title = fmt::format("{} distinct failure{} ({} confirmed) in {} cases with fresh seeds",
                                        failures.size(), failures.size() == 1 ? "" : "s", confirmed, cases),
                   .table = DistinctFailuresTable(failures, program, link).First(most)};

@@ -10,6 +10,7 @@
 
 #include "base/canonical_encoder.h"
 #include "base/hash.h"
+#include "base/mean_and_range.h"
 #include "base/number_text.h"
 #include "base/result.h"
 
@@ -128,6 +129,20 @@ TEST(ResultDeathTest, TakingTheValueOfAnErrorEndsTheProcessWithItsMessage) {
 TEST(CheckDeathTest, NamesTheConditionAndTheValues) {
   const int robots = -1;
   EXPECT_DEATH(GAUNTLET_CHECK(robots >= 0, "robots " + std::to_string(robots)), "robots >= 0: robots -1");
+}
+
+TEST(MeanAndRangeTest, OfSomeValuesAndOfNone) {
+  MeanAndRange some;
+  EXPECT_TRUE(std::isnan(some.mean()) && std::isnan(some.lowest()) && std::isnan(some.highest()));
+  for (const double value : {3.0, 1.0}) some.Add(value);
+  MeanAndRange more;
+  more.Add(8.0);
+  some.Add(more);
+  some.Add(MeanAndRange());
+  EXPECT_EQ(some.count(), 3U);
+  EXPECT_EQ(some.lowest(), 1.0);
+  EXPECT_EQ(some.mean(), 4.0);
+  EXPECT_EQ(some.highest(), 8.0);
 }
 
 }  // namespace
