@@ -336,7 +336,7 @@ Result<std::vector<std::vector<SelectedRun>>> StudyRuns::All(const std::string& 
                                                              const std::string& metric) {
   std::vector<std::vector<SelectedRun>> searches;
   TRY(ForEachSearch(part, [&](Campaign& campaign, SearchId id) -> Status {
-    const SubsetSearch search{id, campaign.opened.plans[id - 1].experiment, part, /*finished=*/true};
+    const SubsetSearch search{campaign.opened.plans[id - 1], part, /*finished=*/true};
     TRY(searches.emplace_back(),
         SelectRuns(search, *campaign.opened.campaign.store, {Subset::Kind::kAll}, metric));
     return Ok{};

@@ -24,6 +24,23 @@ TEST(MakeSearchTest, MakesTheSearchOfTheExperiment) {
   EXPECT_EQ((*random)->Progress().evaluations_planned, 12U);
 }
 
+TEST(SpecOfRun, HasTheExperimentsSettingsTheCaseAndTheSeedOfTheReplicate) {
+  Experiment experiment = ToySetup().experiment;
+  experiment.controller_parameters = {{"max_speed", 0.07}};
+  experiment.physics = sim::PhysicsKind::kBox2d;
+  experiment.disturbances.faults = {{.robot = 1, .tick = 50}};
+  EvaluationRequest evaluation{.individual = 3, .evaluation = 2};
+  evaluation.test_case.side_x = 7.5;
+  const sim::RunSpec spec = SpecOfRun(experiment, evaluation, 4);
+  EXPECT_EQ(spec.scenario, experiment.scenario);
+  EXPECT_EQ(spec.controller_parameters, experiment.controller_parameters);
+  EXPECT_EQ(spec.physics, sim::PhysicsKind::kBox2d);
+  EXPECT_EQ(spec.disturbances.faults.size(), 1U);
+  EXPECT_EQ(spec.test_case.side_x, 7.5);
+  EXPECT_EQ(spec.seed, RunSeed(experiment, evaluation, 4));
+  EXPECT_NE(spec.seed, SpecOfRun(experiment, evaluation, 5).seed);
+}
+
 TEST(MakeSearchTest, AListOfCasesCannotBeMadeFromAnExperimentAlone) {
   Experiment experiment = ToySetup().experiment;
   experiment.search.algorithm = "cases";

@@ -40,6 +40,8 @@ TEST_F(SearchPlansTest, ReadBackEqual) {
   const Result<std::vector<SearchPlan>> plans = Read();
   ASSERT_TRUE(plans.ok()) << plans.error().message;
   ASSERT_EQ(plans->size(), 2U);
+  EXPECT_EQ((*plans)[0].id, 1U);
+  EXPECT_EQ((*plans)[1].id, 2U);
   EXPECT_EQ((*plans)[1].settings, "all \"others\"");
   EXPECT_EQ(WriteExperiment((*plans)[0].experiment, {}, BuiltInCatalogue()),
             WriteExperiment(base, {}, BuiltInCatalogue()));
@@ -53,6 +55,7 @@ TEST_F(SearchPlansTest, WithoutAListThereIsTheOneExperiment) {
   const Result<std::vector<SearchPlan>> plans = Read();
   ASSERT_TRUE(plans.ok()) << plans.error().message;
   ASSERT_EQ(plans->size(), 1U);
+  EXPECT_EQ((*plans)[0].id, 1U);
   EXPECT_EQ((*plans)[0].settings, "");
   EXPECT_EQ((*plans)[0].experiment.seed, 5U);
 }
