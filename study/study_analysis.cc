@@ -60,15 +60,15 @@ double PercentOfZeros(const std::vector<double>& values) {
   return 100.0 * static_cast<double>(std::ranges::count(values, 0.0)) / static_cast<double>(values.size());
 }
 
-constexpr std::array kSets = {"first", "second"};
+constexpr std::array kTwoSets = {"first", "second"};
 
 // What the sets have cost, of which so many runs were compared: simulations of the parts that their cases
 // come from, and of those that they were simulated in again.
 Status AddBudget(const Desk& desk, const std::array<std::size_t, 2>& compared) {
   Table table(
       {"set", ">simulations", ">distinct cases", ">cases to choose from", ">re-simulations", ">compared"});
-  for (std::size_t i = 0; i < kSets.size(); ++i) {
-    const std::string set = desk.analysis.Key(kSets[i]);
+  for (std::size_t i = 0; i < kTwoSets.size(); ++i) {
+    const std::string set = desk.analysis.Key(kTwoSets[i]);
     PartCost made;
     PartCost again;
     std::set<std::string> sources;
@@ -82,7 +82,7 @@ Status AddBudget(const Desk& desk, const std::array<std::size_t, 2>& compared) {
     }
     table.AddRow({set, CountCell(made.runs), CountCell(made.distinct_cases), CountCell(made.cases),
                   CountCell(again.runs), CountCell(compared[i])});
-    desk.Add(fmt::format("{}.budget", kSets[i]),
+    desk.Add(fmt::format("{}.budget", kTwoSets[i]),
              fmt::format("{} / {} / {}", made.cases, compared[i], made.runs));
   }
   desk.section.tables.push_back(std::move(table));
@@ -167,7 +167,7 @@ Status Count(const Desk& desk) {
   const auto in_bounds = BoundsOf(desk.analysis);
   Table table({"set", ">runs", ">" + desk.analysis.Key("what"), ">%", ">95 % interval (Wilson)"});
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shares;
-  for (const char* which : kSets) {
+  for (const char* which : kTwoSets) {
     const std::string name = desk.analysis.Key(which);
     if (name.empty()) continue;
     TRY(const auto set, desk.runs.Set(name, desk.Metric()));
@@ -207,8 +207,8 @@ Status Types(const Desk& desk) {
   const std::vector<std::string> names = desk.runs.FailureTypes(desk.analysis.Key("first"));
   std::array<std::size_t, 2> compared{};
   std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();  // failures of a set
-  for (std::size_t i = 0; i < kSets.size(); ++i) {
-    const std::string which = kSets[i];
+  for (std::size_t i = 0; i < kTwoSets.size(); ++i) {
+    const std::string which = kTwoSets[i];
     const std::string set_name = desk.analysis.Key(which);
     TRY(const auto failures, desk.runs.Set(set_name, "total_failure"));
     TRY(const auto types, desk.runs.Set(set_name, "failure_type"));

@@ -187,17 +187,19 @@ std::vector<KeyInfo> DefinitionKeys() {
 
 Status DefinitionReader::Set(std::string_view path, const KeyValue& value) {
   std::vector<DefinitionKey> keys = Formulas();
+  std::string name(path);
   const std::size_t dot = path.rfind('.');
   if (dot != std::string_view::npos) {
     TRY(Begin(path.substr(0, dot)));
     TRY(const ElementPath element, ReadElementPath(path.substr(0, dot)));
     keys = element.list->keys(element.number);
+    name = element.list->name + "." + std::to_string(element.number) + name.substr(dot);
   } else if (FindByName(Lists(), path) != nullptr) {
     return Begin(path);
   }
-  const DefinitionKey* key = FindByName(keys, path);
+  const DefinitionKey* key = FindByName(keys, name);
   if (key == nullptr && dot == std::string_view::npos) return UnknownKey(path);
-  if (key == nullptr) return InvalidInput(UnknownName("key", path, keys));
+  if (key == nullptr) return InvalidInput(UnknownName("key", name, keys));
   const KeyValue typed = key->type == KeyType::kText ? KeyValue(TextOf(value)) : value;
   if (typed.index() != key->default_value.index())
     return InvalidInput(key->path + " = " + ToToml(typed) + ", expected " + ExpectationOf(*key));
