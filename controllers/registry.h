@@ -3,6 +3,7 @@
 // (controllers/run_start.h).
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/key.h"
 #include "base/result.h"
 #include "controllers/behaviour.h"
 #include "sim/run_spec.h"
@@ -59,5 +61,30 @@ Result<sim::Parameters> ResolveParameters(std::span<const ParameterInfo> infos, 
 // Checks names, parameters and the arena, then builds the scenario. Error: the message begins with the broken
 // rule's name and a colon when the test case is at fault.
 Result<std::unique_ptr<sim::Scenario>> CreateScenario(const sim::RunSpec& spec);
+
+// Whether the parameter is true or false.
+inline bool IsFlag(const ParameterInfo& info) {
+  return info.unit == "bool";
+}
+
+// The parameter's number in the type of its key.
+inline KeyValue KeyValueOf(const ParameterInfo& info, double value) {
+  if (IsFlag(info)) return value != 0.0;
+  if (info.integer) return static_cast<std::int64_t>(value);
+  return value;
+}
+
+// The key `beginning` and the parameter's name.
+inline KeyInfo KeyInfoOf(const std::string& beginning, const ParameterInfo& info) {
+  KeyInfo key;
+  key.path = beginning + std::string(info.name);
+  key.type = IsFlag(info) ? KeyType::kFlag : info.integer ? KeyType::kInteger : KeyType::kNumber;
+  key.unit = IsFlag(info) ? "" : info.unit;
+  key.min = info.min;
+  key.max = info.max;
+  key.description = info.description;
+  key.default_value = KeyValueOf(info, info.default_value);
+  return key;
+}
 
 }  // namespace gauntlet::controllers

@@ -13,7 +13,6 @@
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
-#include "controllers/parameter_key.h"
 #include "controllers/registry.h"
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"

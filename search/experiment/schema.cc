@@ -9,7 +9,6 @@
 
 #include "base/nearest_name.h"
 #include "base/system/sha256.h"
-#include "controllers/parameter_key.h"
 #include "search/experiment/genome_ranges.h"
 #include "search/experiment/objective.h"
 #include "sim/arena/color.h"
