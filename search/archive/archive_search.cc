@@ -15,7 +15,7 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::array kArchiveParameters = std::to_array<controllers::ParameterInfo>({
+const std::vector<controllers::ParameterInfo> kArchiveParameters = {
     {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: simulations in all"},
     {"slots", "", 36, 1, 10000, true,
      "archive and random-deletion only: layouts under test at a time; workers it can keep busy"},
@@ -27,7 +27,7 @@ constexpr std::array kArchiveParameters = std::to_array<controllers::ParameterIn
      "archive only: of the lines that begin, with an elite that is changed a little"},
     {"recheck_share", "", 0.04, 0, 1, false,
      "archive only: of the lines that begin, one more run of an elite; the rest begin with random cases"},
-});
+};
 enum Parameter : std::size_t { kRuns, kSlots, kKeepOut, kAcrossShare, kJitteredShare, kRecheckShare };
 
 double Get(const Experiment& experiment, Parameter parameter) {
