@@ -120,8 +120,9 @@ void Configured::Describe() {
                         .default_value = 1.35,
                         .min = 0.0,
                         .max = 10.0,
-                        .description = "robots no farther apart count as linked when the swarm is judged "
-                                       "(ARGoS' flocking sample: 180 % of 75 cm)"});
+                        .description = "robots no farther apart are in one cluster in light-flocking and in "
+                                       "scenarios of plug-ins; flocking and generic have a link_range of "
+                                       "their own (ARGoS' flocking sample: 180 % of 75 cm)"});
   if (Parameters().empty()) return;
   argos::TConfigurationNode node;
   ForEachAttribute(Parameters(), "", node,

@@ -47,7 +47,7 @@ std::string AdviceOn(const std::string& header) {
 }
 
 bool TellsOfAnError(const std::string& line) {
-  for (const char* sign : {"rror:", "undefined", "CMake Error"})
+  for (const char* sign : {"rror:", "undefined", "CMake Error", "No rule to make"})
     if (line.find(sign) != std::string::npos) return true;
   return false;
 }
@@ -77,6 +77,9 @@ std::string BuildErrors(const std::string& output) {
     if (line.find("undefined reference") != std::string::npos ||
         line.find("undefined symbol") != std::string::npos)
       one = "what is undefined is in a source that was not named: name all that the controller consists of";
+    if (line.find("libgauntlet_sdk.a'") != std::string::npos ||
+        line.find("libgauntlet_argos.a'") != std::string::npos)
+      one = "Gauntlet's SDK is not built: give './dev build' in the folder of Gauntlet's sources";
     if (!one.empty() && said.insert(one).second) advice.push_back(one);
   }
   if (lines.empty()) return output;

@@ -18,8 +18,7 @@ namespace {
 
 void Configure(CLI::App& app, CommandAction& chosen) {
   app.name("gauntlet");
-  app.description(
-      "Runs a swarm of robots through evolved obstacle courses until its control algorithm breaks.");
+  app.description("Finds the obstacle courses in which a robot swarm fails.");
   app.set_version_flag("--version", "gauntlet " GAUNTLET_VERSION);
   app.get_formatter()->column_width(34);
   app.require_subcommand(1);
@@ -37,13 +36,13 @@ void Configure(CLI::App& app, CommandAction& chosen) {
   }
   app.footer(R"(Start here:
   gauntlet evolve flocking          evolve test cases on all cores, about a minute
-  gauntlet COMMAND --help           options and examples of a command
+  gauntlet COMMAND --help           print the options and examples of a command
 
-Results go to standard output, progress and messages to standard error. An error leaves standard output
-empty, also with --json: look at the exit code first. Outcomes that are negative (a run not reproduced, every
-case refused) are results and are printed.
+Results go to standard output, progress and messages to standard error. After an error, standard output is
+empty, also with --json: look at the exit code first. A negative outcome, such as a run that was not reproduced
+or cases that were all refused, is a result and is printed.
 Exit codes: 0 done; 1 a check came out negative; 2 usage or configuration; 3 stopped, resumable, or the
-machine gave too little (space, memory, processes); 4 internal error, or standard output cannot be written.)");
+machine has too little disk space, memory or processes; 4 internal error, or standard output cannot be written.)");
 }
 
 // "; did you mean 'evolve'?"; "" when no known name is near.

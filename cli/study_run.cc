@@ -183,14 +183,16 @@ Result<ExitCode> SubmitStudyJob(CommandContext& context, const std::string& dire
 
 void AddStudyStartOptions(CLI::App& command, StudyStartOptions& options) {
   AddValue(command, "--dir", "DIR", options.directory,
-           "directory of the study: new, empty, or the study's own, in which case it goes on (default: "
+           "directory of the study: new or empty, or that of this study, which then continues (default: "
            "campaigns/STUDY-<UTC time>)");
-  AddValue(command, "--markdown", "F", options.markdown, "write the whole report as a Markdown page too");
-  command.add_flag("--dry-run", options.dry_run,
-                   "make nothing: say how many searches, runs and cases it will be, and what they cost here");
+  AddValue(command, "--markdown", "F", options.markdown, "also write the whole report as a Markdown page");
+  command.add_flag(
+      "--dry-run", options.dry_run,
+      "write nothing; print how many searches, runs and cases there would be, and what they would "
+      "cost on this machine");
   command.add_flag(
       "--submit", options.submit,
-      "its workers, and by default its master, are jobs of a Slurm cluster ('gauntlet submit --help' "
+      "run the workers, and by default the master, as jobs of a Slurm cluster ('gauntlet submit --help' "
       "lists the settings)");
   AddPluginOption(command, options.plugins);
   AddSlurmOptions(command, options.slurm);

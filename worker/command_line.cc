@@ -21,21 +21,21 @@ namespace {
 
 constexpr const char* kDescription = R"(Simulates runs for a Gauntlet master.
 
-A worker looks for its master in the campaign's access.json, takes leases, simulates every run in a child
-process under limits, and hands the results in. When the master goes away the worker keeps what it has and
-looks for the master's successor in the same file. SIGTERM or Ctrl-C lets it finish the current runs and
-leave; a second one drops them.
+A worker finds its master through the campaign's file access.json. It takes runs from the master, simulates each
+of them in a child process under limits, and sends the results. When the master is gone, the worker keeps its
+results and waits for a new master, which it finds through the same file. SIGTERM or Ctrl-C makes it finish its
+current runs and leave; a second signal drops them.
 )";
 
 constexpr const char* kFooter = R"(
-Exit codes: 0 done (drained, or let go by the master); 2 wrong command line, or refused by the master;
-3 no master within the orphan timeout, or the machine gave no memory, process or file; 4 internal error.
+Exit codes: 0 done, or dismissed by the master; 2 wrong command line, or refused by the master; 3 no master within
+the orphan timeout, or the machine has too little memory or too few processes or files; 4 internal error.
 
 Examples:
-  gauntlet-worker --dir campaigns/flocking-1            serve the campaign in that directory
+  gauntlet-worker --dir campaigns/flocking-1            work for the campaign in that directory
   gauntlet-worker --access /shared/access.json --slots 8
   gauntlet-worker --run-spec spec.bin > result.bin      simulate one stored spec
-  gauntlet-worker --describe-plugin libmine.so          what a plug-in brings, as JSON
+  gauntlet-worker --describe-plugin libmine.so          print what a plug-in brings, as JSON
 )";
 
 // CLI::Range lets "nan" through.
@@ -72,24 +72,26 @@ struct CommandLine {
 // Options of a worker that serves a master.
 std::vector<CLI::Option*> AddServing(CLI::App& app, CommandLine& line) {
   WorkerOptions& worker = line.worker;
-  auto* dir =
-      app.add_option("--dir", line.directory, "The campaign's directory; access.json in it may come later")
-          ->type_name("DIR");
-  auto* access = app.add_option("--access", worker.access_path, "An access.json elsewhere")
+  auto* dir = app.add_option("--dir", line.directory,
+                             "Directory of the campaign; its access.json may be written later")
+                  ->type_name("DIR");
+  auto* access = app.add_option("--access", worker.access_path, "Path of an access.json in another place")
                      ->type_name("FILE")
                      ->excludes(dir);
-  auto* slots = app.add_option("--slots", worker.slots, "Runs simulated at the same time, 1 to 1024")
-                    ->type_name("N")
-                    ->capture_default_str()
-                    ->check(CLI::Range(1, 1024));
+  auto* slots =
+      app.add_option("--slots", worker.slots, "Number of runs that are simulated at the same time, 1 to 1024")
+          ->type_name("N")
+          ->capture_default_str()
+          ->check(CLI::Range(1, 1024));
   auto* orphan = app.add_option("--orphan-timeout", worker.orphan_timeout_seconds,
-                                "Seconds without a master before giving up")
+                                "Leave after so many seconds without a master")
                      ->capture_default_str()
                      ->check(Seconds());
   auto* log =
-      app.add_option("--log", worker.log_file, "Log to this file, errors to stderr too")->type_name("FILE");
+      app.add_option("--log", worker.log_file, "Write the log to this file, and errors to standard error too")
+          ->type_name("FILE");
   auto* allocation = app.add_option("--allocation", worker.allocation,
-                                    "Batch job that holds this worker, told to the master: JOB:RESTARTS:NODE")
+                                    "Batch job of this worker, which the master is told: JOB:RESTARTS:NODE")
                          ->type_name("TEXT");
   return {dir, access, slots, orphan, log, allocation};
 }
@@ -99,20 +101,22 @@ void AddRunSpec(CLI::App& app, SpecOptions& line) {
   auto* spec =
       app.add_option(
              "--run-spec", line.spec_file,
-             "Simulate one serialized RunSpec (\"-\": from stdin) and write the RunResult to stdout, binary")
+             "Simulate one serialized RunSpec (\"-\": from standard input) and write the binary RunResult to "
+             "standard output")
           ->type_name("FILE");
-  app.add_option("--cpu-limit", line.cpu_limit_seconds, "With --run-spec: CPU seconds, 0 = no limit")
+  app.add_option("--cpu-limit", line.cpu_limit_seconds,
+                 "With --run-spec: limit of CPU time in seconds, 0 = no limit")
       ->capture_default_str()
       ->check(Seconds())
       ->needs(spec);
   app.add_option("--memory-limit", line.memory_limit_bytes,
-                 "With --run-spec: bytes of address space, 0 = no limit")
+                 "With --run-spec: limit of address space in bytes, 0 = no limit")
       ->type_name("BYTES")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber)
       ->needs(spec);
   app.add_option("--plugin", line.plugins.files,
-                 "With --run-spec and --describe-beginning: a plug-in that the spec names; may be repeated")
+                 "With --run-spec and --describe-beginning: a plug-in that the spec names; repeatable")
       ->type_name("FILE")
       ->allow_extra_args(false);
   const auto keep = [&line](const std::string& folder) {  // a run is made in a folder of its own
@@ -120,40 +124,37 @@ void AddRunSpec(CLI::App& app, SpecOptions& line) {
   };
   app.add_option_function<std::string>(
          "--scratch", keep,
-         "With --run-spec: working directory of a plug-in's run, which keeps what it writes")
+         "With --run-spec: working directory for the run of a plug-in; keeps what the run writes")
       ->type_name("DIR")
       ->needs(spec);
 }
 
 void AddOptions(CLI::App& app, CommandLine& line) {
   const std::vector<CLI::Option*> serving = AddServing(app, line);
-  auto* quiet = app.add_flag("--quiet", line.worker.quiet, "Log warnings and errors only");
-  auto* die =
-      app.add_option(
-             "--die-with-parent", line.worker.parent,
-             "End at once when the process PID, which started this one, ends (its thread, to be exact)")
-          ->type_name("PID")
-          ->check(CLI::Range(1, 1 << 22));  // Linux' largest
+  auto* quiet = app.add_flag("--quiet", line.worker.quiet, "Log only warnings and errors");
+  auto* die = app.add_option("--die-with-parent", line.worker.parent,
+                             "End as soon as the thread of process PID that started this process ends")
+                  ->type_name("PID")
+                  ->check(CLI::Range(1, 1 << 22));  // Linux' largest
   auto* golden =
       app.add_option("--golden", line.golden,
-                     "Print the golden hash of each of these controllers (none: of all), a line each; "
-                     "equal where its runs are computed equally, left out when it is not built in")
+                     "Print a line with the golden hash of each of these controllers (default: all). It is "
+                     "equal for builds that compute the controller's runs equally; controllers that are not "
+                     "built in are left out")
           ->type_name("[CONTROLLER...]")
           ->expected(0, -1)
           ->excludes(die);
   AddRunSpec(app, line.spec);
   auto* spec = app.get_option("--run-spec")->excludes(golden);
   auto* describe = app.add_option("--describe-plugin", line.described_plugin,
-                                  "Print what this plug-in brings, as JSON, after loading it in a process of "
-                                  "its own")
+                                  "Load this plug-in in a separate process and print what it brings, as JSON")
                        ->type_name("FILE")
                        ->excludes(golden)
                        ->excludes(spec);
   auto* beginning =
       app.add_option("--describe-beginning", line.begun_spec,
-                     "Print how the run of one serialized RunSpec (\"-\": from stdin) begins and "
-                     "what it asks of its arena, as JSON, after loading its plug-ins in a process "
-                     "of its own")
+                     "Load the plug-ins of one serialized RunSpec (\"-\": from standard input) in a separate "
+                     "process, and print how its run begins and what it requires of the arena, as JSON")
           ->type_name("FILE")
           ->excludes(golden)
           ->excludes(spec)

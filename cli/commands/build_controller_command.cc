@@ -178,23 +178,23 @@ Result<ExitCode> RunBuildController(CommandContext& context, const BuildControll
 
 void AddBuildController(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("build-controller", "make a plug-in of controllers written for ARGoS", RunBuildController);
-  command.add_option("SOURCE", options.sources, "C++ sources of foot-bot controllers, as they are");
+      parser.Add("build-controller", "make a plug-in from controllers written for ARGoS", RunBuildController);
+  command.add_option("SOURCE", options.sources, "unchanged C++ sources of foot-bot controllers");
   AddValue(command, "--argos", "F", options.argos,
            "take devices and parameters from the <controllers> of this file");
-  AddValue(command, "-o,--output", "F", options.output, "where the plug-in goes, such as libmine.so");
-  AddValue(command, "-I,--include", "DIR", options.include_folders, "folder of headers; may be repeated");
+  AddValue(command, "-o,--output", "F", options.output, "file of the plug-in, such as libmine.so");
+  AddValue(command, "-I,--include", "DIR", options.include_folders, "a folder of headers; repeatable");
   AddValue(command, "-D,--define", "NAME[=VALUE]", options.definitions,
-           "a macro that the sources' own build defines, such as GIT_BRANCH='\"main\"'; may be repeated");
+           "a macro that the sources' own build defines, such as GIT_BRANCH='\"main\"'; repeatable");
   AddValue(command, "--sdk", "DIR", options.sdk,
-           "where the SDK was installed (default: where this program was)");
+           "folder in which the SDK was installed (default: that of this program)");
   AddValue(command, "--table", "F", options.table,
-           "build nothing; write C++ of the file's parameters, for CMake");
+           "build nothing; write the parameters of the --argos file as C++, for CMake");
   command.footer(
-      R"(Headers of our own stand in for ARGoS' (argos/README.md says what there is, and what cannot be). With --argos
-every numeric attribute below <params> is a parameter, called by its path, whose default is the file's; without
-it the controllers get no parameters, and the devices that they ask for in Init. Needs a C++ compiler, CMake
-and Eigen; where Gauntlet was unpacked from its package, Eigen is in it.
+      R"(Compiles the sources against Gauntlet's own headers of the ARGoS interface; argos/README.md lists what these
+offer. With --argos, every numeric attribute below <params> becomes a parameter: its name is its path, and its
+default is the value in the file. Without --argos, the controllers have no parameters and get the devices that
+they ask for in Init. The command needs a C++ compiler, CMake and Eigen; Gauntlet's package contains Eigen.
 
 Examples:
   gauntlet build-controller footbot.cpp --argos experiment.argos -o libmine.so

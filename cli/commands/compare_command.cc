@@ -216,42 +216,45 @@ Result<ExitCode> RunCompare(CommandContext& context, const CompareOptions& optio
 }  // namespace
 
 void AddCompare(CommandParser& parser) {
-  const auto [command, options] =
-      parser.Add("compare", "two sets of runs: is one worse than the other, and by how much?", RunCompare);
+  const auto [command, options] = parser.Add(
+      "compare", "test whether one set of runs is worse than another, and by how much", RunCompare);
   command
-      .add_option("SET", options.sets,
-                  "two sets of runs, A and B: DIR[:SUBSET] or FILE.csv[:COLUMN]; several with commas")
+      .add_option(
+          "SET", options.sets,
+          "two sets of runs, A and B, each DIR[:SUBSET] or FILE.csv[:COLUMN]; commas join several to one set")
       ->required();
-  CLI::Option* budget = command.add_flag(
-      "--budget", options.budget, "instead: campaigns, by the different failures that their searches found");
+  CLI::Option* budget =
+      command.add_flag("--budget", options.budget,
+                       "compare campaigns instead, by the different failures that their searches found");
   AddValue(command, "--metric", "NAME", options.metric,
-           "what is compared: fitness (the default), total_failure, failure_type or a metric of the scenario "
-           "('gauntlet list')")
+           "the value to compare: fitness (the default), total_failure, failure_type or a metric of the "
+           "scenario ('gauntlet list')")
       ->excludes(budget);
-  AddValue(command, "--svg", "F", options.svg, "write a picture: box plots of both")->excludes(budget);
+  AddValue(command, "--svg", "F", options.svg, "draw box plots of both sets")->excludes(budget);
   command
       .add_flag("--mixed", options.mixed,
-                "compare runs of different scenarios, parameters of them or versions too, and say so")
+                "also compare runs of different scenarios, scenario parameters or versions, and say so")
       ->excludes(budget);
-  command.add_flag("--json", options.json, "the result as one JSON document");
+  command.add_flag("--json", options.json, "print the result as one JSON document");
   command.footer(
-      R"(Subsets of a campaign, one value for each run:
-  final       the newest evaluation of every member of the population (the default; of 'random' and
-              'evaluate' these are all cases). What selection has seen is too good to be true: simulate
-              chosen cases again with fresh seeds ('gauntlet evaluate').
+      R"(The subsets of a campaign have one value for each run:
+  final       the newest evaluation of every member of the population (the default); for 'random' and
+              'evaluate', all cases. The fitness of selected cases is biased, because luck helped to select them:
+              simulate them again with fresh seeds first ('gauntlet evaluate --from').
   all         every run
-  random:N    N of all, drawn at random, the same ones every time
-  worst:N     the N of lowest fitness, of equal ones the earlier
-  search:K    in front of one of these: search K of a sweep only
+  random:N    N runs, drawn at random; always the same ones
+  worst:N     the N runs of lowest fitness; of equal ones, the earlier
+  search:K:   before one of these: only search K of a sweep
 
-Mann-Whitney's U with the normal approximation (ties and continuity corrected), the exact test up to
-10,000 pairs, and Vargha and Delaney's A: the probability that a run of the first set exceeds one of the
-second. Lower fitness = tougher. Runs of one evolution, or of one case, are relatives: a second interval of A draws whole ones.
+The test is Mann-Whitney's U with the normal approximation (corrected for ties and continuity), and the exact
+test up to 10,000 pairs. Vargha and Delaney's A is the probability that a run of the first set exceeds a run of
+the second; lower fitness means a tougher case. Runs of one evolution or of one case resemble each other, so a
+second interval of A draws whole evolutions or cases instead of single runs.
 
---budget holds searches of as many runs against each other: any number of campaigns, each a search with
-several seeds (or DIR,DIR,... of one seed each). It counts cells, as an archive search does, in which a case
-failed in at least half of its runs with fresh seeds, which 'gauntlet confirm' has to have simulated before:
-'--elites' of an archive search, '--all-failing' of any other. The first campaign is tested against each other.
+--budget compares searches that had equally many runs. Each campaign holds one search with several seeds; DIR,DIR,...
+joins campaigns of one seed each. It counts the cells, as in an archive search, with a case that failed in at least
+half of its runs with fresh seeds. Simulate these first: 'gauntlet confirm DIR --elites' for an archive search,
+'gauntlet confirm DIR --all-failing' for any other. The first campaign is tested against each of the others.
 
 Examples:
   gauntlet compare --budget campaigns/archive campaigns/random-deletion campaigns/random

@@ -221,21 +221,23 @@ Result<ExitCode> RunCorpus(CommandContext& context, const CorpusOptions& options
 
 void AddCorpus(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("corpus", "'corpus add': keep cases that break a controller, for 'check'", RunCorpus);
-  command.add_option("ACTION", options.action, "add")->required();
+      parser.Add("corpus", "keep cases that break a controller for 'check' ('corpus add')", RunCorpus);
+  command.add_option("ACTION", options.action, "the word add")->required();
   AddDirectory(command, options.directory);
   command
-      .add_option("CASE", options.cases, "runs of the campaign whose cases are meant, or files of 'minimise'")
+      .add_option("CASE", options.cases,
+                  "runs of the campaign whose cases are kept, or case files that 'minimise' wrote")
       ->required();
-  AddValue(command, "--to", "CORPUS", options.corpus, "the folder that keeps them; made when it is not there")
+  AddValue(command, "--to", "CORPUS", options.corpus,
+           "the folder of the cases; it is made if it does not exist")
       ->required();
-  AddValue(command, "--name", "NAME", options.name, "of the case and its files, instead of run-N");
+  AddValue(command, "--name", "NAME", options.name, "name of the case and of its files (default: run-N)");
   command.footer(
-      R"(Keeps each case as one readable file, CORPUS/NAME.json, with its picture, CORPUS/NAME.svg: the layout, the
-controller and all settings, how often it failed with fresh seeds, and what 'gauntlet check' is to expect of it
-("fail", until the controller is mended). Where 'gauntlet minimise' has made the case smaller, what is left is
-kept, else the case as it is. A case must be confirmed: 'gauntlet confirm DIR RUN_ID' first, or 'minimise'.
-The folder is made to be kept under version control beside the controller.
+      R"(Writes each case as one readable file, CORPUS/NAME.json, and its picture, CORPUS/NAME.svg. The file holds the
+layout, the controller and all settings, how often the case failed with fresh seeds, and the verdict that
+'gauntlet check' expects: "fail", until the controller is repaired. If 'gauntlet minimise' has made the case
+smaller, the smaller case is kept. Only confirmed cases are accepted: give 'gauntlet confirm DIR RUN_ID' or
+'gauntlet minimise DIR RUN_ID' first. Keep the folder under version control, beside the controller.
 
 Examples:
   gauntlet corpus add DIR 812 --to corpus

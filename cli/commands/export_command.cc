@@ -185,34 +185,34 @@ std::string ColumnsText() {
 
 void AddExport(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("export", "a campaign's data for R, pandas and others", RunExport);
+      parser.Add("export", "write a campaign's data for R, pandas, ARGoS and others", RunExport);
   AddDirectory(command, options.directory);
-  AddValue(command, "--format", "csv|json|argos", options.format, "of the output")->required();
-  AddValue(command, "--out", "OUT", options.out, "where to write: a file; for case files a new directory")
+  AddValue(command, "--format", "csv|json|argos", options.format, "format of the output")->required();
+  AddValue(command, "--out", "OUT", options.out, "the file to write; for case files, a new directory")
       ->required();
   AddValue(command, "--what", "WHAT", options.what,
-           "runs (the default; of argos: cases), cases, trajectories or events: see below");
+           "runs (the default), cases (the default of argos), trajectories or events: see below");
   AddValue(command, "--run", "ID", options.runs,
-           "of runs, trajectories and argos: only this run's; repeatable");
+           "write this run only (runs, trajectories, argos); repeatable");
   AddValue(command, "--controller-file", "FILE", options.controller_file,
-           "argos: robots get the <controllers> of this .argos or XML file (default: a placeholder)");
-  AddValue(command, "--controller", "ID", options.controller, "argos: which of that file's controllers");
+           "give the robots the <controllers> of this .argos or XML file (argos; default: a placeholder)");
+  AddValue(command, "--controller", "ID", options.controller,
+           "take the controller of this id from that file (argos)");
   command.footer(
       R"(runs          a row for each run
 cases         csv: a row for each obstacle of each test case; json, argos: a directory with a case file for
-              each test case, as 'evaluate --case' takes them. Of argos it is the run in which the case was
-              found, or each --run: ARGoS loads and runs the file as it is, with arena, walls, obstacles, lamps,
-              seed, length and every robot at its start pose. What ARGoS does not have is said
-trajectories  a row for each robot every 5 s; where the campaign has not kept them (store.trajectories),
-              each run is simulated again and must end as it did. Every pose of a run: 'replay --csv'
-events        a row for everything that happened to the campaign: starts, workers lost, ...
+              each test case, as 'evaluate --case' takes them. A file for ARGoS holds the run in which the case
+              was found, or each --run: ARGoS loads and runs the file as it is, with arena, walls, obstacles,
+              lamps, seed, length and every robot at its start pose. A message names what ARGoS does not have
+trajectories  a row for each robot every 5 s. If the campaign has not kept them (store.trajectories), each run
+              is simulated again and must end as it was stored. 'replay --csv' writes every pose of a run
+events        a row for each event of the campaign, such as a start or a lost worker
 
-Works while the campaign is being written, and says when it is half-finished. The file is there as a whole or
-not at all. In a campaign of several searches each key in which they differ has a column of its own.
-An empty field says that there is nothing to say, or that there was nothing to measure. Seeds and hashes have
-64 bits: read them as text. (pandas reads numbers to the last bit with float_precision="round_trip".)
-JSON: an object whose member "columns" has names, units and meanings, and whose member of the name of WHAT is
-the list of rows.
+The command works while the campaign runs, and then says that the data is not complete. The file is written
+whole or not at all. If a campaign holds several searches, each key in which they differ has a column. A field is
+empty when there was nothing to measure. Seeds and hashes have 64 bits, so read them as text. (pandas reads
+numbers to the last bit with float_precision="round_trip".) JSON is an object: its member "columns" describes the
+columns by name, unit and meaning, and the member with the name of WHAT is the list of rows.
 
 In R:      runs <- read.csv("runs.csv", colClasses = c(seed = "character", hash = "character"))
 In pandas: runs = pandas.read_csv("runs.csv", dtype={"seed": str, "hash": str})

@@ -143,19 +143,18 @@ Result<ExitCode> RunFigureCommand(CommandContext& context, const FigureOptions& 
 
 void AddFigure(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("figure", "a campaign's figures as SVG, and their data as CSV", RunFigureCommand);
+      parser.Add("figure", "write a campaign's figures as SVG, and their data as CSV", RunFigureCommand);
   AddDirectory(command, options.directory);
-  command.add_option("NAME", options.name, "which one; without it, they are listed");
+  command.add_option("NAME", options.name, "name of the figure; without it, the figures are listed");
   AddValue(command, "--with", "SET", options.others,
-           "of the figure 'comparison': another set of runs, as 'compare' names them; repeatable");
-  AddValue(command, "-o,--svg", "F", options.svg, "where the picture goes; stdout when nothing is said");
-  AddValue(command, "--csv", "F", options.csv, "write the data that it shows");
+           "another set of runs, as 'compare' names them, for the figure 'comparison'; repeatable");
+  AddValue(command, "-o,--svg", "F", options.svg, "file of the picture (default: standard output)");
+  AddValue(command, "--csv", "F", options.csv, "also write the data of the figure to this file");
   command.footer(
-      R"(Figures of a whole campaign: progress (fitness and failures over the runs spent; searches that differ in
-their seed only are repeats of one another and are drawn with a band), failure-types, behaviour. Figures of
-a run simulate it again: exit 1 when it does not end as it was stored. Figures of a study: the box plots of
-each comparison; of a tuning: robustness, consistency. Of several sets of runs, DIR and those of --with: their
-box plots, comparison. The same figures stand in 'gauntlet report'.
+      R"('gauntlet figure DIR' lists the figures of a campaign, a study or a tuning. 'progress' shows fitness and failures
+over the number of runs; searches that differ in their seed only are drawn as one band. 'comparison' draws box
+plots of the set DIR and of those of --with. The figures of a run, such as motion-812, simulate the run again;
+the exit code is 1 when it does not end as it was stored. 'gauntlet report' shows the same figures.
 
 Examples:
   gauntlet figure campaigns/flocking-20260131T120000Z

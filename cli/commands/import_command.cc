@@ -87,22 +87,22 @@ Result<ExitCode> RunImport(CommandContext& context, const ImportOptions& options
 
 void AddImport(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("import", "case files out of ARGoS' experiment files", RunImport);
+      parser.Add("import", "make case files from ARGoS experiment files", RunImport);
   command.add_option("FILE", options.files, "ARGoS3 experiment files (.argos)");
   AddValue(command, "--dir", "DIR", options.directory,
-           "where to write: a new directory, a .json file for each");
-  AddValue(command, "--out", "CASE.json", options.out, "where to write a single one");
+           "the new directory to write to, one .json file for each FILE");
+  AddValue(command, "--out", "CASE.json", options.out, "the file to write to, for a single FILE");
   command.footer(
-      R"(Takes the arena, its boxes and walls, the foot-bots and where they start, each at its pose or in an area.
-Says of each file what it changed (movable boxes, boxes that are low) and ignored, by name: controllers, loop
-functions, lamps and the floor are the scenario's business here. Of a file that 'export' wrote, it gives the very
-case that was exported, with start poses. Seeds belong to runs, not to cases. When a file cannot be read, the
-message names the place in it, and nothing is written.
+      R"(Takes the arena, its walls and boxes, the foot-bots, and their start poses or the area in which they start.
+For each file it names what it has changed, such as movable or low boxes, and what it has ignored: controllers,
+loop functions, lamps and the floor, which the scenario defines here. From a file that 'export' wrote, it makes
+the same case with the same start poses. It takes no seed, because a seed belongs to a run. When a file cannot be
+read, the message names the place in the file, and nothing is written.
 
 Examples:
   gauntlet import env1.argos --out env1.json && gauntlet evaluate flocking --case env1.json --replicates 20
   gauntlet import argos-cases/*.argos --dir cases
-  gauntlet evaluate flocking --case env1.argos    # without a file in between)");
+  gauntlet evaluate flocking --case env1.argos    # works without import too)");
 }
 
 }  // namespace gauntlet

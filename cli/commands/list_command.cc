@@ -291,17 +291,17 @@ Result<ExitCode> RunList(CommandContext& context, const ListOptions& options) {
 
 void AddList(CommandParser& parser) {
   const auto [command, options] = parser.Add(
-      "list", "experiments, scenarios, controllers, searches, disturbances; all parameters", RunList);
+      "list", "list experiments, scenarios, controllers, searches, disturbances and all parameters", RunList);
   std::vector<std::string> names;
   for (const Section& section : kSections) names.emplace_back(section.name);
-  auto* section =
-      command
-          .add_option("SECTION", options.section,
-                      "experiments, scenarios, controllers, searches or disturbances (default: all)")
-          ->check(CLI::IsMember(names));
-  AddValue(command, "--plugin", "LIB.so", options.plugins, "what this library of yours brings, instead");
+  auto* section = command
+                      .add_option("SECTION", options.section,
+                                  "the section to print: experiments, scenarios, controllers, searches or "
+                                  "disturbances (default: all)")
+                      ->check(CLI::IsMember(names));
+  AddValue(command, "--plugin", "LIB.so", options.plugins, "list what this library of yours brings instead");
   command.get_option("--plugin")->excludes(section);
-  command.add_flag("--json", options.json, "as one JSON document");
+  command.add_flag("--json", options.json, "print the list as one JSON document");
   command.footer(R"(Examples:
   gauntlet list experiments
   gauntlet list --plugin build/libmine.so

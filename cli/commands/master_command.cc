@@ -89,7 +89,7 @@ Result<ExitCode> RunMaster(CommandContext& context, const MasterOptions& options
 
 void AddMaster(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("master", "a search whose workers come from elsewhere", RunMaster);
+      parser.Add("master", "serve a search to workers that connect from elsewhere", RunMaster);
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);
   AddServingOptions(command, options.serving);
@@ -97,13 +97,13 @@ void AddMaster(CommandParser& parser) {
   command.get_option("--bind")->required();
   command.add_flag(
       "--resume", options.resume,
-      "go on with the campaign in --dir when there is one; of its settings, only its length may be other");
+      "continue the campaign in --dir if there is one; of its settings, only the length may differ");
   command.footer(
-      R"(Evolves like 'evolve', but starts no workers: they find the master through access.json in the campaign's
-directory ('gauntlet-worker --dir DIR' on any machine that sees it). Everything is encrypted, and only workers
-with the keys in access.json are let in, on loopback too (unless --insecure). Ctrl-C or SIGTERM
-stops the master alone (exit 3): workers finish, keep their results and wait 10 minutes for a successor.
-'gauntlet stop DIR' lets the workers go too.
+      R"(Runs a search like 'evolve', but starts no workers. Start 'gauntlet-worker --dir DIR' on any machine that sees
+the campaign's directory: the worker finds the master through the file access.json in it. Unless --insecure is
+given, everything is encrypted and only workers with the keys in access.json are admitted, on loopback too.
+Ctrl-C or SIGTERM stops the master alone (exit 3): the workers finish their runs, keep the results and wait 10
+minutes for a new master. 'gauntlet stop DIR' stops the workers too.
 
 Examples:
   gauntlet master flocking --bind 'tcp://0.0.0.0:*' --dir /shared/flocking-1

@@ -123,20 +123,21 @@ Result<ExitCode> RunReplay(CommandContext& context, const ReplayOptions& options
 
 void AddReplay(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("replay", "simulate one stored run again, check its hash, draw it", RunReplay);
+      parser.Add("replay", "simulate one stored run again, check its hash and draw it", RunReplay);
   AddDirectory(command, options.directory);
-  command.add_option("RUN_ID", options.run, "number of the run, as 'show' names it")->required();
+  command.add_option("RUN_ID", options.run, "number of the run, as 'show' prints it")->required();
   AddValue(command, "--svg", "F", options.svg,
-           "write a picture: arena, every robot's trajectory, where the swarm split");
+           "draw the arena, the trajectory of every robot, and where the swarm split");
   AddValue(command, "--timeline", "F", options.timeline,
-           "write a picture: what every robot did when (foraging, task-partitioning)");
-  AddValue(command, "--csv", "F", options.csv, "write every pose of every tick");
+           "draw the state of every robot over time (foraging, task-partitioning)");
+  AddValue(command, "--csv", "F", options.csv, "write the pose of every robot in every tick");
   AddValue(command, "--scratch", "DIR", options.scratch,
-           "working directory of a plug-in's run, which keeps what it writes (output.txt: what it prints)");
-  command.add_flag("--json", options.json, "the result as one JSON document");
+           "working directory for the run of a plug-in; keeps what the run writes, and in output.txt what it "
+           "prints");
+  command.add_flag("--json", options.json, "print the result as one JSON document");
   command.footer(
-      R"(Same run, same bits: exit 0 when the new hash equals the stored one, 1 when it does not, saying what
-differs.
+      R"(The same run must give the same bits. The exit code is 0 when the new hash equals the stored one, and 1 when it
+does not; then the differences are printed.
 
 Example:
   gauntlet replay campaigns/flocking-20260131T120000Z 812 --svg run-812.svg --csv run-812.csv)");

@@ -59,22 +59,22 @@ Result<ExitCode> RunReport(CommandContext& context, const ReportCommandOptions& 
 
 void AddReport(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("report", "campaigns as one HTML file: what failed, how, and replays", RunReport);
+      parser.Add("report", "write campaigns as one HTML file: what failed, how, and replays", RunReport);
   command
-      .add_option(
-          "DIR", options.sets,
-          "a campaign, or what 'study' or 'tune' has made; of several campaigns, or of several sets of "
-          "runs as 'compare' names them (DIR:all, DIR:random:100), the fitness is compared")
+      .add_option("DIR", options.sets,
+                  "a campaign, or the directory of a 'study' or 'tune'; the fitness of several campaigns, or "
+                  "of several "
+                  "sets of runs as 'compare' names them (DIR:all, DIR:random:100), is compared")
       ->required();
   AddValue(command, "-o,--out", "F", options.out, "the file to write")->required();
   AddValue(command, "--runs", "N", options.runs,
-           "how many runs are simulated again and shown with a replay (default: 40)");
+           "number of runs that are simulated again and shown as a replay (default: 40)");
   command.footer(
-      R"(The file needs no network and no other file; a double click opens it. It tells what was tested and what
-came of it, maps the failures and behaviours, replays the toughest run of each field and of the toughest
-test cases, and compares sets of runs when it is given several. Of a study it shows every comparison, of a
-tuning which values to take and how sure that is. Without JavaScript its tables and pictures are there too.
-Its figures for papers writes 'gauntlet figure'.
+      R"(Writes a file that needs no network and no other file; a double click opens it. It shows what was tested and
+what was found, with maps of failures and behaviours, and replays of the toughest run in each field of the maps
+and of the toughest test cases. Several sets of runs are compared. For a study it shows every comparison, for a
+tuning the recommended values and how sure they are. Tables and pictures also work without JavaScript. 'gauntlet
+figure' writes the figures for a paper.
 
 Examples:
   gauntlet report campaigns/flocking-20260131T120000Z -o report.html

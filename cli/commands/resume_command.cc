@@ -158,24 +158,26 @@ Result<ExitCode> RunResume(CommandContext& context, const ResumeOptions& options
 
 void AddResume(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("resume", "go on with a campaign that was stopped or killed", RunResume);
+      parser.Add("resume", "continue a campaign that was stopped or killed", RunResume);
   AddDirectory(command, options.directory);
   AddValue(command, "--generations", "G", options.generations, "short for --set search.generations=G");
   AddValue(command, "--set", "KEY=VALUE", options.sets,
-           "make the campaign longer: a greater number for the key that says how long its search goes on "
-           "(search.generations, search.cases)");
+           "make the campaign longer: a greater value of the key that sets the length of its search "
+           "(search.generations, search.cases, search.runs)");
   AddRunningOptions(command, options.running);
   AddBindOptions(command, options.bind);
   command.add_flag(
       "--as-job", options.as_job,
-      "for the master's job of a submitted campaign: replaces a twin, leaves workers to its successor");
+      "for the master's job of a submitted campaign: replace a second master of it, and leave the workers to "
+      "the next one");
   command.footer(
-      R"(Goes on where the campaign was, whatever ended it; no finished run is simulated again, and the result
-is that of an undisturbed campaign. A finished campaign is only summarised, unless --generations or --set make
-it longer: it then ends as one that was that long from the start. All searches of a sweep become that long.
+      R"(Continues the campaign where it ended, whatever ended it. No finished run is simulated again, and the result
+is that of an undisturbed campaign. Of a finished campaign only the summary is printed, unless --generations or
+--set makes it longer: its result is then that of a campaign that had this length from the start. In a sweep,
+all searches get the new length.
 
-With --bind, workers come from elsewhere, as with 'gauntlet master'. A campaign that was submitted to Slurm
-goes on there, unless --workers or --bind is given; jobs of it that are left are used.
+With --bind, workers connect from elsewhere, as with 'gauntlet master'. A campaign that was submitted to Slurm
+continues there, and its remaining jobs are used, unless --workers or --bind is given.
 
 Examples:
   gauntlet resume campaigns/flocking-20260131T120000Z --workers 4

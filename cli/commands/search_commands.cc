@@ -67,12 +67,12 @@ void AddEvolve(CommandParser& parser) {
   AddLocalOptions(command, options, /*sizes=*/true);
   AddSweepOptions(command, options.sweep);
   command.footer(
-      R"(Evolves test cases with the experiment's search on a local pool of workers, shows progress, and ends
-with a table of the toughest cases. Ctrl-C stops cleanly (exit 3); 'gauntlet resume DIR' goes on.
-Same experiment, settings and seed: same result, whatever the number of workers.
+      R"(Evolves test cases with the experiment's search on workers of this machine, shows the progress, and ends
+with a table of the toughest cases. Ctrl-C stops the campaign (exit 3), and 'gauntlet resume DIR' continues it.
+The same experiment, settings and seed give the same result for any number of workers.
 
-With --sweep and --seeds the campaign holds many searches, which share the workers, so that no core waits at a
-generation's end; each ends like 'evolve' with its --set and --seed. 'show' tells them apart.
+With --sweep or --seeds the campaign holds many searches. They share the workers, so that no core waits for the
+end of a generation. Each search gives the same result as 'evolve' with its --set and --seed; 'show' lists them.
 
 Examples:
   gauntlet evolve flocking
@@ -85,14 +85,14 @@ Examples:
 
 void AddRandom(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("random", "random test cases: the baseline to hold an evolution against", RunRandom);
+      parser.Add("random", "simulate random test cases, a baseline for an evolution", RunRandom);
   AddLocalOptions(command, options, /*sizes=*/false);
   AddSweepOptions(command, options.sweep);
   AddValue(command, "--cases", "N", options.cases,
-           "how many test cases (default: the experiment's search.cases)");
+           "number of test cases (default: the experiment's search.cases)");
   command.footer(
-      R"(Generates valid random test cases by the experiment's rules and simulates each once (more often with
---set search.replicates=K). The population that 'show' reports are all cases.
+      R"(Generates valid random test cases by the experiment's rules and simulates each of them once, or K times
+with --set search.replicates=K. 'show' then reports all cases as the population.
 
 Examples:
   gauntlet random flocking --cases 200

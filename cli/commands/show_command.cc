@@ -51,19 +51,19 @@ Result<ExitCode> RunShow(CommandContext& context, const ShowOptions& options) {
 }  // namespace
 
 void AddShow(CommandParser& parser) {
-  const auto [command, options] = parser.Add("show", "what came out of a campaign", RunShow);
+  const auto [command, options] = parser.Add("show", "print what a campaign found", RunShow);
   AddDirectory(command, options.directory);
-  command.add_flag("--json", options.json, "everything as one JSON document");
+  command.add_flag("--json", options.json, "print everything as one JSON document");
   command.add_flag("--runs", options.runs,
-                   "with --json: every run too, with the names of 'export' (see its --help)");
+                   "with --json: print every run too, with the columns of 'export' (see its --help)");
   command.footer(
-      R"(Sums up what is stored: runs, fitness by generation, total failures, the toughest cases with a run to
-replay, and the state hash, which is equal for equal outcomes.
+      R"(Prints a summary of what is stored: the runs, the fitness by generation, the total failures, the toughest
+cases with a run to replay, and the state hash. Campaigns with equal results have equal state hashes.
 
-After 'gauntlet confirm DIR --all-failing' it also says how many different failures the cases are, a line for
-each with a command that shows it. Two cases are the same failure when most of their runs with fresh seeds fail
-at the same place (flocking: the corner of the prey's way nearest to the last split; task-partitioning: where
-the robots are), or, in foraging, in the same way (with or without a path of beacons).
+After 'gauntlet confirm DIR --all-failing' it also lists the different failures, each with a command that draws
+it. Two cases are the same failure when most of their runs with fresh seeds fail in the same place. In flocking
+this is the corner of the prey's path that is nearest to the last split, in task-partitioning it is where the
+robots are. In foraging, two failures are the same when both have a path of beacons, or neither has.
 
 Examples:
   gauntlet show campaigns/flocking-20260131T120000Z

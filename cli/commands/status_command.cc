@@ -177,12 +177,12 @@ Result<ExitCode> RunWatch(CommandContext& context, const StatusOptions& options)
 
 void AddStatus(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("status", "what runs where, since when, and why nothing runs", RunStatus);
+      parser.Add("status", "print what runs where and since when, or why nothing runs", RunStatus);
   AddDirectory(command, options.directory);
-  command.add_flag("--json", options.json, "everything as one JSON document");
+  command.add_flag("--json", options.json, "print everything as one JSON document");
   command.footer(
-      R"(Read from what the living master writes every second; without one, from what is stored. Of a submitted campaign
-it lists the jobs with Slurm's state and reason.
+      R"(Reads the status that a living master writes every second, or, without a master, what is stored. For a
+submitted campaign it also lists the jobs, with Slurm's state and reason.
 
 Examples:
   gauntlet status DIR
@@ -191,7 +191,7 @@ Examples:
 
 void AddWatch(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("watch", "the status every second, until the campaign's master ends", RunWatch);
+      parser.Add("watch", "print the status every second until the campaign's master ends", RunWatch);
   AddDirectory(command, options.directory);
   command.footer("Example:\n  gauntlet watch DIR");
 }

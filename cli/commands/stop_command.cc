@@ -83,12 +83,12 @@ Result<ExitCode> RunStop(CommandContext& context, const StopOptions& options) {
 
 void AddStop(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("stop", "let a campaign end what has begun, and stop it", RunStop);
+      parser.Add("stop", "stop a campaign after the runs that have begun", RunStop);
   AddDirectory(command, options.directory);
   command.footer(
-      R"(No more runs are given away; those that have begun end and are stored, workers leave, the master ends
-(exit 3). Returns when it is gone. Works from any machine that sees the directory. Of a submitted campaign
-all jobs are cancelled, and no others.
+      R"(The master gives out no more runs. The runs that have begun end and are stored, the workers leave, and the
+master ends (exit 3); then this command returns. It works from any machine that sees the directory. For a
+submitted campaign it cancels the campaign's jobs, and no others.
 
 Example:
   gauntlet stop DIR)");

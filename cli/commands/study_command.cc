@@ -24,18 +24,19 @@ Result<ExitCode> RunStudy(CommandContext& context, const StudyOptions& options) 
 
 void AddStudy(CommandParser& parser) {
   const auto [command, options] = parser.Add(
-      "study", "many searches, re-simulations and comparisons, such as the whole thesis", RunStudy);
-  command.add_option("STUDY", options.study, "a shipped study, or a TOML file")->required();
+      "study", "run many searches, re-simulations and comparisons, such as the whole thesis", RunStudy);
+  command.add_option("STUDY", options.study, "a shipped study or a TOML file")->required();
   AddStudyStartOptions(command, options.start);
   std::string shipped;
   for (const std::string& name : ShippedStudies()) shipped += (shipped.empty() ? "" : ", ") + name;
   command.footer(fmt::format(R"(Shipped studies: {}.
 
-A study file lists parts (evolutions, random cases, and cases simulated again with fresh seeds or another
-controller), what is computed from them, and the published figures beside it. All searches share the
-workers, so no core waits at the end of a generation; then follow all re-simulations. They are ordinary
-campaigns, DIR/searches and DIR/evaluations: 'show', 'replay' and 'compare' work on them. Killed or stopped
-at any moment, it goes on with the same command, or with 'gauntlet resume DIR', and ends the same.
+A study file lists parts, analyses and published figures. The parts are evolutions, random cases, and cases that
+are simulated again with fresh seeds or another controller. The analyses are computed from the parts, and the
+published figures are printed beside them. First all searches run and share the workers, so that no core waits
+for the end of a generation; then all re-simulations run. Both are ordinary campaigns, DIR/searches and
+DIR/evaluations, on which 'show', 'replay' and 'compare' work. A study that was stopped or killed continues with
+the same command, or with 'gauntlet resume DIR', and its result is the same.
 
 Examples:
   gauntlet study thesis-flocking --dir campaigns/flocking-study

@@ -67,28 +67,28 @@ Result<ExitCode> RunSubmit(CommandContext& context, const SubmitOptions& options
 }  // namespace
 
 void AddSubmit(CommandParser& parser) {
-  const auto [command, options] = parser.Add("submit", "a search as jobs of a Slurm cluster", RunSubmit);
+  const auto [command, options] = parser.Add("submit", "run a search as jobs of a Slurm cluster", RunSubmit);
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);
   AddMessageOptions(command, options.messages);
   AddSlurmOptions(command, options.slurm);
   AddSweepOptions(command, options.sweep);
   command.add_flag("--dry-run", options.dry_run,
-                   "submit nothing: print the scripts and what sbatch --test-only says of them");
+                   "submit nothing: print the job scripts and what sbatch --test-only says of them");
   std::string settings;
   for (const slurm::SlurmKeyInfo& key : slurm::SlurmKeys()) {
     settings += fmt::format("  {:24}{}{}\n", key.name, key.description,
                             key.default_value.empty() ? "" : fmt::format(" (default {})", key.default_value));
   }
   command.footer(
-      R"(Submits the master as a job and returns; the master submits workers as there is work for them, replaces those
-that are lost, and cancels them when the search has ended. The campaign's directory must be on a file system
-that the compute nodes share. Same experiment and seed: same result as with 'evolve'.
+      R"(Submits the master as a job and returns. While there is work, the master submits workers and replaces lost
+ones; when the search has ended, it cancels them. The campaign's directory must be on a file system that the
+compute nodes share. The same experiment and seed give the same result as with 'evolve'.
 
-With --sweep and --seeds the campaign holds many searches, which share one pool; each ends like 'evolve' with its
---set and --seed. 'show' tells them apart.
+With --sweep or --seeds the campaign holds many searches, which share one pool of workers. Each search gives the
+same result as 'evolve' with its --set and --seed; 'show' lists them.
 
-Settings for --slurm, also in the experiment's [slurm] table and in ~/.config/gauntlet/slurm.toml:
+Settings for --slurm, which may also be in the experiment's [slurm] table or in ~/.config/gauntlet/slurm.toml:
 )" + settings +
       R"(
 Examples:

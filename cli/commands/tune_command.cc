@@ -55,28 +55,30 @@ Result<ExitCode> RunTune(CommandContext& context, const TuneOptions& options) {
 
 void AddTune(CommandParser& parser) {
   const auto [command, options] =
-      parser.Add("tune", "which values of a search's parameters find tougher cases?", RunTune);
-  command.add_option("EXPERIMENT", options.experiment, "the baseline: a shipped name, or a TOML file")
+      parser.Add("tune", "test which values of a search's parameters find tougher cases", RunTune);
+  command.add_option("EXPERIMENT", options.experiment, "the baseline: a shipped experiment or a TOML file")
       ->required();
   AddValue(command, "--candidates", "STUDY", options.candidates,
-           "values to try: a shipped study or a TOML file with a table [tune.NAME] (default: tune-EXPERIMENT "
-           "where there is one, else tune-flocking)");
-  AddValue(command, "--repeats", "N", options.repeats,
-           "evolutions of every value, 1 to 100 (default: as the study says, 20 in the shipped ones)");
-  AddValue(command, "--set", "KEY=VALUE", options.sets, "change the baseline, as for 'evolve'; repeatable");
+           "the values to try: a shipped study or a TOML file with a table [tune.NAME] (default: "
+           "tune-EXPERIMENT if there is one, else tune-flocking)");
+  AddValue(
+      command, "--repeats", "N", options.repeats,
+      "number of evolutions for each value, 1 to 100 (default: that of the study, 20 in the shipped ones)");
+  AddValue(command, "--set", "KEY=VALUE", options.sets,
+           "change a value of the baseline, as for 'evolve'; repeatable");
   AddStudyStartOptions(command, options.start);
   command.footer(
-      R"(Changes one parameter at a time while all others keep the experiment's values, and compares each value with
-the baseline by Vargha and Delaney's A (Spartan's robustness analysis). An evolution counts once: by the mean
-fitness of its final population, simulated again with fresh seeds. A value is recommended instead of the
-baseline's when A is large (0.71) and that is no matter of chance (p below 0.05 after Holm's correction).
-Consistency analysis says how many repeats are enough: it draws sets of evolutions with the same parameters
-and looks how far A strays between them.
+      R"(Changes one parameter at a time, keeps the experiment's values of all others, and compares each value with the
+baseline by Vargha and Delaney's A (the robustness analysis of Spartan). Each evolution gives one figure, the mean
+fitness of its final population, simulated again with fresh seeds. A value is recommended in place of the
+baseline's when A is large (0.71) and the difference is significant (p below 0.05 after Holm's correction). A
+consistency analysis shows how many repeats are enough: it draws sets of evolutions with the same parameters and
+measures how much A differs from 0.5 between them.
 
-The shipped lists are those of H. Wei's thesis, Tables 4.1 and 5.1 (studies tune-flocking, tune-foraging). A
-tuning is a study: it shares the workers among all evolutions, leaves robustness.svg and consistency.svg in
-its directory, and goes on with the same command, or 'gauntlet resume DIR', whenever it was killed. 'gauntlet
-report DIR -o tuning.html' shows it in a browser.
+The shipped candidates are those of Tables 4.1 and 5.1 of H. Wei's thesis (studies tune-flocking, tune-foraging).
+A tuning is a study: its evolutions share the workers, and it continues with the same command or with 'gauntlet
+resume DIR' after it was stopped or killed. It writes robustness.svg and consistency.svg to its directory.
+'gauntlet report DIR -o tuning.html' shows it in a browser.
 
 Examples:
   gauntlet tune flocking --dry-run

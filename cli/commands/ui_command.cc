@@ -46,20 +46,19 @@ Result<ExitCode> RunUi(CommandContext& context, const UiOptions& options) {
 }  // namespace
 
 void AddUi(CommandParser& parser) {
-  const auto [command, options] = parser.Add(
-      "ui", "campaigns in a browser: what 'report' tells, live, and every run to be replayed", RunUi);
+  const auto [command, options] =
+      parser.Add("ui", "show campaigns live in a browser, with a replay of every run", RunUi);
   command
       .add_option("DIR", options.sets,
-                  "a campaign, also while it runs, or what 'study' or 'tune' makes; of several campaigns, or "
-                  "of several sets of runs as 'compare' names "
-                  "them, the fitness is compared")
+                  "a campaign, which may be running, or the directory of a 'study' or 'tune'; the fitness of "
+                  "several campaigns, or of several sets of runs as 'compare' names them, is compared")
       ->required();
-  AddValue(command, "--port", "PORT", options.port, "of 127.0.0.1 (default: any free one)");
+  AddValue(command, "--port", "PORT", options.port, "port of 127.0.0.1 (default: any free port)");
   command.footer(
-      R"(Prints an address for a browser of this machine and serves the pages of 'gauntlet report' there until Ctrl-C.
-Beside them it shows what the campaign does now (workers, throughput, time left, why nothing runs, events),
-and a click on any run simulates it again. It reads, and changes nothing. Only who knows the whole address
-gets in; from another machine, through a tunnel: ssh -L PORT:127.0.0.1:PORT HOST.
+      R"(Prints an address and serves the pages of 'gauntlet report' there to a browser on this machine, until Ctrl-C.
+Besides, it shows what the campaign does now: workers, throughput, time left, events, and why nothing runs. A
+click on a run simulates it again. Nothing of the campaign is changed. Only those who know the whole address can
+open the pages. To open them from another machine, make a tunnel: ssh -L PORT:127.0.0.1:PORT HOST.
 
 Examples:
   gauntlet ui campaigns/flocking-20260131T120000Z

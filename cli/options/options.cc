@@ -46,43 +46,45 @@ void AddValue(CLI::App& command, const char* name, const char* type, std::vector
 }
 
 void AddMessageOptions(CLI::App& command, MessageOptions& options) {
-  command.add_flag("--json", options.json, "the result as one JSON document on standard output");
-  command.add_flag("--quiet", options.quiet, "no progress and no messages but errors");
-  command.add_flag("--no-progress", options.no_progress, "messages, but no progress");
+  command.add_flag("--json", options.json, "print the result as one JSON document");
+  command.add_flag("--quiet", options.quiet, "print no progress and no messages, except errors");
+  command.add_flag("--no-progress", options.no_progress, "print no progress");
 }
 
 void AddServingOptions(CLI::App& command, ServingOptions& options) {
-  AddValue(command, "--audit", "P", options.audit,
-           "share of runs, 0 to 1, that a second worker simulates too; a difference is told (default: 0; not "
-           "kept: tell `resume` too)");
+  AddValue(
+      command, "--audit", "P", options.audit,
+      "share of the runs, 0 to 1, that a second worker simulates too; differences are reported (default: "
+      "0; not stored: give it to 'resume' again)");
   AddValue(command, "--metrics-port", "PORT", options.metrics_port,
-           "serve Prometheus metrics on this port of 127.0.0.1 (0: any free one)");
+           "serve Prometheus metrics on this port of 127.0.0.1 (0: any free port)");
   AddMessageOptions(command, options);
 }
 
 void AddRunningOptions(CLI::App& command, RunningOptions& options) {
   AddValue(command, "--workers", "N", options.workers,
-           "worker processes on this machine (default: its cores)");
+           "number of worker processes on this machine (default: one for each core)");
   AddServingOptions(command, options);
 }
 
 void AddBindOptions(CLI::App& command, BindOptions& options) {
-  AddValue(command, "--bind", "ENDPOINT", options.endpoint,
-           "where workers connect: tcp://ADDRESS:PORT (IPv4, 0.0.0.0: all; port *: any free one) or "
-           "ipc://PATH");
+  AddValue(
+      command, "--bind", "ENDPOINT", options.endpoint,
+      "the address to which workers connect: tcp://ADDRESS:PORT (IPv4; 0.0.0.0: every interface; port *: "
+      "any free port) or ipc://PATH");
   command.add_flag(
       "--insecure", options.insecure,
-      "plaintext without keys: whoever reaches the address, any user of this machine at least, can "
-      "feed results");
+      "no encryption and no keys: everybody who reaches the address, which includes every user of this "
+      "machine, can send results");
 }
 
 void AddExperimentOptions(CLI::App& command, ExperimentOptions& options) {
   command
       .add_option("EXPERIMENT", options.experiment,
-                  "a shipped experiment (see: gauntlet list experiments), or a TOML file")
+                  "a shipped experiment ('gauntlet list experiments' names them) or a TOML file")
       ->required();
   AddValue(command, "--dir", "DIR", options.directory,
-           "directory of the campaign, new or empty (default: campaigns/EXPERIMENT-<UTC time>)");
+           "directory of the campaign: new or empty (default: campaigns/EXPERIMENT-<UTC time>)");
   AddValue(command, "--seed", "S|random", options.seed,
            "seed of the campaign (default: the experiment's, 1)");
   AddValue(command, "--set", "KEY=VALUE", options.sets,
@@ -92,8 +94,8 @@ void AddExperimentOptions(CLI::App& command, ExperimentOptions& options) {
 
 void AddPluginOption(CLI::App& command, std::vector<std::string>& plugins) {
   AddValue(command, "--plugin", "LIB.so", plugins,
-           "a library of yours whose controllers and scenarios may be named too, e.g. --set controller=mine; "
-           "repeatable");
+           "load a library of yours, so that its controllers and scenarios can be named, e.g. --set "
+           "controller=mine; repeatable");
 }
 
 void AddSizeOptions(CLI::App& command, SizeOptions& options) {
@@ -104,26 +106,28 @@ void AddSizeOptions(CLI::App& command, SizeOptions& options) {
 void AddSweepOptions(CLI::App& command, SweepOptions& options) {
   AddValue(
       command, "--sweep", "KEY=A,B,...", options.sweeps,
-      "one search for each value, e.g. --sweep search.population=10,20,40; repeatable: all combinations");
+      "one search for each value, e.g. --sweep search.population=10,20,40; if repeated, one search for each "
+      "combination");
   AddValue(command, "--seeds", "1..20|1,5,9", options.seeds,
-           "one search for each seed (and each combination of --sweep)");
+           "one search for each seed; with --sweep, for each combination and seed");
 }
 
 void AddSlurmOptions(CLI::App& command, SlurmOptions& options) {
   AddValue(command, "--master", "job|here", options.master,
-           "job (default): the master is a job too; here: it runs in this process")
+           "job (default): the master is a job as well; here: the master runs in this process")
       ->check(CLI::IsMember({"job", "here"}));
   AddValue(command, "--slurm", "KEY=VALUE", options.settings,
-           "one setting of the jobs or the pool, e.g. --slurm partition=short; repeatable");
+           "a setting of the jobs or of the pool, e.g. --slurm partition=short; repeatable");
 }
 
 void AddLocalOptions(CLI::App& command, LocalOptions& options, bool sizes) {
   AddExperimentOptions(command, options.experiment);
   AddSizeOptions(command, options.size);
   AddRunningOptions(command, options.running);
-  command.add_flag("--dry-run", options.dry_run,
-                   "simulate only a few runs, make nothing, and say how many runs there would be, about how "
-                   "long they take here, and how much disk");
+  command.add_flag(
+      "--dry-run", options.dry_run,
+      "simulate only a few runs and write nothing; print how many runs there would be, about how "
+      "long they would take on this machine, and how much disk space they would need");
   if (sizes) return;
   for (const char* option : {"--generations", "--population"}) command.get_option(option)->group("");
 }

@@ -73,7 +73,8 @@ const ParameterTable<FlockingSettings>& FlockingParameters() {
       {"camera_range", "m", 1.6373, 0.2, 10.0, Into<&S::camera_range>(),
        "half side of the square a bird sees (ARGoS: 0.2887 m * tan(80 degrees), released test cases)"},
       {"link_range", "m", 1.6373, 0.2, 10.0, Into<&S::split, &SplitRule::link, &LinkRule::range>(),
-       "birds farther apart do not follow each other (equal to camera_range, as a disc)"},
+       "birds farther apart are not linked, whatever a controller's link_range says (equal to camera_range, "
+       "as a disc)"},
       {"link_memory", "s", 2.0, 0.1, 60.0, IntoTicks<&S::split, &SplitRule::link, &LinkRule::memory>(),
        "a link holds for this long without sight (chosen)"},
       {"rejoin_time", "s", 5.0, 0.0, 600.0, IntoTicks<&S::split, &SplitRule::rejoin>(),
@@ -90,7 +91,7 @@ const ParameterTable<FlockingSettings>& FlockingParameters() {
       {"prey_waypoint_radius", "m", 0.10, 0.01, 0.5, Into<&S::prey, &PreySettings::waypoint_radius>(),
        "the prey passes a waypoint at this distance (chosen)"},
       {"prey_inflation", "m", 0.15, 0.10, 0.5, Into<&S::prey, &PreySettings::inflation>(),
-       "the prey plans this far from obstacles, 0.10 where that closes every way (chosen)"},
+       "the prey plans this far from obstacles, 0.10 where that closes every path (chosen)"},
   });
   return table;
 }

@@ -152,7 +152,7 @@ const ParameterTable<ForagerSettings>& ForagerParameters() {
            "a level falls to 1/e in this time (calibrated)"},
           {"pheromone_trail_time", "s", 60.0, 1.0, 1e6,
            Into<&S::beacons, &BeaconSettings::pheromone, &PheromoneSettings::trail_time>(),
-           "a way that took this much longer lays 1/e of the pheromone (calibrated)"},
+           "a trip that took this much longer lays 1/e of the pheromone (calibrated)"},
           {"follow_level", "", 1e-3, 1e-300, 1.0,
            Fill<S>{[](S& s, double level) { s.beacons->follow_staleness = -sim::Log(level); }},
            "Following needs more pheromone towards the food (chosen)"},

@@ -30,7 +30,7 @@ const std::array<MetricInfo, kMoments> kMomentInfos = {{
      true},
     {"clusters", "", {}, "clusters, lone robots among them"},
     {"dispersion", "m", {}, "mean distance of the robots from the swarm's centre", true},
-    {"order", "", {}, "length of the mean heading vector: 1 = all head one way, near 0 = all ways"},
+    {"order", "", {}, "length of the mean heading vector: 1 = all head in one direction, near 0 = in all"},
     {"speed", "m/s", {}, "mean speed of the robots"},
 }};
 

@@ -20,28 +20,28 @@ namespace {
 
 const std::vector<Column> kCaseColumns = {
     {"individual", "", "number of the test case within its search"},
-    {"birth_generation", "", "in which it was born, from 1"},
-    {"parents", "", "numbers of its parents, a blank between"},
-    {"name", "", "of a given case, that of its file"},
-    {"obstacle", "", "number of the obstacle within the case, from 1; nothing in a case without any"},
-    {"x", "m", "centre, from the middle of the arena"},
-    {"y", "m", "centre"},
+    {"birth_generation", "", "generation in which it was born, from 1"},
+    {"parents", "", "numbers of its parents, separated by spaces"},
+    {"name", "", "name of a given case, which is that of its file"},
+    {"obstacle", "", "number of the obstacle within the case, from 1; empty in a case without obstacles"},
+    {"x", "m", "of the obstacle's centre, from the middle of the arena"},
+    {"y", "m", "of the obstacle's centre"},
     {"length", "m", ""},
     {"width", "m", ""},
     {"orientation_deg", "degrees", "counter-clockwise"},
-    {"speed", "m/s", "of one that moves"},
-    {"path", "m", "of one that moves: where it goes, x and y of each place, blanks between"},
+    {"speed", "m/s", "of a moving obstacle"},
+    {"path", "m", "of a moving obstacle: x and y of each point of its path, separated by spaces"},
     {"light", "", "colour of the lamps that it carries"}};
 
-const std::vector<Column> kTrajectoryColumns = {{"run", "", "id of the run"},
+const std::vector<Column> kTrajectoryColumns = {{"run", "", "number of the run"},
                                                 {"robot", "", "number of the robot, from 0"},
-                                                {"time", "s", "in the simulation, every 5 s"},
+                                                {"time", "s", "simulated time, every 5 s"},
                                                 {"x", "m", "position, from the middle of the arena"},
                                                 {"y", "m", "position"}};
 
 const std::vector<Column> kEventColumns = {{"time", "", "UTC, ISO 8601"},
-                                           {"kind", "", "what happened, one word"},
-                                           {"text", "", "the same in words"}};
+                                           {"kind", "", "what happened, in one word"},
+                                           {"text", "", "what happened, in a sentence"}};
 
 // Visits the runs that were asked for, in logical order, until `visit` gives an error, which is returned.
 Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chosen, const RunVisitor& visit) {

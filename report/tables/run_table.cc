@@ -22,14 +22,14 @@ const Column kId = {"id", "", "number of the run, as `replay` takes it"};
 const std::vector<Column>& ColumnsOfTheRun() {
   static const std::vector<Column> columns = {
       {"individual", "", "number of the test case within its search"},
-      {"generation", "", "in which it was run, from 1"},
-      {"evaluation", "", "round of runs of this test case, 0 = its first"},
-      {"replicate", "", "run of this evaluation, from 0"},
-      {"seed", "", "of the run, 64 bits"},
+      {"generation", "", "generation in which it was run, from 1"},
+      {"evaluation", "", "round of runs of this test case, from 0"},
+      {"replicate", "", "number of the run within this evaluation, from 0"},
+      {"seed", "", "seed of the run, 64 bits"},
       {"verdict", "", "completed, or why there is no result: refused, crashed, hung, ..."},
-      {"fitness", "", "lower = tougher; nothing without a result"},
+      {"fitness", "", "lower = tougher; empty without a result"},
       {"total_failure", "", "whether the whole swarm failed"},
-      {"failure_type", "", "number of the failure type, nothing when there is none"},
+      {"failure_type", "", "number of the failure type; empty when there is none"},
       {"failure", "", "the failure type in words"}};
   return columns;
 }
@@ -38,9 +38,9 @@ const std::vector<Column>& ColumnsBehindMetrics() {
   static const std::vector<Column> columns = {
       {"simulated_time", "s", "how long the run lasted in the simulation"},
       {"cpu_seconds", "s", "CPU time that the simulation took"},
-      {"hash", "", "of the result, 16 hexadecimal digits"},
-      {"worker", "", "who simulated it"},
-      {"attempt", "", "how often it had been given out, from 1"},
+      {"hash", "", "hash of the result, 16 hexadecimal digits"},
+      {"worker", "", "worker that simulated it"},
+      {"attempt", "", "number of the attempt that gave the result, from 1"},
       {"message", "", "why there is no result"}};
   return columns;
 }

@@ -62,7 +62,9 @@ std::vector<Setting> SettingsOf(const std::vector<SearchPlan>& plans) {
 
 std::vector<Column> CommonSearchColumns() {
   return {{"search", "", "number of the search in the campaign, from 1"},
-          {"search_name", "", "what tells it from the others; of an only search the experiment's name"},
+          {"search_name", "",
+           "the search's name: what differs from the others, or the experiment's name if there is one search "
+           "only"},
           {"search_seed", "", "the search's seed, 64 bits"}};
 }
 

@@ -16,17 +16,19 @@ namespace gauntlet {
 namespace {
 
 const std::vector<controllers::ParameterInfo> kArchiveParameters = {
-    {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: simulations in all"},
+    {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: number of simulations"},
     {"slots", "", 36, 1, 10000, true,
-     "archive and random-deletion only: layouts under test at a time; workers it can keep busy"},
+     "archive and random-deletion only: number of layouts under test at a time, and of workers kept busy"},
     {"keep_out", "m", 0, 0, 10, false,
      "archive and random-deletion only: no obstacle nearer than this to where the swarm starts and arrives"},
     {"alone_share", "", 0.60, 0, 1, false,
-     "archive only: of the lines that begin, with one to three obstacles alone, across the way to the goal"},
+     "archive only: share of the lineages that begin with one to three obstacles across the path to the "
+     "goal"},
     {"jittered_share", "", 0.10, 0, 1, false,
-     "archive only: of the lines that begin, with an elite that is changed a little"},
+     "archive only: share of the lineages that begin with an elite that is changed a little"},
     {"recheck_share", "", 0.04, 0, 1, false,
-     "archive only: of the lines that begin, one more run of an elite; the rest begin with random cases"},
+     "archive only: share of the lineages that are one more run of an elite; the rest begin with random "
+     "cases"},
 };
 enum Parameter : std::size_t { kRuns, kSlots, kKeepOut, kAcrossShare, kJitteredShare, kRecheckShare };
 

@@ -198,7 +198,7 @@ std::string KindOf(const TomlValue& value) {
   if (const auto* other = std::get_if<OtherToml>(&value)) return other->kind;
   if (std::holds_alternative<std::string>(value)) return "text";
   if (std::holds_alternative<std::int64_t>(value)) return "a whole number";
-  return std::holds_alternative<double>(value) ? "a number that is not whole" : "true or false";
+  return std::holds_alternative<double>(value) ? "a decimal number" : "true or false";
 }
 
 std::string QuoteToml(std::string_view text) {

@@ -70,6 +70,16 @@ TEST(BuildErrors, SayHowToDefineAMacro) {
             "  a.cpp:6:2: error: use of undeclared identifier 'speed'\n");
 }
 
+TEST(BuildErrors, SayHowToBuildTheSdk) {
+  const std::string advice =
+      "Gauntlet's SDK is not built: give './dev build' in the folder of Gauntlet's sources\n";
+  for (const std::string line :
+       {"gmake[2]: *** No rule to make target '/build/sdk/libgauntlet_sdk.a', needed by 'libmine.so'.  Stop.",
+        "ninja: error: '/build/argos/libgauntlet_argos.a', needed by 'libmine.so', missing and no known "
+        "rule"})
+    EXPECT_EQ(BuildErrors("[1/2] building\n" + line + "\n"), "  " + line + "\n" + advice);
+}
+
 TEST(BuildErrors, ReadClangToo) {
   const std::string shown = BuildErrors(
       "a.cpp:1:10: fatal error: 'ros/ros.h' file not found\nb.cpp:1:10: fatal error: 'ros/ros.h' file not "

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <regex>
 #include <sstream>
+
+#include <nlohmann/json.hpp>
 
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/documented_page.h"
@@ -46,6 +49,25 @@ TEST(FrontPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
     said += AsRead(result.out, scratch.path());
   }
   ExpectQuoted(page, said);
+}
+
+TEST(CaseFilesPageTest, ShowsAFileAsItIsReadAndWritten) {
+  const std::string page = ReadFile(GAUNTLET_SOURCE_DIR "/docs/case-files.md");
+  const std::string fence = "```json\n";
+  const std::size_t begin = page.find(fence) + fence.size();
+  const std::string shown = page.substr(begin, page.find("```", begin) - begin);
+  const TemporaryDirectory scratch;
+  std::ofstream(scratch / "one-wall.json") << shown;
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"evaluate", "flocking", "--case", scratch / "one-wall.json", "--dir",
+                                 scratch / "campaign"},
+        {"export", scratch / "campaign", "--format", "json", "--what", "cases", "--out",
+         scratch / "cases"}}) {
+    const ProcessResult result = Gauntlet(arguments);
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+  }
+  const auto written = nlohmann::json::parse(ReadFile(scratch / "cases/case-1.json"));
+  EXPECT_EQ(written.at("obstacles"), nlohmann::json::parse(shown).at("obstacles"));
 }
 
 // "evolve flocking --dir DIR" of each `gauntlet evolve flocking --dir DIR` in the text, and of each line that

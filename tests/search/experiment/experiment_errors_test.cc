@@ -89,6 +89,8 @@ TEST(ExperimentErrorsTest, KindsThatWouldPuzzleAreNamedMoreClosely) {
             "toy.toml:2:1: search is a table of keys such as search.algorithm, not a list of tables");
   EXPECT_EQ(ErrorOf(kMarching, {"search=3"}),
             "--set search=3: search is a table of keys such as search.algorithm, not a whole number");
+  EXPECT_EQ(ErrorOf(kMarching, {"search=3.5"}),
+            "--set search=3.5: search is a table of keys such as search.algorithm, not a decimal number");
 }
 
 TEST(ExperimentErrorsTest, ValuesOutOfRangeComeWithTheRange) {
@@ -111,7 +113,7 @@ TEST(ExperimentErrorsTest, WrongTypesNameWhatWasExpected) {
   EXPECT_EQ(ErrorOf(Marching("[search]\npopulation = 'many'\n")),
             "toy.toml:3:1: search.population is text, expected a whole number, 4 to 10000");
   EXPECT_EQ(ErrorOf(Marching("[search]\npopulation = 20.5\n")),
-            "toy.toml:3:1: search.population is a number that is not whole, expected a whole number, 4 to "
+            "toy.toml:3:1: search.population is a decimal number, expected a whole number, 4 to "
             "10000");
   EXPECT_EQ(ErrorOf(Marching("[arena]\nside = [6, 6]\n")),
             "toy.toml:3:1: arena.side is an array, expected a number, 1 to 50 m");
