@@ -69,22 +69,24 @@ inline std::string NearestName(std::string_view unknown, std::span<const std::st
   return std::string(best);
 }
 
-// The entry of a table whose `name` is this one; nullptr when there is none. The table outlives the answer.
-template <typename Infos>
-auto FindByName(const Infos& infos, std::string_view name) {
-  const auto found =
-      std::find_if(infos.begin(), infos.end(), [&](const auto& info) { return info.name == name; });
-  return found == infos.end() ? nullptr : &*found;
-}
-
-// Of an entry of a table; a table of nothing but names is one too.
+// Of an entry of a table: what it is called, the path of a key; a table of nothing but names is one too.
 template <typename Info>
 std::string_view NameIn(const Info& info) {
   if constexpr (std::is_convertible_v<const Info&, std::string_view>) {
     return info;
-  } else {
+  } else if constexpr (requires { info.name; }) {
     return info.name;
+  } else {
+    return info.path;
   }
+}
+
+// The entry of a table that has this name; nullptr when there is none. The table outlives the answer.
+template <typename Infos>
+auto FindByName(const Infos& infos, std::string_view name) {
+  const auto found =
+      std::find_if(infos.begin(), infos.end(), [&](const auto& info) { return NameIn(info) == name; });
+  return found == infos.end() ? nullptr : &*found;
 }
 
 // "a, b, c": the names of a table.

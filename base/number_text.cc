@@ -16,6 +16,14 @@ std::string FormatCount(std::uint64_t count) {
   return digits;
 }
 
+std::string Plural(std::uint64_t count, std::string_view noun) {
+  return std::string(noun) + (count == 1 ? "" : "s");
+}
+
+std::string Counted(std::uint64_t count, std::string_view noun) {
+  return std::to_string(count) + " " + Plural(count, noun);
+}
+
 std::string PointText(double x, double y) {
   return "(" + NumberText(x) + ", " + NumberText(y) + ")";
 }

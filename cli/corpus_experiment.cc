@@ -16,11 +16,6 @@
 namespace gauntlet {
 namespace {
 
-// A TOML string as it is typed behind --set.
-std::string Unquoted(const std::string& toml) {
-  return toml.size() >= 2 && toml.front() == '"' ? toml.substr(1, toml.size() - 2) : toml;
-}
-
 // What the last of the sets gives the key; "" when none does.
 std::string SetValue(const std::vector<std::string>& sets, const std::string& key) {
   std::string value;
@@ -37,7 +32,7 @@ std::vector<std::pair<std::string, std::string>> SettingsOf(const Experiment& ex
   for (const Key& key : BuiltInKeys()) {
     const bool always = key.path == "scenario" || key.path == "controller" || key.path == "physics";
     if (always || (key.disturbs && key.get(experiment) != key.default_value))
-      settings.emplace_back(key.path, Unquoted(ToToml(key.get(experiment))));
+      settings.emplace_back(key.path, ToSet(key.get(experiment)));
   }
   const auto add = [&](const std::string& table, const sim::Parameters& parameters) {
     for (const auto& [name, value] : parameters)

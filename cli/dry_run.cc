@@ -5,9 +5,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/duration_text.h"
+#include "base/number_text.h"
 #include "base/printable.h"
-#include "cli/output/table.h"
 #include "master/campaign/forecast.h"
 #include "proto/json_text.h"
 
@@ -50,11 +51,10 @@ std::string ForecastText(const Forecast& forecast, const std::vector<SearchPlan>
   table.AddRow({"test cases", forecast.cases_exact
                                   ? FormatCount(forecast.cases)
                                   : fmt::format("at most {} different", FormatCount(forecast.cases))});
-  table.AddRow(
-      {"time", fmt::format("about {} with {} worker{} ({} of the first runs took {:.3g} ms each here; "
-                           "later ones may differ)",
-                           FormatDuration(forecast.Seconds(workers)), workers, workers == 1 ? "" : "s",
-                           forecast.measured_runs, 1e3 * forecast.seconds_per_run)});
+  table.AddRow({"time", fmt::format("about {} with {} ({} of the first runs took {:.3g} ms each here; "
+                                    "later ones may differ)",
+                                    FormatDuration(forecast.Seconds(workers)), Counted(workers, "worker"),
+                                    forecast.measured_runs, 1e3 * forecast.seconds_per_run)});
   if (forecast.measured_without_result > 0) {
     table.AddRow({"no result", fmt::format("{} of those {} runs: {}", forecast.measured_without_result,
                                            forecast.measured_runs, Printable(forecast.why_without_result))});

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/number_text.h"
 #include "controllers/registry.h"
 #include "controllers/run_start.h"
 #include "master/campaign/verdict_text.h"
@@ -90,9 +91,8 @@ CampaignRun RunOfCall(CommandContext& context, const CallPlan& plan, int workers
   CampaignRun campaign;
   campaign.directory = plan.directory;
   campaign.same_command_resumes = true;
-  campaign.announcement =
-      fmt::format("{} case{} with fresh seeds, {} worker{}, in {}", cases, cases == 1 ? "" : "s", workers,
-                  workers == 1 ? "" : "s", plan.directory);
+  campaign.announcement = fmt::format("{} with fresh seeds, {}, in {}", Counted(cases, "case"),
+                                      Counted(workers, "worker"), plan.directory);
   campaign.serving = serving;
   campaign.session.workers = workers;
   campaign.run = [&context, plan](const SessionOptions& session) {

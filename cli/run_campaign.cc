@@ -4,12 +4,13 @@
 
 #include <fmt/format.h>
 
+#include "analysis/tables/table.h"
 #include "base/duration_text.h"
+#include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "cli/options/stop_signal.h"
 #include "cli/output/progress.h"
 #include "cli/output/summary.h"
-#include "cli/output/table.h"
 #include "master/directory/campaign_directory.h"
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_page.h"
@@ -88,9 +89,9 @@ void WarnOfManyWorkers(CommandContext& context, int workers) {
   constexpr int kManyPerCore = 4;
   const int cores = AvailableCores();
   if (workers <= kManyPerCore * cores) return;
-  PrintMessage(context, fmt::format("warning: {} workers on {} core{}: more than {} make nothing faster, and "
+  PrintMessage(context, fmt::format("warning: {} workers on {}: more than {} make nothing faster, and "
                                     "each takes memory and three processes",
-                                    workers, cores, cores == 1 ? "" : "s", cores));
+                                    workers, Counted(cores, "core"), cores));
 }
 
 Result<std::unique_ptr<MetricsPage>> StartMetrics(CommandContext& context, const ServingOptions& options) {
@@ -224,8 +225,8 @@ Result<CampaignRun> LocalRun(const std::vector<SearchPlan>& searches, const Loca
           ? fmt::format("{}, {}, seed {}", search.title, search.plan(experiment), experiment.seed)
           : fmt::format("{} searches ({}; ...; {})", searches.size(), searches.front().settings,
                         searches.back().settings);
-  campaign.announcement = fmt::format("{}: {}, {} worker{}, in {}", experiment.name, what, workers,
-                                      workers == 1 ? "" : "s", directory);
+  campaign.announcement =
+      fmt::format("{}: {}, {}, in {}", experiment.name, what, Counted(workers, "worker"), directory);
   campaign.serving = options.running;
   campaign.session.workers = workers;
   return campaign;

@@ -8,12 +8,13 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/duration_text.h"
+#include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "cli/output/output_file.h"
 #include "cli/output/study_output.h"
-#include "cli/output/table.h"
 #include "cli/run_campaign.h"
 #include "cli/submitted_campaign.h"
 #include "master/campaign/forecast.h"
@@ -29,8 +30,7 @@ namespace fs = std::filesystem;
 
 // Makes the stage's campaign under another name first, so that one with this name is whole.
 Status MakeStage(CommandContext& context, const Study& study, const StudyRun& run, StudyStage stage) {
-  TRY(const std::vector<SearchPlan> plans,
-      stage == StudyStage::kSearches ? PlanSearchStage(study) : PlanEvaluationStage(study, run.directory));
+  TRY(const std::vector<SearchPlan> plans, PlanStage(study, run.directory, stage));
   const std::string unfinished = UnfinishedCampaignOf(run.directory, stage);
   std::error_code error;
   fs::remove_all(unfinished, error);
@@ -45,11 +45,10 @@ Status MakeStage(CommandContext& context, const Study& study, const StudyRun& ru
 std::string Announcement(const Study& study, const CampaignRun& campaign, const StudyRun& run,
                          StudyStage stage) {
   const int workers = campaign.session.workers;
-  return fmt::format("{}: {}, {}, in {}", study.name,
-                     stage == StudyStage::kSearches ? "searches" : "re-simulations",
-                     run.submitted != nullptr ? std::string("workers from Slurm")
-                                              : fmt::format("{} worker{}", workers, workers == 1 ? "" : "s"),
-                     campaign.directory);
+  return fmt::format(
+      "{}: {}, {}, in {}", study.name, stage == StudyStage::kSearches ? "searches" : "re-simulations",
+      run.submitted != nullptr ? std::string("workers from Slurm") : Counted(workers, "worker"),
+      campaign.directory);
 }
 
 Result<ExitCode> RunStage(CommandContext& context, const Study& study, const StudyRun& run, StudyStage stage,
@@ -83,34 +82,33 @@ Result<ExitCode> RunStage(CommandContext& context, const Study& study, const Stu
 
 Result<ExitCode> PrintForecast(CommandContext& context, const Study& study, const RunningOptions& running) {
   TRY(const int workers, ParseWorkers(running.workers));
-  Table table({"part", ">searches", ">runs", ">cases, at most", ">ms per run", ">time", ">disk, MB"});
-  nlohmann::ordered_json parts = nlohmann::ordered_json::array();
+  Table table({{"part", "part"},
+               {">searches", "searches"},
+               {">runs", "runs"},
+               {">cases, at most", "cases"},
+               {">ms per run"},
+               {">time", "seconds"},
+               {">disk, MB", "bytes"}});
+  const auto megabytes = [](double bytes) { return Cell(fmt::format("{:.1f}", bytes / 1e6), bytes); };
   Forecast all;
   double seconds = 0.0;
   for (const StudyPart& part : study.parts) {
     const std::vector<SearchPlan> plans = ForecastPlans(study, part);
     TRY(const Forecast forecast, MakeForecast(plans));
     const bool again = StageOf(part) == StudyStage::kEvaluations;
+    const double time = forecast.Seconds(workers);
     all.runs += forecast.runs;
     all.cases += again ? 0 : forecast.cases;
     all.bytes += forecast.bytes;
-    seconds += forecast.Seconds(workers);
-    table.AddRow({part.name, FormatCount(plans.size()), FormatCount(forecast.runs),
-                  again ? "" : FormatCount(forecast.cases),
-                  fmt::format("{:.1f}", 1e3 * forecast.seconds_per_run),
-                  FormatDuration(forecast.Seconds(workers)), fmt::format("{:.1f}", forecast.bytes / 1e6)});
-    parts.push_back({{"part", part.name},
-                     {"searches", plans.size()},
-                     {"runs", forecast.runs},
-                     {"cases", again ? 0 : forecast.cases},
-                     {"seconds", forecast.Seconds(workers)},
-                     {"bytes", forecast.bytes}});
+    seconds += time;
+    table.AddRow({part.name, CountCell(plans.size()), CountCell(forecast.runs),
+                  again ? Cell("", std::uint64_t{0}) : CountCell(forecast.cases),
+                  DecimalCell(1e3 * forecast.seconds_per_run, 1), Cell(FormatDuration(time), time),
+                  megabytes(forecast.bytes)});
   }
-  table.AddRow({"all", "", FormatCount(all.runs), FormatCount(all.cases), "", FormatDuration(seconds),
-                fmt::format("{:.1f}", all.bytes / 1e6)});
   if (running.json) {
     context.out << JsonText({{"study", study.name},
-                             {"parts", std::move(parts)},
+                             {"parts", table.ToJson()},
                              {"runs", all.runs},
                              {"cases", all.cases},
                              {"workers", workers},
@@ -118,11 +116,13 @@ Result<ExitCode> PrintForecast(CommandContext& context, const Study& study, cons
                              {"bytes", all.bytes}})
                 << std::flush;
   } else {
+    table.AddRow({"all", "", CountCell(all.runs), CountCell(all.cases), "", FormatDuration(seconds),
+                  megabytes(all.bytes)});
     context.out << fmt::format(
                        "{}: a dry run, nothing was made\n\n{}\n  Times are those of up to twelve of the "
                        "first runs of "
-                       "each part, with {} worker{}; later runs may take longer or shorter.\n",
-                       study.name, table.ToText(), workers, workers == 1 ? "" : "s")
+                       "each part, with {}; later runs may take longer or shorter.\n",
+                       study.name, table.ToText(), Counted(workers, "worker"))
                 << std::flush;
   }
   return kExitDone;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "base/check.h"
@@ -56,6 +57,16 @@ const Catalogue& BuiltInCatalogue() {
 
 const std::vector<Key>& BuiltInKeys() {
   static const std::vector<Key> keys = CommonKeys(BuiltInCatalogue());
+  return keys;
+}
+
+std::vector<Key> AllKeysOf(const Experiment& experiment) {
+  std::vector<Key> keys = BuiltInKeys();
+  const auto add = [&](std::vector<Key> more) { std::ranges::move(more, std::back_inserter(keys)); };
+  if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin))
+    add(ScenarioParameterKeys(*scenario));
+  if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
+    add(ControllerParameterKeys(*controller));
   return keys;
 }
 

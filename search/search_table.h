@@ -24,6 +24,8 @@ const SearchRow& RowOf(const Experiment& experiment);
 const Catalogue& BuiltInCatalogue();
 // CommonKeys of it.
 const std::vector<Key>& BuiltInKeys();
+// The same and those of the parameters of the experiment's scenario and controller, where these are known.
+std::vector<Key> AllKeysOf(const Experiment& experiment);
 
 // What the search that the experiment describes starts from.
 SearchSetup SetupOf(const Experiment& experiment, const sim::ArenaRequirements& requirements = {},

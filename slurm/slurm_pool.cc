@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "base/number_text.h"
 
 namespace gauntlet::slurm {
 
@@ -132,9 +133,8 @@ void SlurmPool::PostSubmit(int allocations, const std::vector<std::string>& excl
         if (allocations == 1) policy_.Submitted(*id, now);
         for (int task = 1; allocations > 1 && task <= allocations; ++task)
           policy_.Submitted(fmt::format("{}_{}", *id, task), now);
-        Report(fmt::format("job {} submitted: {} allocation{} of {} slot{}", *id, allocations,
-                           allocations == 1 ? "" : "s", options_.job.slots,
-                           options_.job.slots == 1 ? "" : "s"));
+        Report(fmt::format("job {} submitted: {} of {}", *id, Counted(allocations, "allocation"),
+                           Counted(options_.job.slots, "slot")));
       } else {
         policy_.SubmissionFailed(id.error().message, now);
         // It may have been accepted all the same: look before the next one.
@@ -162,7 +162,7 @@ void SlurmPool::PostCancel(const std::vector<std::string>& jobs) {
   for (const std::string& job : jobs) {
     if (std::find(cancelled_.begin(), cancelled_.end(), job) == cancelled_.end()) cancelled_.push_back(job);
   }
-  Report(fmt::format("cancelled job{} {}", jobs.size() == 1 ? "" : "s", fmt::join(jobs, ", ")));
+  Report(fmt::format("cancelled {} {}", Plural(jobs.size(), "job"), fmt::join(jobs, ", ")));
   Post([this, jobs]() -> std::function<void(TimePoint)> {
     return [this, done = client_->Cancel(jobs)](TimePoint now) {
       if (!done) policy_.QueryFailed(done.error().message, now);

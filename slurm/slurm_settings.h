@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/key.h"
 #include "base/result.h"
 #include "slurm/job_script.h"
 #include "slurm/pool_policy.h"
@@ -44,12 +45,8 @@ std::string WriteSlurmSettings(const SlurmSettings& settings);
 // $XDG_CONFIG_HOME/gauntlet/slurm.toml or ~/.config/gauntlet/slurm.toml.
 std::string UserSlurmFile();
 
-struct SlurmKeyInfo {
-  std::string name;
-  std::string default_value;
-  std::string description;
-};
-// For help texts.
-std::vector<SlurmKeyInfo> SlurmKeys();
+using SlurmKey = SettingsKey<SlurmSettings>;
+// All that can be set, with its default.
+const std::vector<SlurmKey>& SlurmKeys();
 
 }  // namespace gauntlet::slurm

@@ -5,7 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -60,20 +60,34 @@ struct TuningChanges {
   bool operator==(const TuningChanges&) const = default;
 };
 
+// A table of a study's file as it is written, "[compare.NAME]".
+struct StudyFileTable {
+  struct Entry {
+    std::string key;
+    std::string value;
+    std::string where;
+  };
+  std::string kind;
+  std::string name;
+  std::string where;           // "FILE:LINE:COLUMN", for messages
+  std::vector<Entry> entries;  // in the order of the file; "set.KEY" is a key
+
+  bool Has(const std::string& key) const { return Find(key) != nullptr; }
+  std::string Key(const std::string& key) const;  // "" when it was not given
+  std::string PlaceOf(const std::string& key) const;
+  // What stands below "set" or the like: keys without it, and their values.
+  std::vector<std::pair<std::string, std::string>> Nested(const std::string& key) const;
+  // The same as --set takes it.
+  std::vector<std::string> Sets() const;
+
+ private:
+  const Entry* Find(const std::string& key) const;
+};
+
 // Something that is computed from the runs of parts. Which keys there are depends on the kind; all that are
 // needed are there.
-struct StudyAnalysis {
-  std::string kind;  // "compare", "count", "types", "peak", "windows", "tune"
-  std::string name;
-  std::string where;
-  std::map<std::string, std::string> keys;
-  std::optional<Tuning> tuning;  // of the kind "tune"
-
-  // "" when it was not given.
-  std::string Key(const std::string& key) const {
-    const auto found = keys.find(key);
-    return found == keys.end() ? "" : found->second;
-  }
+struct StudyAnalysis : StudyFileTable {  // of the kind "compare", "count", "types", "peak", "windows", "tune"
+  std::optional<Tuning> tuning;          // of the kind "tune"
 };
 
 // A remark to a published figure.

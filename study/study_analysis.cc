@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
 
@@ -23,11 +24,18 @@ struct Desk {
   StudyFigures& figures;
   StudySection& section;
 
-  void Add(const std::string& figure, double number, std::string text) const {
-    figures[analysis.name + "." + figure] = {number, std::move(text)};
+  void Add(const std::string& figure, Cell cell) const {
+    figures[analysis.name + "." + figure] = std::move(cell);
   }
-  void Add(const std::string& figure, std::string text) const {
-    figures[analysis.name + "." + figure] = {std::nullopt, std::move(text)};
+  // Of the set `which` a row, whose cells are figures too where they have a name.
+  void AddRow(const std::string& which, const std::string& set,
+              const std::vector<std::pair<std::string, Cell>>& cells, Table& table) const {
+    std::vector<Cell> row = {set};
+    for (const auto& [figure, cell] : cells) {
+      if (!figure.empty()) Add(fmt::format("{}.{}", which, figure), cell);
+      row.push_back(cell);
+    }
+    table.AddRow(std::move(row));
   }
   void Claim(bool holds) const {
     const std::string text = analysis.Key("claim");
@@ -48,68 +56,54 @@ std::vector<double> ValuesOf(const RunSet& set) {
   return values;
 }
 
-std::string Interval(const std::optional<analysis::Interval>& interval) {
-  return interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-";
+double PercentOfZeros(const std::vector<double>& values) {
+  return 100.0 * static_cast<double>(std::ranges::count(values, 0.0)) / static_cast<double>(values.size());
 }
 
-// The parts whose cases a set consists of, and those that it was simulated in, which may be the same.
-Result<std::pair<PartCost, PartCost>> CostsOf(const Desk& desk, const std::string& set) {
-  PartCost made;
-  PartCost again;
-  std::set<std::string> sources;
-  for (const StudySet& one : SplitStudySets(set)) {
-    const std::string source = desk.runs.SourceOf(one.part);
-    TRY(const auto cost, desk.runs.CostOf(source));
-    if (sources.insert(source).second) {
-      made.runs += cost.runs;
-      made.cases += cost.cases;
-      made.distinct_cases += cost.distinct_cases;
+constexpr std::array kSets = {"first", "second"};
+
+// What the sets have cost, of which so many runs were compared: simulations of the parts that their cases
+// come from, and of those that they were simulated in again.
+Status AddBudget(const Desk& desk, const std::array<std::size_t, 2>& compared) {
+  Table table(
+      {"set", ">simulations", ">distinct cases", ">cases to choose from", ">re-simulations", ">compared"});
+  for (std::size_t i = 0; i < kSets.size(); ++i) {
+    const std::string set = desk.analysis.Key(kSets[i]);
+    PartCost made;
+    PartCost again;
+    std::set<std::string> sources;
+    for (const StudySet& one : SplitStudySets(set)) {
+      const std::string source = desk.runs.SourceOf(one.part);
+      TRY(const auto cost, desk.runs.CostOf(source));
+      if (sources.insert(source).second) made += cost;
+      if (source == one.part) continue;
+      TRY(const auto second, desk.runs.CostOf(one.part));
+      again += second;
     }
-    if (source == one.part) continue;
-    TRY(const auto second, desk.runs.CostOf(one.part));
-    again.runs += second.runs;
-  }
-  return std::pair(made, again);
-}
-
-// What the sets have cost: simulations, distinct cases, re-simulations.
-Status AddBudget(const Desk& desk, const std::vector<std::pair<std::string, std::size_t>>& sets) {
-  StudyTable table{
-      {"set", ">simulations", ">distinct cases", ">cases to choose from", ">re-simulations", ">compared"},
-      {}};
-  const char* names[] = {"first", "second"};
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    const auto& [set, compared] = sets[i];
-    TRY(const auto costs, CostsOf(desk, set));
-    const auto& [made, again] = costs;
-    table.rows.push_back({set, FormatCount(made.runs), FormatCount(made.distinct_cases),
-                          FormatCount(made.cases), FormatCount(again.runs), FormatCount(compared)});
-    desk.Add(fmt::format("{}.budget", names[i]),
-             fmt::format("{} / {} / {}", made.cases, compared, made.runs));
+    table.AddRow({set, CountCell(made.runs), CountCell(made.distinct_cases), CountCell(made.cases),
+                  CountCell(again.runs), CountCell(compared[i])});
+    desk.Add(fmt::format("{}.budget", kSets[i]),
+             fmt::format("{} / {} / {}", made.cases, compared[i], made.runs));
   }
   desk.section.tables.push_back(std::move(table));
   return Ok{};
 }
 
-void AddSetFigures(const Desk& desk, const std::string& which, const RunSet& set,
-                   const analysis::Description& description, double rank_sum, double other_u,
-                   StudyTable& table) {
+void AddSet(const Desk& desk, const std::string& which, const RunSet& set,
+            const analysis::Description& description, double rank_sum, double other_u, Table& table) {
   const std::vector<double> values = ValuesOf(set);
   const auto n = static_cast<double>(values.size());
-  const double zeros = 100.0 * static_cast<double>(std::ranges::count(values, 0.0)) / n;
-  const double sd = description.sd.value_or(0.0);
-  desk.Add(which + ".n", n, fmt::format("{}", values.size()));
-  desk.Add(which + ".mean", description.mean, Decimal(description.mean));
-  desk.Add(which + ".sd", sd, Decimal(sd));
-  desk.Add(which + ".rank_sum", rank_sum, fmt::format("{:.1f}", rank_sum));
-  desk.Add(which + ".mean_rank", rank_sum / n, fmt::format("{:.2f}", rank_sum / n));
-  desk.Add(which + ".u", other_u, fmt::format("{:.1f}", other_u));
-  desk.Add(which + ".zeros", zeros, fmt::format("{:.1f}", zeros));
-  table.rows.push_back({set.values.name, fmt::format("{}", values.size()),
-                        fmt::format("{} ({})", set.values.clusters.size(), set.unit),
-                        Decimal(description.mean), Decimal(sd), Decimal(description.median),
-                        fmt::format("{:.1f}", zeros), fmt::format("{:.1f}", rank_sum),
-                        fmt::format("{:.2f}", rank_sum / n), fmt::format("{:.1f}", other_u)});
+  desk.AddRow(which, set.values.name,
+              {{"n", WholeCell(values.size())},
+               {"", fmt::format("{} ({})", set.values.clusters.size(), set.unit)},
+               {"mean", FitnessCell(description.mean)},
+               {"sd", FitnessCell(description.sd.value_or(0.0))},
+               {"", FitnessCell(description.median)},
+               {"zeros", DecimalCell(PercentOfZeros(values), 1)},
+               {"rank_sum", DecimalCell(rank_sum, 1)},
+               {"mean_rank", DecimalCell(rank_sum / n, 2)},
+               {"u", DecimalCell(other_u, 1)}},
+              table);
 }
 
 Status Compare(const Desk& desk) {
@@ -117,11 +111,10 @@ Status Compare(const Desk& desk) {
   TRY(const auto second, desk.runs.Set(desk.analysis.Key("second"), desk.Metric()));
   TRY(const auto c, analysis::Compare(first.values, second.values));
   desk.section.compared = ComparedSets{desk.Metric(), {first.values, second.values}};
-  StudyTable sets{
-      {"set", ">n", ">units", ">mean", ">sd", ">median", ">zero %", ">rank sum", ">mean rank", ">U"}, {}};
+  Table sets({"set", ">n", ">units", ">mean", ">sd", ">median", ">zero %", ">rank sum", ">mean rank", ">U"});
   // The thesis prints n1 n2 + n1 (n1 + 1) / 2 - R1 as the U of the first set, which is our U of the second.
-  AddSetFigures(desk, "first", first, c.first, c.test.rank_sum1, c.test.u2, sets);
-  AddSetFigures(desk, "second", second, c.second, c.test.rank_sum2, c.test.u1, sets);
+  AddSet(desk, "first", first, c.first, c.test.rank_sum1, c.test.u2, sets);
+  AddSet(desk, "second", second, c.second, c.test.rank_sum2, c.test.u1, sets);
   desk.section.tables.push_back(std::move(sets));
 
   const std::string expect = desk.analysis.Key("expect");
@@ -129,17 +122,17 @@ Status Compare(const Desk& desk) {
   const double p = less ? c.test.p_less : c.test.p_greater;
   const bool apart = c.first_box.upper_quartile < c.second_box.lower_quartile ||
                      c.second_box.upper_quartile < c.first_box.lower_quartile;
-  desk.Add("a", c.test.a, fmt::format("{:.4f}", c.test.a));
-  desk.Add("a_reverse", 1.0 - c.test.a, fmt::format("{:.4f}", 1.0 - c.test.a));
-  desk.Add("p", p, fmt::format("{:.2g}", p));
+  desk.Add("a", DecimalCell(c.test.a, 4));
+  desk.Add("a_reverse", DecimalCell(1.0 - c.test.a, 4));
+  desk.Add("p", DigitsCell(p, 2));
   desk.Add("boxes", apart ? "no overlap" : "overlap");
   desk.section.sentences.push_back(fmt::format(
       "A (first exceeds second) {:.3f}, effect: {}; 95 % intervals: {} of single runs, {} of whole units. "
       "One-tailed p (first {}) {:.2g}. Boxes: {}.",
-      c.test.a, c.effect, Interval(c.interval), Interval(c.cluster_interval), less ? "less" : "greater", p,
-      apart ? "no overlap" : "they overlap"));
+      c.test.a, c.effect, IntervalCell(c.interval).text, IntervalCell(c.cluster_interval).text,
+      less ? "less" : "greater", p, apart ? "no overlap" : "they overlap"));
   if (less && c.first.minimum == 0.0) {
-    const double zeros = desk.figures.at(desk.analysis.name + ".second.zeros").number.value_or(0.0) / 100.0;
+    const double zeros = PercentOfZeros(ValuesOf(second)) / 100.0;
     desk.section.sentences.push_back(
         fmt::format("A share z = {:.3f} of the second set is zero too, so A cannot be below z / 2 = {:.3f}.",
                     zeros, zeros / 2.0));
@@ -154,61 +147,44 @@ Status Compare(const Desk& desk) {
     }
     desk.Claim(holds);
   }
-  return AddBudget(desk,
-                   {{desk.analysis.Key("first"), c.first.n}, {desk.analysis.Key("second"), c.second.n}});
+  return AddBudget(desk, {c.first.n, c.second.n});
 }
 
-struct Bounds {
-  double at_least = -std::numeric_limits<double>::infinity();
-  double at_most = std::numeric_limits<double>::infinity();
-  double above = -std::numeric_limits<double>::infinity();
-  double below = std::numeric_limits<double>::infinity();
-  bool Holds(double value) const {
-    return value >= at_least && value <= at_most && (value > above || std::isinf(above)) &&
-           (value < below || std::isinf(below));
-  }
-};
-
-Result<Bounds> BoundsOf(const StudyAnalysis& analysis) {
-  Bounds bounds;
-  for (const auto& [key, bound] :
-       {std::pair("at_least", &bounds.at_least), std::pair("at_most", &bounds.at_most),
-        std::pair("above", &bounds.above), std::pair("below", &bounds.below)}) {
-    const std::string text = analysis.Key(key);
-    if (text.empty()) continue;
-    const auto number = ParseNumber<double>(text);
-    if (!number) return InvalidInput(fmt::format("{} is '{}', expected a number", key, text));
-    *bound = *number;
-  }
-  return bounds;
+// Whether a value is within what the analysis asks for.
+std::function<bool(double)> BoundsOf(const StudyAnalysis& analysis) {
+  const auto bound = [&](const std::string& key, double otherwise) {
+    return ParseNumber<double>(analysis.Key(key)).value_or(otherwise);
+  };
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  return [at_least = bound("at_least", -kEndless), at_most = bound("at_most", kEndless),
+          above = bound("above", -kEndless), below = bound("below", kEndless)](double value) {
+    return value >= at_least && value <= at_most && value > above && value < below;
+  };
 }
 
 // How many runs of one set, or of two, have a value within bounds.
 Status Count(const Desk& desk) {
-  TRY(const auto bounds, BoundsOf(desk.analysis));
-  StudyTable table{{"set", ">runs", ">" + desk.analysis.Key("what"), ">%", ">95 % interval (Wilson)"}, {}};
+  const auto in_bounds = BoundsOf(desk.analysis);
+  Table table({"set", ">runs", ">" + desk.analysis.Key("what"), ">%", ">95 % interval (Wilson)"});
   std::vector<std::pair<std::uint32_t, std::uint32_t>> shares;
-  std::vector<std::pair<std::string, std::size_t>> sets;
-  for (const char* which : {"first", "second"}) {
+  for (const char* which : kSets) {
     const std::string name = desk.analysis.Key(which);
     if (name.empty()) continue;
     TRY(const auto set, desk.runs.Set(name, desk.Metric()));
     const std::vector<double> values = ValuesOf(set);
     if (values.empty()) return InvalidInput(name + ": no run has a value of " + desk.Metric());
-    const auto hits = static_cast<std::uint32_t>(
-        std::ranges::count_if(values, [&](double value) { return bounds.Holds(value); }));
+    const auto hits = static_cast<std::uint32_t>(std::ranges::count_if(values, in_bounds));
     const auto of = static_cast<std::uint32_t>(values.size());
     const double percent = 100.0 * hits / of;
     const analysis::Interval interval = analysis::WilsonInterval(hits, of, analysis::kConfidence);
-    desk.Add(fmt::format("{}.count", which), hits, fmt::format("{}", hits));
-    desk.Add(fmt::format("{}.of", which), of, fmt::format("{}", of));
-    desk.Add(fmt::format("{}.percent", which), percent, fmt::format("{:.1f}", percent));
+    desk.AddRow(which, name,
+                {{"of", WholeCell(of)},
+                 {"count", WholeCell(hits)},
+                 {"percent", DecimalCell(percent, 1)},
+                 {"", fmt::format("{:.1f} to {:.1f}", 100.0 * interval.low, 100.0 * interval.high)}},
+                table);
     desk.Add(fmt::format("{}.none", which), hits == 0 ? "none" : fmt::format("{} of {}", hits, of));
-    table.rows.push_back({name, fmt::format("{}", of), fmt::format("{}", hits),
-                          fmt::format("{:.1f}", percent),
-                          fmt::format("{:.1f} to {:.1f}", 100.0 * interval.low, 100.0 * interval.high)});
     shares.emplace_back(hits, of);
-    sets.emplace_back(name, of);
   }
   desk.section.tables.push_back(std::move(table));
   if (shares.size() < 2) return Ok{};
@@ -216,7 +192,7 @@ Status Count(const Desk& desk) {
       analysis::FisherExact(shares[0].first, shares[0].second, shares[1].first, shares[1].second);
   const bool less = desk.analysis.Key("expect") == "less";
   const double p = less ? test.p_less : test.p_greater;
-  desk.Add("p", p, fmt::format("{:.2g}", p));
+  desk.Add("p", DigitsCell(p, 2));
   desk.section.sentences.push_back(
       fmt::format("Fisher's exact test, one-tailed (first {}): p {:.2g}.", less ? "less" : "greater", p));
   if (!desk.analysis.Key("expect").empty()) desk.Claim(p < kThesisLevel);
@@ -226,13 +202,13 @@ Status Count(const Desk& desk) {
 // Which types of failure two sets have.
 Status Types(const Desk& desk) {
   std::array<std::vector<std::uint64_t>, 2> counts;
-  StudyTable table{{"set", ">runs", ">total failures", ">of a type", ">types",
-                    ">types expected in all (Chao1)", ">chance that the next is new"},
-                   {}};
+  Table table({"set", ">runs", ">total failures", ">of a type", ">types", ">types expected in all (Chao1)",
+               ">chance that the next is new"});
   const std::vector<std::string> names = desk.runs.FailureTypes(desk.analysis.Key("first"));
-  std::vector<std::pair<std::string, std::size_t>> sets;
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::string which = i == 0 ? "first" : "second";
+  std::array<std::size_t, 2> compared{};
+  std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();  // failures of a set
+  for (std::size_t i = 0; i < kSets.size(); ++i) {
+    const std::string which = kSets[i];
     const std::string set_name = desk.analysis.Key(which);
     TRY(const auto failures, desk.runs.Set(set_name, "total_failure"));
     TRY(const auto types, desk.runs.Set(set_name, "failure_type"));
@@ -243,31 +219,26 @@ Status Types(const Desk& desk) {
     const std::vector<double> flags = ValuesOf(failures);
     const auto failed = std::ranges::count(flags, 1.0);
     const analysis::UnseenTypes unseen = analysis::EstimateUnseenTypes(counts[i]);
-    for (std::size_t type = 0; type < names.size(); ++type) {
-      desk.Add(fmt::format("{}.type_{}", which, type), static_cast<double>(counts[i][type]),
-               fmt::format("{}", counts[i][type]));
-    }
-    desk.Add(which + ".of", static_cast<double>(flags.size()), fmt::format("{}", flags.size()));
-    desk.Add(which + ".types", static_cast<double>(unseen.seen), fmt::format("{}", unseen.seen));
-    desk.Add(which + ".failures", static_cast<double>(unseen.failures), fmt::format("{}", unseen.failures));
-    table.rows.push_back({set_name, FormatCount(flags.size()),
-                          FormatCount(static_cast<std::uint64_t>(failed)), FormatCount(unseen.failures),
-                          fmt::format("{} of {}", unseen.seen, names.size()),
-                          fmt::format("{:.1f}", unseen.chao1), fmt::format("{:.4f}", unseen.chance_of_new)});
-    sets.emplace_back(set_name, flags.size());
+    for (std::size_t type = 0; type < names.size(); ++type)
+      desk.Add(fmt::format("{}.type_{}", which, type), WholeCell(counts[i][type]));
+    desk.Add(which + ".of", WholeCell(flags.size()));
+    desk.Add(which + ".types", WholeCell(unseen.seen));
+    desk.Add(which + ".failures", WholeCell(unseen.failures));
+    table.AddRow({set_name, CountCell(flags.size()), CountCell(failed), CountCell(unseen.failures),
+                  fmt::format("{} of {}", unseen.seen, names.size()), DecimalCell(unseen.chao1, 1),
+                  DecimalCell(unseen.chance_of_new, 4)});
+    compared[i] = flags.size();
+    fewest = std::min<std::uint64_t>(fewest, unseen.failures);
   }
   desk.section.tables.push_back(std::move(table));
   bool inside = true;
-  StudyTable by_type{{">type", "what it is", ">first", ">second"}, {}};
+  Table by_type({">type", "what it is", ">first", ">second"});
   for (std::size_t type = 0; type < names.size(); ++type) {
     inside = inside && (counts[1][type] == 0 || counts[0][type] > 0);
-    by_type.rows.push_back(
-        {fmt::format("{}", type), names[type], FormatCount(counts[0][type]), FormatCount(counts[1][type])});
+    by_type.AddRow({type, names[type], CountCell(counts[0][type]), CountCell(counts[1][type])});
   }
   desk.section.tables.push_back(std::move(by_type));
   desk.Add("second_in_first", inside ? "subset" : "no subset");
-  const std::uint64_t fewest = std::min(analysis::EstimateUnseenTypes(counts[0]).failures,
-                                        analysis::EstimateUnseenTypes(counts[1]).failures);
   const double first = analysis::RarefiedTypes(counts[0], fewest);
   const double second = analysis::RarefiedTypes(counts[1], fewest);
   desk.section.sentences.push_back(fmt::format(
@@ -276,38 +247,42 @@ Status Types(const Desk& desk) {
       inside ? "a subset" : "no subset", FormatCount(fewest), first, second));
   if (desk.analysis.Key("expect") == "greater") desk.Claim(first > second);
   if (desk.analysis.Key("expect") == "subset") desk.Claim(inside);
-  return AddBudget(desk, sets);
+  return AddBudget(desk, compared);
 }
 
 // In which generation the searches' populations have the most types of failure, on average.
 Status Peak(const Desk& desk) {
-  TRY(const auto searches, desk.runs.TypesByGeneration(desk.analysis.Key("part")));
+  TRY(const auto searches, desk.runs.All(desk.analysis.Key("part"), "failure_type"));
   std::size_t generations = std::numeric_limits<std::size_t>::max();
-  for (const auto& search : searches) generations = std::min(generations, search.size());
-  StudyTable table{{">generation", ">types in it, mean", ">types so far, mean"}, {}};
+  for (const auto& runs : searches) {
+    const auto last = std::ranges::max_element(runs, {}, &SelectedRun::generation);
+    generations = std::min<std::size_t>(generations, last == runs.end() ? 0 : last->generation);
+  }
+  Table table({">generation", ">types in it, mean", ">types so far, mean"});
   std::size_t best = 0;
   double most = -1.0;
-  for (std::size_t generation = 0; generation < generations; ++generation) {
+  std::vector<std::set<double>> all(searches.size());
+  for (std::size_t generation = 1; generation <= generations; ++generation) {
     double in_it = 0.0;
     double so_far = 0.0;
-    for (const auto& search : searches) {
-      const std::set<int> types(search[generation].begin(), search[generation].end());
-      std::set<int> all;
-      for (std::size_t i = 0; i <= generation; ++i) all.insert(search[i].begin(), search[i].end());
+    for (std::size_t search = 0; search < searches.size(); ++search) {
+      std::set<double> types;
+      for (const SelectedRun& run : searches[search]) {
+        if (run.generation == generation && run.value) types.insert(*run.value);
+      }
+      all[search].insert(types.begin(), types.end());
       in_it += static_cast<double>(types.size()) / static_cast<double>(searches.size());
-      so_far += static_cast<double>(all.size()) / static_cast<double>(searches.size());
+      so_far += static_cast<double>(all[search].size()) / static_cast<double>(searches.size());
     }
     if (in_it > most) {
       most = in_it;
-      best = generation + 1;
+      best = generation;
     }
-    if (generation == 0 || (generation + 1) % 10 == 0) {
-      table.rows.push_back(
-          {fmt::format("{}", generation + 1), fmt::format("{:.2f}", in_it), fmt::format("{:.2f}", so_far)});
-    }
+    if (generation == 1 || generation % 10 == 0)
+      table.AddRow({generation, DecimalCell(in_it, 2), DecimalCell(so_far, 2)});
   }
-  desk.Add("generation", static_cast<double>(best), fmt::format("{}", best));
-  desk.Add("types", most, fmt::format("{:.2f}", most));
+  desk.Add("generation", WholeCell(best));
+  desk.Add("types", DecimalCell(most, 2));
   desk.section.tables.push_back(std::move(table));
   desk.section.sentences.push_back(fmt::format(
       "The mean of {} searches is largest in generation {}: {:.2f} types.", searches.size(), best, most));
@@ -321,7 +296,7 @@ Status Windows(const Desk& desk) {
   TRY(const auto runs, desk.runs.Windows(desk.analysis.Key("first"), desk.analysis.Key("prefix")));
   const std::size_t windows = runs.front().size();
   std::vector<double> means(windows, 0.0);
-  StudyTable table{{">minutes", ">25 %", ">50 %", ">75 %", ">95 %", ">mean"}, {}};
+  Table table({">minutes", ">25 %", ">50 %", ">75 %", ">95 %", ">mean"});
   double highest_quarter = 0.0;
   double highest_three_quarters = 0.0;
   for (std::size_t window = 0; window < windows; ++window) {
@@ -336,10 +311,9 @@ Status Windows(const Desk& desk) {
     highest_three_quarters = std::max(highest_three_quarters, three_quarters);
     const double minutes = static_cast<double>(window + 1) * *seconds / 60.0;
     if (std::fmod(minutes, 10.0) == 0.0) {
-      table.rows.push_back(
-          {NumberText(minutes), fmt::format("{:.4g}", quarter),
-           fmt::format("{:.4g}", analysis::Quantile(values, 0.5)), fmt::format("{:.4g}", three_quarters),
-           fmt::format("{:.4g}", analysis::Quantile(values, 0.95)), fmt::format("{:.2f}", means[window])});
+      table.AddRow({minutes, DigitsCell(quarter, 4), DigitsCell(analysis::Quantile(values, 0.5), 4),
+                    DigitsCell(three_quarters, 4), DigitsCell(analysis::Quantile(values, 0.95), 4),
+                    DecimalCell(means[window], 2)});
     }
   }
   // Steady: three windows in a row whose mean is at least 90 % of that of the last third.
@@ -363,13 +337,9 @@ Status Windows(const Desk& desk) {
   const auto moves = [](double highest) {
     return highest == 0.0 ? std::string("0 throughout") : fmt::format("up to {}", NumberText(highest));
   };
-  if (steady) {
-    desk.Add("steady_minutes", *steady, NumberText(*steady));
-  } else {
-    desk.Add("steady_minutes", "never");
-  }
-  desk.Add("median", median, NumberText(median));
-  desk.Add("plateau", plateau, fmt::format("{:.2f}", plateau));
+  desk.Add("steady_minutes", steady ? Cell(*steady) : "never");
+  desk.Add("median", median);
+  desk.Add("plateau", DecimalCell(plateau, 2));
   desk.Add("lower_quartile", moves(highest_quarter));
   desk.Add("quartiles", moves(highest_three_quarters));
   desk.section.tables.push_back(std::move(table));
@@ -390,10 +360,6 @@ constexpr AnalysisKind kKinds[] = {
     {"compare", Compare}, {"count", Count}, {"types", Types}, {"peak", Peak}, {"windows", Windows}};
 
 }  // namespace
-
-std::string Decimal(double value) {
-  return fmt::format("{:.3f}", value);
-}
 
 Result<StudySection> Analyse(const StudyAnalysis& analysis, StudyRuns& runs, StudyFigures& figures) {
   if (analysis.tuning) return AnalyseTuning(analysis, runs, figures);

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/nearest_name.h"
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
 #include "base/system/trusted_path.h"
@@ -31,43 +32,53 @@ namespace fs = std::filesystem;
 
 constexpr int kFormat = 1;
 
-bool IsFirst(const StudyPart& part) {
-  return StageOf(part) == StudyStage::kSearches;
+constexpr StudyStage kStages[] = {StudyStage::kSearches, StudyStage::kEvaluations};
+
+// Whose cases a part is about: its own, or those that it evaluates.
+const StudyPart& SourceOf(const Study& study, const StudyPart& part) {
+  return part.from.empty() ? part : *FindByName(study.parts, part.from);
 }
 
-// How many searches of the first stage, one for each seed.
-std::size_t SearchesOf(const StudyPart& part) {
-  return part.seeds.size();
-}
+// One of the searches of a part.
+struct StudySearch {
+  const StudyPart& part;
+  const StudyPart& source;
+  std::size_t number;  // from 0, of those of the source, of which there is one for each seed
 
-std::string Settings(const StudyPart& part, std::uint64_t number) {
-  return fmt::format("{}, seed {}", part.name, number);
-}
+  bool Evaluates() const { return &part != &source; }
+  std::string SourceInWords() const { return fmt::format("{}, seed {}", source.name, source.seeds[number]); }
+};
 
-// The experiments of a stage, by which it is recognised: of evaluations without their cases.
-std::vector<SearchPlan> ExpectedPlans(const Study& study, StudyStage stage) {
-  std::vector<SearchPlan> plans;
+// Those of a stage, in the order of their ids.
+std::vector<StudySearch> SearchesOf(const Study& study, StudyStage stage) {
+  std::vector<StudySearch> searches;
   for (const StudyPart& part : study.parts) {
     if (StageOf(part) != stage) continue;
-    if (stage == StudyStage::kSearches) {
-      for (const std::uint64_t seed : part.seeds) {
-        plans.push_back({Settings(part, seed), part.experiment, {}});
-        plans.back().experiment.seed = seed;
-        if (part.kind == StudyPart::Kind::kEmpty) plans.back().cases = {EmptyArena(part.experiment.arena)};
-      }
-      continue;
-    }
-    const auto source = std::ranges::find(study.parts, part.from, &StudyPart::name);
-    for (std::size_t i = 0; i < SearchesOf(*source); ++i) {
-      const std::string which = part.subset.empty() ? "final" : part.subset;
-      plans.push_back({fmt::format("{}, {} of {}", part.name, which, Settings(*source, source->seeds[i])),
-                       part.experiment,
-                       {}});
-      Experiment& experiment = plans.back().experiment;
-      if (RowOf(source->experiment).Related()) experiment.search.algorithm = "resimulation";
-      experiment.seed = part.seeds.front() + i;
-    }
+    const StudyPart& source = SourceOf(study, part);
+    for (std::size_t i = 0; i < source.seeds.size(); ++i) searches.push_back({part, source, i});
   }
+  return searches;
+}
+
+// What a search is recognised by: of an evaluation without its cases.
+SearchPlan PlanOf(const StudySearch& search) {
+  const auto& [part, source, number] = search;
+  SearchPlan plan;
+  plan.settings = search.SourceInWords();
+  plan.experiment = part.experiment;
+  plan.experiment.seed = source.seeds[number];
+  if (part.kind == StudyPart::Kind::kEmpty) plan.cases = {EmptyArena(part.experiment.arena)};
+  if (!search.Evaluates()) return plan;
+  plan.settings =
+      fmt::format("{}, {} of {}", part.name, part.subset.empty() ? "final" : part.subset, plan.settings);
+  plan.experiment.seed = part.seeds.front() + number;
+  if (RowOf(source.experiment).Related()) plan.experiment.search.algorithm = "resimulation";
+  return plan;
+}
+
+std::vector<SearchPlan> PlansOf(const Study& study, StudyStage stage) {
+  std::vector<SearchPlan> plans;
+  for (const StudySearch& search : SearchesOf(study, stage)) plans.push_back(PlanOf(search));
   return plans;
 }
 
@@ -87,8 +98,8 @@ Status WriteStudy(const std::string& dir, const Study& study) {
   }
   if (!study.plugins.empty()) json["plugins"] = study.plugins;
   // The libraries first: a study whose file is there is whole.
-  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
-    TRY(KeepPlugins(PluginsOf(dir), ExpectedPlans(study, stage)));
+  for (const StudyStage stage : kStages) {
+    TRY(KeepPlugins(PluginsOf(dir), PlansOf(study, stage)));
   }
   return WriteFileAtomically(StudyFile(dir), JsonText(json), kReadableByAll);
 }
@@ -113,7 +124,7 @@ std::string UnfinishedCampaignOf(const std::string& dir, StudyStage stage) {
 
 std::vector<std::string> CampaignsIn(const std::string& dir) {
   std::vector<std::string> campaigns;
-  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+  for (const StudyStage stage : kStages) {
     std::error_code error;
     if (fs::exists(CampaignOf(dir, stage), error)) campaigns.push_back(CampaignOf(dir, stage));
   }
@@ -132,7 +143,7 @@ Status BeginStudy(const std::string& dir, const Study& study) {
     if (there.name != study.name) {
       return InvalidInput(fmt::format("{} holds the study '{}': name another --dir", dir, there.name));
     }
-    for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+    for (const StudyStage stage : kStages) {
       TRY(LookAtStage(study, dir, stage));
     }
     // What is computed from the same runs may change.
@@ -191,54 +202,42 @@ Result<Study> OpenStudy(const std::string& dir) {
   return ReadStudy(texts, TextAt(json, "main"), changes, plugins);
 }
 
-Result<std::vector<SearchPlan>> PlanSearchStage(const Study& study) {
-  return ExpectedPlans(study, StudyStage::kSearches);
-}
-
-Result<std::vector<SearchPlan>> PlanEvaluationStage(const Study& study, const std::string& dir) {
-  TRY(const auto searches, OpenStage(dir, StudyStage::kSearches));
-  std::map<std::string, SearchId> first_of_part;
-  SearchId next = 1;
-  for (const StudyPart& part : study.parts) {
-    if (!IsFirst(part)) continue;
-    first_of_part[part.name] = next;
-    next += static_cast<SearchId>(SearchesOf(part));
-  }
-  std::vector<SearchPlan> plans = ExpectedPlans(study, StudyStage::kEvaluations);
-  std::size_t plan = 0;
-  for (const StudyPart& part : study.parts) {
-    if (IsFirst(part)) continue;
-    const auto source = std::ranges::find(study.parts, part.from, &StudyPart::name);
-    for (std::size_t i = 0; i < SearchesOf(*source); ++i, ++plan) {
-      TRY(auto subset, ParseSubset(part.subset, part.where));
-      subset.search = first_of_part.at(part.from) + static_cast<SearchId>(i);
-      TRY(auto sets,
-          CasesOf(searches.plans, *searches.campaign.store, fmt::format("part '{}'", part.name), subset));
-      for (Individual& member : sets.front().members) {
-        member.test_case.name =
-            fmt::format("{} individual {}", Settings(*source, source->seeds[i]), member.id);
-        plans[plan].cases.push_back(std::move(member.test_case));
-      }
+Result<std::vector<SearchPlan>> PlanStage(const Study& study, const std::string& dir, StudyStage stage) {
+  std::vector<SearchPlan> plans = PlansOf(study, stage);
+  if (stage == StudyStage::kSearches) return plans;
+  TRY(const auto opened, OpenStage(dir, StudyStage::kSearches));
+  const std::vector<StudySearch> firsts = SearchesOf(study, StudyStage::kSearches);
+  auto plan = plans.begin();
+  for (const StudySearch& search : SearchesOf(study, stage)) {
+    const auto source = std::ranges::find_if(firsts, [&](const StudySearch& one) {
+      return &one.source == &search.source && one.number == search.number;
+    });
+    TRY(auto subset, ParseSubset(search.part.subset, search.part.where));
+    subset.search = static_cast<SearchId>(source - firsts.begin() + 1);
+    TRY(auto sets,
+        CasesOf(opened.plans, *opened.campaign.store, fmt::format("part '{}'", search.part.name), subset));
+    for (Individual& member : sets.front().members) {
+      member.test_case.name = fmt::format("{} individual {}", search.SourceInWords(), member.id);
+      plan->cases.push_back(std::move(member.test_case));
     }
+    ++plan;
   }
   return plans;
 }
 
 std::vector<SearchPlan> ForecastPlans(const Study& study, const StudyPart& part) {
-  const StudyPart& source =
-      IsFirst(part) ? part : *std::ranges::find(study.parts, part.from, &StudyPart::name);
   std::vector<SearchPlan> plans;
-  for (const std::uint64_t seed : source.seeds) {
-    SearchPlan& plan = plans.emplace_back(SearchPlan{Settings(source, seed), part.experiment, {}});
-    plan.experiment.seed = seed;
-    if (part.kind == StudyPart::Kind::kEmpty) plan.cases = {EmptyArena(part.experiment.arena)};
-    if (IsFirst(part)) continue;
+  for (const StudySearch& search : SearchesOf(study, StageOf(part))) {
+    if (&search.part != &part) continue;
+    SearchPlan& plan = plans.emplace_back(PlanOf(search));
+    if (!search.Evaluates()) continue;
     const Result<Subset> subset = ParseSubset(part.subset, part.where);
-    const SearchSpec& cases = source.experiment.search;
+    const SearchSpec& cases = search.source.experiment.search;
     double members = cases.population;
-    if (source.kind == StudyPart::Kind::kRandom) members = cases.parameters.at("cases");
-    if (source.kind == StudyPart::Kind::kEmpty) members = 1.0;
+    if (search.source.kind == StudyPart::Kind::kRandom) members = cases.parameters.at("cases");
+    if (search.source.kind == StudyPart::Kind::kEmpty) members = 1.0;
     if (subset && subset->count > 0) members = static_cast<double>(subset->count);
+    plan.experiment.seed = search.source.seeds[search.number];
     plan.experiment.search.algorithm = "random";
     plan.experiment.search.parameters["cases"] = members;
   }
@@ -251,7 +250,7 @@ Result<StageState> LookAtStage(const Study& study, const std::string& dir, Study
   if (!fs::exists(campaign, error)) return StageState{};
   TRY(const auto view, ViewCampaign(campaign, Checked::kTotals));
   TRY(const auto plans, ReadSearchPlans(view.directory));
-  std::vector<SearchPlan> expected = ExpectedPlans(study, stage);
+  std::vector<SearchPlan> expected = PlansOf(study, stage);
   if (expected.size() == 1) expected.front().settings.clear();
   if (!AreSameSearches(plans, expected)) {
     return InvalidInput(fmt::format(
@@ -263,33 +262,31 @@ Result<StageState> LookAtStage(const Study& study, const std::string& dir, Study
 
 Result<StudyRuns> StudyRuns::Open(const Study& study, const std::string& dir) {
   StudyRuns runs(study);
-  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
+  for (const StudyStage stage : kStages) {
     if (std::ranges::count(study.parts, stage, &StageOf) == 0) continue;
     TRY(auto opened, OpenStage(dir, stage));
     const CampaignMeta& meta = opened.campaign.store->meta();
     TRY(auto hashes, proto::ReadGoldenHashes(meta.golden_hashes));
-    RunOrigin origin{gauntlet::CampaignOf(dir, stage), {}, meta.software_version, std::move(hashes)};
+    RunOrigin origin{CampaignOf(dir, stage), {}, meta.software_version, std::move(hashes)};
     runs.campaigns_.push_back({std::move(opened), std::move(origin)});
   }
   return runs;
 }
 
 const StudyPart& StudyRuns::Part(const std::string& name) const {
-  return *std::ranges::find(study_->parts, name, &StudyPart::name);
+  return *FindByName(study_->parts, name);
 }
 
-StudyRuns::Range StudyRuns::RangeOf(const std::string& name) const {
-  const StudyPart& wanted = Part(name);
-  Range range;
-  range.stage = StageOf(wanted);
-  for (const StudyPart& part : study_->parts) {
-    if (StageOf(part) != range.stage) continue;
-    const std::size_t searches = SearchesOf(IsFirst(part) ? part : Part(part.from));
-    range.end = range.first + static_cast<SearchId>(searches);
-    if (&part == &wanted) break;
-    range.first = range.end;
+Status StudyRuns::ForEachSearch(const std::string& part,
+                                const std::function<Status(Campaign&, SearchId)>& visit) {
+  const StudyStage stage = StageOf(Part(part));
+  SearchId id = 0;
+  for (const StudySearch& search : SearchesOf(*study_, stage)) {
+    ++id;
+    if (search.part.name != part) continue;
+    TRY(visit(campaigns_.at(static_cast<std::size_t>(stage)), id));
   }
-  return range;
+  return Ok{};
 }
 
 Result<RunSet> StudyRuns::Set(const std::string& text, const std::string& metric) {
@@ -297,13 +294,11 @@ Result<RunSet> StudyRuns::Set(const std::string& text, const std::string& metric
   set.values.name = text;
   for (const StudySet& one : SplitStudySets(text)) {
     TRY(auto subset, ParseSubset(one.subset, one.part));
-    const Range range = RangeOf(one.part);
-    Campaign& campaign = CampaignOf(range);
-    for (SearchId id = range.first; id < range.end; ++id) {
+    TRY(ForEachSearch(one.part, [&](Campaign& campaign, SearchId id) {
       subset.search = id;
-      TRY(AddRuns(campaign.opened.plans, *campaign.opened.campaign.store, campaign.origin, subset, metric,
-                  set));
-    }
+      return AddRuns(campaign.opened.plans, *campaign.opened.campaign.store, campaign.origin, subset, metric,
+                     set);
+    }));
   }
   return set;
 }
@@ -312,20 +307,13 @@ Result<std::vector<std::vector<double>>> StudyRuns::Windows(const std::string& t
                                                             const std::string& prefix) {
   std::vector<std::vector<double>> all;
   for (const StudySet& one : SplitStudySets(text)) {
-    const Range range = RangeOf(one.part);
-    Campaign& campaign = CampaignOf(range);
-    for (SearchId id = range.first; id < range.end; ++id) {
-      TRY(campaign.opened.campaign.store->ForEachRun(id, 0, [&](const StoredRun& run) -> Status {
-        const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
-        if (!result) return Error{ErrorKind::kCorrupt, result.error().message};
-        if (result->verdict != sim::Verdict::kCompleted) return Ok{};
-        std::vector<double>& windows = all.emplace_back();
-        for (const auto& [name, value] : result->metrics) {
-          if (name == fmt::format("{}{}", prefix, windows.size() + 1)) windows.push_back(value);
-        }
-        return Ok{};
-      }));
-    }
+    TRY(ForEachResult(one.part, [&](const sim::RunResult& result) {
+      if (result.verdict != sim::Verdict::kCompleted) return;
+      std::vector<double>& windows = all.emplace_back();
+      for (const auto& [name, value] : result.metrics) {
+        if (name == fmt::format("{}{}", prefix, windows.size() + 1)) windows.push_back(value);
+      }
+    }));
   }
   if (all.empty() || all.front().empty()) {
     return InvalidInput(fmt::format("{}: no run has a metric {}1", text, prefix));
@@ -333,20 +321,26 @@ Result<std::vector<std::vector<double>>> StudyRuns::Windows(const std::string& t
   return all;
 }
 
-Result<std::vector<std::vector<std::vector<int>>>> StudyRuns::TypesByGeneration(const std::string& part) {
-  std::vector<std::vector<std::vector<int>>> searches;
-  const Range range = RangeOf(part);
-  Campaign& campaign = CampaignOf(range);
-  for (SearchId id = range.first; id < range.end; ++id) {
-    std::vector<std::vector<int>>& generations = searches.emplace_back();
-    TRY(campaign.opened.campaign.store->ForEachRow(id, 0, [&](const StoredRun& run) {
-      if (run.generation == 0) return Ok{};
-      if (generations.size() < run.generation) generations.resize(run.generation);
-      if (run.total_failure && run.failure_type >= 0)
-        generations[run.generation - 1].push_back(run.failure_type);
+Status StudyRuns::ForEachResult(const std::string& part,
+                                const std::function<void(const sim::RunResult&)>& visit) {
+  return ForEachSearch(part, [&](Campaign& campaign, SearchId id) {
+    return campaign.opened.campaign.store->ForEachRun(id, 0, [&](const StoredRun& run) -> Status {
+      TRY(const sim::RunResult result, proto::DecodeStoredResult(run.result));
+      visit(result);
       return Ok{};
-    }));
-  }
+    });
+  });
+}
+
+Result<std::vector<std::vector<SelectedRun>>> StudyRuns::All(const std::string& part,
+                                                             const std::string& metric) {
+  std::vector<std::vector<SelectedRun>> searches;
+  TRY(ForEachSearch(part, [&](Campaign& campaign, SearchId id) -> Status {
+    const SubsetSearch search{id, campaign.opened.plans[id - 1].experiment, part, /*finished=*/true};
+    TRY(searches.emplace_back(),
+        SelectRuns(search, *campaign.opened.campaign.store, {Subset::Kind::kAll}, metric));
+    return Ok{};
+  }));
   return searches;
 }
 
@@ -360,7 +354,7 @@ std::vector<std::string> StudyRuns::FailureTypes(const std::string& set) const {
 }
 
 std::string StudyRuns::SourceOf(const std::string& part) const {
-  return IsFirst(Part(part)) ? part : Part(part).from;
+  return gauntlet::SourceOf(*study_, Part(part)).name;
 }
 
 PartCost& PartCost::operator+=(const PartCost& other) {
@@ -373,42 +367,33 @@ PartCost& PartCost::operator+=(const PartCost& other) {
 }
 
 Result<PartCost> StudyRuns::CostOf(const std::string& name) {
-  const Range range = RangeOf(name);
-  Campaign& campaign = CampaignOf(range);
-  ResultStore& store = *campaign.opened.campaign.store;
-  TRY(const auto totals, store.LoadTotals());
   PartCost cost;
   cost.part = name;
-  cost.searches = range.end - range.first;
-  for (const SearchTotals& one : totals) {
-    if (one.search < range.first || one.search >= range.end) continue;
-    cost.runs += one.runs;
-    TRY(const auto individuals, store.LoadIndividuals(one.search));
-    cost.distinct_cases += CountDistinctGenomes(individuals);
-    const Experiment& experiment = campaign.opened.plans[one.search - 1].experiment;
+  TRY(ForEachSearch(name, [&](Campaign& campaign, SearchId id) -> Status {
+    ResultStore& store = *campaign.opened.campaign.store;
+    TRY(const auto totals, store.LoadTotals());
+    TRY(const auto individuals, store.LoadIndividuals(id));
+    const auto one = std::ranges::find(totals, id, &SearchTotals::search);
+    const Experiment& experiment = campaign.opened.plans[id - 1].experiment;
     const bool breeds = RowOf(experiment).Breeds();
+    ++cost.searches;
+    cost.runs += one == totals.end() ? 0 : one->runs;
+    cost.distinct_cases += CountDistinctGenomes(individuals);
     cost.cases += breeds ? static_cast<std::uint64_t>(experiment.search.population) : individuals.size();
-  }
+    return Ok{};
+  }));
   return cost;
 }
 
 Result<double> StudyRuns::CpuSecondsOf(const std::string& part) {
-  const Range range = RangeOf(part);
-  ResultStore& store = *CampaignOf(range).opened.campaign.store;
   double seconds = 0.0;
-  for (SearchId id = range.first; id < range.end; ++id) {
-    TRY(store.ForEachRun(id, 0, [&](const StoredRun& run) -> Status {
-      TRY(const sim::RunResult result, proto::DecodeStoredResult(run.result));
-      seconds += result.cpu_seconds;
-      return Ok{};
-    }));
-  }
+  TRY(ForEachResult(part, [&](const sim::RunResult& result) { seconds += result.cpu_seconds; }));
   return seconds;
 }
 
 Result<ClockTime> StudyRuns::TimeOf(StudyStage stage) {
   ClockTime time;
-  const std::size_t index = stage == StudyStage::kSearches ? 0 : 1;
+  const auto index = static_cast<std::size_t>(stage);
   if (index >= campaigns_.size()) return time;
   TRY(const auto events, campaigns_[index].opened.campaign.store->LoadEvents());
   // From each start of a master to its end, or to its last event where it was killed.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,9 @@ Status BeginStudy(const std::string& dir, const Study& study);
 // The study that a directory holds. Errors: kNotFound, kCorrupt; others may write there.
 Result<Study> OpenStudy(const std::string& dir);
 
-// The searches of the first stage, part by part.
-Result<std::vector<SearchPlan>> PlanSearchStage(const Study& study);
-// Those of the second stage, with the cases that have come out of the first, which has finished.
-Result<std::vector<SearchPlan>> PlanEvaluationStage(const Study& study, const std::string& dir);
+// The searches of a stage, part by part; of the second with the cases that have come out of the first, which
+// has finished.
+Result<std::vector<SearchPlan>> PlanStage(const Study& study, const std::string& dir, StudyStage stage);
 // Searches as long as those of the part, for a forecast: of an evaluation, whose cases are not there yet,
 // with random ones in their place (as many as one population holds, where its subset is "all").
 std::vector<SearchPlan> ForecastPlans(const Study& study, const StudyPart& part);
@@ -73,8 +73,8 @@ class StudyRuns {
   Result<RunSet> Set(const std::string& text, const std::string& metric);
   // Of each run of the set the metrics PREFIX1, PREFIX2, ...; as many in every run.
   Result<std::vector<std::vector<double>>> Windows(const std::string& text, const std::string& prefix);
-  // Types of the total failures of each generation, 1, 2, ..., by the searches of a part.
-  Result<std::vector<std::vector<std::vector<int>>>> TypesByGeneration(const std::string& part);
+  // All runs of a part, by its searches.
+  Result<std::vector<std::vector<SelectedRun>>> All(const std::string& part, const std::string& metric);
   // The names of the scenario's failure types.
   std::vector<std::string> FailureTypes(const std::string& set) const;
   // The part that a part's cases come from: itself unless it evaluates another's.
@@ -90,19 +90,12 @@ class StudyRuns {
     OpenedSubset opened;
     RunOrigin origin;
   };
-  // Where the searches of a part stand.
-  struct Range {
-    StudyStage stage = StudyStage::kSearches;
-    SearchId first = 1;
-    SearchId end = 1;
-  };
-
   explicit StudyRuns(const Study& study) : study_(&study) {}
   const StudyPart& Part(const std::string& name) const;
-  Campaign& CampaignOf(const Range& range) {
-    return campaigns_.at(range.stage == StudyStage::kSearches ? 0 : 1);
-  }
-  Range RangeOf(const std::string& part) const;
+  // Those of a part, with their ids in the campaign of its stage.
+  Status ForEachSearch(const std::string& part, const std::function<Status(Campaign&, SearchId)>& visit);
+  // The results of all runs of a part.
+  Status ForEachResult(const std::string& part, const std::function<void(const sim::RunResult&)>& visit);
 
   const Study* study_;
   std::vector<Campaign> campaigns_;  // by stage

@@ -1,21 +1,28 @@
 #include "study/study_file.h"
 
 #include <algorithm>
-#include <iterator>
-#include <span>
+#include <limits>
 
 #include <fmt/format.h>
 
 #include "base/nearest_name.h"
 #include "base/number_text.h"
 #include "base/split.h"
-#include "search/experiment/toml_text.h"
+#include "search/experiment/key_assignment.h"
 
 namespace gauntlet {
 namespace {
 
-const std::vector<StudyTableKind>& TableKinds() {
-  static const std::vector<StudyTableKind> kinds = {
+// A kind of table, "[part.NAME]", and its keys.
+struct TableKind {
+  std::string_view name;
+  std::vector<std::string_view> needed;
+  std::vector<std::string_view> optional;
+  std::vector<std::string_view> nested;  // of all these: those that stand for many, "set.KEY"
+};
+
+const std::vector<TableKind>& TableKinds() {
+  static const std::vector<TableKind> kinds = {
       {"part", {"kind"}, {"experiment", "seeds", "cases", "replicates", "from", "set"}, {"set"}},
       {"compare", {"title", "first", "second"}, {"metric", "expect", "effect", "claim"}, {}},
       {"count",
@@ -32,9 +39,42 @@ const std::vector<StudyTableKind>& TableKinds() {
 
 const std::vector<std::string_view> kTopKeys = {"name", "description", "include", "published"};
 
-std::string UnknownKey(const std::string& where, const std::string& key,
-                       std::span<const std::string_view> known) {
-  return fmt::format("{}: {}", where, UnknownName("key", key, known));
+// What is more than a text: a key of all tables, or "KIND.KEY".
+std::vector<KeyInfo> MakeTypedKeys() {
+  std::vector<KeyInfo> keys;
+  for (const char* number : {"at_least", "at_most", "above", "below", "effect", "seconds"}) {
+    KeyInfo& key = keys.emplace_back();
+    key.path = number;
+    key.max = std::numeric_limits<double>::infinity();
+    key.min = -key.max;
+  }
+  const auto add_choice = [&](const char* path, const std::vector<std::string>& choices) {
+    KeyInfo& key = keys.emplace_back();
+    key.path = path;
+    key.type = KeyType::kChoice;
+    key.choices = choices;
+  };
+  add_choice("part.kind", {"evolve", "random", "empty", "evaluate"});
+  add_choice("types.expect", {"less", "greater", "subset"});
+  add_choice("expect", {"less", "greater"});
+  return keys;
+}
+
+// A number may be quoted.
+Status CheckType(const Assignment& assignment, const std::string& kind, const std::string& key,
+                 const std::string& value) {
+  static const std::vector<KeyInfo> keys = MakeTypedKeys();
+  const KeyInfo* typed = FindByName(keys, kind + "." + key);
+  if (typed == nullptr) typed = FindByName(keys, key);
+  if (typed == nullptr || (value.empty() && key == "expect")) return Ok{};
+  TRY(const Assignment read, ReadSet(key + "=" + value));
+  TRY(ValueFor(*typed, {key, read.value, "", assignment.where}));
+  return Ok{};
+}
+
+Error UnknownKey(const Assignment& assignment, const std::string& key,
+                 const std::vector<std::string_view>& known) {
+  return InvalidInput(fmt::format("{}: {}", assignment.where, UnknownName("key", key, known)));
 }
 
 std::string TextOf(const TomlValue& value) {
@@ -46,11 +86,11 @@ std::string TextOf(const TomlValue& value) {
 
 Status AddToTable(const Assignment& assignment, StudyFileContent& content) {
   const std::vector<std::string> path = Split(assignment.path, '.');
-  const StudyTableKind* kind = FindByName(TableKinds(), path[0]);
+  const TableKind* kind = FindByName(TableKinds(), path[0]);
   if (kind == nullptr) {
     std::vector<std::string_view> known = kTopKeys;
-    for (const StudyTableKind& one : TableKinds()) known.push_back(one.name);
-    return InvalidInput(UnknownKey(assignment.where, path[0], known));
+    for (const TableKind& one : TableKinds()) known.push_back(one.name);
+    return UnknownKey(assignment, path[0], known);
   }
   if (path.size() < 3) {
     return InvalidInput(
@@ -59,40 +99,48 @@ Status AddToTable(const Assignment& assignment, StudyFileContent& content) {
   std::vector<std::string_view> known = kind->needed;
   known.insert(known.end(), kind->optional.begin(), kind->optional.end());
   const bool nested = std::ranges::count(kind->nested, path[2]) > 0;
-  if (std::ranges::count(known, path[2]) == 0 || (path.size() > 3) != nested) {
-    return InvalidInput(UnknownKey(assignment.where, path[2], known));
-  }
+  if (std::ranges::count(known, path[2]) == 0 || (path.size() > 3) != nested)
+    return UnknownKey(assignment, path[2], known);
+  const std::string value = TextOf(assignment.value);
+  TRY(CheckType(assignment, path[0], path[2], value));
   auto table = std::ranges::find_if(
-      content.tables, [&](const StudyFileTable& one) { return one.kind == kind && one.name == path[1]; });
-  if (table == content.tables.end()) {
-    content.tables.push_back({kind, path[1], assignment.where, {}, {}});
-    table = std::prev(content.tables.end());
-  }
-  std::string key = path[2];
-  for (std::size_t i = 3; i < path.size(); ++i) key += "." + path[i];
-  table->keys.emplace_back(key, TextOf(assignment.value));
-  table->places[key] = assignment.where;
+      content.tables, [&](const StudyFileTable& one) { return one.kind == path[0] && one.name == path[1]; });
+  if (table == content.tables.end())
+    table = content.tables.insert(table, {path[0], path[1], assignment.where, {}});
+  const std::string key = assignment.path.substr(path[0].size() + path[1].size() + 2);
+  table->entries.push_back({key, value, assignment.where});
   return Ok{};
 }
 
 }  // namespace
 
+const StudyFileTable::Entry* StudyFileTable::Find(const std::string& key) const {
+  const auto found = std::ranges::find(entries, key, &Entry::key);
+  return found == entries.end() ? nullptr : &*found;
+}
+
 std::string StudyFileTable::Key(const std::string& key) const {
-  const auto found = std::ranges::find(keys, key, &std::pair<std::string, std::string>::first);
-  return found == keys.end() ? "" : found->second;
+  const Entry* entry = Find(key);
+  return entry == nullptr ? "" : entry->value;
 }
 
 std::string StudyFileTable::PlaceOf(const std::string& key) const {
-  const auto found = places.find(key);
-  return found == places.end() ? where : found->second;
+  const Entry* entry = Find(key);
+  return entry == nullptr ? where : entry->where;
 }
 
 std::vector<std::pair<std::string, std::string>> StudyFileTable::Nested(const std::string& key) const {
   std::vector<std::pair<std::string, std::string>> found;
-  for (const auto& [path, value] : keys) {
-    if (path.starts_with(key + ".")) found.emplace_back(path.substr(key.size() + 1), value);
+  for (const Entry& entry : entries) {
+    if (entry.key.starts_with(key + ".")) found.emplace_back(entry.key.substr(key.size() + 1), entry.value);
   }
   return found;
+}
+
+std::vector<std::string> StudyFileTable::Sets() const {
+  std::vector<std::string> sets;
+  for (const auto& [key, value] : Nested("set")) sets.push_back(fmt::format("{}={}", key, value));
+  return sets;
 }
 
 Result<StudyFileContent> ReadStudyFile(const std::string& text, const std::string& file) {
@@ -105,15 +153,15 @@ Result<StudyFileContent> ReadStudyFile(const std::string& text, const std::strin
     }
     if (std::ranges::count(kTopKeys, assignment.path) > 0) {
       content.top[assignment.path] = TextOf(assignment.value);
-    } else if (Status added = AddToTable(assignment, content); !added) {
-      return added.error();
+    } else {
+      TRY(AddToTable(assignment, content));
     }
   }
   for (const StudyFileTable& table : content.tables) {
-    for (const std::string_view key : table.kind->needed) {
+    for (const std::string_view key : FindByName(TableKinds(), table.kind)->needed) {
       if (table.Has(std::string(key))) continue;
       return InvalidInput(
-          fmt::format("{}: [{}.{}] needs the key {}", table.where, table.kind->name, table.name, key));
+          fmt::format("{}: [{}.{}] needs the key {}", table.where, table.kind, table.name, key));
     }
   }
   return content;

@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -5,6 +6,7 @@
 #include "analysis/statistics/distributions.h"
 #include "analysis/statistics/proportions.h"
 #include "analysis/statistics/rank_test.h"
+#include "base/nearest_name.h"
 #include "base/parse_number.h"
 #include "base/split.h"
 #include "study/study_report.h"
@@ -20,9 +22,14 @@ std::optional<double> NumberOf(std::string text) {
   return ParseNumber<double>(text);
 }
 
+std::optional<double> NumberOf(const Cell& figure) {
+  const auto* number = std::get_if<double>(&figure.value);
+  return number == nullptr ? std::nullopt : std::optional(*number);
+}
+
 std::optional<double> NumberOf(const StudyFigures& figures, const std::string& name) {
   const auto found = figures.find(name);
-  return found == figures.end() ? std::nullopt : found->second.number;
+  return found == figures.end() ? std::nullopt : NumberOf(found->second);
 }
 
 // Two-sided p of Welch's t-test.
@@ -37,24 +44,19 @@ double WelchP(double mean1, double sd1, double n1, double mean2, double sd2, dou
   return 2.0 * analysis::StudentUpperTail(t, freedom);
 }
 
-double SharesP(double hits1, double trials1, double hits2, double trials2) {
-  const auto whole = [](double value) { return static_cast<std::uint32_t>(std::llround(value)); };
-  return analysis::FisherExact(whole(hits1), whole(trials1), whole(hits2), whole(trials2)).p_two_sided;
-}
-
 // What a rule is told.
 struct Compared {
   std::vector<double> arguments;  // of the rule
   std::optional<double> published;
   std::optional<double> ours;
-  std::string name;  // of our figure
+  const PublishedRow& row;
   const StudyFigures& figures;
 
   std::optional<double> Sibling(const std::string& figure) const {
-    return NumberOf(figures, name.substr(0, name.rfind('.') + 1) + figure);
+    return NumberOf(figures, row.figure.substr(0, row.figure.rfind('.') + 1) + figure);
   }
   std::optional<double> OfAnalysis(const std::string& figure) const {
-    return NumberOf(figures, name.substr(0, name.find('.') + 1) + figure);
+    return NumberOf(figures, row.figure.substr(0, row.figure.find('.') + 1) + figure);
   }
 };
 
@@ -84,22 +86,34 @@ std::optional<bool> SignificanceAgrees(const Compared& c) {
   return (*c.published < kThesisLevel) == (*c.ours < kThesisLevel);
 }
 
-std::optional<bool> CountAgrees(const Compared& c) {
+// Two shares; of one in percent `hundred` is 100.
+std::optional<bool> SharesAgree(const Compared& c, double hundred) {
   const auto of = c.Sibling("of");
   if (!c.published || !c.ours || !of || c.arguments.size() != 1) return std::nullopt;
-  return SharesP(*c.published, c.arguments[0], *c.ours, *of) >= kThesisLevel;
+  const auto whole = [](double value) { return static_cast<std::uint32_t>(std::llround(value)); };
+  const auto hits = [&](double share, double n) {
+    return whole(hundred == 1.0 ? share : share * n / hundred);
+  };
+  const analysis::FisherTest test = analysis::FisherExact(
+      hits(*c.published, c.arguments[0]), whole(c.arguments[0]), hits(*c.ours, *of), whole(*of));
+  return test.p_two_sided >= kThesisLevel;
+}
+
+std::optional<bool> CountAgrees(const Compared& c) {
+  return SharesAgree(c, 1.0);
 }
 
 std::optional<bool> PercentAgrees(const Compared& c) {
-  const auto of = c.Sibling("of");
-  if (!c.published || !c.ours || !of || c.arguments.size() != 1) return std::nullopt;
-  return SharesP(*c.published * c.arguments[0] / 100.0, c.arguments[0], *c.ours * *of / 100.0, *of) >=
-         kThesisLevel;
+  return SharesAgree(c, 100.0);
 }
 
 std::optional<bool> LiesBetween(const Compared& c) {
   if (c.arguments.size() != 2) return std::nullopt;
   return c.ours && *c.ours >= c.arguments[0] && *c.ours <= c.arguments[1];
+}
+
+std::optional<bool> IsTheSame(const Compared& c) {
+  return c.figures.at(c.row.figure).text == c.row.value;
 }
 
 struct Rule {
@@ -108,7 +122,7 @@ struct Rule {
   const char* words;
 };
 
-constexpr Rule kRules[] = {
+constexpr std::array kRules = std::to_array<Rule>({
     {"mean", MeanAgrees,
      "A mean differs when Welch's t-test, from means, standard deviations and numbers, gives p < 0.01."},
     {"sd", SpreadAgrees, "A standard deviation differs when one is more than 1.5 times the other."},
@@ -120,14 +134,14 @@ constexpr Rule kRules[] = {
     {"percent", PercentAgrees, "So does a share."},
     {"between", LiesBetween,
      "What is published as \"about\" agrees when ours lies in a stated interval around it."},
-};
+    {"same", IsTheSame, "Words and budgets agree when they are the same."},
+});
 
 }  // namespace
 
 std::vector<std::string> RulesInWords() {
   std::vector<std::string> words;
   for (const Rule& rule : kRules) words.emplace_back(rule.words);
-  words.emplace_back("Words and budgets agree when they are the same.");
   return words;
 }
 
@@ -140,25 +154,17 @@ Result<JudgedRow> Judge(const PublishedRow& row, const StudyFigures& figures) {
   }
   JudgedRow judged{row, figure->second.text, row.note.text, "not judged"};
   if (row.rule.empty()) return judged;
-  std::vector<std::string> words = Split(row.rule, ' ');
-  std::optional<bool> agrees;
-  if (words[0] == "same") {
-    agrees = figure->second.text == row.value;
-  } else {
-    const Rule* rule = nullptr;
-    for (const Rule& one : kRules) {
-      if (one.name == words[0]) rule = &one;
-    }
-    if (rule == nullptr) {
-      return InvalidInput(
-          fmt::format("published row '{}, {}': there is no rule '{}'", row.section, row.quantity, words[0]));
-    }
-    Compared compared{{}, NumberOf(row.value), figure->second.number, row.figure, figures};
-    for (std::size_t i = 1; i < words.size(); ++i) {
-      if (const auto argument = ParseNumber<double>(words[i])) compared.arguments.push_back(*argument);
-    }
-    agrees = rule->agrees(compared);
+  const std::vector<std::string> words = Split(row.rule, ' ');
+  const Rule* rule = FindByName(kRules, words[0]);
+  if (rule == nullptr) {
+    return InvalidInput(
+        fmt::format("published row '{}, {}': there is no rule '{}'", row.section, row.quantity, words[0]));
   }
+  Compared compared{{}, NumberOf(row.value), NumberOf(figure->second), row, figures};
+  for (const std::string& word : words) {
+    if (const auto argument = ParseNumber<double>(word)) compared.arguments.push_back(*argument);
+  }
+  const std::optional<bool> agrees = rule->agrees(compared);
   if (!agrees) {
     return InvalidInput(fmt::format("published row '{}, {}, {}': the rule '{}' does not fit the figure '{}'",
                                     row.section, row.quantity, row.condition, row.rule, row.figure));

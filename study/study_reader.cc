@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "base/nearest_name.h"
-#include "base/parse_number.h"
 #include "base/system/atomic_file.h"
 #include "master/directory/plugins.h"
 #include "search/experiment/experiment_file.h"
@@ -54,10 +53,13 @@ class Reader {
         return part.experiment.plugin == hash || part.experiment.scenario_plugin == hash;
       });
     });
-    if (!study_.changes.experiment.empty()) {
+    for (const StudyAnalysis& tuning : study_.analyses) {
+      if (!tuning.tuning || study_.changes.experiment.empty()) continue;
+      const bool is_of_another = tuning.tuning->experiment != tuning.Key("experiment");
       const std::string& experiment = study_.parts.front().experiment.name;
-      study_.name = "tune-" + experiment;
-      study_.description = "which values of the search's parameters find tougher cases for " + experiment;
+      if (is_of_another) study_.name = "tune-" + experiment;
+      if (is_of_another || study_.description.empty())
+        study_.description = "which values of the search's parameters find tougher cases for " + experiment;
     }
     return std::move(study_);
   }
@@ -77,12 +79,10 @@ class Reader {
     }
     std::map<std::string, PublishedNote> notes;
     for (const StudyFileTable& table : content.tables) {
-      if (table.kind->name == "note") {
+      if (table.kind == "note") {
         notes[table.name] = {table.Key("text"), table.Key("always") == "true"};
-      } else if (table.kind->name == "part") {
-        TRY(AddPart(table));
-      } else if (Status added = AddAnalysis(table); !added) {
-        return added;
+      } else {
+        TRY(table.kind == "part" ? AddPart(table) : AddAnalysis(table));
       }
     }
     if (!study_.changes.experiment.empty() || !study_.changes.sets.empty()) return Ok{};
@@ -92,48 +92,39 @@ class Reader {
     return Ok{};
   }
 
-  const StudyPart* FindPart(const std::string& name) const {
-    const auto found = std::ranges::find(study_.parts, name, &StudyPart::name);
-    return found == study_.parts.end() ? nullptr : &*found;
-  }
+  const StudyPart* FindPart(const std::string& name) const { return FindByName(study_.parts, name); }
 
   Status AddPart(const StudyFileTable& table) {
-    const auto place = [&](const std::string& key) { return table.PlaceOf(key); };
     if (FindPart(table.name) != nullptr) {
       return InvalidInput(fmt::format("{}: there is a part '{}' already", table.where, table.name));
     }
+    const std::string kind = table.Key("kind");
     StudyPart part;
     part.name = table.name;
     part.where = table.where;
-    const std::vector<std::pair<std::string_view, StudyPart::Kind>> kinds = {
-        {"evolve", StudyPart::Kind::kEvolve},
-        {"random", StudyPart::Kind::kRandom},
-        {"empty", StudyPart::Kind::kEmpty},
-        {"evaluate", StudyPart::Kind::kEvaluate}};
-    const auto kind = std::ranges::find(kinds, table.Key("kind"), &decltype(kinds)::value_type::first);
-    if (kind == kinds.end()) {
-      return InvalidInput(fmt::format("{}: kind is '{}', expected evolve, random, empty or evaluate",
-                                      place("kind"), table.Key("kind")));
-    }
-    part.kind = kind->second;
+    part.group = table.Key("group");
+    part.kind = kind == "evolve"   ? StudyPart::Kind::kEvolve
+                : kind == "random" ? StudyPart::Kind::kRandom
+                : kind == "empty"  ? StudyPart::Kind::kEmpty
+                                   : StudyPart::Kind::kEvaluate;
     const bool evaluates = part.kind == StudyPart::Kind::kEvaluate;
     for (const auto& [key, wanted] : {std::pair<std::string, bool>{"from", evaluates},
                                       {"cases", part.kind == StudyPart::Kind::kRandom}}) {
       if (table.Has(key) == wanted) continue;
-      return InvalidInput(fmt::format("{}: a part of the kind {} {} the key {}", place(key),
-                                      table.Key("kind"), wanted ? "needs" : "does not take", key));
+      return InvalidInput(fmt::format("{}: a part of the kind {} {} the key {}", table.PlaceOf(key), kind,
+                                      wanted ? "needs" : "does not take", key));
     }
     const std::string seeds = table.Has("seeds") ? table.Key("seeds") : "1";
     const auto numbers = ParseSeedList(seeds, kMostSearches);
     if (!numbers) {
       return InvalidInput(fmt::format("{}: seeds are '{}', expected a range (1..20) or a list (1,5,9)",
-                                      place("seeds"), seeds));
+                                      table.PlaceOf("seeds"), seeds));
     }
     if (numbers->size() > 1 && evaluates) {
       return InvalidInput(
           fmt::format("{}: a part of the kind evaluate has one seed, from which those of its "
                       "searches follow",
-                      place("seeds")));
+                      table.PlaceOf("seeds")));
     }
     part.seeds = *numbers;
     if (evaluates) {
@@ -146,12 +137,12 @@ class Reader {
 
   // Parts stand behind those that they take cases from, so nothing can lead round in a circle.
   Status SetSource(const StudyFileTable& table, StudyPart& part) {
-    const std::vector<StudySet> sources = SplitStudySets(table.Key("from"));
+    const std::string from = table.Key("from");
     const std::string where = table.PlaceOf("from");
-    if (sources.size() != 1) {
-      return InvalidInput(
-          fmt::format("{}: from is '{}', expected one PART[:SUBSET]", where, table.Key("from")));
-    }
+    const bool whole = FindPart(from) != nullptr;  // a tuning's parts have names with colons and commas
+    const std::vector<StudySet> sources = whole ? std::vector<StudySet>{{from, ""}} : SplitStudySets(from);
+    if (sources.size() != 1)
+      return InvalidInput(fmt::format("{}: from is '{}', expected one PART[:SUBSET]", where, from));
     part.from = sources[0].part;
     part.subset = sources[0].subset;
     const StudyPart* source = FindPart(part.from);
@@ -181,7 +172,7 @@ class Reader {
         return InvalidInput(fmt::format("{}: [part.{}] needs the key experiment", table.where, part.name));
       std::tie(name, sets) = sources_.at(part.from);
     }
-    for (const auto& [key, value] : table.Nested("set")) sets.push_back(fmt::format("{}={}", key, value));
+    std::ranges::move(table.Sets(), std::back_inserter(sets));
     sources_[part.name] = {name, sets};
     if (table.Has("replicates")) sets.push_back("search.replicates=" + table.Key("replicates"));
     if (part.kind == StudyPart::Kind::kRandom) {
@@ -227,35 +218,32 @@ class Reader {
   }
 
   Status AddAnalysis(const StudyFileTable& table) {
-    if (std::ranges::count(study_.analyses, table.name, &StudyAnalysis::name) > 0) {
+    if (FindByName(study_.analyses, table.name) != nullptr) {
       return InvalidInput(fmt::format("{}: there is an analysis '{}' already", table.where, table.name));
     }
-    StudyAnalysis& analysis = study_.analyses.emplace_back();
-    analysis.kind = table.kind->name;
-    analysis.name = table.name;
-    analysis.where = table.where;
-    analysis.keys.insert(table.keys.begin(), table.keys.end());
+    StudyAnalysis& analysis = study_.analyses.emplace_back(StudyAnalysis{table, std::nullopt});
     if (analysis.kind != "tune") return Ok{};
-    const std::string& experiment =
-        study_.changes.experiment.empty() ? table.Key("experiment") : study_.changes.experiment;
-    TRY(AddLibrariesOf(experiment));
+    TRY(AddLibrariesOf(study_.changes.experiment.empty() ? table.Key("experiment")
+                                                         : study_.changes.experiment));
     TRY(auto expanded, ExpandTuning(table, study_.changes, catalogue_));
     analysis.tuning = std::move(expanded.tuning);
-    std::ranges::move(expanded.parts, std::back_inserter(study_.parts));
+    for (const StudyFileTable& part : expanded.parts) {
+      TRY(AddPart(part));
+    }
     return Ok{};
   }
 
   Status AddPublished(const std::string& file, const std::map<std::string, PublishedNote>& notes) {
     TRY(auto text, read_(file));
     study_.texts[file] = text;
-    TRY(const auto rows, ReadCsvCells(text, file));
+    TRY(const auto rows, ReadCsvLines(text, file));
     const std::vector<std::string> header = {"section", "quantity", "condition", "value",
                                              "figure",  "rule",     "note"};
-    if (rows.empty() || rows.front() != header) {
+    if (rows.empty() || rows.front().cells != header) {
       return InvalidInput(fmt::format("{}:1: the columns have to be {}", file, fmt::join(header, ",")));
     }
     for (std::size_t i = 1; i < rows.size(); ++i) {
-      const std::vector<std::string>& cells = rows[i];
+      const std::vector<std::string>& cells = rows[i].cells;
       PublishedRow row{cells[0], cells[1], cells[2], cells[3], cells[4], cells[5], {}};
       if (!cells[6].empty()) {
         const auto note = notes.find(cells[6]);
@@ -280,25 +268,15 @@ class Reader {
                 fmt::format("{}: {}: {}", analysis.where, key, UnknownName("part", set.part, study_.parts)));
           }
           TRY(ParseSubset(set.subset, fmt::format("{}: {}", analysis.where, key)));
-          if (!analysis.keys.contains("metric")) continue;
+          if (!analysis.Has("metric")) continue;
           const Status known = CheckMetric(FindPart(set.part)->experiment, analysis.Key("metric"));
           if (!known) return InvalidInput(fmt::format("{}: {}", analysis.where, known.error().message));
         }
       }
-      for (const char* key : {"at_least", "at_most", "above", "below", "effect", "seconds"}) {
-        if (!analysis.keys.contains(key) || ParseNumber<double>(analysis.Key(key))) continue;
-        return InvalidInput(
-            fmt::format("{}: {} is '{}', expected a number", analysis.where, key, analysis.Key(key)));
-      }
-      const std::string expect = analysis.Key("expect");
-      if (expect.empty() || expect == "less" || expect == "greater") continue;
-      if (expect == "subset" && analysis.kind == "types") continue;
-      return InvalidInput(
-          fmt::format("{}: expect is '{}', expected less or greater", analysis.where, expect));
     }
     for (const PublishedRow& row : study_.published) {
       const std::string name = row.figure.substr(0, row.figure.find('.'));
-      if (name.empty() || std::ranges::count(study_.analyses, name, &StudyAnalysis::name) > 0) continue;
+      if (name.empty() || FindByName(study_.analyses, name) != nullptr) continue;
       return InvalidInput(fmt::format("published figure '{}' ({}): {}", row.figure, row.section,
                                       UnknownName("analysis", name, study_.analyses)));
     }
@@ -313,28 +291,17 @@ class Reader {
   std::map<std::string, std::pair<std::string, std::vector<std::string>>> sources_;  // by part
 };
 
-std::vector<fs::path> StudyFolders() {
-  std::vector<fs::path> folders = ExperimentDirectories();
-  for (fs::path& folder : folders) folder /= "studies";
-  return folders;
-}
-
 Result<fs::path> PathOf(const std::string& name_or_path) {
   if (name_or_path.find('/') != std::string::npos || name_or_path.ends_with(".toml"))
     return fs::path(name_or_path);
-  std::error_code error;
-  for (const fs::path& folder : StudyFolders()) {
-    fs::path path = folder / (name_or_path + ".toml");
-    if (fs::exists(path, error)) return path;
-  }
-  const std::vector<std::string> shipped = ShippedStudies();
-  if (shipped.empty()) {
-    return Error{
-        ErrorKind::kNotFound,
-        fmt::format("there is no study '{}': no studies are installed beside this program", name_or_path)};
-  }
-  return Error{ErrorKind::kNotFound, fmt::format("{} (a file is named by a path ending in .toml)",
-                                                 UnknownName("study", name_or_path, shipped))};
+  const std::map<std::string, fs::path> shipped = ShippedFiles("studies");
+  if (const auto found = shipped.find(name_or_path); found != shipped.end()) return found->second;
+  const std::string wrong =
+      shipped.empty()
+          ? fmt::format("there is no study '{}': no studies are installed beside this program", name_or_path)
+          : fmt::format("{} (a file is named by a path ending in .toml)",
+                        UnknownName("study", name_or_path, ShippedStudies()));
+  return Error{ErrorKind::kNotFound, wrong};
 }
 
 }  // namespace
@@ -349,14 +316,9 @@ std::vector<StudySet> SplitStudySets(const std::string& text) {
 }
 
 std::vector<std::string> ShippedStudies() {
-  std::set<std::string> names;
-  for (const fs::path& folder : StudyFolders()) {
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-      if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
-    }
-  }
-  return {names.begin(), names.end()};
+  std::vector<std::string> names;
+  for (const auto& [name, path] : ShippedFiles("studies")) names.push_back(name);
+  return names;
 }
 
 Result<Study> LoadStudy(const std::string& name_or_path, const TuningChanges& changes,

@@ -10,6 +10,7 @@
 #include "analysis/statistics/comparison.h"
 #include "analysis/statistics/interval.h"
 #include "analysis/statistics/parameter_analysis.h"
+#include "analysis/tables/table.h"
 #include "base/result.h"
 #include "study/study_campaigns.h"
 
@@ -18,20 +19,12 @@ namespace gauntlet {
 // The significance level of the thesis' tests (4.6.2).
 inline constexpr double kThesisLevel = 0.01;
 
-// As tables print a mean or a deviation: "0.123".
-std::string Decimal(double value);
-
-struct StudyFigure {
-  std::optional<double> number;  // none of a word, "never"
-  std::string text;              // as it is printed
-};
-// By "ANALYSIS.FIGURE", "severity.first.mean".
-using StudyFigures = std::map<std::string, StudyFigure>;
-
-struct StudyTable {
-  std::vector<std::string> headers;  // '>' in front: numbers
-  std::vector<std::vector<std::string>> rows;
-};
+// By "ANALYSIS.FIGURE", "severity.first.mean": a number, or a word such as "never".
+using StudyFigures = std::map<std::string, Cell>;
+// Of a count: a number like the others, so that one can be held against another.
+inline Cell WholeCell(std::uint64_t count) {
+  return {std::to_string(count), static_cast<double>(count)};
+}
 
 // What a study set out to show.
 struct StudyClaim {
@@ -87,7 +80,7 @@ struct ComparedSets {
 struct StudySection {
   std::string name;
   std::string title;
-  std::vector<StudyTable> tables;
+  std::vector<Table> tables;
   std::vector<std::string> sentences;
   std::optional<StudyClaim> claim;
   std::vector<JudgedRow> published;

@@ -1,6 +1,7 @@
 #include "study/study_tables.h"
 
 #include <algorithm>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -8,41 +9,21 @@
 #include "base/number_text.h"
 
 namespace gauntlet {
-namespace {
-
-struct Tally {
-  int agree = 0;
-  int differ = 0;
-  int not_judged = 0;
-  int not_computed = 0;
-};
-
-void Count(const std::vector<JudgedRow>& rows, Tally& tally) {
-  for (const JudgedRow& row : rows) {
-    if (row.verdict == "agrees") ++tally.agree;
-    if (row.verdict == "differs") ++tally.differ;
-    if (row.verdict == "not judged") ++tally.not_judged;
-    if (row.verdict == "not computed") ++tally.not_computed;
-  }
-}
-
-Tally TallyOf(const StudyReport& report) {
-  Tally tally;
-  for (const StudySection& section : report.sections) Count(section.published, tally);
-  Count(report.elsewhere, tally);
-  return tally;
-}
-
-}  // namespace
 
 std::string TallyInWords(const StudyReport& report) {
-  const Tally tally = TallyOf(report);
-  const int all = tally.agree + tally.differ + tally.not_judged + tally.not_computed;
+  std::map<std::string, int> tally;
+  int all = 0;
+  const auto count = [&](const std::vector<JudgedRow>& rows) {
+    for (const JudgedRow& row : rows) ++tally[row.verdict];
+    all += static_cast<int>(rows.size());
+  };
+  for (const StudySection& section : report.sections) count(section.published);
+  count(report.elsewhere);
   if (all == 0) return "";
   return fmt::format(
       "Of {} published figures {} agree with ours, {} differ, {} stand beside ours without being judged, and "
       "{} have no counterpart here.",
-      all, tally.agree, tally.differ, tally.not_judged, tally.not_computed);
+      all, tally["agrees"], tally["differs"], tally["not judged"], tally["not computed"]);
 }
 
 std::string TimeInWords(const StudyReport& report) {
@@ -56,26 +37,74 @@ std::string TimeInWords(const StudyReport& report) {
       killed ? " (a master was killed; how long it had lived is not known)" : "");
 }
 
-StudyTable ClaimTable(const StudyReport& report) {
-  StudyTable table{{"claim", "verdict", "figures"}, {}};
+Table ClaimTable(const StudyReport& report, bool with_figures) {
+  std::vector<Column> columns = {ForPrograms("analysis"), {"claim", "claim"}, {"verdict", "holds"}};
+  if (with_figures) columns.emplace_back("figures");
+  Table table(columns);
   for (const StudySection& section : report.sections) {
     if (!section.claim) continue;
-    table.rows.push_back({section.claim->text, section.claim->holds ? "holds" : "DOES NOT HOLD",
-                          section.sentences.empty() ? "" : section.sentences.front()});
+    const auto& [claim, holds] = *section.claim;
+    std::vector<Cell> row = {section.name, claim, {holds ? "holds" : "DOES NOT HOLD", holds}};
+    if (with_figures && !section.sentences.empty()) row.emplace_back(section.sentences.front());
+    table.AddRow(std::move(row));
   }
   return table;
 }
 
-StudyTable PartTable(const StudyReport& report) {
-  StudyTable table{{"part", ">searches", ">runs", ">distinct cases", ">CPU time of its runs"}, {}};
+Table PartTable(const StudyReport& report, bool with_all) {
+  Table table({{"part", "part"},
+               {">searches", "searches"},
+               {">runs", "runs"},
+               {">distinct cases", "distinct_cases"},
+               {">CPU time of its runs", "cpu_seconds"}});
   PartCost all{"all"};
-  for (const PartCost& part : report.parts) all += part;
   const auto add = [&](const PartCost& part) {
-    table.rows.push_back({part.part, FormatCount(part.searches), FormatCount(part.runs),
-                          FormatCount(part.distinct_cases), FormatDuration(part.cpu_seconds)});
+    table.AddRow({part.part, CountCell(part.searches), CountCell(part.runs), CountCell(part.distinct_cases),
+                  Cell(FormatDuration(part.cpu_seconds), part.cpu_seconds)});
   };
-  for (const PartCost& part : report.parts) add(part);
-  if (report.parts.size() > 1) add(all);
+  for (const PartCost& part : report.parts) {
+    add(part);
+    all += part;
+  }
+  if (with_all && report.parts.size() > 1) add(all);
+  return table;
+}
+
+Table ValueTable(const TriedParameter& parameter) {
+  Table table({{parameter.key, "value"},
+               ForPrograms("baseline"),
+               {">simulations each", "simulations"},
+               {">evolutions", "evolutions"},
+               {">median", "median"},
+               {">mean", "mean"},
+               {">A", "a?"},
+               {">95 % interval", "a_interval?"},
+               {"difference"},
+               ForPrograms("effect?"),
+               {"exceeds", "exceeds?"},
+               ForPrograms("p_two_sided?"),
+               {">p (Holm)", "p_holm?"}});
+  const Cell none = TextCell("");
+  for (const TriedValue& value : parameter.values) {
+    std::vector<Cell> row = {value.value,      value.is_baseline,         CountCell(value.simulations),
+                             value.evolutions, FitnessCell(value.median), FitnessCell(value.mean)};
+    if (value.is_baseline) {
+      row.insert(row.end(), {none, none, "baseline", none, none, none, none});
+    } else {
+      row.insert(row.end(), {FitnessCell(value.a), IntervalCell(value.interval), value.effect, value.effect,
+                             value.exceeds, value.p, DigitsCell(value.p_holm, 2)});
+    }
+    table.AddRow(std::move(row));
+  }
+  return table;
+}
+
+Table ConsistencyTable(const TuningResult& tuning) {
+  Table table(
+      {{">repeats in a set", "repeats"}, {">median A", "median_a"}, {">largest A", "max_a"}, {"difference"}});
+  for (const analysis::Consistency& one : tuning.consistency)
+    table.AddRow(
+        {one.size, FitnessCell(one.median_a), FitnessCell(one.max_a), analysis::EffectOf(one.max_a)});
   return table;
 }
 
@@ -87,11 +116,19 @@ std::string PublishedNotes::Mark(const std::string& note) {
   return fmt::format("{}", number);
 }
 
-StudyTable PublishedTable(const std::vector<JudgedRow>& rows, PublishedNotes& notes) {
-  StudyTable table{{"published in", "what", "of", ">published", ">ours", "verdict", ">note"}, {}};
+Table PublishedTable(const std::vector<JudgedRow>& rows, PublishedNotes& notes, const std::string& analysis) {
+  Table table({{"published in", "section"},
+               {"what", "quantity"},
+               {"of", "condition"},
+               {">published", "published"},
+               {">ours", "ours"},
+               {"verdict", "verdict"},
+               {">note", "note"},
+               ForPrograms("analysis")});
   for (const JudgedRow& row : rows) {
-    table.rows.push_back({row.row.section, row.row.quantity, row.row.condition, row.row.value,
-                          row.ours.empty() ? "-" : row.ours, row.verdict, notes.Mark(row.note)});
+    table.AddRow({row.row.section, row.row.quantity, row.row.condition, row.row.value,
+                  row.ours.empty() ? Cell() : row.ours, row.verdict,
+                  Cell(notes.Mark(row.note), TextValue(row.note)), TextCell(analysis)});
   }
   return table;
 }

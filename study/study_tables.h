@@ -1,5 +1,5 @@
-// What a study has found beside its sections, as tables and sentences: terminal, Markdown and pages show the
-// same.
+// What a study has found beside its sections, as tables and sentences: terminal, Markdown, JSON and pages
+// tell the same.
 #pragma once
 
 #include <string>
@@ -9,10 +9,14 @@
 
 namespace gauntlet {
 
-// What the study set out to show, whether that holds, and the figures; without rows when it claims nothing.
-StudyTable ClaimTable(const StudyReport& report);
-// What its parts have cost.
-StudyTable PartTable(const StudyReport& report);
+// What the study set out to show, whether that holds, and its figures where they are asked for; without rows
+// when it claims nothing.
+Table ClaimTable(const StudyReport& report, bool with_figures = false);
+// What its parts have cost, and all of them together.
+Table PartTable(const StudyReport& report, bool with_all = true);
+// What came of the values of a parameter. Programs are told nothing of the baseline against itself.
+Table ValueTable(const TriedParameter& parameter);
+Table ConsistencyTable(const TuningResult& tuning);
 // How long it took by the clock.
 std::string TimeInWords(const StudyReport& report);
 // How many published figures agree; "" where nothing was published.
@@ -29,7 +33,8 @@ class PublishedNotes {
   std::vector<std::string> notes_;
 };
 
-// Published figures beside ours.
-StudyTable PublishedTable(const std::vector<JudgedRow>& rows, PublishedNotes& notes);
+// Published figures beside ours, of the analysis of this name; "" = of none.
+Table PublishedTable(const std::vector<JudgedRow>& rows, PublishedNotes& notes,
+                     const std::string& analysis = "");
 
 }  // namespace gauntlet

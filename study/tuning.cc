@@ -5,11 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "base/nearest_name.h"
 #include "base/parse_number.h"
-#include "controllers/registry.h"
 #include "search/experiment/experiment_file.h"
-#include "search/experiment/schema.h"
 #include "search/search_table.h"
+#include "study/study_file.h"
 
 namespace gauntlet {
 namespace {
@@ -22,24 +22,11 @@ constexpr const char* kDefaultSizes = "1, 5, 10, 20, 50, 100";
 constexpr std::uint64_t kSeedsOfAPart = 1000;
 constexpr std::uint64_t kFirstAgain = 1'000'000;
 
-std::vector<Key> AllKeys(const Experiment& experiment) {
-  std::vector<Key> keys = BuiltInKeys();
-  const auto add = [&](std::vector<Key> more) { std::ranges::move(more, std::back_inserter(keys)); };
-  if (const auto* scenario = controllers::FindScenario(experiment)) add(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = controllers::FindController(experiment))
-    add(ControllerParameterKeys(*controller));
-  return keys;
-}
-
 // The value of a key as --set takes it.
 std::string ValueOf(const Experiment& experiment, const std::string& path) {
-  for (const Key& key : AllKeys(experiment)) {
-    if (key.path != path) continue;
-    const KeyValue value = key.get(experiment);
-    const auto* text = std::get_if<std::string>(&value);
-    return text != nullptr ? *text : ToToml(value);
-  }
-  return "";
+  const std::vector<Key> keys = AllKeysOf(experiment);
+  const Key* key = FindByName(keys, path);
+  return key == nullptr ? "" : ToSet(key->get(experiment));
 }
 
 class Expander {
@@ -47,7 +34,7 @@ class Expander {
   Expander(const StudyFileTable& table, const TuningChanges& changes, const Catalogue& catalogue)
       : table_(table), catalogue_(catalogue) {
     tuning_.experiment = changes.experiment.empty() ? table.Key("experiment") : changes.experiment;
-    for (const auto& [key, value] : table.Nested("set")) sets_.push_back(fmt::format("{}={}", key, value));
+    sets_ = table.Sets();
     sets_.insert(sets_.end(), changes.sets.begin(), changes.sets.end());
     repeats_ = changes.repeats.empty() ? table.Key("repeats") : changes.repeats;
     repeats_place_ = changes.repeats.empty() ? table.PlaceOf("repeats") + ": repeats" : "--repeats";
@@ -64,7 +51,7 @@ class Expander {
                       tuning_.experiment, search.info.name));
     }
     tuning_.baseline_part = table_.name + ".baseline";
-    TRY(AddParts(tuning_.baseline_part, baseline, {}));
+    AddParts(tuning_.baseline_part, sets_);
     const auto candidates = table_.Nested("candidates");
     if (candidates.empty()) {
       return InvalidInput(fmt::format(
@@ -98,31 +85,27 @@ class Expander {
   }
 
   // The evolutions of one candidate, and the part that simulates their populations again.
-  Status AddParts(const std::string& name, const Experiment& experiment,
-                  const std::vector<std::string>& change) {
-    StudyPart evolutions;
-    evolutions.name = name;
-    evolutions.where = table_.where;
-    evolutions.group = table_.name + ", evolutions";
-    evolutions.experiment = experiment;
+  void AddParts(const std::string& name, const std::vector<std::string>& sets) {
     const std::uint64_t first = kSeedsOfAPart * (parts_.size() / 2) + 1;
-    for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(tuning_.repeats); ++i)
-      evolutions.seeds.push_back(first + i);
-    StudyPart again = evolutions;
-    again.name = AgainPart(name);
-    again.group = table_.name + ", populations again";
-    again.kind = StudyPart::Kind::kEvaluate;
-    again.from = name;
-    again.seeds = {kFirstAgain + first};
-    std::vector<std::string> sets = sets_;
-    sets.insert(sets.end(), change.begin(), change.end());
-    std::erase_if(sets, [](const std::string& set) { return set.starts_with("search."); });
-    sets.emplace_back("search.algorithm=cases");
-    TRY(again.experiment, LoadExperiment(tuning_.experiment, sets, catalogue_));
-    again.experiment.search.replicates = 1;
-    parts_.push_back(std::move(evolutions));
-    parts_.push_back(std::move(again));
-    return Ok{};
+    const auto add = [&](const std::string& part, const std::string& group,
+                         const std::vector<std::pair<std::string, std::string>>& keys) -> StudyFileTable& {
+      StudyFileTable& table = parts_.emplace_back(StudyFileTable{"part", part, table_.where, {}});
+      table.entries.push_back({"group", fmt::format("{}, {}", table_.name, group), table_.where});
+      for (const auto& [key, value] : keys) table.entries.push_back({key, value, table_.where});
+      return table;
+    };
+    const std::string seeds = fmt::format("{}..{}", first, first + tuning_.repeats - 1);
+    StudyFileTable& evolutions =
+        add(name, "evolutions", {{"kind", "evolve"}, {"experiment", tuning_.experiment}, {"seeds", seeds}});
+    for (const std::string& set : sets) {
+      const std::size_t equals = set.find('=');
+      evolutions.entries.push_back({"set." + set.substr(0, equals), set.substr(equals + 1), table_.where});
+    }
+    add(AgainPart(name), "populations again",
+        {{"kind", "evaluate"},
+         {"from", name},
+         {"seeds", fmt::format("{}", kFirstAgain + first)},
+         {"replicates", "1"}});
   }
 
   Status AddParameter(const Experiment& baseline, const std::string& key,
@@ -153,7 +136,7 @@ class Expander {
           is_baseline ? tuning_.baseline_part : fmt::format("{}.{}={}", table_.name, key, value);
       parameter.values.push_back({value, part});
       if (is_baseline) continue;
-      TRY(AddParts(part, *changed, {fmt::format("{}={}", key, candidate)}));
+      AddParts(part, SetsWith(key, candidate));
     }
     if (!has_baseline)
       parameter.values.insert(parameter.values.begin(), {parameter.baseline, tuning_.baseline_part});
@@ -165,10 +148,14 @@ class Expander {
     return Ok{};
   }
 
-  Result<Experiment> LoadWith(const std::string& key, const std::string& value) const {
+  std::vector<std::string> SetsWith(const std::string& key, const std::string& value) const {
     std::vector<std::string> sets = sets_;
     sets.push_back(fmt::format("{}={}", key, value));
-    return LoadExperiment(tuning_.experiment, sets, catalogue_);
+    return sets;
+  }
+
+  Result<Experiment> LoadWith(const std::string& key, const std::string& value) const {
+    return LoadExperiment(tuning_.experiment, SetsWith(key, value), catalogue_);
   }
 
   const StudyFileTable& table_;
@@ -177,7 +164,7 @@ class Expander {
   std::string repeats_place_;
   std::vector<std::string> sets_;
   Tuning tuning_;
-  std::vector<StudyPart> parts_;
+  std::vector<StudyFileTable> parts_;
 };
 
 }  // namespace

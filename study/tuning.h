@@ -7,13 +7,12 @@
 
 #include "search/experiment/schema.h"
 #include "study/study.h"
-#include "study/study_file.h"
 
 namespace gauntlet {
 
 struct ExpandedTuning {
   Tuning tuning;
-  std::vector<StudyPart> parts;
+  std::vector<StudyFileTable> parts;  // as if they stood in the file
 };
 
 // Error: names what is wrong in the table or in `changes`, and what would be right.

@@ -5,6 +5,7 @@
 
 #include "base/number_text.h"
 #include "study/study_report.h"
+#include "study/study_tables.h"
 
 namespace gauntlet {
 namespace {
@@ -138,42 +139,13 @@ void Recommend(TriedParameter& parameter) {
   words += CheaperValue(parameter);
 }
 
-StudyTable TableOf(const TriedParameter& parameter) {
-  StudyTable table{{parameter.key, ">simulations each", ">evolutions", ">median", ">mean", ">A",
-                    ">95 % interval", "difference", "exceeds", ">p (Holm)"},
-                   {}};
-  for (const TriedValue& value : parameter.values) {
-    std::vector<std::string> row = {value.value, FormatCount(value.simulations),
-                                    fmt::format("{}", value.evolutions), Decimal(value.median),
-                                    Decimal(value.mean)};
-    if (value.is_baseline) {
-      row.insert(row.end(), {"", "", "baseline", "", ""});
-    } else {
-      row.insert(
-          row.end(),
-          {Decimal(value.a),
-           value.interval ? fmt::format("{:.3f} to {:.3f}", value.interval->low, value.interval->high) : "-",
-           value.effect, value.exceeds ? "yes" : "no", fmt::format("{:.2g}", value.p_holm)});
-    }
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
 void AddTables(const Tuning& tuning, const TuningResult& result, StudySection& section) {
-  for (const TriedParameter& parameter : result.parameters) section.tables.push_back(TableOf(parameter));
-  if (!result.consistency.empty()) {
-    StudyTable table{{">repeats in a set", ">median A", ">largest A", "difference"}, {}};
-    for (const analysis::Consistency& one : result.consistency) {
-      table.rows.push_back({fmt::format("{}", one.size), Decimal(one.median_a), Decimal(one.max_a),
-                            std::string(analysis::EffectOf(one.max_a))});
-    }
-    section.tables.push_back(std::move(table));
-  }
-  StudyTable recommended{{"parameter", "baseline", "recommended"}, {}};
+  for (const TriedParameter& parameter : result.parameters) section.tables.push_back(ValueTable(parameter));
+  if (!result.consistency.empty()) section.tables.push_back(ConsistencyTable(result));
+  Table recommended({"parameter", "baseline", "recommended"});
   std::string changes;
   for (const TriedParameter& one : result.parameters) {
-    recommended.rows.push_back({one.key, one.baseline, one.recommended});
+    recommended.AddRow({one.key, one.baseline, one.recommended});
     if (one.recommended != one.baseline) changes += fmt::format(" --set {}={}", one.key, one.recommended);
   }
   section.tables.push_back(std::move(recommended));
@@ -236,15 +208,10 @@ Result<StudySection> AnalyseTuning(const StudyAnalysis& analysis, StudyRuns& run
       ++next;
     }
     Recommend(parameter);
-    figures[fmt::format("{}.{}", analysis.name, parameter.key)] = {std::nullopt, parameter.recommended};
+    figures[fmt::format("{}.{}", analysis.name, parameter.key)] = parameter.recommended;
   }
   AddConsistency(baseline.values, tuning, result);
-  if (result.enough) {
-    figures[analysis.name + ".enough"] = {static_cast<double>(*result.enough),
-                                          fmt::format("{}", *result.enough)};
-  } else {
-    figures[analysis.name + ".enough"] = {std::nullopt, "not known"};
-  }
+  figures[analysis.name + ".enough"] = result.enough ? WholeCell(*result.enough) : "not known";
   AddTables(tuning, result, section);
   return section;
 }

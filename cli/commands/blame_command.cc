@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/figures/blame_figure.h"
+#include "analysis/tables/table.h"
 #include "base/parse_number.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/given_cases.h"
 #include "cli/output/output_file.h"
-#include "cli/output/table.h"
 #include "proto/json_text.h"
 #include "search/cases/case_file.h"
 #include "study/questions/answered_calls.h"

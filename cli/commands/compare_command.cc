@@ -6,12 +6,12 @@
 
 #include "analysis/figures/box_figure.h"
 #include "analysis/statistics/comparison.h"
+#include "analysis/tables/table.h"
 #include "base/printable.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/output/budget_comparison.h"
 #include "cli/output/output_file.h"
-#include "cli/output/table.h"
 #include "controllers/registry.h"
 #include "proto/json_text.h"
 #include "study/questions/search_yield.h"

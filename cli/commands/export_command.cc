@@ -5,12 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/number_text.h"
 #include "cli/argos_files.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/output/output_file.h"
-#include "cli/output/table.h"
 #include "master/campaign/campaign_summary.h"
 #include "proto/case_json.h"
 #include "proto/json_text.h"
@@ -154,8 +154,8 @@ Result<ExitCode> RunExport(CommandContext& context, const ExportCommandOptions& 
     for (const auto& [notice, of_files] : argos_files.notices)
       PrintMessage(context,
                    of_files == files ? notice : fmt::format("{} of {} files: {}", of_files, files, notice));
-    PrintMessage(context, fmt::format("wrote {} case {} into {}", FormatCount(files),
-                                      files == 1 ? "file" : "files", options.out));
+    PrintMessage(context, fmt::format("wrote {} case {} into {}", FormatCount(files), Plural(files, "file"),
+                                      options.out));
     return kExitDone;
   }
   TRY(const ExportReport report,
@@ -174,7 +174,7 @@ std::string ColumnsText() {
   std::string text;
   for (const char* name : {"runs", "cases", "trajectories", "events"}) {
     Table table({"", "", ""});
-    for (const Column& column : CommonColumns(*WhatOf(name)))
+    for (const DataColumn& column : CommonColumns(*WhatOf(name)))
       table.AddRow({column.name, column.unit, column.meaning});
     text += fmt::format("\n--what {}, the columns with their units\n{}", name, table.ToText());
   }

@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/output/output_file.h"
-#include "cli/output/table.h"
 #include "report/figures/archive_figure.h"
 #include "report/figures/campaign_figures.h"
 #include "report/figures/set_comparison.h"

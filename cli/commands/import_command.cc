@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "base/number_text.h"
 #include "base/printable.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
@@ -78,7 +79,7 @@ Result<ExitCode> RunImport(CommandContext& context, const ImportOptions& options
   TRY(const std::uint64_t written,
       WriteOutputDirectory("--dir", options.directory,
                            [&](const std::string& draft) { return WriteCases(cases, draft); }));
-  PrintMessage(context, fmt::format("wrote {} case {} into {}", written, written == 1 ? "file" : "files",
+  PrintMessage(context, fmt::format("wrote {} case {} into {}", written, Plural(written, "file"),
                                     Printable(options.directory)));
   return kExitDone;
 }

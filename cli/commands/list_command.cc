@@ -9,10 +9,11 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
-#include "cli/output/table.h"
+#include "controllers/parameter_key.h"
 #include "controllers/registry.h"
 #include "controllers/rows/row_json.h"
 #include "master/directory/plugins.h"
@@ -54,45 +55,35 @@ std::string Number(double value) {
   return fmt::format("{:.6g}", value);
 }
 
-std::string RangeOf(double min, double max) {
-  return fmt::format("{} to {}", Number(min), Number(max));
-}
-
-std::string RangeOf(const Key& key) {
+std::string RangeOf(const KeyInfo& key) {
   if (key.type == KeyType::kChoice) return "a choice";
   if (key.type == KeyType::kFlag) return "true, false";
   if (key.type == KeyType::kText) return "text";
-  return RangeOf(key.min, key.max);
+  return fmt::format("{} to {}", Number(key.min), Number(key.max));
 }
 
-std::string DescriptionOf(const Key& key) {
+std::string DescriptionOf(const KeyInfo& key) {
   if (key.type != KeyType::kChoice) return key.description;
   return fmt::format("{} ({})", fmt::join(key.choices, " | "), key.description);
 }
 
-std::string DefaultOf(const Key& key) {
-  const auto* text = std::get_if<std::string>(&key.default_value);
-  return text != nullptr ? *text : ToToml(key.default_value);
+std::string DefaultOf(const KeyInfo& key) {
+  const auto* number = std::get_if<double>(&key.default_value);
+  return number != nullptr ? Number(*number) : ToSet(key.default_value);
 }
 
-Table NewParameterTable() {
-  return Table({"parameter", ">default", "unit", "range", ""});
+template <typename Keys>
+std::string KeyTable(const Keys& keys, std::size_t indent) {
+  Table table({"parameter", ">default", "unit", "range", ""});
+  for (const KeyInfo& key : keys)
+    table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
+  return table.ToText(indent);
 }
 
 std::string ParameterTable(std::span<const controllers::ParameterInfo> parameters) {
-  Table table = NewParameterTable();
-  for (const controllers::ParameterInfo& info : parameters) {
-    table.AddRow({std::string(info.name), Number(info.default_value), std::string(info.unit),
-                  RangeOf(info.min, info.max), std::string(info.description)});
-  }
-  return table.ToText(4);
-}
-
-std::string KeyTable(const std::vector<Key>& keys, std::size_t indent) {
-  Table table = NewParameterTable();
-  for (const Key& key : keys)
-    table.AddRow({key.path, DefaultOf(key), key.unit, RangeOf(key), DescriptionOf(key)});
-  return table.ToText(indent);
+  std::vector<KeyInfo> keys;
+  for (const controllers::ParameterInfo& info : parameters) keys.push_back(controllers::KeyInfoOf("", info));
+  return KeyTable(keys, 4);
 }
 
 // What an experiment may define of a scenario that is defined by it.
@@ -200,7 +191,7 @@ Json ListOf(const Items& items, const auto& to_json) {
   return list;
 }
 
-Json KeyJson(const Key& key) {
+Json KeyJson(const KeyInfo& key) {
   Json json = {{"name", key.path}, {"type", NameOf(key.type)}, {"unit", key.unit}};
   std::visit(
       [&](const auto& value) {
@@ -244,12 +235,12 @@ Json SearchJson(const SearchInfo& search) {
           {"parameters", ListOf(KeysOf(search), KeyJson)}};
 }
 
-struct Section {
+struct Listing {
   const char* name;
   std::string (*text)();
   Json (*json)();
 };
-constexpr Section kSections[] = {
+constexpr Listing kSections[] = {
     {"experiments", ExperimentsText,
      [] { return ListOf(ListExperiments(BuiltInCatalogue()), ExperimentJson); }},
     {"scenarios", ScenariosText, [] { return ListOf(controllers::Scenarios(), RowJson); }},
@@ -274,7 +265,7 @@ Result<ExitCode> RunList(CommandContext& context, const ListOptions& options) {
   if (!options.plugins.empty()) return ListPlugins(context, options);
   std::string text;
   Json json = Json::object();
-  for (const Section& section : kSections) {
+  for (const Listing& section : kSections) {
     if (!options.section.empty() && section.name != options.section) continue;
     if (options.json) {
       json[section.name] = section.json();
@@ -293,7 +284,7 @@ void AddList(CommandParser& parser) {
   const auto [command, options] = parser.Add(
       "list", "list experiments, scenarios, controllers, searches, disturbances and all parameters", RunList);
   std::vector<std::string> names;
-  for (const Section& section : kSections) names.emplace_back(section.name);
+  for (const Listing& section : kSections) names.emplace_back(section.name);
   auto* section = command
                       .add_option("SECTION", options.section,
                                   "the section to print: experiments, scenarios, controllers, searches or "

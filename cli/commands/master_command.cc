@@ -43,7 +43,7 @@ Result<std::vector<std::string>> LengthsToChange(const MasterOptions& options, c
   std::vector<std::string> lengths;
   for (const std::string& set : typed) {
     const std::string key = set.substr(0, set.find('='));
-    if (std::ranges::count(differing.columns(), key, &Column::name) == 0) continue;
+    if (std::ranges::count(differing.columns(), key, &DataColumn::name) == 0) continue;
     if (key != RowOf(begun.experiment).info.length) return refuse(set);
     lengths.push_back(set);
   }

@@ -10,12 +10,12 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/figures/layout_strip.h"
+#include "analysis/tables/table.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/given_cases.h"
 #include "cli/output/output_file.h"
-#include "cli/output/table.h"
 #include "proto/json_text.h"
 #include "proto/run_failure.h"
 #include "study/questions/answered_calls.h"

@@ -7,12 +7,12 @@
 
 #include "analysis/figures/run/run_figure.h"
 #include "analysis/figures/run/trajectory_csv.h"
+#include "analysis/tables/table.h"
 #include "base/printable.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/output/output_file.h"
 #include "cli/output/summary.h"
-#include "cli/output/table.h"
 #include "cli/run_campaign.h"
 #include "master/campaign/verdict_text.h"
 #include "report/figures/replayed_figure.h"

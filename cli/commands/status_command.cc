@@ -3,12 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/options/stop_signal.h"
-#include "cli/output/table.h"
 #include "proto/json_text.h"
 #include "slurm/slurm_campaign.h"
 
@@ -49,8 +49,9 @@ std::string JobsText(const Json& status) {
     const std::string state = allocation["state"];
     const std::string name = allocation.value("role", "");
     table.AddRow({allocation["job"].get<std::string>() + (name.empty() ? "" : " " + name),
-                  state + (allocation["cancelled"] == true ? ", cancelled" : ""), allocation["reason"],
-                  allocation["nodes"], fmt::format("{}", allocation["workers"].get<std::uint64_t>())});
+                  state + (allocation["cancelled"] == true ? ", cancelled" : ""),
+                  allocation["reason"].get<std::string>(), allocation["nodes"].get<std::string>(),
+                  fmt::format("{}", allocation["workers"].get<std::uint64_t>())});
   }
   return "\n" + table.ToText();
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "base/number_text.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/options/stop_signal.h"
@@ -30,7 +31,7 @@ bool CancelLeftovers(CommandContext& context, const std::string& directory) {
     return false;
   }
   if (!cancelled->empty())
-    PrintMessage(context, fmt::format("cancelled job{} {}", cancelled->size() == 1 ? "" : "s",
+    PrintMessage(context, fmt::format("cancelled {} {}", Plural(cancelled->size(), "job"),
                                       fmt::join(*cancelled, ", ")));
   return true;
 }

@@ -76,9 +76,10 @@ void AddSubmit(CommandParser& parser) {
   command.add_flag("--dry-run", options.dry_run,
                    "submit nothing: print the job scripts and what sbatch --test-only says of them");
   std::string settings;
-  for (const slurm::SlurmKeyInfo& key : slurm::SlurmKeys()) {
-    settings += fmt::format("  {:24}{}{}\n", key.name, key.description,
-                            key.default_value.empty() ? "" : fmt::format(" (default {})", key.default_value));
+  for (const slurm::SlurmKey& key : slurm::SlurmKeys()) {
+    const std::string value = ToSet(key.default_value);
+    settings += fmt::format("  {:24}{}{}\n", key.path, key.description,
+                            value.empty() ? "" : fmt::format(" (default {})", value));
   }
   command.footer(
       R"(Submits the master as a job and returns. While there is work, the master submits workers and replaces lost

@@ -7,8 +7,8 @@
 
 #include "analysis/statistics/comparison.h"
 #include "analysis/statistics/proportions.h"
+#include "analysis/tables/table.h"
 #include "base/shell_quoted.h"
-#include "cli/output/table.h"
 #include "report/tables/archive_cells.h"
 #include "search/archive/failure_archive.h"
 
@@ -22,15 +22,14 @@ std::string Map(const CampaignSummary& summary) {
   const ArchiveView& archive = summary.archive;
   const CellAxis& across = archive.axes[0];
   const CellAxis& up = archive.axes[1];
-  std::vector<std::string> head = {up.metric};
-  for (int x = 0; x < across.parts; ++x) head.push_back(">" + RangeText(across, x));
-  Table table(head);
+  std::vector<Column> columns = {""};
+  for (int x = 0; x < across.parts; ++x) columns.emplace_back(">" + RangeText(across, x));
+  Table table(columns);
   for (int y = up.parts - 1; y >= 0; --y) {
-    std::vector<std::string> row = {RangeText(up, y)};
+    std::vector<Cell> row = {RangeText(up, y)};
     for (int x = 0; x < across.parts; ++x) {
       const auto here = std::ranges::find(archive.failures, std::vector<int>{x, y}, &ArchivedFailure::cell);
-      row.push_back(
-          here == archive.failures.end() ? "." : fmt::format("{}", MemberOf(summary, *here).genome.size()));
+      row.push_back(here == archive.failures.end() ? Cell(".") : MemberOf(summary, *here).genome.size());
     }
     table.AddRow(row);
   }
@@ -62,6 +61,37 @@ std::string NothingFound(const CampaignSummary& summary) {
          "something.\n";
 }
 
+// A row for each of these failures; `replay`: how its command begins.
+Table FailuresTable(const CampaignSummary& summary, const std::vector<ArchivedFailure>& failures,
+                    const std::string& replay = "") {
+  std::vector<Column> columns = {ForPrograms("cell"),         {">test case", "individual"},
+                                 {">obstacles", "obstacles"}, {">length [m]", "length"},
+                                 {">failed", "k n"},          ForPrograms("interval"),
+                                 ForPrograms("middle")};
+  for (const CellAxis& axis : summary.archive.axes) columns.emplace_back(">" + axis.metric);
+  columns.insert(columns.end(), {{">run", "run"}, {""}});
+  Table table(columns);
+  for (const ArchivedFailure& failure : failures) {
+    const PopulationMember& member = MemberOf(summary, failure);
+    const LayoutSize size = SizeOf(member.genome);
+    std::vector<Cell> row = {JsonCell(failure.cell),
+                             failure.individual,
+                             size.obstacles,
+                             DecimalCell(size.length, 1),
+                             OutOfCell(failure.failures, failure.runs),
+                             PercentCell(analysis::WilsonInterval(
+                                 static_cast<std::uint32_t>(failure.failures),
+                                 static_cast<std::uint32_t>(failure.runs), analysis::kConfidence)),
+                             JsonCell(failure.middle)};
+    for (const double value : failure.middle) row.push_back(DecimalCell(value, 2));
+    const RunId run = member.runs.empty() ? 0 : member.runs.front();
+    row.push_back(run == 0 ? Cell() : run);
+    row.emplace_back(fmt::format("{} {} --svg case-{}.svg", replay, run, failure.individual));
+    table.AddRow(row);
+  }
+  return table;
+}
+
 }  // namespace
 
 std::string ArchiveText(const CampaignSummary& summary, const HintContext& context) {
@@ -70,28 +100,13 @@ std::string ArchiveText(const CampaignSummary& summary, const HintContext& conte
   if (archive.failures.empty()) {
     return NothingFound(summary);
   }
-  std::vector<std::string> head = {">test case", ">obstacles", ">length [m]", ">failed"};
-  for (const CellAxis& axis : archive.axes) head.push_back(">" + axis.metric);
-  head.insert(head.end(), {">run", ""});
-  Table table(head);
-  for (const ArchivedFailure& failure : BySize(summary)) {
-    const PopulationMember& member = MemberOf(summary, failure);
-    const LayoutSize size = SizeOf(member.genome);
-    std::vector<std::string> row = {fmt::format("{}", failure.individual), fmt::format("{}", size.obstacles),
-                                    fmt::format("{:.1f}", size.length),
-                                    fmt::format("{} of {}", failure.failures, failure.runs)};
-    for (const double value : failure.middle) row.push_back(fmt::format("{:.2f}", value));
-    const RunId run = member.runs.empty() ? 0 : member.runs.front();
-    row.push_back(fmt::format("{}", run));
-    row.push_back(fmt::format("{} replay {} {} --svg case-{}.svg", context.program,
-                              PastedPath(context.directory), run, failure.individual));
-    table.AddRow(row);
-  }
   const std::string map = archive.axes.size() == 2 ? Map(summary) : "";
   return map +
          fmt::format("\n{} of {} cells hold a failure; the smallest of each, fewest obstacles first\n",
                      archive.failures.size(), CellsOf(archive)) +
-         table.ToText() +
+         FailuresTable(summary, BySize(summary),
+                       fmt::format("{} replay {}", context.program, PastedPath(context.directory)))
+             .ToText() +
          "  The runs that failed took part in choosing these cases; `gauntlet confirm` simulates them "
          "anew.\n";
 }
@@ -104,26 +119,10 @@ Json ArchiveJson(const CampaignSummary& summary) {
     descriptors.push_back(
         {{"metric", axis.metric}, {"min", axis.min}, {"max", axis.max}, {"parts", axis.parts}});
   }
-  Json elites = Json::array();
-  for (const ArchivedFailure& failure : archive.failures) {
-    const PopulationMember& member = MemberOf(summary, failure);
-    const auto interval =
-        analysis::WilsonInterval(static_cast<std::uint32_t>(failure.failures),
-                                 static_cast<std::uint32_t>(failure.runs), analysis::kConfidence);
-    elites.push_back({{"cell", failure.cell},
-                      {"individual", failure.individual},
-                      {"obstacles", member.genome.size()},
-                      {"length", SizeOf(member.genome).length},
-                      {"k", failure.failures},
-                      {"n", failure.runs},
-                      {"interval", {interval.low, interval.high}},
-                      {"middle", failure.middle},
-                      {"run", member.runs.empty() ? Json() : Json(member.runs.front())}});
-  }
   return {{"descriptors", std::move(descriptors)},
           {"cells", CellsOf(archive)},
           {"filled", archive.failures.size()},
-          {"elites", std::move(elites)}};
+          {"elites", FailuresTable(summary, archive.failures).ToJson()}};
 }
 
 }  // namespace gauntlet

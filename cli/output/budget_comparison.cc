@@ -12,8 +12,8 @@
 #include "analysis/statistics/multiple_tests.h"
 #include "analysis/statistics/rank_test.h"
 #include "analysis/statistics/sample.h"
+#include "analysis/tables/table.h"
 #include "base/printable.h"
-#include "cli/output/table.h"
 
 namespace gauntlet {
 namespace {
@@ -59,163 +59,136 @@ constexpr std::array kMeasures = std::to_array<Measure>({
     {"runs_until_10_cells_with_up_to_3", "runs to 10", RunsUntilCells<10>},
 });
 
-// One value for each search; what was never reached counts as one run more than there were.
-struct Values {
-  std::vector<double> all;
+// What the searches of a set come to by one measure.
+struct Measured {
+  std::vector<double>
+      values;           // one for each search; what was never reached counts as a run more than there were
   double never = 0.0;   // what stands for it
   bool reached = true;  // by all searches
+  double median = 0.0;
+  double mean = 0.0;
+  std::optional<analysis::Interval> interval = std::nullopt;  // of the mean
+  // Of the first set against this one, adjusted for their number; none of the first.
+  std::optional<double> p = std::nullopt;
 };
-Values ValuesOf(const YieldSet& set, const Measure& measure) {
-  Values values{.all = {}, .never = static_cast<double>(set.searches.front().runs + 1)};
+
+Measured MeasuredOf(const YieldSet& set, const Measure& measure) {
+  Measured measured{.values = {}, .never = static_cast<double>(set.searches.front().runs + 1)};
   for (const SearchYield& one : set.searches) {
     const std::optional<double> value = measure.of(one);
-    values.reached = values.reached && value.has_value();
-    values.all.push_back(value.value_or(values.never));
+    measured.reached = measured.reached && value.has_value();
+    measured.values.push_back(value.value_or(measured.never));
   }
-  return values;
+  const analysis::Description description = analysis::Describe(measured.values);
+  measured.median = description.median;
+  measured.mean = description.mean;
+  if (measured.reached && measured.values.size() > 1)
+    measured.interval = analysis::MeanInterval(measured.values, analysis::kConfidence);
+  return measured;
 }
 
-// Of the first set against each other one, adjusted for their number.
-std::vector<double> PValues(const std::vector<YieldSet>& sets, const Measure& measure) {
-  const Values first = ValuesOf(sets.front(), measure);
+// Of every set by one measure.
+std::vector<Measured> AllMeasured(const std::vector<YieldSet>& sets, const Measure& measure) {
+  std::vector<Measured> all;
   std::vector<double> p;
-  for (std::size_t i = 1; i < sets.size(); ++i) {
-    const Values other = ValuesOf(sets[i], measure);
-    const auto exact = analysis::ExactMannWhitney(first.all, other.all);
-    p.push_back(exact ? exact->p_two_sided : analysis::MannWhitney(first.all, other.all).p_two_sided);
+  for (const YieldSet& set : sets) {
+    const Measured& one = all.emplace_back(MeasuredOf(set, measure));
+    if (all.size() == 1) continue;
+    const auto exact = analysis::ExactMannWhitney(all.front().values, one.values);
+    p.push_back(exact ? exact->p_two_sided
+                      : analysis::MannWhitney(all.front().values, one.values).p_two_sided);
   }
-  return analysis::HolmAdjusted(p);
+  p = analysis::HolmAdjusted(p);
+  for (std::size_t i = 0; i < p.size(); ++i) all[i + 1].p = p[i];
+  return all;
 }
 
-std::string YieldNumber(double value) {
-  return fmt::format("{:.4g}", value);
+// The median for people, everything for programs.
+Cell MedianCell(const Measured& measured) {
+  Json values = Json::array();
+  for (const double value : measured.values) values.push_back(value < measured.never ? Json(value) : Json());
+  const bool reached = measured.median < measured.never;
+  Json json = {{"median", reached ? Json(measured.median) : Json()},
+               {"mean", measured.reached ? Json(measured.mean) : Json()},
+               {"mean_interval", JsonValue(IntervalCell(measured.interval).value)},
+               {"values", std::move(values)}};
+  if (measured.p) json["p"] = *measured.p;
+  return JsonCell(std::move(json), reached ? fmt::format("{:.4g}", measured.median) : "never");
 }
 
-std::string MedianText(const YieldSet& set, const Measure& measure) {
-  const Values values = ValuesOf(set, measure);
-  const double median = analysis::Describe(values.all).median;
-  return median < values.never ? YieldNumber(median) : "never";
+Cell MeanCell(const Measured& measured) {
+  if (!measured.reached) return {};
+  const int decimals = measured.mean < 100.0 ? 1 : 0;
+  if (!measured.interval) return DecimalCell(measured.mean, decimals);
+  return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", measured.mean, decimals, measured.interval->low,
+                     decimals, measured.interval->high, decimals);
 }
 
-std::string MeanText(const YieldSet& set, const Measure& measure) {
-  const Values values = ValuesOf(set, measure);
-  if (!values.reached) return "-";
-  const double mean = analysis::Describe(values.all).mean;
-  const int decimals = mean < 100.0 ? 1 : 0;
-  if (values.all.size() < 2) return fmt::format("{:.{}f}", mean, decimals);
-  const analysis::Interval interval = analysis::MeanInterval(values.all, analysis::kConfidence);
-  return fmt::format("{:.{}f} ({:.{}f} to {:.{}f})", mean, decimals, interval.low, decimals, interval.high,
-                     decimals);
+Cell PCell(const Measured& measured) {
+  return DigitsCell(*measured.p, 2);
 }
 
-struct Counts {
+// A row for each set from the number `from` on, its first cells followed by one for each measure.
+Table BudgetTable(const std::vector<YieldSet>& sets, std::vector<Column> columns,
+                  std::vector<Cell> (*first)(const YieldSet&), Cell (*cell)(const Measured&),
+                  std::size_t from = 0) {
+  std::vector<std::vector<Cell>> rows;
+  for (const YieldSet& set : sets) rows.push_back(first(set));
+  for (const Measure& measure : kMeasures) {
+    columns.emplace_back(fmt::format(">{}", measure.title), std::string(measure.key));
+    const std::vector<Measured> all = AllMeasured(sets, measure);
+    for (std::size_t i = from; i < rows.size(); ++i) rows[i].push_back(cell(all[i]));
+  }
+  Table table(std::move(columns));
+  for (std::size_t i = from; i < rows.size(); ++i) table.AddRow(std::move(rows[i]));
+  return table;
+}
+
+std::vector<Cell> SetNameOf(const YieldSet& set) {
+  return {set.name};
+}
+
+std::vector<Cell> HeadOf(const YieldSet& set) {
   std::size_t cases = 0;
   std::size_t confirmed = 0;
-};
-Counts CountsOf(const YieldSet& set) {
-  Counts counts;
   for (const SearchYield& one : set.searches) {
-    counts.cases += one.cases;
-    counts.confirmed += one.confirmed.size();
+    cases += one.cases;
+    confirmed += one.confirmed.size();
   }
-  return counts;
+  const Cell share =
+      cases == 0 ? Cell() : fmt::format("{:.1f} %", 100.0 * NumberOf(confirmed) / NumberOf(cases));
+  return {set.name, set.title,
+          Cell(fmt::format("{} x {}", set.searches.size(), set.title), set.searches.size()), cases,
+          Cell(share.text, confirmed)};
 }
 
-std::string ConfirmedText(const Counts& counts) {
-  if (counts.cases == 0) return "-";
-  return fmt::format("{:.1f} %", 100.0 * NumberOf(counts.confirmed) / NumberOf(counts.cases));
-}
-
-std::vector<std::string> Head(std::vector<std::string> head) {
-  for (const Measure& measure : kMeasures) head.push_back(fmt::format(">{}", measure.title));
-  return head;
-}
-
-std::string Medians(const std::vector<YieldSet>& sets) {
-  Table table(Head({"set", "searches", ">cases", ">confirmed"}));
-  for (const YieldSet& set : sets) {
-    const Counts counts = CountsOf(set);
-    std::vector<std::string> row = {Printable(set.name),
-                                    fmt::format("{} x {}", set.searches.size(), set.title),
-                                    fmt::format("{}", counts.cases), ConfirmedText(counts)};
-    for (const Measure& measure : kMeasures) row.push_back(MedianText(set, measure));
-    table.AddRow(row);
-  }
-  return table.ToText();
-}
-
-std::string Means(const std::vector<YieldSet>& sets) {
-  Table table(Head({"set"}));
-  for (const YieldSet& set : sets) {
-    std::vector<std::string> row = {Printable(set.name)};
-    for (const Measure& measure : kMeasures) row.push_back(MeanText(set, measure));
-    table.AddRow(row);
-  }
-  return table.ToText();
-}
-
-std::string Tests(const std::vector<YieldSet>& sets) {
-  Table table(Head({"set"}));
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t i = 1; i < sets.size(); ++i) rows.push_back({Printable(sets[i].name)});
-  for (const Measure& measure : kMeasures) {
-    const std::vector<double> p = PValues(sets, measure);
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i].push_back(fmt::format("{:.2g}", p[i]));
-  }
-  for (const std::vector<std::string>& row : rows) table.AddRow(row);
-  return table.ToText();
-}
-
-Json IntervalJson(const Values& values) {
-  if (!values.reached || values.all.size() < 2) return {};
-  const analysis::Interval interval = analysis::MeanInterval(values.all, analysis::kConfidence);
-  return {interval.low, interval.high};
-}
-
-Json MeasureJson(const YieldSet& set, const Measure& measure) {
-  const Values values = ValuesOf(set, measure);
-  const analysis::Description description = analysis::Describe(values.all);
-  Json all = Json::array();
-  for (const double value : values.all) all.push_back(value < values.never ? Json(value) : Json());
-  return {{"median", description.median < values.never ? Json(description.median) : Json()},
-          {"mean", values.reached ? Json(description.mean) : Json()},
-          {"mean_interval", IntervalJson(values)},
-          {"values", std::move(all)}};
+Table Medians(const std::vector<YieldSet>& sets) {
+  return BudgetTable(sets,
+                     {{"set", "set"},
+                      ForPrograms("search"),
+                      {"searches", "searches"},
+                      {">cases", "cases"},
+                      {">confirmed", "confirmed"}},
+                     HeadOf, MedianCell);
 }
 
 }  // namespace
 
 std::string BudgetText(const std::vector<YieldSet>& sets) {
-  const std::string runs = FormatCount(sets.front().searches.front().runs);
-  std::string text =
-      fmt::format("What {} runs of a search give, medians over the searches\n{}", runs, Medians(sets));
-  text += fmt::format("\nMeans, with their 95 % intervals (Student's t)\n{}", Means(sets));
+  std::string text = fmt::format("What {} runs of a search give, medians over the searches\n{}",
+                                 FormatCount(sets.front().searches.front().runs), Medians(sets).ToText());
+  text += fmt::format("\nMeans, with their 95 % intervals (Student's t)\n{}",
+                      BudgetTable(sets, {"set"}, SetNameOf, MeanCell).ToText());
   if (sets.size() > 1) {
-    text += fmt::format("\np of {} against each of the others (Mann-Whitney, two-sided, after Holm)\n{}",
-                        Printable(sets.front().name), Tests(sets));
+    text +=
+        fmt::format("\np of {} against each of the others (Mann-Whitney, two-sided, after Holm)\n{}",
+                    Printable(sets.front().name), BudgetTable(sets, {"set"}, SetNameOf, PCell, 1).ToText());
   }
   return text + "\n  " + Wrapped(kReading, 110, 2) + "\n";
 }
 
 Json BudgetJson(const std::vector<YieldSet>& sets) {
-  Json all = Json::array();
-  for (const YieldSet& set : sets) {
-    const Counts counts = CountsOf(set);
-    Json one = {{"set", set.name},
-                {"search", set.title},
-                {"searches", set.searches.size()},
-                {"cases", counts.cases},
-                {"confirmed", counts.confirmed}};
-    for (const Measure& measure : kMeasures) one[measure.key] = MeasureJson(set, measure);
-    all.push_back(std::move(one));
-  }
-  if (sets.size() > 1) {
-    for (const Measure& measure : kMeasures) {
-      const std::vector<double> p = PValues(sets, measure);
-      for (std::size_t i = 1; i < sets.size(); ++i) all[i][measure.key]["p"] = p[i - 1];
-    }
-  }
-  return {{"runs", sets.front().searches.front().runs}, {"sets", std::move(all)}};
+  return {{"runs", sets.front().searches.front().runs}, {"sets", Medians(sets).ToJson()}};
 }
 
 }  // namespace gauntlet

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
-#include "cli/output/table.h"
 #include "proto/json_text.h"
 #include "proto/run_failure.h"
 #include "search/cases/corpus_file.h"

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/tables/table.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
-#include "cli/output/table.h"
 #include "proto/run_failure.h"
 
 namespace gauntlet {

@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "analysis/tables/table.h"
 #include "base/duration_text.h"
-#include "cli/output/table.h"
 
 namespace gauntlet {
 namespace {

@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "analysis/tables/table.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
 #include "cli/output/archive_table.h"
 #include "cli/output/confirmation_table.h"
 #include "cli/output/summary.h"
-#include "cli/output/table.h"
 #include "master/campaign/verdict_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/run_failure.h"
@@ -150,13 +150,12 @@ std::string Members(const CampaignSummary& summary) {
 }
 
 // What to type next; `first`: rows with what is most worth it.
-std::string Hints(const HintContext& context, bool finished,
-                  const std::vector<std::vector<std::string>>& first) {
+std::string Hints(const HintContext& context, bool finished, const std::vector<std::vector<Cell>>& first) {
   const std::string directory = PastedPath(context.directory);
   Table table({"", ""});
   if (!finished)
     table.AddRow({fmt::format("{} resume {}", context.program, directory), "# go on where it stopped"});
-  for (const std::vector<std::string>& row : first) table.AddRow(row);
+  for (const std::vector<Cell>& row : first) table.AddRow(row);
   table.AddRow({fmt::format("{} show {} --json", context.program, directory), "# everything, for scripts"});
   return "\nNext commands to try\n" + table.ToText();
 }
@@ -240,7 +239,7 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& a
           (summary.archive.axes.empty() ? Members(summary) : ArchiveText(summary, context)) +
           DistinctFailuresText(answers, context.program);
 
-  std::vector<std::vector<std::string>> first;
+  std::vector<std::vector<Cell>> first;
   if (const auto members = Toughest(summary); !members.empty()) {
     const PopulationMember& best = *members.front();
     first.push_back(

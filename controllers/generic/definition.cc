@@ -1,7 +1,6 @@
 #include "controllers/generic/definition.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -11,81 +10,15 @@
 #include "base/parse_number.h"
 #include "controllers/generic/formula.h"
 #include "controllers/generic/measures.h"
-#include "controllers/registry.h"
 #include "sim/arena/color.h"
 #include "sim/arena/validity.h"
 
 namespace gauntlet::controllers::generic {
 namespace {
 
+using DefinitionKey = SettingsKey<Definition>;
+
 constexpr double kFarthest = sim::kMaxArenaSide / 2.0;  // m from the arena's centre
-constexpr std::string_view kColor = "color";            // a number inside, a name outside
-
-struct FormulaKey {
-  std::string_view name;
-  const std::vector<std::string>& (*names)();  // that it may use
-  bool required = true;
-};
-constexpr std::array kFormulas = std::to_array<FormulaKey>({
-    {"fitness", NamesAtTheEnd},
-    {"failure", NamesAtTheEnd},
-    {"reached", NamesAtAMoment, false},
-});
-
-const ParameterTable<sim::Light>& LightKeys() {
-  using L = sim::Light;
-  static const ParameterTable<L> table({
-      {"x", "m", 0, -kFarthest, kFarthest, {[](L& light, double v) { light.position.x() = v; }}, "place"},
-      {"y", "m", 0, -kFarthest, kFarthest, {[](L& light, double v) { light.position.y() = v; }}, "place"},
-      {"height", "m", 0.5, 0, 10, Into<&L::height>(), "above the floor"},
-      {"intensity", "", 3, 0, 40, Into<&L::intensity>(),
-       "ARGoS' intensity: seen up to 2.5 times as many metres away; 0 = no light sensor reads it"},
-      {kColor, "", 0, 0, sim::kColorNames.size() - 1, Into<&L::color>(), "as cameras see it"},
-  });
-  return table;
-}
-
-// `grey`: where nothing is said.
-ParameterTable<Area> AreaKeys(double grey) {
-  using A = Area;
-  return ParameterTable<A>({
-      {"x", "m", 0, -kFarthest, kFarthest, Into<&A::x>(), "of its centre"},
-      {"y", "m", 0, -kFarthest, kFarthest, Into<&A::y>(), "of its centre"},
-      {"radius", "m", 0, 0, kFarthest, Into<&A::radius>(), "of a disc"},
-      {"length", "m", 0, 0, sim::kMaxArenaSide, Into<&A::length>(), "of a rectangle, along x"},
-      {"width", "m", 0, 0, sim::kMaxArenaSide, Into<&A::width>(), "of a rectangle, along y"},
-      {"grey", "", grey, 0, 1, Into<&A::grey>(), "of the floor: 0 = black, 1 = white"},
-  });
-}
-
-struct ElementTable {
-  std::string_view name;
-  std::span<const ParameterInfo> keys;
-  // Appends the element with these resolved values.
-  std::function<void(Definition&, const sim::Parameters&)> append;
-};
-
-template <auto Member, typename Element>
-ElementTable TableOf(std::string_view name, const ParameterTable<Element>& keys) {
-  return {name, keys.infos(), [&keys](Definition& definition, const sim::Parameters& values) {
-            (definition.*Member).push_back(keys.Read(values));
-          }};
-}
-
-// Greys of source and nest: those of ARGoS' foraging example.
-const std::vector<ElementTable>& Tables() {
-  static const ParameterTable<Area> ground = AreaKeys(0.0);
-  static const ParameterTable<Area> source = AreaKeys(0.0);
-  static const ParameterTable<Area> nest = AreaKeys(0.5);
-  static const std::vector<ElementTable> tables = {
-      TableOf<&Definition::lights>("light", LightKeys()), TableOf<&Definition::ground>("ground", ground),
-      TableOf<&Definition::sources>("source", source), TableOf<&Definition::nests>("nest", nest)};
-  return tables;
-}
-
-std::string Quoted(std::string_view text) {
-  return std::string("\"").append(text).append("\"");
-}
 
 // As much of a text as fits into a message.
 std::string Beginning(const std::string& text) {
@@ -93,76 +26,145 @@ std::string Beginning(const std::string& text) {
   return text.size() <= kMost ? text : text.substr(0, kMost) + "...";
 }
 
+// `names`: that it may use.
+template <auto Member>
+DefinitionKey FormulaKey(const std::string& path, const std::vector<std::string>& (*names)(), bool required) {
+  DefinitionKey key = FieldKey<Definition, Member>(path, required ? "formula; must be given" : "formula");
+  key.check = [=](const KeyValue& value) -> std::optional<std::string> {
+    const auto& text = std::get<std::string>(value);
+    if (!required && text.empty()) return std::nullopt;
+    const Result<Formula> formula = Formula::Compile(text, names());
+    if (formula.ok()) return std::nullopt;
+    return path + " = " + QuoteToml(Beginning(text)) + ": " + formula.error().message;
+  };
+  return key;
+}
+
+const std::vector<DefinitionKey>& Formulas() {
+  static const std::vector<DefinitionKey> keys = {
+      FormulaKey<&Definition::fitness>("fitness", NamesAtTheEnd, true),
+      FormulaKey<&Definition::failure>("failure", NamesAtTheEnd, true),
+      FormulaKey<&Definition::reached>("reached", NamesAtAMoment, false)};
+  return keys;
+}
+
+// `axis`: 0 = x, 1 = y.
+SettingsKey<sim::Light> PlaceKey(const std::string& path, int axis) {
+  SettingsKey<sim::Light> key;
+  key.path = path;
+  key.unit = "m";
+  key.min = -kFarthest;
+  key.max = kFarthest;
+  key.description = "place";
+  key.get = [axis](const sim::Light& light) -> KeyValue { return light.position[axis]; };
+  key.set = [axis](sim::Light& light, const KeyValue& value) {
+    light.position[axis] = std::get<double>(value);
+  };
+  return key;
+}
+
+std::vector<SettingsKey<sim::Light>> LightKeys() {
+  using L = sim::Light;
+  return {PlaceKey("x", 0), PlaceKey("y", 1),
+          NumberKey<L, &L::height>("height", "m", 0, 10, "above the floor"),
+          NumberKey<L, &L::intensity>(
+              "intensity", "", 0, 40,
+              "ARGoS' intensity: seen up to 2.5 times as many metres away; 0 = no light sensor reads it"),
+          ChoiceKey<L, &L::color>("color", {sim::kColorNames.begin(), sim::kColorNames.end()},
+                                  "as cameras see it")};
+}
+
+std::vector<SettingsKey<Area>> AreaKeys() {
+  using A = Area;
+  return {NumberKey<A, &A::x>("x", "m", -kFarthest, kFarthest, "of its centre"),
+          NumberKey<A, &A::y>("y", "m", -kFarthest, kFarthest, "of its centre"),
+          NumberKey<A, &A::radius>("radius", "m", 0, kFarthest, "of a disc"),
+          NumberKey<A, &A::length>("length", "m", 0, sim::kMaxArenaSide, "of a rectangle, along x"),
+          NumberKey<A, &A::width>("width", "m", 0, sim::kMaxArenaSide, "of a rectangle, along y"),
+          NumberKey<A, &A::grey>("grey", "", 0, 1, "of the floor: 0 = black, 1 = white")};
+}
+
+struct List {
+  std::string name;
+  std::function<std::size_t(const Definition&)> size;
+  std::function<void(Definition&, std::size_t)> grow;  // to at least this size
+  // Of the element of that number, from 1 on, which is there when they are used.
+  std::function<std::vector<DefinitionKey>(std::size_t)> keys;
+};
+
+// `start`: an element of which nothing is said.
+template <typename Element>
+List ListOf(const std::string& name, std::vector<Element> Definition::*member, const Element& start,
+            const std::vector<SettingsKey<Element>>& keys) {
+  List list;
+  list.name = name;
+  list.size = [=](const Definition& definition) { return (definition.*member).size(); };
+  list.grow = [=](Definition& definition, std::size_t size) {
+    (definition.*member).resize(std::max((definition.*member).size(), size), start);
+  };
+  list.keys = [=](std::size_t number) {
+    std::vector<DefinitionKey> all;
+    for (const SettingsKey<Element>& key : keys) {
+      DefinitionKey& one = all.emplace_back();
+      static_cast<KeyInfo&>(one) = key;
+      one.path = name + "." + std::to_string(number) + "." + key.path;
+      one.default_value = key.get(start);
+      one.get = [=](const Definition& definition) { return key.get((definition.*member)[number - 1]); };
+      one.set = [=](Definition& definition, const KeyValue& value) {
+        key.set((definition.*member)[number - 1], value);
+      };
+    }
+    return all;
+  };
+  return list;
+}
+
+// Greys of source and nest: those of ARGoS' foraging example; intensity: of its lights.
+const std::vector<List>& Lists() {
+  static const std::vector<List> lists = {
+      ListOf("light", &Definition::lights, {.intensity = 3.0}, LightKeys()),
+      ListOf("ground", &Definition::ground, {}, AreaKeys()),
+      ListOf("source", &Definition::sources, {}, AreaKeys()),
+      ListOf("nest", &Definition::nests, {.grey = 0.5}, AreaKeys())};
+  return lists;
+}
+
 Error UnknownKey(std::string_view path) {
   std::vector<std::string_view> known;
-  for (const FormulaKey& formula : kFormulas) known.push_back(formula.name);
-  for (const ElementTable& table : Tables()) known.push_back(table.name);
+  for (const DefinitionKey& formula : Formulas()) known.push_back(formula.path);
+  for (const List& list : Lists()) known.push_back(list.name);
   return InvalidInput("[generic]: " + UnknownName("key", path, known));
 }
 
-Result<double> ColorNumber(const DefinitionValue& value) {
-  const auto* name = std::get_if<std::string>(&value);
-  const std::optional<sim::Color> color = name == nullptr ? std::nullopt : sim::ColorNamed(*name);
-  if (color) return static_cast<double>(*color);
-  std::string known;
-  for (const std::string_view one : sim::kColorNames) known.append(known.empty() ? "" : ", ").append(one);
-  const std::string given = name == nullptr ? NumberText(std::get<double>(value)) : Quoted(*name);
-  return InvalidInput("color = " + given + " is unknown, allowed " + known);
-}
-
-Status CheckArea(const sim::Parameters& area) {
-  const double radius = area.at("radius");
-  const double length = area.at("length");
-  const double width = area.at("width");
-  if (radius > 0.0 && length == 0.0 && width == 0.0) return Ok{};
-  if (radius == 0.0 && length > 0.0 && width > 0.0) return Ok{};
-  return InvalidInput("radius = " + NumberText(radius) + ", length = " + NumberText(length) + ", width = " +
-                      NumberText(width) + ": a disc has a radius, a rectangle a length and a width, in m");
-}
-
-Error IsAList(std::string_view table) {
-  const std::string name(table);
-  return InvalidInput(name + " is a list: each of it begins with [[generic." + name + "]]");
+Status CheckArea(const std::string& path, const Area& area) {
+  const bool disc = area.radius > 0.0 && area.length == 0.0 && area.width == 0.0;
+  if (disc || (area.radius == 0.0 && area.length > 0.0 && area.width > 0.0)) return Ok{};
+  return InvalidInput(path + ": radius = " + NumberText(area.radius) +
+                      ", length = " + NumberText(area.length) + ", width = " + NumberText(area.width) +
+                      ": a disc has a radius, a rectangle a length and a width, in m");
 }
 
 struct ElementPath {
-  const ElementTable* table = nullptr;
-  int number = 0;  // from 1 on
+  const List* list = nullptr;
+  std::size_t number = 0;  // from 1 on
 };
 
 // Of "light.1".
 Result<ElementPath> ReadElementPath(std::string_view path) {
   const std::size_t dot = path.find('.');
-  const std::string_view name = path.substr(0, dot);
-  const ElementTable* table = FindByName(Tables(), name);
-  if (table == nullptr) return UnknownKey(name);
-  const std::optional<int> number =
-      dot == std::string_view::npos ? std::nullopt : ParseNumber<int>(path.substr(dot + 1));
-  if (!number) return IsAList(name);
-  if (*number >= 1 && *number <= kMostElements) return ElementPath{table, *number};
+  const std::string name(path.substr(0, dot));
+  const List* list = FindByName(Lists(), name);
+  if (list == nullptr) return UnknownKey(name);
+  const std::optional<std::size_t> number =
+      dot == std::string_view::npos ? std::nullopt : ParseNumber<std::size_t>(path.substr(dot + 1));
+  if (!number) return InvalidInput(name + " is a list: each of it begins with [[generic." + name + "]]");
+  if (*number >= 1 && *number <= kMostElements) return ElementPath{list, *number};
   return InvalidInput(std::string(path) + ": a list has the places 1 to " + std::to_string(kMostElements));
 }
 
-// The value as the one parameter of that name.
-Result<sim::Parameters> Given(std::span<const ParameterInfo> keys, const std::string& key,
-                              const DefinitionValue& value) {
-  if (FindByName(keys, key) == nullptr) return InvalidInput(UnknownName("key", key, keys));
-  sim::Parameters given;
-  if (key == kColor) {
-    TRY(given[key], ColorNumber(value));
-    return given;
-  }
+std::string TextOf(const KeyValue& value) {
   const auto* number = std::get_if<double>(&value);
-  if (number == nullptr)
-    return InvalidInput(key + " = " + Quoted(std::get<std::string>(value)) + ", expected a number");
-  given[key] = *number;
-  TRY(ResolveParameters(keys, given));
-  return given;
-}
-
-std::string TextOf(const ParameterInfo& key, double value) {
-  if (key.name == kColor) return std::string(sim::kColorNames.at(static_cast<std::size_t>(value)));
-  return NumberText(value);
+  return number != nullptr ? NumberText(*number) : std::get<std::string>(value);
 }
 
 }  // namespace
@@ -177,104 +179,75 @@ sim::Vec2 Area::HalfExtents() const {
   return radius > 0.0 ? sim::Vec2(radius, radius) : sim::Vec2(length / 2.0, width / 2.0);
 }
 
-std::vector<DefinitionKey> DefinitionKeys() {
-  std::vector<DefinitionKey> keys;
-  for (const FormulaKey& formula : kFormulas)
-    keys.push_back({.path = std::string(formula.name), .required = formula.required});
-  for (const ElementTable& table : Tables()) {
-    for (const ParameterInfo& key : table.keys) {
-      keys.push_back({.path = std::string(table.name).append(".1.").append(key.name),
-                      .number = &key,
-                      .names = key.name == kColor ? std::span<const std::string_view>(sim::kColorNames)
-                                                  : std::span<const std::string_view>()});
-    }
-  }
+std::vector<KeyInfo> DefinitionKeys() {
+  std::vector<KeyInfo> keys(Formulas().begin(), Formulas().end());
+  for (const List& list : Lists()) std::ranges::copy(list.keys(1), std::back_inserter(keys));
   return keys;
 }
 
-Status DefinitionReader::Set(std::string_view path, const DefinitionValue& value) {
-  if (path.find('.') != std::string_view::npos) return SetInElement(path, value);
-  const FormulaKey* key = FindByName(kFormulas, path);
-  if (key == nullptr) return FindByName(Tables(), path) == nullptr ? UnknownKey(path) : IsAList(path);
-  const auto* number = std::get_if<double>(&value);
-  std::string text = number != nullptr ? NumberText(*number) : std::get<std::string>(value);
-  if (key->required || !text.empty()) {
-    const Result<Formula> formula = Formula::Compile(text, key->names());
-    if (!formula.ok())
-      return InvalidInput(std::string(path) + " = " + Quoted(Beginning(text)) + ": " +
-                          formula.error().message);
+Status DefinitionReader::Set(std::string_view path, const KeyValue& value) {
+  std::vector<DefinitionKey> keys = Formulas();
+  const std::size_t dot = path.rfind('.');
+  if (dot != std::string_view::npos) {
+    TRY(Begin(path.substr(0, dot)));
+    TRY(const ElementPath element, ReadElementPath(path.substr(0, dot)));
+    keys = element.list->keys(element.number);
+  } else if (FindByName(Lists(), path) != nullptr) {
+    return Begin(path);
   }
-  formulas_.insert_or_assign(std::string(path), std::move(text));
+  const DefinitionKey* key = FindByName(keys, path);
+  if (key == nullptr && dot == std::string_view::npos) return UnknownKey(path);
+  if (key == nullptr) return InvalidInput(UnknownName("key", path, keys));
+  const KeyValue typed = key->type == KeyType::kText ? KeyValue(TextOf(value)) : value;
+  if (typed.index() != key->default_value.index())
+    return InvalidInput(key->path + " = " + ToToml(typed) + ", expected " + ExpectationOf(*key));
+  if (const std::optional<std::string> wrong = CheckValue(*key, typed)) return InvalidInput(*wrong);
+  key->set(definition_, typed);
   return Ok{};
 }
 
 Status DefinitionReader::Begin(std::string_view path) {
   TRY(const ElementPath element, ReadElementPath(path));
-  elements_[element.table->name][element.number];
-  return Ok{};
-}
-
-Status DefinitionReader::SetInElement(std::string_view path, const DefinitionValue& value) {
-  const std::size_t dot = path.rfind('.');
-  TRY(const ElementPath element, ReadElementPath(path.substr(0, dot)));
-  const Result<sim::Parameters> given = Given(element.table->keys, std::string(path.substr(dot + 1)), value);
-  if (!given.ok()) return InvalidInput(std::string(path.substr(0, dot)) + ": " + given.error().message);
-  elements_[element.table->name][element.number].insert_or_assign(given->begin()->first,
-                                                                  given->begin()->second);
+  element.list->grow(definition_, element.number);
+  begun_[element.list->name].insert(element.number);
   return Ok{};
 }
 
 Result<Definition> DefinitionReader::Finish() const {
-  Definition definition;
-  for (const FormulaKey& key : kFormulas) {
-    if (!key.required || formulas_.contains(key.name)) continue;
-    return InvalidInput(
-        "[generic] " + std::string(key.name) + " is missing: a formula such as " +
-        (key.name == "failure" ? "\"largest_cluster < 0.5 * robots\"" : "\"largest_cluster / robots\""));
-  }
-  const auto formula = [&](std::string_view name) {
-    const auto found = formulas_.find(name);
-    return found == formulas_.end() ? std::string() : found->second;
-  };
-  definition.fitness = formula("fitness");
-  definition.failure = formula("failure");
-  definition.reached = formula("reached");
-  for (const auto& [name, elements] : elements_) {
-    const ElementTable& table = *FindByName(Tables(), name);
-    int expected = 1;
-    for (const auto& [number, given] : elements) {
-      const std::string what = std::string(name) + "." + std::to_string(number);
-      if (number != expected++)
-        return InvalidInput(what + " without " + std::string(name) + "." + std::to_string(expected - 1));
-      const sim::Parameters values = *ResolveParameters(table.keys, given);
-      if (values.contains("radius")) {
-        if (const Status area = CheckArea(values); !area.ok())
-          return InvalidInput(what + ": " + area.error().message);
-      }
-      table.append(definition, values);
+  if (definition_.fitness.empty())
+    return InvalidInput("[generic] fitness is missing: a formula such as \"largest_cluster / robots\"");
+  if (definition_.failure.empty())
+    return InvalidInput("[generic] failure is missing: a formula such as \"largest_cluster < 0.5 * robots\"");
+  for (const auto& [name, numbers] : begun_) {
+    std::size_t expected = 1;
+    for (const std::size_t number : numbers) {
+      if (number != expected)
+        return InvalidInput(name + "." + std::to_string(number) + " without " + name + "." +
+                            std::to_string(expected));
+      ++expected;
     }
   }
-  return definition;
+  for (const auto& [name, areas] :
+       {std::pair("ground", &definition_.ground), std::pair("source", &definition_.sources),
+        std::pair("nest", &definition_.nests)}) {
+    for (std::size_t i = 0; i < areas->size(); ++i) {
+      TRY(CheckArea(std::string(name) + "." + std::to_string(i + 1), (*areas)[i]));
+    }
+  }
+  return definition_;
 }
 
 Result<std::string> DefinitionReader::Text() const {
   TRY(Finish());
   std::string text;
-  for (const FormulaKey& key : kFormulas) {
-    const auto found = formulas_.find(key.name);
-    if (found == formulas_.end() || found->second.empty()) continue;
-    text.append(key.name).append(" = ").append(found->second).append("\n");
-  }
-  for (const ElementTable& table : Tables()) {
-    const auto elements = elements_.find(table.name);
-    if (elements == elements_.end()) continue;
-    for (const auto& [number, given] : elements->second) {
-      const sim::Parameters values = *ResolveParameters(table.keys, given);
-      for (const ParameterInfo& key : table.keys) {
-        text.append(table.name).append(".").append(std::to_string(number)).append(".").append(key.name);
-        text.append(" = ").append(TextOf(key, values.at(std::string(key.name)))).append("\n");
-      }
-    }
+  const auto add = [&](const DefinitionKey& key) {
+    const std::string value = TextOf(key.get(definition_));
+    if (!value.empty()) text.append(key.path).append(" = ").append(value).append("\n");
+  };
+  std::ranges::for_each(Formulas(), add);
+  for (const List& list : Lists()) {
+    for (std::size_t number = 1; number <= list.size(definition_); ++number)
+      std::ranges::for_each(list.keys(number), add);
   }
   return text;
 }
@@ -287,12 +260,12 @@ Result<std::vector<DefinitionEntry>> EntriesOf(std::string_view text) {
     text.remove_prefix(std::min(end + 1, text.size()));
     const std::size_t equals = line.find(" = ");
     if (equals == std::string_view::npos)
-      return InvalidInput("the line " + Quoted(line) + " of a definition is no NAME = VALUE");
+      return InvalidInput("the line " + QuoteToml(line) + " of a definition is no NAME = VALUE");
     const std::string path(line.substr(0, equals));
     const std::string value(line.substr(equals + 3));
     const std::optional<double> number = ParseNumber<double>(value);
-    const bool formula = FindByName(kFormulas, path) != nullptr;
-    entries.emplace_back(path, number && !formula ? DefinitionValue(*number) : DefinitionValue(value));
+    const bool formula = FindByName(Formulas(), path) != nullptr;
+    entries.emplace_back(path, number && !formula ? KeyValue(*number) : KeyValue(value));
   }
   return entries;
 }

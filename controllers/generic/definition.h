@@ -3,16 +3,17 @@
 // sim::RunSpec::definition as one line for each value: "light.1.x = 1.5".
 #pragma once
 
+#include <cstddef>
 #include <map>
-#include <span>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "base/key.h"
 #include "base/result.h"
-#include "controllers/parameters.h"
+#include "sim/geometry/vec2.h"
 #include "sim/robot/surroundings.h"
 
 namespace gauntlet::controllers::generic {
@@ -41,28 +42,21 @@ struct Definition {
   std::vector<Area> nests;
 };
 
-inline constexpr int kMostElements = 100;  // lights, or areas of a kind
+inline constexpr std::size_t kMostElements = 100;  // lights, or areas of a kind
 
-// Every value is a number, but for formulas and colours.
-using DefinitionValue = std::variant<double, std::string>;
-using DefinitionEntry = std::pair<std::string, DefinitionValue>;
+// What can be defined, for who lists it: "fitness", and of an element of a list "light.1.x". Formulas are
+// texts.
+std::vector<KeyInfo> DefinitionKeys();
 
-// What can be defined, for who lists it.
-struct DefinitionKey {
-  std::string path;                       // "fitness"; of an element of a list "light.1.x"
-  const ParameterInfo* number = nullptr;  // nullptr: a formula
-  // What stands for the numbers 0, 1, ...; empty where a number is given.
-  std::span<const std::string_view> names = {};
-  bool required = false;
-};
-std::vector<DefinitionKey> DefinitionKeys();
+// A path and its value: a number, but for formulas and colours, which are texts. A formula may be a number.
+using DefinitionEntry = std::pair<std::string, KeyValue>;
 
 // Takes the values of a definition one by one; of those of one path the last counts.
 class DefinitionReader {
  public:
   // Path: "fitness", "light.1.x". Error: what is wrong with the value or the path and what would be right;
   // for the caller to say where it stands.
-  Status Set(std::string_view path, const DefinitionValue& value);
+  Status Set(std::string_view path, const KeyValue& value);
   // An element of a list, "light.1", which may keep all its defaults. Errors likewise.
   Status Begin(std::string_view path);
   // Error: what is missing, or contradicts something else.
@@ -71,10 +65,8 @@ class DefinitionReader {
   Result<std::string> Text() const;
 
  private:
-  Status SetInElement(std::string_view path, const DefinitionValue& value);
-
-  std::map<std::string, std::string, std::less<>> formulas_;
-  std::map<std::string_view, std::map<int, sim::Parameters>> elements_;  // by table and number
+  Definition definition_;
+  std::map<std::string, std::set<std::size_t>> begun_;  // by list, the numbers of its elements
 };
 
 // The values in the text of a definition, in its order; for who writes experiments. Error: it is none.

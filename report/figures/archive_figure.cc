@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "analysis/tables/table.h"
 #include "controllers/registry.h"
 #include "report/tables/archive_cells.h"
-#include "report/tables/data_table.h"
 #include "search/archive/failure_archive.h"
 #include "search/search_setup.h"
 
@@ -59,17 +59,14 @@ analysis::LayoutGrid GridOf(const CampaignSummary& summary, const Experiment& ex
 
 std::string CsvOf(const CampaignSummary& summary) {
   const ArchiveView& archive = summary.archive;
-  std::vector<std::string> columns = {"column",   "row",    "test case", "obstacles",
-                                      "length_m", "failed", "runs"};
-  for (const CellAxis& axis : archive.axes) columns.push_back(axis.metric);
-  std::vector<std::vector<Cell>> rows;
+  Table table({"column", "row", "test case", "obstacles", "length_m", "failed", "runs",
+               archive.axes[0].metric, archive.axes[1].metric});
   for (const ArchivedFailure& failure : archive.failures) {
     const LayoutSize size = SizeOf(MemberOf(summary, failure).genome);
-    rows.push_back({std::int64_t{failure.cell[0]}, std::int64_t{failure.cell[1]}, failure.individual,
-                    static_cast<std::uint64_t>(size.obstacles), size.length, std::int64_t{failure.failures},
-                    std::int64_t{failure.runs}, failure.middle[0], failure.middle[1]});
+    table.AddRow({failure.cell[0], failure.cell[1], failure.individual, size.obstacles, size.length,
+                  failure.failures, failure.runs, failure.middle[0], failure.middle[1]});
   }
-  return CsvText(columns, rows);
+  return table.ToCsv();
 }
 
 }  // namespace

@@ -7,47 +7,45 @@
 #include "analysis/figures/run/run_annotations.h"
 #include "analysis/figures/run/swarm_motion.h"
 #include "analysis/figures/run/trajectory_csv.h"
-#include "report/tables/data_table.h"
+#include "analysis/tables/table.h"
 
 namespace gauntlet {
 namespace {
 
 std::string LinesCsv(const analysis::LineFigure& figure) {
-  std::vector<std::vector<Cell>> rows;
+  Table table({"line", "meaning", figure.x_name, "value", "lowest", "highest"});
   for (const analysis::LinePanel& panel : figure.panels) {
     for (const analysis::FigureLine& line : panel.lines) {
       for (std::size_t i = 0; i < line.x.size(); ++i) {
         const bool band = !line.low.empty();
-        rows.push_back({line.name, panel.axis_name, line.x[i], NumberCell(line.y[i]),
-                        band ? NumberCell(line.low[i]) : Cell(), band ? NumberCell(line.high[i]) : Cell()});
+        table.AddRow({line.name, panel.axis_name, line.x[i], line.y[i], band ? Cell(line.low[i]) : Cell(),
+                      band ? Cell(line.high[i]) : Cell()});
       }
     }
   }
-  return CsvText({"line", "meaning", figure.x_name, "value", "lowest", "highest"}, rows);
+  return table.ToCsv();
 }
 
 std::string MapCsv(const RunMap& map) {
-  std::vector<std::vector<Cell>> rows;
+  Table table({map.down_name.empty() ? "row" : map.down_name,
+               map.across_name.empty() ? "column" : map.across_name, "runs", "toughest run"});
   for (std::size_t row = 0; row < map.rows.size(); ++row) {
     for (std::size_t column = 0; column < map.columns.size(); ++column) {
       const MapCell& cell = map.cells[row][column];
-      rows.push_back(
+      table.AddRow(
           {map.rows[row], map.columns[column], cell.runs, cell.toughest == 0 ? Cell() : Cell(cell.toughest)});
     }
   }
-  return CsvText({map.down_name.empty() ? "row" : map.down_name,
-                  map.across_name.empty() ? "column" : map.across_name, "runs", "toughest run"},
-                 rows);
+  return table.ToCsv();
 }
 
 std::string StatesCsv(const analysis::RunFigure& figure) {
   const analysis::RobotStates states = analysis::StatesOf(figure.result);
-  std::vector<std::vector<Cell>> rows;
+  Table table({"robot", "state", "begin_s", "end_s"});
   for (const analysis::StateSpell& spell : states.spells) {
-    rows.push_back({std::int64_t{spell.robot}, states.names[static_cast<std::size_t>(spell.state)],
-                    spell.begin, spell.end});
+    table.AddRow({spell.robot, states.names[static_cast<std::size_t>(spell.state)], spell.begin, spell.end});
   }
-  return CsvText({"robot", "state", "begin_s", "end_s"}, rows);
+  return table.ToCsv();
 }
 
 NamedFigure ProgressFigure(const SearchCourse& course, const std::string& name) {

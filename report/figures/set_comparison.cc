@@ -7,7 +7,7 @@
 
 #include "analysis/figures/box_figure.h"
 #include "analysis/statistics/multiple_tests.h"
-#include "report/tables/data_table.h"
+#include "analysis/tables/table.h"
 
 namespace gauntlet {
 namespace {
@@ -60,14 +60,13 @@ std::string DrawSets(const std::string& title, const std::string& outcome, const
 }
 
 std::string SetsCsv(const std::string& metric, const std::vector<analysis::ComparedSet>& sets) {
-  std::vector<std::vector<Cell>> rows;
+  Table table({"set", "unit", metric});
   for (const analysis::ComparedSet& set : sets) {
     for (std::size_t unit = 0; unit < set.clusters.size(); ++unit) {
-      for (const double value : set.clusters[unit])
-        rows.push_back({set.name, std::uint64_t{unit + 1}, NumberCell(value)});
+      for (const double value : set.clusters[unit]) table.AddRow({set.name, unit + 1, value});
     }
   }
-  return CsvText({"set", "unit", metric}, rows);
+  return table.ToCsv();
 }
 
 NamedFigure FigureOf(const SetComparison& comparison) {

@@ -6,9 +6,10 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/tuning_figure.h"
+#include "analysis/tables/table.h"
 #include "base/number_text.h"
 #include "report/figures/set_comparison.h"
-#include "report/tables/data_table.h"
+#include "study/study_tables.h"
 
 namespace gauntlet {
 namespace {
@@ -36,26 +37,19 @@ std::string DrawRobustnessOf(const StudySection& section) {
 }
 
 std::string RobustnessCsv(const TuningResult& tuning) {
-  std::vector<std::vector<Cell>> rows;
+  Table table({"parameter", "value", "baseline", "evolutions", "simulations each", "median", "mean", "A",
+               "A low", "A high", "p (Holm)"});
   for (const TriedParameter& parameter : tuning.parameters) {
     for (const TriedValue& value : parameter.values) {
-      std::vector<Cell> row = {parameter.key,         value.value,
-                               value.is_baseline,     std::uint64_t{value.evolutions},
-                               value.simulations,     NumberCell(value.median),
-                               NumberCell(value.mean)};
-      if (value.is_baseline) {
-        row.resize(row.size() + 4);
-      } else {
-        row.insert(row.end(),
-                   {NumberCell(value.a), value.interval ? NumberCell(value.interval->low) : Cell(),
-                    value.interval ? NumberCell(value.interval->high) : Cell(), NumberCell(value.p_holm)});
-      }
-      rows.push_back(std::move(row));
+      const bool compared = !value.is_baseline;
+      const bool interval = compared && value.interval;
+      table.AddRow({parameter.key, value.value, value.is_baseline, value.evolutions, value.simulations,
+                    value.median, value.mean, compared ? Cell(value.a) : Cell(),
+                    interval ? Cell(value.interval->low) : Cell(),
+                    interval ? Cell(value.interval->high) : Cell(), compared ? Cell(value.p_holm) : Cell()});
     }
   }
-  return CsvText({"parameter", "value", "baseline", "evolutions", "simulations each", "median", "mean", "A",
-                  "A low", "A high", "p (Holm)"},
-                 rows);
+  return table.ToCsv();
 }
 
 std::string DrawConsistencyOf(const StudySection& section) {
@@ -64,13 +58,6 @@ std::string DrawConsistencyOf(const StudySection& section) {
       enough ? fmt::format("Consistency analysis: {} repeats are enough", *enough)
              : std::string("Consistency analysis: more repeats are needed than were looked at");
   return analysis::DrawConsistency({section.title, outcome, section.tuning->consistency});
-}
-
-std::string ConsistencyCsv(const TuningResult& tuning) {
-  std::vector<std::vector<Cell>> rows;
-  for (const analysis::Consistency& one : tuning.consistency)
-    rows.push_back({std::uint64_t{one.size}, NumberCell(one.median_a), NumberCell(one.max_a)});
-  return CsvText({"repeats in a set", "median A", "largest A"}, rows);
 }
 
 std::vector<NamedFigure> TuningFigures(const StudySection& section, const std::string& suffix) {
@@ -92,7 +79,7 @@ std::vector<NamedFigure> TuningFigures(const StudySection& section, const std::s
        "evolutions in a set, the nearer A comes to 0.5. From the size on at which the largest A "
        "(red) stays within the grey band, a large difference is no matter of chance.",
        [&section] { return DrawConsistencyOf(section); },
-       [&section] { return ConsistencyCsv(*section.tuning); }});
+       [&section] { return ConsistencyTable(*section.tuning).ToCsv(); }});
   return figures;
 }
 

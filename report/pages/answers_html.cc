@@ -29,25 +29,22 @@ std::string CaseLink(const CampaignPages& pages, std::size_t number, const std::
 
 std::string RowsOf(const CampaignPages& pages, std::size_t number,
                    const std::vector<DistinctFailure>& failures) {
-  std::vector<std::vector<std::string>> rows;
+  Table table({">", "what happens", "toughest case", ">fails in", ">probability (95 %)", ">cases", "smallest",
+               "confirmed"});
   for (const DistinctFailure& failure : failures) {
-    if (rows.size() == kMostFailures) break;
+    if (table.size() == kMostFailures) break;
     const Confirmation& toughest = *failure.cases.front();
-    rows.push_back(
-        {fmt::format("{}", rows.size() + 1), Html(failure.what),
-         CaseLink(pages, number, toughest.name, toughest.run), OutOf(toughest.tally),
-         fmt::format("{:.0f} to {:.0f} %", 100.0 * toughest.interval.low, 100.0 * toughest.interval.high),
-         FormatCount(failure.cases.size()),
-         failure.smallest == nullptr
-             ? "-"
-             : CaseLink(pages, number,
-                        Counted(failure.smallest->document.test_case.obstacles.size(), "obstacle"),
-                        failure.smallest->run),
-         failure.confirmed ? "yes" : "no"});
+    const SmallestLayout* smallest = failure.smallest;
+    table.AddRow({table.size() + 1, failure.what, LinkCell(toughest.name, pages.LinkTo(number, toughest.run)),
+                  OutOfCell(toughest.tally.failures, toughest.tally.runs()), PercentCell(toughest.interval),
+                  CountCell(failure.cases.size()),
+                  smallest == nullptr
+                      ? Cell()
+                      : LinkCell(Counted(smallest->document.test_case.obstacles.size(), "obstacle"),
+                                 pages.LinkTo(number, smallest->run)),
+                  failure.confirmed});
   }
-  return TableHtml({">", "what happens", "toughest case", ">fails in", ">probability (95 %)", ">cases",
-                    "smallest", "confirmed"},
-                   rows);
+  return table.ToHtml();
 }
 
 // "24 of 30"
@@ -95,13 +92,6 @@ bool IsOf(const CampaignFacts& facts, RunId run, const CaseFacts& of_case) {
   const auto found = std::ranges::find(facts.runs, run, &RunFacts::id);
   return found != facts.runs.end() && found->search == of_case.search &&
          found->individual == of_case.individual;
-}
-
-std::string PictureHtml(const std::string& svg, const std::string& title, const std::string& reading) {
-  return fmt::format(
-      "<figure><div class=\"scroll\"><img alt=\"{}\" "
-      "src=\"{}\"></div>\n<figcaption>{}</figcaption></figure>\n",
-      Html(title), DataUri(svg), Html(reading));
 }
 
 }  // namespace

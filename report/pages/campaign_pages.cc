@@ -9,6 +9,10 @@ bool CampaignPages::HasPage(RunId run) const {
   return std::ranges::any_of(shown, [run](const ShownRun& one) { return one.report.stored.id == run; });
 }
 
+std::string CampaignPages::LinkTo(std::size_t number, RunId run) const {
+  return HasPage(run) ? "#" + IdOfRun(number, run) : "";
+}
+
 Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown) {
   TRY(CampaignFacts facts, ReadFacts(dir));
   CampaignPages pages{.facts = std::move(facts), .courses = {}, .maps = {}, .shown = {}};

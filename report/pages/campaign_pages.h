@@ -22,6 +22,8 @@ struct CampaignPages {
   bool every_run = false;  // others than those shown can be had too: pages that are served
 
   bool HasPage(RunId run) const;
+  // "#run-0-981", of the campaign of this number; "" where the run has no page.
+  std::string LinkTo(std::size_t number, RunId run) const;
 };
 
 // Error: those of ReadFacts and ShowRuns.

@@ -32,24 +32,23 @@ std::string ConfirmationText(const std::optional<Confirmation>& confirmation) {
 std::string RunFactsHtml(const CampaignFacts& facts, const ShownRun& shown) {
   const StoredRun& run = shown.report.stored;
   const sim::RunResult& result = shown.report.replayed;
-  std::vector<std::pair<std::string, std::string>> rows;
-  rows.emplace_back("outcome", Html(analysis::DescribeOutcome(shown.figure)));
-  if (!result.failure.label.empty()) rows.emplace_back("failure type", Html(result.failure.label));
-  rows.emplace_back("fitness", result.verdict == sim::Verdict::kCompleted
-                                   ? fmt::format("{:.3f}", result.fitness)
-                                   : Html(NameOf(result.verdict)));
+  Table table({"", ""});
+  table.AddRow({"outcome", analysis::DescribeOutcome(shown.figure)});
+  table.AddRow({"failure type", result.failure.label});
+  table.AddRow({"fitness", result.verdict == sim::Verdict::kCompleted ? FormatFitness(result.fitness)
+                                                                      : NameOf(result.verdict)});
   if (const CaseFacts* of_case = CaseOf(facts, run)) {
-    rows.emplace_back("test case", Html(fmt::format("{} {}", of_case->individual, of_case->name)));
-    rows.emplace_back("its runs",
-                      fmt::format("{}, of them {} total failures", of_case->runs, of_case->total_failures));
-    rows.emplace_back("confirmed", ConfirmationText(of_case->confirmation));
-    rows.emplace_back("born in generation", fmt::format("{}", of_case->born));
-    rows.emplace_back("obstacles", fmt::format("{}", of_case->obstacles));
+    table.AddRow({"test case", fmt::format("{} {}", of_case->individual, of_case->name)});
+    table.AddRow(
+        {"its runs", fmt::format("{}, of them {} total failures", of_case->runs, of_case->total_failures)});
+    table.AddRow({"confirmed", ConfirmationText(of_case->confirmation)});
+    table.AddRow({"born in generation", of_case->born});
+    table.AddRow({"obstacles", of_case->obstacles});
   }
-  rows.emplace_back("seed", fmt::format("{}", run.seed));
-  rows.emplace_back("result hash", fmt::format("{:016x}", run.hash));
-  for (const auto& [name, value] : shown.figure.metrics) rows.emplace_back(Html(name), Html(value));
-  return FactsHtml(rows);
+  table.AddRow({"seed", run.seed});
+  table.AddRow({"result hash", fmt::format("{:016x}", run.hash)});
+  for (const auto& [name, value] : shown.figure.metrics) table.AddRow({name, value});
+  return table.ToHtml();
 }
 
 std::string CommandsHtml(const CampaignFacts& facts, RunId id) {

@@ -9,31 +9,28 @@ namespace gauntlet {
 namespace {
 
 std::string PairsTable(const SetComparison& comparison) {
-  std::vector<std::vector<std::string>> rows;
+  Table table({"first", "second", ">A", "95 % interval", "effect", ">p", ">p, Holm"});
   for (const ComparedPair& pair : comparison.pairs) {
     const analysis::Comparison& c = pair.comparison;
-    const auto& interval = c.cluster_interval ? c.cluster_interval : c.interval;
-    rows.push_back({Html(comparison.sets[pair.first].values.name),
-                    Html(comparison.sets[pair.second].values.name), fmt::format("{:.3f}", c.test.a),
-                    interval ? fmt::format("{:.3f} to {:.3f}", interval->low, interval->high) : "-",
-                    Html(c.effect), fmt::format("{:.2g}", c.p_two_sided),
-                    fmt::format("{:.2g}", pair.p_adjusted)});
+    table.AddRow({comparison.sets[pair.first].values.name, comparison.sets[pair.second].values.name,
+                  FitnessCell(c.test.a), IntervalCell(c.cluster_interval ? c.cluster_interval : c.interval),
+                  c.effect, DigitsCell(c.p_two_sided, 2), DigitsCell(pair.p_adjusted, 2)});
   }
-  return TableHtml({"first", "second", ">A", "95 % interval", "effect", ">p", ">p, Holm"}, rows);
+  return table.ToHtml();
 }
 
 std::string SetsTable(const SetComparison& comparison) {
-  std::vector<std::vector<std::string>> rows;
+  Table table({"set", ">runs", ">units", ">mean", ">median"});
   for (const RunSet& set : comparison.sets) {
     std::vector<double> values;
     for (const auto& cluster : set.values.clusters)
       values.insert(values.end(), cluster.begin(), cluster.end());
     const analysis::Description d = analysis::Describe(values);
-    rows.push_back({Html(set.values.name), FormatCount(d.n),
-                    fmt::format("{} ({})", set.values.clusters.size(), Html(set.unit)),
-                    fmt::format("{:.3f}", d.mean), fmt::format("{:.3f}", d.median)});
+    table.AddRow({set.values.name, CountCell(d.n),
+                  fmt::format("{} ({})", set.values.clusters.size(), set.unit), FitnessCell(d.mean),
+                  FitnessCell(d.median)});
   }
-  return TableHtml({"set", ">runs", ">units", ">mean", ">median"}, rows);
+  return table.ToHtml();
 }
 
 std::string BoxesHtml(const SetComparison& comparison) {

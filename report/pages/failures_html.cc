@@ -72,15 +72,12 @@ std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
 
 std::string CasesTable(const CampaignPages& pages, std::size_t number) {
   const CampaignFacts& facts = pages.facts;
-  std::vector<std::vector<std::string>> rows;
+  Table table({">case", "name", ">mean fitness", ">runs", ">total failures", ">toughest run"});
   for (const CaseFacts& one : facts.cases) {
-    if (rows.size() == kMostCases) break;
-    std::string run = one.toughest == 0 ? "-" : fmt::format("{}", one.toughest);
-    if (pages.HasPage(one.toughest))
-      run = fmt::format("<a href=\"#{}\">{}</a>", IdOfRun(number, one.toughest), run);
-    rows.push_back({fmt::format("{}", one.individual), Html(one.name),
-                    one.completed == 0 ? "-" : fmt::format("{:.3f}", one.mean_fitness), FormatCount(one.runs),
-                    FormatCount(one.total_failures), run});
+    if (table.size() == kMostCases) break;
+    const Cell run = one.toughest == 0 ? Cell() : one.toughest;
+    table.AddRow({one.individual, one.name, FitnessCell(one.mean_fitness), CountCell(one.runs),
+                  CountCell(one.total_failures), LinkCell(run, pages.LinkTo(number, one.toughest))});
   }
   const std::string sentence =
       "A row for each test case, the toughest first: its number, how its runs ended, and its toughest run. A "
@@ -88,8 +85,7 @@ std::string CasesTable(const CampaignPages& pages, std::size_t number) {
   return fmt::format(
       "<h3>Test cases</h3>\n<p>{}</p>\n<div class=\"all-cases\" data-campaign=\"{}\">\n<p class=\"soft\">The "
       "toughest {} of {}.</p>{}</div>\n",
-      sentence, number, rows.size(), FormatCount(facts.cases.size()),
-      TableHtml({">case", "name", ">mean fitness", ">runs", ">total failures", ">toughest run"}, rows));
+      sentence, number, table.size(), FormatCount(facts.cases.size()), table.ToHtml());
 }
 
 }  // namespace

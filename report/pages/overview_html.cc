@@ -21,10 +21,6 @@ namespace {
 constexpr std::size_t kCoursesAtOnce = 3;
 constexpr std::size_t kMostBlocks = 12;  // of a search's course
 
-std::string Fitness(double value) {
-  return std::isfinite(value) ? fmt::format("{:.3f}", value) : "-";
-}
-
 std::string TimeText(std::int64_t unix_ms) {
   return unix_ms == 0 ? "" : fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(unix_ms / 1000));
 }
@@ -45,40 +41,43 @@ std::string TestedHtml(const CampaignFacts& facts) {
   const auto* controller = controllers::FindController(experiment);
   const SearchRow& search = RowOf(experiment);
   const CampaignSummary& summary = facts.summary;
-  std::string failed = FormatCount(summary.total_failures);
-  return FactsHtml(
-      {{"scenario", fmt::format("{}{}", Html(experiment.scenario),
-                                scenario == nullptr ? "" : ": " + Html(scenario->description))},
-       {"controller under test",
-        fmt::format("{}{}", Html(experiment.controller),
-                    controller == nullptr ? "" : ": " + Html(controller->description))},
-       {"search",
-        facts.plans.size() == 1
-            ? Html(fmt::format("{}: {}", search.title, search.plan == nullptr ? "" : search.plan(experiment)))
-            : fmt::format("{} searches in one campaign", facts.plans.size())},
-       {"budget", fmt::format("{} runs, {} different test cases", FormatCount(summary.runs_done),
-                              FormatCount(summary.distinct_individuals))},
-       {"fitness at the end",
-        fmt::format("best {}, mean {}, worst {} (lower = tougher)", Fitness(summary.best_fitness),
-                    Fitness(summary.mean_fitness), Fitness(summary.worst_fitness))},
-       {"total failures", failed},
-       {"state", summary.finished ? "finished" : "not finished"}});
+  const auto described = [](const std::string& name, const auto* row) {
+    return row == nullptr ? name : fmt::format("{}: {}", name, row->description);
+  };
+  Table table({"", ""});
+  table.AddRow({"scenario", described(experiment.scenario, scenario)});
+  table.AddRow({"controller under test", described(experiment.controller, controller)});
+  table.AddRow({"search", facts.plans.size() == 1
+                              ? fmt::format("{}: {}", search.title,
+                                            search.plan == nullptr ? "" : search.plan(experiment))
+                              : fmt::format("{} searches in one campaign", facts.plans.size())});
+  table.AddRow({"budget", fmt::format("{} runs, {} different test cases", FormatCount(summary.runs_done),
+                                      FormatCount(summary.distinct_individuals))});
+  table.AddRow(
+      {"fitness at the end",
+       fmt::format("best {}, mean {}, worst {} (lower = tougher)", FormatFitness(summary.best_fitness),
+                   FormatFitness(summary.mean_fitness), FormatFitness(summary.worst_fitness))});
+  table.AddRow({"total failures", CountCell(summary.total_failures)});
+  table.AddRow({"state", summary.finished ? "finished" : "not finished"});
+  return table.ToHtml();
 }
 
 std::string ProvenanceHtml(const CampaignFacts& facts) {
   std::vector<std::string> seeds;
   for (const SearchPlan& plan : facts.plans) seeds.push_back(fmt::format("{}", plan.experiment.seed));
   const CampaignHistory& history = facts.history;
-  return FactsHtml(
-      {{"made by", Html(fmt::format("gauntlet {}", facts.software_version))},
-       {"golden hashes", Html(facts.golden_hashes)},
-       {facts.plans.size() == 1 ? "seed" : "seeds", Html(Listed(seeds))},
-       {"hosts of workers", Html(Listed(history.hosts))},
-       {"created", TimeText(history.created_unix_ms)},
-       {"last event", TimeText(history.last_unix_ms)},
-       {"time served", fmt::format("{} in {} {}", FormatDuration(history.served_seconds), history.sessions,
-                                   history.sessions == 1 ? "session" : "sessions")},
-       {"state hash", Html(facts.summary.state_hash)}});
+  Table table({"", ""});
+  table.AddRow({"made by", fmt::format("gauntlet {}", facts.software_version)});
+  table.AddRow({"golden hashes", facts.golden_hashes});
+  table.AddRow({facts.plans.size() == 1 ? "seed" : "seeds", Listed(seeds)});
+  table.AddRow({"hosts of workers", Listed(history.hosts)});
+  table.AddRow({"created", TimeText(history.created_unix_ms)});
+  table.AddRow({"last event", TimeText(history.last_unix_ms)});
+  table.AddRow(
+      {"time served", fmt::format("{} in {} {}", FormatDuration(history.served_seconds), history.sessions,
+                                  history.sessions == 1 ? "session" : "sessions")});
+  table.AddRow({"state hash", facts.summary.state_hash});
+  return table.ToHtml();
 }
 
 // The command that makes the same campaign again; "" where there is no single one.
@@ -110,22 +109,15 @@ std::string CommandsHtml(const CampaignFacts& facts) {
 
 // A search's course in numbers: the first part, the last, and some at even distances between them.
 std::string CourseTable(const SearchCourse& course) {
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t repeat = 0; repeat < course.repeats.size() && repeat < 1; ++repeat) {
-    const std::vector<CourseBlock>& blocks = course.repeats[repeat];
-    const std::size_t gaps = blocks.size() - 1;
-    const std::size_t shown = std::min(gaps, kMostBlocks - 1);
-    for (std::size_t i = 0; i <= shown; ++i) {
-      const CourseBlock& block = blocks[shown == 0 ? 0 : (i * gaps + shown / 2) / shown];
-      rows.push_back({FormatCount(block.runs), Fitness(block.best), Fitness(block.mean),
-                      fmt::format("{:.1f} %", 100.0 * block.failure_share)});
-    }
+  Table table({">runs spent", ">toughest fitness", ">mean fitness", ">total failures"});
+  for (const CourseBlock& block :
+       course.repeats.empty() ? std::vector<CourseBlock>() : course.repeats.front()) {
+    table.AddRow({CountCell(block.runs), FitnessCell(block.best), FitnessCell(block.mean),
+                  fmt::format("{:.1f} %", 100.0 * block.failure_share)});
   }
-  const std::string which =
-      course.repeats.size() > 1 ? "The first of these searches in numbers" : "In numbers";
-  return fmt::format(
-      "<details><summary>{}</summary>{}</details>\n", which,
-      TableHtml({">runs spent", ">toughest fitness", ">mean fitness", ">total failures"}, rows));
+  return fmt::format("<details><summary>{}</summary>{}</details>\n",
+                     course.repeats.size() > 1 ? "The first of these searches in numbers" : "In numbers",
+                     table.Thinned(kMostBlocks).ToHtml());
 }
 
 // The first kinds of searches are seen at once, the others on demand.
@@ -143,16 +135,13 @@ std::string CoursesHtml(const CampaignPages& pages) {
 
 std::string SearchesTable(const CampaignSummary& summary) {
   if (summary.searches.empty()) return "";
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t i = 0; i < summary.searches.size(); ++i) {
-    const CampaignSummary& one = summary.searches[i];
-    rows.push_back({fmt::format("{}", i + 1), Html(one.settings), FormatCount(one.runs_done),
-                    Fitness(one.best_fitness), Fitness(one.mean_fitness), FormatCount(one.total_failures),
-                    one.finished ? "yes" : "no"});
+  Table table({">search", "settings", ">runs", ">best", ">mean", ">total failures", "finished"});
+  for (const CampaignSummary& one : summary.searches) {
+    table.AddRow({table.size() + 1, one.settings, CountCell(one.runs_done), FitnessCell(one.best_fitness),
+                  FitnessCell(one.mean_fitness), CountCell(one.total_failures), one.finished});
   }
-  return fmt::format(
-      "<details><summary>The {} searches</summary>{}</details>\n", summary.searches.size(),
-      TableHtml({">search", "settings", ">runs", ">best", ">mean", ">total failures", "finished"}, rows));
+  return fmt::format("<details><summary>The {} searches</summary>{}</details>\n", summary.searches.size(),
+                     table.ToHtml());
 }
 
 }  // namespace

@@ -83,15 +83,14 @@ std::string SectionHtml(const char* id, const std::string& html) {
 // Of several campaigns, the figures that count beside one another.
 std::string CampaignsTable(const Report& report) {
   if (report.campaigns.size() < 2) return "";
-  std::vector<std::vector<std::string>> rows;
+  Table table({"campaign", "scenario", "controller", ">runs", ">total failures", "finished"});
   for (const CampaignPages& one : report.campaigns) {
     const CampaignSummary& summary = one.facts.summary;
-    rows.push_back({Html(one.facts.directory), Html(one.facts.plans.front().experiment.scenario),
-                    Html(one.facts.plans.front().experiment.controller), FormatCount(summary.runs_done),
-                    FormatCount(summary.total_failures), summary.finished ? "yes" : "no"});
+    const Experiment& experiment = one.facts.plans.front().experiment;
+    table.AddRow({one.facts.directory, experiment.scenario, experiment.controller,
+                  CountCell(summary.runs_done), CountCell(summary.total_failures), summary.finished});
   }
-  return "<h2>The campaigns</h2>\n" +
-         TableHtml({"campaign", "scenario", "controller", ">runs", ">total failures", "finished"}, rows);
+  return "<h2>The campaigns</h2>\n" + table.ToHtml();
 }
 
 // What goes on now; scripts fill it.

@@ -11,17 +11,8 @@
 namespace gauntlet {
 namespace {
 
-std::string TableOf(const StudyTable& table) {
-  if (table.rows.empty()) return "";
-  std::vector<std::vector<std::string>> rows = table.rows;
-  for (auto& row : rows)
-    std::ranges::transform(row, row.begin(), [](const auto& cell) { return Html(cell); });
-  return TableHtml(table.headers, rows);
-}
-
-std::string Paragraph(const std::string& text, std::string_view style = "") {
-  const std::string attribute = style.empty() ? "" : fmt::format(" class=\"{}\"", style);
-  return text.empty() ? "" : fmt::format("<p{}>{}</p>\n", attribute, Html(text));
+std::string TableOf(const Table& table) {
+  return table.empty() ? "" : table.ToHtml();
 }
 
 std::string InWords(const StudyClaim& claim) {
@@ -48,20 +39,20 @@ std::string FiguresHtml(const StudyPages& study, const StudySection& section) {
 // What it comes to first, then the picture, then every number.
 std::string AnalysisHtml(const StudyPages& study, const StudySection& section) {
   std::string html = fmt::format("<h2>{}</h2>\n", Html(section.title));
-  if (section.claim) html += Paragraph(InWords(*section.claim), "verdict");
+  if (section.claim) html += ParagraphHtml(InWords(*section.claim), "verdict");
   html += FiguresHtml(study, section);
-  for (const std::string& sentence : section.sentences) html += Paragraph(sentence);
-  for (const StudyTable& table : section.tables) html += TableOf(table);
+  for (const std::string& sentence : section.sentences) html += ParagraphHtml(sentence);
+  for (const Table& table : section.tables) html += TableOf(table);
   return html + PublishedHtml(section.published, "Published figures beside ours");
 }
 
 // A tuning's last sentence and last table are what it recommends.
 std::string TuningHtml(const StudyPages& study, const StudySection& section) {
   std::string html = fmt::format("<h2>{}</h2>\n", Html(section.title));
-  html += Paragraph(section.sentences.back(), "verdict") + TableOf(section.tables.back());
+  html += ParagraphHtml(section.sentences.back(), "verdict") + TableOf(section.tables.back());
   html += FiguresHtml(study, section) + "<h3>Why</h3>\n";
   for (auto sentence = section.sentences.begin(); sentence + 1 != section.sentences.end(); ++sentence)
-    html += Paragraph(*sentence);
+    html += ParagraphHtml(*sentence);
   html += "<h3>In numbers</h3>\n";
   for (auto table = section.tables.begin(); table + 1 != section.tables.end(); ++table)
     html += TableOf(*table);
@@ -75,11 +66,11 @@ std::string LinkTo(std::string_view page, std::string_view text) {
 }  // namespace
 
 std::string StudyOverviewHtml(const StudyPages& study) {
-  std::string html = fmt::format("<h2>{}</h2>\n{}{}", Html(study.name), Paragraph(study.directory, "soft"),
-                                 Paragraph(study.description));
+  std::string html = fmt::format("<h2>{}</h2>\n{}{}", Html(study.name),
+                                 ParagraphHtml(study.directory, "soft"), ParagraphHtml(study.description));
   if (!study.report) {
     return html +
-           Paragraph(
+           ParagraphHtml(
                "It has not finished: what it finds stands here when it has. Where nobody works on it "
                "any more, this goes on:",
                "notes") +
@@ -89,18 +80,15 @@ std::string StudyOverviewHtml(const StudyPages& study) {
   bool others = false;
   for (const StudySection& section : report.sections) {
     if (section.tuning) {
-      html += Paragraph(section.sentences.back(), "verdict") +
+      html += ParagraphHtml(section.sentences.back(), "verdict") +
               LinkTo("parameters", "What was tried, and how sure that is: " + section.title);
     }
     others = others || !section.tuning;
   }
-  StudyTable claims = ClaimTable(report);
-  claims.headers.pop_back();
-  for (auto& row : claims.rows) row.pop_back();
-  html += TableOf(claims) + Paragraph(TallyInWords(report));
+  html += TableOf(ClaimTable(report)) + ParagraphHtml(TallyInWords(report));
   if (others) html += LinkTo("comparison", "What was compared, with every figure");
   return html + fmt::format("<details><summary>What it has cost</summary>{}{}</details>\n",
-                            TableOf(PartTable(report)), Paragraph(TimeInWords(report)));
+                            TableOf(PartTable(report)), ParagraphHtml(TimeInWords(report)));
 }
 
 std::string StudyResultsHtml(const StudyPages& study) {

@@ -5,25 +5,18 @@
 #include <functional>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
+#include "analysis/tables/cell.h"
 #include "base/result.h"
 
 namespace gauntlet {
 
-struct Column {
+struct DataColumn {
   std::string name;  // stable: scripts rely on it
   std::string unit;  // "m", "s", "yes/no" for 0/1, "" for counts, ratios and words
   std::string meaning;
 };
-
-// What a row has in a column; the first: there is nothing to say, an empty field in CSV and null in JSON.
-using Cell = std::variant<std::monostate, bool, std::uint64_t, std::int64_t, double, std::string>;
-// A number, or nothing when it is not finite.
-Cell NumberCell(double value);
-// A text, or nothing when it is empty.
-Cell TextCell(std::string text);
 
 enum class TableFormat { kCsv, kJson };
 
@@ -36,11 +29,11 @@ class DataTable {
   // TRUE and FALSE. JSON: the object `head` (its text), continued by "columns", a list of objects with
   // name, unit and meaning, and by `rows`, a list of objects with the columns' names, a line each. Whole
   // numbers above 2^53 are texts in JSON. `rows` is the name of the list.
-  DataTable(TableFormat format, std::vector<Column> columns, Sink sink, const std::string& head,
+  DataTable(TableFormat format, std::vector<DataColumn> columns, Sink sink, const std::string& head,
             const std::string& rows);
 
   // As many cells as there are columns. Error: the sink's; nothing may follow it.
-  Status AddRow(const std::vector<Cell>& cells);
+  Status AddRow(const std::vector<Value>& cells);
   // The end of the text. Error: the sink's.
   Status Finish();
 
@@ -50,14 +43,11 @@ class DataTable {
   Status Flush();
 
   const TableFormat format_;
-  const std::vector<Column> columns_;
+  const std::vector<DataColumn> columns_;
   std::vector<std::string> keys_;  // of JSON: the names quoted, with a colon
   const Sink sink_;
   std::string waiting_;
   std::uint64_t rows_ = 0;
 };
-
-// A whole CSV of columns without units; a row has a cell for each of them.
-std::string CsvText(const std::vector<std::string>& columns, const std::vector<std::vector<Cell>>& rows);
 
 }  // namespace gauntlet

@@ -18,7 +18,7 @@
 namespace gauntlet {
 namespace {
 
-const std::vector<Column> kCaseColumns = {
+const std::vector<DataColumn> kCaseColumns = {
     {"individual", "", "number of the test case within its search"},
     {"birth_generation", "", "generation in which it was born, from 1"},
     {"parents", "", "numbers of its parents, separated by spaces"},
@@ -33,15 +33,15 @@ const std::vector<Column> kCaseColumns = {
     {"path", "m", "of a moving obstacle: x and y of each point of its path, separated by spaces"},
     {"light", "", "colour of the lamps that it carries"}};
 
-const std::vector<Column> kTrajectoryColumns = {{"run", "", "number of the run"},
-                                                {"robot", "", "number of the robot, from 0"},
-                                                {"time", "s", "simulated time, every 5 s"},
-                                                {"x", "m", "position, from the middle of the arena"},
-                                                {"y", "m", "position"}};
+const std::vector<DataColumn> kTrajectoryColumns = {{"run", "", "number of the run"},
+                                                    {"robot", "", "number of the robot, from 0"},
+                                                    {"time", "s", "simulated time, every 5 s"},
+                                                    {"x", "m", "position, from the middle of the arena"},
+                                                    {"y", "m", "position"}};
 
-const std::vector<Column> kEventColumns = {{"time", "", "UTC, ISO 8601"},
-                                           {"kind", "", "what happened, in one word"},
-                                           {"text", "", "what happened, in a sentence"}};
+const std::vector<DataColumn> kEventColumns = {{"time", "", "UTC, ISO 8601"},
+                                               {"kind", "", "what happened, in one word"},
+                                               {"text", "", "what happened, in a sentence"}};
 
 // Visits the runs that were asked for, in logical order, until `visit` gives an error, which is returned.
 Status ForEachChosen(const StoredCampaign& campaign, const std::set<RunId>& chosen, const RunVisitor& visit) {
@@ -67,7 +67,7 @@ Status WriteRuns(const StoredCampaign& campaign, const std::set<RunId>& chosen, 
   });
 }
 
-std::vector<Cell> ObstacleCells(const sim::ObstacleGene& gene, std::size_t number) {
+std::vector<Value> ObstacleCells(const sim::ObstacleGene& gene, std::size_t number) {
   std::string path;
   for (const sim::Vec2& point : gene.path)
     path += fmt::format("{}{} {}", path.empty() ? "" : " ", point.x(), point.y());
@@ -77,24 +77,24 @@ std::vector<Cell> ObstacleCells(const sim::ObstacleGene& gene, std::size_t numbe
           gene.length,
           gene.width,
           gene.orientation_deg,
-          gene.Moves() ? Cell(gene.speed) : Cell(),
-          gene.Moves() ? Cell(path) : Cell(),
-          gene.Lit() ? Cell(std::string(sim::NameOf(gene.light))) : Cell()};
+          gene.Moves() ? Value(gene.speed) : Value(),
+          gene.Moves() ? Value(path) : Value(),
+          gene.Lit() ? Value(std::string(sim::NameOf(gene.light))) : Value()};
 }
 
 Status WriteCases(const StoredCampaign& campaign, const SearchColumns& searches, DataTable& table) {
   for (SearchId search = 1; search <= campaign.plans.size(); ++search) {
     TRY(const auto individuals, campaign.view.store->LoadIndividuals(search));
     for (const Individual& individual : individuals) {
-      std::vector<Cell> of_case = searches.CellsOf(search);
+      std::vector<Value> of_case = searches.CellsOf(search);
       of_case.insert(of_case.end(), {individual.id, std::uint64_t{individual.birth_generation},
-                                     TextCell(fmt::format("{}", fmt::join(individual.parents, " "))),
-                                     TextCell(individual.test_case.name)});
+                                     TextValue(fmt::format("{}", fmt::join(individual.parents, " "))),
+                                     TextValue(individual.test_case.name)});
       const sim::Genome& obstacles = individual.test_case.obstacles;
       for (std::size_t i = 0; i < std::max<std::size_t>(obstacles.size(), 1); ++i) {
-        std::vector<Cell> row = of_case;
+        std::vector<Value> row = of_case;
         if (i < obstacles.size()) {
-          const std::vector<Cell> obstacle = ObstacleCells(obstacles[i], i + 1);
+          const std::vector<Value> obstacle = ObstacleCells(obstacles[i], i + 1);
           row.insert(row.end(), obstacle.begin(), obstacle.end());
         }
         row.resize(searches.columns().size() + kCaseColumns.size());
@@ -144,7 +144,7 @@ Status WriteEvents(const StoredCampaign& campaign, DataTable& table) {
   return Ok{};
 }
 
-std::vector<Column> Joined(std::vector<Column> first, const std::vector<Column>& second) {
+std::vector<DataColumn> Joined(std::vector<DataColumn> first, const std::vector<DataColumn>& second) {
   first.insert(first.end(), second.begin(), second.end());
   return first;
 }
@@ -154,7 +154,7 @@ std::vector<Column> Joined(std::vector<Column> first, const std::vector<Column>&
 Result<ExportReport> WriteTable(const StoredCampaign& campaign, const ExportOptions& options,
                                 const std::string& head, const Sink& sink) {
   ExportReport report;
-  const auto write = [&](const char* name, const std::vector<Column>& columns,
+  const auto write = [&](const char* name, const std::vector<DataColumn>& columns,
                          const std::function<Status(DataTable&)>& rows) -> Result<ExportReport> {
     DataTable table(options.format, columns, sink, head, name);
     TRY(rows(table));
@@ -183,7 +183,7 @@ Result<ExportReport> WriteTable(const StoredCampaign& campaign, const ExportOpti
   return write("events", kEventColumns, [&](DataTable& table) { return WriteEvents(campaign, table); });
 }
 
-std::vector<Column> CommonColumns(Exported what) {
+std::vector<DataColumn> CommonColumns(Exported what) {
   switch (what) {
     case Exported::kRuns: {
       const RunColumns runs = CommonRunColumns();

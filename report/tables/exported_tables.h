@@ -33,6 +33,6 @@ Result<ExportReport> WriteTable(const StoredCampaign& campaign, const ExportOpti
 
 // The columns of such a table, to be described: "..." stands for the metrics of a run; those of the keys of a
 // sweep are left out.
-std::vector<Column> CommonColumns(Exported what);
+std::vector<DataColumn> CommonColumns(Exported what);
 
 }  // namespace gauntlet

@@ -17,10 +17,10 @@
 namespace gauntlet {
 namespace {
 
-const Column kId = {"id", "", "number of the run, as `replay` takes it"};
+const DataColumn kId = {"id", "", "number of the run, as `replay` takes it"};
 
-const std::vector<Column>& ColumnsOfTheRun() {
-  static const std::vector<Column> columns = {
+const std::vector<DataColumn>& ColumnsOfTheRun() {
+  static const std::vector<DataColumn> columns = {
       {"individual", "", "number of the test case within its search"},
       {"generation", "", "generation in which it was run, from 1"},
       {"evaluation", "", "round of runs of this test case, from 0"},
@@ -34,8 +34,8 @@ const std::vector<Column>& ColumnsOfTheRun() {
   return columns;
 }
 
-const std::vector<Column>& ColumnsBehindMetrics() {
-  static const std::vector<Column> columns = {
+const std::vector<DataColumn>& ColumnsBehindMetrics() {
+  static const std::vector<DataColumn> columns = {
       {"simulated_time", "s", "how long the run lasted in the simulation"},
       {"cpu_seconds", "s", "CPU time that the simulation took"},
       {"hash", "", "hash of the result, 16 hexadecimal digits"},
@@ -73,7 +73,7 @@ Result<std::vector<std::string>> MetricsOf(SearchId search, ResultStore& store) 
 }  // namespace
 
 RunColumns CommonRunColumns() {
-  std::vector<Column> before = {kId};
+  std::vector<DataColumn> before = {kId};
   Append(CommonSearchColumns(), before);
   Append(ColumnsOfTheRun(), before);
   return {std::move(before), ColumnsBehindMetrics()};
@@ -98,7 +98,7 @@ RunTable::RunTable(const std::vector<SearchPlan>& plans, const std::vector<std::
     untyped_failures_.emplace_back(scenario == nullptr ? "" : scenario->untyped_failure);
     for (const std::string& name : metrics[i]) {
       const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, name);
-      auto column = std::ranges::find(columns_, name, &Column::name);
+      auto column = std::ranges::find(columns_, name, &DataColumn::name);
       if (column == columns_.end()) {
         column = columns_.insert(columns_.end(), {name, std::string(info == nullptr ? "" : info->unit),
                                                   std::string(info == nullptr ? "" : info->description)});
@@ -109,22 +109,22 @@ RunTable::RunTable(const std::vector<SearchPlan>& plans, const std::vector<std::
   Append(ColumnsBehindMetrics(), columns_);
 }
 
-Result<std::vector<Cell>> RunTable::Row(const StoredRun& run) const {
+Result<std::vector<Value>> RunTable::Row(const StoredRun& run) const {
   const Result<sim::RunResult> result = proto::DecodeStoredResult(run.result);
   if (!result) return InRun(run.id, result.error());
   const bool completed = result->verdict == sim::Verdict::kCompleted;
   const sim::SwarmFailure& failure = result->failure;
   const bool typed = failure.type >= 0;
   const std::string& untyped = untyped_failures_.at(run.search - 1);
-  std::vector<Cell> cells = {run.id};
+  std::vector<Value> cells = {run.id};
   cells.reserve(columns_.size());
   Append(searches_.CellsOf(run.search), cells);
-  Append(std::initializer_list<Cell>{run.individual, std::uint64_t{run.generation},
-                                     std::uint64_t{run.evaluation}, std::uint64_t{run.replicate},
-                                     fmt::format("{}", run.seed), std::string(NameOf(result->verdict)),
-                                     completed ? NumberCell(result->fitness) : Cell(), failure.total,
-                                     typed ? Cell(std::int64_t{failure.type}) : Cell(),
-                                     TextCell(failure.total && !typed ? untyped : failure.label)},
+  Append(std::initializer_list<Value>{run.individual, std::uint64_t{run.generation},
+                                      std::uint64_t{run.evaluation}, std::uint64_t{run.replicate},
+                                      fmt::format("{}", run.seed), std::string(NameOf(result->verdict)),
+                                      completed ? NumberValue(result->fitness) : Value(), failure.total,
+                                      typed ? Value(std::int64_t{failure.type}) : Value(),
+                                      TextValue(failure.total && !typed ? untyped : failure.label)},
          cells);
 
   cells.resize(columns_.size() - ColumnsBehindMetrics().size());
@@ -138,9 +138,9 @@ Result<std::vector<Cell>> RunTable::Row(const StoredRun& run) const {
     if (const auto measured = MeasuredValue(metric->second.info, value))
       cells[metric->second.place] = *measured;
   }
-  Append(std::initializer_list<Cell>{static_cast<double>(result->ticks) / sim::kTicksPerSecond,
-                                     result->cpu_seconds, fmt::format("{:016x}", run.hash), run.worker,
-                                     std::uint64_t{run.attempt}, TextCell(result->message)},
+  Append(std::initializer_list<Value>{static_cast<double>(result->ticks) / sim::kTicksPerSecond,
+                                      result->cpu_seconds, fmt::format("{:016x}", run.hash), run.worker,
+                                      std::uint64_t{run.attempt}, TextValue(result->message)},
          cells);
   return cells;
 }

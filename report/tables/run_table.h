@@ -18,9 +18,9 @@ class RunTable {
   // The metrics are those of each search's first completed run. Error: it does not read back.
   static Result<RunTable> Make(const std::vector<SearchPlan>& plans, ResultStore& store);
 
-  const std::vector<Column>& columns() const { return columns_; }
+  const std::vector<DataColumn>& columns() const { return columns_; }
   // `run`: whole, with its result. Error: kCorrupt, naming the run.
-  Result<std::vector<Cell>> Row(const StoredRun& run) const;
+  Result<std::vector<Value>> Row(const StoredRun& run) const;
 
  private:
   struct Metric {
@@ -31,15 +31,15 @@ class RunTable {
   RunTable(const std::vector<SearchPlan>& plans, const std::vector<std::vector<std::string>>& metrics);
 
   SearchColumns searches_;
-  std::vector<Column> columns_;
+  std::vector<DataColumn> columns_;
   std::vector<std::map<std::string, Metric>> metrics_;  // [search], by name
   std::vector<std::string> untyped_failures_;           // [search]: what a total failure without a type is
 };
 
 // The columns that every campaign has, in front of the metrics and behind them.
 struct RunColumns {
-  std::vector<Column> before_metrics;
-  std::vector<Column> after_metrics;
+  std::vector<DataColumn> before_metrics;
+  std::vector<DataColumn> after_metrics;
 };
 RunColumns CommonRunColumns();
 

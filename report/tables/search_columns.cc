@@ -6,35 +6,25 @@
 
 #include <fmt/format.h>
 
-#include "controllers/registry.h"
 #include "search/experiment/schema.h"
 #include "search/search_table.h"
 
 namespace gauntlet {
 namespace {
 
-std::vector<Key> KeysOf(const Experiment& experiment) {
-  std::vector<Key> keys = BuiltInKeys();
-  const auto add = [&](std::vector<Key> more) { keys.insert(keys.end(), more.begin(), more.end()); };
-  if (const auto* scenario = controllers::FindScenario(experiment)) add(ScenarioParameterKeys(*scenario));
-  if (const auto* controller = controllers::FindController(experiment))
-    add(ControllerParameterKeys(*controller));
-  return keys;
-}
-
-Cell CellOf(const KeyValue& value) {
-  return std::visit([](const auto& one) { return Cell(one); }, value);
+Value CellOf(const KeyValue& value) {
+  return std::visit([](const auto& one) { return Value(one); }, value);
 }
 
 // A key, and its value in each search; none where the search does not have it.
 struct Setting {
   Key key;
-  std::vector<Cell> values;
+  std::vector<Value> values;
 
   // Searches that have the key differ in it.
   bool Varies() const {
-    const Cell* first = nullptr;
-    for (const Cell& value : values) {
+    const Value* first = nullptr;
+    for (const Value& value : values) {
       if (std::holds_alternative<std::monostate>(value)) continue;
       if (first == nullptr) first = &value;
       if (value != *first) return true;
@@ -47,11 +37,11 @@ std::vector<Setting> SettingsOf(const std::vector<SearchPlan>& plans) {
   std::vector<Setting> settings;
   std::map<std::string, std::size_t> places;
   for (std::size_t search = 0; search < plans.size(); ++search) {
-    for (Key& key : KeysOf(plans[search].experiment)) {
+    for (Key& key : AllKeysOf(plans[search].experiment)) {
       if (key.for_people || key.type == KeyType::kSeed) continue;
       const auto [place, is_new] = places.emplace(key.path, settings.size());
-      const Cell value = CellOf(key.get(plans[search].experiment));
-      if (is_new) settings.push_back({std::move(key), std::vector<Cell>(plans.size())});
+      const Value value = CellOf(key.get(plans[search].experiment));
+      if (is_new) settings.push_back({std::move(key), std::vector<Value>(plans.size())});
       settings[place->second].values[search] = value;
     }
   }
@@ -60,7 +50,7 @@ std::vector<Setting> SettingsOf(const std::vector<SearchPlan>& plans) {
 
 }  // namespace
 
-std::vector<Column> CommonSearchColumns() {
+std::vector<DataColumn> CommonSearchColumns() {
   return {{"search", "", "number of the search in the campaign, from 1"},
           {"search_name", "",
            "the search's name: what differs from the others, or the experiment's name if there is one search "

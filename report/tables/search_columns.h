@@ -14,15 +14,15 @@ class SearchColumns {
   explicit SearchColumns(const std::vector<SearchPlan>& plans);
 
   // search, search_name, search_seed, and each key of the experiment in which searches differ.
-  const std::vector<Column>& columns() const { return columns_; }
-  const std::vector<Cell>& CellsOf(SearchId search) const { return cells_.at(search - 1); }
+  const std::vector<DataColumn>& columns() const { return columns_; }
+  const std::vector<Value>& CellsOf(SearchId search) const { return cells_.at(search - 1); }
 
  private:
-  std::vector<Column> columns_;
-  std::vector<std::vector<Cell>> cells_;  // [search]
+  std::vector<DataColumn> columns_;
+  std::vector<std::vector<Value>> cells_;  // [search]
 };
 
 // Those that every campaign has.
-std::vector<Column> CommonSearchColumns();
+std::vector<DataColumn> CommonSearchColumns();
 
 }  // namespace gauntlet

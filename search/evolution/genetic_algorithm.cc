@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "base/check.h"
+#include "base/number_text.h"
 #include "search/evolution/selection.h"
 
 namespace gauntlet {
@@ -128,8 +129,8 @@ SearchRow GeneticRow() {
           .individuals = Individuals::kPopulation,
           .plan =
               [](const Experiment& e) {
-                return fmt::format("{} test cases x {} generation{}", e.search.population,
-                                   e.search.generations, e.search.generations == 1 ? "" : "s");
+                return fmt::format("{} test cases x {}", e.search.population,
+                                   Counted(e.search.generations, "generation"));
               },
           .make = Make<GeneticAlgorithm>};
 }

@@ -15,13 +15,12 @@ namespace {
 
 using controllers::generic::DefinitionEntry;
 using controllers::generic::DefinitionReader;
-using controllers::generic::DefinitionValue;
 
 constexpr std::string_view kTable = "generic";
 constexpr std::string_view kBegin = "generic.";
 
 // Nothing of what no value of a definition is.
-std::optional<DefinitionValue> DefinitionOf(const TomlValue& value) {
+std::optional<KeyValue> DefinitionOf(const TomlValue& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   if (const auto* number = std::get_if<double>(&value)) return *number;
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
@@ -32,7 +31,7 @@ Status Set(const Assignment& assignment, DefinitionReader& reader) {
   const std::string_view path = std::string_view(assignment.path).substr(kBegin.size());
   const auto* other = std::get_if<OtherToml>(&assignment.value);
   const bool begins = other != nullptr && other->kind == kListOfTables;
-  const std::optional<DefinitionValue> value = begins ? DefinitionValue(0.0) : DefinitionOf(assignment.value);
+  const std::optional<KeyValue> value = begins ? KeyValue(0.0) : DefinitionOf(assignment.value);
   if (!value) {
     return InvalidInput(fmt::format("{}: {} is {}, expected a number or text", assignment.where,
                                     assignment.path, KindOf(assignment.value)));
@@ -44,26 +43,9 @@ Status Set(const Assignment& assignment, DefinitionReader& reader) {
 
 }  // namespace
 
-std::vector<Key> DefinitionKeys() {
-  std::vector<Key> keys;
-  for (const controllers::generic::DefinitionKey& one : controllers::generic::DefinitionKeys()) {
-    Key& key = keys.emplace_back();
-    key.path = std::string(kBegin) + one.path;
-    if (one.number == nullptr) {
-      key.type = KeyType::kText;
-      key.description = one.required ? "formula; must be given" : "formula";
-      continue;
-    }
-    key.unit = one.number->unit;
-    key.min = one.number->min;
-    key.max = one.number->max;
-    key.description = one.number->description;
-    key.default_value = one.number->default_value;
-    if (one.names.empty()) continue;
-    key.type = KeyType::kChoice;
-    key.choices.assign(one.names.begin(), one.names.end());
-    key.default_value = key.choices.front();
-  }
+std::vector<KeyInfo> DefinitionKeys() {
+  std::vector<KeyInfo> keys = controllers::generic::DefinitionKeys();
+  for (KeyInfo& key : keys) key.path = std::string(kBegin) + key.path;
   return keys;
 }
 
@@ -94,8 +76,7 @@ std::string WriteDefinition(const std::string& definition) {
       text += fmt::format("\n[[generic.{}]]\n", element.substr(0, element.find('.')));
     last_element = element;
     const std::string key = path.substr(element.empty() ? 0 : dot + 1);
-    const std::string toml = std::visit([](const auto& known) { return ToToml(known); }, value);
-    text += fmt::format("{} = {}\n", key, toml);
+    text += fmt::format("{} = {}\n", key, ToToml(value));
   }
   return text;
 }

@@ -8,14 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "base/key.h"
 #include "base/result.h"
-#include "search/experiment/schema.h"
 #include "search/experiment/toml_text.h"
 
 namespace gauntlet {
 
 // What it may hold, for who lists it; of a list its first element, "generic.light.1.x". Formulas are texts.
-std::vector<Key> DefinitionKeys();
+std::vector<KeyInfo> DefinitionKeys();
 
 // Whether the path is in that table.
 bool InDefinition(std::string_view path);

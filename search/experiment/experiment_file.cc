@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "base/nearest_name.h"
-#include "base/parse_number.h"
 #include "base/printable.h"
 #include "base/system/sha256.h"
 #include "search/experiment/definition_table.h"
+#include "search/experiment/key_assignment.h"
 #include "search/experiment/toml_text.h"
 
 namespace gauntlet {
@@ -21,73 +21,6 @@ namespace {
 constexpr std::string_view kPluginsKey = "plugins";
 // They decide which other keys there are.
 constexpr std::array<std::string_view, 4> kBaseKeys = {"scenario", "scenario_plugin", "controller", "plugin"};
-
-// What the value of an assignment to `key` is (KindOf), closer where the kind alone would puzzle.
-std::string KindFor(const Key& key, const Assignment& assignment) {
-  const std::string_view digits =
-      std::string_view(assignment.text).substr(assignment.text.starts_with('-') ? 1 : 0);
-  const bool is_text = std::holds_alternative<std::string>(assignment.value);
-  if (is_text && !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos)
-    return "a number beyond 64 bits";
-  if (key.type == KeyType::kSeed && std::holds_alternative<std::int64_t>(assignment.value))
-    return "a negative number";
-  return KindOf(assignment.value);
-}
-
-std::string ExpectationOf(const Key& key) {
-  switch (key.type) {
-    case KeyType::kText:
-      return "text";
-    case KeyType::kChoice:
-      return fmt::format("one of {}", fmt::join(key.choices, ", "));
-    case KeyType::kInteger:
-      return fmt::format("a whole number, {} to {}", key.min, key.max);
-    case KeyType::kNumber:
-      return fmt::format("a number, {} to {}{}{}", key.min, key.max, key.unit.empty() ? "" : " ", key.unit);
-    case KeyType::kFlag:
-      return "true or false";
-    case KeyType::kSeed:
-      break;
-  }
-  return "a whole number, 0 to 18446744073709551615 (as text from 9223372036854775808 on)";
-}
-
-std::optional<std::uint64_t> SeedOf(const TomlValue& value) {
-  if (const auto* integer = std::get_if<std::int64_t>(&value); integer != nullptr && *integer >= 0) {
-    return static_cast<std::uint64_t>(*integer);
-  }
-  const auto* text = std::get_if<std::string>(&value);
-  return text == nullptr ? std::nullopt : ParseNumber<std::uint64_t>(*text);
-}
-
-// The assignment's value in the type of the key, or nothing when it is of another kind.
-std::optional<KeyValue> Convert(const Key& key, const Assignment& assignment) {
-  const TomlValue& value = assignment.value;
-  const auto* integer = std::get_if<std::int64_t>(&value);
-  switch (key.type) {
-    case KeyType::kText:
-    case KeyType::kChoice:
-      if (const auto* text = std::get_if<std::string>(&value)) return *text;
-      // --set name=123 means the text.
-      if (!assignment.text.empty()) return assignment.text;
-      return std::nullopt;
-    case KeyType::kInteger:
-      if (integer != nullptr) return *integer;
-      return std::nullopt;
-    case KeyType::kNumber:
-      if (integer != nullptr) return static_cast<double>(*integer);
-      if (const auto* number = std::get_if<double>(&value)) return *number;
-      return std::nullopt;
-    case KeyType::kFlag:
-      if (const auto* flag = std::get_if<bool>(&value)) return *flag;
-      if (integer != nullptr && (*integer == 0 || *integer == 1)) return *integer == 1;
-      return std::nullopt;
-    case KeyType::kSeed:
-      break;
-  }
-  if (const std::optional<std::uint64_t> seed = SeedOf(value)) return *seed;
-  return std::nullopt;
-}
 
 std::string NameFromFile(const std::string& file_name) {
   std::string name = std::filesystem::path(file_name).stem().string();
@@ -133,17 +66,9 @@ class Reader {
 
   Status Assign(const Assignment& assignment) {
     if (assignment.path == kPluginsKey) return CheckPlugins(assignment);
-    const auto key = std::ranges::find(keys_, assignment.path, &Key::path);
-    if (key == keys_.end()) return UnknownKey(assignment);
-    const std::optional<KeyValue> value = Convert(*key, assignment);
-    if (!value.has_value()) {
-      return InvalidInput(fmt::format("{}: {} is {}, expected {}", assignment.where, assignment.path,
-                                      KindFor(*key, assignment), ExpectationOf(*key)));
-    }
-    if (const std::optional<std::string> wrong = CheckValue(*key, *value)) {
-      return InvalidInput(fmt::format("{}: {}", assignment.where, *wrong));
-    }
-    key->set(experiment_, *value);
+    const Key* key = FindByName(keys_, assignment.path);
+    if (key == nullptr) return UnknownKey(assignment);
+    TRY(gauntlet::Assign(*key, assignment, experiment_));
     places_[key->path] = assignment.where;
     return Ok{};
   }
@@ -364,9 +289,7 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
     const std::string table = dot == std::string::npos ? "" : key.path.substr(0, dot);
     if (table != last_table) text += fmt::format("\n[{}]\n", table);
     last_table = table;
-    const std::string line =
-        fmt::format("{} = {}", key.path.substr(table.empty() ? 0 : dot + 1), ToToml(key.get(experiment)));
-    text += fmt::format("{:<36}  # {}{}{}\n", line, key.unit, key.unit.empty() ? "" : "; ", key.description);
+    text += LineOf(key.path.substr(table.empty() ? 0 : dot + 1), key, key.get(experiment));
   }
   text += WriteDefinition(experiment.definition);
   return text;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -55,6 +56,8 @@ struct ShippedExperiment {
 // $GAUNTLET_EXPERIMENTS_DIR alone when it is set; else <folder of the program>/../share/gauntlet/experiments,
 // then experiments/ of the sources.
 std::vector<std::filesystem::path> ExperimentDirectories();
+// The TOML files there, or in this folder of each, by their names without ".toml".
+std::map<std::string, std::filesystem::path> ShippedFiles(const std::string& folder = "");
 
 // All shipped experiments by name.
 std::vector<ShippedExperiment> ListExperiments(const Catalogue& catalogue);

@@ -9,23 +9,31 @@
 
 #include "base/nearest_name.h"
 #include "base/system/sha256.h"
+#include "controllers/parameter_key.h"
 #include "search/experiment/genome_ranges.h"
 #include "search/experiment/objective.h"
-#include "search/experiment/toml_text.h"
 #include "sim/arena/color.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet {
 namespace {
 
-// A place in an Experiment: Field(e) is a reference to it.
-template <auto Member>
-auto& Field(auto& experiment) {
-  return experiment.*Member;
+// The key of what stands at Path in an Experiment.
+template <auto... Path>
+Key FieldKey(const std::string& path, const std::string& description) {
+  return gauntlet::FieldKey<Experiment, Path...>(path, description);
 }
-template <auto Part, auto Member>
-auto& Field(auto& experiment) {
-  return experiment.*Part.*Member;
+
+template <auto... Path>
+Key NumberKey(const std::string& path, const std::string& unit, double min, double max,
+              const std::string& description) {
+  return gauntlet::NumberKey<Experiment, Path...>(path, unit, min, max, description);
+}
+
+template <auto... Path>
+Key ChoiceKey(const std::string& path, const std::vector<std::string>& choices,
+              const std::string& description) {
+  return gauntlet::ChoiceKey<Experiment, Path...>(path, choices, description);
 }
 
 // A key without access to its place yet.
@@ -37,24 +45,6 @@ Key MakeKey(const std::string& path, KeyType type, const std::string& descriptio
   return key;
 }
 
-// The key of the place at Path: text, flag, whole number, number or seed, as what stands there.
-template <auto... Path>
-Key FieldKey(const std::string& path, const std::string& description) {
-  using Place = std::remove_reference_t<decltype(Field<Path...>(std::declval<Experiment&>()))>;
-  using Value = std::conditional_t<std::is_same_v<Place, int>, std::int64_t, Place>;
-  const KeyType type = std::is_same_v<Place, std::string> ? KeyType::kText
-                       : std::is_same_v<Place, bool>      ? KeyType::kFlag
-                       : std::is_same_v<Place, int>       ? KeyType::kInteger
-                       : std::is_same_v<Place, double>    ? KeyType::kNumber
-                                                          : KeyType::kSeed;
-  Key key = MakeKey(path, type, description);
-  key.get = [](const Experiment& e) -> KeyValue { return Value{Field<Path...>(e)}; };
-  key.set = [](Experiment& e, const KeyValue& v) {
-    Field<Path...>(e) = static_cast<Place>(std::get<Value>(v));
-  };
-  return key;
-}
-
 Key ForPeople(Key key) {
   key.for_people = true;
   return key;
@@ -62,34 +52,6 @@ Key ForPeople(Key key) {
 
 Key CameLater(Key key) {
   key.came_later = true;
-  return key;
-}
-
-// The same of numbers, whole ones and others.
-template <auto... Path>
-Key NumberKey(const std::string& path, const std::string& unit, double min, double max,
-              const std::string& description) {
-  Key key = FieldKey<Path...>(path, description);
-  key.unit = unit;
-  key.min = min;
-  key.max = max;
-  return key;
-}
-
-// `choices` in the order of the enumeration, which begins at 0 without gaps.
-template <auto... Path>
-Key ChoiceKey(const std::string& path, const std::vector<std::string>& choices,
-              const std::string& description) {
-  Key key = MakeKey(path, KeyType::kChoice, description);
-  key.choices = choices;
-  key.get = [choices](const Experiment& e) -> KeyValue {
-    return choices.at(static_cast<std::size_t>(Field<Path...>(e)));
-  };
-  key.set = [choices](Experiment& e, const KeyValue& v) {
-    auto& field = Field<Path...>(e);
-    const auto found = std::find(choices.begin(), choices.end(), std::get<std::string>(v));
-    field = static_cast<std::remove_reference_t<decltype(field)>>(found - choices.begin());
-  };
   return key;
 }
 
@@ -190,40 +152,19 @@ Key AlgorithmKey(const Catalogue& catalogue) {
   return key;
 }
 
-KeyType TypeOf(const controllers::ParameterInfo& info) {
-  if (info.unit == "bool") return KeyType::kFlag;
-  return info.integer ? KeyType::kInteger : KeyType::kNumber;
-}
-
-KeyValue ParameterValue(KeyType type, double value) {
-  if (type == KeyType::kFlag) return value != 0.0;
-  if (type == KeyType::kInteger) return static_cast<std::int64_t>(value);
-  return value;
-}
-
-double ParameterNumber(const KeyValue& value) {
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? 1.0 : 0.0;
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
-  return std::get<double>(value);
-}
-
 // Keys "TABLE.NAME" of the parameters at Path.
 template <auto... Path>
-std::vector<Key> ParameterKeys(std::string_view table, std::span<const controllers::ParameterInfo> infos) {
+std::vector<Key> ParameterKeys(const std::string& table, std::span<const controllers::ParameterInfo> infos) {
   std::vector<Key> keys;
   for (const controllers::ParameterInfo& info : infos) {
-    const std::string name(info.name);
-    const KeyType type = TypeOf(info);
-    Key key = MakeKey(fmt::format("{}.{}", table, name), type, std::string(info.description));
-    key.unit = type == KeyType::kFlag ? "" : std::string(info.unit);
-    key.min = info.min;
-    key.max = info.max;
-    key.default_value = ParameterValue(type, info.default_value);
-    key.get = [info, type](const Experiment& e) {
-      return ParameterValue(type, ValueOf(info, Field<Path...>(e)));
+    Key& key = keys.emplace_back();
+    static_cast<KeyInfo&>(key) = controllers::KeyInfoOf(table + ".", info);
+    key.get = [info](const Experiment& e) {
+      return controllers::KeyValueOf(info, ValueOf(info, MemberAt<Path...>(e)));
     };
-    key.set = [name](Experiment& e, const KeyValue& v) { Field<Path...>(e)[name] = ParameterNumber(v); };
-    keys.push_back(std::move(key));
+    key.set = [name = std::string(info.name)](Experiment& e, const KeyValue& v) {
+      MemberAt<Path...>(e)[name] = NumberOf(v);
+    };
   }
   return keys;
 }
@@ -375,11 +316,6 @@ Key ScenarioPluginKey() {
       "scenario_plugin", "SHA-256 of the library that brings the scenario, in plugins/ beside this file");
 }
 
-std::string_view NameOf(KeyType type) {
-  constexpr std::string_view kNames[] = {"text", "choice", "integer", "number", "flag", "seed"};
-  return kNames[static_cast<std::size_t>(type)];
-}
-
 double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& given) {
   const auto found = given.find(std::string(info.name));
   return found == given.end() ? info.default_value : found->second;
@@ -401,40 +337,6 @@ std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario
 
 std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& controller) {
   return ParameterKeys<&Experiment::controller_parameters>("controller_parameters", controller.parameters);
-}
-
-std::string ToToml(const KeyValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return QuoteToml(*text);
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
-  if (const auto* seed = std::get_if<std::uint64_t>(&value)) {
-    return *seed <= std::uint64_t{INT64_MAX} ? fmt::format("{}", *seed) : fmt::format("\"{}\"", *seed);
-  }
-  // The shortest decimal that reads back as the same double, recognisable as a number that is not whole.
-  std::string number = fmt::format("{}", std::get<double>(value));
-  if (number.find_first_of(".enai") == std::string::npos) number += ".0";
-  return number;
-}
-
-std::optional<std::string> CheckValue(const Key& key, const KeyValue& value) {
-  if (key.check) return key.check(value);
-  const auto message = [&](std::string_view what) {
-    return fmt::format("{} = {} {}", key.path, ToToml(value), what);
-  };
-  if (key.type == KeyType::kChoice) {
-    const auto& text = std::get<std::string>(value);
-    for (const auto& choices : {std::cref(key.choices), std::cref(key.unlisted_choices)}) {
-      if (std::ranges::count(choices.get(), text) > 0) return std::nullopt;
-    }
-    return message(fmt::format("is unknown, allowed {}", fmt::join(key.choices, ", ")));
-  }
-  if (key.type == KeyType::kInteger || key.type == KeyType::kNumber) {
-    const double number = ParameterNumber(value);
-    if (number >= key.min && number <= key.max) return std::nullopt;
-    return message(fmt::format("is out of range, allowed {} to {}{}{}", key.min, key.max,
-                               key.unit.empty() ? "" : " ", key.unit));
-  }
-  return std::nullopt;
 }
 
 std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue) {

@@ -2,52 +2,27 @@
 // and the identity of saved searches share.
 #pragma once
 
-#include <cstdint>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
+#include <utility>
 #include <vector>
 
+#include "base/key.h"
 #include "controllers/registry.h"
 #include "search/experiment/experiment.h"
 
 namespace gauntlet {
 
-enum class KeyType {
-  kText,
-  kChoice,   // one of `choices` or `unlisted_choices`
-  kInteger,  // min to max
-  kNumber,   // min to max
-  kFlag,     // true or false; 0 and 1 are taken too
-  kSeed,     // 0 to 2^64-1; in TOML, whose integers are signed, also as a string of decimal digits
-};
-// "text", "choice", "integer", "number", "flag", "seed".
-std::string_view NameOf(KeyType type);
+struct Key : SettingsKey<Experiment> {
+  Key() = default;
+  Key(SettingsKey<Experiment> key) : SettingsKey<Experiment>(std::move(key)) {}
 
-// kText and kChoice: string; kInteger: int64; kNumber: double; kFlag: bool; kSeed: uint64.
-using KeyValue = std::variant<std::string, std::int64_t, double, bool, std::uint64_t>;
-
-struct Key {
-  std::string path;  // dotted, "search.population"
-  KeyType type = KeyType::kNumber;
-  std::string unit;  // "" where there is none
-  double min = 0.0;  // of integers and numbers
-  double max = 0.0;
-  std::vector<std::string> choices;
-  std::vector<std::string> unlisted_choices = {};  // taken as well, named nowhere
-  std::string description;                         // one line
-  KeyValue default_value;
   bool for_people = false;   // has no influence on any run
   bool of_searches = false;  // has none where the search does not read it (Reads)
   bool disturbs = false;     // says what is wrong with robots: "faults", "noise.DEVICE.NAME"
   bool came_later = false;   // than stored campaigns: left out of identities where it has its default
-  std::function<std::optional<std::string>(const KeyValue&)>
-      check;  // what is wrong with a text; may be empty
-  std::function<KeyValue(const Experiment&)> get;
-  std::function<void(Experiment&, const KeyValue&)> set;  // `value` must have passed CheckValue
 };
 
 // A broken rule that concerns more than one key, and the key to point at.
@@ -88,13 +63,6 @@ double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& gi
 // One key per parameter: "scenario_parameters.NAME" and "controller_parameters.NAME".
 std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario);
 std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& controller);
-
-// "1.5", "20", "true", "\"genetic\"": the value as TOML.
-std::string ToToml(const KeyValue& value);
-
-// What is wrong with a value of the right type ("search.crossover_probability = 1.5 is out of range, allowed
-// 0 to 1"), or nothing.
-std::optional<std::string> CheckValue(const Key& key, const KeyValue& value);
 
 // The first rule between keys that the experiment breaks. `experiment.search.algorithm` is in the catalogue.
 std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue);

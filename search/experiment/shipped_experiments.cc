@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <map>
 #include <system_error>
 #include <utility>
 
@@ -33,17 +32,6 @@ Result<std::string> ReadFile(const fs::path& path) {
       fmt::format("'{}' is larger than {} bytes: no experiment file", path.string(), kMaxFileBytes));
 }
 
-std::map<std::string, fs::path> ShippedFiles() {
-  std::map<std::string, fs::path> files;
-  for (const fs::path& directory : ExperimentDirectories()) {
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(directory, error)) {
-      if (entry.path().extension() == ".toml") files.emplace(entry.path().stem().string(), entry.path());
-    }
-  }
-  return files;
-}
-
 }  // namespace
 
 std::vector<fs::path> ExperimentDirectories() {
@@ -54,6 +42,17 @@ std::vector<fs::path> ExperimentDirectories() {
   for (const char* place : {"../share/gauntlet/experiments", GAUNTLET_EXPERIMENTS_FROM_PROGRAM})
     directories.push_back((programs / place).lexically_normal());
   return directories;
+}
+
+std::map<std::string, fs::path> ShippedFiles(const std::string& folder) {
+  std::map<std::string, fs::path> files;
+  for (const fs::path& directory : ExperimentDirectories()) {
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(directory / folder, error)) {
+      if (entry.path().extension() == ".toml") files.emplace(entry.path().stem().string(), entry.path());
+    }
+  }
+  return files;
 }
 
 std::vector<ShippedExperiment> ListExperiments(const Catalogue& catalogue) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/key.h"
 #include "base/utf8.h"
 
 namespace gauntlet {
@@ -179,8 +180,8 @@ Result<std::vector<Assignment>> ReadToml(std::string_view text, const std::strin
   return assignments;
 }
 
-Result<Assignment> ReadSet(const std::string& set) {
-  const std::string where = "--set " + set;
+Result<Assignment> ReadSet(const std::string& set, const std::string& option) {
+  const std::string where = option + " " + set;
   const std::size_t equals = set.find('=');
   if (equals == std::string::npos || equals == 0) {
     return InvalidInput(where + ": expected key=value, such as search.generations=10");
@@ -199,25 +200,6 @@ std::string KindOf(const TomlValue& value) {
   if (std::holds_alternative<std::string>(value)) return "text";
   if (std::holds_alternative<std::int64_t>(value)) return "a whole number";
   return std::holds_alternative<double>(value) ? "a decimal number" : "true or false";
-}
-
-std::string QuoteToml(std::string_view text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      quoted += '\\';
-      quoted += c;
-    } else if (c == '\n') {
-      quoted += "\\n";
-    } else if (c == '\t') {
-      quoted += "\\t";
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
-      quoted += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    } else {
-      quoted += c;
-    }
-  }
-  return quoted + "\"";
 }
 
 }  // namespace gauntlet

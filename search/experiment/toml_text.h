@@ -22,7 +22,7 @@ using TomlValue = std::variant<std::string, std::int64_t, double, bool, OtherTom
 struct Assignment {
   std::string path;  // dotted
   TomlValue value;
-  std::string text;   // of --set: the value as it was typed
+  std::string text;   // of --set: the value as it was typed, which a key of texts takes as it is
   std::string where;  // "file:line:column" or "--set key=value", for messages
 };
 
@@ -37,12 +37,9 @@ Result<std::vector<Assignment>> ReadToml(std::string_view text, const std::strin
 
 // "key=value": the value is read as TOML where it is valid TOML, else it is text. Error: no '=', no key, or
 // text that is not UTF-8.
-Result<Assignment> ReadSet(const std::string& set);
+Result<Assignment> ReadSet(const std::string& set, const std::string& option = "--set");
 
 // "text", "a whole number", "a table": for messages.
 std::string KindOf(const TomlValue& value);
-
-// A TOML basic string.
-std::string QuoteToml(std::string_view text);
 
 }  // namespace gauntlet

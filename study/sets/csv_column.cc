@@ -34,16 +34,12 @@ std::vector<std::string> CellsOf(std::string_view line) {
   return cells;
 }
 
-struct Line {
-  std::size_t number = 0;
-  std::vector<std::string> cells;
-};
+}  // namespace
 
-// The first line names the columns; every other has as many cells.
-Result<std::vector<Line>> LinesOf(std::string_view text, const std::string& path) {
+Result<std::vector<CsvLine>> ReadCsvLines(std::string_view text, const std::string& path) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  std::vector<Line> lines;
+  std::vector<CsvLine> lines;
   for (std::size_t number = 1; !text.empty(); ++number) {
     std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
@@ -59,18 +55,9 @@ Result<std::vector<Line>> LinesOf(std::string_view text, const std::string& path
   return lines;
 }
 
-}  // namespace
-
-Result<std::vector<std::vector<std::string>>> ReadCsvCells(std::string_view text, const std::string& path) {
-  TRY(auto lines, LinesOf(text, path));
-  std::vector<std::vector<std::string>> rows;
-  for (Line& line : lines) rows.push_back(std::move(line.cells));
-  return rows;
-}
-
 Result<CsvColumn> ReadCsvColumn(const std::string& path, const std::string& column) {
   TRY(const auto text, ReadRegularFile(path, kLargestFile));
-  TRY(const auto lines, LinesOf(text, path));
+  TRY(const auto lines, ReadCsvLines(text, path));
   std::vector<std::string> columns;
   for (const std::string& cell : lines.front().cells) columns.push_back(Printable(cell));
   const auto found = std::ranges::find(lines.front().cells, column);
@@ -80,7 +67,7 @@ Result<CsvColumn> ReadCsvColumn(const std::string& path, const std::string& colu
   const auto wanted = static_cast<std::size_t>(found - lines.front().cells.begin());
   CsvColumn read;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    const Line& line = lines[i];
+    const CsvLine& line = lines[i];
     if (line.cells[wanted].empty()) {
       ++read.empty_cells;
       continue;

@@ -19,7 +19,11 @@ struct CsvColumn {
 // finite number; named with its line.
 Result<CsvColumn> ReadCsvColumn(const std::string& path, const std::string& column);
 
-// All cells, line by line, of a text that stands in the file `path`. Error: as above, but for numbers.
-Result<std::vector<std::vector<std::string>>> ReadCsvCells(std::string_view text, const std::string& path);
+struct CsvLine {
+  std::size_t number = 0;  // in the file, from 1
+  std::vector<std::string> cells;
+};
+// All lines but the empty ones of a text that stands in the file `path`. Error: as above, but for numbers.
+Result<std::vector<CsvLine>> ReadCsvLines(std::string_view text, const std::string& path);
 
 }  // namespace gauntlet

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "cli/output/table.h"
+#include "analysis/tables/table.h"
 #include "tests/support/fake_clock.h"
 
 namespace gauntlet {

@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::vector<Column> kColumns = {
+const std::vector<DataColumn> kColumns = {
     {"id", "", "which"}, {"way", "m", "how far"}, {"done", "", "whether"}, {"words", "", "what \"it\" said"}};
 
 struct Written {
@@ -24,7 +24,7 @@ struct Written {
   }
 };
 
-std::string TextOf(TableFormat format, const std::vector<std::vector<Cell>>& rows) {
+std::string TextOf(TableFormat format, const std::vector<std::vector<Value>>& rows) {
   Written written;
   DataTable table(format, kColumns, written.sink(), "{\n  \"name\": \"{}\"\n}\n", "steps");
   for (const auto& row : rows) EXPECT_TRUE(table.AddRow(row).ok());
@@ -36,9 +36,9 @@ std::string TextOf(TableFormat format, const std::vector<std::vector<Cell>>& row
 TEST(DataTable, CsvQuotesWhereItHasToAndLeavesEmptyWhatIsNotThere) {
   EXPECT_EQ(TextOf(TableFormat::kCsv,
                    {{std::uint64_t{7}, 0.1, true, "plain"},
-                    {std::numeric_limits<std::uint64_t>::max(), NumberCell(std::nan("")), false, "a,b"},
-                    {std::int64_t{-1}, 1e-9, Cell(), "he said \"no\"\nand left"},
-                    {std::uint64_t{0}, 2.0, Cell(), TextCell("")}}),
+                    {std::numeric_limits<std::uint64_t>::max(), NumberValue(std::nan("")), false, "a,b"},
+                    {std::int64_t{-1}, 1e-9, Value(), "he said \"no\"\nand left"},
+                    {std::uint64_t{0}, 2.0, Value(), TextValue("")}}),
             "id,way,done,words\n"
             "7,0.1,TRUE,plain\n"
             "18446744073709551615,,FALSE,\"a,b\"\n"
@@ -47,9 +47,9 @@ TEST(DataTable, CsvQuotesWhereItHasToAndLeavesEmptyWhatIsNotThere) {
 }
 
 TEST(DataTable, JsonContinuesItsHeadWithColumnsAndRows) {
-  const json document = json::parse(
-      TextOf(TableFormat::kJson, {{(std::uint64_t{1} << 53) + 1, 0.25, true, "a \"b\"\n\xff"},
-                                  {std::uint64_t{1} << 53, NumberCell(std::nan("")), Cell(), TextCell("")}}));
+  const json document = json::parse(TextOf(
+      TableFormat::kJson, {{(std::uint64_t{1} << 53) + 1, 0.25, true, "a \"b\"\n\xff"},
+                           {std::uint64_t{1} << 53, NumberValue(std::nan("")), Value(), TextValue("")}}));
   EXPECT_EQ(document.at("name"), "{}");
   EXPECT_EQ(document.at("columns").at(1),
             json::parse(R"({"name": "way", "unit": "m", "meaning": "how far"})"));

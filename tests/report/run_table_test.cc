@@ -57,21 +57,21 @@ struct Rows {
     if (store.runs.empty()) store = Campaign(plans);
     const Result<RunTable> table = RunTable::Make(Numbered(plans), store);
     EXPECT_TRUE(table.ok());
-    for (const Column& column : table->columns()) names.push_back(column.name);
+    for (const DataColumn& column : table->columns()) names.push_back(column.name);
     for (const auto& [id, run] : store.runs) {
       rows.push_back(table->Row(run).value());
       EXPECT_EQ(rows.back().size(), names.size());
       stored.push_back(run);
     }
   }
-  Cell At(std::size_t row, const std::string& name) const {
+  Value At(std::size_t row, const std::string& name) const {
     const auto place = std::ranges::find(names, name);
     EXPECT_NE(place, names.end()) << name;
     return rows.at(row).at(static_cast<std::size_t>(place - names.begin()));
   }
 
   std::vector<std::string> names;
-  std::vector<std::vector<Cell>> rows;
+  std::vector<std::vector<Value>> rows;
   std::vector<StoredRun> stored;
 };
 
@@ -90,25 +90,25 @@ TEST(RunTable, SaysOfEveryRunWhatIsStored) {
   int untyped = 0;
   for (std::size_t i = 0; i < runs.rows.size(); ++i) {
     const StoredRun& run = runs.stored[i];
-    EXPECT_EQ(runs.At(i, "id"), Cell(run.id));
-    EXPECT_EQ(runs.At(i, "search_name"), Cell("flocking"));
-    EXPECT_EQ(runs.At(i, "search_seed"), Cell("18446744073709551615"));
-    EXPECT_EQ(runs.At(i, "seed"), Cell(std::to_string(run.seed)));
-    EXPECT_EQ(runs.At(i, "individual"), Cell(run.individual));
+    EXPECT_EQ(runs.At(i, "id"), Value(run.id));
+    EXPECT_EQ(runs.At(i, "search_name"), Value("flocking"));
+    EXPECT_EQ(runs.At(i, "search_seed"), Value("18446744073709551615"));
+    EXPECT_EQ(runs.At(i, "seed"), Value(std::to_string(run.seed)));
+    EXPECT_EQ(runs.At(i, "individual"), Value(run.individual));
     const bool failed = run.verdict != static_cast<int>(sim::Verdict::kCompleted);
-    EXPECT_EQ(runs.At(i, "verdict"), Cell(failed ? "crashed" : "completed"));
-    EXPECT_EQ(runs.At(i, "fitness"), failed ? Cell() : Cell(run.fitness));
-    EXPECT_EQ(runs.At(i, "birds_left"), failed ? Cell() : Cell(4.0));
+    EXPECT_EQ(runs.At(i, "verdict"), Value(failed ? "crashed" : "completed"));
+    EXPECT_EQ(runs.At(i, "fitness"), failed ? Value() : Value(run.fitness));
+    EXPECT_EQ(runs.At(i, "birds_left"), failed ? Value() : Value(4.0));
     // Nothing to measure is no -1.
-    EXPECT_EQ(runs.At(i, "split_time"), run.fitness < 0.3 ? Cell(1.5) : Cell());
-    EXPECT_EQ(runs.At(i, "message"), failed ? Cell("it fell over") : Cell());
+    EXPECT_EQ(runs.At(i, "split_time"), run.fitness < 0.3 ? Value(1.5) : Value());
+    EXPECT_EQ(runs.At(i, "message"), failed ? Value("it fell over") : Value());
     const bool total = run.total_failure;
-    EXPECT_EQ(runs.At(i, "total_failure"), Cell(total));
+    EXPECT_EQ(runs.At(i, "total_failure"), Value(total));
     EXPECT_EQ(runs.At(i, "failure_type"),
-              run.failure_type < 0 ? Cell() : Cell(std::int64_t{run.failure_type}));
-    EXPECT_EQ(runs.At(i, "failure"), !total                  ? Cell()
-                                     : run.failure_type >= 0 ? Cell("apart")
-                                                             : Cell("without a split"));
+              run.failure_type < 0 ? Value() : Value(std::int64_t{run.failure_type}));
+    EXPECT_EQ(runs.At(i, "failure"), !total                  ? Value()
+                                     : run.failure_type >= 0 ? Value("apart")
+                                                             : Value("without a split"));
     crashed += failed ? 1 : 0;
     untyped += total && run.failure_type < 0 ? 1 : 0;
   }
@@ -125,11 +125,11 @@ TEST(RunTable, EachKeyInWhichSearchesDifferHasAColumn) {
   EXPECT_THAT(runs.names, Contains("scenario_parameters.birds"));
   EXPECT_THAT(runs.names, Each(Not(HasSubstr("crossover"))));
   const std::size_t last = runs.rows.size() - 1;
-  EXPECT_EQ(runs.At(0, "search.mutation_probability"), Cell(0.02));
-  EXPECT_EQ(runs.At(last, "search.mutation_probability"), Cell(0.1));
-  EXPECT_EQ(runs.At(last, "search"), Cell(std::uint64_t{2}));
-  EXPECT_EQ(runs.At(last, "search_seed"), Cell("2"));
-  EXPECT_EQ(runs.At(last, "search_name"), Cell("search.mutation_probability=0.1, seed 2"));
+  EXPECT_EQ(runs.At(0, "search.mutation_probability"), Value(0.02));
+  EXPECT_EQ(runs.At(last, "search.mutation_probability"), Value(0.1));
+  EXPECT_EQ(runs.At(last, "search"), Value(std::uint64_t{2}));
+  EXPECT_EQ(runs.At(last, "search_seed"), Value("2"));
+  EXPECT_EQ(runs.At(last, "search_name"), Value("search.mutation_probability=0.1, seed 2"));
 }
 
 TEST(RunTable, ACampaignWithoutACompletedRunHasNoMetrics) {
@@ -147,7 +147,7 @@ TEST(RunTable, AResultThatDoesNotReadBackIsNamed) {
   const Result<RunTable> table = RunTable::Make(Numbered(plans), store);
   StoredRun damaged = store.runs.at(5);
   damaged.result = "nonsense";
-  const Result<std::vector<Cell>> row = table->Row(damaged);
+  const Result<std::vector<Value>> row = table->Row(damaged);
   ASSERT_FALSE(row.ok());
   EXPECT_EQ(row.error().kind, ErrorKind::kCorrupt);
   EXPECT_EQ(row.error().message, "run 5: the 8 bytes of the run result do not parse");
@@ -159,7 +159,7 @@ TEST(RunTable, NoMetricHasTheNameOfAnotherColumn) {
   for (const controllers::ScenarioInfo& scenario : controllers::Scenarios()) {
     for (const controllers::MetricInfo& metric : scenario.metrics) {
       for (const auto* some : {&columns.before_metrics, &columns.after_metrics})
-        EXPECT_EQ(std::ranges::count(*some, metric.name, &Column::name), 0) << metric.name;
+        EXPECT_EQ(std::ranges::count(*some, metric.name, &DataColumn::name), 0) << metric.name;
     }
   }
 }

@@ -28,14 +28,16 @@ TEST(ReadSlurmSettings, NamesPlaceKeyAndWhatIsAllowed) {
   };
   EXPECT_EQ(error_of("partitoin=main"),
             "--slurm partitoin=main: unknown Slurm setting 'partitoin'; did you mean 'partition'?");
-  EXPECT_EQ(error_of("max_queued=0"), "--slurm max_queued=0: max_queued is a whole number, 1 to 1000");
-  EXPECT_EQ(error_of("master=there"), "--slurm master=there: master is \"job\" or \"here\"");
+  EXPECT_EQ(error_of("max_queued=0"),
+            "--slurm max_queued=0: max_queued = 0 is out of range, allowed 1 to 1000");
+  EXPECT_EQ(error_of("master=there"),
+            "--slurm master=there: master = \"there\" is unknown, allowed job, here");
   EXPECT_EQ(error_of("time_limit=2h"),
             "--slurm time_limit=2h: time_limit: time limit '2h': give minutes (30), hours:minutes:seconds "
             "(02:00:00) or days-hours:minutes:seconds");
   const Result<SlurmSettings> settings = ReadSlurmSettings({{"\nqos = true\n", "s.toml", true}}, {});
   ASSERT_FALSE(settings.ok());
-  EXPECT_EQ(settings.error().message, "s.toml:2:1: qos is text: quality of service");
+  EXPECT_EQ(settings.error().message, "s.toml:2:1: qos is true or false, expected text");
 }
 
 TEST(WriteSlurmSettings, ReadsBackEqual) {

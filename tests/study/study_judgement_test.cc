@@ -7,9 +7,9 @@ namespace gauntlet {
 namespace {
 
 const StudyFigures kFigures = {
-    {"c.first.mean", {0.5, "0.500"}}, {"c.first.sd", {0.2, "0.200"}},  {"c.first.n", {100, "100"}},
-    {"c.a", {0.1, "0.1000"}},         {"c.p", {1e-9, "1e-09"}},        {"k.first.count", {50, "50"}},
-    {"k.first.of", {100, "100"}},     {"k.first.percent", {50, "50"}}, {"w.steady", {std::nullopt, "never"}}};
+    {"c.first.mean", {"0.500", 0.5}}, {"c.first.sd", {"0.200", 0.2}},    {"c.first.n", {"100", 100.0}},
+    {"c.a", {"0.1000", 0.1}},         {"c.p", {"1e-09", 1e-9}},          {"k.first.count", {"50", 50.0}},
+    {"k.first.of", {"100", 100.0}},   {"k.first.percent", {"50", 50.0}}, {"w.steady", "never"}};
 
 std::string Verdict(const std::string& value, const std::string& figure, const std::string& rule) {
   const auto judged = Judge({"1.1", "what", "of", value, figure, rule, {"why", false}}, kFigures);

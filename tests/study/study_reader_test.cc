@@ -64,7 +64,7 @@ TEST(StudyReader, NamesWhatIsWrongAndWhere) {
   EXPECT_EQ(ErrorWith("[part.r]\nkind = \"random\"\nexperiment = \"flocking\"\n"),
             "small.toml:8:1: a part of the kind random needs the key cases");
   EXPECT_EQ(ErrorWith("[part.r]\nkind = \"randm\"\n"),
-            "small.toml:8:1: kind is 'randm', expected evolve, random, empty or evaluate");
+            "small.toml:8:1: part.kind = \"randm\" is unknown, allowed evolve, random, empty, evaluate");
   EXPECT_EQ(ErrorWith("set.search.generatons = 3\n"),
             "small.toml:3:1: part 'evolved': --set search.generatons=3: unknown key 'search.generatons'; did "
             "you mean 'search.generations'?");
@@ -76,9 +76,9 @@ TEST(StudyReader, NamesWhatIsWrongAndWhere) {
   EXPECT_EQ(ErrorWith("[compare.c]\n" + sets + "metric = \"birds_lft\"\n"),
             "small.toml:8:1: unknown metric 'birds_lft'; did you mean 'birds_left'?");
   EXPECT_EQ(ErrorWith("[compare.c]\n" + sets + "effect = \"big\"\n"),
-            "small.toml:8:1: effect is 'big', expected a number");
+            "small.toml:11:1: effect is text (\"big\"), expected a number");
   EXPECT_EQ(ErrorWith("[compare.c]\n" + sets + "expect = \"more\"\n"),
-            "small.toml:8:1: expect is 'more', expected less or greater");
+            "small.toml:11:1: expect = \"more\" is unknown, allowed less, greater");
   EXPECT_EQ(ErrorWith("", ""), "small.toml: the study has no name");
   EXPECT_EQ(ErrorWith("", "name = \"small\"\ninclude = \"small\"\n"), "small.toml is included twice");
   EXPECT_EQ(LoadStudy("thesis-floking").error().message,
@@ -166,6 +166,14 @@ TEST(StudyReader, ATuningTakesAnotherExperimentRepeatsAndSettings) {
   EXPECT_THAT(study->parts.front().seeds, SizeIs(2));
   EXPECT_EQ(study->parts.front().experiment.scenario, "foraging");
   EXPECT_EQ(study->analyses.front().tuning->parameters.front().baseline, "30");
+}
+
+TEST(StudyReader, ATuningIsCalledAsItsFileSaysUnlessItIsOfAnotherExperiment) {
+  const auto own = ReadTuning("", {"flocking", "2", {}});
+  ASSERT_TRUE(own.ok()) << own.error().message;
+  EXPECT_EQ(own->name, "t");
+  EXPECT_EQ(own->description, "which values of the search's parameters find tougher cases for flocking");
+  EXPECT_EQ(ReadTuning("", {"foraging", "2", {}})->name, "tune-foraging");
 }
 
 TEST(StudyReader, SaysWhatIsWrongWithATuning) {

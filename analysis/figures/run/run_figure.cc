@@ -14,6 +14,7 @@
 #include "analysis/figures/run/run_panel.h"
 #include "analysis/figures/run/run_tracks.h"
 #include "analysis/figures/svg_canvas.h"
+#include "base/number_text.h"
 #include "sim/arena/arena.h"
 #include "sim/geometry/trigonometry.h"
 
@@ -114,7 +115,7 @@ std::string SplitLabel(const RunFigure& figure, const sim::Annotation& split) {
   std::string text =
       split.tick >= 0 ? fmt::format("split at {:.0f} s", split.tick * sim::kTickSeconds) : "split";
   if (!split.robots.empty()) {
-    text += fmt::format(": {}{} {} left the swarm", figure.style.member, split.robots.size() == 1 ? "" : "s",
+    text += fmt::format(": {} {} left the swarm", Plural(split.robots.size(), figure.style.member),
                         Ranges(split.robots));
   }
   return text;

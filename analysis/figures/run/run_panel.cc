@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/run/run_annotations.h"
+#include "base/number_text.h"
 
 namespace gauntlet::analysis {
 namespace {
@@ -21,10 +22,6 @@ std::string Shortened(std::string text, std::size_t most) {
   while (cut > 0 && (static_cast<unsigned char>(text[cut]) & 0xC0) == 0x80) --cut;
   text.resize(cut);
   return text + "\u2026";
-}
-
-std::string Plural(std::string_view noun, std::size_t count) {
-  return count == 1 ? std::string(noun) : fmt::format("{}s", noun);
 }
 
 class Panel {
@@ -108,7 +105,7 @@ void DrawMarksLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure) {
     const auto annotations = MarkedBy(figure, style);
     if (annotations.empty()) continue;
     if (style.mark == sim::Mark::kTransfer) {
-      panel.Row(fmt::format("{} {} of an item", annotations.size(), Plural(style.legend, annotations.size())),
+      panel.Row(fmt::format("{} {} of an item", annotations.size(), Plural(annotations.size(), style.legend)),
                 draw);
     } else if (!style.legend.empty()) {
       panel.Row(style.legend, draw);
@@ -131,13 +128,13 @@ void DrawWaysLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure,
   const std::size_t kept = count(TrackKind::kKept);
   const std::size_t lost = count(TrackKind::kLost);
   if (kept > 0) {
-    panel.Row(fmt::format("{} {}, not {}", kept, Plural(style.member, kept), style.lost),
+    panel.Row(fmt::format("{} {}, not {}", kept, Plural(kept, style.member), style.lost),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kKeptColor, 2.0); });
   }
   if (lost > 0) {
     const bool trapped =
         std::ranges::any_of(tracks, [](const Track& track) { return track.trapped_from.has_value(); });
-    panel.Row(fmt::format("{} {}, {}{}", lost, Plural(style.member, lost), style.lost,
+    panel.Row(fmt::format("{} {}, {}{}", lost, Plural(lost, style.member), style.lost,
                           trapped ? ", then strong" : ""),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kLostColor, 2.6); });
   }
@@ -236,7 +233,7 @@ std::string DescribeOutcome(const RunFigure& figure) {
   const std::string_view prefix = result.failure.total ? "total failure: " : "";
   const std::string who =
       lost == 0 ? fmt::format("no {} {}", style.member, style.lost)
-                : fmt::format("{} of {} {} {}", lost, members, Plural(style.member, members), style.lost);
+                : fmt::format("{} of {} {} {}", lost, members, Plural(members, style.member), style.lost);
   const bool labelled = result.failure.total && !result.failure.label.empty();
   if (labelled && lost == 0) return fmt::format("{}{}", prefix, result.failure.label);
   if (labelled && !style.lost_is_failure) return fmt::format("{}{}; {}", prefix, result.failure.label, who);

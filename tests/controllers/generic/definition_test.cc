@@ -27,10 +27,10 @@ std::string ErrorOf(const std::vector<DefinitionEntry>& entries) {
 
 TEST(DefinitionTest, EveryKeyThatIsListedIsTaken) {
   DefinitionReader reader;
-  for (const DefinitionKey& key : DefinitionKeys()) {
-    const DefinitionValue number = key.number == nullptr ? 0.0 : key.number->default_value;
-    const DefinitionValue text = key.names.empty() ? "robots" : std::string(key.names.back());
-    const Status set = reader.Set(key.path, key.number == nullptr || !key.names.empty() ? text : number);
+  for (const KeyInfo& key : DefinitionKeys()) {
+    const std::string text = key.choices.empty() ? "robots" : key.choices.back();
+    const auto* number = std::get_if<double>(&key.default_value);
+    const Status set = reader.Set(key.path, number != nullptr ? KeyValue(*number) : text);
     EXPECT_TRUE(set.ok()) << key.path << ": " << set.error().message;
   }
 }
@@ -77,19 +77,18 @@ TEST(Definition, SaysWhatWouldBeRight) {
   EXPECT_EQ(ErrorOf({{"reached", "items_brought > 3 && collisions > 1"}}).substr(0, 85),
             "reached = \"items_brought > 3 && collisions > 1\": character 22: unknown measure 'colli");
   EXPECT_EQ(ErrorOf({{"ligth.1.x", 1.0}}), "[generic]: unknown key 'ligth'; did you mean 'light'?");
-  EXPECT_EQ(ErrorOf({{"light.1.hight", 1.0}}), "light.1: unknown key 'hight'; did you mean 'height'?");
-  EXPECT_EQ(ErrorOf({{"light.1.x", 51.0}}),
-            "light.1: parameter 'x' = 51 m is out of range: from -50 to 50 m");
-  EXPECT_EQ(ErrorOf({{"light.1.x", "left"}}), "light.1: x = \"left\", expected a number");
+  EXPECT_EQ(ErrorOf({{"light.1.hight", 1.0}}), "unknown key 'light.1.hight'; did you mean 'light.1.height'?");
+  EXPECT_EQ(ErrorOf({{"light.1.x", 51.0}}), "light.1.x = 51.0 is out of range, allowed -50 to 50 m");
+  EXPECT_EQ(ErrorOf({{"light.1.x", "left"}}), "light.1.x = \"left\", expected a number, -50 to 50 m");
   EXPECT_EQ(ErrorOf({{"light.1.color", "pink"}}),
-            "light.1: color = \"pink\" is unknown, allowed black, red, green, blue, yellow, white, magenta, "
+            "light.1.color = \"pink\" is unknown, allowed black, red, green, blue, yellow, white, magenta, "
             "cyan, orange");
   EXPECT_EQ(ErrorOf({{"light.x", 1.0}}), "light is a list: each of it begins with [[generic.light]]");
   EXPECT_EQ(ErrorOf({{"light", 1.0}}), "light is a list: each of it begins with [[generic.light]]");
   EXPECT_EQ(ErrorOf({{"light.101.x", 1.0}}), "light.101: a list has the places 1 to 100");
   EXPECT_EQ(ErrorOf({{"light.2.x", 1.0}}), "light.2 without light.1");
   EXPECT_EQ(ErrorOf({{"ground.1.radius", -1.0}}),
-            "ground.1: parameter 'radius' = -1 m is out of range: from 0 to 50 m");
+            "ground.1.radius = -1.0 is out of range, allowed 0 to 50 m");
   EXPECT_EQ(ErrorOf({{"ground.1.radius", 1.0}, {"ground.1.width", 2.0}}),
             "ground.1: radius = 1, length = 0, width = 2: a disc has a radius, a rectangle a length and a "
             "width, in m");

@@ -78,7 +78,7 @@ TEST(DefinitionTable, ErrorsNameThePlace) {
       "--set generic.failure=largest_clutser < 3: failure = \"largest_clutser < 3\": character 1: unknown "
       "measure 'largest_clutser'; did you mean 'largest_cluster'?");
   EXPECT_EQ(TableError(text + "grey = 2\n"),
-            "gather.toml:11:1: ground.1: parameter 'grey' = 2 is out of range: from 0 to 1");
+            "gather.toml:11:1: ground.1.grey = 2.0 is out of range, allowed 0 to 1");
   EXPECT_EQ(TableError(text + "[[generic.lihgt]]\n"),
             "gather.toml:11:1: [generic]: unknown key 'lihgt'; did you mean 'light'?");
   EXPECT_EQ(TableError(text + "x = [1]\n"),

@@ -111,7 +111,7 @@ TEST(ExperimentErrorsTest, ValuesOutOfRangeComeWithTheRange) {
 
 TEST(ExperimentErrorsTest, WrongTypesNameWhatWasExpected) {
   EXPECT_EQ(ErrorOf(Marching("[search]\npopulation = 'many'\n")),
-            "toy.toml:3:1: search.population is text, expected a whole number, 4 to 10000");
+            "toy.toml:3:1: search.population is text (\"many\"), expected a whole number, 4 to 10000");
   EXPECT_EQ(ErrorOf(Marching("[search]\npopulation = 20.5\n")),
             "toy.toml:3:1: search.population is a decimal number, expected a whole number, 4 to "
             "10000");
@@ -124,7 +124,8 @@ TEST(ExperimentErrorsTest, WrongTypesNameWhatWasExpected) {
             "toy.toml:2:1: seed is a negative number, expected a whole number, 0 to 18446744073709551615 (as "
             "text from 9223372036854775808 on)");
   EXPECT_EQ(ErrorOf(Marching("seed = '18446744073709551616'\n")),
-            "toy.toml:2:1: seed is text, expected a whole number, 0 to 18446744073709551615 (as text from "
+            "toy.toml:2:1: seed is text (\"18446744073709551616\"), expected a whole number, 0 to "
+            "18446744073709551615 (as text from "
             "9223372036854775808 on)");
   EXPECT_EQ(ErrorOf(kMarching, {"seed=12x"}),
             "--set seed=12x: seed is text, expected a whole number, 0 to 18446744073709551615 (as text from "

@@ -1,0 +1,82 @@
+#include "search/experiment/key_assignment.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "base/parse_number.h"
+
+namespace gauntlet {
+namespace {
+
+// What the value of an assignment to `key` is (KindOf), closer where the kind alone would puzzle.
+std::string KindFor(const KeyInfo& key, const Assignment& assignment) {
+  const std::string_view digits =
+      std::string_view(assignment.text).substr(assignment.text.starts_with('-') ? 1 : 0);
+  const bool is_text = std::holds_alternative<std::string>(assignment.value);
+  if (is_text && !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos)
+    return "a number beyond 64 bits";
+  if (key.type == KeyType::kSeed && std::holds_alternative<std::int64_t>(assignment.value))
+    return "a negative number";
+  // What was typed behind --set is in its place.
+  if (is_text && assignment.text.empty())
+    return fmt::format("text ({})", QuoteToml(std::get<std::string>(assignment.value)));
+  return KindOf(assignment.value);
+}
+
+std::optional<std::uint64_t> SeedOf(const TomlValue& value) {
+  if (const auto* integer = std::get_if<std::int64_t>(&value); integer != nullptr && *integer >= 0) {
+    return static_cast<std::uint64_t>(*integer);
+  }
+  const auto* text = std::get_if<std::string>(&value);
+  return text == nullptr ? std::nullopt : ParseNumber<std::uint64_t>(*text);
+}
+
+// The assignment's value in the type of the key, or nothing when it is of another kind.
+std::optional<KeyValue> Convert(const KeyInfo& key, const Assignment& assignment) {
+  const TomlValue& value = assignment.value;
+  const auto* integer = std::get_if<std::int64_t>(&value);
+  switch (key.type) {
+    case KeyType::kText:
+    case KeyType::kChoice:
+      if (const auto* text = std::get_if<std::string>(&value)) return *text;
+      // --set name=123 means the text.
+      if (!assignment.text.empty()) return assignment.text;
+      return std::nullopt;
+    case KeyType::kInteger:
+      if (integer != nullptr) return *integer;
+      return std::nullopt;
+    case KeyType::kNumber:
+      if (integer != nullptr) return static_cast<double>(*integer);
+      if (const auto* number = std::get_if<double>(&value)) return *number;
+      return std::nullopt;
+    case KeyType::kFlag:
+      if (const auto* flag = std::get_if<bool>(&value)) return *flag;
+      if (integer != nullptr && (*integer == 0 || *integer == 1)) return *integer == 1;
+      return std::nullopt;
+    case KeyType::kSeed:
+      break;
+  }
+  if (const std::optional<std::uint64_t> seed = SeedOf(value)) return *seed;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<KeyValue> ValueFor(const KeyInfo& key, const Assignment& assignment) {
+  std::optional<KeyValue> value = Convert(key, assignment);
+  if (!value) {
+    return InvalidInput(fmt::format("{}: {} is {}, expected {}", assignment.where, key.path,
+                                    KindFor(key, assignment), ExpectationOf(key)));
+  }
+  if (const std::optional<std::string> wrong = CheckValue(key, *value))
+    return InvalidInput(fmt::format("{}: {}", assignment.where, *wrong));
+  return *std::move(value);
+}
+
+std::string LineOf(std::string_view name, const KeyInfo& key, const KeyValue& value) {
+  return fmt::format("{:<36}  # {}{}{}\n", fmt::format("{} = {}", name, ToToml(value)), key.unit,
+                     key.unit.empty() ? "" : "; ", key.description);
+}
+
+}  // namespace gauntlet
