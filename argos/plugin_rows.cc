@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <deque>
 #include <map>
 #include <optional>
 #include <set>
@@ -90,10 +89,8 @@ void ForEachAttribute(Lines element, const std::string& path, argos::TConfigurat
 
 // A controller of the library, with its section of the file if there is one.
 struct Configured {
-  std::string name;
   std::string label;
   Lines section = {};
-  std::deque<std::string> names = {};  // of its parameters
   std::vector<controllers::ParameterInfo> parameters = {};
   std::string description = "";
 
@@ -118,7 +115,7 @@ struct Configured {
 void Configured::Describe() {
   description =
       section.empty() ? "written for ARGoS" : "written for ARGoS, with the parameters of its .argos file";
-  parameters.push_back({.name = kLinkRange,
+  parameters.push_back({.name = std::string(kLinkRange),
                         .unit = "m",
                         .default_value = 1.35,
                         .min = 0.0,
@@ -133,7 +130,7 @@ void Configured::Describe() {
                      const std::optional<double> value = NumberIn(line.value);
                      if (!value || !IsName(path) || path == kLinkRange) return;
                      const double most = std::max(kMostValue, 10.0 * std::abs(*value));
-                     parameters.push_back({.name = names.emplace_back(path),
+                     parameters.push_back({.name = path,
                                            .unit = "",
                                            .default_value = *value,
                                            .min = -most,
@@ -202,9 +199,8 @@ std::vector<controllers::ControllerInfo> ControllerRows(Lines lines) {
                              " (REGISTER_CONTROLLER); give each its own, or build each source alone");
   }
   CheckThatTheyMeet(lines, Factory::GetTypeMap());
-  static std::deque<Configured> all;
+  std::vector<controllers::ControllerInfo> rows;
   std::set<std::string> taken;
-  const std::size_t first = all.size();
   for (const auto& [label, creator] : Factory::GetTypeMap()) {
     std::vector<Lines> sections;
     for (const Lines section : Elements(lines, 0)) {
@@ -220,16 +216,12 @@ std::vector<controllers::ControllerInfo> ControllerRows(Lines lines) {
         }
       }
       if (!taken.insert(name).second) continue;
-      Configured& configured = all.emplace_back(Configured{.name = name, .label = label, .section = section});
+      Configured configured{.label = label, .section = section};
       configured.Describe();
+      rows.push_back(
+          {name, std::string(controllers::kAnyScenario), configured.description, configured.parameters,
+           [configured](const sim::Parameters& resolved) { return FactoryOf(configured, resolved); }});
     }
-  }
-  std::vector<controllers::ControllerInfo> rows;
-  for (std::size_t i = first; i < all.size(); ++i) {
-    const Configured& configured = all[i];
-    rows.push_back(
-        {configured.name, controllers::kAnyScenario, configured.description, configured.parameters,
-         [&configured](const sim::Parameters& resolved) { return FactoryOf(configured, resolved); }});
   }
   return rows;
 }

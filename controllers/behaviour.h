@@ -65,10 +65,10 @@ struct ControllerFactory {
 inline constexpr std::string_view kAnyScenario = "any";
 
 struct ControllerInfo {
-  std::string_view name;
-  std::string_view scenario;  // the scenario it is written for, or kAnyScenario
-  std::string_view description;
-  std::span<const ParameterInfo> parameters;
+  std::string name;
+  std::string scenario;  // the scenario it is written for, or kAnyScenario
+  std::string description;
+  std::vector<ParameterInfo> parameters;
   std::function<ControllerFactory(const sim::Parameters& resolved)> make;
 
   bool WrittenFor(std::string_view name_of_scenario) const {
@@ -78,10 +78,10 @@ struct ControllerInfo {
 
 // A row whose controller gets its settings from a table, which outlives the row.
 template <typename Settings>
-ControllerInfo ControllerRow(std::string_view name, std::string_view scenario, std::string_view description,
+ControllerInfo ControllerRow(std::string name, std::string scenario, std::string description,
                              const ParameterTable<Settings>& table,
                              ControllerFactory (*make)(const Settings& settings)) {
-  return {name, scenario, description, table.infos(),
+  return {std::move(name), std::move(scenario), std::move(description), table.infos(),
           [&table, make](const sim::Parameters& resolved) { return make(table.Read(resolved)); }};
 }
 
@@ -92,11 +92,12 @@ inline constexpr double kNowhere = -1000.0;
 
 // One of the values that a scenario reports of a run.
 struct MetricInfo {
-  std::string_view name;       // "food_window_*" stands for a family, food_window_1, food_window_2...
-  std::string_view unit;       // "m", "s", "rad", "yes/no" for 0/1, "" for counts and ratios
+  std::string name;            // "food_window_*" stands for a family, food_window_1, food_window_2...
+  std::string unit;            // "m", "s", "rad", "yes/no" for 0/1, "" for counts and ratios
   std::optional<double> none;  // the value that says that there was nothing to measure
-  std::string_view description;
+  std::string description;
   bool descriptor = false;  // tells how a swarm behaved, so a search may steer by it
+  bool operator==(const MetricInfo&) const = default;
 };
 
 // A way in which the whole swarm can fail, as Evaluate reports it in SwarmFailure.
@@ -105,64 +106,69 @@ struct FailureType {
   std::string name;
   std::string column = "";  // where it stands in a map of the types, in words; "" = they have no such order
   std::string row = "";
+  bool operator==(const FailureType&) const = default;
 };
 
 // What the columns and rows of a map of failure types are.
 struct FailureAxes {
-  std::string_view columns = "";
-  std::string_view rows = "";
+  std::string columns = "";
+  std::string rows = "";
+  bool operator==(const FailureAxes&) const = default;
 };
 
 // Where a failed run failed, so that two failures can be told to be the same one.
 struct FailurePlace {
-  std::string_view x;  // metrics, m from the arena's centre
-  std::string_view y;
+  std::string x;  // metrics, m from the arena's centre
+  std::string y;
   double same_within = 0.0;  // m: failures that are no farther apart are the same one
+  bool operator==(const FailurePlace&) const = default;
 };
 
 // A way in which failed runs differ that repeats when their cases are simulated again. A failed run is of the
 // first of the scenario's kinds whose metric is at most `at_most`.
 struct FailureKind {
-  std::string_view metric;
+  std::string metric;
   double at_most = 0.0;
-  std::string_view what;  // in words: "no item was taken"
+  std::string what;  // in words: "no item was taken"
+  bool operator==(const FailureKind&) const = default;
 };
 
 // The range of a metric, cut into equal parts; what lies outside belongs to the outermost ones. Several axes
 // make a grid whose cells tell failures apart.
 struct DescriptorAxis {
-  std::string_view metric;
+  std::string metric;
   double min = 0.0;
   double max = 0.0;
   int parts = 1;
+  bool operator==(const DescriptorAxis&) const = default;
 };
 
 struct ScenarioInfo {
-  std::string_view name;
-  std::string_view description;
-  std::string_view default_controller;
+  std::string name;
+  std::string description;
+  std::string default_controller;
   sim::RunStyle style = {};
-  std::span<const ParameterInfo> parameters = {};
-  std::string_view time_limit = "time_limit";  // the parameter, in s, after which a run ends at the latest
-  std::span<const MetricInfo> metrics;
-  std::span<const FailureType> failure_types = {};
+  std::vector<ParameterInfo> parameters = {};
+  std::string time_limit = "time_limit";  // the parameter, in s, after which a run ends at the latest
+  std::vector<MetricInfo> metrics;
+  std::vector<FailureType> failure_types = {};
   FailureAxes failure_axes = {};
-  std::string_view untyped_failure = "without a type";  // a total failure whose type is -1
+  std::string untyped_failure = "without a type";  // a total failure whose type is -1
   // What is 1 after a run in which a test case broke the swarm, when cases are confirmed and made smaller:
   // "total_failure" or a yes/no metric.
-  std::string_view failing = "total_failure";
+  std::string failing = "total_failure";
   std::optional<FailurePlace> failure_place = {};  // nothing: its failures have no place that repeats
   // Points that the swarm has to pass in this test case, m. At which of them it fails repeats better than
   // where exactly. May be empty, and may give none.
   std::function<std::vector<sim::Vec2>(const sim::Parameters& parameters, const sim::TestCase& test_case)>
       passages = nullptr;
-  std::span<const FailureKind> failure_kinds = {};
-  std::string_view failure_note = "";  // what was measured about total failures and their types
-  bool any_controller = false;         // also takes controllers that are written for other scenarios
+  std::vector<FailureKind> failure_kinds = {};
+  std::string failure_note = "";  // what was measured about total failures and their types
+  bool any_controller = false;    // also takes controllers that are written for other scenarios
   // What is wrong with RunSpec::definition. nullptr: the scenario takes none.
   std::function<Status(std::string_view definition)> check_definition = nullptr;
   // Along which failures differ in a way that repeats when a case is simulated again.
-  std::span<const DescriptorAxis> descriptor_axes = {};
+  std::vector<DescriptorAxis> descriptor_axes = {};
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   std::function<sim::ArenaRequirements(const sim::Parameters& parameters, const sim::TestCase& test_case)>
       requirements = nullptr;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -18,13 +17,15 @@ namespace gauntlet::controllers {
 
 // A row as programs that list and check parameters see it.
 struct ParameterInfo {
-  std::string_view name;
-  std::string_view unit;  // "m", "m/s", "s", "rad", "" for counts, "bool" for 0/1
+  std::string name;
+  std::string unit;  // "m", "m/s", "s", "rad", "" for counts, "bool" for 0/1
   double default_value = 0.0;
   double min = 0.0;
   double max = 0.0;
   bool integer = false;
-  std::string_view description;  // one line, with the source of the default
+  std::string description;  // one line, with the source of the default
+
+  bool operator==(const ParameterInfo&) const = default;
 };
 
 // Seconds as the nearest number of ticks.
@@ -113,14 +114,14 @@ class ParameterTable {
     return table;
   }
 
-  std::span<const ParameterInfo> infos() const { return infos_; }
+  const std::vector<ParameterInfo>& infos() const { return infos_; }
 
   // Rows fill the settings in their order. Aborts when `resolved` lacks one: the registry resolves.
   Settings Read(const sim::Parameters& resolved) const {
     Settings settings = start_;
     for (std::size_t i = 0; i < infos_.size(); ++i) {
-      const auto found = resolved.find(std::string(infos_[i].name));
-      GAUNTLET_CHECK(found != resolved.end(), "unresolved parameter " + std::string(infos_[i].name));
+      const auto found = resolved.find(infos_[i].name);
+      GAUNTLET_CHECK(found != resolved.end(), "unresolved parameter " + infos_[i].name);
       set_[i](settings, found->second);
     }
     return settings;
@@ -129,8 +130,8 @@ class ParameterTable {
  private:
   void Append(const Rows& rows) {
     for (const Parameter<Settings>& row : rows) {
-      infos_.push_back(
-          {row.name, row.unit, row.default_value, row.min, row.max, row.fill.integer, row.description});
+      infos_.push_back({std::string(row.name), std::string(row.unit), row.default_value, row.min, row.max,
+                        row.fill.integer, std::string(row.description)});
       set_.push_back(row.fill.set);
     }
   }

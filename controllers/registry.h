@@ -28,7 +28,7 @@ std::span<const ControllerInfo> Controllers();  // those that are built in
 struct PluginInfo {
   std::string hash;  // SHA-256 of the library, 64 hexadecimal digits
   std::string file;  // where it was found
-  // In a master: what gauntlet-worker said of it, from which the rows come (proto/plugin_description.h).
+  // In a master: what gauntlet-worker said of it, from which the rows come (controllers/rows/plugin_rows.h).
   std::string description;
   std::vector<ControllerInfo> controllers;
   std::vector<ScenarioInfo> scenarios = {};  // in a master without the functions of their rows

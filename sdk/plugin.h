@@ -9,19 +9,27 @@
 //   std::vector<gauntlet::controllers::ScenarioInfo> MyScenarios();
 //   GAUNTLET_SCENARIO_PLUGIN(MyControllers, MyScenarios)
 //
-// The classes and tables of the SDK are C++ and pass between the plug-in and the worker as they are, so both
-// must agree on their layout. What the two say about that, kPluginAbi and kPluginFingerprint, is data that a
-// worker compares before it calls anything of the plug-in.
+// Rows pass as JSON, so that they can gain members: a plug-in that lacks one has its default. The other
+// classes of the SDK are C++ and pass between the plug-in and the worker as they are, so both must agree on
+// their layout. What the two say about that, kPluginAbi and kPluginFingerprint, is data that a worker
+// compares before it calls anything of the plug-in.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "base/nearest_name.h"
+#include "base/result.h"
 #include "controllers/behaviour.h"
+#include "controllers/rows/plugin_rows.h"
 #include "sim/robot/controller.h"
 #include "sim/scenario.h"
 
@@ -29,7 +37,7 @@ namespace gauntlet::sdk {
 
 // Changes whenever a header of the SDK changes what compiled code relies on and the sizes below do not tell:
 // a virtual function, the meaning of a member or of an enumeration's value.
-inline constexpr std::uint32_t kPluginAbi = 3;
+inline constexpr std::uint32_t kPluginAbi = 4;
 
 // The name of the exported symbol.
 inline constexpr const char* kPluginSymbol = "gauntlet_plugin";
@@ -78,25 +86,68 @@ inline constexpr ConstantText kPluginFingerprint = [] {
   text.Add(" aligned ");
   text.Add(EIGEN_MAX_STATIC_ALIGN_BYTES);
   text.Add(" sizes");
-  AddSizes<controllers::ControllerInfo, controllers::ControllerContext, controllers::ControllerFactory,
-           controllers::ParameterInfo, sim::ControlStep, sim::SensorReadings, sim::Actuators, sim::Blob,
-           sim::Message, sim::ScannerReading, sim::RandomStream, controllers::ScenarioInfo,
-           controllers::MetricInfo, controllers::FailureType, controllers::FailureKind,
-           controllers::DescriptorAxis, sim::RunStyle, sim::AnnotationStyle, sim::RunSpec, sim::TestCase,
-           sim::ObstacleGene, sim::ArenaRequirements, sim::Arena, sim::Observer, sim::RobotState,
-           sim::RobotSetup, sim::Light, sim::RadioBeacon, sim::GroundArea, sim::Interaction, sim::Grippers,
-           sim::Outcome, sim::Annotation>(text);
+  AddSizes<controllers::ControllerContext, controllers::ControllerFactory, Result<std::string>,
+           sim::ControlStep, sim::SensorReadings, sim::Actuators, sim::Blob, sim::Message,
+           sim::ScannerReading, sim::RandomStream, sim::RunSpec, sim::TestCase, sim::ObstacleGene,
+           sim::ArenaRequirements, sim::Arena, sim::Observer, sim::RobotState, sim::RobotSetup, sim::Light,
+           sim::RadioBeacon, sim::GroundArea, sim::Interaction, sim::Grippers, sim::Outcome, sim::Annotation>(
+      text);
   return text;
 }();
 
-// The exported data. The first two members never change their places.
+// The exported data. The first two members never change their places; others are only ever added behind the
+// last, and `size` tells which of them a plug-in has.
 struct Plugin {
   std::uint64_t abi;        // kPluginAbi
   const char* fingerprint;  // kPluginFingerprint, as the plug-in was compiled
-  // Its controllers and its scenarios, nullptr where it brings none; each is called once. What the rows refer
-  // to lives as long as the library is loaded.
-  std::vector<controllers::ControllerInfo> (*controllers)();
-  std::vector<controllers::ScenarioInfo> (*scenarios)();
+  std::size_t size;         // of this struct
+  // Its rows, as controllers/rows/plugin_rows.h writes them. Error: what is missing in one, or what its list
+  // throws.
+  Result<std::string> (*rows)();
+  // The functions of its rows, by their names; they throw what the rows' own throw.
+  controllers::ControllerFactory (*make)(std::string_view controller, const sim::Parameters& resolved);
+  sim::ArenaRequirements (*requirements)(std::string_view scenario, const sim::Parameters& parameters,
+                                         const sim::TestCase& test_case);
+  std::unique_ptr<sim::Scenario> (*create)(std::string_view scenario, const sim::RunSpec& spec,
+                                           controllers::ControllerFactory controller);
+};
+
+// The rows as JSON, if each has the functions that it needs.
+Result<std::string> TellRows(const controllers::PluginRows& rows);
+
+// What a plug-in exports whose rows are these; each list is called once. Either may be nullptr.
+template <std::vector<controllers::ControllerInfo> (*kControllers)(),
+          std::vector<controllers::ScenarioInfo> (*kScenarios)()>
+struct Exports {
+  static const controllers::PluginRows& Rows() {
+    static const controllers::PluginRows rows = [] {
+      controllers::PluginRows all;
+      if constexpr (kControllers != nullptr) all.controllers = kControllers();
+      if constexpr (kScenarios != nullptr) all.scenarios = kScenarios();
+      return all;
+    }();
+    return rows;
+  }
+  static Result<std::string> Tell() {
+    try {
+      return TellRows(Rows());
+    } catch (const std::exception& error) {
+      return InvalidInput(std::string("its list of rows throws: ") + error.what());
+    }
+  }
+  static controllers::ControllerFactory Make(std::string_view controller, const sim::Parameters& resolved) {
+    return FindByName(Rows().controllers, controller)->make(resolved);
+  }
+  static sim::ArenaRequirements Requirements(std::string_view scenario, const sim::Parameters& parameters,
+                                             const sim::TestCase& test_case) {
+    return FindByName(Rows().scenarios, scenario)->requirements(parameters, test_case);
+  }
+  static std::unique_ptr<sim::Scenario> Create(std::string_view scenario, const sim::RunSpec& spec,
+                                               controllers::ControllerFactory controller) {
+    return FindByName(Rows().scenarios, scenario)->create(spec, std::move(controller));
+  }
+  static constexpr Plugin kPlugin = {
+      kPluginAbi, kPluginFingerprint.c_str(), sizeof(Plugin), Tell, Make, Requirements, Create};
 };
 
 }  // namespace gauntlet::sdk
@@ -105,8 +156,7 @@ struct Plugin {
 // rows; nullptr: it brings none.
 #define GAUNTLET_SCENARIO_PLUGIN(controllers, scenarios)                                         \
   extern "C" __attribute__((visibility("default"))) const gauntlet::sdk::Plugin gauntlet_plugin; \
-  const gauntlet::sdk::Plugin gauntlet_plugin = {                                                \
-      gauntlet::sdk::kPluginAbi, gauntlet::sdk::kPluginFingerprint.c_str(), controllers, scenarios};
+  const gauntlet::sdk::Plugin gauntlet_plugin = gauntlet::sdk::Exports<controllers, scenarios>::kPlugin;
 
 // The same of a plug-in that brings controllers alone.
 #define GAUNTLET_PLUGIN(controllers) GAUNTLET_SCENARIO_PLUGIN(controllers, nullptr)

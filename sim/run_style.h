@@ -3,8 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
-#include <string_view>
+#include <string>
+#include <vector>
 
 namespace gauntlet::sim {
 
@@ -23,19 +23,21 @@ enum class Mark : std::uint8_t {
 };
 
 struct AnnotationStyle {
-  std::string_view kind;   // of the annotation
-  std::string_view label;  // only of annotations with this label, or the name of a state; "" = of all
+  std::string kind;   // of the annotation
+  std::string label;  // only of annotations with this label, or the name of a state; "" = of all
   Mark mark = Mark::kGoal;
-  std::string_view legend;  // its words in the legend; "" = the annotation's label
+  std::string legend;  // its words in the legend; "" = the annotation's label
+  bool operator==(const AnnotationStyle&) const = default;
 };
 
 // Annotations "trapped" (a robot, from its tick on) and "states" (its time-line) mean the same everywhere.
 struct RunStyle {
-  std::string_view member = "robot";  // one of those under test, singular
-  std::string_view lost = "lost";     // what RobotSummary::lost says of it
-  bool lost_is_failure = true;        // total failure means that too many were lost, not something of its own
-  std::string_view guide = "guide";   // the robot that a planned path is for, which is not under test
-  std::span<const AnnotationStyle> annotations = {};
+  std::string member = "robot";  // one of those under test, singular
+  std::string lost = "lost";     // what RobotSummary::lost says of it
+  bool lost_is_failure = true;   // total failure means that too many were lost, not something of its own
+  std::string guide = "guide";   // the robot that a planned path is for, which is not under test
+  std::vector<AnnotationStyle> annotations = {};
+  bool operator==(const RunStyle&) const = default;
 };
 
 }  // namespace gauntlet::sim

@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "cli/options/options.h"
 #include "controllers/registry.h"
+#include "controllers/rows/row_json.h"
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"
 #include "search/experiment/definition_table.h"
@@ -183,33 +184,10 @@ std::string DisturbancesText() {
 
 // What `to_json` makes of each item.
 template <typename Items>
-Json JsonOf(const Items& items, const auto& to_json) {
+Json ListOf(const Items& items, const auto& to_json) {
   Json list = Json::array();
   for (const auto& item : items) list.push_back(to_json(item));
   return list;
-}
-
-Json ParameterJson(const controllers::ParameterInfo& info) {
-  const KeyInfo key = controllers::KeyInfoOf("", info);
-  return {{"name", info.name},
-          {"type", NameOf(key.type)},
-          {"unit", key.unit},
-          {"default", info.default_value},
-          {"min", info.min},
-          {"max", info.max},
-          {"description", info.description}};
-}
-
-Json MetricJson(const controllers::MetricInfo& info) {
-  return {{"name", info.name},
-          {"unit", info.unit},
-          {"none", info.none ? Json(*info.none) : Json()},
-          {"descriptor", info.descriptor},
-          {"description", info.description}};
-}
-
-Json FailureJson(const controllers::FailureType& failure) {
-  return {{"type", failure.type}, {"name", failure.name}};
 }
 
 Json KeyJson(const KeyInfo& key) {
@@ -240,34 +218,20 @@ Json ExperimentJson(const ShippedExperiment& shipped) {
           {"path", shipped.path.string()}, {"error", shipped.error.empty() ? Json() : Json(shipped.error)}};
 }
 
-Json ScenarioJson(const controllers::ScenarioInfo& scenario) {
-  return {{"name", scenario.name},
-          {"description", scenario.description},
-          {"default_controller", scenario.default_controller},
-          {"parameters", JsonOf(scenario.parameters, ParameterJson)},
-          {"time_limit", scenario.time_limit},
-          {"metrics", JsonOf(scenario.metrics, MetricJson)},
-          {"failure_types", JsonOf(scenario.failure_types, FailureJson)}};
-}
-
-Json ControllerJson(const controllers::ControllerInfo& controller) {
-  return {{"name", controller.name},
-          {"description", controller.description},
-          {"scenario", controller.scenario},
-          {"parameters", JsonOf(controller.parameters, ParameterJson)}};
-}
+// Of a scenario or a controller.
+constexpr auto RowJson = [](const auto& row) { return controllers::JsonOf(row); };
 
 Json PluginJson(const controllers::PluginInfo& plugin) {
   return {{"file", plugin.file},
           {"sha256", plugin.hash},
-          {"scenarios", JsonOf(plugin.scenarios, ScenarioJson)},
-          {"controllers", JsonOf(plugin.controllers, ControllerJson)}};
+          {"scenarios", ListOf(plugin.scenarios, RowJson)},
+          {"controllers", ListOf(plugin.controllers, RowJson)}};
 }
 
 Json SearchJson(const SearchInfo& search) {
   return {{"name", search.name},
           {"description", search.description},
-          {"parameters", JsonOf(KeysOf(search), KeyJson)}};
+          {"parameters", ListOf(KeysOf(search), KeyJson)}};
 }
 
 struct Listing {
@@ -277,11 +241,11 @@ struct Listing {
 };
 constexpr Listing kSections[] = {
     {"experiments", ExperimentsText,
-     [] { return JsonOf(ListExperiments(BuiltInCatalogue()), ExperimentJson); }},
-    {"scenarios", ScenariosText, [] { return JsonOf(controllers::Scenarios(), ScenarioJson); }},
-    {"controllers", ControllersText, [] { return JsonOf(controllers::Controllers(), ControllerJson); }},
-    {"searches", SearchesText, [] { return JsonOf(BuiltInCatalogue().searches, SearchJson); }},
-    {"disturbances", DisturbancesText, [] { return JsonOf(DisturbanceKeys(), KeyJson); }}};
+     [] { return ListOf(ListExperiments(BuiltInCatalogue()), ExperimentJson); }},
+    {"scenarios", ScenariosText, [] { return ListOf(controllers::Scenarios(), RowJson); }},
+    {"controllers", ControllersText, [] { return ListOf(controllers::Controllers(), RowJson); }},
+    {"searches", SearchesText, [] { return ListOf(BuiltInCatalogue().searches, SearchJson); }},
+    {"disturbances", DisturbancesText, [] { return ListOf(DisturbanceKeys(), KeyJson); }}};
 
 Result<ExitCode> ListPlugins(CommandContext& context, const ListOptions& options) {
   TRY(const std::vector<std::string> plugins, AddPluginFiles(options.plugins));

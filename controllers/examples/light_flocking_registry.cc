@@ -10,16 +10,16 @@ namespace {
 using sim::kDegree;
 using sim::kPi;
 
-constexpr std::array kLightFlockingMetrics = std::to_array<MetricInfo>({
+const std::vector<MetricInfo> kLightFlockingMetrics = {
     {"light_distance", "m", {}, "mean distance of the robots to the light at the end"},
     {"stopped", "", {}, "share of the robots that moved less than 2 cm in the last 30 s", true},
     {"clusters", "", {}, "groups of robots that are linked by line of sight at the end", true},
-});
+};
 
-constexpr std::array kLightFlockingAnnotations = std::to_array<sim::AnnotationStyle>({
+const std::vector<sim::AnnotationStyle> kLightFlockingAnnotations = {
     {"area", "", sim::Mark::kArea, "area the swarm starts in"},
     {"disc", "light", sim::Mark::kGoal, ""},
-});
+};
 
 }  // namespace
 

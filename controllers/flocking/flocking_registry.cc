@@ -11,7 +11,7 @@ namespace {
 using sim::kDegree;
 using sim::kPi;
 
-constexpr std::array kFlockingMetrics = std::to_array<MetricInfo>({
+const std::vector<MetricInfo> kFlockingMetrics = {
     {"angular_order", "", {}, "agreement of the headings of the birds left, 0 to 1 (thesis 4.5.1)"},
     {"birds_left", "", {}, "birds in the prey's cluster at the end"},
     {"proportion_left", "", {}, "the same as a share of the birds"},
@@ -25,19 +25,19 @@ constexpr std::array kFlockingMetrics = std::to_array<MetricInfo>({
     {"split_speed_ratio", "", kNotMeasured, "slower cluster over faster one around the last split"},
     {"split_x", "m", kNowhere, "where the last split happened: mean of those who left", true},
     {"split_y", "m", kNowhere, "where the last split happened: mean of those who left", true},
-});
+};
 
-constexpr std::array kFlockingDescriptorAxes = std::to_array<DescriptorAxis>({
+const std::vector<DescriptorAxis> kFlockingDescriptorAxes = {
     {"split_x", -3.0, 3.0, 5},
     {"split_y", -3.0, 3.0, 5},
-});
+};
 
-constexpr std::array kFlockingAnnotations = std::to_array<sim::AnnotationStyle>({
+const std::vector<sim::AnnotationStyle> kFlockingAnnotations = {
     {"area", "", sim::Mark::kArea, "area the swarm starts in"},
     {"path", "", sim::Mark::kPlan, "planned path"},
     {"disc", "", sim::Mark::kGoal, ""},
     {"split", "", sim::Mark::kSplit, "last split, and who left then"},
-});
+};
 
 const std::vector<FailureType>& FailureTypes() {
   static const std::vector<FailureType> types = [] {

@@ -12,7 +12,7 @@ namespace {
 using sim::kDegree;
 using sim::kPi;
 
-constexpr std::array kForagingMetrics = std::to_array<MetricInfo>({
+const std::vector<MetricInfo> kForagingMetrics = {
     {"food_taken", "", {}, "items taken from the food", true},
     {"food_carried", "", {}, "items in the robots' hands at the end"},
     {"food_lost", "", {}, "items that a robot lost on its way"},
@@ -31,25 +31,25 @@ constexpr std::array kForagingMetrics = std::to_array<MetricInfo>({
     {"spread_y", "m", {}, "standard deviation of the robots' places over the run", true},
     {"food_window_*", "", {}, "items dropped in each 120 s"},
     {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
-});
+};
 
-constexpr std::array kFailureKinds = std::to_array<FailureKind>({
+const std::vector<FailureKind> kFailureKinds = {
     {"condition_1", 0.0, "a path of beacons, but no item came home"},
     {"condition_1", 1.0, "never a path of beacons"},
-});
+};
 
-constexpr std::array kForagingDescriptorAxes = std::to_array<DescriptorAxis>({
+const std::vector<DescriptorAxis> kForagingDescriptorAxes = {
     {"mean_robots_beacon", 0.0, 10.0, 5},
     {"spread_x", 0.5, 2.0, 5},
-});
+};
 
-constexpr std::array kForagingAnnotations = std::to_array<sim::AnnotationStyle>({
+const std::vector<sim::AnnotationStyle> kForagingAnnotations = {
     {"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
     {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
     {"chain", "", sim::Mark::kChain, ""},
     {"disc", "nest", sim::Mark::kNest, ""},
     {"disc", "food", sim::Mark::kFood, ""},
-});
+};
 
 Status CheckField(const ForagerSettings& settings) {
   const auto& field = settings.field;

@@ -14,8 +14,8 @@ constexpr sim::Tick kPathSampling = sim::kTicksPerSecond;  // how often a path i
 
 }  // namespace
 
-std::span<const FailureType> ForagingFailureTypes() {
-  static const std::array<FailureType, 3> types = {{{1, "no path"}, {2, "no food"}, {3, "no path, no food"}}};
+const std::vector<FailureType>& ForagingFailureTypes() {
+  static const std::vector<FailureType> types = {{1, "no path"}, {2, "no food"}, {3, "no path, no food"}};
   return types;
 }
 

@@ -22,7 +22,7 @@ struct ForagingSettings : NestAndFood {
 };
 
 // 1: no path of beacons ever, 2: no item in the nest, 3: both (thesis 5.4.2).
-std::span<const FailureType> ForagingFailureTypes();
+const std::vector<FailureType>& ForagingFailureTypes();
 
 class ForagingScenario : public NestAndFoodScenario {
  public:

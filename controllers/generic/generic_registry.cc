@@ -11,12 +11,12 @@ namespace {
 
 using sim::kPi;
 
-constexpr std::array kGenericDescriptorAxes = std::to_array<DescriptorAxis>({
+const std::vector<DescriptorAxis> kGenericDescriptorAxes = {
     {"center_x", -3.0, 3.0, 5},
     {"center_y", -3.0, 3.0, 5},
-});
+};
 
-constexpr std::array kGenericAnnotations = std::to_array<sim::AnnotationStyle>({
+const std::vector<sim::AnnotationStyle> kGenericAnnotations = {
     {"area", "start of the robots", sim::Mark::kArea, "area the swarm starts in"},
     {"area", "ground", sim::Mark::kArea, ""},
     {"area", "source", sim::Mark::kArea, ""},
@@ -26,7 +26,7 @@ constexpr std::array kGenericAnnotations = std::to_array<sim::AnnotationStyle>({
     {"disc", "nest", sim::Mark::kNest, ""},
     {"disc", "goal", sim::Mark::kGoal, ""},
     {"disc", "light", sim::Mark::kGoal, ""},
-});
+};
 
 }  // namespace
 

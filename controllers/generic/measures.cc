@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -18,27 +17,24 @@ using sim::Vec2;
 
 constexpr double kCell = 0.25;  // m, side of the squares that make the covered area: about a robot and a half
 
-struct MomentInfo {
-  std::string_view name;
-  std::string_view unit;
-  std::string_view description;
-  bool descriptor = false;
-};
-
 // In the order of Measures::Look.
-constexpr std::array<MomentInfo, kMoments> kMomentInfos = {{
-    {"center_x", "m", "where the swarm's centre is, from the arena's centre", true},
-    {"center_y", "m", "where the swarm's centre is, from the arena's centre", true},
-    {"goal_distance", "m", "distance of the swarm's centre from the goal", true},
-    {"robots_in_goal", "", "robots whose centres are within goal_radius of the goal"},
-    {"largest_cluster", "", "robots in the largest cluster: linked over link_range and line of sight", true},
-    {"clusters", "", "clusters, lone robots among them"},
-    {"dispersion", "m", "mean distance of the robots from the swarm's centre", true},
-    {"order", "", "length of the mean heading vector: 1 = all head in one direction, near 0 = in all"},
-    {"speed", "m/s", "mean speed of the robots"},
+const std::array<MetricInfo, kMoments> kMomentInfos = {{
+    {"center_x", "m", {}, "where the swarm's centre is, from the arena's centre", true},
+    {"center_y", "m", {}, "where the swarm's centre is, from the arena's centre", true},
+    {"goal_distance", "m", {}, "distance of the swarm's centre from the goal", true},
+    {"robots_in_goal", "", {}, "robots whose centres are within goal_radius of the goal"},
+    {"largest_cluster",
+     "",
+     {},
+     "robots in the largest cluster: linked over link_range and line of sight",
+     true},
+    {"clusters", "", {}, "clusters, lone robots among them"},
+    {"dispersion", "m", {}, "mean distance of the robots from the swarm's centre", true},
+    {"order", "", {}, "length of the mean heading vector: 1 = all head in one direction, near 0 = in all"},
+    {"speed", "m/s", {}, "mean speed of the robots"},
 }};
 
-constexpr std::array kWholeInfos = std::to_array<MetricInfo>({
+const std::vector<MetricInfo> kWholeInfos = {
     {"displacement", "m", {}, "mean distance of a robot's end from its start", true},
     {"path_length", "m", {}, "mean length of a robot's trajectory"},
     {"covered_area", "m^2", {}, "squares of 0.25 m that a robot's centre was in", true},
@@ -48,7 +44,7 @@ constexpr std::array kWholeInfos = std::to_array<MetricInfo>({
     {"items_brought", "", {}, "items that robots laid down in a nest"},
     {"first_item_time", "s", kNotMeasured, "when the first item was laid down in a nest"},
     {"reached_time", "s", kNotMeasured, "when the formula 'reached' first was true"},
-});
+};
 
 // In squares that the robots' centres were in at a tick, m^2.
 double CoveredArea(const sim::Observer& observer) {
@@ -88,20 +84,14 @@ double SecondsOf(sim::Tick tick) {
 
 }  // namespace
 
-std::span<const MetricInfo> Metrics() {
+const std::vector<MetricInfo>& Metrics() {
   static const std::vector<MetricInfo> metrics = [] {
-    static std::deque<std::string> texts;  // that the rows refer to
-    const auto keep = [](std::string text) -> std::string_view {
-      return texts.emplace_back(std::move(text));
-    };
     std::vector<MetricInfo> all;
-    for (const MomentInfo& info : kMomentInfos) {
-      const std::string name(info.name);
-      const std::string description(info.description);
-      all.push_back({info.name, info.unit, {}, keep(description + ", at the end"), info.descriptor});
+    for (const MetricInfo& info : kMomentInfos) {
+      all.push_back({info.name, info.unit, {}, info.description + ", at the end", info.descriptor});
       for (const auto& [suffix, what] :
            {std::pair{"_mean", "mean"}, {"_min", "least"}, {"_max", "largest"}}) {
-        all.push_back({keep(name + suffix), info.unit, {}, keep(name + ", " + what + " of all seconds")});
+        all.push_back({info.name + suffix, info.unit, {}, info.name + ", " + what + " of all seconds"});
       }
     }
     all.insert(all.end(), kWholeInfos.begin(), kWholeInfos.end());
@@ -122,7 +112,7 @@ const std::vector<std::string>& NamesAtTheEnd() {
 const std::vector<std::string>& NamesAtAMoment() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = {"robots", "time", "items_brought"};
-    for (const MomentInfo& info : kMomentInfos) all.emplace_back(info.name);
+    for (const MetricInfo& info : kMomentInfos) all.emplace_back(info.name);
     return all;
   }();
   return names;

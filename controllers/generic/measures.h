@@ -38,7 +38,7 @@ struct ItemCount {
 };
 
 // All metrics, in the order of Measures::Values.
-std::span<const MetricInfo> Metrics();
+const std::vector<MetricInfo>& Metrics();
 // What formulas that judge a whole run may use: "robots" and "time" (s), then the metrics.
 const std::vector<std::string>& NamesAtTheEnd();
 // What formulas that are looked at during a run may use: "robots", "time" and "items_brought" so far, then

@@ -14,7 +14,7 @@ using sim::kPi;
 
 constexpr double kPickupMargin = 0.025;  // m: an item is handed out 0.36 m from the source's centre
 
-constexpr std::array kPartitioningMetrics = std::to_array<MetricInfo>({
+const std::vector<MetricInfo> kPartitioningMetrics = {
     {"food_taken", "", {}, "items taken from the source", true},
     {"food_carried", "", {}, "items in the robots' hands at the end"},
     {"food_lost", "", {}, "items that a robot lost on its way"},
@@ -37,19 +37,19 @@ constexpr std::array kPartitioningMetrics = std::to_array<MetricInfo>({
      {},
      "mean of the robots at the end of each 120 s, of the dynamic strategy"},
     {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
-});
+};
 
-constexpr std::array kPartitioningDescriptorAxes = std::to_array<DescriptorAxis>({
+const std::vector<DescriptorAxis> kPartitioningDescriptorAxes = {
     {"median_x", -1.5, 1.5, 5},
     {"median_y", -2.5, 2.5, 5},
-});
+};
 
-constexpr std::array kPartitioningAnnotations = std::to_array<sim::AnnotationStyle>({
+const std::vector<sim::AnnotationStyle> kPartitioningAnnotations = {
     {"transfer", "", sim::Mark::kTransfer, "transfer"},
     {"disc", "nest", sim::Mark::kNest, ""},
     {"disc", "food", sim::Mark::kFood, ""},
     {"disc", "light", sim::Mark::kGoal, ""},
-});
+};
 
 Status CheckLengths(const PartitionLengthSettings& length, const sim::Arena& arena) {
   const sim::Vec2 size = arena.interior_max() - arena.interior_min();

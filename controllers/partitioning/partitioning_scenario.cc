@@ -26,8 +26,8 @@ double IntensityFor(const sim::Arena& arena, const sim::Vec2& lamp, double heigh
 
 }  // namespace
 
-std::span<const FailureType> PartitioningFailureTypes() {
-  static const std::array<FailureType, 1> types = {{{1, "no food"}}};
+const std::vector<FailureType>& PartitioningFailureTypes() {
+  static const std::vector<FailureType> types = {{1, "no food"}};
   return types;
 }
 

@@ -30,7 +30,7 @@ struct PartitioningSettings : NestAndFood {
 };
 
 // 1: no item in the nest (thesis 6.1.1).
-std::span<const FailureType> PartitioningFailureTypes();
+const std::vector<FailureType>& PartitioningFailureTypes();
 
 // The lights of the source and of a robot that offers its item.
 inline constexpr sim::Color kSourceColor = sim::Color::kYellow;

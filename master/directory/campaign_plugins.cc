@@ -13,7 +13,7 @@
 #include "controllers/registry.h"
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"
-#include "proto/plugin_description.h"
+#include "controllers/rows/plugin_rows.h"
 
 namespace gauntlet {
 namespace {
@@ -37,7 +37,7 @@ std::set<std::string> PluginsOf(const std::vector<SearchPlan>& plans) {
 
 // Error: the file holds something else.
 Result<std::string> ReadPlugin(const std::string& path, const std::string& hash) {
-  TRY(std::string bytes, ReadSmallFile(path, proto::kMaxPluginBytes));
+  TRY(std::string bytes, ReadSmallFile(path, controllers::kMaxPluginBytes));
   if (const std::string found = Sha256(bytes); found != hash) {
     return InvalidInput(fmt::format(
         "{} is another plug-in now: its SHA-256 is {}, the searches were begun with {}", path, found, hash));

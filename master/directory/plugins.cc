@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -13,9 +15,9 @@
 #include "base/system/atomic_file.h"
 #include "base/system/sha256.h"
 #include "controllers/registry.h"
-#include "master/directory/plugin_rows.h"
+#include "controllers/rows/row_checks.h"
 #include "master/dispatch/pool/worker_program.h"
-#include "proto/plugin_description.h"
+#include "proto/json_text.h"
 #include "proto/run_beginning.h"
 #include "proto/run_codec.h"
 
@@ -23,6 +25,17 @@ namespace gauntlet {
 namespace {
 
 using controllers::ControllerInfo;
+
+// Stands where a runner has the plug-in's controller: its robots do nothing, since a master only counts them.
+class AbsentController : public sim::Controller {
+ public:
+  sim::DeviceSet Devices() const override { return {}; }
+  void Step(const sim::ControlStep&) override {}
+};
+
+controllers::ControllerFactory MakeAbsent(const sim::Parameters&) {
+  return {[](const controllers::ControllerContext&) { return std::make_unique<AbsentController>(); }};
+}
 
 // Answers of plug-ins to how runs begin, by the plug-in and by the SHA-256 of the spec that was asked about.
 class Answers {
@@ -78,7 +91,7 @@ Result<std::string> AddPluginFile(const std::string& file) {
   std::error_code missing;
   if (std::filesystem::exists(file, missing) && !std::filesystem::is_regular_file(file, missing))
     return InvalidInput(fmt::format("plug-in: {} is no regular file", file));
-  const Result<std::string> bytes = ReadSmallFile(file, proto::kMaxPluginBytes);
+  const Result<std::string> bytes = ReadSmallFile(file, controllers::kMaxPluginBytes);
   if (!bytes) return InvalidInput("plug-in: " + bytes.error().message);
   std::string hash = Sha256(*bytes);
   if (controllers::FindPlugin(hash) != nullptr) return hash;
@@ -117,12 +130,14 @@ Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& 
 Status AddDescribedPlugin(const std::string& hash, const std::string& file, const std::string& description,
                           const std::string& place) {
   if (controllers::FindPlugin(hash) != nullptr) return Ok{};
-  TRY(proto::PluginDescription read, proto::ReadDescription(description, place));
-  controllers::PluginInfo plugin{.hash = hash, .file = file, .description = description, .controllers = {}};
-  for (proto::DescribedController& controller : read.controllers)
-    plugin.controllers.push_back(RowOf(std::move(controller)));
-  for (proto::DescribedScenario& scenario : read.scenarios)
-    plugin.scenarios.push_back(RowOf(std::move(scenario)));
+  TRY(const nlohmann::json json, ParseJson(description, place));
+  TRY(controllers::PluginRows rows, controllers::ReadRows(json, place));
+  for (ControllerInfo& row : rows.controllers) row.make = MakeAbsent;
+  controllers::PluginInfo plugin{.hash = hash,
+                                 .file = file,
+                                 .description = description,
+                                 .controllers = std::move(rows.controllers),
+                                 .scenarios = std::move(rows.scenarios)};
   if (!plugin.scenarios.empty()) plugin.begin = Begin;
   return controllers::AddPlugin(std::move(plugin));
 }

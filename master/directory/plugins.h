@@ -22,7 +22,7 @@ Status AddPluginFile(const std::string& file, std::vector<std::string>& hashes);
 // The same of several files, in their order.
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files);
 
-// The same of a library that was described before: `description` as proto/plugin_description.h writes it,
+// The same of a library that was described before: `description` as controllers/rows/plugin_rows.h writes it,
 // which is called `place` in errors.
 Status AddDescribedPlugin(const std::string& hash, const std::string& file, const std::string& description,
                           const std::string& place);

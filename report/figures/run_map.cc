@@ -112,7 +112,7 @@ class Bins {
     width_ = high > low_ ? analysis::RoundStep(high - low_, kMostBins) : 1.0;
     if (whole) width_ = std::max(width_, 1.0);
     low_ = std::floor(low_ / width_) * width_;
-    const std::string_view unit = degrees_ ? "degrees" : info.unit;
+    const std::string unit = degrees_ ? "degrees" : info.unit;
     name_ = unit.empty() ? std::string(info.name) : fmt::format("{}, {}", info.name, unit);
     const auto bins = static_cast<std::size_t>(std::floor((high - low_) / width_)) + 1;
     for (std::size_t i = 0; i < bins; ++i) {

@@ -15,7 +15,7 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::array kArchiveParameters = std::to_array<controllers::ParameterInfo>({
+const std::vector<controllers::ParameterInfo> kArchiveParameters = {
     {"runs", "", 1000, 1, 1e8, true, "archive and random-deletion only: number of simulations"},
     {"slots", "", 36, 1, 10000, true,
      "archive and random-deletion only: number of layouts under test at a time, and of workers kept busy"},
@@ -29,7 +29,7 @@ constexpr std::array kArchiveParameters = std::to_array<controllers::ParameterIn
     {"recheck_share", "", 0.04, 0, 1, false,
      "archive only: share of the lineages that are one more run of an elite; the rest begin with random "
      "cases"},
-});
+};
 enum Parameter : std::size_t { kRuns, kSlots, kKeepOut, kAcrossShare, kJitteredShare, kRecheckShare };
 
 double Get(const Experiment& experiment, Parameter parameter) {

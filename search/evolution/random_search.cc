@@ -11,8 +11,8 @@ namespace {
 // Cases drawn before the search starts, to find ranges that leave no room.
 constexpr std::uint64_t kTrialCases = 20;
 
-constexpr std::array<controllers::ParameterInfo, 1> kRandomParameters = {
-    {{"cases", "", 1000, 1, 1e8, true, "test cases of random search"}}};
+const std::vector<controllers::ParameterInfo> kRandomParameters = {
+    {"cases", "", 1000, 1, 1e8, true, "test cases of random search"}};
 
 std::uint64_t PlannedCases(const Experiment& experiment) {
   return static_cast<std::uint64_t>(ValueOf(kRandomParameters[0], experiment.search.parameters));

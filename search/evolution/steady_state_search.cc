@@ -12,11 +12,11 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::array<controllers::ParameterInfo, 1> kSteadyStateParameters = {
-    {{"lag", "", 0, 0, 9999, true,
-      "steady-state only: a child knows all results but the last so many; workers it can keep busy; 0 = "
-      "population "
-      "- 1"}}};
+const std::vector<controllers::ParameterInfo> kSteadyStateParameters = {
+    {"lag", "", 0, 0, 9999, true,
+     "steady-state only: a child knows all results but the last so many; workers it can keep busy; 0 = "
+     "population "
+     "- 1"}};
 
 // search.lag. 0 stands for the largest possible, which is no more than a generation waits on average.
 int LagOf(const SearchSpec& spec) {

@@ -8,8 +8,8 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::array<controllers::ParameterInfo, 1> kBlameParameters = {
-    {{"part_runs", "", 30, 2, 10000, true, "runs of the case, and of it without each obstacle"}}};
+const std::vector<controllers::ParameterInfo> kBlameParameters = {
+    {"part_runs", "", 30, 2, 10000, true, "runs of the case, and of it without each obstacle"}};
 
 int PartRuns(const Experiment& experiment) {
   return static_cast<int>(ValueOf(kBlameParameters[0], experiment.search.parameters));

@@ -8,8 +8,8 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::array<controllers::ParameterInfo, 1> kConfirmationParameters = {
-    {{"confirmations", "", 0, 0, 100000, true, "runs of each case; 0 = until there is a verdict"}}};
+const std::vector<controllers::ParameterInfo> kConfirmationParameters = {
+    {"confirmations", "", 0, 0, 100000, true, "runs of each case; 0 = until there is a verdict"}};
 
 std::string Plan(const Experiment& experiment) {
   const int replicates = ConfirmationReplicates(experiment);

@@ -6,8 +6,8 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::array<controllers::ParameterInfo, 1> kMinimisationParameters = {
-    {{"shorten", "bool", 0, 0, 1, true, "make obstacles shorter too, and round their lengths"}}};
+const std::vector<controllers::ParameterInfo> kMinimisationParameters = {
+    {"shorten", "bool", 0, 0, 1, true, "make obstacles shorter too, and round their lengths"}};
 
 }  // namespace
 

@@ -2,13 +2,15 @@
 
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/check.h"
 #include "controllers/generic/definition.h"
+#include "controllers/rows/row_checks.h"
 #include "proto/access_file.h"
 #include "proto/case_json.h"
+#include "proto/json_text.h"
 #include "proto/message_codec.h"
-#include "proto/plugin_description.h"
 #include "proto/run_beginning.h"
 #include "proto/run_codec.h"
 #include "search/cases/argos_controllers.h"
@@ -131,12 +133,17 @@ void ReadAccessFile(std::string_view bytes) {
 }
 
 // What a library says of itself comes with a campaign.
+Result<controllers::PluginRows> RowsOf(std::string_view bytes) {
+  TRY(const nlohmann::json json, ParseJson(bytes, "plugin.json"));
+  return controllers::ReadRows(json, "plugin.json");
+}
+
 void ReadPlugin(std::string_view bytes) {
-  const Result<proto::PluginDescription> read = proto::ReadDescription(bytes, "plugin.json");
+  const Result<controllers::PluginRows> read = RowsOf(bytes);
   if (!read) return ExpectAGoodError(read);
-  const std::string written = proto::WriteDescription(*read);
-  const Result<proto::PluginDescription> again = proto::ReadDescription(written, "again.json");
-  GAUNTLET_CHECK(again.ok() && proto::WriteDescription(*again) == written,
+  const std::string written = controllers::WriteRows(*read);
+  const Result<controllers::PluginRows> again = RowsOf(written);
+  GAUNTLET_CHECK(again.ok() && controllers::WriteRows(*again) == written,
                  "a plug-in's description does not survive:\n" + written);
 }
 

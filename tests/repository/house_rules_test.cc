@@ -54,7 +54,8 @@ const Prefixes kRunData = {"sim/geometry/", "sim/arena/", "sim/random/", "sim/ru
                            "sim/run_result.h"};
 const Prefixes kSwarmData = {"sim/observer.h", "sim/run_style.h", "sim/robot/foot_bot.h",
                              "sim/robot/disturbances.h"};
-const Prefixes kBehaviours = {"controllers/registry.h", "controllers/behaviour.h", "controllers/run_start.h"};
+const Prefixes kBehaviours = {"controllers/registry.h", "controllers/behaviour.h", "controllers/run_start.h",
+                              "controllers/rows/"};
 
 // The house from the ground up: a room includes rooms that stand before it here, never one that comes later.
 const std::vector<Room>& House() {
@@ -79,7 +80,12 @@ const std::vector<Room>& House() {
        kRunData +
            Prefixes{"sim/robot/", "sim/scenario.h", "sim/observer.h", "sim/run_style.h", "sim/run_start.h"},
        kTheOutsideWorld},
-      {"sdk", {}, {"controllers/behaviour.h", "sim/robot/controller.h", "sim/scenario.h"}, kTheOutsideWorld},
+      {"controllers/rows", {"base", "controllers"}, {}, Without({"nlohmann/"}, kTheOutsideWorld)},
+      {"sdk",
+       {"base"},
+       {"controllers/behaviour.h", "controllers/rows/plugin_rows.h", "sim/robot/controller.h",
+        "sim/scenario.h"},
+       kTheOutsideWorld},
       {"argos",
        {"base", "sdk"},
        {"controllers/behaviour.h", "sim/arena/color.h", "sim/geometry/directions.h",
@@ -119,7 +125,7 @@ const std::vector<Room>& House() {
        {"box2d", "sqlite3", "nlohmann/"}},
       {"master/directory",
        {"base", "base/system", "proto", "search/experiment", "search", "master/store", "master/dispatch"},
-       {"controllers/registry.h"},
+       {"controllers/registry.h", "controllers/rows/"},
        {"box2d", "zmq", "sqlite3"}},
       {"master/campaign",
        {"base", "proto", "search/experiment", "search", "master/store", "master/dispatch",

@@ -10,7 +10,7 @@
 
 #include "base/system/atomic_file.h"
 #include "base/system/sha256.h"
-#include "proto/plugin_description.h"
+#include "controllers/rows/plugin_rows.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -27,7 +27,7 @@ Status WriteAll(int fd, std::string_view bytes) {
 
 // Error: it cannot be read, or its hash is another one.
 Result<std::string> ReadPlugin(const std::string& path, const std::string& hash) {
-  TRY(std::string bytes, ReadSmallFile(path, proto::kMaxPluginBytes));
+  TRY(std::string bytes, ReadSmallFile(path, controllers::kMaxPluginBytes));
   if (const std::string found = Sha256(bytes); found != hash) {
     return InvalidInput(fmt::format(
         "{} is not the plug-in that the run was made for: its SHA-256 is {}, not {}", path, found, hash));

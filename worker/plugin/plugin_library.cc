@@ -3,15 +3,15 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <exception>
+#include <nlohmann/json.hpp>
 #include <utility>
-#include <vector>
 
 #include "controllers/registry.h"
+#include "controllers/rows/row_checks.h"
 #include "controllers/run_start.h"
+#include "proto/json_text.h"
 #include "proto/run_beginning.h"
 #include "sdk/plugin.h"
-#include "worker/plugin/plugin_rows.h"
 
 namespace gauntlet::worker {
 namespace {
@@ -55,75 +55,48 @@ Result<const sdk::Plugin*> Open(const PluginFile& file) {
   return plugin;
 }
 
-struct Loaded {
-  std::vector<ControllerInfo> controllers;
-  std::vector<ScenarioInfo> scenarios;
-  proto::PluginDescription description;
-};
-
-// What a master would have to ask for, or cannot do without.
-Status CheckScenarioRow(const ScenarioInfo& row) {
-  if (!row.create || !row.requirements) {
-    return InvalidInput(fmt::format("scenario '{}' has no {}: ScenarioRow(...) puts a whole row together",
-                                    row.name, row.create ? "requirements" : "create"));
-  }
-  if (row.passages || row.check_definition) {
-    return InvalidInput(
-        fmt::format("scenario '{}' has {}, which is for built-in scenarios alone: leave it out", row.name,
-                    row.passages ? "passages" : "check_definition"));
-  }
-  return Ok{};
-}
-
-// Obstacles are no business of what a scenario demands of its arenas: whatever case a master asks with, the
-// runs of the search have the same answer.
-void AskWithoutObstacles(ScenarioInfo& row) {
-  row.requirements = [asked = std::move(row.requirements)](const sim::Parameters& parameters,
-                                                           const sim::TestCase& test_case) {
-    sim::TestCase empty = test_case;
-    empty.obstacles.clear();
-    return asked(parameters, empty);
-  };
-}
-
-Result<Loaded> Load(const PluginFile& file) {
+// Its rows, with their functions.
+Result<controllers::PluginRows> Load(const PluginFile& file) {
   TRY(const sdk::Plugin* plugin, Open(file));
-  Loaded loaded;
-  try {
-    if (plugin->controllers != nullptr) loaded.controllers = plugin->controllers();
-  } catch (const std::exception& error) {
-    return Refusal(file.name, fmt::format("its list of controllers throws: {}", error.what()));
+  const Result<std::string> text = plugin->rows();
+  if (!text) return Refusal(file.name, text.error().message);
+  TRY(const nlohmann::json json, ParseJson(*text, file.name));
+  TRY(controllers::PluginRows rows, controllers::ReadRows(json, fmt::format("the plug-in {}", file.name)));
+  for (ControllerInfo& row : rows.controllers) {
+    row.make = [plugin, name = row.name](const sim::Parameters& resolved) {
+      return plugin->make(name, resolved);
+    };
   }
-  try {
-    if (plugin->scenarios != nullptr) loaded.scenarios = plugin->scenarios();
-  } catch (const std::exception& error) {
-    return Refusal(file.name, fmt::format("its list of scenarios throws: {}", error.what()));
+  for (ScenarioInfo& row : rows.scenarios) {
+    // Obstacles are no business of what a scenario demands of its arenas: whatever case a master asks with,
+    // the runs of the search have the same answer.
+    row.requirements = [plugin, name = row.name](const sim::Parameters& parameters,
+                                                 const sim::TestCase& test_case) {
+      sim::TestCase empty = test_case;
+      empty.obstacles.clear();
+      return plugin->requirements(name, parameters, empty);
+    };
+    row.create = [plugin, name = row.name](const sim::RunSpec& spec,
+                                           controllers::ControllerFactory controller) {
+      return plugin->create(name, spec, std::move(controller));
+    };
   }
-  for (const ControllerInfo& row : loaded.controllers) {
-    loaded.description.controllers.push_back(DescriptionOf(row));
-    if (!row.make) return Refusal(file.name, fmt::format("controller '{}' has no factory", row.name));
-  }
-  for (ScenarioInfo& row : loaded.scenarios) {
-    loaded.description.scenarios.push_back(DescriptionOf(row));
-    if (const Status right = CheckScenarioRow(row); !right) return Refusal(file.name, right.error().message);
-    AskWithoutObstacles(row);
-  }
-  if (const Status right = proto::CheckDescription(loaded.description); !right)
-    return Refusal(file.name, right.error().message);
-  return loaded;
+  return rows;
 }
 
 }  // namespace
 
 Status LoadPlugin(const PluginFile& file) {
-  TRY(Loaded loaded, Load(file));
-  return controllers::AddPlugin(
-      {file.hash, file.name, "", std::move(loaded.controllers), std::move(loaded.scenarios)});
+  TRY(controllers::PluginRows rows, Load(file));
+  return controllers::AddPlugin({.hash = file.hash,
+                                 .file = file.name,
+                                 .controllers = std::move(rows.controllers),
+                                 .scenarios = std::move(rows.scenarios)});
 }
 
 Result<std::string> DescribePlugin(const PluginFile& file) {
-  TRY(const Loaded loaded, Load(file));
-  return proto::WriteDescription(loaded.description);
+  TRY(const controllers::PluginRows rows, Load(file));
+  return controllers::WriteRows(rows);
 }
 
 Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {

@@ -15,7 +15,7 @@ namespace gauntlet::worker {
 // another compiler (what differs), its rows are wrong, or what is built in has the name of one.
 Status LoadPlugin(const PluginFile& file);
 
-// What the library brings, as proto/plugin_description.h writes it. Error: as LoadPlugin.
+// What the library brings, as controllers/rows/plugin_rows.h writes it. Error: as LoadPlugin.
 Result<std::string> DescribePlugin(const PluginFile& file);
 
 // How a run begins whose plug-ins are loaded, as proto/run_beginning.h writes it. Error: why nothing can be

@@ -17,7 +17,7 @@ namespace gauntlet {
 // removed.
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch = "");
 
-// What the library brings, as gauntlet-worker describes it (proto/plugin_description.h). Error: what is wrong
+// What the library brings, as gauntlet-worker describes it (controllers/rows/plugin_rows.h). Error: what is wrong
 // with it.
 Result<std::string> DescribePlugin(const std::string& file);
 

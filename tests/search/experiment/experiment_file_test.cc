@@ -222,15 +222,13 @@ RC_GTEST_PROP(ExperimentFileTest, WhatIsWrittenReadsBackAsTheSame, ()) {
 
 // A plug-in as a master knows it.
 std::string KnowPatrol() {
-  static constexpr std::array kParameters =
-      std::to_array<controllers::ParameterInfo>({{"time_limit", "s", 10, 1, 60, false, "length of a run"}});
   controllers::PluginInfo plugin{
       .hash = std::string(64, 'd'), .file = "libpatrol.so", .description = "", .controllers = {}};
   plugin.controllers = {{"guard", "patrol", "guards", kFastControllerParameters, nullptr}};
   plugin.scenarios = {{.name = "patrol",
                        .description = "go everywhere",
                        .default_controller = "guard",
-                       .parameters = kParameters,
+                       .parameters = {{"time_limit", "s", 10, 1, 60, false, "length of a run"}},
                        .metrics = {}}};
   EXPECT_TRUE(controllers::AddPlugin(plugin).ok());
   return plugin.hash;

@@ -12,17 +12,17 @@
 
 namespace gauntlet {
 
-inline constexpr std::array kToyScenarioParameters = std::to_array<controllers::ParameterInfo>({
+inline const std::vector<controllers::ParameterInfo> kToyScenarioParameters = {
     {"robots", "", 10, 1, 100, true, "how many"},
     {"camera_range", "m", 1.6373, 0.2, 10.0, false, "how far they see"},
     {"headwind", "bool", 0, 0, 1, true, "whether it blows"},
-});
-inline constexpr std::array kToyControllerParameters = std::to_array<controllers::ParameterInfo>({
+};
+inline const std::vector<controllers::ParameterInfo> kToyControllerParameters = {
     {"speed", "m/s", 0.08, 0.01, 0.3, false, "forward speed"},
-});
-inline constexpr std::array kFastControllerParameters = std::to_array<controllers::ParameterInfo>({
+};
+inline const std::vector<controllers::ParameterInfo> kFastControllerParameters = {
     {"gain", "", 2.0, 1.0, 4.0, false, "of speed"},
-});
+};
 
 inline Catalogue ToyCatalogue() {
   static const std::array scenarios = std::to_array<controllers::ScenarioInfo>({
