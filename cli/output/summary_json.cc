@@ -51,30 +51,10 @@ Json GenomeJson(const sim::Genome& genome) {
   return list;
 }
 
-Json FailureJson(const sim::SwarmFailure& failure) {
-  return {{"total", failure.total},
-          {"type", failure.type >= 0 ? Json(failure.type) : Json()},
-          {"label", failure.label}};
-}
-
 // Metrics or statistics by their names.
 Json FiguresJson(const std::vector<std::pair<std::string, double>>& figures) {
   Json json = Json::object();
   for (const auto& [name, value] : figures) json[name] = FitnessJson(value);
-  return json;
-}
-
-Json RunJson(const EvaluatedRun& run) {
-  const sim::RunResult& result = run.result;
-  const bool completed = result.verdict == sim::Verdict::kCompleted;
-  Json json = {{"id", IdJson(run.id)},
-               {"seed", fmt::format("{}", run.seed)},
-               {"fitness", completed ? FitnessJson(result.fitness) : Json()},
-               {"verdict", NameOf(result.verdict)},
-               {"metrics", FiguresJson(result.metrics)},
-               {"failure", FailureJson(result.failure)},
-               {"hash", fmt::format("{:016x}", result.hash)}};
-  if (!completed) json["message"] = result.message;
   return json;
 }
 
@@ -174,32 +154,8 @@ Json SweepJson(const CampaignSummary& summary, const std::string& directory) {
 std::string SummaryJson(const CampaignSummary& summary, const CampaignAnswers& answers,
                         const std::string& directory) {
   Json json = summary.searches.empty() ? OneSearch(summary, directory) : SweepJson(summary, directory);
-  json["confirmed"] = ConfirmationsJson(answers.confirmations);
+  json["confirmed"] = ConfirmationsTable(answers.confirmations).ToJson();
   json["distinct_failures"] = DistinctFailuresJson(answers);
-  return JsonText(json);
-}
-
-std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const CampaignSummary* summary,
-                           const std::string& directory) {
-  Json list = Json::array();
-  for (const EvaluatedCase& evaluated : cases) {
-    Json runs = Json::array();
-    for (const EvaluatedRun& run : evaluated.runs) runs.push_back(RunJson(run));
-    const std::optional<double> fitness = MeanFitness(evaluated);
-    list.push_back({{"file", evaluated.file},
-                    {"fitness", fitness ? FitnessJson(*fitness) : Json()},
-                    {"refused", TextOrNull(evaluated.refused_rule)},
-                    {"error", TextOrNull(evaluated.error)},
-                    {"runs", std::move(runs)}});
-  }
-  Json json = {{"cases", std::move(list)}};
-  if (summary != nullptr) {
-    json["experiment"] = summary->experiment;
-    json["directory"] = directory;
-    json["seed"] = fmt::format("{}", summary->seed);
-    json["state_hash"] = summary->state_hash;
-    json["finished"] = summary->finished;
-  }
   return JsonText(json);
 }
 

@@ -11,7 +11,7 @@ namespace gauntlet {
 
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const Experiment& experiment, SearchId id,
                                                           ResultStore& store) {
-  if (!RowOf(experiment).given_cases) return MakeSearch(experiment, kOnlySearch);
+  if (!RowOf(experiment).given_cases()) return MakeSearch(experiment, kOnlySearch);
   TRY(std::vector<Individual> individuals, store.LoadIndividuals(id));
   if (individuals.empty()) {
     return Error{ErrorKind::kCorrupt,

@@ -17,6 +17,7 @@
 #include "master/campaign/stored_campaign.h"
 #include "master/store/event_kinds.h"
 #include "proto/run_codec.h"
+#include "study/questions/question_table.h"
 #include "study/sets/subset.h"
 
 namespace gauntlet {
@@ -191,7 +192,10 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
   facts.plans = campaign.plans;
   TRY(facts.summary, Summarise(facts.plans, store));
   TRY(facts.answers, ReadAnswers(dir));
-  TRY(facts.blames, ReadAllBlames(dir));
+  for (const auto question : kQuestions) {
+    TRY(auto told, ToldCases(question(), dir));
+    std::ranges::move(told, std::back_inserter(facts.told_cases));
+  }
   TRY(facts.history, HistoryOf(store));
   for (std::size_t i = 0; i < facts.plans.size(); ++i) {
     TRY(AddRuns(facts.plans[i], static_cast<SearchId>(i + 1), store, facts.runs));
