@@ -6,6 +6,7 @@
 
 #include "analysis/tables/table.h"
 #include "base/duration_text.h"
+#include "base/printable.h"
 #include "base/shell_quoted.h"
 #include "cli/options/stop_signal.h"
 #include "cli/output/progress.h"
@@ -14,6 +15,7 @@
 #include "master/session/bind_endpoint.h"
 #include "master/session/metrics_page.h"
 #include "proto/run_failure.h"
+#include "report/tables/summary_tables.h"
 #include "search/search_table.h"
 
 namespace gauntlet {
@@ -135,18 +137,19 @@ Result<ExitCode> Conclude(CommandContext& context, const CampaignRun& campaign, 
     return kExitStopped;
   }
   // `evaluate` judges its cases itself.
-  const SearchRow* search = FindSearch(summary.search);
+  const SearchSummary* only = summary.OnlySearch();
+  const SearchRow* search = only == nullptr ? nullptr : FindSearch(only->search);
   const bool given_cases = search != nullptr && search->given_cases();
   if (!given_cases && summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
-    const std::string why = summary.runs_without_result.empty()
+    const std::string why = only == nullptr || only->runs_without_result.empty()
                                 ? ""
-                                : ", most often: " + proto::Explained(summary.runs_without_result[0].message);
+                                : ", most often: " + proto::Explained(only->runs_without_result[0].message);
     PrintMessage(context,
                  fmt::format("none of the {} runs gave a result{}", FormatCount(summary.runs_done), why));
     return kExitNegative;
   }
   if (report.workers.audits > 0 && report.workers.nondeterministic > 0) {
-    if (!summary.plugin_controllers.empty()) PrintMessage(context, WhyNotReproducible(summary));
+    if (!summary.plugin_controllers.empty()) PrintMessage(context, Printable(WhyNotReproducible(summary)));
     return kExitNegative;
   }
   return kExitDone;

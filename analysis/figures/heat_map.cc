@@ -70,13 +70,18 @@ HeatColors HeatColorsOf(std::uint64_t count, std::uint64_t largest) {
           std::string(Luminance(red, green, blue) > kMiddle ? kDarkText : kLightText)};
 }
 
+std::uint64_t HeatMap::Largest() const {
+  std::uint64_t largest = 0;
+  for (const std::vector<HeatCell>& row : cells) {
+    for (const HeatCell& cell : row) largest = std::max(largest, cell.count);
+  }
+  return largest;
+}
+
 std::string DrawHeatMap(const HeatMap& map) {
   std::size_t longest = map.down_name.size();
   for (const std::string& row : map.rows) longest = std::max(longest, row.size());
-  std::uint64_t largest = 0;
-  for (const auto& row : map.counts) {
-    for (const std::uint64_t count : row) largest = std::max(largest, count);
-  }
+  const std::uint64_t largest = map.Largest();
   constexpr double kMargin = 24.0;
   const double left = kMargin + kRowName * static_cast<double>(longest);
   const double width = std::max(left + kCellWidth * static_cast<double>(map.columns.size()) + kMargin, 640.0);
@@ -95,7 +100,7 @@ std::string DrawHeatMap(const HeatMap& map) {
     canvas.Text({left - 10, y + kCellHeight / 2 + 4}, map.rows[row], "class=\"row\"");
     for (std::size_t column = 0; column < map.columns.size(); ++column) {
       const double x = left + kCellWidth * static_cast<double>(column);
-      const std::uint64_t count = map.counts[row][column];
+      const std::uint64_t count = map.cells[row][column].count;
       const HeatColors colors = HeatColorsOf(count, largest);
       canvas.Rectangle({x, y}, kCellWidth, kCellHeight,
                        fmt::format("class=\"cell\" fill=\"{}\"", colors.fill));

@@ -7,14 +7,21 @@
 
 namespace gauntlet::analysis {
 
+struct HeatCell {
+  std::uint64_t count = 0;
+  std::string meaning = "";  // in words
+};
+
 struct HeatMap {
-  std::string title;
-  std::string outcome;      // one line below it
-  std::string across_name;  // of the columns
-  std::string down_name;    // of the rows
-  std::vector<std::string> columns;
-  std::vector<std::string> rows;
-  std::vector<std::vector<std::uint64_t>> counts;  // [row][column]
+  std::string title = "";
+  std::string outcome = "";      // one line below it
+  std::string across_name = "";  // of the columns
+  std::string down_name = "";    // of the rows
+  std::vector<std::string> columns = {};
+  std::vector<std::string> rows = {};
+  std::vector<std::vector<HeatCell>> cells = {};  // [row][column]
+
+  std::uint64_t Largest() const;
 };
 
 // How a cell of this count looks beside one of the largest, colours as "#rrggbb".

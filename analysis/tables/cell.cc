@@ -76,21 +76,18 @@ void AppendJson(const Value& value, std::string& out) {
 }
 
 void AppendCsv(const Value& value, std::string& out) {
-  std::visit(
-      [&](const auto& one) {
-        using One = std::decay_t<decltype(one)>;
-        if constexpr (std::is_same_v<One, std::string>) {
-          AppendCsvText(one, out);
-        } else if constexpr (std::is_same_v<One, bool>) {
-          // R takes no other words for truth values than these; pandas takes them too.
-          out += one ? "TRUE" : "FALSE";
-        } else if constexpr (std::is_same_v<One, std::shared_ptr<const Json>>) {
-          AppendCsvText(one->dump(), out);
-        } else if constexpr (!std::is_same_v<One, std::monostate>) {
-          AppendNumber(one, out);
-        }
-      },
-      value);
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    AppendCsvText(*text, out);
+  } else if (const auto* holds = std::get_if<bool>(&value)) {
+    // R takes no other words for truth values than these; pandas takes them too.
+    out += *holds ? "TRUE" : "FALSE";
+  } else if (const auto* whole = std::get_if<std::uint64_t>(&value)) {
+    AppendNumber(*whole, out);
+  } else if (!std::holds_alternative<std::monostate>(value)) {
+    std::string json;
+    AppendJson(value, json);
+    AppendCsvText(json, out);
+  }
 }
 
 Cell::Cell(double number)

@@ -42,7 +42,7 @@ std::string ToHtml(const Section& section) {
   html += SentencesHtml(section.sentences);
   for (const Picture& one : section.pictures) html += PictureHtml(one.svg, one.title, one.reading);
   for (const NextCommand& one : section.commands)
-    html += ParagraphHtml(one.purpose + ":") + CommandHtml(one.command);
+    html += ParagraphHtml(one.purpose + (one.purpose.ends_with('?') ? "" : ":")) + CommandHtml(one.command);
   return html;
 }
 

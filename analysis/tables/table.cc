@@ -51,27 +51,9 @@ void AddField(const Column& column, const Cell& cell, nlohmann::ordered_json& ro
 
 }  // namespace
 
-Column::Column(std::string over, std::string name)
-    : title(std::move(over)), at_right(title.starts_with('>')), key(std::move(name)) {
+Column::Column(std::string over, std::string name, Audience who)
+    : title(std::move(over)), key(std::move(name)), audience(who), at_right(title.starts_with('>')) {
   if (at_right) title.erase(0, 1);
-}
-
-Column OnTerminals(const char* title, std::string key) {
-  Column column(title, std::move(key));
-  column.on_pages = false;
-  return column;
-}
-
-Column OnPages(const char* title, std::string key) {
-  Column column(title, std::move(key));
-  column.on_terminals = false;
-  return column;
-}
-
-Column ForPrograms(std::string key) {
-  Column column("", std::move(key));
-  column.on_terminals = column.on_pages = false;
-  return column;
 }
 
 void Table::AddRow(std::vector<Cell> cells) {
@@ -96,37 +78,28 @@ Table Table::Thinned(std::size_t most) const {
   return thinned;
 }
 
-bool Table::HasTitles() const {
-  return std::ranges::any_of(columns_, [](const Column& column) { return !column.title.empty(); });
+std::vector<std::size_t> Table::ColumnsFor(Audience audience) const {
+  std::vector<std::size_t> columns;
+  for (std::size_t i = 0; i < columns_.size(); ++i) {
+    if (columns_[i].audience == Audience::kAll || columns_[i].audience == audience) columns.push_back(i);
+  }
+  return columns;
 }
 
 std::string Table::ToText(std::size_t indent) const {
-  std::vector<std::vector<std::string>> lines(1);
-  std::vector<std::size_t> widths;
-  std::vector<bool> at_right;
-  for (const Column& column : columns_) {
-    if (!column.on_terminals) continue;
-    lines[0].push_back(column.title);
-    at_right.push_back(column.at_right);
-  }
-  for (const std::vector<Cell>& row : rows_) {
-    std::vector<std::string>& line = lines.emplace_back();
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (columns_[i].on_terminals) line.push_back(Printable(row[i].text));
+  std::vector<std::string> lines(rows_.size() + 1, std::string(indent, ' '));
+  for (const std::size_t column : ColumnsFor(Audience::kTerminals)) {
+    std::vector<std::string> texts = {columns_[column].title};
+    for (const std::vector<Cell>& row : rows_) texts.push_back(Printable(row[column].text));
+    std::size_t width = 0;
+    for (const std::string& text : texts) width = std::max(width, DisplayWidth(text));
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      const std::string padding(width - DisplayWidth(texts[i]), ' ');
+      lines[i] += (columns_[column].at_right ? padding + texts[i] : texts[i] + padding) + "  ";
     }
-  }
-  widths.resize(at_right.size());
-  for (const std::vector<std::string>& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], DisplayWidth(line[i]));
   }
   std::string text;
-  for (const std::vector<std::string>& cells : lines) {
-    std::string line(indent, ' ');
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (i > 0) line += "  ";
-      const std::string padding(widths[i] - DisplayWidth(cells[i]), ' ');
-      line += at_right[i] ? padding + cells[i] : cells[i] + padding;
-    }
+  for (std::string& line : lines) {
     line.erase(line.find_last_not_of(' ') + 1);
     if (!line.empty()) text += line + '\n';
   }
@@ -134,38 +107,36 @@ std::string Table::ToText(std::size_t indent) const {
 }
 
 std::string Table::ToMarkdown() const {
-  std::string names;
+  const std::vector<std::size_t> shown = ColumnsFor(Audience::kTerminals);
+  std::string titles;
   std::string line;
-  for (const Column& column : columns_) {
-    if (!column.on_terminals) continue;
-    names += fmt::format("| {} ", column.title);
-    line += column.at_right ? "|---:" : "|---";
+  for (const std::size_t i : shown) {
+    titles += fmt::format("| {} ", columns_[i].title);
+    line += columns_[i].at_right ? "|---:" : "|---";
   }
-  std::string text = names + "|\n" + line + "|\n";
+  std::string text = titles + "|\n" + line + "|\n";
   for (const std::vector<Cell>& row : rows_) {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (columns_[i].on_terminals) text += fmt::format("| {} ", WithoutPipes(row[i].text));
-    }
+    for (const std::size_t i : shown) text += fmt::format("| {} ", WithoutPipes(row[i].text));
     text += "|\n";
   }
   return text + "\n";
 }
 
 std::string Table::ToHtml() const {
-  const bool facts = !HasTitles();
+  const std::vector<std::size_t> shown = ColumnsFor(Audience::kPages);
+  const bool facts = std::ranges::all_of(columns_, [](const Column& one) { return one.title.empty(); });
   std::string html = facts ? "<div class=\"scroll\"><table class=\"facts\"><tbody>\n"
                            : "<div class=\"scroll\"><table><thead><tr>";
-  for (const Column& column : columns_) {
-    if (!facts && column.on_pages) html += CellHtml("th", " scope=\"col\"", column, Html(column.title));
+  for (const std::size_t i : shown) {
+    if (!facts) html += CellHtml("th", " scope=\"col\"", columns_[i], Html(columns_[i].title));
   }
   if (!facts) html += "</tr></thead><tbody>\n";
   for (const std::vector<Cell>& row : rows_) {
     if (facts && row.at(1).text.empty()) continue;
     html += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (!columns_[i].on_pages) continue;
-      html += facts && i == 0 ? CellHtml("th", " scope=\"row\"", columns_[i], HtmlOf(row[i]))
-                              : CellHtml("td", "", columns_[i], HtmlOf(row[i]));
+    for (const std::size_t i : shown) {
+      const bool name = facts && i == 0;
+      html += CellHtml(name ? "th" : "td", name ? " scope=\"row\"" : "", columns_[i], HtmlOf(row[i]));
     }
     html += "</tr>\n";
   }
@@ -192,6 +163,16 @@ nlohmann::ordered_json Table::ToJson() const {
     nlohmann::ordered_json object = nlohmann::ordered_json::object();
     for (std::size_t i = 0; i < row.size(); ++i) AddField(columns_[i], row[i], object);
     list.push_back(std::move(object));
+  }
+  return list;
+}
+
+nlohmann::ordered_json Table::ToJsonRows() const {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const std::vector<Cell>& row : rows_) {
+    nlohmann::ordered_json values = nlohmann::ordered_json::array();
+    for (const Cell& cell : row) values.push_back(JsonValue(cell.value));
+    list.push_back(std::move(values));
   }
   return list;
 }

@@ -12,24 +12,34 @@
 
 namespace gauntlet {
 
-// A column for people has a title, one for programs a key, most have both.
+// Who is told a column.
+enum class Audience { kAll, kTerminals, kPages, kPrograms };
+
+// For people a column has a title, for programs a key, most have both.
 struct Column {
   // '>' in front of a title, which is not shown, moves the column's cells to the right. Keys are those of
-  // JSON: '?' behind one leaves it out of rows whose cell says nothing to people either (TextCell("")), and
-  // with a blank between two ("k n") the cell's list is told under both.
-  Column(const char* over, std::string name = "")  // NOLINT(google-explicit-constructor)
-      : Column(std::string(over), std::move(name)) {}
-  Column(std::string over, std::string name = "");  // NOLINT(google-explicit-constructor)
+  // JSON, "" = not in JSON. '?' behind one leaves it out of rows whose cell says nothing to people either
+  // (TextCell("")), and with a blank between two ("k n") the cell's list is told under both.
+  Column(const char* over, std::string name = "",
+         Audience who = Audience::kAll)  // NOLINT(google-explicit-constructor)
+      : Column(std::string(over), std::move(name), who) {}
+  Column(std::string over, std::string name = "",
+         Audience who = Audience::kAll);  // NOLINT(google-explicit-constructor)
 
   std::string title;
-  bool at_right = false;
-  std::string key;           // "" = not in JSON
-  bool on_terminals = true;  // in text and Markdown
-  bool on_pages = true;      // in HTML
+  std::string key;
+  Audience audience;
+  bool at_right;
 };
-Column OnTerminals(const char* title, std::string key = "");
-Column OnPages(const char* title, std::string key = "");
-Column ForPrograms(std::string key);
+inline Column OnTerminals(const char* title, std::string key = "") {
+  return {title, std::move(key), Audience::kTerminals};
+}
+inline Column OnPages(const char* title, std::string key = "") {
+  return {title, std::move(key), Audience::kPages};
+}
+inline Column ForPrograms(std::string key) {
+  return {"", std::move(key), Audience::kPrograms};
+}
 
 class Table {
  public:
@@ -43,6 +53,7 @@ class Table {
   Table First(std::size_t most) const;
   // The first row, the last one and others at even distances between them, `most` in all.
   Table Thinned(std::size_t most) const;
+  const std::vector<Column>& columns() const { return columns_; }
   std::size_t size() const { return rows_.size(); }
   bool empty() const { return rows_.empty(); }
 
@@ -55,11 +66,13 @@ class Table {
   std::string ToHtml() const;
   // A line of titles, and a line of values for each row.
   std::string ToCsv() const;
-  // A list of objects.
+  // A list of objects; a list of lists, which has a value for each column.
   nlohmann::ordered_json ToJson() const;
+  nlohmann::ordered_json ToJsonRows() const;
 
  private:
-  bool HasTitles() const;
+  // Numbers of the columns that this audience is told.
+  std::vector<std::size_t> ColumnsFor(Audience audience) const;
 
   std::vector<Column> columns_;
   std::vector<std::vector<Cell>> rows_;

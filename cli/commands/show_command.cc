@@ -15,6 +15,7 @@ struct ShowOptions {
   std::string directory;
   bool json = false;
   bool runs = false;
+  bool types = false;
 };
 
 // The summary's JSON, continued by all runs, of one and the same moment.
@@ -41,9 +42,15 @@ Result<ExitCode> RunShow(CommandContext& context, const ShowOptions& options) {
   }
   if (options.runs && !options.json)
     return InvalidInput("--runs lists every run: it needs --json, or use 'export --format csv'");
+  if (options.types && options.json)
+    return InvalidInput("--types prints a table for people: --json has them as failure_types anyway");
   if (options.runs) return ShowWithRuns(context, options);
   TRY(const CampaignSummary summary, context.campaigns.Read(options.directory));
   PrintAsOf(context, options.directory, summary.as_of);
+  if (options.types) {
+    context.out << TypesText(summary) << std::flush;
+    return kExitDone;
+  }
   TRY(PrintSummary(context, summary, options.directory, options.json));
   return kExitDone;
 }
@@ -56,6 +63,10 @@ void AddShow(CommandParser& parser) {
   command.add_flag("--json", options.json, "everything as one JSON document");
   command.add_flag("--runs", options.runs,
                    "with --json: every run too, with the names of 'export' (see its --help)");
+  command.add_flag(
+      "--types", options.types,
+      "instead: the total failures by the types that the scenario declares (for flocking those of "
+      "the thesis)");
   command.footer(
       R"(Sums up what is stored: runs, fitness by generation, total failures, the toughest cases with a run to
 replay, and the state hash, which is equal for equal outcomes.

@@ -27,36 +27,31 @@ constexpr std::string_view kReading =
     "with fresh seeds; up to 3, up to 2, one: with a case of so few obstacles; runs to 5, to 10: until cases "
     "of up to 3 obstacles had been found in so many cells. cases: of a search that keeps elites these, of "
     "others all that failed. Elites are late: a smaller one takes the place of a larger one found before.";
-constexpr std::size_t kSmall = 3;  // obstacles
-
 double NumberOf(std::size_t count) {
   return static_cast<double>(count);
 }
 
-// Nothing: never.
-template <std::size_t kCells>
-std::optional<double> RunsUntilCells(const SearchYield& yield) {
-  const std::optional<std::uint64_t> runs = RunsUntil(yield, kCells, kSmall);
-  return runs ? std::optional(static_cast<double>(*runs)) : std::nullopt;
-}
-template <std::size_t kMost>
-std::optional<double> CellsUpTo(const SearchYield& yield) {
-  return NumberOf(CellsWith(yield, kMost));
-}
-
 // What is compared.
 struct Measure {
-  std::string_view key;    // in JSON
-  std::string_view title;  // over a column
-  std::optional<double> (*of)(const SearchYield& yield);
+  std::string_view key;           // in JSON
+  std::string_view title;         // over a column
+  std::size_t most_obstacles;     // of the cases that count
+  std::size_t runs_to_cells = 0;  // runs until so many cells hold one; 0: the number of cells
+
+  // Nothing: never.
+  std::optional<double> Of(const SearchYield& yield) const {
+    if (runs_to_cells == 0) return NumberOf(CellsWith(yield, most_obstacles));
+    const std::optional<std::uint64_t> runs = RunsUntil(yield, runs_to_cells, most_obstacles);
+    return runs ? std::optional(static_cast<double>(*runs)) : std::nullopt;
+  }
 };
 constexpr std::array kMeasures = std::to_array<Measure>({
-    {"cells", "cells", CellsUpTo<kAnySize>},
-    {"cells_with_up_to_3", "up to 3", CellsUpTo<3>},
-    {"cells_with_up_to_2", "up to 2", CellsUpTo<2>},
-    {"cells_with_1", "one", CellsUpTo<1>},
-    {"runs_until_5_cells_with_up_to_3", "runs to 5", RunsUntilCells<5>},
-    {"runs_until_10_cells_with_up_to_3", "runs to 10", RunsUntilCells<10>},
+    {"cells", "cells", kAnySize},
+    {"cells_with_up_to_3", "up to 3", 3},
+    {"cells_with_up_to_2", "up to 2", 2},
+    {"cells_with_1", "one", 1},
+    {"runs_until_5_cells_with_up_to_3", "runs to 5", 3, 5},
+    {"runs_until_10_cells_with_up_to_3", "runs to 10", 3, 10},
 });
 
 // What the searches of a set come to by one measure.
@@ -75,7 +70,7 @@ struct Measured {
 Measured MeasuredOf(const YieldSet& set, const Measure& measure) {
   Measured measured{.values = {}, .never = static_cast<double>(set.searches.front().runs + 1)};
   for (const SearchYield& one : set.searches) {
-    const std::optional<double> value = measure.of(one);
+    const std::optional<double> value = measure.Of(one);
     measured.reached = measured.reached && value.has_value();
     measured.values.push_back(value.value_or(measured.never));
   }

@@ -17,12 +17,12 @@ struct HintContext {
   std::string directory;
 };
 
-// A sentence on the plug-ins' controllers whose runs ended differently when they were repeated.
-std::string WhyNotReproducible(const CampaignSummary& summary);
-
 // Ends with the next commands to try.
 std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& answers,
                         const HintContext& context);
+
+// The total failures by the types that the scenario declares, of each search.
+std::string TypesText(const CampaignSummary& summary);
 
 // One JSON document, indented, ending with '\n'. Seeds, hashes and ids above 2^53 are strings; a fitness that
 // does not exist (nothing completed) is null.

@@ -1,19 +1,17 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "analysis/tables/table.h"
+#include "analysis/tables/section.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
-#include "cli/output/archive_table.h"
-#include "cli/output/confirmation_table.h"
 #include "cli/output/summary.h"
 #include "master/campaign/verdict_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/run_failure.h"
+#include "report/tables/distinct_failures.h"
+#include "report/tables/summary_tables.h"
 #include "search/search_table.h"
 
 namespace gauntlet {
@@ -21,73 +19,11 @@ namespace {
 
 constexpr std::size_t kMostGenerations = 12;  // rows of the table
 constexpr std::size_t kMostMembers = 10;
+constexpr std::size_t kMostFailures = 20;  // that are listed
 constexpr std::size_t kNoteWidth = 100;
 
-// "12 of 60 runs (20.0 %)"
-std::string RunsText(std::uint64_t counted, std::uint64_t runs) {
-  const double share = static_cast<double>(counted) / static_cast<double>(runs);
-  return fmt::format("{} of {} runs ({})", FormatCount(counted), FormatCount(runs),
-                     std::isnan(share) ? "-" : fmt::format("{:.1f} %", 100.0 * share));
-}
-
-std::string Overview(const CampaignSummary& summary) {
-  const SearchRow* search = FindSearch(summary.search);
-  Table table({"", ""});
-  if (summary.progress.generations > 1) {
-    table.AddRow(
-        {"generations", fmt::format("{} of {}", summary.progress.generation, summary.progress.generations)});
-  }
-  std::string runs = FormatCount(summary.runs_done);
-  if (summary.runs_failed > 0) {
-    runs += fmt::format(", {} of them without a result (crashed, hung, refused)",
-                        FormatCount(summary.runs_failed));
-  }
-  table.AddRow({"runs", runs});
-  table.AddRow({"test cases", fmt::format("{} different", FormatCount(summary.distinct_individuals))});
-  table.AddRow(
-      {"fitness", fmt::format("best {}   mean {}   worst {}   (of the {}; lower = tougher)",
-                              FormatFitness(summary.best_fitness), FormatFitness(summary.mean_fitness),
-                              FormatFitness(summary.worst_fitness),
-                              NameOf(search == nullptr ? Individuals::kCases : search->individuals))});
-  if (!summary.failing.empty()) {
-    table.AddRow({"failing",
-                  fmt::format("{}: {}", RunsText(summary.failing_runs, summary.runs_done), summary.failing)});
-  }
-  table.AddRow({"total failures", RunsText(summary.total_failures, summary.runs_done)});
-  if (summary.total_failures > 0 && !summary.failure_types.empty()) {
-    const auto seen =
-        std::ranges::count_if(summary.failure_types, [](const auto& one) { return one.runs > 0; });
-    std::string text = fmt::format("{} of {}", seen, summary.failure_types.size());
-    if (const std::uint64_t untyped = summary.untyped_failures; untyped > 0) {
-      text += fmt::format("; {} {} {}", FormatCount(untyped), untyped == 1 ? "failure" : "failures",
-                          summary.untyped);
-    }
-    table.AddRow({"failure types", text});
-  }
-  table.AddRow({"state hash", summary.state_hash});
-  return table.ToText();
-}
-
-// The failure types that occurred, the most frequent first.
-std::string FailuresByType(const CampaignSummary& summary) {
-  std::vector<FailureCount> failures = summary.failure_types;
-  std::erase_if(failures, [](const FailureCount& one) { return one.runs == 0; });
-  if (failures.empty()) return {};
-  std::ranges::stable_sort(failures, std::greater(), &FailureCount::runs);
-  Table table({">runs", ">type", "total failure"});
-  for (const FailureCount& one : failures) {
-    table.AddRow({FormatCount(one.runs), fmt::format("{}", one.type), one.name});
-  }
-  if (summary.untyped_failures > 0) {
-    table.AddRow({FormatCount(summary.untyped_failures), "-", summary.untyped});
-  }
-  const std::string note =
-      summary.failure_note.empty() ? "" : fmt::format("  {}\n", Wrapped(summary.failure_note, kNoteWidth, 2));
-  return "\n" + table.ToText() + note;
-}
-
 // "6 of 8 refused: no-room-to-spawn: ...", the most frequent first.
-std::string RunsWithoutAResult(const CampaignSummary& summary, const std::string& directory) {
+std::string RunsWithoutAResult(const SearchSummary& summary, const std::string& directory) {
   if (summary.runs_without_result.empty()) return {};
   constexpr std::size_t kMostGroups = 8;
   const auto& groups = summary.runs_without_result;
@@ -105,23 +41,12 @@ std::string RunsWithoutAResult(const CampaignSummary& summary, const std::string
   return text;
 }
 
-std::string Generations(const CampaignSummary& summary) {
+std::string Generations(const SearchSummary& summary) {
   if (summary.generations.size() < 2) return {};
-  Table table({">generation", ">runs", ">best", ">mean", ">worst", ">total failures"});
-  // The first, the last and generations at even distances between them.
-  const std::size_t gaps = summary.generations.size() - 1;
-  const std::size_t shown = std::min(gaps, kMostGenerations - 1);
-  for (std::size_t i = 0; i <= shown; ++i) {
-    const GenerationSummary& generation = summary.generations[(i * gaps + shown / 2) / shown];
-    const auto fitness = [&](double value) { return generation.completed > 0 ? FormatFitness(value) : "-"; };
-    table.AddRow({fmt::format("{}", generation.generation), FormatCount(generation.runs),
-                  fitness(generation.best), fitness(generation.mean), fitness(generation.worst),
-                  FormatCount(generation.total_failures)});
-  }
-  return "\n" + table.ToText();
+  return "\n" + GenerationTable(summary).Thinned(kMostGenerations).ToText();
 }
 
-std::vector<const PopulationMember*> Toughest(const CampaignSummary& summary) {
+std::vector<const PopulationMember*> Toughest(const SearchSummary& summary) {
   std::vector<const PopulationMember*> members;
   for (const PopulationMember& member : summary.population) {
     if (std::isfinite(member.fitness) && !member.runs.empty()) members.push_back(&member);
@@ -130,34 +55,69 @@ std::vector<const PopulationMember*> Toughest(const CampaignSummary& summary) {
   return members;
 }
 
-std::string Members(const CampaignSummary& summary) {
+std::string Members(const SearchSummary& summary) {
   const std::vector<const PopulationMember*> members = Toughest(summary);
   if (members.empty()) return {};
   const bool named = std::ranges::any_of(members, [](const auto* one) { return !one->name.empty(); });
-  Table table({">test case", ">fitness", ">obstacles", ">born in generation", ">runs", ">latest run",
-               named ? "file" : ""});
-  for (std::size_t i = 0; i < std::min(kMostMembers, members.size()); ++i) {
-    const PopulationMember& member = *members[i];
-    table.AddRow({fmt::format("{}", member.id), FormatFitness(member.fitness),
-                  fmt::format("{}", member.genome.size()), fmt::format("{}", member.birth_generation),
-                  FormatCount(member.runs.size()), fmt::format("{}", member.runs.back()),
-                  Printable(member.name)});
-  }
-  std::string text = members.size() > kMostMembers
-                         ? fmt::format("\nThe toughest {} of {} test cases\n", kMostMembers, members.size())
-                         : "\nThe test cases, toughest first\n";
-  return text + table.ToText();
+  const std::string title = members.size() > kMostMembers ? fmt::format("The toughest {} of {} test cases",
+                                                                        kMostMembers, members.size())
+                                                          : "The test cases, toughest first";
+  return fmt::format("\n{}\n{}", title, PopulationTable(members, named).First(kMostMembers).ToText());
 }
 
-// What to type next; `first`: rows with what is most worth it.
-std::string Hints(const HintContext& context, bool finished, const std::vector<std::vector<Cell>>& first) {
+// What was tried in vain.
+std::string NothingFound(const SearchSummary& summary) {
+  std::string text = fmt::format(
+      "\nNothing fails reliably: none of {} test cases failed in 3 of 3 or 4 of 5 runs. {} of {} runs "
+      "failed.",
+      FormatCount(summary.distinct_individuals), FormatCount(summary.failing_runs),
+      FormatCount(summary.runs_done));
+  std::string separator = " The runs went to";
+  const auto tried = [&](const char* statistic, const char* what) {
+    const auto found =
+        std::ranges::find(summary.statistics, statistic, &std::pair<std::string, double>::first);
+    if (found == summary.statistics.end() || found->second == 0.0) return;
+    text +=
+        fmt::format("{} {} ({})", separator, what, FormatCount(static_cast<std::uint64_t>(found->second)));
+    separator = ",";
+  };
+  tried("random_runs", "random cases");
+  tried("alone_runs", "single obstacles in the way");
+  tried("nearest_runs", "parts of cases that had failed once");
+  return text +
+         ".\nMore runs (`gauntlet resume DIR --set search.runs=N`) or more obstacles (genome.genes) may find "
+         "something.\n";
+}
+
+// What the archive of a search for many different failures holds.
+std::string ArchiveText(const SearchSummary& summary, const HintContext& context) {
+  const ArchiveView& archive = summary.archive;
+  if (archive.failures.empty()) return NothingFound(summary);
+  std::string text;
+  if (archive.axes.size() == 2) {
+    text =
+        fmt::format("\nThe fewest obstacles that break the swarm, by {} (to the right) and {} (upwards)\n{}",
+                    archive.axes[0].metric, archive.axes[1].metric, ArchiveMap(summary).ToText());
+  }
+  const std::string replay = fmt::format("{} replay {}", context.program, PastedPath(context.directory));
+  return text +
+         fmt::format("\n{} of {} cells hold a failure; the smallest of each, fewest obstacles first\n{}",
+                     archive.failures.size(), CellsOf(archive), ArchiveTable(summary, replay).ToText()) +
+         "  The runs that failed took part in choosing these cases; `gauntlet confirm` simulates them "
+         "anew.\n";
+}
+
+// What to type next; `first`: what is most worth it.
+std::string Hints(const HintContext& context, bool finished, const std::vector<NextCommand>& first) {
   const std::string directory = PastedPath(context.directory);
-  Table table({"", ""});
+  Section section{.title = "Next commands to try"};
   if (!finished)
-    table.AddRow({fmt::format("{} resume {}", context.program, directory), "# go on where it stopped"});
-  for (const std::vector<Cell>& row : first) table.AddRow(row);
-  table.AddRow({fmt::format("{} show {} --json", context.program, directory), "# everything, for scripts"});
-  return "\nNext commands to try\n" + table.ToText();
+    section.commands.push_back(
+        {fmt::format("{} resume {}", context.program, directory), "go on where it stopped"});
+  section.commands.insert(section.commands.end(), first.begin(), first.end());
+  section.commands.push_back(
+      {fmt::format("{} show {} --json", context.program, directory), "everything, for scripts"});
+  return ToText(section);
 }
 
 // "gauntlet replay DIR 812 --svg case-7.svg"
@@ -166,92 +126,108 @@ std::string ReplayHint(const HintContext& context, RunId run, std::string_view w
                      what, number);
 }
 
-// "" when every repeated run ended as before.
-std::string NotReproducible(const CampaignSummary& summary) {
-  if (summary.nondeterministic == 0) return "";
-  return fmt::format(
-      "WARNING: the same run gave different results. The campaign is not reproducible: do not trust its "
-      "figures.\n{}\n",
-      summary.plugin_controllers.empty() ? "" : WhyNotReproducible(summary) + "\n");
+std::string WarningsText(const CampaignSummary& summary) {
+  std::string text;
+  for (const std::string& warning : WarningsOf(summary)) text += Printable(warning) + "\n";
+  return text.empty() ? "" : text + "\n";
 }
 
-// What a broken machine alone may have made up; "" when there is nothing of the kind.
-std::string LoneVerdicts(const CampaignSummary& summary) {
-  if (summary.lone_verdicts == 0) return "";
-  return fmt::format(
-      "{} runs without a result stand on the word of one worker each: there was no other to ask. `replay` "
-      "shows "
-      "whether they end so elsewhere.\n\n",
-      FormatCount(summary.lone_verdicts));
+// "run 8, minimised to 2 obstacles, fails in 24 of 30 runs".
+std::string DescribeSmallest(const SmallestLayout& smallest) {
+  const std::size_t obstacles = smallest.document.test_case.obstacles.size();
+  const proto::CaseFailures& verified = smallest.document.lineage->verified;
+  return fmt::format("run {}, minimised to {} obstacle{}, fails in {} of {} runs", smallest.run, obstacles,
+                     obstacles == 1 ? "" : "s", verified.failures, verified.runs);
+}
+
+// "" when there is nothing to tell.
+std::string DistinctFailuresText(const CampaignAnswers& answers, const std::string& program) {
+  std::string text = ToText(TellDistinctFailures(answers, kMostFailures, program));
+  std::size_t told = 0;
+  for (const DistinctFailure& one : DistinctFailures(answers.confirmations, answers.smallest_layouts)) {
+    if (told++ == kMostFailures) break;
+    if (one.smallest != nullptr)
+      text += fmt::format("  {}: {}\n", DescribeSmallest(*one.smallest), PastedPath(one.smallest->file));
+  }
+  return text;
 }
 
 std::string SweepText(const CampaignSummary& summary, const CampaignAnswers& answers,
                       const HintContext& context) {
-  const auto finished = std::ranges::count(summary.searches, true, &CampaignSummary::finished);
-  std::string text = fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
-                                 Printable(summary.experiment), summary.searches.size(), finished,
-                                 FormatCount(summary.runs_done), FormatCount(summary.total_failures));
-  text += NotReproducible(summary);
-  text += LoneVerdicts(summary);
-  Table table(
-      {">search", "settings", ">generation", ">runs", ">best", ">mean", ">total failures", "state hash"});
-  constexpr std::size_t kShownDigits = 16;
-  for (std::size_t i = 0; i < summary.searches.size(); ++i) {
-    const CampaignSummary& one = summary.searches[i];
-    table.AddRow({fmt::format("{}", i + 1), Printable(one.settings),
-                  fmt::format("{}/{}", one.progress.generation, one.progress.generations),
-                  FormatCount(one.runs_done), FormatFitness(one.best_fitness),
-                  FormatFitness(one.mean_fitness), FormatCount(one.total_failures),
-                  one.state_hash.substr(0, kShownDigits)});
-  }
+  const auto finished = std::ranges::count(summary.searches, true, &SearchSummary::finished);
   const std::string directory = PastedPath(context.directory);
-  return text + table.ToText() + DistinctFailuresText(answers, context.program) +
+  return fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
+                     Printable(summary.experiment), summary.searches.size(), finished,
+                     FormatCount(summary.runs_done), FormatCount(summary.total_failures)) +
+         WarningsText(summary) + SearchesTable(summary).ToText() +
+         DistinctFailuresText(answers, context.program) +
          Hints(context, summary.finished,
                {{fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,
                              summary.searches.size()),
-                 "# is one search's population tougher than another's?"}});
+                 "is one search's population tougher than another's?"}});
+}
+
+// What is most worth typing next about a campaign of one search.
+std::vector<NextCommand> WorthTrying(const SearchSummary& summary, const CampaignAnswers& answers,
+                                     const HintContext& context) {
+  const std::string directory = PastedPath(context.directory);
+  std::vector<NextCommand> commands;
+  if (const auto members = Toughest(summary); !members.empty()) {
+    const PopulationMember& best = *members.front();
+    commands.push_back(
+        {ReplayHint(context, best.runs.back(), "case", best.id), "see what happened in the toughest case"});
+  }
+  if (summary.failing_runs > 0 && answers.confirmations.empty())
+    commands.push_back({fmt::format("{} confirm {} --all-failing", context.program, directory),
+                        "how many different failures are these?"});
+  for (const DistinctFailure& one : DistinctFailures(answers.confirmations, answers.smallest_layouts)) {
+    const RunId run = one.cases.front()->run;
+    if (!one.confirmed || one.smallest != nullptr || run == 0) continue;
+    commands.push_back({fmt::format("{} minimise {} {}", context.program, directory, run),
+                        "which of its obstacles does this failure take?"});
+    commands.push_back(
+        {fmt::format("{} blame {} {}", context.program, directory, run), "how much does each of them do?"});
+    break;
+  }
+  return commands;
 }
 
 }  // namespace
 
-std::string WhyNotReproducible(const CampaignSummary& summary) {
-  return fmt::format(
-      "The controller '{}' of the plug-in is not reproducible: it uses the time, addresses, or chance that "
-      "the run does not seed. Or else a worker is broken: log/master.log names those that disagree.",
-      Printable(fmt::format("{}", fmt::join(summary.plugin_controllers, "' or '"))));
-}
-
 std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& answers,
                         const HintContext& context) {
-  if (!summary.searches.empty()) return SweepText(summary, answers, context);
-  const SearchRow* search = FindSearch(summary.search);
+  const SearchSummary* only = summary.OnlySearch();
+  if (only == nullptr) return SweepText(summary, answers, context);
+  const SearchRow* search = FindSearch(only->search);
   std::string text = fmt::format("{}: {}, seed {}, {}\n\n", Printable(summary.experiment),
-                                 search == nullptr ? summary.search : std::string(search->title),
-                                 summary.seed, summary.finished ? "finished" : "not finished");
-  text += NotReproducible(summary);
-  text += LoneVerdicts(summary);
+                                 search == nullptr ? only->search : std::string(search->title), only->seed,
+                                 summary.finished ? "finished" : "not finished");
+  text += WarningsText(summary);
   if (summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     text += fmt::format("NO RUN GAVE A RESULT: of {} runs none could be simulated to its end.\n\n",
                         FormatCount(summary.runs_done));
   }
-  text += Overview(summary) + FailuresByType(summary) + RunsWithoutAResult(summary, context.directory) +
-          Generations(summary) +
-          (summary.archive.axes.empty() ? Members(summary) : ArchiveText(summary, context)) +
-          DistinctFailuresText(answers, context.program);
+  Table facts({"", ""});
+  AddTally(*only, only, facts);
+  return text + facts.ToText() + RunsWithoutAResult(*only, context.directory) + Generations(*only) +
+         (only->archive.axes.empty() ? Members(*only) : ArchiveText(*only, context)) +
+         DistinctFailuresText(answers, context.program) +
+         Hints(context, summary.finished, WorthTrying(*only, answers, context));
+}
 
-  std::vector<std::vector<Cell>> first;
-  if (const auto members = Toughest(summary); !members.empty()) {
-    const PopulationMember& best = *members.front();
-    first.push_back(
-        {ReplayHint(context, best.runs.back(), "case", best.id), "# see what happened in the toughest case"});
+std::string TypesText(const CampaignSummary& summary) {
+  std::string text;
+  for (const SearchSummary& one : summary.searches) {
+    const FailureTypes& types = one.types;
+    if (!one.settings.empty()) text += fmt::format("{}\n", Printable(one.settings));
+    text += types.counts.empty() ? "  Its scenario tells no types of failures apart.\n"
+                                 : FailureTypeTable(one).ToText();
+    if (types.untyped > 0)
+      text += fmt::format("  and {} total failures {}\n", FormatCount(types.untyped), types.untyped_name);
+    if (!types.counts.empty() && !types.note.empty())
+      text += fmt::format("  {}\n", Wrapped(types.note, kNoteWidth, 2));
   }
-  const std::uint64_t failing = summary.failing.empty() ? summary.total_failures : summary.failing_runs;
-  if (failing > 0 && answers.confirmations.empty()) {
-    first.push_back(
-        {fmt::format("{} confirm {} --all-failing", context.program, PastedPath(context.directory)),
-         "# how many different failures are these?"});
-  }
-  return text + Hints(context, summary.finished, first);
+  return text;
 }
 
 }  // namespace gauntlet

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -21,50 +20,28 @@
 namespace gauntlet {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-// What its scenario declares of failures.
-void TakeFromScenario(const Experiment& experiment, CampaignSummary& summary) {
-  if (const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin)) {
-    for (const controllers::FailureType& one : scenario->failure_types)
-      summary.failure_types.push_back({one.type, one.name});
-    summary.untyped = scenario->untyped_failure;
-    summary.failure_note = scenario->failure_note;
-    if (FailingNeedsMetrics(scenario->failing))
-      summary.failing = controllers::FindMetric(*scenario, scenario->failing)->description;
-  }
+// What it is, before a run is looked at.
+SearchSummary Described(const Experiment& experiment) {
+  SearchSummary summary;
+  summary.search = experiment.search.algorithm;
+  summary.seed = experiment.seed;
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (scenario == nullptr) return summary;
+  for (const controllers::FailureType& one : scenario->failure_types)
+    summary.types.counts.push_back({one.type, one.name});
+  summary.types.untyped_name = scenario->untyped_failure;
+  summary.types.note = scenario->failure_note;
+  if (FailingNeedsMetrics(scenario->failing))
+    summary.failing = controllers::FindMetric(*scenario, scenario->failing)->description;
+  return summary;
 }
 
-void AddToGeneration(const StoredRun& run, std::map<std::uint32_t, GenerationSummary>& generations) {
-  GenerationSummary& generation = generations[run.generation];
-  generation.generation = run.generation;
-  ++generation.runs;
-  if (run.total_failure) ++generation.total_failures;
-  if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) return;
-  if (generation.completed == 0) generation.best = generation.worst = run.fitness;
-  generation.best = std::min(generation.best, run.fitness);
-  generation.worst = std::max(generation.worst, run.fitness);
-  ++generation.completed;
-  generation.mean += (run.fitness - generation.mean) / static_cast<double>(generation.completed);
-}
-
-void AddToFailures(const StoredRun& run, CampaignSummary& summary) {
-  if (run.verdict != static_cast<int>(sim::Verdict::kCompleted)) ++summary.runs_failed;
-  if (!run.total_failure) return;
-  ++summary.total_failures;
-  const auto counted = std::ranges::find(summary.failure_types, run.failure_type, &FailureCount::type);
-  ++(counted != summary.failure_types.end() ? counted->runs : summary.untyped_failures);
-}
-
-Result<bool> IsFailing(const StoredRun& run, const Experiment& experiment) {
-  TRY(const RunOutcome outcome, OutcomeOf(run, /*with_metrics=*/true));
-  FailureTally tally;
-  tally.Add(outcome, FailingOf(experiment));
-  return tally.failures > 0;
+void AddFailure(const StoredRun& run, FailureTypes& types) {
+  const auto counted = std::ranges::find(types.counts, run.failure_type, &FailureCount::type);
+  ++(counted != types.counts.end() ? counted->runs : types.untyped);
 }
 
 void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
-  if (run.verdict == static_cast<int>(sim::Verdict::kCompleted)) return;
   const std::string& message = run.message;
   const auto verdict = static_cast<sim::Verdict>(run.verdict);
   const std::string rule = RuleOf(message);
@@ -119,28 +96,45 @@ std::string EncodePopulation(const std::vector<Individual>& population) {
   return encoder.Take();
 }
 
-// Totals over searches; what has no meaning over several stays empty.
-CampaignSummary TotalsOf(const std::vector<CampaignSummary>& searches) {
+// Everything that is told of the stored runs of a search.
+Status AddRuns(const Experiment& experiment, SearchId id, ResultStore& store, SearchSummary& summary,
+               std::map<IndividualId, std::vector<RunId>>& runs_of) {
+  const std::string_view failing = FailingOf(experiment);
+  const bool needs_metrics = FailingNeedsMetrics(failing);
+  std::map<std::uint32_t, GenerationSummary> generations;
+  const auto add = [&](const StoredRun& run) -> Status {
+    TRY(const RunOutcome outcome, OutcomeOf(run, needs_metrics));
+    const bool completed = outcome.verdict == sim::Verdict::kCompleted;
+    GenerationSummary& generation = generations[run.generation];
+    generation.generation = run.generation;
+    ++generation.runs;
+    ++summary.runs_done;
+    runs_of[run.individual].push_back(run.id);
+    if (completed) generation.fitness.Add(run.fitness);
+    if (!completed) ++summary.runs_failed;
+    if (!completed) AddToRunsWithoutResult(run, summary.runs_without_result);
+    if (completed && Fails(outcome, failing)) ++summary.failing_runs;
+    if (!run.total_failure) return Ok{};
+    ++summary.total_failures;
+    ++generation.total_failures;
+    AddFailure(run, summary.types);
+    return Ok{};
+  };
+  TRY(needs_metrics ? store.ForEachRun(id, 0, add) : store.ForEachRow(id, 0, add));
+  std::ranges::stable_sort(summary.runs_without_result, std::greater(), &RunsWithoutResult::runs);
+  for (auto& [number, generation] : generations) summary.generations.push_back(generation);
+  return Ok{};
+}
+
+// What the searches come to together.
+CampaignSummary TotalsOf(const std::vector<SearchPlan>& plans, const std::vector<SearchTally>& searches) {
   CampaignSummary totals;
-  totals.experiment = searches.front().experiment;
-  totals.search = "sweep";
-  totals.seed = searches.front().seed;
-  totals.finished = true;
-  totals.progress.finished = true;
-  totals.best_fitness = totals.mean_fitness = totals.worst_fitness = kNone;
-  for (const CampaignSummary& one : searches) {
-    totals.runs_done += one.runs_done;
-    totals.runs_failed += one.runs_failed;
-    totals.total_failures += one.total_failures;
-    totals.distinct_individuals += one.distinct_individuals;
-    Add(one.progress, totals.progress);
-    totals.finished = totals.finished && one.finished;
-    totals.plugin_controllers.insert(one.plugin_controllers.begin(), one.plugin_controllers.end());
-    totals.nondeterministic = std::max(totals.nondeterministic, one.nondeterministic);  // each has all
-    totals.lone_verdicts = std::max(totals.lone_verdicts, one.lone_verdicts);           // likewise
-    totals.best_fitness = std::fmin(totals.best_fitness, one.best_fitness);
-    totals.worst_fitness = std::fmax(totals.worst_fitness, one.worst_fitness);
+  totals.experiment = plans.front().experiment.name;
+  for (const SearchPlan& plan : plans) {
+    if (!plan.experiment.plugin.empty()) totals.plugin_controllers.insert(plan.experiment.controller);
   }
+  totals.finished = true;
+  for (const SearchTally& one : searches) totals.Add(one);
   totals.progress.finished = totals.finished;
   return totals;
 }
@@ -160,65 +154,42 @@ Result<std::uint64_t> CountLoneVerdicts(ResultStore& store) {
   return CountEvents(store, event::kRunGivenUpAlone);
 }
 
-Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
-                                  ResultStore& store) {
-  CampaignSummary summary;
-  summary.experiment = experiment.name;
-  summary.search = experiment.search.algorithm;
-  summary.seed = experiment.seed;
-  TakeFromScenario(experiment, summary);
+void SearchTally::Add(const SearchTally& other) {
+  gauntlet::Add(other.progress, progress);
+  runs_done += other.runs_done;
+  runs_failed += other.runs_failed;
+  total_failures += other.total_failures;
+  failing_runs += other.failing_runs;
+  distinct_individuals += other.distinct_individuals;
+  fitness.Add(other.fitness);
+  finished = finished && other.finished;
+}
 
+Result<SearchSummary> Summarise(const Experiment& experiment, SearchId search_id, SearchAlgorithm& search,
+                                ResultStore& store) {
+  SearchSummary summary = Described(experiment);
   TRY(const SavedProgress saved, RestoreSearch(search_id, store, search));
+  summary.progress = search.Progress();
+  summary.archive = search.Archive();
   {
     TRY(const std::vector<Individual> individuals, store.LoadIndividuals(search_id));
     summary.distinct_individuals = CountDistinctGenomes(individuals);
   }
-
-  std::map<IndividualId, std::vector<RunId>> runs_of;
-  std::map<std::uint32_t, GenerationSummary> generations;
-  const auto take = [&](const StoredRun& run) -> Status {
-    ++summary.runs_done;
-    runs_of[run.individual].push_back(run.id);
-    AddToFailures(run, summary);
-    AddToRunsWithoutResult(run, summary.runs_without_result);
-    AddToGeneration(run, generations);
-    if (summary.failing.empty()) return Ok{};
-    TRY(const bool failing, IsFailing(run, experiment));
-    if (failing) ++summary.failing_runs;
-    return Ok{};
-  };
-  TRY(summary.failing.empty() ? store.ForEachRow(search_id, 0, take) : store.ForEachRun(search_id, 0, take));
-  std::ranges::stable_sort(summary.runs_without_result, std::greater(), &RunsWithoutResult::runs);
-  for (const auto& [number, generation] : generations) summary.generations.push_back(generation);
-
-  summary.progress = search.Progress();
   summary.statistics = search.Statistics();
-  summary.archive = search.Archive();
   summary.statistics.insert(summary.statistics.begin(),
                             {"distinct_individuals", static_cast<double>(summary.distinct_individuals)});
 
+  std::map<IndividualId, std::vector<RunId>> runs_of;
+  TRY(AddRuns(experiment, search_id, store, summary, runs_of));
   const std::vector<Individual>& population = search.Population();
-  double sum = 0.0;
-  double counted = 0.0;
-  summary.best_fitness = summary.mean_fitness = summary.worst_fitness = kNone;
-  for (const Individual& individual : population) {
-    summary.population.push_back({individual.id, individual.parents, individual.birth_generation,
-                                  individual.fitness, individual.test_case.obstacles, runs_of[individual.id],
-                                  individual.test_case.name});
-    if (!std::isfinite(individual.fitness)) continue;
-    summary.best_fitness = std::fmin(summary.best_fitness, individual.fitness);
-    summary.worst_fitness = std::fmax(summary.worst_fitness, individual.fitness);
-    sum += individual.fitness;
-    counted += 1.0;
+  for (const Individual& one : population) {
+    summary.population.push_back({one.id, one.parents, one.birth_generation, one.fitness,
+                                  one.test_case.obstacles, runs_of[one.id], one.test_case.name});
+    if (std::isfinite(one.fitness)) summary.fitness.Add(one.fitness);
   }
-  if (counted > 0.0) summary.mean_fitness = sum / counted;
-
   summary.state_hash =
       StateHash(EncodeExperiment(experiment), saved.results, EncodePopulation(population), saved.state);
-  TRY(summary.nondeterministic, CountNondeterministic(store));
-  if (!experiment.plugin.empty()) summary.plugin_controllers.insert(experiment.controller);
-  TRY(summary.lone_verdicts, CountLoneVerdicts(store));
-  TRY(std::vector<StoredSearch> searches, store.LoadSearches());
+  TRY(const std::vector<StoredSearch> searches, store.LoadSearches());
   summary.finished = std::ranges::any_of(searches, [&](const StoredSearch& stored) {
     return stored.id == search_id && HasFinished(stored, experiment, search);
   });
@@ -228,41 +199,41 @@ Result<CampaignSummary> Summarise(const Experiment& experiment, SearchId search_
 Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, ResultStore& store) {
   TRY(const std::vector<SearchTotals> totals, store.LoadTotals());
   TRY(const std::vector<StoredSearch> stored, store.LoadSearches());
-  std::vector<CampaignSummary> searches(plans.size());
+  std::vector<SearchTally> searches(plans.size());
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
-    CampaignSummary& summary = searches[i];
-    summary.experiment = plans[i].experiment.name;
+    SearchTally& tally = searches[i];
     TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i].experiment, id, store));
     TRY(const std::optional<SavedState> state, store.LoadNewestState(id));
-    summary.progress = search->Progress();
-    if (state) summary.progress.generation = state->generation;
+    tally.progress = search->Progress();
+    if (state) tally.progress.generation = state->generation;
     const auto mine = std::ranges::find(totals, id, &SearchTotals::search);
     if (mine == totals.end()) continue;
-    summary.runs_done = mine->runs;
-    summary.runs_failed = mine->runs_failed;
-    summary.total_failures = mine->total_failures;
+    tally.runs_done = mine->runs;
+    tally.runs_failed = mine->runs_failed;
+    tally.total_failures = mine->total_failures;
     const auto known = std::ranges::find(stored, id, &StoredSearch::id);
-    summary.finished = known != stored.end() && HasFinished(*known, plans[i].experiment, *search);
+    tally.finished = known != stored.end() && HasFinished(*known, plans[i].experiment, *search);
   }
-  CampaignSummary all = TotalsOf(searches);
+  CampaignSummary all = TotalsOf(plans, searches);
   TRY(all.nondeterministic, CountNondeterministic(store));
   return all;
 }
 
 Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultStore& store) {
-  std::vector<CampaignSummary> searches;
+  std::vector<SearchSummary> searches;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
     TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i].experiment, id, store));
-    TRY(CampaignSummary summary, Summarise(plans[i].experiment, id, *search, store));
+    TRY(SearchSummary summary, Summarise(plans[i].experiment, id, *search, store));
     summary.settings = plans[i].settings;
     searches.push_back(std::move(summary));
   }
-  if (plans.size() == 1) return std::move(searches.front());
-  CampaignSummary totals = TotalsOf(searches);
-  totals.searches = std::move(searches);
-  return totals;
+  CampaignSummary all = TotalsOf(plans, {searches.begin(), searches.end()});
+  all.searches = std::move(searches);
+  TRY(all.nondeterministic, CountNondeterministic(store));
+  TRY(all.lone_verdicts, CountLoneVerdicts(store));
+  return all;
 }
 
 }  // namespace gauntlet

@@ -4,7 +4,7 @@
 
 #include "analysis/tables/table.h"
 #include "controllers/registry.h"
-#include "report/tables/archive_cells.h"
+#include "report/tables/summary_tables.h"
 #include "search/archive/failure_archive.h"
 #include "search/search_setup.h"
 
@@ -26,7 +26,7 @@ std::string Counted(std::size_t obstacles) {
   return obstacles == 1 ? "1 obstacle" : fmt::format("{} obstacles", obstacles);
 }
 
-analysis::LayoutGrid GridOf(const CampaignSummary& summary, const Experiment& experiment) {
+analysis::LayoutGrid GridOf(const SearchSummary& summary, const Experiment& experiment) {
   const ArchiveView& archive = summary.archive;
   analysis::LayoutGrid grid{
       .title = kTitle,
@@ -58,7 +58,7 @@ analysis::LayoutGrid GridOf(const CampaignSummary& summary, const Experiment& ex
   return grid;
 }
 
-std::string CsvOf(const CampaignSummary& summary) {
+std::string CsvOf(const SearchSummary& summary) {
   const ArchiveView& archive = summary.archive;
   Table table({"column", "row", "test case", "obstacles", "length_m", "failed", "runs",
                archive.axes[0].metric, archive.axes[1].metric});
@@ -73,9 +73,9 @@ std::string CsvOf(const CampaignSummary& summary) {
 }  // namespace
 
 std::vector<NamedFigure> ArchiveFigures(const CampaignFacts& facts) {
-  const CampaignSummary& summary = facts.summary;
-  if (facts.plans.size() != 1 || summary.archive.axes.size() != 2 || summary.archive.failures.empty())
-    return {};
+  if (facts.summary.OnlySearch() == nullptr) return {};
+  const SearchSummary& summary = *facts.summary.OnlySearch();
+  if (summary.archive.axes.size() != 2 || summary.archive.failures.empty()) return {};
   const Experiment experiment = facts.plans.front().experiment;
   return {
       {"archive", kTitle,

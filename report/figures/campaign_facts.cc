@@ -17,6 +17,7 @@
 #include "master/campaign/stored_campaign.h"
 #include "master/store/event_kinds.h"
 #include "proto/run_codec.h"
+#include "report/tables/summary_tables.h"
 #include "study/questions/question_table.h"
 #include "study/sets/subset.h"
 
@@ -66,13 +67,11 @@ void AddRun(const RunFacts& run, CaseFacts& of_case) {
   ++of_case.runs;
   if (run.total_failure) ++of_case.total_failures;
   if (!run.completed) return;
-  if (of_case.completed == 0 || run.fitness < of_case.fitness) {
+  if (of_case.toughest == 0 || run.fitness < of_case.fitness.lowest()) {
     of_case.toughest = run.id;
-    of_case.fitness = run.fitness;
     of_case.failure_type = run.failure_type;
   }
-  ++of_case.completed;
-  of_case.mean_fitness += (run.fitness - of_case.mean_fitness) / static_cast<double>(of_case.completed);
+  of_case.fitness.Add(run.fitness);
 }
 
 Result<std::vector<CaseFacts>> CasesOf(const CampaignFacts& facts, ResultStore& store) {
@@ -96,12 +95,11 @@ Result<std::vector<CaseFacts>> CasesOf(const CampaignFacts& facts, ResultStore& 
       one.name = individual.test_case.name;
       one.born = individual.birth_generation;
       one.obstacles = individual.test_case.obstacles.size();
-      if (one.completed == 0) one.mean_fitness = kNotMeasured;
     }
   }
   std::ranges::stable_sort(all, [](const CaseFacts& a, const CaseFacts& b) {
-    if ((a.completed == 0) != (b.completed == 0)) return b.completed == 0;
-    return a.completed > 0 && a.mean_fitness < b.mean_fitness;
+    if ((a.toughest == 0) != (b.toughest == 0)) return b.toughest == 0;
+    return a.fitness.mean() < b.fitness.mean();
   });
   return all;
 }
@@ -147,18 +145,11 @@ std::vector<std::string> NotesOf(const CampaignFacts& facts, const std::string& 
     notes.push_back(fmt::format("{} is half-finished: this tells of the {} runs that it has so far",
                                 facts.directory, FormatCount(summary.runs_done)));
   }
-  if (summary.nondeterministic > 0) {
-    notes.emplace_back(
-        "the same run gave different results: the campaign is not reproducible, do not trust its figures");
-  }
   if (summary.runs_failed > 0) {
     notes.push_back(fmt::format("{} runs ended without a result (crashed, hung, refused)",
                                 FormatCount(summary.runs_failed)));
   }
-  if (summary.lone_verdicts > 0) {
-    notes.push_back(fmt::format("{} runs without a result stand on the word of one worker each",
-                                FormatCount(summary.lone_verdicts)));
-  }
+  for (std::string& warning : WarningsOf(summary)) notes.push_back(std::move(warning));
   return notes;
 }
 

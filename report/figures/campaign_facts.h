@@ -36,12 +36,10 @@ struct CaseFacts {
   std::uint32_t born = 0;  // generation
   std::size_t obstacles = 0;
   std::uint64_t runs = 0;
-  std::uint64_t completed = 0;
   std::uint64_t total_failures = 0;
-  double mean_fitness = 0.0;  // over the completed runs; NaN without any
-  RunId toughest = 0;     // of the completed runs that with the lowest fitness, the earliest of equal ones
-  double fitness = 0.0;   // its
-  int failure_type = -1;  // its
+  MeanAndRange fitness = {};  // of the completed runs
+  RunId toughest = 0;         // of these that with the lowest fitness, the earliest of equal ones
+  int failure_type = -1;      // its
   std::optional<Confirmation> confirmation = std::nullopt;
 };
 

@@ -31,9 +31,9 @@ std::string MapCsv(const RunMap& map) {
                map.across_name.empty() ? "column" : map.across_name, "runs", "toughest run"});
   for (std::size_t row = 0; row < map.rows.size(); ++row) {
     for (std::size_t column = 0; column < map.columns.size(); ++column) {
-      const MapCell& cell = map.cells[row][column];
-      table.AddRow(
-          {map.rows[row], map.columns[column], cell.runs, cell.toughest == 0 ? Cell() : Cell(cell.toughest)});
+      const RunId toughest = map.toughest[row][column];
+      table.AddRow({map.rows[row], map.columns[column], map.cells[row][column].count,
+                    toughest == 0 ? Cell() : toughest});
     }
   }
   return table.ToCsv();
@@ -69,7 +69,7 @@ std::vector<NamedFigure> FiguresOf(const std::vector<SearchCourse>& courses,
         courses[i], courses.size() == 1 ? std::string("progress") : fmt::format("progress-{}", i + 1)));
   }
   for (const RunMap& map : maps) {
-    figures.push_back({map.name, map.title, map.reading, [=] { return analysis::DrawHeatMap(FigureOf(map)); },
+    figures.push_back({map.name, map.title, map.reading, [=] { return analysis::DrawHeatMap(map); },
                        [=] { return MapCsv(map); }});
   }
   return figures;

@@ -18,25 +18,29 @@ namespace {
 
 constexpr int kMostBins = 8;  // of a descriptor, and one where they begin at a round number
 
-// Puts runs into cells, and remembers the toughest of each.
+// Puts runs into the cells of a map, and remembers the toughest of each.
 class Filling {
  public:
-  explicit Filling(const CampaignFacts& facts) {
-    for (const CaseFacts& one : facts.cases) mean_[{one.search, one.individual}] = one.mean_fitness;
+  Filling(const CampaignFacts& facts, RunMap& map) : map_(map) {
+    map.cells.assign(map.rows.size(), std::vector<analysis::HeatCell>(map.columns.size()));
+    map.toughest.assign(map.rows.size(), std::vector<RunId>(map.columns.size()));
+    for (const CaseFacts& one : facts.cases) mean_[{one.search, one.individual}] = one.fitness.mean();
   }
 
-  void Add(const RunFacts& run, MapCell& cell) {
-    ++cell.runs;
+  void Add(const RunFacts& run, std::size_t row, std::size_t column) {
+    ++map_.cells[row][column].count;
     const std::tuple<double, double, RunId> rank{run.fitness, mean_[{run.search, run.individual}], run.id};
-    const auto [best, first] = best_.try_emplace(&cell, rank);
+    RunId& toughest = map_.toughest[row][column];
+    const auto [best, first] = best_.try_emplace(&toughest, rank);
     if (!first && best->second <= rank) return;
     best->second = rank;
-    cell.toughest = run.id;
+    toughest = run.id;
   }
 
  private:
+  RunMap& map_;
   std::map<std::pair<SearchId, IndividualId>, double> mean_;
-  std::map<const MapCell*, std::tuple<double, double, RunId>> best_;
+  std::map<const RunId*, std::tuple<double, double, RunId>> best_;
 };
 
 std::size_t PlaceOf(std::vector<std::string>& names, const std::string& name) {
@@ -45,31 +49,24 @@ std::size_t PlaceOf(std::vector<std::string>& names, const std::string& name) {
   return place;
 }
 
-// Without runs, and the place of each type in it.
-RunMap EmptyFailureMap(const controllers::ScenarioInfo& scenario,
-                       std::map<int, std::pair<std::size_t, std::size_t>>& places) {
-  RunMap map{.name = "failure-types",
-             .title = "Types of total failure",
-             .across_name = std::string(scenario.failure_axes.columns),
-             .down_name = std::string(scenario.failure_axes.rows)};
+RunMap FailureMap(const CampaignFacts& facts, const controllers::ScenarioInfo& scenario) {
+  RunMap map;
+  map.name = "failure-types";
+  map.title = "Types of total failure";
+  map.across_name = scenario.failure_axes.columns;
+  map.down_name = scenario.failure_axes.rows;
+  std::map<int, std::pair<std::size_t, std::size_t>> places;
   for (const controllers::FailureType& type : scenario.failure_types) {
     // Types without an order stand one below the other.
-    const std::size_t row = PlaceOf(map.rows, type.row.empty() ? type.name : type.row);
-    const std::size_t column = PlaceOf(map.columns, type.column.empty() ? "runs" : type.column);
+    const std::size_t row = PlaceOf(map.rows, std::string(type.row.empty() ? type.name : type.row));
+    const std::size_t column = PlaceOf(map.columns, std::string(type.column.empty() ? "runs" : type.column));
     places[type.type] = {row, column};
   }
-  map.cells.assign(map.rows.size(), std::vector<MapCell>(map.columns.size()));
+  Filling filling(facts, map);
   for (const controllers::FailureType& type : scenario.failure_types) {
     const auto [row, column] = places[type.type];
     map.cells[row][column].meaning = type.name;
   }
-  return map;
-}
-
-RunMap FailureMap(const CampaignFacts& facts, const controllers::ScenarioInfo& scenario) {
-  std::map<int, std::pair<std::size_t, std::size_t>> places;
-  RunMap map = EmptyFailureMap(scenario, places);
-  Filling filling(facts);
   std::uint64_t untyped = 0;
   std::uint64_t typed = 0;
   for (const RunFacts& run : facts.runs) {
@@ -80,10 +77,11 @@ RunMap FailureMap(const CampaignFacts& facts, const controllers::ScenarioInfo& s
       continue;
     }
     ++typed;
-    filling.Add(run, map.cells[place->second.first][place->second.second]);
+    filling.Add(run, place->second.first, place->second.second);
   }
-  const auto seen = std::ranges::count_if(
-      places, [&](const auto& place) { return map.cells[place.second.first][place.second.second].runs > 0; });
+  const auto seen = std::ranges::count_if(places, [&](const auto& place) {
+    return map.cells[place.second.first][place.second.second].count > 0;
+  });
   map.outcome = fmt::format("{} of {} types came up, in {} runs", seen, places.size(), FormatCount(typed));
   if (untyped > 0) {
     map.outcome += fmt::format("; {} more total failures {}", FormatCount(untyped), scenario.untyped_failure);
@@ -162,22 +160,22 @@ std::vector<Bins> BinsOf(const CampaignFacts& facts, const controllers::Scenario
 RunMap BehaviourMap(const CampaignFacts& facts, const std::vector<Bins>& bins) {
   const Bins& across = bins.front();
   const Bins* down = bins.size() > 1 ? &bins[1] : nullptr;
-  RunMap map{.name = "behaviour",
-             .title = "How the swarms behaved",
-             .across_name = across.name(),
-             .down_name = down == nullptr ? "" : down->name(),
-             .columns = across.names(),
-             .rows = down == nullptr ? std::vector<std::string>{"runs"} : down->names()};
+  RunMap map;
+  map.name = "behaviour";
+  map.title = "How the swarms behaved";
+  map.across_name = across.name();
+  map.down_name = down == nullptr ? "" : down->name();
+  map.columns = across.names();
+  map.rows = down == nullptr ? std::vector<std::string>{"runs"} : down->names();
   std::ranges::reverse(map.rows);  // upwards, as in an arena that is seen from above
-  map.cells.assign(map.rows.size(), std::vector<MapCell>(map.columns.size()));
-  Filling filling(facts);
+  Filling filling(facts, map);
   std::uint64_t counted = 0;
   for (const RunFacts& run : facts.runs) {
     const std::size_t column = across.BinOf(run);
     const std::size_t row = down == nullptr ? 0 : down->BinOf(run);
     if (column == map.columns.size() || row == map.rows.size()) continue;
     ++counted;
-    filling.Add(run, map.cells[map.rows.size() - 1 - row][column]);
+    filling.Add(run, map.rows.size() - 1 - row, column);
   }
   for (std::size_t row = 0; row < map.rows.size(); ++row) {
     for (std::size_t column = 0; column < map.columns.size(); ++column) {
@@ -196,14 +194,6 @@ RunMap BehaviourMap(const CampaignFacts& facts, const std::vector<Bins>& bins) {
 
 }  // namespace
 
-std::uint64_t LargestCount(const RunMap& map) {
-  std::uint64_t largest = 0;
-  for (const std::vector<MapCell>& row : map.cells) {
-    for (const MapCell& cell : row) largest = std::max(largest, cell.runs);
-  }
-  return largest;
-}
-
 std::vector<RunMap> MapsOf(const CampaignFacts& facts) {
   const Experiment& first = facts.plans.front().experiment;
   const auto* scenario = controllers::FindScenario(first.scenario, first.scenario_plugin);
@@ -216,23 +206,8 @@ std::vector<RunMap> MapsOf(const CampaignFacts& facts) {
   if (!scenario->failure_types.empty()) maps.push_back(FailureMap(facts, *scenario));
   if (const std::vector<Bins> bins = BinsOf(facts, *scenario); !bins.empty())
     maps.push_back(BehaviourMap(facts, bins));
-  std::erase_if(maps, [](const RunMap& map) { return LargestCount(map) == 0; });
+  std::erase_if(maps, [](const RunMap& map) { return map.Largest() == 0; });
   return maps;
-}
-
-analysis::HeatMap FigureOf(const RunMap& map) {
-  analysis::HeatMap figure{.title = map.title,
-                           .outcome = map.outcome,
-                           .across_name = map.across_name,
-                           .down_name = map.down_name,
-                           .columns = map.columns,
-                           .rows = map.rows,
-                           .counts = {}};
-  for (const std::vector<MapCell>& row : map.cells) {
-    std::vector<std::uint64_t>& counts = figure.counts.emplace_back();
-    for (const MapCell& cell : row) counts.push_back(cell.runs);
-  }
-  return figure;
 }
 
 }  // namespace gauntlet

@@ -10,30 +10,17 @@
 
 namespace gauntlet {
 
-struct MapCell {
-  std::uint64_t runs = 0;
-  RunId toughest = 0;        // of lowest fitness; of equal ones that of the toughest case, then the earliest
-  std::string meaning = "";  // in words
-};
-
-struct RunMap {
-  std::string name = "";  // as `gauntlet figure` calls it
-  std::string title = "";
-  std::string outcome = "";  // what it comes to, in a sentence
+struct RunMap : analysis::HeatMap {
+  std::string name = "";     // as `gauntlet figure` calls it
   std::string reading = "";  // how it is read, in a sentence or two
-  std::string across_name = "";
-  std::string down_name = "";
-  std::vector<std::string> columns = {};
-  std::vector<std::string> rows = {};
-  std::vector<std::vector<MapCell>> cells = {};  // [row][column]
+  // [row][column]: the run of lowest fitness; of equal ones that of the toughest case, then the earliest; 0 =
+  // none.
+  std::vector<std::vector<RunId>> toughest = {};
 };
 
 // Of the total failures by the types that the scenario declares (for flocking the 2 x 10 table of thesis
 // Tables 4.5 and 4.6), and of all runs by the first two descriptors of behaviour. A map of nothing is left
 // out, and so are all when the campaign's searches are of several scenarios.
 std::vector<RunMap> MapsOf(const CampaignFacts& facts);
-
-std::uint64_t LargestCount(const RunMap& map);
-analysis::HeatMap FigureOf(const RunMap& map);
 
 }  // namespace gauntlet

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -17,18 +16,12 @@ constexpr std::size_t kParts = 50;             // of a search without generation
 constexpr std::size_t kMostGenerations = 200;  // beyond, parts are drawn too
 
 CourseBlock BlockOf(const std::vector<const RunFacts*>& runs, std::size_t begin, std::size_t end) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  CourseBlock block{.runs = end, .best = kNone, .mean = 0.0, .failure_share = 0.0};
-  double completed = 0.0;
+  CourseBlock block{.runs = end, .fitness = {}, .failure_share = 0.0};
   double failures = 0.0;
   for (std::size_t i = begin; i < end; ++i) {
     if (runs[i]->total_failure) failures += 1.0;
-    if (!runs[i]->completed) continue;
-    completed += 1.0;
-    block.best = std::fmin(block.best, runs[i]->fitness);
-    block.mean += (runs[i]->fitness - block.mean) / completed;
+    if (runs[i]->completed) block.fitness.Add(runs[i]->fitness);
   }
-  if (completed == 0.0) block.mean = kNone;
   block.failure_share = failures / static_cast<double>(end - begin);
   return block;
 }
@@ -72,40 +65,26 @@ std::string NameOfCourse(const std::string& settings) {
   return name;
 }
 
-double ValueOf(const CourseBlock& block, double CourseBlock::*value, double scale) {
-  return scale * (block.*value);
-}
-
-analysis::FigureLine LineOf(const SearchCourse& course, const std::string& name, double CourseBlock::*value,
-                            double scale) {
+// The mean over the repeats, with a band when there are several.
+analysis::FigureLine LineOf(const SearchCourse& course, const std::string& name,
+                            double (*value)(const CourseBlock&)) {
   analysis::FigureLine line{.name = name};
   const bool band = course.repeats.size() > 1;
   std::size_t blocks = 0;
   for (const auto& repeat : course.repeats) blocks = std::max(blocks, repeat.size());
   for (std::size_t i = 0; i < blocks; ++i) {
-    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-    double runs = 0.0;
-    double repeats = 0.0;
-    double sum = 0.0;
-    double values = 0.0;
-    double low = kNone;
-    double high = kNone;
+    MeanAndRange runs;
+    MeanAndRange values;
     for (const auto& repeat : course.repeats) {
       if (i >= repeat.size()) continue;
-      repeats += 1.0;
-      runs += static_cast<double>(repeat[i].runs);
-      const double one = ValueOf(repeat[i], value, scale);
-      if (!std::isfinite(one)) continue;
-      values += 1.0;
-      sum += one;
-      low = std::fmin(low, one);
-      high = std::fmax(high, one);
+      runs.Add(static_cast<double>(repeat[i].runs));
+      if (const double one = value(repeat[i]); std::isfinite(one)) values.Add(one);
     }
-    line.x.push_back(runs / repeats);
-    line.y.push_back(values > 0.0 ? sum / values : kNone);
+    line.x.push_back(runs.mean());
+    line.y.push_back(values.mean());
     if (!band) continue;
-    line.low.push_back(low);
-    line.high.push_back(high);
+    line.low.push_back(values.lowest());
+    line.high.push_back(values.highest());
   }
   return line;
 }
@@ -128,18 +107,21 @@ std::vector<SearchCourse> CoursesOf(const CampaignFacts& facts) {
 
 analysis::LineFigure FigureOf(const SearchCourse& course, const std::string& title) {
   const std::size_t repeats = course.repeats.size();
-  return {.title = title,
-          .outcome = repeats > 1
-                         ? fmt::format("mean of {} searches; bands: from the lowest to the highest", repeats)
-                         : "one search",
-          .x_name = "runs spent by a search",
-          .panels = {{.axis_name = "fitness (lower = tougher)",
-                      .lines = {LineOf(course, "toughest", &CourseBlock::best, 1.0),
-                                LineOf(course, "mean", &CourseBlock::mean, 1.0)}},
-                     {.axis_name = "total failures, % of the runs",
-                      .lines = {LineOf(course, "failures", &CourseBlock::failure_share, 100.0)},
-                      .least = 0.0,
-                      .most = 100.0}}};
+  return {
+      .title = title,
+      .outcome = repeats > 1
+                     ? fmt::format("mean of {} searches; bands: from the lowest to the highest", repeats)
+                     : "one search",
+      .x_name = "runs spent by a search",
+      .panels = {
+          {.axis_name = "fitness (lower = tougher)",
+           .lines = {LineOf(course, "toughest", [](const CourseBlock& one) { return one.fitness.lowest(); }),
+                     LineOf(course, "mean", [](const CourseBlock& one) { return one.fitness.mean(); })}},
+          {.axis_name = "total failures, % of the runs",
+           .lines = {LineOf(course, "failures",
+                            [](const CourseBlock& one) { return 100.0 * one.failure_share; })},
+           .least = 0.0,
+           .most = 100.0}}};
 }
 
 }  // namespace gauntlet

@@ -12,9 +12,8 @@ namespace gauntlet {
 
 // A generation, or one of some fifty equal parts of a search without generations.
 struct CourseBlock {
-  std::uint64_t runs = 0;  // of the search up to its end
-  double best = 0.0;       // over its completed runs; NaN without any, as the mean
-  double mean = 0.0;
+  std::uint64_t runs = 0;      // of the search up to its end
+  MeanAndRange fitness = {};   // of its completed runs
   double failure_share = 0.0;  // of its runs, 0 to 1
 };
 

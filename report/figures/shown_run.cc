@@ -49,8 +49,8 @@ std::vector<RunId> RunsToShow(const CampaignFacts& facts, const std::vector<RunM
     add(failure.cases.front()->run);
   for (const SmallestLayout& one : facts.answers.smallest_layouts) add(one.run);
   for (const RunMap& map : maps) {
-    for (const std::vector<MapCell>& row : map.cells) {
-      for (const MapCell& cell : row) add(cell.toughest);
+    for (const std::vector<RunId>& row : map.toughest) {
+      for (const RunId run : row) add(run);
     }
   }
   for (const CaseFacts& one : facts.cases) add(one.toughest);

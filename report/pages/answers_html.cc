@@ -10,8 +10,8 @@
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "report/pages/html_text.h"
+#include "report/tables/distinct_failures.h"
 #include "search/given/layout_question.h"
-#include "study/questions/case_answer.h"
 
 namespace gauntlet {
 namespace {
@@ -25,28 +25,8 @@ std::string Counted(std::size_t count, const char* what) {
 
 // The case's name, with a link where its run can be shown.
 std::string CaseLink(const CampaignPages& pages, std::size_t number, const std::string& name, RunId run) {
-  if (run == 0 || !pages.HasPage(run)) return Html(name);
-  return fmt::format("<a href=\"#{}\">{}</a>", IdOfRun(number, run), Html(name));
-}
-
-std::string RowsOf(const CampaignPages& pages, std::size_t number,
-                   const std::vector<DistinctFailure>& failures) {
-  Table table({">", "what happens", "toughest case", ">fails in", ">probability (95 %)", ">cases", "smallest",
-               "confirmed"});
-  for (const DistinctFailure& failure : failures) {
-    if (table.size() == kMostFailures) break;
-    const Confirmation& toughest = *failure.cases.front();
-    const SmallestLayout* smallest = failure.smallest;
-    table.AddRow({table.size() + 1, failure.what, LinkCell(toughest.name, pages.LinkTo(number, toughest.run)),
-                  OutOfCell(toughest.tally.failures, toughest.tally.runs()), PercentCell(toughest.interval),
-                  CountCell(failure.cases.size()),
-                  smallest == nullptr
-                      ? Cell()
-                      : LinkCell(Counted(smallest->document.test_case.obstacles.size(), "obstacle"),
-                                 pages.LinkTo(number, smallest->run)),
-                  failure.confirmed});
-  }
-  return table.ToHtml();
+  const std::string link = pages.LinkTo(number, run);
+  return link.empty() ? Html(name) : fmt::format("<a href=\"{}\">{}</a>", link, Html(name));
 }
 
 // "24 of 30"
@@ -94,23 +74,19 @@ std::string DistinctFailuresHtml(const CampaignPages& pages, std::size_t number)
   const std::vector<Confirmation>& confirmations = facts.answers.confirmations;
   if (confirmations.empty()) {
     if (facts.summary.total_failures == 0 && facts.summary.failing_runs == 0) return "";
-    return "<h3>Distinct failures</h3>\n<p>How many different failures these are, and whether they happen "
-           "again with fresh seeds, is not known yet. This finds it out:</p>\n" +
-           CommandHtml(fmt::format("gauntlet confirm {} --all-failing", PastedPath(facts.directory)));
+    return ToHtml(
+        {.title = "Distinct failures",
+         .commands = {{fmt::format("gauntlet confirm {} --all-failing", PastedPath(facts.directory)),
+                       "How many different failures these are, and whether they happen again with "
+                       "fresh seeds, is not known yet. This finds it out"}}});
   }
-  const std::vector<DistinctFailure> failures =
-      DistinctFailures(confirmations, facts.answers.smallest_layouts);
-  const auto confirmed = std::ranges::count(failures, true, &DistinctFailure::confirmed);
-  std::string html = fmt::format(
-      "<h3>{} ({} confirmed)</h3>\n<p>Of {} that were simulated again with fresh seeds. Cases whose runs "
-      "fail at the same place or in the same way are one failure; it is confirmed when one of them fails in "
-      "at least half of these runs.</p>\n",
-      Counted(failures.size(), "distinct failure"), confirmed, Counted(confirmations.size(), "test case"));
-  if (failures.empty()) return html;
-  html += RowsOf(pages, number, failures);
-  if (failures.size() > kMostFailures)
-    html += fmt::format("<p class=\"soft\">and {} more.</p>\n", failures.size() - kMostFailures);
-  return html;
+  Section section = TellDistinctFailures(facts.answers, kMostFailures, "gauntlet",
+                                         [&](RunId run) { return pages.LinkTo(number, run); });
+  section.lead = {
+      "Cases whose runs fail at the same place or in the same way are one failure; it is confirmed when one "
+      "of "
+      "them fails in at least half of its runs with fresh seeds."};
+  return ToHtml(section);
 }
 
 std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/tables/table.h"
 #include "base/result.h"
 #include "report/figures/campaign_facts.h"
 #include "report/figures/run_map.h"
@@ -35,6 +36,9 @@ Result<CampaignPages> GatherPages(const std::string& dir, std::size_t most_shown
 // What was tested, and what came of it, in two or three sentences; a text.
 std::string VerdictOf(const CampaignPages& pages);
 std::string OverviewHtml(const CampaignPages& pages, std::size_t number);
+// What became of the test cases, the `most` toughest, which run has a page, and by which keys scripts know
+// it.
+Table CaseTable(const CampaignPages& pages, std::size_t number, std::size_t most);
 std::string FailuresHtml(const CampaignPages& pages, std::size_t number);
 // A page for each run that is shown.
 std::string CasesHtml(const CampaignPages& pages, std::size_t number);

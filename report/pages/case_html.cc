@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/run/run_thumbnail.h"
+#include "analysis/tables/section.h"
 #include "base/shell_quoted.h"
 #include "master/campaign/verdict_text.h"
 #include "report/figures/campaign_figures.h"
@@ -53,16 +54,17 @@ std::string RunFactsHtml(const CampaignFacts& facts, const ShownRun& shown) {
 
 std::string CommandsHtml(const CampaignFacts& facts, RunId id) {
   const std::string dir = PastedPath(facts.directory);
-  return "<h3>Commands</h3>\n<p>See it again, bit for bit:</p>\n" +
-         CommandHtml(fmt::format("gauntlet replay {} {} --svg run-{}.svg", dir, id, id)) +
-         "<p>Does it fail with fresh seeds too, and how often?</p>\n" +
-         CommandHtml(fmt::format("gauntlet confirm {} {}", dir, id)) +
-         "<p>Which of its obstacles does it take?</p>\n" +
-         CommandHtml(fmt::format("gauntlet minimise {} {}", dir, id)) +
-         "<p>How much does each of them do?</p>\n" +
-         CommandHtml(fmt::format("gauntlet blame {} {}", dir, id)) + "<p>Its trajectories as a table:</p>\n" +
-         CommandHtml(fmt::format(
-             "gauntlet export {} --format csv --what trajectories --run {} --out run-{}.csv", dir, id, id));
+  return ToHtml(
+      {.title = "Commands",
+       .commands = {
+           {fmt::format("gauntlet replay {} {} --svg run-{}.svg", dir, id, id), "See it again, bit for bit"},
+           {fmt::format("gauntlet confirm {} {}", dir, id),
+            "Does it fail with fresh seeds too, and how often?"},
+           {fmt::format("gauntlet minimise {} {}", dir, id), "Which of its obstacles does it take?"},
+           {fmt::format("gauntlet blame {} {}", dir, id), "How much does each of them do?"},
+           {fmt::format("gauntlet export {} --format csv --what trajectories --run {} --out run-{}.csv", dir,
+                        id, id),
+            "Its trajectories as a table"}}});
 }
 
 }  // namespace

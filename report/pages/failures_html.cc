@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "analysis/figures/run/run_thumbnail.h"
@@ -14,17 +17,17 @@ namespace {
 constexpr double kThumbnailPixels = 220.0;
 constexpr std::size_t kMostCases = 50;  // of the table of cases, where no script makes a whole one
 
-std::string CellHtml(const CampaignPages& pages, std::size_t number, const MapCell& cell,
-                     std::uint64_t largest) {
-  const analysis::HeatColors colors = analysis::HeatColorsOf(cell.runs, largest);
-  if (cell.runs == 0) return fmt::format("<td class=\"none\" title=\"{}: none\"></td>", Html(cell.meaning));
-  const std::string style = fmt::format("style=\"background:{};color:{}\"", colors.fill, colors.text);
-  const std::string title = Html(fmt::format("{}: {} runs; the toughest is run {}", cell.meaning,
-                                             FormatCount(cell.runs), cell.toughest));
-  if (!pages.HasPage(cell.toughest))
-    return fmt::format("<td {} title=\"{}\">{}</td>", style, title, FormatCount(cell.runs));
-  return fmt::format("<td {}><a href=\"#{}\" title=\"{}\" aria-label=\"{}\">{}</a></td>", style,
-                     IdOfRun(number, cell.toughest), title, title, FormatCount(cell.runs));
+std::string CellHtml(const CampaignPages& pages, std::size_t number, const analysis::HeatCell& cell,
+                     RunId toughest, std::uint64_t largest) {
+  if (cell.count == 0) return fmt::format("<td class=\"none\" title=\"{}: none\"></td>", Html(cell.meaning));
+  const analysis::HeatColors colors = analysis::HeatColorsOf(cell.count, largest);
+  const std::string title = Html(
+      fmt::format("{}: {} runs; the toughest is run {}", cell.meaning, FormatCount(cell.count), toughest));
+  std::string html = FormatCount(cell.count);
+  if (const std::string link = pages.LinkTo(number, toughest); !link.empty())
+    html = fmt::format("<a href=\"{}\" aria-label=\"{}\">{}</a>", link, title, html);
+  return fmt::format("<td style=\"background:{};color:{}\" title=\"{}\">{}</td>", colors.fill, colors.text,
+                     title, html);
 }
 
 std::string MapHtml(const CampaignPages& pages, std::size_t number, const RunMap& map) {
@@ -37,16 +40,13 @@ std::string MapHtml(const CampaignPages& pages, std::size_t number, const RunMap
   for (const std::string& column : map.columns)
     html += fmt::format("<th scope=\"col\">{}</th>", Html(column));
   html += "</tr></thead><tbody>\n";
-  const std::uint64_t largest = LargestCount(map);
   for (std::size_t row = 0; row < map.rows.size(); ++row) {
     html += fmt::format("<tr><th scope=\"row\">{}</th>", Html(map.rows[row]));
-    for (const MapCell& cell : map.cells[row]) html += CellHtml(pages, number, cell, largest);
+    for (std::size_t i = 0; i < map.columns.size(); ++i)
+      html += CellHtml(pages, number, map.cells[row][i], map.toughest[row][i], map.Largest());
     html += "</tr>\n";
   }
-  return html + "</tbody></table></div>\n<details><summary>For a paper: as SVG, its data as CSV</summary>" +
-         CommandHtml(fmt::format("gauntlet figure {0} {1} -o {1}.svg --csv {1}.csv",
-                                 PastedPath(pages.facts.directory), map.name)) +
-         "</details>\n";
+  return html + "</tbody></table></div>\n" + ForAPaperHtml(map.name, pages.facts.directory);
 }
 
 std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
@@ -70,28 +70,53 @@ std::string ThumbnailsHtml(const CampaignPages& pages, std::size_t number) {
   return drawn == 0 ? "" : html + "</ul>\n";
 }
 
-std::string CasesTable(const CampaignPages& pages, std::size_t number) {
-  const CampaignFacts& facts = pages.facts;
-  Table table({">case", "name", ">mean fitness", ">runs", ">total failures", ">toughest run"});
-  for (const CaseFacts& one : facts.cases) {
-    if (table.size() == kMostCases) break;
-    const Cell run = one.toughest == 0 ? Cell() : one.toughest;
-    table.AddRow({one.individual, one.name, FitnessCell(one.mean_fitness), CountCell(one.runs),
-                  CountCell(one.total_failures), LinkCell(run, pages.LinkTo(number, one.toughest))});
-  }
-  const std::string sentence =
-      "A row for each test case, the toughest first: its number, how its runs ended, and its toughest run. A "
-      "run that has a replay here is a link.";
+std::string AllCasesHtml(const CampaignPages& pages, std::size_t number) {
+  const Table table = CaseTable(pages, number, kMostCases);
   return fmt::format(
-      "<h3>Test cases</h3>\n<p>{}</p>\n<div class=\"all-cases\" data-campaign=\"{}\">\n<p class=\"soft\">The "
-      "toughest {} of {}.</p>{}</div>\n",
-      sentence, number, table.size(), FormatCount(facts.cases.size()), table.ToHtml());
+      "<h3>Test cases</h3>\n<p>A row for each test case, the toughest first: its number, how its runs ended, "
+      "and "
+      "its toughest run. A run that has a replay here is a link.</p>\n"
+      "<div class=\"all-cases\" data-campaign=\"{}\">\n<p class=\"soft\">The toughest {} of "
+      "{}.</p>{}</div>\n",
+      number, table.size(), FormatCount(pages.facts.cases.size()), table.ToHtml());
 }
 
 }  // namespace
 
 std::string IdOfRun(std::size_t number, RunId run) {
   return fmt::format("run-{}-{}", number, run);
+}
+
+Table CaseTable(const CampaignPages& pages, std::size_t number, std::size_t most) {
+  const CampaignFacts& facts = pages.facts;
+  const Experiment& experiment = facts.plans.front().experiment;
+  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  Table table({{">case", "case"},
+               {">search", "search"},
+               {"name", "name"},
+               {">mean fitness", "mean"},
+               {">runs", "runs"},
+               {">total failures", "failures"},
+               {"failure of the toughest run", "type"},
+               {"confirmed", "confirmed"},
+               {">toughest run", "run"}});
+  for (const CaseFacts& one : facts.cases) {
+    if (table.size() == most) break;
+    std::string type;
+    if (scenario != nullptr) {
+      const auto known =
+          std::ranges::find(scenario->failure_types, one.failure_type, &controllers::FailureType::type);
+      if (known != scenario->failure_types.end()) type = known->name;
+    }
+    const double mean = std::round(one.fitness.mean() * 1e4) / 1e4;  // what is read, in few bytes
+    const auto& confirmed = one.confirmation;
+    table.AddRow(
+        {one.individual, one.search, TextCell(one.name), FitnessCell(mean), CountCell(one.runs),
+         CountCell(one.total_failures), TextCell(type),
+         TextCell(confirmed ? OutOfCell(confirmed->tally.failures, confirmed->tally.runs()).text : ""),
+         one.toughest == 0 ? Cell() : LinkCell(one.toughest, pages.LinkTo(number, one.toughest))});
+  }
+  return table;
 }
 
 std::string FailuresHtml(const CampaignPages& pages, std::size_t number) {
@@ -101,7 +126,7 @@ std::string FailuresHtml(const CampaignPages& pages, std::size_t number) {
   if (pages.maps.empty()) html += "<p>Nothing failed, and the scenario describes no behaviour.</p>\n";
   html += DistinctFailuresHtml(pages, number) + MinimisedCasesHtml(pages, number);
   for (const RunMap& map : pages.maps) html += MapHtml(pages, number, map);
-  return html + ThumbnailsHtml(pages, number) + CasesTable(pages, number);
+  return html + ThumbnailsHtml(pages, number) + AllCasesHtml(pages, number);
 }
 
 }  // namespace gauntlet

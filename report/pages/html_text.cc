@@ -20,12 +20,16 @@ std::string JsonInHtml(const nlohmann::ordered_json& value) {
   return html;
 }
 
+std::string ForAPaperHtml(const std::string& figure, const std::string& directory,
+                          const std::string& options) {
+  return fmt::format("<details><summary>For a paper: as SVG, its data as CSV</summary>{}</details>\n",
+                     CommandHtml(fmt::format("gauntlet figure {0} {1}{2} -o {1}.svg --csv {1}.csv",
+                                             PastedPath(directory), figure, options)));
+}
+
 std::string FigureHtml(const NamedFigure& figure, const std::string& directory, const std::string& options) {
-  return PictureHtml(
-      figure.svg(), figure.title, figure.reading,
-      fmt::format("<details><summary>For a paper: as SVG, its data as CSV</summary>{}</details>",
-                  CommandHtml(fmt::format("gauntlet figure {0} {1}{2} -o {1}.svg --csv {1}.csv",
-                                          PastedPath(directory), figure.name, options))));
+  return PictureHtml(figure.svg(), figure.title, figure.reading,
+                     ForAPaperHtml(figure.name, directory, options));
 }
 
 }  // namespace gauntlet

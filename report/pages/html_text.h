@@ -14,6 +14,9 @@ namespace gauntlet {
 // U+FFFD.
 std::string JsonInHtml(const nlohmann::ordered_json& value);
 
+// The command that writes a figure for a paper, with these options, to be unfolded.
+std::string ForAPaperHtml(const std::string& figure, const std::string& directory,
+                          const std::string& options = "");
 // The figure, what it shows, and the command that writes it for a paper, with these options.
 std::string FigureHtml(const NamedFigure& figure, const std::string& directory,
                        const std::string& options = "");

@@ -4,6 +4,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include "analysis/tables/section.h"
 #include "base/duration_text.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
@@ -13,6 +14,7 @@
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
 #include "report/pages/html_text.h"
+#include "report/tables/summary_tables.h"
 #include "search/search_table.h"
 
 namespace gauntlet {
@@ -51,13 +53,7 @@ std::string TestedHtml(const CampaignFacts& facts) {
                               ? fmt::format("{}: {}", search.title,
                                             search.plan == nullptr ? "" : search.plan(experiment))
                               : fmt::format("{} searches in one campaign", facts.plans.size())});
-  table.AddRow({"budget", fmt::format("{} runs, {} different test cases", FormatCount(summary.runs_done),
-                                      FormatCount(summary.distinct_individuals))});
-  table.AddRow(
-      {"fitness at the end",
-       fmt::format("best {}, mean {}, worst {} (lower = tougher)", FormatFitness(summary.best_fitness),
-                   FormatFitness(summary.mean_fitness), FormatFitness(summary.worst_fitness))});
-  table.AddRow({"total failures", CountCell(summary.total_failures)});
+  AddTally(summary, summary.OnlySearch(), table);
   table.AddRow({"state", summary.finished ? "finished" : "not finished"});
   return table.ToHtml();
 }
@@ -76,7 +72,6 @@ std::string ProvenanceHtml(const CampaignFacts& facts) {
   table.AddRow(
       {"time served", fmt::format("{} in {} {}", FormatDuration(history.served_seconds), history.sessions,
                                   history.sessions == 1 ? "session" : "sessions")});
-  table.AddRow({"state hash", facts.summary.state_hash});
   return table.ToHtml();
 }
 
@@ -94,17 +89,18 @@ std::string AgainCommand(const CampaignFacts& facts) {
 
 std::string CommandsHtml(const CampaignFacts& facts) {
   const std::string dir = PastedPath(facts.directory);
-  std::string html = "<h3>Commands</h3>\n";
+  Section section{.title = "Commands"};
   if (const std::string again = AgainCommand(facts); !again.empty()) {
-    html += "<p>The same campaign once more; it must end with the same state hash:</p>\n" +
-            CommandHtml(again) + CommandHtml("gauntlet show again");
+    section.commands.push_back({again, "The same campaign once more; it must end with the same state hash"});
+    section.commands.push_back({"gauntlet show again", "Its state hash"});
   }
   if (!facts.summary.finished)
-    html += "<p>Go on where it stopped:</p>\n" + CommandHtml("gauntlet resume " + dir);
-  return html + "<p>How often do the failing cases fail with fresh seeds?</p>\n" +
-         CommandHtml(fmt::format("gauntlet confirm {} --all-failing", dir)) +
-         "<p>Every run as a table:</p>\n" +
-         CommandHtml(fmt::format("gauntlet export {} --format csv --out runs.csv", dir));
+    section.commands.push_back({"gauntlet resume " + dir, "Go on where it stopped"});
+  section.commands.push_back({fmt::format("gauntlet confirm {} --all-failing", dir),
+                              "How often do the failing cases fail with fresh seeds?"});
+  section.commands.push_back(
+      {fmt::format("gauntlet export {} --format csv --out runs.csv", dir), "Every run as a table"});
+  return ToHtml(section);
 }
 
 // A search's course in numbers: the first part, the last, and some at even distances between them.
@@ -112,8 +108,8 @@ std::string CourseTable(const SearchCourse& course) {
   Table table({">runs spent", ">toughest fitness", ">mean fitness", ">total failures"});
   for (const CourseBlock& block :
        course.repeats.empty() ? std::vector<CourseBlock>() : course.repeats.front()) {
-    table.AddRow({CountCell(block.runs), FitnessCell(block.best), FitnessCell(block.mean),
-                  fmt::format("{:.1f} %", 100.0 * block.failure_share)});
+    table.AddRow({CountCell(block.runs), FitnessCell(block.fitness.lowest()),
+                  FitnessCell(block.fitness.mean()), fmt::format("{:.1f} %", 100.0 * block.failure_share)});
   }
   return fmt::format("<details><summary>{}</summary>{}</details>\n",
                      course.repeats.size() > 1 ? "The first of these searches in numbers" : "In numbers",
@@ -133,15 +129,10 @@ std::string CoursesHtml(const CampaignPages& pages) {
   return figures.size() > kCoursesAtOnce ? html + "</details>\n" : html;
 }
 
-std::string SearchesTable(const CampaignSummary& summary) {
-  if (summary.searches.empty()) return "";
-  Table table({">search", "settings", ">runs", ">best", ">mean", ">total failures", "finished"});
-  for (const CampaignSummary& one : summary.searches) {
-    table.AddRow({table.size() + 1, one.settings, CountCell(one.runs_done), FitnessCell(one.best_fitness),
-                  FitnessCell(one.mean_fitness), CountCell(one.total_failures), one.finished});
-  }
+std::string SearchesHtml(const CampaignSummary& summary) {
+  if (summary.OnlySearch() != nullptr) return "";
   return fmt::format("<details><summary>The {} searches</summary>{}</details>\n", summary.searches.size(),
-                     table.ToHtml());
+                     SearchesTable(summary).ToHtml());
 }
 
 }  // namespace
@@ -163,7 +154,7 @@ std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
       TestedHtml(facts), ProvenanceHtml(facts));
   html += CoursesHtml(pages);
   for (const NamedFigure& figure : ArchiveFigures(facts)) html += FigureHtml(figure, facts.directory);
-  html += SearchesTable(facts.summary) + CommandsHtml(facts);
+  html += SearchesHtml(facts.summary) + CommandsHtml(facts);
   return html + fmt::format(
                     "<details><summary>The whole experiment, as it was resolved</summary><pre>{}</pre>"
                     "</details>\n",

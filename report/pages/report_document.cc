@@ -1,14 +1,12 @@
 #include "report/pages/report_document.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include <nlohmann/json.hpp>
 
 #include "analysis/figures/run/run_panel.h"
-#include "controllers/registry.h"
 #include "report/pages/base64.h"
 #include "sim/arena/arena.h"
 
@@ -98,41 +96,6 @@ void AddAnnotations(const analysis::RunFigure& figure, Json& json) {
   }
 }
 
-const std::vector<std::array<std::string, 2>>& CaseColumns() {
-  static const std::vector<std::array<std::string, 2>> columns = {{"case", "case"},
-                                                                  {"search", "search"},
-                                                                  {"name", "name"},
-                                                                  {"mean", "mean fitness"},
-                                                                  {"runs", "runs"},
-                                                                  {"failures", "total failures"},
-                                                                  {"type", "failure of the toughest run"},
-                                                                  {"confirmed", "confirmed"},
-                                                                  {"run", "toughest run"}};
-  return columns;
-}
-
-Json CasesJson(const CampaignFacts& facts) {
-  const Experiment& experiment = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
-  Json cases = Json::array();
-  for (const CaseFacts& one : facts.cases) {
-    Json type;
-    if (scenario != nullptr) {
-      const auto known =
-          std::ranges::find(scenario->failure_types, one.failure_type, &controllers::FailureType::type);
-      if (known != scenario->failure_types.end()) type = known->name;
-    }
-    const Json confirmed = one.confirmation ? Json(std::to_string(one.confirmation->tally.failures) + " of " +
-                                                   std::to_string(one.confirmation->tally.runs()))
-                                            : Json();
-    cases.push_back({one.individual, one.search, one.name.empty() ? Json() : Json(one.name),
-                     one.completed == 0 ? Json() : Json(Short(one.mean_fitness)), one.runs,
-                     one.total_failures, std::move(type), confirmed,
-                     one.toughest == 0 ? Json() : Json(one.toughest)});
-  }
-  return cases;
-}
-
 // m: how far robots see or hear one another, as the scenario's parameters say; null where none does.
 Json SightRangeOf(const sim::RunSpec& spec) {
   for (const char* name : {"link_range", "communication_range"}) {
@@ -142,21 +105,22 @@ Json SightRangeOf(const sim::RunSpec& spec) {
   return nullptr;
 }
 
-Json CampaignJson(const CampaignPages& pages) {
+Json CampaignJson(const CampaignPages& pages, std::size_t number) {
+  const Table table = CaseTable(pages, number, pages.facts.cases.size());
   Json columns = Json::array();
-  for (const auto& [key, title] : CaseColumns()) {
-    const bool text = key == "name" || key == "type" || key == "confirmed";
-    columns.push_back({{"key", key}, {"title", title}, {"number", !text}});
-  }
+  for (const Column& column : table.columns())
+    columns.push_back({{"key", column.key}, {"title", column.title}, {"number", column.at_right}});
   Json types = Json::array();
-  for (const FailureCount& type : pages.facts.summary.failure_types) {
-    if (type.runs > 0) types.push_back(type.name);
+  if (const SearchSummary* only = pages.facts.summary.OnlySearch(); only != nullptr) {
+    for (const FailureCount& type : only->types.counts) {
+      if (type.runs > 0) types.push_back(type.name);
+    }
   }
   return {{"directory", pages.facts.directory},
           {"runs_done", pages.facts.summary.runs_done},
           {"failure_types", std::move(types)},
           {"case_columns", std::move(columns)},
-          {"cases", CasesJson(pages.facts)}};
+          {"cases", table.ToJsonRows()}};
 }
 
 }  // namespace
@@ -199,7 +163,7 @@ Json ReportDocument(const Report& report) {
   const std::vector<CampaignPages>& campaigns = report.campaigns;
   Json json = {{"served", report.served}, {"campaigns", Json::array()}, {"replays", Json::object()}};
   for (std::size_t i = 0; i < campaigns.size(); ++i) {
-    json["campaigns"].push_back(CampaignJson(campaigns[i]));
+    json["campaigns"].push_back(CampaignJson(campaigns[i], i));
     for (const ShownRun& shown : campaigns[i].shown) {
       if (shown.figure.result.trajectory.empty()) continue;
       json["replays"][IdOfRun(i, shown.report.stored.id)] = ReplayDocument(shown.figure);

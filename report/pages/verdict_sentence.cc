@@ -41,7 +41,7 @@ std::string Learning(const std::vector<SearchCourse>& courses) {
 
 std::string Toughest(const CampaignFacts& facts) {
   const auto toughest = std::ranges::find_if(
-      facts.cases, [](const CaseFacts& one) { return one.total_failures > 0 && one.completed > 0; });
+      facts.cases, [](const CaseFacts& one) { return one.total_failures > 0 && one.toughest != 0; });
   if (toughest == facts.cases.end()) return "";
   return fmt::format(" The toughest test case, number {}{}, made the swarm fail in {} of {} runs.",
                      toughest->individual,

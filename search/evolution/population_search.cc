@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/check.h"
+#include "base/mean_and_range.h"
 #include "search/failure_tally.h"
 #include "search/search_row.h"
 #include "sim/arena/genome.h"
@@ -67,15 +68,12 @@ Individual DecodeIndividual(CanonicalDecoder& decoder) {
 EvaluationOutcome OutcomeOfRuns(IndividualId individual, std::uint32_t evaluation,
                                 std::vector<RunOutcome> runs) {
   EvaluationOutcome outcome{.individual = individual, .evaluation = evaluation, .runs = std::move(runs)};
-  double sum = 0.0;
-  std::uint32_t completed = 0;
+  MeanAndRange completed;
   for (const RunOutcome& run : outcome.runs) {
-    if (run.verdict != sim::Verdict::kCompleted) continue;
-    sum += run.fitness;
-    ++completed;
+    if (run.verdict == sim::Verdict::kCompleted) completed.Add(run.fitness);
   }
-  outcome.completed = completed > 0;
-  if (outcome.completed) outcome.fitness = sum / completed;
+  outcome.completed = completed.count() > 0;
+  if (outcome.completed) outcome.fitness = completed.mean();
   return outcome;
 }
 

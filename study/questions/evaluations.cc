@@ -237,8 +237,8 @@ Result<Told> TellEvaluation(const Asking& asking, const Call& call, std::span<co
   if (call.summary != nullptr) {
     json["experiment"] = call.summary->experiment;
     json["directory"] = call.directory;
-    json["seed"] = fmt::format("{}", call.summary->seed);
-    json["state_hash"] = call.summary->state_hash;
+    json["seed"] = fmt::format("{}", call.summary->searches.front().seed);
+    json["state_hash"] = call.summary->searches.front().state_hash;
     json["finished"] = call.summary->finished;
   }
   told.json = JsonText(json);

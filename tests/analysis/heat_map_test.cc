@@ -11,8 +11,13 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(DrawHeatMapTest, IsAWholeDocumentThatShowsEveryCount) {
-  const HeatMap map{"types <b>",         "3 of 4",           "angle", "speed", {"0-10", "10-20"},
-                    {"alike", "unlike"}, {{0, 7}, {1234, 1}}};
+  const HeatMap map{"types <b>",
+                    "3 of 4",
+                    "angle",
+                    "speed",
+                    {"0-10", "10-20"},
+                    {"alike", "unlike"},
+                    {{{0}, {7}}, {{1234}, {1}}}};
   const std::string svg = DrawHeatMap(map);
   pugi::xml_document document;
   ASSERT_TRUE(document.load_string(svg.c_str()));

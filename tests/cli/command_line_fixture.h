@@ -26,8 +26,9 @@ class CommandLine : public ::testing::Test {
     std::filesystem::remove_all(directory_);
     std::filesystem::create_directories(directory_);
     campaigns_.report.summary.experiment = "flocking";
-    campaigns_.report.summary.search = "genetic";
-    campaigns_.report.summary.finished = true;
+    campaigns_.report.summary.searches.resize(1);
+    campaigns_.report.summary.searches[0].search = "genetic";
+    campaigns_.report.summary.finished = campaigns_.report.summary.searches[0].finished = true;
     campaigns_.report.runs_this_session = 100;
     campaigns_.report.wall_seconds = 4.0;
   }

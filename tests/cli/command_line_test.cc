@@ -53,16 +53,17 @@ TEST_F(CommandLine, SettingsReachTheExperiment) {
 }
 
 TEST_F(CommandLine, SearchWithoutAnyResultExitsOne) {
-  campaigns_.report.summary.runs_done = campaigns_.report.summary.runs_failed = 8;
-  campaigns_.report.summary.runs_without_result = {
-      {sim::Verdict::kRefused, "no-path", "no-path: walled in", 8}};
+  SearchSummary& search = campaigns_.report.summary.searches[0];
+  search.runs_done = search.runs_failed = 8;
+  static_cast<SearchTally&>(campaigns_.report.summary) = search;
+  search.runs_without_result = {{sim::Verdict::kRefused, "no-path", "no-path: walled in", 8}};
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), kExitNegative);
   EXPECT_EQ(Messages(),
             "gauntlet: 100 runs in 4.0 s (25.0/s; master 0 us of CPU per run)\n"
             "gauntlet: none of the 8 runs gave a result, most often: no-path: walled in\n");
   ExpectText("command_line_search_without_any_result_exits_one", out_.str());
-  campaigns_.report.summary.runs_failed = 7;
-  campaigns_.report.summary.runs_without_result[0].runs = 7;
+  campaigns_.report.summary.runs_failed = search.runs_failed = 7;
+  search.runs_without_result[0].runs = 7;
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("d")}), kExitDone);
   ExpectText("command_line_search_without_any_result_exits_one_2", out_.str());
 }
@@ -111,7 +112,7 @@ TEST_F(CommandLine, ProgressGoesToStandardErrorAndCanBeSilenced) {
 TEST_F(CommandLine, StoppedCampaignExitsThreeAndSaysHowToGoOn) {
   campaigns_.report.end = CampaignEnd::kStopped;
   campaigns_.report.summary.finished = false;
-  campaigns_.report.summary.runs_done = 1234;
+  campaigns_.report.summary.runs_done = campaigns_.report.summary.searches[0].runs_done = 1234;
   EXPECT_EQ(Run({"evolve", "flocking", "--dir", Path("c")}), kExitStopped);
   EXPECT_EQ(Messages(),
             "gauntlet: 100 runs in 4.0 s (25.0/s; master 0 us of CPU per run)\n"

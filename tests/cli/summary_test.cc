@@ -14,27 +14,38 @@ namespace {
 
 using Json = nlohmann::json;
 
-CampaignSummary Evolved() {
+MeanAndRange FitnessOf(std::initializer_list<double> values) {
+  MeanAndRange fitness;
+  for (const double value : values) fitness.Add(value);
+  return fitness;
+}
+
+CampaignSummary CampaignOf(const SearchSummary& search) {
   CampaignSummary summary;
+  static_cast<SearchTally&>(summary) = search;
   summary.experiment = "flocking";
+  summary.searches = {search};
+  return summary;
+}
+
+SearchSummary EvolvedSearch() {
+  SearchSummary summary;
   summary.search = "genetic";
   summary.seed = 18446744073709551615U;
-  summary.progress = {50, 50, 1000, 1000, true};
+  summary.progress = {50, 50, 1000, 1000, 0, true};
   summary.runs_done = 1000;
   summary.runs_failed = 0;
   summary.distinct_individuals = 372;
-  summary.best_fitness = 0.0;
-  summary.mean_fitness = 0.2125;
-  summary.worst_fitness = 0.633;
-  summary.total_failures = 231;
-  for (int type = 0; type < 20; ++type) summary.failure_types.push_back({type, "apart", 0});
-  summary.failure_types[12] = {12, "slowly apart", 200};
-  summary.failure_types[3].runs = 30;
-  summary.untyped_failures = 1;
-  summary.untyped = "without a split";
+  summary.fitness = FitnessOf({0.0, 0.0045, 0.633});
+  summary.total_failures = summary.failing_runs = 231;
+  for (int type = 0; type < 20; ++type) summary.types.counts.push_back({type, "apart", 0});
+  summary.types.counts[12] = {12, "slowly apart", 200};
+  summary.types.counts[3].runs = 30;
+  summary.types.untyped = 1;
+  summary.types.untyped_name = "without a split";
   summary.statistics = {{"clone_rate", 0.61}};
   for (std::uint32_t g = 1; g <= 50; ++g)
-    summary.generations.push_back({g, 20, 20, 0.3 - 0.006 * g, 0.5, 0.9, g});
+    summary.generations.push_back({g, 20, g, FitnessOf({0.3 - 0.006 * g, 0.3 + 0.006 * g, 0.9})});
   summary.population = {{17, {3, 9}, 5, 0.25, {{1.0, 2.0, 0.5, 0.2, 30.0}}, {80, 812}},
                         {18, {}, 1, 0.0, {{1.5, 2.0, 0.5, 0.2, 31.0}, {0, 0, 1, 0.1, 0}}, {81, 813}},
                         {19, {}, 1, std::numeric_limits<double>::infinity(), {}, {82}}};
@@ -43,9 +54,13 @@ CampaignSummary Evolved() {
   return summary;
 }
 
+CampaignSummary Evolved() {
+  return CampaignOf(EvolvedSearch());
+}
+
 TEST(SummaryText, GivenCasesAreNamedByTheirFiles) {
   CampaignSummary summary = Evolved();
-  summary.population[0].name = "three-walls.json";
+  summary.searches[0].population[0].name = "three-walls.json";
   testing_support::ExpectGolden("tests/cli/texts/summary_given_cases_are_named_by_their_files.txt",
                                 SummaryText(summary, {}, {"gauntlet", "d"}));
   EXPECT_EQ(Json::parse(SummaryJson(summary, {}, "d")).at("population").at(0).at("name"), "three-walls.json");
@@ -84,7 +99,7 @@ TEST(SummaryJson, SeedsAndHashesAreStrings) {
 
 TEST(SummaryJson, IdsThatReadersWouldRoundAreStrings) {
   CampaignSummary summary = Evolved();
-  summary.population[0].runs = {1ULL << 53, (1ULL << 53) + 1};
+  summary.searches[0].population[0].runs = {1ULL << 53, (1ULL << 53) + 1};
   const Json runs = Json::parse(SummaryJson(summary, {}, "d")).at("population").at(0).at("runs");
   EXPECT_EQ(runs.at(0), 9007199254740992U);
   EXPECT_EQ(runs.at(1), "9007199254740993");
@@ -92,8 +107,7 @@ TEST(SummaryJson, IdsThatReadersWouldRoundAreStrings) {
 
 TEST(SummaryJson, AFitnessThatDoesNotExistIsNull) {
   CampaignSummary summary = Evolved();
-  summary.best_fitness = summary.mean_fitness = summary.worst_fitness =
-      std::numeric_limits<double>::quiet_NaN();
+  summary.searches[0].fitness = {};
   const Json json = Json::parse(SummaryJson(summary, {}, "d"));
   EXPECT_TRUE(json.at("best_fitness").is_null());
   EXPECT_TRUE(json.at("mean_fitness").is_null());
@@ -117,10 +131,26 @@ TEST(SummaryText, EndsWithCommandsOnTheToughestCase) {
 
 TEST(SummaryText, SpeaksOfNoFailureTypesWhereTheScenarioHasNone) {
   CampaignSummary summary = Evolved();
-  summary.failure_types.clear();
+  summary.searches[0].types.counts.clear();
   testing_support::ExpectGolden(
       "tests/cli/texts/summary_speaks_of_no_failure_types_where_the_scenario_has_none.txt",
       SummaryText(summary, {}, {"gauntlet", "d"}));
+}
+
+TEST(TypesText, TellsEveryTypeAndWhatHasNone) {
+  SearchSummary search = EvolvedSearch();
+  search.types.counts.resize(4);
+  search.types.note = "Types do not tell failures apart.";
+  EXPECT_EQ(TypesText(CampaignOf(search)),
+            "  type  total failure  runs\n"
+            "     0  apart             0\n"
+            "     1  apart             0\n"
+            "     2  apart             0\n"
+            "     3  apart            30\n"
+            "  and 1 total failures without a split\n"
+            "  Types do not tell failures apart.\n");
+  search.types = {};
+  EXPECT_EQ(TypesText(CampaignOf(search)), "  Its scenario tells no types of failures apart.\n");
 }
 
 TEST(SummaryText, ToughestCaseStandsFirstAndCasesWithoutFitnessAreLeftOut) {
@@ -151,12 +181,9 @@ TEST(SummaryText, UnfinishedCampaignOffersToResume) {
 }
 
 TEST(SummaryText, AnEmptyCampaignIsNoProblem) {
-  CampaignSummary summary;
-  summary.experiment = "flocking";
-  summary.search = "random";
-  summary.best_fitness = summary.mean_fitness = summary.worst_fitness =
-      std::numeric_limits<double>::quiet_NaN();
-  const std::string text = SummaryText(summary, {}, {"gauntlet", "d"});
+  SearchSummary search;
+  search.search = "random";
+  const std::string text = SummaryText(CampaignOf(search), {}, {"gauntlet", "d"});
   testing_support::ExpectGolden("tests/cli/texts/summary_an_empty_campaign_is_no_problem.txt", text);
 }
 

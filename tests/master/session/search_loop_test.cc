@@ -23,7 +23,7 @@ using testing_support::MemoryStore;
 std::string EndOf(MemoryStore& store, const Experiment& experiment = ToyExperiment(),
                   SearchId search = kOnlySearch) {
   const std::unique_ptr<SearchAlgorithm> made = MakeToySearch(experiment);
-  const Result<CampaignSummary> summary = Summarise(experiment, search, *made, store);
+  const Result<SearchSummary> summary = Summarise(experiment, search, *made, store);
   if (!summary) return summary.error().message;
   return fmt::format("{} in generation {} after {} runs", summary->state_hash, summary->progress.generation,
                      summary->runs_done);

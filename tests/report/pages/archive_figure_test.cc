@@ -17,12 +17,13 @@ CampaignFacts TwoCells() {
   CampaignFacts facts = FactsOf("flocking");
   const sim::ObstacleGene gene{.x = -2.0, .y = -2.0, .length = 1.5, .width = 0.2, .orientation_deg = 45.0};
   for (const auto& [id, obstacles] : {std::pair<IndividualId, std::size_t>(7, 1), {9, 2}}) {
-    PopulationMember& member = facts.summary.population.emplace_back();
+    PopulationMember& member = facts.summary.searches[0].population.emplace_back();
     member.id = id;
     member.genome.assign(obstacles, gene);
   }
-  facts.summary.archive = {.axes = {{"split_x", -3.0, 3.0, 5}, {"split_y", -3.0, 3.0, 5}},
-                           .failures = {{{0, 0}, {-2.0, -2.1}, 7, 3, 3}, {{2, 2}, {0.1, 0.2}, 9, 4, 5}}};
+  facts.summary.searches[0].archive = {
+      .axes = {{"split_x", -3.0, 3.0, 5}, {"split_y", -3.0, 3.0, 5}},
+      .failures = {{{0, 0}, {-2.0, -2.1}, 7, 3, 3}, {{2, 2}, {0.1, 0.2}, 9, 4, 5}}};
   return facts;
 }
 
@@ -48,7 +49,7 @@ TEST(ArchiveFigureTest, DrawsTheLayoutOfEachCellWithItsCounts) {
 TEST(ArchiveFigureTest, ThereIsNoneOfASearchWithoutAnArchiveOrWithAnEmptyOne) {
   EXPECT_TRUE(ArchiveFigures(FactsOf("flocking")).empty());
   CampaignFacts empty = TwoCells();
-  empty.summary.archive.failures.clear();
+  empty.summary.searches[0].archive.failures.clear();
   EXPECT_TRUE(ArchiveFigures(empty).empty());
 }
 

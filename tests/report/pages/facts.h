@@ -24,7 +24,14 @@ inline CampaignFacts FactsOf(const std::string& experiment) {
   facts.directory = "campaigns/one";
   facts.plans = {PlanOf(experiment)};
   facts.summary.experiment = experiment;
+  facts.summary.searches.resize(1);
   return facts;
+}
+
+inline MeanAndRange FitnessOf(double value) {
+  MeanAndRange fitness;
+  fitness.Add(value);
+  return fitness;
 }
 
 // A completed run; a total failure when `type` is not -2. Descriptors that are not given have no value.

@@ -53,10 +53,11 @@ CampaignPages PagesWithNames(const std::string& name) {
   pages.facts.notes = {name};
   pages.facts.experiment_toml = name;
   pages.facts.summary.experiment = name;
+  pages.facts.summary.searches.resize(1);
   pages.facts.summary.runs_done = 1;
   pages.facts.runs = {RunOf(1, 0.0, 3)};
   pages.facts.cases = {
-      {.search = 1, .individual = 1, .name = name, .runs = 1, .completed = 1, .toughest = 1}};
+      {.search = 1, .individual = 1, .name = name, .runs = 1, .fitness = FitnessOf(0.0), .toughest = 1}};
   pages.courses = CoursesOf(pages.facts);
   pages.maps = MapsOf(pages.facts);
   return pages;
@@ -64,8 +65,7 @@ CampaignPages PagesWithNames(const std::string& name) {
 
 TEST(ReportDocumentTest, ACaseIsARowOfItsColumns) {
   CampaignPages pages = PagesWithNames("x");
-  pages.facts.cases.push_back(
-      {.search = 1, .individual = 2, .runs = 1, .mean_fitness = std::numeric_limits<double>::quiet_NaN()});
+  pages.facts.cases.push_back({.search = 1, .individual = 2, .runs = 1});
   const ordered_json campaign = ReportDocument({{pages}, {}})["campaigns"][0];
   ASSERT_EQ(campaign["cases"].size(), 2U);
   for (const ordered_json& row : campaign["cases"]) EXPECT_EQ(row.size(), campaign["case_columns"].size());

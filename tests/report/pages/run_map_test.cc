@@ -26,10 +26,10 @@ TEST(RunMapTest, FlockingsTypesStandInTwoRowsOfTen) {
   ASSERT_EQ(map.rows.size(), 2U);
   ASSERT_EQ(map.columns.size(), 10U);
   EXPECT_EQ(map.columns.back(), "over 90");
-  EXPECT_EQ(map.cells[0][3].runs, 1U);
-  EXPECT_EQ(map.cells[1][3].runs, 2U);
+  EXPECT_EQ(map.cells[0][3].count, 1U);
+  EXPECT_EQ(map.cells[1][3].count, 2U);
   EXPECT_EQ(map.cells[1][3].meaning, "30-40 degrees apart, one cluster slower than half the other");
-  EXPECT_EQ(LargestCount(map), 2U);
+  EXPECT_EQ(map.Largest(), 2U);
   EXPECT_EQ(map.outcome, "2 of 20 types came up, in 3 runs; 1 more total failures without a split");
 }
 
@@ -45,9 +45,9 @@ TEST(RunMapTest, AFieldLeadsToItsToughestRun) {
   CampaignFacts facts = FactsOf("flocking");
   facts.runs = {RunOf(1, 0.4, 3), RunOf(2, 0.0, 3), RunOf(3, 0.0, 3)};
   // Runs 2 and 3 are equally tough, but the case of run 3 is the tougher one.
-  facts.cases = {{.search = 1, .individual = 3, .mean_fitness = 0.0},
-                 {.search = 1, .individual = 2, .mean_fitness = 0.5}};
-  EXPECT_EQ(MapsOf(facts).front().cells[0][3].toughest, 3U);
+  facts.cases = {{.search = 1, .individual = 3, .fitness = FitnessOf(0.0)},
+                 {.search = 1, .individual = 2, .fitness = FitnessOf(0.5)}};
+  EXPECT_EQ(MapsOf(facts).front().toughest[0][3], 3U);
 }
 
 TEST(RunMapTest, BehaviourIsCutIntoRoundRanges) {
@@ -60,8 +60,8 @@ TEST(RunMapTest, BehaviourIsCutIntoRoundRanges) {
   EXPECT_EQ(maps[0].columns.front(), "10-15");
   EXPECT_EQ(maps[0].columns.back(), "45-50");
   EXPECT_EQ(maps[0].rows.back(), "0-50") << "values grow upwards";
-  EXPECT_EQ(maps[0].cells.back().front().toughest, 1U);
-  EXPECT_EQ(maps[0].cells.front().back().toughest, 2U);
+  EXPECT_EQ(maps[0].toughest.back().front(), 1U);
+  EXPECT_EQ(maps[0].toughest.front().back(), 2U);
   EXPECT_EQ(maps[0].down_name, "split_angle, degrees");
 }
 

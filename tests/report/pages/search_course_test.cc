@@ -28,8 +28,8 @@ TEST(SearchCourseTest, ABlockIsAGeneration) {
   const std::vector<CourseBlock>& blocks = courses[0].repeats[0];
   ASSERT_THAT(blocks, SizeIs(2));
   EXPECT_EQ(blocks[1].runs, 4U);
-  EXPECT_DOUBLE_EQ(blocks[0].mean, 0.6);
-  EXPECT_DOUBLE_EQ(blocks[0].best, 0.4);
+  EXPECT_DOUBLE_EQ(blocks[0].fitness.mean(), 0.6);
+  EXPECT_DOUBLE_EQ(blocks[0].fitness.lowest(), 0.4);
   EXPECT_DOUBLE_EQ(blocks[1].failure_share, 0.5);
 }
 
@@ -66,8 +66,8 @@ TEST(SearchCourseTest, RunsWithoutAResultCountAsSpentOnly) {
   facts.runs = {crashed};
   const CourseBlock block = CoursesOf(facts)[0].repeats[0][0];
   EXPECT_EQ(block.runs, 1U);
-  EXPECT_TRUE(std::isnan(block.mean));
-  EXPECT_TRUE(std::isnan(block.best));
+  EXPECT_TRUE(std::isnan(block.fitness.mean()));
+  EXPECT_TRUE(std::isnan(block.fitness.lowest()));
   EXPECT_THAT(CoursesOf(FactsOf("flocking")), IsEmpty());
 }
 
