@@ -7,7 +7,7 @@
 
 #include "master/campaign/campaign_summary.h"
 #include "master/campaign/replay.h"
-#include "study/questions/campaign_answers.h"
+#include "study/questions/confirmations.h"
 
 namespace gauntlet {
 

@@ -10,7 +10,7 @@
 #include "master/campaign/campaign_summary.h"
 #include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
-#include "study/questions/campaign_answers.h"
+#include "study/questions/confirmations.h"
 #include "study/questions/question.h"
 
 namespace gauntlet {

@@ -46,17 +46,15 @@ SearchRow CaseListRow() {
 }
 
 SearchRow ResimulationRow() {
-  return {.info = {.name = "resimulation",
-                   .description = "members of an evolution's population once more: gauntlet evaluate --from",
-                   .keys = {"search.replicates"}},
-          .number = 3,
-          .title = "a population simulated again",
-          .individuals = Individuals::kPopulation,
-          .plan = EvaluationPlan,
-          .make = Make<GivenSearch>,
-          .purpose = sim::SeedPurpose::kFinalResimulation,
-          .question = AskOnce,
-          .command = "evaluate"};
+  SearchRow row = CaseListRow();
+  row.info.name = "resimulation";
+  row.info.description = "members of an evolution's population once more: gauntlet evaluate --from";
+  row.number = 3;
+  row.title = "a population simulated again";
+  row.individuals = Individuals::kPopulation;
+  row.purpose = sim::SeedPurpose::kFinalResimulation;
+  row.seeds_of_cases = false;
+  return row;
 }
 
 int ConfirmationReplicates(const Experiment& experiment) {

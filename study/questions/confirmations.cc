@@ -87,8 +87,8 @@ Result<Told> TellConfirmations(const Asking& asking, const Call& /*call*/,
   const std::string dir = PastedPath(asking.place);
   told.section.commands = {
       {fmt::format("{} minimise {} {}", asking.program, dir, toughest->run),
-       "which of its obstacles it takes"},
-      {fmt::format("{} blame {} {}", asking.program, dir, toughest->run), "how much each of them does"}};
+       "which of its obstacles does it take?"},
+      {fmt::format("{} blame {} {}", asking.program, dir, toughest->run), "how much does each of them do?"}};
   return told;
 }
 
@@ -189,6 +189,13 @@ std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& c
   return distinct;
 }
 
+Result<CampaignAnswers> ReadAnswers(const std::string& dir) {
+  CampaignAnswers answers;
+  TRY(answers.confirmations, ReadConfirmations(dir));
+  TRY(answers.smallest_layouts, ReadSmallestLayouts(dir));
+  return answers;
+}
+
 Table ConfirmationsTable(const std::vector<Confirmation>& confirmations) {
   Table table({ForPrograms("run"),
                {"case", "case"},
@@ -198,9 +205,8 @@ Table ConfirmationsTable(const std::vector<Confirmation>& confirmations) {
                {"", "message?"}});
   for (const Confirmation& one : confirmations) {
     table.AddRow({one.run > 0 ? Cell(one.run) : Cell(), one.name,
-                  OutOfCell(one.tally.failures, one.tally.runs()),
-                  PercentCell(one.interval), NameOf(one.verdict),
-                  Cell(proto::Explained(one.message), TextValue(one.message))});
+                  OutOfCell(one.tally.failures, one.tally.runs()), PercentCell(one.interval),
+                  NameOf(one.verdict), Cell(proto::Explained(one.message), TextValue(one.message))});
   }
   return table;
 }

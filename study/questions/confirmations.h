@@ -62,6 +62,13 @@ std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& c
 // from a file.
 Table ConfirmationsTable(const std::vector<Confirmation>& confirmations);
 
+// What `confirm` and `minimise` have found out about the cases of the campaign in `dir`.
+struct CampaignAnswers {
+  std::vector<Confirmation> confirmations;
+  std::vector<SmallestLayout> smallest_layouts;
+};
+Result<CampaignAnswers> ReadAnswers(const std::string& dir);
+
 Question ConfirmQuestion();
 
 }  // namespace gauntlet

@@ -40,12 +40,12 @@ std::vector<CaseAnswer> Evaluated() {
   return cases;
 }
 
-Told Tell(const std::vector<CaseAnswer>& cases) {
+Told TellEvaluated(const std::vector<CaseAnswer>& cases) {
   return EvaluateQuestion().tell({}, {.directory = "d"}, cases).value();
 }
 
 TEST(EvaluateQuestion, HasTheJsonOfTheContract) {
-  const Json cases = Json::parse(Tell(Evaluated()).json).at("cases");
+  const Json cases = Json::parse(TellEvaluated(Evaluated()).json).at("cases");
   ASSERT_EQ(cases.size(), 4U);
   EXPECT_EQ(cases[0].at("file"), "good.json");
   EXPECT_EQ(cases[0].at("fitness"), 0.375);
@@ -71,11 +71,11 @@ TEST(EvaluateQuestion, HasTheJsonOfTheContract) {
 TEST(EvaluateQuestion, TextThatIsNotUtf8IsReplacedRatherThanRefused) {
   std::vector<CaseAnswer> cases = Evaluated();
   cases[0].name = "bad\xff.json";
-  EXPECT_EQ(Json::parse(Tell(cases).json).at("cases")[0].at("file"), "bad\uFFFD.json");
+  EXPECT_EQ(Json::parse(TellEvaluated(cases).json).at("cases")[0].at("file"), "bad\uFFFD.json");
 }
 
 TEST(EvaluateQuestion, NamesRefusalsTheMeanAndTheRunToLookAt) {
-  const Told told = Tell(Evaluated());
+  const Told told = TellEvaluated(Evaluated());
   EXPECT_EQ(ToText(told.section),
             "  file           fitness  runs  total failures  first run\n"
             "  good.json        0.375     2               1          1\n"
@@ -89,7 +89,7 @@ TEST(EvaluateQuestion, NamesRefusalsTheMeanAndTheRunToLookAt) {
               testing::ElementsAre("blocked.argos: refused, no-path: there is no path from start to goal",
                                    "missing.json: no such file"));
   EXPECT_EQ(told.conclusion, Conclusion::kDone);
-  EXPECT_EQ(Tell({Evaluated()[2]}).conclusion, Conclusion::kRefused);
+  EXPECT_EQ(TellEvaluated({Evaluated()[2]}).conclusion, Conclusion::kRefused);
 }
 
 TEST(EvaluateQuestion, PrintsFortyRowsAndTheMeanOfAll) {
@@ -98,7 +98,7 @@ TEST(EvaluateQuestion, PrintsFortyRowsAndTheMeanOfAll) {
     cases.emplace_back().name = "a";
     cases.back().runs.push_back(RunWith(run, Ended(run > 45)));
   }
-  const Told told = Tell(cases);
+  const Told told = TellEvaluated(cases);
   EXPECT_EQ(told.section.table.size(), 40U);
   EXPECT_THAT(told.section.sentences,
               testing::ElementsAre("and 20 more; --json tells all",

@@ -21,7 +21,7 @@ std::vector<CaseAnswer> Minimised(const Simulation& simulate, bool shorten = fal
   return Answers(MinimisationOf(Flocking(), shorten), {Walls(8)}, simulate, KeyOfCase);
 }
 
-Told Tell(const std::vector<CaseAnswer>& answers) {
+Told TellMinimised(const std::vector<CaseAnswer>& answers) {
   return MinimiseQuestion().tell({.place = "no-such-campaign"}, {}, answers).value();
 }
 
@@ -30,7 +30,7 @@ TEST(MinimiseQuestion, OfWhatItIsAskedForTheKeyIs) {
 }
 
 TEST(MinimiseQuestion, TellsWhatIsLeftAndKeepsIt) {
-  const Told told = Tell(Minimised(Trap));
+  const Told told = TellMinimised(Minimised(Trap));
   EXPECT_EQ(ToText(told.section),
             "  case    failed  obstacles  left  which     fails  probability (95 %)  runs\n"
             "  run 17  5 of 5          8     2  3 6    30 of 30   89 to 100 %          96\n");
@@ -51,14 +51,14 @@ TEST(MinimiseQuestion, TellsWhatIsLeftAndKeepsIt) {
 }
 
 TEST(MinimiseQuestion, RefusesWhatDoesNotFailAndWhatFailsWithoutObstacles) {
-  const Told passes = Tell(Minimised([](const EvaluationRequest&) { return Ended(false); }));
+  const Told passes = TellMinimised(Minimised([](const EvaluationRequest&) { return Ended(false); }));
   EXPECT_EQ(
       ToText(passes.section),
       "  case    failed  obstacles  left  which  fails  probability (95 %)  runs\n"
       "  run 17  0 of 6          8     -             -                         6  not minimised: it does "
       "not fail often enough\n");
   EXPECT_EQ(passes.conclusion, Conclusion::kRefused);
-  const Told empty = Tell(Minimised([](const EvaluationRequest&) { return Ended(true); }));
+  const Told empty = TellMinimised(Minimised([](const EvaluationRequest&) { return Ended(true); }));
   EXPECT_EQ(nlohmann::json::parse(empty.json).at("cases").at(0).at("remark"),
             "not minimised: the EMPTY ARENA FAILS TOO, in 4 of 4 runs");
   EXPECT_TRUE(empty.files.empty());
