@@ -43,13 +43,13 @@ bool Fails(const EvaluationRequest& request) {
 
 using Answer = std::function<EvaluationOutcome(const EvaluationRequest&)>;
 
-EvaluationOutcome Confirm(const EvaluationRequest& request) {
+EvaluationOutcome OutcomeOfCase(const EvaluationRequest& request) {
   return Confirmed(request, Fails(request));
 }
 
 // Tells `at_once` outcomes between two calls of Ask; returns everything that was asked for.
 std::vector<EvaluationRequest> Drive(SearchAlgorithm& search, std::size_t at_once,
-                                     const Answer& answer = Confirm) {
+                                     const Answer& answer = OutcomeOfCase) {
   std::vector<EvaluationRequest> all;
   std::size_t told = 0;
   while (!search.Progress().finished) {
@@ -147,7 +147,7 @@ bool Breaks(const sim::TestCase& test_case) {
   return test_case.side_x > 6.5 ? has(0.0) : has(0.1 * 2) && has(0.1 * 5);
 }
 
-EvaluationOutcome Minimise(const EvaluationRequest& request) {
+EvaluationOutcome OutcomeOfLayout(const EvaluationRequest& request) {
   RunOutcome run;
   run.total_failure = Breaks(request.test_case);
   return OutcomeOfRuns(request.individual, request.evaluation, {run});
@@ -164,7 +164,7 @@ sim::Genome LeftOf(const std::vector<EvaluationRequest>& asked, double side) {
 
 TEST(GivenSearchTest, FindsWhatIsNeededOfEveryCase) {
   const SearchSetup setup = SetupToShorten(2);
-  const std::vector<EvaluationRequest> asked = Drive(*MakeGiven(setup), 5, Minimise);
+  const std::vector<EvaluationRequest> asked = Drive(*MakeGiven(setup), 5, OutcomeOfLayout);
   const sim::Genome& all = setup.cases[0].obstacles;
   EXPECT_THAT(LeftOf(asked, 6.0), testing::ElementsAre(all[2], all[5]));
   EXPECT_THAT(LeftOf(asked, 7.0), testing::ElementsAre(all[0]));
@@ -177,7 +177,7 @@ TEST(GivenSearchTest, CountsWhereRobotsWere) {
   while (!search->Progress().finished) {
     for (const EvaluationRequest& request : search->Ask()) {
       asked.push_back(request);
-      EvaluationOutcome outcome = Minimise(request);
+      EvaluationOutcome outcome = OutcomeOfLayout(request);
       outcome.runs[0].robots.resize(1);
       outcome.runs[0].robots[0].waypoints = {{1.35, 0.0}, {1.35, 0.0}};
       search->Tell(outcome);
@@ -195,13 +195,13 @@ TEST(GivenSearchTest, CountsWhereRobotsWere) {
 TEST(GivenSearchTest, ChildrenAreAskedForInTheSameOrderHoweverManyOutcomesCome) {
   const auto one = MakeGiven(SetupToShorten(2));
   const auto many = MakeGiven(SetupToShorten(2));
-  EXPECT_TRUE(SameRequests(Drive(*one, 1, Minimise), Drive(*many, 9, Minimise)));
+  EXPECT_TRUE(SameRequests(Drive(*one, 1, OutcomeOfLayout), Drive(*many, 9, OutcomeOfLayout)));
 }
 
 TEST(GivenSearchTest, NoTwoRunsHaveTheSameSeed) {
   const SearchSetup setup = SetupToShorten(1);
   std::set<std::uint64_t> seeds;
-  for (const EvaluationRequest& request : Drive(*MakeGiven(setup), 3, Minimise)) {
+  for (const EvaluationRequest& request : Drive(*MakeGiven(setup), 3, OutcomeOfLayout)) {
     const std::uint64_t seed =
         RunSeed(setup.experiment, request.individual, request.test_case, request.evaluation, 0);
     EXPECT_TRUE(seeds.insert(seed).second);
@@ -210,7 +210,7 @@ TEST(GivenSearchTest, NoTwoRunsHaveTheSameSeed) {
 
 TEST(GivenSearchTest, LayoutsAreChildrenOfTheirCase) {
   const auto search = MakeGiven(SetupToShorten(2));
-  Drive(*search, 4, Minimise);
+  Drive(*search, 4, OutcomeOfLayout);
   const std::vector<Individual> born = search->TakeNewborns();
   ASSERT_GT(born.size(), 2U);
   EXPECT_TRUE(born[0].parents.empty());
@@ -225,7 +225,8 @@ TEST(GivenSearchTest, AStateWithRunsThatItWouldNotAskForIsRefused) {
   const SearchSetup setup = SetupToShorten(2);
   const auto search = MakeGiven(setup);
   std::vector<EvaluationOutcome> told;
-  for (const EvaluationRequest& request : Drive(*search, 3, Minimise)) told.push_back(Minimise(request));
+  for (const EvaluationRequest& request : Drive(*search, 3, OutcomeOfLayout))
+    told.push_back(OutcomeOfLayout(request));
   ASSERT_TRUE(search->AtBoundary());
   const auto again = MakeGiven(setup);
   ASSERT_TRUE(RestoreState(*again, StateOf(*search), told));
