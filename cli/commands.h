@@ -40,15 +40,11 @@ class CommandParser {
 
 void AddEvolve(CommandParser& parser);
 void AddRandom(CommandParser& parser);
-void AddEvaluate(CommandParser& parser);
 void AddResume(CommandParser& parser);
 void AddShow(CommandParser& parser);
 void AddReplay(CommandParser& parser);
-void AddConfirm(CommandParser& parser);
-void AddMinimise(CommandParser& parser);
-void AddBlame(CommandParser& parser);
+void AddQuestions(CommandParser& parser);  // one for each of question_table.h
 void AddCorpus(CommandParser& parser);
-void AddCheck(CommandParser& parser);
 void AddCompare(CommandParser& parser);
 void AddReport(CommandParser& parser);
 void AddFigure(CommandParser& parser);
@@ -67,9 +63,8 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve,   AddRandom, AddEvaluate, AddResume, AddShow,    AddReplay,          AddConfirm,
-    AddMinimise, AddBlame,  AddCorpus,   AddCheck,  AddCompare, AddStudy,           AddTune,
-    AddReport,   AddUi,     AddFigure,   AddExport, AddImport,  AddBuildController, AddSubmit,
-    AddMaster,   AddStatus, AddWatch,    AddStop,   AddList};
+    AddEvolve, AddRandom, AddResume, AddShow,  AddReplay, AddQuestions, AddCorpus, AddCompare,
+    AddStudy,  AddTune,   AddReport, AddUi,    AddFigure, AddExport,    AddImport, AddBuildController,
+    AddSubmit, AddMaster, AddStatus, AddWatch, AddStop,   AddList};
 
 }  // namespace gauntlet

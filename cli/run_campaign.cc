@@ -140,7 +140,7 @@ Result<ExitCode> Conclude(CommandContext& context, const CampaignRun& campaign, 
   // `evaluate` judges its cases itself.
   const SearchSummary* only = summary.OnlySearch();
   const SearchRow* search = only == nullptr ? nullptr : FindSearch(only->search);
-  const bool given_cases = search != nullptr && search->given_cases;
+  const bool given_cases = search != nullptr && search->given_cases();
   if (!given_cases && summary.runs_done > 0 && summary.runs_failed == summary.runs_done) {
     const std::string why = only == nullptr || only->runs_without_result.empty()
                                 ? ""

@@ -15,6 +15,8 @@
 
 namespace gauntlet {
 
+class LayoutQuestion;
+
 // What the individuals are that a search ends with.
 enum class Individuals : std::uint8_t {
   kCases,       // each stands for itself
@@ -36,15 +38,19 @@ struct SearchRow {
   // Error: the ranges of genes leave no room for a valid case, or there is nothing to search.
   Result<std::unique_ptr<SearchAlgorithm>> (*make)(const SearchSetup& setup) = nullptr;
   sim::SeedPurpose purpose = sim::SeedPurpose::kSearch;  // of the seeds of its runs
-  bool given_cases = false;             // goes through SearchSetup::cases; made by `command` alone
+  // Of a search through SearchSetup::cases, which `command` alone makes: what it asks of a case.
+  std::unique_ptr<LayoutQuestion> (*question)(const Experiment& experiment,
+                                              const sim::Genome& obstacles) = nullptr;
+  bool reads_trajectories = false;      // of runs: they are kept, and told to the question
   std::string_view command = "evolve";  // that begins it
   std::string_view length_option = {};  // of `command`, for info.length; "" = --set has to do
   // The seeds of a run follow from its case, not from its individual's number: a case has the same ones at
   // any place of a list, and so have clones.
   bool seeds_of_cases = false;
 
+  bool given_cases() const { return question != nullptr; }
   bool Related() const { return individuals == Individuals::kPopulation; }
-  bool Breeds() const { return Related() && !given_cases; }
+  bool Breeds() const { return Related() && !given_cases(); }
 };
 
 // SearchRow::make of a class with a static Create, which takes Options too.

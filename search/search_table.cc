@@ -14,10 +14,9 @@
 #include "search/evolution/genetic_algorithm.h"
 #include "search/evolution/random_search.h"
 #include "search/evolution/steady_state_search.h"
-#include "search/given/blame_search.h"
-#include "search/given/case_list_search.h"
-#include "search/given/confirmation_search.h"
-#include "search/given/minimisation_search.h"
+#include "search/given/case_blame.h"
+#include "search/given/case_minimiser.h"
+#include "search/given/repeated_case.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet {
@@ -98,7 +97,7 @@ Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_ca
 Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment,
                                                     std::vector<sim::TestCase> cases) {
   const SearchRow& row = RowOf(experiment);
-  if (row.given_cases) {
+  if (row.given_cases()) {
     if (!cases.empty()) return row.make(SetupOf(experiment, {}, std::move(cases)));
     return InvalidInput(fmt::format("search.algorithm = \"{}\" needs a list of test cases: use `gauntlet {}`",
                                     row.info.name, row.command));

@@ -15,13 +15,13 @@
 #include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "cli/commands.h"
-#include "cli/corpus_experiment.h"
 #include "cli/options/options.h"
 #include "cli/output/output_file.h"
 #include "report/figures/replayed_figure.h"
 #include "search/cases/case_file.h"
 #include "search/search_setup.h"
 #include "study/questions/confirmations.h"
+#include "study/questions/corpus_experiment.h"
 #include "study/questions/smallest_layouts.h"
 
 namespace gauntlet {
@@ -209,10 +209,13 @@ Result<ExitCode> RunCorpus(CommandContext& context, const CorpusOptions& options
                                one.content.found.failures, one.content.found.runs, one.content.found_in,
                                path);
   }
-  const bool from_plugin =
-      std::ranges::any_of(kept, [](const Keepsake& one) { return !one.plugins.empty(); });
+  std::set<std::string> plugins;
+  for (const Keepsake& one : kept) plugins.insert(one.plugins.begin(), one.plugins.end());
+  std::string named;  // the campaign's own copies
+  for (const std::string& hash : plugins)
+    named += " --plugin " + PastedPath(fmt::format("{}/plugins/{}.so", options.directory, hash));
   context.out << fmt::format("\nDoes the controller still fail? {} check {}{}\n", context.program,
-                             PastedPath(options.corpus), from_plugin ? " --plugin LIB.so" : "")
+                             PastedPath(options.corpus), named)
               << std::flush;
   return kExitDone;
 }

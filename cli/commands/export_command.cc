@@ -15,6 +15,7 @@
 #include "proto/case_json.h"
 #include "proto/json_text.h"
 #include "report/tables/exported_tables.h"
+#include "study/questions/questioned_cases.h"
 
 namespace gauntlet {
 namespace {

@@ -16,6 +16,7 @@
 #include "report/figures/set_comparison.h"
 #include "report/figures/study_figures.h"
 #include "report/pages/study_pages.h"
+#include "study/questions/questioned_cases.h"
 #include "study/study_campaigns.h"
 
 namespace gauntlet {

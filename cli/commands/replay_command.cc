@@ -17,6 +17,7 @@
 #include "master/campaign/verdict_text.h"
 #include "report/figures/replayed_figure.h"
 #include "sim/robot/disturbances.h"
+#include "study/questions/questioned_cases.h"
 
 namespace gauntlet {
 namespace {

@@ -166,11 +166,6 @@ Result<int> ParsePort(const std::string& option, const std::string& text) {
       fmt::format("{} {}: must be a port from 1 to 65535, or 0 for any free one", option, text));
 }
 
-Result<std::uint64_t> ParseRunId(const std::string& text) {
-  if (const auto id = ParseNumber<std::uint64_t>(text); id && *id >= 1) return *id;
-  return InvalidInput(fmt::format("{} is no run: RUN_ID is a whole number, see 'gauntlet show DIR'", text));
-}
-
 std::vector<ExtraSet> SetsOf(const SizeOptions& options) {
   std::vector<ExtraSet> sets;
   if (!options.generations.empty())

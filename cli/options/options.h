@@ -98,8 +98,6 @@ Result<int> ParseWorkers(const std::string& text);
 Result<double> ParseShare(const std::string& option, const std::string& text);
 // 0 (any free one) to 65535; "" gives 0.
 Result<int> ParsePort(const std::string& option, const std::string& text);
-// Decimal, at least 1.
-Result<std::uint64_t> ParseRunId(const std::string& text);
 
 // A setting of the experiment that an option stands for.
 struct ExtraSet {

@@ -159,7 +159,7 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
       all.push_back(set);
     }
     TRY(const Experiment experiment, LoadExperimentWith(options, all));
-    if (RowOf(experiment).given_cases)
+    if (RowOf(experiment).given_cases())
       return InvalidInput(fmt::format("search.algorithm = {} needs a list of cases: use '{}'",
                                       experiment.search.algorithm, RowOf(experiment).command));
     plan.experiment = experiment;

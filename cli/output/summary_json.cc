@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cli/output/confirmation_table.h"
 #include "cli/output/summary.h"
 #include "master/campaign/verdict_text.h"
 #include "master/session/reproduction_bundle.h"
@@ -18,30 +17,10 @@ Json FitnessJson(double fitness) {
   return JsonValue(fitness);
 }
 
-Json FailureJson(const sim::SwarmFailure& failure) {
-  return {{"total", failure.total},
-          {"type", failure.type >= 0 ? Json(failure.type) : Json()},
-          {"label", failure.label}};
-}
-
 // Metrics or statistics by their names.
 Json FiguresJson(const std::vector<std::pair<std::string, double>>& figures) {
   Json json = Json::object();
   for (const auto& [name, value] : figures) json[name] = FitnessJson(value);
-  return json;
-}
-
-Json RunJson(const EvaluatedRun& run) {
-  const sim::RunResult& result = run.result;
-  const bool completed = result.verdict == sim::Verdict::kCompleted;
-  Json json = {{"id", JsonValue(run.id)},
-               {"seed", fmt::format("{}", run.seed)},
-               {"fitness", completed ? FitnessJson(result.fitness) : Json()},
-               {"verdict", NameOf(result.verdict)},
-               {"metrics", FiguresJson(result.metrics)},
-               {"failure", FailureJson(result.failure)},
-               {"hash", fmt::format("{:016x}", result.hash)}};
-  if (!completed) json["message"] = result.message;
   return json;
 }
 
@@ -133,33 +112,9 @@ std::string SummaryJson(const CampaignSummary& summary, const CampaignAnswers& a
                         const std::string& directory) {
   const SearchSummary* only = summary.OnlySearch();
   Json json = only != nullptr ? OneSearch(*only, summary, directory) : SweepJson(summary, directory);
-  json["confirmed"] = ConfirmationsJson(answers.confirmations);
+  json["confirmed"] = ConfirmationsTable(answers.confirmations).ToJson();
   json["distinct_failures"] =
       DistinctFailuresTable(DistinctFailures(answers.confirmations, answers.smallest_layouts)).ToJson();
-  return JsonText(json);
-}
-
-std::string EvaluationJson(const std::vector<EvaluatedCase>& cases, const CampaignSummary* summary,
-                           const std::string& directory) {
-  Json list = Json::array();
-  for (const EvaluatedCase& evaluated : cases) {
-    Json runs = Json::array();
-    for (const EvaluatedRun& run : evaluated.runs) runs.push_back(RunJson(run));
-    const std::optional<double> fitness = MeanFitness(evaluated);
-    list.push_back({{"file", evaluated.file},
-                    {"fitness", fitness ? FitnessJson(*fitness) : Json()},
-                    {"refused", TextOrNull(evaluated.refused_rule)},
-                    {"error", TextOrNull(evaluated.error)},
-                    {"runs", std::move(runs)}});
-  }
-  Json json = {{"cases", std::move(list)}};
-  if (summary != nullptr) {
-    json["experiment"] = summary->experiment;
-    json["directory"] = directory;
-    json["seed"] = fmt::format("{}", summary->searches.front().seed);
-    json["state_hash"] = summary->searches.front().state_hash;
-    json["finished"] = summary->finished;
-  }
   return JsonText(json);
 }
 

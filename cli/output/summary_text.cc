@@ -6,11 +6,11 @@
 #include "analysis/tables/section.h"
 #include "base/printable.h"
 #include "base/shell_quoted.h"
-#include "cli/output/confirmation_table.h"
 #include "cli/output/summary.h"
 #include "master/campaign/verdict_text.h"
 #include "master/session/reproduction_bundle.h"
 #include "proto/run_failure.h"
+#include "report/tables/distinct_failures.h"
 #include "report/tables/summary_tables.h"
 #include "search/search_table.h"
 
@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kMostGenerations = 12;  // rows of the table
 constexpr std::size_t kMostMembers = 10;
+constexpr std::size_t kMostFailures = 20;  // that are listed
 constexpr std::size_t kNoteWidth = 100;
 
 // "6 of 8 refused: no-room-to-spawn: ...", the most frequent first.
@@ -131,6 +132,26 @@ std::string WarningsText(const CampaignSummary& summary) {
   return text.empty() ? "" : text + "\n";
 }
 
+// "run 8, minimised to 2 obstacles, fails in 24 of 30 runs".
+std::string DescribeSmallest(const SmallestLayout& smallest) {
+  const std::size_t obstacles = smallest.document.test_case.obstacles.size();
+  const proto::CaseFailures& verified = smallest.document.lineage->verified;
+  return fmt::format("run {}, minimised to {} obstacle{}, fails in {} of {} runs", smallest.run, obstacles,
+                     obstacles == 1 ? "" : "s", verified.failures, verified.runs);
+}
+
+// "" when there is nothing to tell.
+std::string DistinctFailuresText(const CampaignAnswers& answers, const std::string& program) {
+  std::string text = ToText(TellDistinctFailures(answers, kMostFailures, program));
+  std::size_t told = 0;
+  for (const DistinctFailure& one : DistinctFailures(answers.confirmations, answers.smallest_layouts)) {
+    if (told++ == kMostFailures) break;
+    if (one.smallest != nullptr)
+      text += fmt::format("  {}: {}\n", DescribeSmallest(*one.smallest), PastedPath(one.smallest->file));
+  }
+  return text;
+}
+
 std::string SweepText(const CampaignSummary& summary, const CampaignAnswers& answers,
                       const HintContext& context) {
   const auto finished = std::ranges::count(summary.searches, true, &SearchSummary::finished);
@@ -207,51 +228,6 @@ std::string TypesText(const CampaignSummary& summary) {
       text += fmt::format("  {}\n", Wrapped(types.note, kNoteWidth, 2));
   }
   return text;
-}
-
-std::optional<double> MeanFitness(const EvaluatedCase& evaluated) {
-  MeanAndRange completed;
-  for (const EvaluatedRun& run : evaluated.runs) {
-    if (run.result.verdict == sim::Verdict::kCompleted) completed.Add(run.result.fitness);
-  }
-  if (completed.count() == 0) return std::nullopt;
-  return completed.mean();
-}
-
-std::string EvaluationText(const std::vector<EvaluatedCase>& cases, const HintContext& context) {
-  Table table({"file", ">fitness", ">runs", ">total failures", ">first run", ""});
-  const EvaluatedRun* toughest = nullptr;
-  for (const EvaluatedCase& evaluated : cases) {
-    if (evaluated.runs.empty()) {
-      table.AddRow({evaluated.file, "-", "-", "-", "-",
-                    evaluated.refused_rule.empty() ? "error" : "refused: " + evaluated.refused_rule});
-      continue;
-    }
-    std::uint64_t failures = 0;
-    std::uint64_t without_result = 0;
-    for (const EvaluatedRun& run : evaluated.runs) {
-      if (run.result.failure.total) ++failures;
-      if (run.result.verdict != sim::Verdict::kCompleted) {
-        ++without_result;
-      } else if (toughest == nullptr || run.result.fitness < toughest->result.fitness) {
-        toughest = &run;
-      }
-    }
-    std::string remark;
-    if (!evaluated.refused_rule.empty()) {
-      remark = "refused: " + evaluated.refused_rule;
-    } else if (without_result > 0) {
-      remark = fmt::format("{} without a result: {}", without_result,
-                           NameOf(evaluated.runs.front().result.verdict));
-    }
-    const std::optional<double> fitness = MeanFitness(evaluated);
-    table.AddRow({evaluated.file, fitness ? FormatFitness(*fitness) : "-", FormatCount(evaluated.runs.size()),
-                  FormatCount(failures), fmt::format("{}", evaluated.runs.front().id), remark});
-  }
-  if (toughest == nullptr) return table.ToText();
-  return table.ToText() +
-         Hints(context, /*finished=*/true,
-               {{ReplayHint(context, toughest->id, "run", toughest->id), "see the toughest of these runs"}});
 }
 
 }  // namespace gauntlet

@@ -10,7 +10,7 @@
 namespace gauntlet {
 
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store) {
-  if (!RowOf(plan.experiment).given_cases) return MakeSearch(plan.experiment);
+  if (!RowOf(plan.experiment).given_cases()) return MakeSearch(plan.experiment);
   TRY(std::vector<Individual> individuals, store.LoadIndividuals(plan.id));
   if (individuals.empty()) {
     return Error{ErrorKind::kCorrupt,

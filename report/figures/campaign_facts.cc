@@ -18,6 +18,7 @@
 #include "master/store/event_kinds.h"
 #include "proto/run_codec.h"
 #include "report/tables/summary_tables.h"
+#include "study/questions/question_table.h"
 #include "study/sets/subset.h"
 
 namespace gauntlet {
@@ -182,7 +183,10 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
   facts.plans = campaign.plans;
   TRY(facts.summary, Summarise(facts.plans, store));
   TRY(facts.answers, ReadAnswers(dir));
-  TRY(facts.blames, ReadAllBlames(dir));
+  for (const auto question : kQuestions) {
+    TRY(auto told, ToldCases(question(), dir));
+    std::ranges::move(told, std::back_inserter(facts.told_cases));
+  }
   TRY(facts.history, HistoryOf(store));
   for (const SearchPlan& plan : facts.plans) {
     TRY(AddRuns(plan, store, facts.runs));

@@ -10,8 +10,8 @@
 #include "master/campaign/campaign_summary.h"
 #include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
-#include "study/questions/blames.h"
-#include "study/questions/campaign_answers.h"
+#include "study/questions/confirmations.h"
+#include "study/questions/question.h"
 
 namespace gauntlet {
 
@@ -60,7 +60,7 @@ struct CampaignFacts {
   std::vector<SearchPlan> plans;
   CampaignSummary summary;
   CampaignAnswers answers;
-  std::vector<Blame> blames = {};  // of its cases
+  std::vector<ToldCase> told_cases = {};  // what questions about them say, one question after the other
   CampaignHistory history;
   std::vector<std::string> notes;  // what a reader has to know, a sentence each
   std::vector<RunFacts> runs;      // in logical order, search by search
@@ -70,7 +70,7 @@ struct CampaignFacts {
 // Without descriptors.
 RunFacts FactsOfRow(const StoredRun& run);
 
-// Errors: those of OpenStoredCampaign, Summarise, ReadConfirmations, ReadSmallestLayouts and ReadAllBlames; a
+// Errors: those of OpenStoredCampaign, Summarise, ReadConfirmations, ReadSmallestLayouts and ToldCases; a
 // run does not read back.
 Result<CampaignFacts> ReadFacts(const std::string& dir);
 

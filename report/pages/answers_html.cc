@@ -6,11 +6,12 @@
 #include <fmt/format.h>
 
 #include "analysis/figures/layout_strip.h"
+#include "analysis/tables/section.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "report/pages/html_text.h"
 #include "report/tables/distinct_failures.h"
-#include "study/questions/answered_calls.h"
+#include "search/given/layout_question.h"
 
 namespace gauntlet {
 namespace {
@@ -33,38 +34,29 @@ std::string OutOf(const proto::CaseFailures& found) {
   return fmt::format("{} of {}", found.failures, found.runs);
 }
 
-analysis::LayoutPicture PictureOf(const proto::CaseLineage& lineage, const proto::CaseStep& step) {
-  analysis::LayoutPicture picture{.heading = step.change,
-                                  .outcome = fmt::format("failed in {} runs", OutOf(step.found)),
-                                  .obstacles = {},
-                                  .kept = {}};
-  for (const int obstacle : step.obstacles) {
-    const auto index = static_cast<std::size_t>(obstacle - 1);
-    if (index >= lineage.parent.obstacles.size()) continue;  // somebody has changed the file
-    picture.kept.push_back(index);
-    picture.obstacles.push_back(lineage.parent.obstacles[index]);
-  }
-  return picture;
-}
-
-// The case beside what is left of it; with `every_step` also what came between them.
-std::string DrawSteps(const SmallestLayout& one, bool every_step) {
+// The case beside what is left of it.
+std::string DrawSmallest(const SmallestLayout& one) {
   const proto::CaseLineage& lineage = *one.document.lineage;
+  const auto picture = [](const char* heading, const sim::Genome& obstacles, const std::string& outcome) {
+    return analysis::LayoutPicture{
+        .heading = heading, .outcome = outcome, .obstacles = obstacles, .kept = AllOf(obstacles).kept};
+  };
   analysis::LayoutStrip strip{
       .title = fmt::format("run {}: from {} obstacles to {}", one.run, lineage.parent.obstacles.size(),
                            one.document.test_case.obstacles.size()),
       .original = lineage.parent,
       .pictures = {},
       .places = {}};
-  for (const proto::CaseStep& step : lineage.steps) {
-    if (every_step || &step == &lineage.steps.front() || &step == &lineage.steps.back())
-      strip.pictures.push_back(PictureOf(lineage, step));
+  if (!lineage.steps.empty())
+    strip.pictures.push_back(picture("as it is", lineage.parent.obstacles,
+                                     fmt::format("failed in {} runs", OutOf(lineage.steps.front().found))));
+  strip.pictures.push_back(picture("what is left", one.document.test_case.obstacles,
+                                   fmt::format("fails in {} fresh runs", OutOf(lineage.verified))));
+  if (!lineage.steps.empty()) {
+    strip.pictures.back().kept.clear();
+    for (const int obstacle : lineage.steps.back().obstacles)
+      strip.pictures.back().kept.push_back(static_cast<std::size_t>(obstacle - 1));
   }
-  if (strip.pictures.empty()) strip.pictures.emplace_back();
-  analysis::LayoutPicture& last = strip.pictures.back();
-  last.obstacles = one.document.test_case.obstacles;  // which may have been made shorter
-  last.outcome = fmt::format("fails in {} fresh runs", OutOf(lineage.verified));
-  if (!every_step) last.heading = "what is left";
   return analysis::DrawLayoutStrip(strip);
 }
 
@@ -107,7 +99,7 @@ std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {
       "swarm in the same way; what was taken away stands faintly.</p>\n<ul class=\"thumbs pairs\">\n";
   for (const SmallestLayout& one : std::span(layouts).first(std::min(kMostMinimised, layouts.size()))) {
     html += fmt::format("<li><img loading=\"lazy\" alt=\"\" src=\"{}\">{}: {} of {} are left</li>\n",
-                        DataUri(DrawSteps(one, /*every_step=*/false)),
+                        DataUri(DrawSmallest(one)),
                         CaseLink(pages, number, fmt::format("run {}", one.run), one.run),
                         one.document.test_case.obstacles.size(),
                         Counted(one.document.lineage->parent.obstacles.size(), "obstacle"));
@@ -117,21 +109,10 @@ std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number) {
 
 std::string AnswersHtml(const CampaignFacts& facts, const CaseFacts& of_case) {
   std::string html;
-  for (const SmallestLayout& one : facts.answers.smallest_layouts) {
-    if (!one.Smaller() || !IsOf(facts, one.run, of_case)) continue;
-    html +=
-        PictureHtml(DrawSteps(one, /*every_step=*/true), "How the case was made smaller",
-                    "How the case was made smaller: each picture takes something away and the swarm still "
-                    "fails in the same way.");
+  for (const ToldCase& one : facts.told_cases) {
+    if (IsOf(facts, one.run, of_case)) html += ToHtml(one.section);
   }
-  for (const Blame& blame : facts.blames) {
-    if (!IsOf(facts, blame.run, of_case)) continue;
-    html +=
-        PictureHtml(analysis::DrawBlame(FigureOf(blame)), "Which obstacles are to blame",
-                    "Which obstacles are to blame: the redder an obstacle, the less the case fails without "
-                    "it; blue is where robots got stuck.");
-  }
-  return html.empty() ? "" : "<h3>What its obstacles do</h3>\n" + html;
+  return html;
 }
 
 }  // namespace gauntlet

@@ -78,7 +78,7 @@ std::string ProvenanceHtml(const CampaignFacts& facts) {
 // The command that makes the same campaign again; "" where there is no single one.
 std::string AgainCommand(const CampaignFacts& facts) {
   const SearchRow& row = RowOf(facts.plans.front().experiment);
-  if (facts.plans.size() != 1 || row.given_cases) return "";
+  if (facts.plans.size() != 1 || row.given_cases()) return "";
   const std::string toml = PastedPath(facts.directory + "/experiment.toml");
   const std::string length =
       row.length_option.empty()

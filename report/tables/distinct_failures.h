@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/tables/section.h"
-#include "study/questions/campaign_answers.h"
+#include "study/questions/confirmations.h"
 
 namespace gauntlet {
 

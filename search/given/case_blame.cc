@@ -1,16 +1,26 @@
 #include "search/given/case_blame.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <numeric>
+#include <array>
 #include <utility>
 
 #include "base/check.h"
+#include "search/given/given_search.h"
 
 namespace gauntlet {
 namespace {
 
 // Of more obstacles than these only the pairs of those that robots visited most are tried.
 constexpr std::size_t kMostPaired = 8;
+
+constexpr std::array<controllers::ParameterInfo, 1> kBlameParameters = {
+    {{"part_runs", "", 30, 2, 10000, true, "runs of the case, and of it without each obstacle"}}};
+
+std::unique_ptr<LayoutQuestion> AskForBlame(const Experiment& experiment, const sim::Genome& obstacles) {
+  return std::make_unique<CaseBlame>(obstacles, BlameReplicates(experiment));
+}
 
 }  // namespace
 
@@ -60,6 +70,31 @@ void CaseBlame::WantPairs() {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     for (std::size_t j = i + 1; j < candidates.size(); ++j) wanted_.push_back({candidates[i], candidates[j]});
   }
+}
+
+int BlameReplicates(const Experiment& experiment) {
+  return static_cast<int>(ValueOf(kBlameParameters[0], experiment.search.parameters));
+}
+
+Experiment BlameExperiment(const Experiment& experiment, int replicates) {
+  Experiment blame = AboutCasesOf(experiment, "blame");
+  blame.search.parameters[std::string(kBlameParameters[0].name)] = replicates;
+  return blame;
+}
+
+SearchRow BlameRow() {
+  return {.info = {.name = "blame",
+                   .description = "what each obstacle of given cases contributes to failures: gauntlet blame",
+                   .parameters = kBlameParameters},
+          .number = 6,
+          .title = "blame of obstacles",
+          .plan = [](const Experiment& e) { return fmt::format("{} runs of each part", BlameReplicates(e)); },
+          .make = Make<GivenSearch>,
+          .purpose = sim::SeedPurpose::kBlame,
+          .question = AskForBlame,
+          .reads_trajectories = true,
+          .command = "blame",
+          .seeds_of_cases = true};
 }
 
 }  // namespace gauntlet

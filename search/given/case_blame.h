@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "search/given/layout_question.h"
+#include "search/search_row.h"
 
 namespace gauntlet {
 
@@ -41,5 +42,11 @@ class CaseBlame final : public LayoutQuestion {
 // Whether the case fails clearly more often than without a part of it: by more than three standard errors of
 // such a difference, so that not one of dozens of parts is blamed by chance.
 bool ClearlyLess(const FailureTally& without, const FailureTally& whole);
+
+// An experiment that asks what the obstacles of cases of `experiment` contribute, with so many runs a part:
+// `gauntlet blame`.
+Experiment BlameExperiment(const Experiment& experiment, int replicates);
+int BlameReplicates(const Experiment& experiment);
+SearchRow BlameRow();
 
 }  // namespace gauntlet

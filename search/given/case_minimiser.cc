@@ -1,6 +1,7 @@
 #include "search/given/case_minimiser.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "search/given/given_search.h"
 
 namespace gauntlet {
 namespace {
@@ -85,6 +87,13 @@ std::vector<double> ShorterLengths(const sim::ObstacleGene& gene) {
     if (length < gene.length && (lengths.empty() || length < lengths.back())) lengths.push_back(length);
   }
   return lengths;
+}
+
+constexpr std::array<controllers::ParameterInfo, 1> kMinimisationParameters = {
+    {{"shorten", "bool", 0, 0, 1, true, "make obstacles shorter too, and round their lengths"}}};
+
+std::unique_ptr<LayoutQuestion> AskForSmallest(const Experiment& experiment, const sim::Genome& obstacles) {
+  return std::make_unique<CaseMinimiser>(obstacles, RulesOf(experiment));
 }
 
 }  // namespace
@@ -264,6 +273,33 @@ void CaseMinimiser::RollBack() {
   if (steps_.size() > verified_steps_) return Verify();
   layout_ = Smallest();
   End(MinimisedTo::kLayout);
+}
+
+MinimisingRules RulesOf(const Experiment& minimisation) {
+  const controllers::FailurePlace* place = FailurePlaceOf(minimisation);
+  return {.same_within = place == nullptr ? 0.0 : place->same_within,
+          .shorten = ValueOf(kMinimisationParameters[0], minimisation.search.parameters) != 0.0};
+}
+
+Experiment MinimisationOf(const Experiment& experiment, bool shorten) {
+  Experiment minimisation = AboutCasesOf(experiment, "minimisation");
+  minimisation.search.parameters[std::string(kMinimisationParameters[0].name)] = shorten ? 1.0 : 0.0;
+  return minimisation;
+}
+
+SearchRow MinimisationRow() {
+  return {.info = {.name = "minimisation",
+                   .description = "the smallest part of given cases that still fails: gauntlet minimise",
+                   .parameters = kMinimisationParameters},
+          .number = 5,
+          .title = "minimisation of cases",
+          .plan = [](const Experiment&) { return std::string("about 100 runs each"); },
+          .make = Make<GivenSearch>,
+          .purpose = sim::SeedPurpose::kMinimise,
+          .question = AskForSmallest,
+          .reads_trajectories = true,
+          .command = "minimise",
+          .seeds_of_cases = true};
 }
 
 }  // namespace gauntlet

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "search/given/layout_question.h"
+#include "search/search_row.h"
 
 namespace gauntlet {
 
@@ -110,5 +111,11 @@ class CaseMinimiser final : public LayoutQuestion {
   std::size_t verified_steps_ = 0;       // steps up to that one; 0 = none yet
   std::vector<MinimisingStep> shorter_;  // to be tried, the next one last
 };
+
+// The rules by which such an experiment minimises cases.
+MinimisingRules RulesOf(const Experiment& minimisation);
+// An experiment that minimises cases of `experiment`; `shorten`: also the lengths of obstacles.
+Experiment MinimisationOf(const Experiment& experiment, bool shorten);
+SearchRow MinimisationRow();
 
 }  // namespace gauntlet

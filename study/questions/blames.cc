@@ -1,19 +1,23 @@
 #include "study/questions/blames.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "analysis/statistics/comparison.h"
 #include "analysis/statistics/proportions.h"
-#include "master/campaign/stored_search.h"
-#include "search/given/blame_search.h"
-#include "study/questions/answered_calls.h"
+#include "proto/json_text.h"
+#include "search/cases/case_file.h"
+#include "search/given/case_blame.h"
+#include "study/questions/smallest_layouts.h"
 
 namespace gauntlet {
 namespace {
 
-constexpr double kStays = 0.05;  // m: a robot that drives covers five times as much between two waypoints
+using Json = nlohmann::ordered_json;
 
 BlamedPart PartOf(const CaseBlame::Part& part, const FailureTally& whole) {
   BlamedPart blamed;
@@ -28,35 +32,6 @@ BlamedPart PartOf(const CaseBlame::Part& part, const FailureTally& whole) {
                                    count(blamed.without.runs()), analysis::kConfidence);
   blamed.to_blame = ClearlyLess(blamed.without, whole);
   return blamed;
-}
-
-// Where robots were in one run of the case as it is.
-void AddWays(const RunOutcome& run, bool failed, Blame& blame) {
-  const bool any_lost = std::ranges::any_of(run.robots, &sim::RobotSummary::lost);
-  for (const sim::RobotSummary& robot : run.robots) {
-    for (std::size_t i = 1; i < robot.waypoints.size(); ++i) {
-      if ((robot.waypoints[i] - robot.waypoints[i - 1]).norm() < kStays)
-        blame.stuck.push_back(robot.waypoints[i]);
-    }
-    if (!failed || (any_lost && !robot.lost)) continue;
-    ++blame.failing_robots;
-    for (BlamedPart& part : blame.singles) {
-      const sim::ObstacleGene& obstacle = blame.test_case.obstacles[part.obstacles.front()];
-      if (CountVisits(robot, obstacle) > 0) ++part.touched;
-    }
-  }
-}
-
-Status AddWaysOfRuns(const AnsweredSearch& answered, IndividualId individual, Blame& blame) {
-  const std::string_view failing = FailingOf(answered.experiment);
-  return answered.store.ForEachRun(answered.id, 0, [&](const StoredRun& stored) -> Status {
-    if (stored.individual != individual) return Ok{};
-    TRY(const RunOutcome run, OutcomeOf(stored, /*with_metrics=*/true, /*with_ways=*/true));
-    FailureTally tally;
-    tally.Add(run, failing);
-    AddWays(run, tally.failures > 0, blame);
-    return Ok{};
-  });
 }
 
 std::string Numbers(const std::vector<std::size_t>& obstacles) {
@@ -89,15 +64,136 @@ bool DoesIt(const BlamedPart& part, const FailureTally& whole) {
   return 2 * part.without.failures * whole.runs() < whole.failures * part.without.runs();
 }
 
-}  // namespace
-
+// Its obstacles as people count them, from 1: "1 and 3".
 std::string NamesOf(const BlamedPart& part) {
-  std::string names;
-  for (const std::size_t obstacle : part.obstacles) {
-    names += fmt::format("{}{}", names.empty() ? "" : " and ", obstacle + 1);
-  }
-  return names;
+  return Numbers(part.obstacles);
 }
+
+// A change of a probability in points of a percentage: "-43", "0", "+7".
+std::string Points(double change) {
+  const auto points = static_cast<int>(std::lround(100.0 * change));
+  return points == 0 ? "0" : fmt::format("{:+d}", points);
+}
+
+// Of the failing robots, how many were at the obstacle.
+Cell TouchedCell(const BlamedPart& part, std::uint64_t robots) {
+  return JsonCell({part.touched, robots},
+                  robots == 0 ? "-"
+                              : fmt::format("{:.0f} %", 100.0 * static_cast<double>(part.touched) /
+                                                            static_cast<double>(robots)));
+}
+
+// What single obstacles and pairs have in common.
+std::vector<Cell> CellsOfPart(const BlamedPart& part) {
+  return {OutOfCell(part.without.failures, part.without.runs()),
+          Cell(fmt::format("{} ({} to {})", Points(-part.effect), Points(-part.interval.high),
+                           Points(-part.interval.low)),
+               part.effect),
+          JsonCell({part.interval.low, part.interval.high}),
+          Cell(part.to_blame ? "to blame" : "", part.to_blame)};
+}
+
+std::vector<Column> BlameColumns(std::vector<Column> columns) {
+  columns.insert(columns.end(), {{">fails in", "failure_without"},
+                                 {">change in points (95 %)", "effect"},
+                                 ForPrograms("interval"),
+                                 {"", "to_blame"},
+                                 {">failing robots were at it", "touched?"}});
+  return columns;
+}
+
+void AddPart(Cell index, Cell names, const BlamedPart& part, Cell touched, Table& table) {
+  std::vector<Cell> row = {std::move(index), std::move(names)};
+  for (Cell& cell : CellsOfPart(part)) row.push_back(std::move(cell));
+  row.push_back(std::move(touched));
+  table.AddRow(std::move(row));
+}
+
+Result<Told> TellBlame(const Asking& /*asking*/, const Call& /*call*/, std::span<const CaseAnswer> answers) {
+  const Blame blame = BlameIn(answers.front());
+  Told told;
+  Table singles(BlameColumns({ForPrograms("index"), {"without obstacle", "number"}}));
+  Table pairs(BlameColumns({ForPrograms("indices"), {"without obstacle"}}));
+  for (const BlamedPart& part : blame.singles) {
+    const std::size_t index = part.obstacles.front();
+    AddPart(index, index + 1, part, TouchedCell(part, blame.failing_robots), singles);
+  }
+  Table shown = singles;
+  for (const BlamedPart& part : blame.pairs) {
+    AddPart(JsonCell(part.obstacles), NamesOf(part), part, TextCell(""), pairs);
+    if (part.to_blame) AddPart("", NamesOf(part), part, TextCell(""), shown);
+  }
+  const std::string sentence = DescribeBlame(blame);
+  const std::string file = fmt::format("{}/{}-blame.svg", answers.front().campaign, FileNameOf(blame.name));
+  const bool fails = blame.whole.failures > 0;
+  told.json = JsonText({{"run", blame.run > 0 ? Json(blame.run) : Json()},
+                        {"name", blame.name},
+                        {"k", blame.whole.failures},
+                        {"n", blame.whole.runs()},
+                        {"obstacles", singles.ToJson()},
+                        {"pairs", pairs.ToJson()},
+                        {"sentence", sentence},
+                        {"simulations", blame.runs},
+                        {"picture", fails ? Json(file) : Json()}});
+  told.section.lead = {sentence};
+  if (!fails) {
+    told.conclusion = Conclusion::kRefused;
+    return told;
+  }
+  told.section.table = std::move(shown);
+  if (!blame.pairs.empty())
+    told.section.sentences.push_back(fmt::format("{} pairs were tried too.", blame.pairs.size()));
+  told.section.sentences.push_back(fmt::format("{} runs.", blame.runs));
+  const std::string picture = analysis::DrawBlame(FigureOf(blame));
+  told.section.pictures = {
+      {"Which obstacles are to blame",
+       "The redder an obstacle, the less the case fails without it; blue is where robots "
+       "got stuck.",
+       picture}};
+  told.files = {{file, picture, "drawn on the case, with the places where robots got stuck"}};
+  return told;
+}
+
+// Which obstacles of the parent those of a case file are that `minimise` has made: blame counts them anew.
+std::string Renumbered(const std::string& file) {
+  const Result<LoadedCase> loaded = LoadCase(file);
+  if (!loaded || !loaded->lineage || loaded->lineage->steps.empty()) return "";
+  const std::vector<int>& kept = loaded->lineage->steps.back().obstacles;
+  if (kept.size() != loaded->test_case.obstacles.size()) return "";
+  std::string text;
+  for (std::size_t i = 0; i < kept.size(); ++i)
+    text += fmt::format("{}{} was {}", i == 0 ? "" : ", ", i + 1, kept[i]);
+  return fmt::format("obstacles count from 1 in {}; in {} {}", file, loaded->lineage->parent.name, text);
+}
+
+Result<QuestionedCampaign> CasesToBlame(const Asking& asking) {
+  TRY(auto questioned, CasesWithObstacles(asking));
+  if (asking.quiet || questioned.cases.front().name.starts_with("run ")) return questioned;
+  const std::string renumbered = Renumbered(asking.cases.front());
+  if (!renumbered.empty()) asking.say(renumbered);
+  return questioned;
+}
+
+Result<Experiment> AboutBlame(const Experiment& experiment, const Asking& asking) {
+  TRY(const int replicates, WholeNumber(asking, "--replicates", 2, 10000, /*otherwise=*/30));
+  return BlameExperiment(experiment, replicates);
+}
+
+constexpr const char* kBlameHelp =
+    R"(Simulates the case with fresh seeds, and then without each of its obstacles. An obstacle is to blame when
+without it the case fails less often by more than three standard errors; it does it when it then fails less than
+half as often, else it contributes. When none is to blame, pairs are left out. The picture, kept below DIR/blame,
+shows how much each obstacle does and where robots got stuck. Exit 2 when the case does not fail.
+
+In --json, "index" counts obstacles from 0, as in a case file, and "number" from 1, as in pictures. "effect" is
+the failure probability of the case less that without the obstacle. "touched" says of how many of the failing
+robots, those that were lost, it was in reach of their proximity sensors.
+
+Examples:
+  gauntlet blame DIR 812
+  gauntlet blame DIR smallest.json --replicates 100 --json)";
+
+}  // namespace
 
 std::string DescribeBlame(const Blame& blame) {
   if (blame.whole.failures == 0)
@@ -144,45 +240,40 @@ analysis::BlameFigure FigureOf(const Blame& blame) {
   return figure;
 }
 
-CallPlan PlanBlame(const std::string& dir, const QuestionedCampaign& questioned, int replicates) {
-  return PlanCall(dir + "/blame", questioned, [replicates](const Experiment& experiment) {
-    return BlameExperiment(experiment, replicates);
-  });
-}
-
-Result<std::vector<Blame>> ReadBlames(const std::string& directory) {
-  std::vector<Blame> all;
-  const auto add = [&](const AnsweredSearch& answered) -> Status {
-    const auto& search = dynamic_cast<const BlameSearch&>(answered.search);
-    for (std::size_t i = 0; i < search.Population().size(); ++i) {
-      const std::vector<CaseBlame::Part>& parts = search.BlameOf(i).parts();
-      Blame& blame = all.emplace_back();
-      blame.test_case = search.Population()[i].test_case;
-      blame.name = blame.test_case.name;
-      blame.run = RunOfName(blame.name);
-      blame.whole = parts.front().runs.tally;
-      blame.runs = search.RunsOf(i);
-      for (const CaseBlame::Part& part : parts) {
-        if (part.without.size() == 1) blame.singles.push_back(PartOf(part, blame.whole));
-        if (part.without.size() == 2) blame.pairs.push_back(PartOf(part, blame.whole));
-      }
-      TRY(AddWaysOfRuns(answered, i + 1, blame));
-    }
-    return Ok{};
-  };
-  TRY(ForEachAnswer(directory, add));
-  return all;
-}
-
-Result<std::vector<Blame>> ReadAllBlames(const std::string& dir) {
-  std::vector<Blame> all;
-  for (const std::string& call : CallsIn(dir + "/blame")) {
-    Result<std::vector<Blame>> some = ReadBlames(call);
-    if (!some && HasNothingYet(some.error())) continue;
-    if (!some) return some.error();
-    for (Blame& one : *some) all.push_back(std::move(one));
+Blame BlameIn(const CaseAnswer& answer) {
+  CaseBlame question(answer.test_case.obstacles, BlameReplicates(*answer.experiment));
+  TellAll(answer, question);
+  Blame blame;
+  blame.name = answer.name;
+  blame.run = answer.run;
+  blame.test_case = answer.test_case;
+  blame.runs = answer.runs.size();
+  blame.whole = question.parts().front().runs.tally;
+  for (const CaseBlame::Part& part : question.parts()) {
+    if (part.without.size() == 1) blame.singles.push_back(PartOf(part, blame.whole));
+    if (part.without.size() == 2) blame.pairs.push_back(PartOf(part, blame.whole));
   }
-  return all;
+  for (const CaseRun& run : answer.runs) {
+    if (!run.as_it_is) continue;
+    const Whereabouts& where = run.whereabouts;
+    blame.stuck.insert(blame.stuck.end(), where.stuck.begin(), where.stuck.end());
+    blame.failing_robots += where.failing_robots;
+    for (BlamedPart& part : blame.singles) part.touched += where.touched[part.obstacles.front()];
+  }
+  return blame;
+}
+
+Question BlameQuestion() {
+  return {
+      .name = "blame",
+      .summary = "which obstacle of a case breaks the swarm?",
+      .help = kBlameHelp,
+      .named = Question::Named::kOne,
+      .options = {{"--replicates", "N", "runs of the case and of it without each obstacle (default: 30)"}},
+      .cases = CasesToBlame,
+      .about = AboutBlame,
+      .tell = TellBlame,
+      .page_title = "What each of its obstacles does"};
 }
 
 }  // namespace gauntlet

@@ -7,9 +7,8 @@
 
 #include "analysis/figures/blame_figure.h"
 #include "analysis/statistics/interval.h"
-#include "base/result.h"
 #include "search/failure_tally.h"
-#include "study/questions/questioned_cases.h"
+#include "study/questions/question.h"
 
 namespace gauntlet {
 
@@ -24,30 +23,23 @@ struct BlamedPart {
 };
 
 struct Blame {
-  std::string name;  // of the case, as in CaseInQuestion
+  std::string name;  // of the case, as in CaseAnswer
   RunId run = 0;     // that it is the case of; 0 when it came from a file
   sim::TestCase test_case;
   FailureTally whole;  // of the case as it is
   std::vector<BlamedPart> singles;
-  std::vector<BlamedPart> pairs;  // empty when single obstacles are to blame
-  std::uint64_t failing_robots =
-      0;                         // that were lost, or, when none is ever lost, all, of the runs that failed
-  std::vector<sim::Vec2> stuck;  // m: where a robot stayed for 5 s, in all runs of the case as it is
-  std::uint64_t runs = 0;        // simulated
+  std::vector<BlamedPart> pairs;     // empty when single obstacles are to blame
+  std::uint64_t failing_robots = 0;  // Whereabouts::failing_robots of all runs of the case as it is
+  std::vector<sim::Vec2> stuck;      // m: where a robot stayed for 5 s in one of them
+  std::uint64_t runs = 0;            // simulated
 };
+Blame BlameIn(const CaseAnswer& answer);
 
-// Its obstacles as people count them, from 1: "1 and 3".
-std::string NamesOf(const BlamedPart& part);
 // Drawn on the case.
 analysis::BlameFigure FigureOf(const Blame& blame);
 // What it says, in one or two sentences.
 std::string DescribeBlame(const Blame& blame);
 
-// A campaign that finds it out with `replicates` runs of each part.
-CallPlan PlanBlame(const std::string& dir, const QuestionedCampaign& questioned, int replicates);
-// What the call in `directory` has found, when it has come to its end, in the order of its cases.
-Result<std::vector<Blame>> ReadBlames(const std::string& directory);
-// What all calls about cases of the campaign in `dir` have found.
-Result<std::vector<Blame>> ReadAllBlames(const std::string& dir);
+Question BlameQuestion();
 
 }  // namespace gauntlet

@@ -3,94 +3,21 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <set>
+#include <span>
 #include <utility>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/shell_quoted.h"
 #include "controllers/registry.h"
-#include "master/campaign/stored_check.h"
-#include "master/campaign/stored_search.h"
-#include "master/directory/campaign_ownership.h"
+#include "proto/json_text.h"
+#include "proto/run_failure.h"
 #include "search/experiment/failure_cells.h"
-#include "search/given/confirmation_search.h"
-#include "study/questions/answered_calls.h"
+#include "search/given/repeated_case.h"
 
 namespace gauntlet {
 namespace {
-
-constexpr const char* kFolder = "/confirm";
-
-// What the runs of one case tell.
-class CaseRuns {
- public:
-  CaseRuns(const Experiment& experiment, const sim::TestCase& test_case) : failing_(FailingOf(experiment)) {
-    if (const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment)) {
-      ways_of_.emplace(*scenario, experiment.scenario_parameters, test_case);
-      grid_.emplace(CellsOf(experiment));
-    }
-  }
-
-  // Error: the run does not read back.
-  Status Add(const StoredRun& run) {
-    TRY(const auto outcome, OutcomeOf(run, /*with_metrics=*/true));
-    const int failures = tally_.failures;
-    tally_.Add(outcome, failing_);
-    if (message_.empty()) message_ = run.message;
-    if (tally_.failures == failures || !ways_of_) return Ok{};
-    ways_.push_back(ways_of_->Of(outcome.metrics));
-    failed_.push_back(run.id);
-    if (std::optional<Descriptor> failure = grid_->Describe(outcome))
-      failures_.push_back(*std::move(failure));
-    return Ok{};
-  }
-
-  Confirmation Conclude(const Experiment& experiment, const sim::TestCase& test_case,
-                        const std::string& campaign) const {
-    Confirmation one{.name = test_case.name,
-                     .run = RunOfName(test_case.name),
-                     .key = ConfirmationKey(experiment, test_case),
-                     .tally = tally_,
-                     .verdict = VerdictOf(tally_, ConfirmationReplicates(experiment)),
-                     .interval = FailureInterval(tally_),
-                     .middle = failures_.empty() ? std::nullopt : std::optional(MiddleOf(failures_)),
-                     .message = message_,
-                     .example = {}};
-    if (!ways_.empty()) {
-      const std::size_t typical = TypicalWay(ways_);
-      one.example = {experiment.scenario, ways_[typical], campaign, failed_[typical],
-                     experiment.scenario_plugin};
-    }
-    return one;
-  }
-
- private:
-  const std::string_view failing_;
-  std::optional<FailureWays> ways_of_;
-  std::optional<DescriptorGrid> grid_;  // where ways_of_ is
-  FailureTally tally_;
-  std::string message_;
-  std::vector<FailureWay> ways_;  // of the failed runs
-  std::vector<RunId> failed_;
-  std::vector<Descriptor> failures_;  // of those that could be described
-};
-
-// The confirmations of one search. Error: what is stored does not read back.
-Status AddConfirmations(const Experiment& experiment, SearchId search, const std::string& campaign,
-                        ResultStore& store, std::map<std::uint64_t, Confirmation>& known) {
-  TRY(const auto cases, store.LoadIndividuals(search));
-  std::vector<CaseRuns> runs_of;
-  for (const Individual& one : cases) runs_of.emplace_back(experiment, one.test_case);
-  TRY(store.ForEachRun(search, 0, [&](const StoredRun& run) -> Status {
-    if (run.individual < 1 || run.individual > runs_of.size()) return Ok{};
-    return runs_of[run.individual - 1].Add(run);
-  }));
-  for (std::size_t i = 0; i < runs_of.size(); ++i) {
-    Confirmation one = runs_of[i].Conclude(experiment, cases[i].test_case, campaign);
-    if (one.verdict == FailureVerdict::kOpen) continue;
-    Confirmation& best = known[one.key];
-    if (best.key == 0 || one.tally.runs() > best.tally.runs()) best = std::move(one);
-  }
-  return Ok{};
-}
 
 double ShareOfFailures(const Confirmation& one) {
   return static_cast<double>(one.tally.failures) / static_cast<double>(one.tally.runs());
@@ -110,16 +37,76 @@ const SmallestLayout* Smaller(const SmallestLayout* one, const SmallestLayout* o
   return obstacles(other) < obstacles(one) ? other : one;
 }
 
-Status AddConfirmationsOf(const std::string& dir, std::map<std::uint64_t, Confirmation>& known) {
-  const Result<CampaignView> campaign = ViewCampaign(dir, Checked::kRows);
-  if (!campaign) return HasNothingYet(campaign.error()) ? Status(Ok{}) : campaign.error();
-  TRY(const auto plans, ReadSearchPlans(campaign->directory));
-  TRY(CheckStored(plans, *campaign->store, Checked::kRows));
-  for (const SearchPlan& plan : plans) {
-    TRY(AddConfirmations(plan.experiment, plan.id, dir, *campaign->store, known));
-  }
-  return Ok{};
+Result<QuestionedCampaign> CasesToConfirm(const Asking& asking) {
+  const bool elites = asking.Has("--elites");
+  const bool all_failing = asking.Has("--all-failing");
+  if (int{!asking.cases.empty()} + int{all_failing} + int{elites} != 1)
+    return InvalidInput("which cases? Either RUN_ID or FILE..., or --all-failing, or --elites");
+  if (!elites && !all_failing) return NamedCases(asking.place, asking.cases);
+  TRY(auto questioned, elites ? PopulationCases(asking.place) : FailingCases(asking.place));
+  if (!questioned.cases.empty()) return questioned;
+  return InvalidInput(
+      fmt::format("{}: {}, so there is no case to confirm", asking.place,
+                  elites ? "its search has found nothing that is worth keeping" : "no run has failed"));
 }
+
+Result<int> ReplicatesOf(const Asking& asking) {
+  return WholeNumber(asking, "--replicates", 1, 100000, /*otherwise=*/0);
+}
+
+Result<Experiment> AboutConfirmation(const Experiment& experiment, const Asking& asking) {
+  TRY(const int replicates, ReplicatesOf(asking));
+  return ConfirmationOf(experiment, replicates);
+}
+
+// A run without a result would end without one again.
+bool HasEnoughRuns(const CaseAnswer& answer, const Asking& asking) {
+  const FailureTally tally = answer.tally();
+  return tally.errors > 0 || tally.runs() >= ReplicatesOf(asking).value();
+}
+
+Result<Told> TellConfirmations(const Asking& asking, const Call& /*call*/,
+                               std::span<const CaseAnswer> answers) {
+  std::vector<Confirmation> cases;
+  for (const CaseAnswer& one : answers) cases.push_back(ConfirmationIn(one));
+  const Table table = ConfirmationsTable(cases);
+  const auto confirmed = std::ranges::count(cases, FailureVerdict::kFail, &Confirmation::verdict);
+  const auto files = std::ranges::count(cases, RunId{0}, &Confirmation::run);
+  const std::string of_files =
+      files == 0 ? "" : fmt::format(" ({} from {})", files, files == 1 ? "a file" : "files");
+  Told told{.section = {.table = table}, .json = JsonText({{"cases", table.ToJson()}})};
+  told.section.sentences = {
+      fmt::format("{} of {} cases{} confirmed: with fresh seeds they fail in at least half of the runs.",
+                  confirmed, cases.size(), of_files)};
+  const Confirmation* toughest = nullptr;  // of those that a run names
+  for (const Confirmation& one : cases) {
+    if (one.verdict != FailureVerdict::kFail || one.run == 0) continue;
+    if (toughest == nullptr || ShareOfFailures(one) > ShareOfFailures(*toughest)) toughest = &one;
+  }
+  if (toughest == nullptr) return told;
+  const std::string dir = PastedPath(asking.place);
+  told.section.commands = {
+      {fmt::format("{} minimise {} {}", asking.program, dir, toughest->run),
+       "which of its obstacles does it take?"},
+      {fmt::format("{} blame {} {}", asking.program, dir, toughest->run), "how much does each of them do?"}};
+  return told;
+}
+
+constexpr const char* kConfirmHelp =
+    R"(A search keeps what failed once, and some of that was luck. Here every case is simulated with seeds that
+took no part in choosing it, until it has failed 5 times or not failed 6 times (at most 10 runs). What counts
+as failing is the scenario's: a total failure; of foraging, that no item reached the nest.
+
+Verdicts: fail (confirmed: in at least half of the runs), flaky (less often), pass (never), error (a run ended
+without a result). All is kept in DIR/confirm, is shown by 'show', and leaves the campaign as it was; a case
+that is known already is not simulated again. After Ctrl-C the same command goes on.
+
+Examples:
+  gauntlet confirm DIR 812
+  gauntlet confirm DIR --all-failing --json
+  gauntlet confirm DIR --elites
+  gauntlet confirm DIR 812 817 --replicates 100
+  gauntlet confirm DIR my-case.json)";
 
 }  // namespace
 
@@ -127,13 +114,45 @@ std::uint64_t ConfirmationKey(const Experiment& experiment, const sim::TestCase&
   return KeyOfCase(ConfirmationOf(experiment, 0), test_case);
 }
 
-Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
-  std::map<std::uint64_t, Confirmation> known;
-  for (const std::string& call : CallsIn(dir + kFolder)) {
-    TRY(AddConfirmationsOf(call, known));
+Confirmation ConfirmationIn(const CaseAnswer& answer) {
+  const Experiment& experiment = *answer.experiment;
+  Confirmation one{.name = answer.name,
+                   .run = answer.run,
+                   .key = answer.key,
+                   .tally = answer.tally(),
+                   .verdict = FailureVerdict::kOpen,
+                   .interval = {},
+                   .middle = {},
+                   .message = answer.Message(),
+                   .example = {}};
+  one.verdict = VerdictOf(one.tally, ConfirmationReplicates(experiment));
+  one.interval = FailureInterval(one.tally);
+  const controllers::ScenarioInfo* scenario =
+      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  if (scenario == nullptr || one.tally.failures == 0) return one;
+  const FailureWays ways_of(*scenario, experiment.scenario_parameters, answer.test_case);
+  const DescriptorGrid grid(CellsOf(experiment));
+  std::vector<FailureWay> ways;
+  std::vector<RunId> failed;
+  std::vector<Descriptor> described;  // those of them that could be
+  for (const CaseRun& run : answer.runs) {
+    if (run.became.tally.failures == 0) continue;
+    ways.push_back(ways_of.Of(run.result.metrics));
+    failed.push_back(run.id);
+    if (auto failure = grid.Describe({.metrics = run.result.metrics}))
+      described.push_back(*std::move(failure));
   }
+  if (!described.empty()) one.middle = MiddleOf(described);
+  const std::size_t typical = TypicalWay(ways);
+  one.example = {experiment.scenario, ways[typical], answer.campaign, failed[typical],
+                 experiment.scenario_plugin};
+  return one;
+}
+
+Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir) {
+  TRY(auto answers, AnswersOfCalls(FolderOf(ConfirmQuestion(), dir), ConfirmationKey));
   std::vector<Confirmation> confirmations;
-  for (auto& [key, one] : known) confirmations.push_back(std::move(one));
+  for (const CaseAnswer& one : BestOf(std::move(answers))) confirmations.push_back(ConfirmationIn(one));
   std::ranges::sort(confirmations, [](const Confirmation& a, const Confirmation& b) {
     return std::pair(a.run, a.name) < std::pair(b.run, b.name);
   });
@@ -170,19 +189,45 @@ std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& c
   return distinct;
 }
 
-CallPlan PlanConfirmation(const std::string& dir, const QuestionedCampaign& questioned,
-                          const std::vector<Confirmation>& known, int replicates) {
-  std::set<std::uint64_t> settled;
-  for (const Confirmation& one : known) {
-    if (one.verdict == FailureVerdict::kError || one.tally.runs() >= replicates) settled.insert(one.key);
+Result<CampaignAnswers> ReadAnswers(const std::string& dir) {
+  CampaignAnswers answers;
+  TRY(answers.confirmations, ReadConfirmations(dir));
+  TRY(answers.smallest_layouts, ReadSmallestLayouts(dir));
+  return answers;
+}
+
+Table ConfirmationsTable(const std::vector<Confirmation>& confirmations) {
+  Table table({ForPrograms("run"),
+               {"case", "case"},
+               {">failed", "k n"},
+               {"probability (95 %)", "interval"},
+               {"verdict", "verdict"},
+               {"", "message?"}});
+  for (const Confirmation& one : confirmations) {
+    table.AddRow({one.run > 0 ? Cell(one.run) : Cell(), one.name,
+                  OutOfCell(one.tally.failures, one.tally.runs()), PercentCell(one.interval),
+                  NameOf(one.verdict), Cell(proto::Explained(one.message), TextValue(one.message))});
   }
-  QuestionedCampaign open = questioned;
-  std::erase_if(open.cases, [&](const CaseInQuestion& one) {
-    return settled.contains(ConfirmationKey(open.plans[one.search].experiment, one.test_case));
-  });
-  return PlanCall(dir + kFolder, open, [replicates](const Experiment& experiment) {
-    return ConfirmationOf(experiment, replicates);
-  });
+  return table;
+}
+
+Question ConfirmQuestion() {
+  using Kind = QuestionOption::Kind;
+  return {
+      .name = "confirm",
+      .summary = "do cases fail again with fresh seeds, and how often?",
+      .help = kConfirmHelp,
+      .named = Question::Named::kAny,
+      .options = {{"--all-failing", "", "every case of the campaign that has failed once", Kind::kFlag},
+                  {"--elites", "",
+                   "the cases that the search has ended with: its population, or the elites of an archive",
+                   Kind::kFlag},
+                  {"--replicates", "N", "exactly N runs per case, for a narrower interval"}},
+      .cases = CasesToConfirm,
+      .about = AboutConfirmation,
+      .key = ConfirmationKey,
+      .enough = HasEnoughRuns,
+      .tell = TellConfirmations};
 }
 
 }  // namespace gauntlet

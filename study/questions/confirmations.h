@@ -7,17 +7,19 @@
 #include <vector>
 
 #include "analysis/statistics/interval.h"
+#include "analysis/tables/table.h"
 #include "base/result.h"
 #include "search/archive/failure_archive.h"
 #include "search/failure_tally.h"
-#include "study/questions/questioned_cases.h"
+#include "study/questions/case_answer.h"
+#include "study/questions/question.h"
 #include "study/questions/smallest_layouts.h"
 #include "study/sets/failure_groups.h"
 
 namespace gauntlet {
 
 struct Confirmation {
-  std::string name;       // of the case, as in CaseInQuestion
+  std::string name;       // of the case, as in CaseAnswer
   RunId run = 0;          // that it is the case of; 0 when it came from a file
   std::uint64_t key = 0;  // ConfirmationKey
   FailureTally tally;
@@ -36,8 +38,10 @@ struct Confirmation {
   };
   std::optional<Example> example;
 };
-// The same for the same case under the same experiment, whatever it is called.
+// The same for the same case under the same experiment, whatever it is called and however many runs are asked
+// for.
 std::uint64_t ConfirmationKey(const Experiment& experiment, const sim::TestCase& test_case);
+Confirmation ConfirmationIn(const CaseAnswer& answer);
 // What the campaign in `dir` knows, each case once, also while it is being found out; open ones are left
 // out. Of a case that was confirmed twice, what stands on more runs.
 Result<std::vector<Confirmation>> ReadConfirmations(const std::string& dir);
@@ -54,9 +58,17 @@ struct DistinctFailure {
 std::vector<DistinctFailure> DistinctFailures(const std::vector<Confirmation>& confirmations,
                                               const std::vector<SmallestLayout>& layouts);
 
-// A campaign that finds out how often cases fail. `known` with fewer runs than `replicates` are simulated
-// anew; 0 = until there is a verdict.
-CallPlan PlanConfirmation(const std::string& dir, const QuestionedCampaign& questioned,
-                          const std::vector<Confirmation>& known, int replicates);
+// With keys for programs: [{run, case, k, n, interval: [lo, hi], verdict, message}]; run is null for a case
+// from a file.
+Table ConfirmationsTable(const std::vector<Confirmation>& confirmations);
+
+// What `confirm` and `minimise` have found out about the cases of the campaign in `dir`.
+struct CampaignAnswers {
+  std::vector<Confirmation> confirmations;
+  std::vector<SmallestLayout> smallest_layouts;
+};
+Result<CampaignAnswers> ReadAnswers(const std::string& dir);
+
+Question ConfirmQuestion();
 
 }  // namespace gauntlet

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "search/failure_tally.h"
-#include "search/given/confirmation_search.h"
+#include "search/given/repeated_case.h"
 #include "search/search_table.h"
 
 namespace gauntlet {

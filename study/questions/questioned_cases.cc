@@ -2,16 +2,25 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
+#include <filesystem>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "base/hash.h"
+#include "base/parse_number.h"
+#include "controllers/registry.h"
+#include "controllers/run_start.h"
+#include "master/campaign/verdict_text.h"
+#include "master/directory/campaign_directory.h"
 #include "master/directory/campaign_ownership.h"
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
+#include "search/cases/case_file.h"
 #include "search/failure_tally.h"
 #include "search/search_table.h"
+#include "sim/arena/validity.h"
 #include "study/sets/subset.h"
 
 namespace gauntlet {
@@ -69,12 +78,14 @@ Result<QuestionedCampaign> PopulationCases(const std::string& dir) {
   return CasesOfSubset(dir, "final", /*only_failing=*/false);
 }
 
+Result<RunId> ParseRunId(const std::string& text) {
+  if (const auto id = ParseNumber<RunId>(text); id && *id >= 1) return *id;
+  return InvalidInput(fmt::format("{} is no run: RUN_ID is a whole number, see 'gauntlet show DIR'", text));
+}
+
 RunId RunOfName(const std::string& name) {
-  RunId run = 0;
   if (!name.starts_with(kOfRun)) return 0;
-  const char* end = name.data() + name.size();
-  const auto read = std::from_chars(name.data() + kOfRun.size(), end, run);
-  return read.ec == std::errc() && read.ptr == end ? run : 0;
+  return ParseNumber<RunId>(std::string_view(name).substr(kOfRun.size())).value_or(0);
 }
 
 std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case) {
@@ -83,23 +94,54 @@ std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case)
   return hash.value();
 }
 
-CallPlan PlanCall(const std::string& folder, const QuestionedCampaign& questioned,
-                  const std::function<Experiment(const Experiment& experiment)>& about) {
-  std::vector<SearchPlan> plans = questioned.plans;
-  for (SearchPlan& plan : plans) plan.experiment = about(plan.experiment);
-  std::set<std::uint64_t> asked;
-  Fnv1a64 call;
-  for (const CaseInQuestion& one : questioned.cases) {
-    SearchPlan& plan = plans[one.search];
-    const std::uint64_t key = KeyOfCase(plan.experiment, one.test_case);
-    if (!asked.insert(key).second) continue;
-    call.AddUint64(key);
-    plan.cases.push_back(one.test_case);
-    plan.cases.back().name = one.name;
+std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case) {
+  if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
+    return std::nullopt;
+  const auto requirements = controllers::RequirementsOf(SpecOf(experiment, test_case, experiment.seed));
+  if (!requirements) return CaseRefusal{"", requirements.error().message};
+  if (const auto violation = sim::CheckValidity(test_case, *requirements))
+    return CaseRefusal{std::string(sim::NameOf(violation->rule)), violation->message};
+  if (const Status fits = CheckSwarmFits(experiment, test_case); !fits)
+    return CaseRefusal{RuleOf(fits.error().message), fits.error().message};
+  return std::nullopt;
+}
+
+Result<QuestionedCampaign> NamedCases(const std::string& dir, const std::vector<std::string>& names) {
+  if (const auto swapped = std::ranges::find_if(names, CampaignDirectory::IsCampaign);
+      swapped != names.end() && !CampaignDirectory::IsCampaign(dir)) {
+    return InvalidInput(fmt::format(
+        "{} is a campaign and {} is none: the campaign comes first, then its runs", *swapped, dir));
   }
-  std::erase_if(plans, [](const SearchPlan& plan) { return plan.cases.empty(); });
-  if (plans.size() == 1) plans.front().settings.clear();
-  return {fmt::format("{}/{:016x}", folder, call.value()), std::move(plans)};
+  std::vector<RunId> runs;
+  std::vector<CaseInQuestion> files;
+  for (const std::string& text : names) {
+    if (std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; })) {
+      TRY(const RunId run, ParseRunId(text));
+      runs.push_back(run);
+      continue;
+    }
+    TRY(LoadedCase loaded, LoadCase(text));
+    files.push_back({std::filesystem::path(text).filename().string(), 0, std::move(loaded.test_case)});
+  }
+  TRY(QuestionedCampaign questioned, CasesOfRuns(dir, runs));
+  if (!files.empty() && questioned.plans.size() > 1) {
+    return InvalidInput(fmt::format(
+        "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
+        dir, questioned.plans.size(), files.front().name));
+  }
+  for (CaseInQuestion& file : files) {
+    if (const auto refusal = RefusalOf(questioned.plans.front().experiment, file.test_case))
+      return InvalidInput(fmt::format("{}: {}", file.name, refusal->message));
+    questioned.cases.push_back(std::move(file));
+  }
+  std::map<std::pair<std::size_t, std::uint64_t>, std::string> known;
+  std::erase_if(questioned.cases, [&](const CaseInQuestion& one) {
+    const auto [first, is_new] = known.try_emplace({one.search, CaseHash(one.test_case)}, one.name);
+    if (!is_new && first->second != one.name)
+      questioned.notices.push_back(fmt::format("{} has the same case as {}", one.name, first->second));
+    return !is_new;
+  });
+  return questioned;
 }
 
 }  // namespace gauntlet

@@ -1,10 +1,8 @@
-// Cases of a campaign that somebody asks about, and the campaigns that find the answer out. Each call of such
-// a command is a campaign of its own, in a folder of the one that the cases come from, so that it survives a
-// kill, resumes and is replayed like any other and changes nothing of the first.
+// Cases that somebody asks about: of a campaign's runs, and of files.
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,28 +22,31 @@ struct CaseInQuestion {
 struct QuestionedCampaign {
   std::vector<SearchPlan> plans;
   std::vector<CaseInQuestion> cases;
+  std::vector<std::string> notices = {};  // of cases that were given again, under whatever name
 };
 // The cases of these runs, in their order. Errors: those of ViewCampaign; kNotFound for a run that is not
 // there.
 Result<QuestionedCampaign> CasesOfRuns(const std::string& dir, const std::vector<RunId>& runs);
 // Every different case with a run that failed (controllers::ScenarioInfo::failing), named by the first.
 Result<QuestionedCampaign> FailingCases(const std::string& dir);
-
 // Every different case of the population as it stands: of an archive search, its elites.
 Result<QuestionedCampaign> PopulationCases(const std::string& dir);
+// The cases of a campaign's runs, by their numbers, and of files, each different one once. Error: one is not
+// there or breaks a rule, a file could belong to several searches, or the campaign does not come first.
+Result<QuestionedCampaign> NamedCases(const std::string& dir, const std::vector<std::string>& names);
 
+// Why the experiment's swarm cannot be put into a case.
+struct CaseRefusal {
+  std::string rule;  // "no-path"; "" when it is none of a name
+  std::string message;
+};
+std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case);
+
+// As somebody types it: decimal, at least 1.
+Result<RunId> ParseRunId(const std::string& text);
 // The run that the case is one of, by its name; 0 when it came from a file.
 RunId RunOfName(const std::string& name);
 // The same for the same case under the same experiment, whatever it is called. `about` asks about the case.
 std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case);
-
-// A campaign that answers one call.
-struct CallPlan {
-  std::string directory;             // empty, or what an earlier call with the same cases has left
-  std::vector<SearchPlan> searches;  // empty when nothing is asked
-};
-// `about` gives the experiment that asks about cases of another one. Equal cases are asked about once.
-CallPlan PlanCall(const std::string& folder, const QuestionedCampaign& questioned,
-                  const std::function<Experiment(const Experiment& experiment)>& about);
 
 }  // namespace gauntlet

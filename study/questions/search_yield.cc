@@ -14,7 +14,7 @@
 #include "master/campaign/stored_campaign.h"
 #include "master/store/run_numbers.h"
 #include "search/experiment/failure_cells.h"
-#include "search/given/confirmation_search.h"
+#include "search/given/repeated_case.h"
 #include "search/search_table.h"
 #include "study/questions/confirmations.h"
 #include "study/sets/subset.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/system/atomic_file.h"
-#include "study/questions/answered_calls.h"
+#include "study/questions/case_answer.h"
 #include "study/questions/questioned_cases.h"
 
 namespace gauntlet {

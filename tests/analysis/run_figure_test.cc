@@ -229,6 +229,8 @@ TEST(RunFigure, TellsTheOutcomeInWords) {
   trapped.style.lost = "trapped";
   trapped.result.failure.label = "no path";
   EXPECT_EQ(DescribeOutcome(trapped), "total failure: no path; 1 of 3 birds trapped");
+  trapped.result.failure.label.clear();
+  EXPECT_EQ(DescribeOutcome(trapped), "total failure by the scenario's own rule; 1 of 3 birds trapped");
   const std::string texts = Texts(Parse(DrawRun(figure)));
   EXPECT_THAT(texts, HasSubstr("flocking, run 12\n"));
   EXPECT_THAT(texts, HasSubstr("total failure: 1 of 3 birds lost\n"));

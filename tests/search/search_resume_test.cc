@@ -8,7 +8,7 @@
 #include "search/evolution/genetic_algorithm.h"
 #include "search/evolution/random_search.h"
 #include "search/evolution/steady_state_search.h"
-#include "search/given/case_list_search.h"
+#include "search/given/given_search.h"
 #include "tests/search/toy_search.h"
 
 namespace gauntlet {
@@ -63,7 +63,7 @@ std::unique_ptr<SearchAlgorithm> ListOf(std::vector<sim::TestCase> cases) {
   SetAlgorithm(setup, "cases");
   setup.experiment.search.replicates = 2;
   setup.cases = std::move(cases);
-  return std::move(CaseListSearch::Create(setup)).value();
+  return std::move(GivenSearch::Create(setup)).value();
 }
 
 // Some evaluations fail, so that resuming them is tested too.

@@ -236,7 +236,9 @@ std::string DescribeOutcome(const RunFigure& figure) {
                 : fmt::format("{} of {} {} {}", lost, members, Plural(members, style.member), style.lost);
   const bool labelled = result.failure.total && !result.failure.label.empty();
   if (labelled && lost == 0) return fmt::format("{}{}", prefix, result.failure.label);
-  if (labelled && !style.lost_is_failure) return fmt::format("{}{}; {}", prefix, result.failure.label, who);
+  if (result.failure.total && !style.lost_is_failure)
+    return fmt::format("total failure{}; {}",
+                       labelled ? ": " + result.failure.label : " by the scenario's own rule", who);
   return fmt::format("{}{}", prefix, who);
 }
 

@@ -1,4 +1,4 @@
-#include "cli/corpus_experiment.h"
+#include "study/questions/corpus_experiment.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "base/printable.h"
-#include "cli/given_cases.h"
 #include "controllers/registry.h"
 #include "search/experiment/definition_table.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
+#include "study/questions/questioned_cases.h"
 
 namespace gauntlet {
 namespace {
@@ -82,6 +82,9 @@ Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std:
         error.message =
             fmt::format("{}: experiment.{}:{}", entry.file, all[i], error.message.substr(typed.size()));
     }
+    const std::string named = controller.empty() ? SettingOf(entry.content, "controller") : controller;
+    if (plugins.empty() && (tested == nullptr || controllers::FindController(named) == nullptr))
+      error.message += "; --plugin LIB.so names the library of one that a plug-in brings";
     return error;
   }
   experiment->name = "check";

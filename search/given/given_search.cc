@@ -1,10 +1,12 @@
-#include "search/given/layout_search.h"
+#include "search/given/given_search.h"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "controllers/registry.h"
+#include "search/failure_tally.h"
+#include "search/search_table.h"
 
 namespace gauntlet {
 namespace {
@@ -40,36 +42,67 @@ std::uint64_t CountVisits(const sim::RobotSummary& robot, const sim::ObstacleGen
   }));
 }
 
-Experiment LayoutExperiment(const Experiment& experiment, std::string_view algorithm) {
+RunJudge::RunJudge(const Experiment& experiment)
+    : failing_(FailingOf(experiment)), failure_place_(FailurePlaceOf(experiment)) {}
+
+LayoutRuns RunJudge::WhatBecameOf(const RunOutcome& run, const sim::Genome& obstacles) const {
+  LayoutRuns became;
+  became.tally.Add(run, failing_);
+  const std::optional<sim::Vec2> place = PlaceOfFailure(run, failure_place_);
+  if (place && became.tally.failures > 0) became.places.push_back(*place);
+  if (run.robots.empty()) return became;
+  for (const sim::ObstacleGene& obstacle : obstacles) {
+    std::uint64_t& visits = became.visits.emplace_back(0);
+    for (const sim::RobotSummary& robot : run.robots) visits += CountVisits(robot, obstacle);
+  }
+  return became;
+}
+
+bool TellStored(std::span<const LayoutRuns> runs, int each, LayoutQuestion& question) {
+  LayoutRuns batch;
+  int waiting = 0;
+  for (const LayoutRuns& run : runs) {
+    if (waiting == 0) waiting = each * question.runs();
+    if (waiting == 0) return false;
+    batch.Add(run);
+    if (--waiting == 0) question.Tell(std::exchange(batch, {}));
+  }
+  return true;
+}
+
+Experiment AboutCasesOf(const Experiment& experiment, std::string_view algorithm) {
   Experiment about = experiment;
   about.search = SearchSpec{};
   about.search.algorithm = algorithm;
-  about.store.trajectories = true;
+  about.store.trajectories = about.store.trajectories || RowOf(about).reads_trajectories;
   return about;
 }
 
-LayoutSearch::LayoutSearch(const SearchSetup& setup, std::vector<std::unique_ptr<LayoutQuestion>> questions)
-    : PopulationSearch(setup),
-      failing_(FailingOf(setup.experiment)),
-      failure_place_(FailurePlaceOf(setup.experiment)),
-      cases_(setup.cases.size()) {
+GivenSearch::GivenSearch(const SearchSetup& setup)
+    : PopulationSearch(setup), judge_(setup.experiment), cases_(setup.cases.size()) {
   for (std::size_t index = 0; index < setup.cases.size(); ++index) {
     const Individual& original = population_.emplace_back(MakeIndividual(index + 1, setup.cases[index]));
-    cases_[index].question = std::move(questions[index]);
-    cases_[index].layouts.emplace(sim::GenomeHash(original.test_case.obstacles), original);
+    Case& one = cases_[index];
+    one.question = setup.row->question(setup.experiment, original.test_case.obstacles);
+    one.layouts.emplace(sim::GenomeHash(original.test_case.obstacles), original);
+    missing_ += static_cast<std::uint64_t>(one.Missing());
     case_of_.push_back(index);
   }
   newborns_ = population_;
 }
 
-std::vector<EvaluationRequest> LayoutSearch::Ask() {
+Result<std::unique_ptr<GivenSearch>> GivenSearch::Create(const SearchSetup& setup) {
+  return std::unique_ptr<GivenSearch>(new GivenSearch(setup));
+}
+
+std::vector<EvaluationRequest> GivenSearch::Ask() {
   if (evaluations_done_ == 0 && AtBoundary()) {
     for (std::size_t index = 0; index < cases_.size(); ++index) AskMore(index);
   }
   return std::exchange(requests_, {});
 }
 
-void LayoutSearch::AskMore(std::size_t index) {
+void GivenSearch::AskMore(std::size_t index) {
   Case& one = cases_[index];
   if (one.question->runs() == 0) return;
   const sim::Genome& obstacles = one.question->layout().obstacles;
@@ -86,48 +119,36 @@ void LayoutSearch::AskMore(std::size_t index) {
     requests_.push_back(Request(found->second, 1, static_cast<std::uint32_t>(one.waiting)));
 }
 
-LayoutRuns LayoutSearch::WhatBecameOf(const RunOutcome& run, const sim::Genome& obstacles) const {
-  LayoutRuns became;
-  became.tally.Add(run, failing_);
-  const std::optional<sim::Vec2> place = PlaceOfFailure(run, failure_place_);
-  if (place && became.tally.failures > 0) became.places.push_back(*place);
-  for (const sim::ObstacleGene& obstacle : obstacles) {
-    std::uint64_t& visits = became.visits.emplace_back(0);
-    for (const sim::RobotSummary& robot : run.robots) visits += CountVisits(robot, obstacle);
-  }
-  return became;
-}
-
-void LayoutSearch::Told(const EvaluationOutcome& outcome) {
+void GivenSearch::Told(const EvaluationOutcome& outcome) {
   const std::size_t index = case_of_[outcome.individual - 1];
   Case& one = cases_[index];
   const sim::Genome& obstacles = one.question->layout().obstacles;
   Individual& layout = one.layouts.at(sim::GenomeHash(obstacles));
   Record(outcome, layout);
   if (layout.id == index + 1) population_[index] = layout;
-  for (const RunOutcome& run : outcome.runs) one.batch.Add(WhatBecameOf(run, obstacles));
-  ++one.runs;
+  for (const RunOutcome& run : outcome.runs) one.batch.Add(judge_.WhatBecameOf(run, obstacles));
+  --missing_;
   if (--one.waiting > 0) return;
   one.question->Tell(std::exchange(one.batch, {}));
+  missing_ += static_cast<std::uint64_t>(one.Missing());
   AskMore(index);
 }
 
-SearchProgress LayoutSearch::Progress() const {
-  std::uint64_t missing = 0;
-  for (const Case& one : cases_)
-    missing += static_cast<std::uint64_t>(std::max(one.waiting, one.question->runs()));
+SearchProgress GivenSearch::Progress() const {
   return {.generation = evaluations_done_ > 0 || !AtBoundary() ? 1U : 0U,
           .generations = 1,
           .evaluations_done = evaluations_done_,
-          .evaluations_planned = evaluations_done_ + missing,
+          .evaluations_planned = evaluations_done_ + missing_,
           .individuals_planned = case_of_.size(),
-          .finished = missing == 0};
+          .finished = missing_ == 0};
 }
 
-Status LayoutSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const History& history) {
-  // Runs are asked for as long as a case is open, so a state is saved at the end only. What was simulated
-  // follows from what was told.
+Status GivenSearch::RestoreRest(CanonicalDecoder& /*decoder*/, const History& history) {
+  // Evaluations are asked for as long as a case is open, so a state is saved before all of them or at the
+  // end. What was simulated follows from what was told.
+  newborns_ = population_;
   const std::uint64_t told = std::exchange(evaluations_done_, 0);
+  if (told == 0) return Ok{};
   std::vector<EvaluationRequest> asked = Ask();
   std::size_t next = 0;
   bool known = true;

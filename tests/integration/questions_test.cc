@@ -1,4 +1,5 @@
-// gauntlet minimise with real processes.
+// Questions about cases with real processes: confirm, minimise, blame and check. What they say of one case is
+// held by tests/cli/goldens and tests/study/questions.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,11 +20,21 @@ namespace {
 
 using testing::HasSubstr;
 
+nlohmann::json Json(const std::vector<std::string>& arguments) {
+  const ProcessResult result = Gauntlet(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  return nlohmann::json::parse(result.out);
+}
+
 // Of the first 24 cases three fail: those of runs 4, 23 and 24.
-void MakeCampaignToMinimise(const std::string& dir, int cases) {
+void MakeCampaign(const std::string& dir, int cases) {
   ASSERT_EQ(
       Gauntlet({"random", "flocking", "--cases", std::to_string(cases), "--dir", dir, "--quiet"}).exit_code,
       0);
+}
+
+std::vector<std::string> ConfirmAll(const std::string& dir, int workers) {
+  return {"confirm", dir, "--all-failing", "--workers", std::to_string(workers), "--json", "--quiet"};
 }
 
 // The numbers of runs that failed, or that did not.
@@ -62,9 +73,142 @@ std::string Write(const std::string& path, const nlohmann::json& document) {
   return path;
 }
 
+struct QuestionKind {
+  std::string name;   // of the command
+  std::string place;  // what it asks about, and in it the folder of its calls
+  std::string folder;
+  std::vector<std::string> more;  // arguments
+};
+
+void PrintTo(const QuestionKind& kind, std::ostream* out) {
+  *out << kind.name;
+}
+
+class QuestionTest : public testing::TestWithParam<QuestionKind> {
+ protected:
+  // In a copy of the campaign and its corpus.
+  std::vector<std::string> Command(const std::string& copy, int workers) const {
+    std::vector<std::string> command = {GetParam().name, scratch_ / (copy + GetParam().place)};
+    command.insert(command.end(), GetParam().more.begin(), GetParam().more.end());
+    command.insert(command.end(), {"--workers", std::to_string(workers), "--json", "--quiet"});
+    return command;
+  }
+  // What it says there, whatever the copy is called.
+  std::string Said(const std::string& copy, const ProcessResult& result) const {
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    std::string text = result.out;
+    const std::string path = scratch_ / copy;
+    for (auto at = text.find(path); at != std::string::npos; at = text.find(path, at))
+      text.replace(at, path.size(), "HERE");
+    return text;
+  }
+  std::vector<std::string> Hashes(const std::string& copy) const {
+    return StateHashesIn(scratch_ / (copy + GetParam().place + GetParam().folder));
+  }
+
+  const TemporaryDirectory scratch_;
+};
+
+TEST_P(QuestionTest, IsAnsweredAlikeByAnyNumberOfWorkersAndAfterAKillAndLeavesTheCampaignAsItWas) {
+  MakeCampaign(scratch_ / "one/found", 24);
+  if (GetParam().name == "check") {
+    ASSERT_EQ(Gauntlet(ConfirmAll(scratch_ / "one/found", 2)).exit_code, 0);
+    ASSERT_EQ(Gauntlet({"corpus", "add", scratch_ / "one/found", "23", "24", "--to", scratch_ / "one/corpus"})
+                  .exit_code,
+              0);
+  }
+  const std::string before = StateHash(scratch_ / "one/found");
+  for (const char* copy : {"three", "killed"})
+    std::filesystem::copy(scratch_ / "one", scratch_ / copy, std::filesystem::copy_options::recursive);
+  const std::string one = Said("one", Gauntlet(Command("one", 1)));
+  EXPECT_EQ(StateHash(scratch_ / "one/found"), before);
+  EXPECT_EQ(Said("three", Gauntlet(Command("three", 3))), one);
+  const std::string folder = scratch_ / ("killed" + GetParam().place + GetParam().folder);
+  EXPECT_EQ(Said("killed", AskThroughKills(Command("killed", 2), folder, 3)), one);
+  EXPECT_EQ(Hashes("three"), Hashes("one"));
+  EXPECT_EQ(Hashes("killed"), Hashes("one"));
+  EXPECT_EQ(Said("one", Gauntlet(Command("one", 2))), one) << "once it is known";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Questions, QuestionTest,
+    testing::Values(QuestionKind{"confirm", "/found", "/confirm", {"--all-failing"}},
+                    // Not run 4, of which no part fails: to find that takes three times as many runs.
+                    QuestionKind{"minimise", "/found", "/minimise", {"23"}},
+                    QuestionKind{
+                        "blame",
+                        "/found",
+                        "/blame",
+                        {GAUNTLET_SOURCE_DIR "/tests/integration/cases/trap.json", "--replicates", "8"}},
+                    QuestionKind{"check", "/corpus", "/.check", {}}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(ConfirmTest, TheElitesOfAnArchiveFailAgain) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "archive";
+  const nlohmann::json found = Json({"evolve", "flocking", "--set", "search.algorithm=archive", "--set",
+                                     "search.runs=200", "--dir", dir, "--json", "--quiet"});
+  const nlohmann::json& elites = found["archive"]["elites"];
+  ASSERT_GE(elites.size(), 3U);
+  EXPECT_EQ(elites.size(), found["archive"]["filled"]);
+  std::size_t confirmed = 0;
+  const nlohmann::json cases = Json({"confirm", dir, "--elites", "--json", "--quiet"})["cases"];
+  EXPECT_EQ(cases.size(), elites.size());
+  for (const nlohmann::json& one : cases) confirmed += one["verdict"] == "fail" ? 1 : 0;
+  EXPECT_GE(10 * confirmed, 7 * cases.size()) << "they were chosen for failing 3 of 3 or 4 of 5 times";
+}
+
+TEST(ConfirmTest, BudgetsAreComparedByWhatWasConfirmed) {
+  const TemporaryDirectory scratch;
+  const auto search = [&](const std::string& algorithm, const std::string& length) {
+    const std::string dir = scratch / algorithm;
+    const ProcessResult result =
+        Gauntlet({"evolve", "flocking", "--set", "search.algorithm=" + algorithm, "--set", "search." + length,
+                  "--seeds", "1..2", "--dir", dir, "--quiet"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return dir;
+  };
+  const std::string archive = search("archive", "runs=100");
+  const std::string random = search("random", "cases=100");
+  const ProcessResult early = Gauntlet({"compare", "--budget", archive, random});
+  EXPECT_EQ(early.exit_code, 2);
+  EXPECT_EQ(early.err,
+            "gauntlet: " + (scratch / "archive") +
+                ": 10 of its 10 elites have not been simulated again with fresh seeds: `gauntlet confirm " +
+                (scratch / "archive") + " --elites`\n");
+
+  const std::size_t elites = Json({"confirm", archive, "--elites", "--json", "--quiet"})["cases"].size();
+  const nlohmann::json failing = Json(ConfirmAll(random, 2))["cases"];
+  const nlohmann::json table = Json({"compare", "--budget", archive, random, "--json"});
+  EXPECT_EQ(table["runs"], 100);
+  EXPECT_EQ(table["sets"][0]["cases"], elites);
+  EXPECT_EQ(table["sets"][1]["cases"], failing.size());
+  const auto confirmed =
+      std::ranges::count(failing, "fail", [](const nlohmann::json& one) { return one["verdict"]; });
+  EXPECT_EQ(table["sets"][1]["confirmed"], confirmed);
+  EXPECT_EQ(table["sets"][0]["cells"]["values"].size(), 2U);
+  EXPECT_GT(table["sets"][0]["cells_with_up_to_3"]["mean"], 0.0);
+  EXPECT_EQ(table["sets"][1]["cells_with_up_to_3"]["mean"], 0.0) << "random cases have eight obstacles";
+  EXPECT_LE(table["sets"][1]["cells_with_up_to_3"]["p"], 1.0);
+}
+
+TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
+  const TemporaryDirectory scratch;
+  MakeCampaign(scratch / "c", 24);
+  const nlohmann::json all = Json(ConfirmAll(scratch / "c", 2));
+  const std::string run = all["cases"][0]["run"].dump();
+  const ProcessResult again = Gauntlet({"confirm", scratch / "c", run, "--json"});
+  EXPECT_EQ(nlohmann::json::parse(again.out)["cases"][0], all["cases"][0]);
+  EXPECT_EQ(again.err, "");
+  const nlohmann::json more =
+      Json({"confirm", scratch / "c", run, "--replicates", "20", "--json", "--quiet"});
+  EXPECT_EQ(more["cases"][0]["n"], 20);
+  EXPECT_EQ(Json({"show", scratch / "c", "--json"})["confirmed"][0]["n"], 20);
+}
+
 TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
   const TemporaryDirectory scratch;
-  MakeCampaignToMinimise(scratch / "c", 24);
+  MakeCampaign(scratch / "c", 24);
   const std::string before = StateHash(scratch / "c");
   const std::vector<std::string> failing = Runs(scratch / "c", true, 3);
   const nlohmann::json found = FoundMinimal(Minimise(scratch / "c", failing, 2));
@@ -105,7 +249,7 @@ TEST(MinimiseTest, WhatIsLeftFailsAndSaysWhereItComesFrom) {
 // So that one looks at the small layout rather than at the case it was found in.
 TEST(MinimiseTest, ShowNamesTheSmallestLayoutOfEachFailure) {
   const TemporaryDirectory scratch;
-  MakeCampaignToMinimise(scratch / "c", 24);
+  MakeCampaign(scratch / "c", 24);
   ASSERT_EQ(Gauntlet({"confirm", scratch / "c", "--all-failing", "--quiet"}).exit_code, 0);
   const nlohmann::json found = FoundMinimal(Minimise(scratch / "c", Runs(scratch / "c", true, 2), 2));
   const nlohmann::json shown = Show(scratch / "c");
@@ -126,25 +270,6 @@ TEST(MinimiseTest, ShowNamesTheSmallestLayoutOfEachFailure) {
   EXPECT_FALSE(told.empty());
   EXPECT_TRUE(std::ranges::includes(left, told));
   EXPECT_EQ(*told.begin(), *left.begin()) << "the smallest of all is the smallest of its failure";
-}
-
-TEST(MinimiseTest, TheSameForAnyNumberOfWorkersAndAfterAKill) {
-  const TemporaryDirectory scratch;
-  MakeCampaignToMinimise(scratch / "one", 24);
-  // Not the first, of which no part fails: to find that takes three times as many runs.
-  const std::vector<std::string> failing = {Runs(scratch / "one", true, 2).back()};
-  for (const char* copy : {"three", "killed"})
-    std::filesystem::copy(scratch / "one", scratch / copy, std::filesystem::copy_options::recursive);
-  const nlohmann::json one = FoundMinimal(Minimise(scratch / "one", failing, 1));
-  EXPECT_EQ(FoundMinimal(Minimise(scratch / "three", failing, 3)), one);
-  AskThroughKills(Minimise(scratch / "killed", failing, 2), scratch / "killed/minimise", 5);
-  EXPECT_EQ(FoundMinimal(Minimise(scratch / "killed", failing, 2)), one);
-  for (const char* copy : {"three/minimise", "killed/minimise"})
-    EXPECT_EQ(StateHashesIn(scratch / copy), StateHashesIn(scratch / "one/minimise"));
-  // Once it is known, nothing is simulated again.
-  const ProcessResult again = Gauntlet({"minimise", scratch / "one", failing[0]});
-  EXPECT_EQ(again.exit_code, 0);
-  EXPECT_EQ(again.err, "");
 }
 
 // Two runs of every case.
@@ -184,43 +309,6 @@ TEST(MinimiseTest, AnswersForACloneUnderTheNumberThatItWasGiven) {
   ASSERT_EQ(kept.exit_code, 0) << kept.err;
   const nlohmann::json file = nlohmann::json::parse(ReadFile(scratch / ("corpus/run-" + second + ".json")));
   EXPECT_EQ(file["case"]["obstacles"].size(), one["minimised"]["obstacles"]);
-}
-
-// Walls 2, 5 and 7 are a trap together: without any of them the flock passes. The others are out of the way.
-TEST(MinimiseTest, FindsAPlantedTrap) {
-  const TemporaryDirectory scratch;
-  MakeCampaignToMinimise(scratch / "c", 2);
-  const nlohmann::json found =
-      FoundMinimal(Minimise(scratch / "c", {GAUNTLET_SOURCE_DIR "/tests/integration/cases/trap.json"}, 2));
-  const nlohmann::json& one = found["cases"][0];
-  std::vector<int> kept = one["minimised"]["case"]["lineage"]["steps"].back()["obstacles"];
-  EXPECT_EQ(kept, (std::vector<int>{2, 5, 7})) << one;
-}
-
-TEST(MinimiseTest, RefusesWhatDoesNotFailAndWhatFailsWithoutObstacles) {
-  const TemporaryDirectory scratch;
-  MakeCampaignToMinimise(scratch / "c", 2);
-  const std::string harmless =
-      Write(scratch / "harmless.json",
-            {{"obstacles", {{{"x", 2.5}, {"y", -2.5}, {"length", 0.5}, {"width", 0.2}}}}});
-  const ProcessResult passes = Gauntlet({"minimise", scratch / "c", harmless, "--quiet"});
-  EXPECT_EQ(passes.exit_code, 2);
-  EXPECT_EQ(passes.out,
-            "  case           failed  obstacles  left  which  fails  probability (95 %)  runs\n"
-            "  harmless.json  0 of 6          1     -             -                         6  not "
-            "minimised: it does not fail often enough\n");
-
-  // Birds that stand still lose the prey anywhere.
-  ASSERT_EQ(Gauntlet({"random", "flocking", "--cases", "3", "--set", "controller_parameters.bird_speed=0.005",
-                      "--dir", scratch / "slow", "--quiet"})
-                .exit_code,
-            0);
-  const ProcessResult empty = Gauntlet({"minimise", scratch / "slow", "1", "--quiet"});
-  EXPECT_EQ(empty.exit_code, 2);
-  EXPECT_EQ(empty.out,
-            "  case   failed  obstacles  left  which  fails  probability (95 %)  runs\n"
-            "  run 1  5 of 5          8     -             -                         9  not minimised: the "
-            "EMPTY ARENA FAILS TOO, in 4 of 4 runs\n");
 }
 
 }  // namespace

@@ -1,0 +1,139 @@
+#include "study/questions/question.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/hash.h"
+#include "base/parse_number.h"
+
+namespace gauntlet {
+namespace {
+
+std::vector<CaseAnswer>::const_iterator FindKey(const std::vector<CaseAnswer>& answers, std::uint64_t key) {
+  return std::ranges::find(answers, key, &CaseAnswer::key);
+}
+
+// The cases that need runs, in a folder that the same call finds again.
+Result<Call> PlanInCampaign(const Question& question, const Asking& asking) {
+  TRY(const auto questioned,
+      question.cases != nullptr ? question.cases(asking) : NamedCases(asking.place, asking.cases));
+  for (const std::string& notice : questioned.notices) asking.say(notice);
+  Call call;
+  call.searches = questioned.plans;
+  std::vector<std::shared_ptr<const Experiment>> experiments;
+  for (SearchPlan& plan : call.searches) {
+    TRY(plan.experiment, question.about(plan.experiment, asking));
+    experiments.push_back(std::make_shared<const Experiment>(plan.experiment));
+  }
+  TRY(std::vector<CaseAnswer> known, AnswersOfCalls(FolderOf(question, asking.place), question.key));
+  std::erase_if(known, [&](const CaseAnswer& one) {
+    return !one.ended || (question.enough != nullptr && !question.enough(one, asking));
+  });
+  std::set<std::uint64_t> asked;
+  Fnv1a64 hash;
+  for (const CaseInQuestion& one : questioned.cases) {
+    SearchPlan& plan = call.searches[one.search];
+    const std::uint64_t key = KeyOfCase(plan.experiment, one.test_case);
+    call.cases.push_back({.name = one.name,
+                          .run = RunOfName(one.name),
+                          .search = one.search,
+                          .test_case = one.test_case,
+                          .experiment = experiments[one.search],
+                          .key = question.key(plan.experiment, one.test_case)});
+    if (FindKey(known, call.cases.back().key) != known.end() || !asked.insert(key).second) continue;
+    hash.AddUint64(key);
+    plan.cases.push_back(one.test_case);
+    plan.cases.back().name = one.name;
+  }
+  std::erase_if(call.searches, [](const SearchPlan& plan) { return plan.cases.empty(); });
+  if (call.searches.size() == 1) call.searches.front().settings.clear();
+  call.directory = fmt::format("{}/{:016x}", FolderOf(question, asking.place), hash.value());
+  return call;
+}
+
+}  // namespace
+
+std::string Asking::Value(std::string_view option) const {
+  const auto found = options.find(option);
+  return found == options.end() || found->second.empty() ? "" : found->second.back();
+}
+
+std::vector<std::string> Asking::Values(std::string_view option) const {
+  const auto found = options.find(option);
+  return found == options.end() ? std::vector<std::string>() : found->second;
+}
+
+Result<int> WholeNumber(const Asking& asking, std::string_view option, int low, int high, int otherwise) {
+  const std::string text = asking.Value(option);
+  if (text.empty()) return otherwise;
+  const auto number = ParseNumber<int>(text);
+  if (number && *number >= low && *number <= high) return *number;
+  return InvalidInput(fmt::format("{} {}: a whole number from {} to {} is needed", option, text, low, high));
+}
+
+bool Call::Simulates() const {
+  return std::ranges::any_of(searches, [](const SearchPlan& plan) { return !plan.cases.empty(); });
+}
+
+Result<QuestionedCampaign> CasesWithObstacles(const Asking& asking) {
+  TRY(auto questioned, NamedCases(asking.place, asking.cases));
+  const auto bare = std::ranges::find_if(
+      questioned.cases, [](const CaseInQuestion& one) { return one.test_case.obstacles.empty(); });
+  if (bare == questioned.cases.end()) return questioned;
+  return InvalidInput(fmt::format("{} has no obstacles: there is nothing to leave out", bare->name));
+}
+
+std::string FolderOf(const Question& question, const std::string& place) {
+  return fmt::format("{}/{}{}", place, question.place == Question::Place::kCorpus ? "." : "", question.name);
+}
+
+Result<Call> PlanCall(const Question& question, const Asking& asking) {
+  return question.plan != nullptr ? question.plan(asking) : PlanInCampaign(question, asking);
+}
+
+Result<std::vector<CaseAnswer>> AnswersTo(const Question& question, const Asking& asking, const Call& call) {
+  std::vector<CaseAnswer> answers;
+  if (question.place == Question::Place::kCampaign) {
+    TRY(auto stored, AnswersOfCalls(FolderOf(question, asking.place), question.key));
+    const std::vector<CaseAnswer> known = BestOf(std::move(stored));
+    for (const CaseAnswer& one : call.cases) {
+      const auto found = FindKey(known, one.key);
+      if (found != known.end()) answers.push_back(Renamed(*found, one.name));
+    }
+    return answers;
+  }
+  answers = call.cases;
+  if (!call.Simulates()) return answers;
+  TRY(auto stored, AnswersOfCall(call.directory, question.key));
+  auto next = stored.begin();
+  for (std::size_t search = 0; search < call.searches.size(); ++search) {
+    for (CaseAnswer& one : answers) {
+      if (one.search != search || !one.refused.empty()) continue;
+      if (next == stored.end()) return answers;  // it was stopped before
+      one.campaign = next->campaign;
+      one.runs = std::move(next->runs);
+      one.decided = next->decided;
+      one.ended = (next++)->ended;
+    }
+  }
+  return answers;
+}
+
+Result<std::vector<ToldCase>> ToldCases(const Question& question, const std::string& dir) {
+  std::vector<ToldCase> cases;
+  if (*question.page_title == '\0') return cases;
+  TRY(auto known, AnswersOfCalls(FolderOf(question, dir), question.key));
+  for (const CaseAnswer& one : BestOf(std::move(known))) {
+    if (one.run == 0) continue;
+    TRY(Told told, question.tell({.place = dir}, {}, {&one, 1}));
+    told.section.title = question.page_title;
+    told.section.commands.clear();
+    cases.push_back({one.run, std::move(told.section)});
+  }
+  return cases;
+}
+
+}  // namespace gauntlet

@@ -1,0 +1,18 @@
+// All questions about cases. A new one is a file with its row, and a line here.
+#pragma once
+
+#include "study/questions/question.h"
+
+namespace gauntlet {
+
+Question EvaluateQuestion();
+Question ConfirmQuestion();
+Question MinimiseQuestion();
+Question BlameQuestion();
+Question CheckQuestion();
+
+// In the order of `gauntlet --help`.
+inline constexpr Question (*kQuestions[])() = {EvaluateQuestion, ConfirmQuestion, MinimiseQuestion,
+                                               BlameQuestion, CheckQuestion};
+
+}  // namespace gauntlet

@@ -1,0 +1,107 @@
+// How often cases fail again: the reader, the key, and what is told.
+#include "study/questions/confirmations.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "search/given/repeated_case.h"
+#include "tests/study/questions/answering.h"
+
+namespace gauntlet {
+namespace {
+
+using testing::ElementsAre;
+using testing::SizeIs;
+using namespace testing_support;  // NOLINT(google-build-using-namespace)
+
+// The case of run 4 always fails, that of run 5 in every third run, that of the file never.
+std::vector<CaseAnswer> Confirmed(int replicates = 0) {
+  return Answers(
+      ConfirmationOf(Flocking(), replicates), {Walls(1, "run 4"), Walls(2, "run 5"), Walls(3, "walls.json")},
+      [](const EvaluationRequest& request) {
+        return Ended(request.individual == 1 || (request.individual == 2 && request.evaluation % 3 == 0));
+      },
+      ConfirmationKey);
+}
+
+TEST(ConfirmationKey, IsThatOfTheCaseAndTheExperimentHoweverManyRunsAreWanted) {
+  const Experiment flocking = Flocking();
+  EXPECT_EQ(ConfirmationKey(flocking, Walls(1, "a wall")), ConfirmationKey(flocking, Walls(1)));
+  EXPECT_NE(ConfirmationKey(flocking, Walls(1)), ConfirmationKey(flocking, Walls(2)));
+  EXPECT_NE(ConfirmationKey(flocking, Walls(1)), ConfirmationKey(Flocking({"seed=2"}), Walls(1)));
+  EXPECT_EQ(Confirmed(20)[0].key, ConfirmationKey(flocking, Walls(1)));
+}
+
+TEST(ConfirmationIn, HasTheVerdictAndTheRunThatShowsItBest) {
+  const std::vector<CaseAnswer> answers = Confirmed();
+  const Confirmation fails = ConfirmationIn(answers[0]);
+  EXPECT_EQ(fails.run, 4U);
+  EXPECT_EQ(fails.tally.failures, 5);
+  EXPECT_EQ(fails.verdict, FailureVerdict::kFail);
+  ASSERT_TRUE(fails.example.has_value());
+  EXPECT_EQ(fails.example->campaign, "d/asked/1");
+  EXPECT_EQ(fails.example->way.place, std::optional(sim::Vec2(-1.0, 0.5)));
+  EXPECT_EQ(ConfirmationIn(answers[1]).verdict, FailureVerdict::kFlaky);
+  const Confirmation passes = ConfirmationIn(answers[2]);
+  EXPECT_EQ(passes.verdict, FailureVerdict::kPass);
+  EXPECT_FALSE(passes.example.has_value());
+  EXPECT_EQ(ConfirmationIn(Confirmed(20)[1]).tally.runs(), 20);
+}
+
+TEST(ConfirmQuestion, AnAnswerIsEnoughUnlessMoreRunsAreWanted) {
+  const CaseAnswer five = Confirmed()[0];
+  const auto enough = [&](const CaseAnswer& answer, const std::string& replicates) {
+    return ConfirmQuestion().enough(answer, {.options = {{"--replicates", {replicates}}}});
+  };
+  EXPECT_TRUE(enough(five, ""));
+  EXPECT_TRUE(enough(five, "5"));
+  EXPECT_FALSE(enough(five, "6"));
+  CaseAnswer crashed = five;
+  crashed.runs[0].became.tally = {.errors = 1};  // it would end without a result again
+  EXPECT_TRUE(enough(crashed, "6"));
+}
+
+TEST(ConfirmQuestion, TellsATableAndLeadsOnToTheObstaclesOfTheToughest) {
+  const Told told = ConfirmQuestion().tell({.place = "d"}, {}, Confirmed()).value();
+  EXPECT_EQ(ToText(told.section),
+            "  case        failed  probability (95 %)  verdict\n"
+            "  run 4       5 of 5   57 to 100 %        fail\n"
+            "  run 5       3 of 9   12 to  65 %        flaky\n"
+            "  walls.json  0 of 6    0 to  39 %        pass\n"
+            "  1 of 3 cases (1 from a file) confirmed: with fresh seeds they fail in at least half of the "
+            "runs.\n"
+            "  gauntlet minimise d 4  # which of its obstacles does it take?\n"
+            "  gauntlet blame d 4     # how much does each of them do?\n");
+  EXPECT_EQ(told.conclusion, Conclusion::kDone);
+}
+
+TEST(DistinctFailures, AreByPlaceToughestFirstWithTheSmallestLayout) {
+  const auto failed = [](RunId run, int failures, sim::Vec2 place, FailureVerdict verdict) {
+    Confirmation one;
+    one.run = run;
+    one.tally = {.failures = failures, .passes = 10 - failures, .errors = 0};
+    one.verdict = verdict;
+    one.example = {"flocking", {0, place}, "c/confirm/1", 7};
+    return one;
+  };
+  const std::vector<Confirmation> known = {failed(1, 3, {1.0, 1.0}, FailureVerdict::kFlaky),
+                                           failed(2, 9, {1.0, 1.0}, FailureVerdict::kFail),
+                                           failed(3, 6, {-1.0, 0.5}, FailureVerdict::kFail), Confirmation{}};
+  SmallestLayout large, small;
+  large.run = 2;
+  large.document.test_case.obstacles.resize(4);
+  small.run = 1;
+  small.document.test_case.obstacles.resize(2);
+  const std::vector<SmallestLayout> layouts = {large, small};
+  const std::vector<DistinctFailure> distinct = DistinctFailures(known, layouts);
+  ASSERT_THAT(distinct, SizeIs(2));
+  EXPECT_THAT(distinct[0].cases, ElementsAre(&known[1], &known[0]));
+  EXPECT_TRUE(distinct[0].confirmed);
+  EXPECT_EQ(distinct[0].what, "near (1.0, 1.0)");
+  EXPECT_EQ(distinct[0].smallest, &layouts[1]);
+  EXPECT_THAT(distinct[1].cases, ElementsAre(&known[2]));
+  EXPECT_EQ(distinct[1].smallest, nullptr);
+}
+
+}  // namespace
+}  // namespace gauntlet
