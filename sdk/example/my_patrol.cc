@@ -221,16 +221,16 @@ std::vector<controllers::ControllerInfo> MyControllers() {
       controllers::ControllerRow("my-guard", "my-patrol", "wanders, turns from walls", table, MakeGuards)};
 }
 
-constexpr std::array kMetrics = std::to_array<controllers::MetricInfo>({
+const std::vector<controllers::MetricInfo> kMetrics = {
     {"patrolled", "", {}, "share of the patches that a robot came to", true},
     {"missed_patches", "", {}, "patches that no robot came to"},
     {"missed_x", "m", controllers::kNowhere, "middle of the patches that no robot came to", true},
     {"missed_y", "m", controllers::kNowhere, "middle of the patches that no robot came to", true},
-});
-constexpr std::array kAnnotations = std::to_array<sim::AnnotationStyle>({
+};
+const std::vector<sim::AnnotationStyle> kAnnotations = {
     {"area", "", sim::Mark::kArea, "area the swarm starts in"},
     {"disc", "missed", sim::Mark::kGoal, "where nobody was"},
-});
+};
 constexpr std::array kAxes =
     std::to_array<controllers::DescriptorAxis>({{"missed_x", -3.0, 3.0, 6}, {"missed_y", -3.0, 3.0, 6}});
 

@@ -15,8 +15,8 @@ namespace {
 // Of more obstacles than these only the pairs of those that robots visited most are tried.
 constexpr std::size_t kMostPaired = 8;
 
-constexpr std::array<controllers::ParameterInfo, 1> kBlameParameters = {
-    {{"part_runs", "", 30, 2, 10000, true, "runs of the case, and of it without each obstacle"}}};
+const std::vector<controllers::ParameterInfo> kBlameParameters = {
+    {"part_runs", "", 30, 2, 10000, true, "runs of the case, and of it without each obstacle"}};
 
 std::unique_ptr<LayoutQuestion> AskForBlame(const Experiment& experiment, const sim::Genome& obstacles) {
   return std::make_unique<CaseBlame>(obstacles, BlameReplicates(experiment));

@@ -89,8 +89,8 @@ std::vector<double> ShorterLengths(const sim::ObstacleGene& gene) {
   return lengths;
 }
 
-constexpr std::array<controllers::ParameterInfo, 1> kMinimisationParameters = {
-    {{"shorten", "bool", 0, 0, 1, true, "make obstacles shorter too, and round their lengths"}}};
+const std::vector<controllers::ParameterInfo> kMinimisationParameters = {
+    {"shorten", "bool", 0, 0, 1, true, "make obstacles shorter too, and round their lengths"}};
 
 std::unique_ptr<LayoutQuestion> AskForSmallest(const Experiment& experiment, const sim::Genome& obstacles) {
   return std::make_unique<CaseMinimiser>(obstacles, RulesOf(experiment));

@@ -9,8 +9,8 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::array<controllers::ParameterInfo, 1> kConfirmationParameters = {
-    {{"confirmations", "", 0, 0, 100000, true, "runs of each case; 0 = until there is a verdict"}}};
+const std::vector<controllers::ParameterInfo> kConfirmationParameters = {
+    {"confirmations", "", 0, 0, 100000, true, "runs of each case; 0 = until there is a verdict"}};
 
 std::unique_ptr<LayoutQuestion> AskOnce(const Experiment& /*experiment*/, const sim::Genome& obstacles) {
   return std::make_unique<RepeatedCase>(obstacles, 1);

@@ -127,8 +127,7 @@ Confirmation ConfirmationIn(const CaseAnswer& answer) {
                    .example = {}};
   one.verdict = VerdictOf(one.tally, ConfirmationReplicates(experiment));
   one.interval = FailureInterval(one.tally);
-  const controllers::ScenarioInfo* scenario =
-      controllers::FindScenario(experiment.scenario, experiment.scenario_plugin);
+  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr || one.tally.failures == 0) return one;
   const FailureWays ways_of(*scenario, experiment.scenario_parameters, answer.test_case);
   const DescriptorGrid grid(CellsOf(experiment));

@@ -95,8 +95,7 @@ std::uint64_t KeyOfCase(const Experiment& about, const sim::TestCase& test_case)
 }
 
 std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::TestCase& test_case) {
-  if (controllers::FindScenario(experiment.scenario, experiment.scenario_plugin) == nullptr)
-    return std::nullopt;
+  if (controllers::FindScenario(experiment) == nullptr) return std::nullopt;
   const auto requirements = controllers::RequirementsOf(SpecOf(experiment, test_case, experiment.seed));
   if (!requirements) return CaseRefusal{"", requirements.error().message};
   if (const auto violation = sim::CheckValidity(test_case, *requirements))

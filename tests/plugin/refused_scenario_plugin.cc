@@ -16,8 +16,8 @@ struct Settings {
   sim::Tick tick_limit = 0;
 };
 
-constexpr std::array kMetrics = std::to_array<controllers::MetricInfo>({{"count", "", {}, "of nothing"}});
-constexpr std::array kAxes = std::to_array<controllers::DescriptorAxis>({{"counts", 0.0, 1.0, 2}});
+const std::vector<controllers::MetricInfo> kMetrics = {{"count", "", {}, "of nothing"}};
+const std::vector<controllers::DescriptorAxis> kAxes = {{"counts", 0.0, 1.0, 2}};
 
 std::vector<ScenarioInfo> Rows() {
   static const controllers::ParameterTable<Settings> table(

@@ -49,7 +49,7 @@ inline void Answer(const std::vector<SearchPlan>& plans, const Simulation& simul
                    std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const auto id = static_cast<SearchId>(i + 1);
-    const auto search = MakeSearch(plans[i].experiment, kOnlySearch, plans[i].cases).value();
+    const auto search = MakeSearch(plans[i].experiment, plans[i].cases).value();
     std::uint64_t runs = 0;
     while (!search->Progress().finished && runs < most) {
       for (const EvaluationRequest& request : search->Ask()) {
