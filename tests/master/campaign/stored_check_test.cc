@@ -112,13 +112,15 @@ TEST(CheckStoredTest, ACampaignThatWasInterruptedAnywhereIsWhole) {
 }
 
 TEST(CheckStoredTest, EverySearchOfASweepIsCheckedByItsOwnExperiment) {
-  const std::vector<Experiment> experiments = {ToyExperiment(1), ToyExperiment(2)};
-  MemoryStore store = FinishedToyCampaign(experiments);
-  EXPECT_TRUE(CheckStored(experiments[1], 2, store).ok());
-  EXPECT_FALSE(CheckStored(experiments[0], 2, store).ok()) << "the seeds are of another experiment";
+  const std::vector<SearchPlan> plans = PlansOf({ToyExperiment(1), ToyExperiment(2)});
+  MemoryStore store = FinishedToyCampaign({ToyExperiment(1), ToyExperiment(2)});
+  EXPECT_TRUE(CheckStored(plans[1], store).ok());
+  SearchPlan other = plans[1];
+  other.experiment = plans[0].experiment;
+  EXPECT_FALSE(CheckStored(other, store).ok()) << "the seeds are of another experiment";
   store.runs.at(RunIdOf(2, 4)).fitness = -1.0;
-  EXPECT_TRUE(CheckStored(experiments[0], 1, store).ok());
-  EXPECT_FALSE(CheckStored(experiments[1], 2, store).ok());
+  EXPECT_TRUE(CheckStored(plans[0], store).ok());
+  EXPECT_FALSE(CheckStored(plans[1], store).ok());
 }
 
 }  // namespace
