@@ -9,7 +9,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "base/system/sha256.h"
 #include "base/utf8.h"

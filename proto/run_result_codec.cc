@@ -4,7 +4,6 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "base/utf8.h"
 #include "proto/run.pb.h"

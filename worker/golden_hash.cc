@@ -28,14 +28,17 @@ std::vector<sim::TestCase> Cases() {
 }
 
 void AddRuns(const controllers::ControllerInfo& controller, Fnv1a64& hash) {
+  // One for any scenario runs in the first.
+  const controllers::ScenarioInfo* own = controllers::FindScenario(controller.scenario);
+  const controllers::ScenarioInfo& scenario = own != nullptr ? *own : controllers::Scenarios().front();
   const std::vector<sim::TestCase> cases = Cases();
   for (std::size_t i = 0; i < cases.size(); ++i) {
     sim::RunSpec spec;
     spec.test_case = cases[i];
-    spec.scenario = controller.scenario;
+    spec.scenario = scenario.name;
     spec.controller = controller.name;
     spec.seed = 1000 + i;
-    spec.scenario_parameters.emplace(controllers::FindScenario(controller.scenario)->time_limit, kRunSeconds);
+    spec.scenario_parameters.emplace(scenario.time_limit, kRunSeconds);
     const sim::RunResult result = Run(spec);
     hash.AddUint64(static_cast<std::uint64_t>(result.verdict));
     hash.AddUint64(result.hash);
@@ -63,17 +66,20 @@ void AddArithmetic(Fnv1a64& hash) {
 
 }  // namespace
 
+std::uint64_t GoldenHashOf(const controllers::ControllerInfo& controller) {
+  Fnv1a64 hash;
+  AddArithmetic(hash);
+  hash.AddBytes(controller.name);  // two controllers may do the same in runs as short as these
+  AddRuns(controller, hash);
+  return hash.value();
+}
+
 proto::GoldenHashes GoldenHashes(const std::vector<std::string>& controllers) {
-  Fnv1a64 arithmetic;
-  AddArithmetic(arithmetic);
   proto::GoldenHashes hashes;
   for (const controllers::ControllerInfo& controller : controllers::Controllers()) {
     if (!controllers.empty() && std::ranges::find(controllers, controller.name) == controllers.end())
       continue;
-    Fnv1a64 hash = arithmetic;
-    hash.AddBytes(controller.name);  // two controllers may do the same in runs as short as these
-    AddRuns(controller, hash);
-    hashes.emplace(controller.name, hash.value());
+    hashes.emplace(controller.name, GoldenHashOf(controller));
   }
   return hashes;
 }

@@ -1,7 +1,6 @@
 #include "analysis/statistics/clusters.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <numeric>
 

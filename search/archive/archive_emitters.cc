@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "sim/geometry/trigonometry.h"
 
@@ -34,6 +35,17 @@ double OnGrid(double value, double low, double high, double step) {
   const double divisions = std::round(1.0 / step);
   return std::round(value * divisions) / divisions;
 }
+double PlaceOnGrid(double place, const GenomeSpec& spec) {
+  return OnGrid(place, spec.position_min, spec.position_max, spec.step);
+}
+double LengthOnGrid(double length, const GenomeSpec& spec) {
+  return OnGrid(length, spec.length_min, spec.length_max, spec.step);
+}
+// From the longest `part` of the range of lengths.
+double DrawLongest(double part, const GenomeSpec& spec, sim::RandomStream& random) {
+  const double shortest = spec.length_max - part * (spec.length_max - spec.length_min);
+  return LengthOnGrid(random.Uniform(shortest, spec.length_max), spec);
+}
 
 // Whole degrees in [0, 360).
 double WholeTurn(double degrees) {
@@ -41,8 +53,8 @@ double WholeTurn(double degrees) {
   return whole - 360.0 * std::floor(whole / 360.0);
 }
 
-double Turned(double degrees, sim::RandomStream& random) {
-  return WholeTurn(degrees + kTurnNoise * random.Gaussian());
+std::optional<sim::Genome> IfValid(sim::Genome genome, const GenomeGenerator& generator) {
+  return generator.Valid(genome) ? std::optional(std::move(genome)) : std::nullopt;
 }
 
 }  // namespace
@@ -77,19 +89,18 @@ sim::Vec2 Mirrored(const sim::Vec2& point, const Way& way) {
   return way.start + 2.0 * along.dot(offset) * along - offset;
 }
 
-std::optional<sim::Genome> Mirrored(const sim::Genome& obstacles, const Way& way, const GenomeSpec& spec,
+std::optional<sim::Genome> Mirrored(const sim::Genome& obstacles, const Way& way,
                                     const GenomeGenerator& generator) {
   const double axis = sim::AngleOf(way.goal - way.start) / sim::kDegree;
   sim::Genome mirrored = obstacles;
   for (sim::ObstacleGene& gene : mirrored) {
     const sim::Vec2 center = Mirrored({gene.x, gene.y}, way);
-    gene.x = OnGrid(center.x(), spec.position_min, spec.position_max, spec.step);
-    gene.y = OnGrid(center.y(), spec.position_min, spec.position_max, spec.step);
+    gene.x = PlaceOnGrid(center.x(), generator.spec());
+    gene.y = PlaceOnGrid(center.y(), generator.spec());
     gene.orientation_deg = WholeTurn(2.0 * axis - gene.orientation_deg);
     for (sim::Vec2& point : gene.path) point = Mirrored(point, way);
   }
-  if (!generator.Valid(mirrored)) return std::nullopt;
-  return mirrored;
+  return IfValid(std::move(mirrored), generator);
 }
 
 sim::Genome Keep(const sim::Genome& obstacles, std::vector<std::size_t> indices) {
@@ -105,12 +116,12 @@ sim::Genome Without(const sim::Genome& obstacles, std::size_t index) {
   return rest;
 }
 
-std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& way, const GenomeSpec& spec,
+std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& way,
                                   const GenomeGenerator& generator, sim::RandomStream& random) {
+  const GenomeSpec& spec = generator.spec();
   const sim::Vec2 along = (way.goal - way.start).normalized();
   const sim::Vec2 across(-along.y(), along.x());
   const double turn = sim::AngleOf(across) / sim::kDegree;
-  const double shortest = spec.length_max - kLongest * (spec.length_max - spec.length_min);
   // One draw to a statement: compilers differ in the order in which they compute the two sides of a sum.
   const double aside = kRowNoise * random.Gaussian();
   const double onward = kPlaceNoise * random.Gaussian();
@@ -121,45 +132,36 @@ std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& 
     const double side = i - 0.5 * (count - 1);
     const sim::Vec2 center = middle + side * kSpacing * spec.length_max * across;
     sim::ObstacleGene gene = generator.RandomGene(random);
-    gene.x = OnGrid(center.x(), spec.position_min, spec.position_max, spec.step);
-    gene.y = OnGrid(center.y(), spec.position_min, spec.position_max, spec.step);
-    gene.length =
-        OnGrid(random.Uniform(shortest, spec.length_max), spec.length_min, spec.length_max, spec.step);
+    gene.x = PlaceOnGrid(center.x(), spec);
+    gene.y = PlaceOnGrid(center.y(), spec);
+    gene.length = DrawLongest(kLongest, spec, random);
     const double leaning = side > 0.0 ? lean : side < 0.0 ? -lean : 0.0;
     gene.orientation_deg = WholeTurn(turn + leaning + kTurnInRow * random.Gaussian());
     row.push_back(std::move(gene));
   }
-  if (!generator.Valid(row)) return std::nullopt;
-  return row;
+  return IfValid(std::move(row), generator);
 }
 
-std::optional<sim::Genome> Longest(const sim::Genome& obstacles, const GenomeSpec& spec,
-                                   const GenomeGenerator& generator, sim::RandomStream& random) {
+std::optional<sim::Genome> Longest(const sim::Genome& obstacles, const GenomeGenerator& generator,
+                                   sim::RandomStream& random) {
   sim::Genome longest = obstacles;
-  const double shortest = spec.length_max - kLongestAlone * (spec.length_max - spec.length_min);
   for (sim::ObstacleGene& gene : longest) {
-    gene.length =
-        OnGrid(random.Uniform(shortest, spec.length_max), spec.length_min, spec.length_max, spec.step);
+    gene.length = DrawLongest(kLongestAlone, generator.spec(), random);
     gene.orientation_deg = WholeTurn(gene.orientation_deg + kTurnAlone * random.Gaussian());
   }
-  if (!generator.Valid(longest)) return std::nullopt;
-  return longest;
+  return IfValid(std::move(longest), generator);
 }
 
-std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeSpec& spec,
-                                    const GenomeGenerator& generator, sim::RandomStream& random) {
+std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeGenerator& generator,
+                                    sim::RandomStream& random) {
   sim::Genome jittered = obstacles;
   for (sim::ObstacleGene& gene : jittered) {
-    gene.x =
-        OnGrid(gene.x + kPlaceJitter * random.Gaussian(), spec.position_min, spec.position_max, spec.step);
-    gene.y =
-        OnGrid(gene.y + kPlaceJitter * random.Gaussian(), spec.position_min, spec.position_max, spec.step);
-    gene.length =
-        OnGrid(gene.length + kLengthJitter * random.Gaussian(), spec.length_min, spec.length_max, spec.step);
-    gene.orientation_deg = Turned(gene.orientation_deg, random);
+    gene.x = PlaceOnGrid(gene.x + kPlaceJitter * random.Gaussian(), generator.spec());
+    gene.y = PlaceOnGrid(gene.y + kPlaceJitter * random.Gaussian(), generator.spec());
+    gene.length = LengthOnGrid(gene.length + kLengthJitter * random.Gaussian(), generator.spec());
+    gene.orientation_deg = WholeTurn(gene.orientation_deg + kTurnNoise * random.Gaussian());
   }
-  if (!generator.Valid(jittered)) return std::nullopt;
-  return jittered;
+  return IfValid(std::move(jittered), generator);
 }
 
 }  // namespace gauntlet

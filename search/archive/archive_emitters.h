@@ -31,20 +31,20 @@ std::vector<std::size_t> ByDistanceToWay(const sim::Genome& obstacles, const Way
 // Reflected in the way: what traps a swarm on its left may trap it on its right.
 sim::Vec2 Mirrored(const sim::Vec2& point, const Way& way);
 // Nothing when the layout is not valid.
-std::optional<sim::Genome> Mirrored(const sim::Genome& obstacles, const Way& way, const GenomeSpec& spec,
+std::optional<sim::Genome> Mirrored(const sim::Genome& obstacles, const Way& way,
                                     const GenomeGenerator& generator);
 
 // `count` obstacles side by side across the way, near `place`: long ones, which the swarm has to go around.
 // Those at the ends lean forward or backward. Nothing when the layout is not valid.
-std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& way, const GenomeSpec& spec,
+std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& way,
                                   const GenomeGenerator& generator, sim::RandomStream& random);
 
 // Every obstacle as long as any may be, or nearly, and turned a little. Nothing when the layout is not valid.
-std::optional<sim::Genome> Longest(const sim::Genome& obstacles, const GenomeSpec& spec,
-                                   const GenomeGenerator& generator, sim::RandomStream& random);
+std::optional<sim::Genome> Longest(const sim::Genome& obstacles, const GenomeGenerator& generator,
+                                   sim::RandomStream& random);
 
 // Every obstacle moved, stretched and turned a little. Nothing when the layout is not valid.
-std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeSpec& spec,
-                                    const GenomeGenerator& generator, sim::RandomStream& random);
+std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeGenerator& generator,
+                                    sim::RandomStream& random);
 
 }  // namespace gauntlet

@@ -2,7 +2,6 @@
 // each cell the test cases that fail there, the smallest first.
 #pragma once
 
-#include <array>
 #include <compare>
 #include <cstddef>
 #include <map>

@@ -31,8 +31,7 @@ std::string_view NameOf(Emitter emitter) {
 
 LayoutProposer::LayoutProposer(const SearchSetup& setup, const GenomeGenerator& generator, bool places,
                                FailureArchive& archive)
-    : spec_(setup.experiment.genome),
-      generator_(generator),
+    : generator_(generator),
       places_(places),
       way_{setup.requirements.start, setup.requirements.goal},
       inflation_(setup.requirements.inflation),
@@ -70,7 +69,7 @@ double LayoutProposer::Promise(const sim::TestCase& test_case) const {
   for (const std::size_t cell : cells) {
     const Finding* elite = archive_.EliteOf(cell);
     const std::size_t obstacles =
-        elite == nullptr ? 2 * static_cast<std::size_t>(spec_.genes) : elite->size().obstacles;
+        elite == nullptr ? 2 * static_cast<std::size_t>(generator_.spec().genes) : elite->size().obstacles;
     promise += static_cast<double>(obstacles - 1);
   }
   return promise;
@@ -86,7 +85,7 @@ std::optional<Proposal> LayoutProposer::Mirrored() {
     if (!archive_.WouldWin(target_cell, elite.size())) continue;
     archive_.SetMirrored(cell);
     std::optional<sim::Genome> mirrored =
-        gauntlet::Mirrored(elite.individual.test_case.obstacles, way_, spec_, generator_);
+        gauntlet::Mirrored(elite.individual.test_case.obstacles, way_, generator_);
     if (!mirrored) continue;
     return Proposal{Emitter::kMirrored, *std::move(mirrored), elite.individual.id, target_cell};
   }
@@ -94,7 +93,7 @@ std::optional<Proposal> LayoutProposer::Mirrored() {
 }
 
 std::uint32_t LayoutProposer::MostAcross() const {
-  return std::min(kMostAcross, static_cast<std::uint32_t>(spec_.genes));
+  return std::min(kMostAcross, static_cast<std::uint32_t>(generator_.spec().genes));
 }
 
 std::uint32_t LayoutProposer::DrawMostAcross(sim::RandomStream& random) const {
@@ -118,7 +117,7 @@ std::optional<Proposal> LayoutProposer::Across(bool needed, sim::RandomStream& r
     const Finding* elite =
         places_ && count == 1 ? archive_.EliteOf(archive_.grid().CellOf({place.x(), place.y()})) : nullptr;
     if (elite != nullptr && elite->size().obstacles == 1) continue;
-    std::optional<sim::Genome> row = gauntlet::Across(place, count, way_, spec_, generator_, random);
+    std::optional<sim::Genome> row = gauntlet::Across(place, count, way_, generator_, random);
     if (!row) continue;
     return Proposal{Emitter::kAcross, *std::move(row)};
   }
@@ -132,10 +131,9 @@ std::optional<Proposal> LayoutProposer::Needed(sim::RandomStream& random) const 
     const Finding* elite = count == 1 && random.Chance(kOfOne) ? DrawEliteOfOne(random) : nullptr;
     const sim::Vec2 place = DrawPlace(random);
     std::optional<sim::Genome> row =
-        elite == nullptr
-            ? gauntlet::Across(place, count, way_, spec_, generator_, random)
-            : gauntlet::Jittered(elite->individual.test_case.obstacles, spec_, generator_, random);
-    if (row && count == 1) row = Longest(*row, spec_, generator_, random);
+        elite == nullptr ? gauntlet::Across(place, count, way_, generator_, random)
+                         : gauntlet::Jittered(elite->individual.test_case.obstacles, generator_, random);
+    if (row && count == 1) row = Longest(*row, generator_, random);
     if (!row) continue;
     if (elite == nullptr) return Proposal{Emitter::kAcross, *std::move(row)};
     return Proposal{Emitter::kJittered, *std::move(row), elite->individual.id,
@@ -163,7 +161,7 @@ std::optional<Proposal> LayoutProposer::Jittered(sim::RandomStream& random) cons
     sim::Genome obstacles = elite.individual.test_case.obstacles;
     if (obstacles.size() < 2) continue;
     obstacles = Without(obstacles, random.Below(static_cast<std::uint32_t>(obstacles.size())));
-    std::optional<sim::Genome> jittered = gauntlet::Jittered(obstacles, spec_, generator_, random);
+    std::optional<sim::Genome> jittered = gauntlet::Jittered(obstacles, generator_, random);
     if (!jittered) continue;
     return Proposal{Emitter::kJittered, *std::move(jittered), elite.individual.id,
                     archive_.grid().CellOf(elite.Middle())};

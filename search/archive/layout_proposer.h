@@ -67,7 +67,6 @@ class LayoutProposer {
   // The obstacles in the order in which they are probably needed.
   std::vector<std::size_t> Order(const sim::Genome& obstacles, const Descriptor& failure) const;
 
-  const GenomeSpec& spec_;
   const GenomeGenerator& generator_;
   const bool places_;
   const Way way_;

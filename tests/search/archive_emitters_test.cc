@@ -31,7 +31,7 @@ TEST(ArchiveEmittersTest, MirroringInTheDiagonalExchangesTheCoordinates) {
   const SearchSetup setup = ToySetup();
   const GenomeGenerator generator = MakeGenerator(setup);
   const sim::Genome obstacles = {{.x = -1.5, .y = 0.7, .length = 1.2, .width = 0.2, .orientation_deg = 30.0}};
-  const auto mirrored = Mirrored(obstacles, kDiagonal, setup.experiment.genome, generator);
+  const auto mirrored = Mirrored(obstacles, kDiagonal, generator);
   ASSERT_TRUE(mirrored.has_value());
   EXPECT_EQ(mirrored->front(),
             (sim::ObstacleGene{.x = 0.7, .y = -1.5, .length = 1.2, .width = 0.2, .orientation_deg = 60.0}));
@@ -44,10 +44,10 @@ TEST(ArchiveEmittersTest, MirroringTwiceGivesBackEveryRandomCase) {
     for (std::uint64_t id = 1; id <= 20; ++id) {
       sim::RandomStream random = GenomeStream(1, id);
       const sim::Genome obstacles = generator.RandomTestCase(random).value().obstacles;
-      const auto once = Mirrored(obstacles, way, setup.experiment.genome, generator);
+      const auto once = Mirrored(obstacles, way, generator);
       if (!once) continue;  // start and goal of the toy do not lie mirrored
       EXPECT_NE(*once, obstacles);
-      EXPECT_EQ(Mirrored(*once, way, setup.experiment.genome, generator), obstacles);
+      EXPECT_EQ(Mirrored(*once, way, generator), obstacles);
     }
   }
 }
@@ -60,7 +60,7 @@ TEST(ArchiveEmittersTest, WhatIsDrawnIsValidAndOnTheGridOfTheGenome) {
   const Way way = {{2.5, 2.5}, {-2.5, -2.5}};
   int valid = 0;
   for (int i = 0; i < 200; ++i) {
-    const auto drawn = Across({1.0, 1.0}, 1, way, spec, generator, random);
+    const auto drawn = Across({1.0, 1.0}, 1, way, generator, random);
     if (!drawn) continue;
     ++valid;
     ASSERT_EQ(drawn->size(), 1U);
@@ -68,7 +68,7 @@ TEST(ArchiveEmittersTest, WhatIsDrawnIsValidAndOnTheGridOfTheGenome) {
     EXPECT_GE(drawn->front().length, 1.6);
     EXPECT_LE(drawn->front().length, spec.length_max);
     EXPECT_DOUBLE_EQ(drawn->front().x * 10.0, std::round(drawn->front().x * 10.0));
-    const auto jittered = Jittered(*drawn, spec, generator, random);
+    const auto jittered = Jittered(*drawn, generator, random);
     if (jittered) {
       EXPECT_TRUE(generator.Valid(*jittered));
       EXPECT_LE(jittered->front().length, spec.length_max);
@@ -85,7 +85,7 @@ TEST(ArchiveEmittersTest, TheLongestStandsWhereItWasAndIsTurnedALittle) {
   sim::RandomStream random = GenomeStream(1, 1);
   double turn = 0.0;
   for (int i = 0; i < 100; ++i) {
-    const auto longest = Longest({gene}, spec, generator, random);
+    const auto longest = Longest({gene}, generator, random);
     ASSERT_TRUE(longest.has_value());
     const sim::ObstacleGene& made = longest->front();
     EXPECT_EQ(made.x, gene.x);
@@ -96,8 +96,7 @@ TEST(ArchiveEmittersTest, TheLongestStandsWhereItWasAndIsTurnedALittle) {
   }
   EXPECT_GT(turn, 20.0);
   EXPECT_LT(turn, 90.0);
-  EXPECT_EQ(Longest({{.x = 2.5, .y = 2.5}}, spec, generator, random), std::nullopt)
-      << "where the swarm starts";
+  EXPECT_EQ(Longest({{.x = 2.5, .y = 2.5}}, generator, random), std::nullopt) << "where the swarm starts";
 }
 
 TEST(ArchiveEmittersTest, ARowLiesAcrossTheWay) {
@@ -108,7 +107,7 @@ TEST(ArchiveEmittersTest, ARowLiesAcrossTheWay) {
   int valid = 0;
   double lean = 0.0;
   for (int i = 0; i < 100; ++i) {
-    const auto row = Across({0.0, 0.0}, 3, way, setup.experiment.genome, generator, random);
+    const auto row = Across({0.0, 0.0}, 3, way, generator, random);
     if (!row) continue;
     ++valid;
     ASSERT_EQ(row->size(), 3U);

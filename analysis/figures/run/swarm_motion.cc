@@ -1,7 +1,6 @@
 #include "analysis/figures/run/swarm_motion.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 

@@ -100,7 +100,6 @@ class TConfigurationNodeIterator {
     return before;
   }
   bool operator==(const TConfigurationNodeIterator& other) const { return Get() == other.Get(); }
-  bool operator!=(const TConfigurationNodeIterator& other) const { return Get() != other.Get(); }
 
  private:
   void Skip() {

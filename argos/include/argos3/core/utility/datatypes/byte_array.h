@@ -35,7 +35,6 @@ class CByteArray {
   // to delete.
   CByteArray* operator()(std::size_t start, SInt64 end = -1) const;
   bool operator==(const CByteArray& other) const { return bytes_ == other.bytes_; }
-  bool operator!=(const CByteArray& other) const { return bytes_ != other.bytes_; }
 
   CByteArray& AddBuffer(const UInt8* bytes, std::size_t size);
   // These take from the front, and throw when less is left.

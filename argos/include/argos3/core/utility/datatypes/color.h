@@ -36,7 +36,6 @@ class CColor {
   CColor& Blend(const CColor& background);
 
   bool operator==(const CColor& other) const { return UInt32(*this) == UInt32(other); }
-  bool operator!=(const CColor& other) const { return !(*this == other); }
   operator UInt32() const {
     return static_cast<UInt32>(red_) << 24 | static_cast<UInt32>(green_) << 16 |
            static_cast<UInt32>(blue_) << 8 | static_cast<UInt32>(alpha_);

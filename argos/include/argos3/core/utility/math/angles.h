@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <compare>
 #include <iostream>
 #include <limits>
 #include <utility>
@@ -23,6 +24,15 @@ class CAngle {
   constexpr Real GetValue() const { return value_; }
   void SetValue(Real value) { value_ = value; }
   Real GetAbsoluteValue() const { return std::fabs(value_); }
+  // Into the range of that name, in place; both of its ends stay.
+  Angle& SignedNormalize() {
+    Angle::SIGNED_RANGE.WrapValue(static_cast<Angle&>(*this));
+    return static_cast<Angle&>(*this);
+  }
+  Angle& UnsignedNormalize() {
+    Angle::UNSIGNED_RANGE.WrapValue(static_cast<Angle&>(*this));
+    return static_cast<Angle&>(*this);
+  }
 
   constexpr Angle operator+() const { return Angle(value_); }
   constexpr Angle operator-() const { return Angle(-value_); }
@@ -51,20 +61,8 @@ class CAngle {
   friend constexpr bool operator==(const Angle& one, const Angle& other) {
     return one.GetValue() == other.GetValue();
   }
-  friend constexpr bool operator!=(const Angle& one, const Angle& other) {
-    return one.GetValue() != other.GetValue();
-  }
-  friend constexpr bool operator<(const Angle& one, const Angle& other) {
-    return one.GetValue() < other.GetValue();
-  }
-  friend constexpr bool operator<=(const Angle& one, const Angle& other) {
-    return one.GetValue() <= other.GetValue();
-  }
-  friend constexpr bool operator>(const Angle& one, const Angle& other) {
-    return one.GetValue() > other.GetValue();
-  }
-  friend constexpr bool operator>=(const Angle& one, const Angle& other) {
-    return one.GetValue() >= other.GetValue();
+  friend constexpr std::partial_ordering operator<=>(const Angle& one, const Angle& other) {
+    return one.GetValue() <=> other.GetValue();
   }
   friend std::istream& operator>>(std::istream& stream, Angle& angle) {
     Real value = 0.0;
@@ -94,9 +92,6 @@ class CRadians : public CAngle<CRadians> {
   static const CRange<CRadians> UNSIGNED_RANGE;  // [0, 2 pi]
 
   void FromValueInDegrees(Real value);
-  // Into [-pi, pi] and [0, 2 pi], in place; both ends stay.
-  CRadians& SignedNormalize();
-  CRadians& UnsignedNormalize();
   CRadians& Negate() { return Set(-GetValue()); }
 };
 
@@ -109,8 +104,6 @@ class CDegrees : public CAngle<CDegrees> {
   static const CRange<CDegrees> UNSIGNED_RANGE;  // [0, 360]
 
   void FromValueInRadians(Real value) { SetValue(value * CRadians::RADIANS_TO_DEGREES); }
-  CDegrees& SignedNormalize();
-  CDegrees& UnsignedNormalize();
 };
 
 inline constexpr CRadians CRadians::PI(ARGOS_PI);
@@ -129,22 +122,6 @@ inline constexpr CRange<CDegrees> CDegrees::UNSIGNED_RANGE(CDegrees(0.0), CDegre
 
 inline void CRadians::FromValueInDegrees(Real value) {
   SetValue(value * CDegrees::DEGREES_TO_RADIANS);
-}
-inline CRadians& CRadians::SignedNormalize() {
-  SIGNED_RANGE.WrapValue(*this);
-  return *this;
-}
-inline CRadians& CRadians::UnsignedNormalize() {
-  UNSIGNED_RANGE.WrapValue(*this);
-  return *this;
-}
-inline CDegrees& CDegrees::SignedNormalize() {
-  SIGNED_RANGE.WrapValue(*this);
-  return *this;
-}
-inline CDegrees& CDegrees::UnsignedNormalize() {
-  UNSIGNED_RANGE.WrapValue(*this);
-  return *this;
 }
 
 inline CDegrees ToDegrees(const CRadians& angle) {

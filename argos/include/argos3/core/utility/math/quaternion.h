@@ -47,7 +47,6 @@ class CQuaternion {
   bool operator==(const CQuaternion& other) const {
     return w_ == other.w_ && x_ == other.x_ && y_ == other.y_ && z_ == other.z_;
   }
-  bool operator!=(const CQuaternion& other) const { return !(*this == other); }
   CQuaternion& operator+=(const CQuaternion& other) {
     return *this = {w_ + other.w_, x_ + other.x_, y_ + other.y_, z_ + other.z_};
   }

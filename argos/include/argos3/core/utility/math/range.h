@@ -19,42 +19,20 @@ template <typename T>
 class CRange {
  public:
   constexpr CRange(const T& min = T(), const T& max = T()) : min_(min), max_(max), span_(max - min) {
-#ifndef NDEBUG
-    if (max < min) throw CARGoSException("CRange: the minimum is greater than the maximum");
-#endif
+    Check();
   }
 
-  constexpr T GetMin() const {
-    return min_;
-  }
-  constexpr T GetMax() const {
-    return max_;
-  }
-  constexpr T GetSpan() const {
-    return span_;
-  }
-  void SetMin(const T& min) {
-    Set(min, max_);
-  }
-  void SetMax(const T& max) {
-    Set(min_, max);
-  }
-  void Set(const T& min, const T& max) {
-    *this = CRange(min, max);
-  }
+  constexpr T GetMin() const { return min_; }
+  constexpr T GetMax() const { return max_; }
+  constexpr T GetSpan() const { return span_; }
+  void SetMin(const T& min) { Set(min, max_); }
+  void SetMax(const T& max) { Set(min_, max); }
+  void Set(const T& min, const T& max) { *this = CRange(min, max); }
 
-  bool WithinMinBoundIncludedMaxBoundIncluded(const T& value) const {
-    return value >= min_ && value <= max_;
-  }
-  bool WithinMinBoundIncludedMaxBoundExcluded(const T& value) const {
-    return value >= min_ && value < max_;
-  }
-  bool WithinMinBoundExcludedMaxBoundIncluded(const T& value) const {
-    return value > min_ && value <= max_;
-  }
-  bool WithinMinBoundExcludedMaxBoundExcluded(const T& value) const {
-    return value > min_ && value < max_;
-  }
+  bool WithinMinBoundIncludedMaxBoundIncluded(const T& value) const { return value >= min_ && value <= max_; }
+  bool WithinMinBoundIncludedMaxBoundExcluded(const T& value) const { return value >= min_ && value < max_; }
+  bool WithinMinBoundExcludedMaxBoundIncluded(const T& value) const { return value > min_ && value <= max_; }
+  bool WithinMinBoundExcludedMaxBoundExcluded(const T& value) const { return value > min_ && value < max_; }
 
   // To the nearer end, in place, what is outside.
   void TruncValue(T& value) const {
@@ -92,6 +70,12 @@ class CRange {
   }
 
  private:
+  constexpr void Check() const {
+#ifndef NDEBUG
+    if (max_ < min_) throw CARGoSException("CRange: the minimum is greater than the maximum");
+#endif
+  }
+
   T min_;
   T max_;
   T span_;

@@ -30,13 +30,9 @@ class CVector2 {
     x_ = x;
     y_ = y;
   }
-  void FromPolarCoordinates(Real length, const CRadians& angle) {
-    Real sine = 0.0;
-    Real cosine = 0.0;
-    SinCos(angle, sine, cosine);
-    Set(length * cosine, length * sine);
-  }
-  void FromPolarCoordinates(Real length, const CBearing& angle) {
+  // Of a CRadians or a CBearing.
+  template <typename Angle>
+  void FromPolarCoordinates(Real length, const Angle& angle) {
     Real sine = 0.0;
     Real cosine = 0.0;
     SinCos(angle, sine, cosine);
@@ -74,7 +70,6 @@ class CVector2 {
   Real CrossProduct(const CVector2& other) const { return x_ * other.y_ - y_ * other.x_; }
 
   bool operator==(const CVector2& other) const { return x_ == other.x_ && y_ == other.y_; }
-  bool operator!=(const CVector2& other) const { return !(*this == other); }
   CVector2& operator+=(const CVector2& other) {
     Set(x_ + other.x_, y_ + other.y_);
     return *this;

@@ -66,7 +66,6 @@ class CVector3 {
   }
 
   bool operator==(const CVector3& other) const { return values_ == other.values_; }
-  bool operator!=(const CVector3& other) const { return values_ != other.values_; }
   // True when it is of each of the three.
   bool operator<(const CVector3& other) const {
     return GetX() < other.GetX() && GetY() < other.GetY() && GetZ() < other.GetZ();
