@@ -12,7 +12,7 @@ namespace gauntlet {
 std::string DistinctFailuresHtml(const CampaignPages& pages, std::size_t number);
 // Cases that were made smaller, each beside what is left of it; "" when there are none.
 std::string MinimisedCasesHtml(const CampaignPages& pages, std::size_t number);
-// How the case was made smaller, and which of its obstacles are to blame; "" when nobody asked.
+// What questions about the case were answered with, a section each; "" when nobody asked.
 std::string AnswersHtml(const CampaignFacts& facts, const CaseFacts& of_case);
 
 }  // namespace gauntlet

@@ -12,8 +12,20 @@ namespace {
 const std::vector<controllers::ParameterInfo> kConfirmationParameters = {
     {"confirmations", "", 0, 0, 100000, true, "runs of each case; 0 = until there is a verdict"}};
 
+class EvaluatedOnce final : public LayoutQuestion {
+ public:
+  explicit EvaluatedOnce(const sim::Genome& obstacles) : layout_(AllOf(obstacles)) {}
+  const Layout& layout() const override { return layout_; }
+  int runs() const override { return told_ ? 0 : 1; }
+  void Tell(const LayoutRuns& /*runs*/) override { told_ = true; }
+
+ private:
+  const Layout layout_;
+  bool told_ = false;
+};
+
 std::unique_ptr<LayoutQuestion> AskOnce(const Experiment& /*experiment*/, const sim::Genome& obstacles) {
-  return std::make_unique<RepeatedCase>(obstacles, 1);
+  return std::make_unique<EvaluatedOnce>(obstacles);
 }
 
 std::unique_ptr<LayoutQuestion> AskForVerdict(const Experiment& experiment, const sim::Genome& obstacles) {

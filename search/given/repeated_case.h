@@ -1,5 +1,5 @@
-// Given cases as they are, each simulated so often as was asked, or until it is known whether it fails: what
-// `gauntlet evaluate`, `confirm` and `check` do.
+// Given cases as they are, each evaluated once, or so often as was asked, or until it is known whether it
+// fails: what `gauntlet evaluate`, `confirm` and `check` do.
 #pragma once
 
 #include "search/given/layout_question.h"
@@ -9,17 +9,17 @@ namespace gauntlet {
 
 class RepeatedCase final : public LayoutQuestion {
  public:
-  // `evaluations`: 0 = until there is a verdict (VerdictOf). A run without a result ends it.
-  RepeatedCase(const sim::Genome& obstacles, int evaluations)
-      : layout_(AllOf(obstacles)), evaluations_(evaluations) {}
+  // `replicates`: 0 = until there is a verdict (VerdictOf). A run without a result ends it.
+  RepeatedCase(const sim::Genome& obstacles, int replicates)
+      : layout_(AllOf(obstacles)), replicates_(replicates) {}
 
   const Layout& layout() const override { return layout_; }
-  int runs() const override { return RunsToVerdict(told_.tally, evaluations_); }
+  int runs() const override { return RunsToVerdict(told_.tally, replicates_); }
   void Tell(const LayoutRuns& runs) override { told_.Add(runs); }
 
  private:
   const Layout layout_;
-  const int evaluations_;
+  const int replicates_;
   LayoutRuns told_;
 };
 

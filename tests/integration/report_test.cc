@@ -169,7 +169,7 @@ TEST(ReportTest, LeadsWithDistinctFailuresAndShowsWhatObstaclesDo) {
   const std::size_t found = page.find(std::to_string(failures.size()) + " distinct failures (");
   ASSERT_NE(found, std::string::npos);
   EXPECT_LT(found, page.find("What was tested"));
-  const std::size_t pictures = page.find("What its obstacles do");
+  const std::size_t pictures = page.find("What is left of it");
   ASSERT_NE(pictures, std::string::npos);
   EXPECT_LT(page.rfind("id=\"run-0-" + run + "\"", pictures), pictures) << "on the page of its run";
   EXPECT_NE(page.find("How the case was made smaller", pictures), std::string::npos);

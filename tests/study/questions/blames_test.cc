@@ -56,7 +56,7 @@ std::vector<CaseAnswer> Blamed(bool fails, int replicates = 10) {
         result.robots.resize(2);
         result.robots[0].waypoints = {{-0.4, 0.0}, {-0.4, 0.0}};
         result.robots[1].lost = true;
-        result.robots[1].waypoints = {{0.6, 0.0}, {0.8, 0.0}};
+        result.robots[1].waypoints = {{0.72, 0.0}, {0.78, 0.0}};
         return result;
       },
       KeyOfCase);

@@ -33,7 +33,7 @@ TEST(MinimiseQuestion, TellsWhatIsLeftAndKeepsIt) {
   const Told told = TellMinimised(Minimised(Trap));
   EXPECT_EQ(ToText(told.section),
             "  case    failed  obstacles  left  which     fails  probability (95 %)  runs\n"
-            "  run 17  5 of 5          8     2  3 6    30 of 30   89 to 100 %          96\n");
+            "  run 17  5 of 5          8     2  3 6    30 of 30   89 to 100 %         105\n");
   ASSERT_EQ(told.files.size(), 2U);
   EXPECT_EQ(told.files[0].path, "d/asked/1/run-17-minimised.json");
   EXPECT_EQ(told.files[1].what, "how it came about");
