@@ -2,7 +2,6 @@
 // floor is cut into square patches, and a patch is patrolled once a robot's centre was in it. No formula over
 // the robots' places says that, for it is about where nobody has been.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <span>
@@ -231,8 +230,8 @@ const std::vector<sim::AnnotationStyle> kAnnotations = {
     {"area", "", sim::Mark::kArea, "area the swarm starts in"},
     {"disc", "missed", sim::Mark::kGoal, "where nobody was"},
 };
-constexpr std::array kAxes =
-    std::to_array<controllers::DescriptorAxis>({{"missed_x", -3.0, 3.0, 6}, {"missed_y", -3.0, 3.0, 6}});
+const std::vector<controllers::DescriptorAxis> kAxes = {{"missed_x", -3.0, 3.0, 6},
+                                                        {"missed_y", -3.0, 3.0, 6}};
 
 std::vector<controllers::ScenarioInfo> MyScenarios() {
   using S = PatrolSettings;

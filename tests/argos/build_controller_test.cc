@@ -13,6 +13,7 @@
 #include "controllers/examples/light_flocking_registry.h"
 #include "controllers/examples/light_flocking_scenario.h"
 #include "controllers/registry.h"
+#include "controllers/rows/row_checks.h"
 #include "sdk/plugin.h"
 #include "sim/simulation.h"
 #include "tests/argos/light_flocking_form.h"
@@ -73,20 +74,22 @@ TEST_F(BuildController, MakesAPluginWhoseParametersAreThoseOfTheFile) {
   const auto* const plugin = static_cast<const sdk::Plugin*>(dlsym(handle, sdk::kPluginSymbol));
   ASSERT_NE(plugin, nullptr);
   EXPECT_STREQ(plugin->fingerprint, sdk::kPluginFingerprint.c_str());
-  const std::vector<ControllerInfo> rows = plugin->controllers();
+  const Result<std::string> told = plugin->rows();
+  ASSERT_TRUE(told.ok()) << told.error().message;
+  const auto rows = controllers::ReadRows(nlohmann::json::parse(*told), library).value().controllers;
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].name, "light_flocking_controller");
   sim::Parameters values;
   for (const auto& parameter : rows[0].parameters) {
-    values[std::string(parameter.name)] = parameter.default_value;
+    values[parameter.name] = parameter.default_value;
   }
   EXPECT_EQ(values.at("wheel_turning.max_speed"), 10.0);
   EXPECT_EQ(values.at("flocking.gain"), 1000.0);
 
-  const std::uint64_t trajectory = TrajectoryOf(rows[0].make(values));
+  const std::uint64_t trajectory = TrajectoryOf(plugin->make(rows[0].name, values));
   EXPECT_EQ(trajectory, TrajectoryOf(ExampleFlockers()));
   values["wheel_turning.max_speed"] = 8.0;
-  EXPECT_NE(TrajectoryOf(rows[0].make(values)), trajectory);
+  EXPECT_NE(TrajectoryOf(plugin->make(rows[0].name, values)), trajectory);
 }
 
 // Without obstacles, where the built-in robots gather too.

@@ -68,7 +68,7 @@ class Faulty : public sim::Scenario {
 controllers::ScenarioInfo Row(std::string_view fault) {
   static const controllers::ParameterTable<Settings> table(
       {{"time_limit", "s", 1, 1, 60, controllers::IntoTicks<&Settings::tick_limit>(), "length of a run"}});
-  controllers::ScenarioInfo row{.name = fault,
+  controllers::ScenarioInfo row{.name = std::string(fault),
                                 .description = "misbehaves",
                                 .default_controller = "light-flocking",
                                 .parameters = table.infos(),

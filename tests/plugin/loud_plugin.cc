@@ -27,7 +27,8 @@ struct NoSettings {};
 std::vector<controllers::ControllerInfo> Rows() {
   static const controllers::ParameterTable<NoSettings> table({});
   return {controllers::ControllerRow(
-      "loud", controllers::kAnyScenario, "prints when it is loaded", table, +[](const NoSettings&) {
+      "loud", std::string(controllers::kAnyScenario), "prints when it is loaded", table,
+      +[](const NoSettings&) {
         return controllers::ControllerFactory{[](const controllers::ControllerContext& context) {
           if (robots++ != context.robot) throw std::runtime_error("statics of another run");
           return std::make_unique<Robot>();

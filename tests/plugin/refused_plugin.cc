@@ -65,14 +65,23 @@ std::vector<controllers::ControllerInfo> Rows() {
       +[](const NoSettings&) { return controllers::ControllerFactory{}; })};
 }
 
+#if defined(OTHER_ABI) || defined(OTHER_COMPILER)
+constexpr gauntlet::sdk::Plugin Changed(std::uint64_t abi, const char* fingerprint) {
+  gauntlet::sdk::Plugin plugin = gauntlet::sdk::Exports<Rows, nullptr>::kPlugin;
+  plugin.abi = abi;
+  plugin.fingerprint = fingerprint;
+  return plugin;
+}
+#endif
+
 }  // namespace
 
 #if defined(OTHER_ABI)
 extern "C" __attribute__((visibility("default"))) const gauntlet::sdk::Plugin gauntlet_plugin;
-const gauntlet::sdk::Plugin gauntlet_plugin = {gauntlet::sdk::kPluginAbi + 1, "of the future", Rows};
+const gauntlet::sdk::Plugin gauntlet_plugin = Changed(gauntlet::sdk::kPluginAbi + 1, "of the future");
 #elif defined(OTHER_COMPILER)
 extern "C" __attribute__((visibility("default"))) const gauntlet::sdk::Plugin gauntlet_plugin;
-const gauntlet::sdk::Plugin gauntlet_plugin = {gauntlet::sdk::kPluginAbi, "arm64 libc++ 14", Rows};
+const gauntlet::sdk::Plugin gauntlet_plugin = Changed(gauntlet::sdk::kPluginAbi, "arm64 libc++ 14");
 #elif defined(WITHOUT_DESCRIPTION)
 __attribute__((used)) auto* const kUnused = &Rows;
 #else

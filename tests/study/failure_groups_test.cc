@@ -20,8 +20,8 @@ namespace {
 using testing::ElementsAre;
 using Metrics = std::vector<std::pair<std::string, double>>;
 
-constexpr std::array kKinds = {controllers::FailureKind{"taken", 0.0, "no item was taken"},
-                               controllers::FailureKind{"taken", 1e9, "none came home"}};
+const std::vector<controllers::FailureKind> kKinds = {{"taken", 0.0, "no item was taken"},
+                                                      {"taken", 1e9, "none came home"}};
 
 controllers::ScenarioInfo ScenarioWithPlaces() {
   return {.name = "toy",

@@ -119,8 +119,11 @@ TEST(GivenSearchTest, IsFinishedAgainWhenItsStateIsRestored) {
 TEST(GivenSearchTest, SeedsAreThoseOfTheCaseAndNoSearchHasThem) {
   const SearchSetup setup = SetupToConfirm(2);
   const sim::TestCase& one = setup.cases[0];
-  EXPECT_EQ(RunSeed(setup.experiment, 1, one, 0, 0), RunSeed(setup.experiment, 2, one, 0, 0));
-  EXPECT_NE(RunSeed(setup.experiment, 1, one, 0, 0), RunSeed(setup.experiment, 1, setup.cases[1], 0, 0));
+  const auto seed_of = [&](IndividualId individual, const sim::TestCase& test_case) {
+    return RunSeed(setup.experiment, {.individual = individual, .test_case = test_case}, /*replicate=*/0);
+  };
+  EXPECT_EQ(seed_of(1, one), seed_of(2, one));
+  EXPECT_NE(seed_of(1, one), seed_of(1, setup.cases[1]));
   for (const SearchRow& row : Searches()) {
     EXPECT_EQ(row.purpose == sim::SeedPurpose::kConfirm, row.info.name == "confirmation") << row.info.name;
   }
@@ -202,9 +205,7 @@ TEST(GivenSearchTest, NoTwoRunsHaveTheSameSeed) {
   const SearchSetup setup = SetupToShorten(1);
   std::set<std::uint64_t> seeds;
   for (const EvaluationRequest& request : Drive(*MakeGiven(setup), 3, OutcomeOfLayout)) {
-    const std::uint64_t seed =
-        RunSeed(setup.experiment, request.individual, request.test_case, request.evaluation, 0);
-    EXPECT_TRUE(seeds.insert(seed).second);
+    EXPECT_TRUE(seeds.insert(RunSeed(setup.experiment, request, /*replicate=*/0)).second);
   }
 }
 
