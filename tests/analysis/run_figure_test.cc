@@ -20,11 +20,12 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr sim::AnnotationStyle kStyles[] = {{"area", "", sim::Mark::kArea, "area the swarm starts in"},
-                                            {"path", "", sim::Mark::kPlan, "planned path"},
-                                            {"disc", "", sim::Mark::kGoal, ""},
-                                            {"split", "", sim::Mark::kSplit, "last split, and who left then"},
-                                            {"transfer", "", sim::Mark::kTransfer, "transfer"}};
+const std::vector<sim::AnnotationStyle> kStyles = {
+    {"area", "", sim::Mark::kArea, "area the swarm starts in"},
+    {"path", "", sim::Mark::kPlan, "planned path"},
+    {"disc", "", sim::Mark::kGoal, ""},
+    {"split", "", sim::Mark::kSplit, "last split, and who left then"},
+    {"transfer", "", sim::Mark::kTransfer, "transfer"}};
 
 // Three birds and a prey (robot 3) that walk from the upper right to the lower left; bird 1 stays behind.
 RunFigure ThreeBirds() {

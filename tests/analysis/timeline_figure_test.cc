@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr sim::AnnotationStyle kTimelineStyles[] = {
+const std::vector<sim::AnnotationStyle> kTimelineStyles = {
     {"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
     {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
     {"chain", "", sim::Mark::kChain, ""},
