@@ -21,8 +21,10 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -119,20 +121,29 @@ Result<std::string> TellRows(const controllers::PluginRows& rows);
 template <std::vector<controllers::ControllerInfo> (*kControllers)(),
           std::vector<controllers::ScenarioInfo> (*kScenarios)()>
 struct Exports {
+  // The rows of one list; what it throws says so.
+  template <auto kList>
+  static auto List(const char* what) {
+    if constexpr (kList == nullptr) {
+      return std::invoke_result_t<decltype(kList)>();
+    } else {
+      try {
+        return kList();
+      } catch (const std::exception& error) {
+        throw std::runtime_error(std::string("its list of ") + what + " throws: " + error.what());
+      }
+    }
+  }
   static const controllers::PluginRows& Rows() {
-    static const controllers::PluginRows rows = [] {
-      controllers::PluginRows all;
-      if constexpr (kControllers != nullptr) all.controllers = kControllers();
-      if constexpr (kScenarios != nullptr) all.scenarios = kScenarios();
-      return all;
-    }();
+    static const controllers::PluginRows rows = {List<kControllers>("controllers"),
+                                                 List<kScenarios>("scenarios")};
     return rows;
   }
   static Result<std::string> Tell() {
     try {
       return TellRows(Rows());
     } catch (const std::exception& error) {
-      return InvalidInput(std::string("its list of rows throws: ") + error.what());
+      return InvalidInput(error.what());
     }
   }
   static controllers::ControllerFactory Make(std::string_view controller, const sim::Parameters& resolved) {

@@ -62,7 +62,7 @@ Status AddAnswers(const SearchPlan& plan, std::size_t number, bool finished, Res
                   std::vector<CaseAnswer>& answers) {
   const auto experiment = std::make_shared<const Experiment>(plan.experiment);
   const SearchRow& row = RowOf(*experiment);
-  const SearchId id = plan.id;
+  const auto id = static_cast<SearchId>(number + 1);
   const std::size_t first = answers.size();
   TRY(const auto layouts, store.LoadIndividuals(id));
   for (const Individual& one : layouts) {

@@ -53,7 +53,7 @@ TEST_P(RefusedPlugin, IsRefusedByTheReason) {
 INSTANTIATE_TEST_SUITE_P(
     Plugins, RefusedPlugin,
     testing::Values(
-        Refusal{"other_abi", "made for version 4 of the plug-in interface, this program has version 3"},
+        Refusal{"other_abi", "made for version 5 of the plug-in interface, this program has version 4"},
         Refusal{"other_compiler", "plug-in: arm64 libc++ 14; program: x86-64 libstdc++"},
         Refusal{"without_description", "exports no 'gauntlet_plugin'"},
         Refusal{"missing_symbol", "undefined symbol: symbol_that_nobody_has"},
