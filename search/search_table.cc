@@ -62,8 +62,7 @@ const std::vector<Key>& BuiltInKeys() {
 std::vector<Key> AllKeysOf(const Experiment& experiment) {
   std::vector<Key> keys = BuiltInKeys();
   const auto add = [&](std::vector<Key> more) { std::ranges::move(more, std::back_inserter(keys)); };
-  if (const auto* scenario = controllers::FindScenario(experiment))
-    add(ScenarioParameterKeys(*scenario));
+  if (const auto* scenario = controllers::FindScenario(experiment)) add(ScenarioParameterKeys(*scenario));
   if (const auto* controller = controllers::FindController(experiment.controller, experiment.plugin))
     add(ControllerParameterKeys(*controller));
   return keys;

@@ -11,9 +11,9 @@
 #include "base/system/regular_file.h"
 #include "base/system/sha256.h"
 #include "controllers/registry.h"
+#include "controllers/rows/plugin_rows.h"
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"
-#include "controllers/rows/plugin_rows.h"
 
 namespace gauntlet {
 namespace {

@@ -196,8 +196,8 @@ Result<Told> TellCheck(const Asking& asking, const Call& call, std::span<const C
   Told told;
   for (const CheckedCase& one : cases) {
     table.AddRow({one.answer.name, one.entry.content.expected,
-                  OutOfCell(one.tally.failures, one.tally.runs()),
-                  PercentCell(FailureInterval(one.tally)), NameOf(one.verdict),
+                  OutOfCell(one.tally.failures, one.tally.runs()), PercentCell(FailureInterval(one.tally)),
+                  NameOf(one.verdict),
                   one.outcome == CheckOutcome::kWorse    ? "worse"
                   : one.outcome == CheckOutcome::kBetter ? "better"
                                                          : "as expected",

@@ -17,8 +17,8 @@ namespace gauntlet {
 // removed.
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch = "");
 
-// What the library brings, as gauntlet-worker describes it (controllers/rows/plugin_rows.h). Error: what is wrong
-// with it.
+// What the library brings, as gauntlet-worker describes it (controllers/rows/plugin_rows.h). Error: what is
+// wrong with it.
 Result<std::string> DescribePlugin(const std::string& file);
 
 // How a run begins whose scenario a plug-in brings, as gauntlet-worker says it, which loads the library
