@@ -415,7 +415,7 @@ Status ArchiveSearch::RestoreRest(CanonicalDecoder& decoder, const History& /*hi
     slot = decoder.Uint();
     if (slot >= slots_.size()) return Damaged(fmt::format("slot {} waits", slot));
   }
-  prior_.Restore(decoder);
+  if (!decoder.AtEnd()) prior_.Restore(decoder);  // states of earlier versions end here
   if (std::set<std::size_t>(waiting_.begin(), waiting_.end()).size() != slots_.size()) {
     return Damaged("a slot does not wait");
   }
