@@ -78,10 +78,10 @@ struct ControllerInfo {
 
 // A row whose controller gets its settings from a table, which outlives the row.
 template <typename Settings>
-ControllerInfo ControllerRow(std::string name, std::string scenario, std::string description,
+ControllerInfo ControllerRow(std::string_view name, std::string_view scenario, std::string_view description,
                              const ParameterTable<Settings>& table,
                              ControllerFactory (*make)(const Settings& settings)) {
-  return {std::move(name), std::move(scenario), std::move(description), table.infos(),
+  return {std::string(name), std::string(scenario), std::string(description), table.infos(),
           [&table, make](const sim::Parameters& resolved) { return make(table.Read(resolved)); }};
 }
 

@@ -95,8 +95,7 @@ const controllers::ParameterTable<Settings>& Table() {
 template <void (*kAct)()>
 ControllerInfo Row(const char* name) {
   return controllers::ControllerRow(
-      name, std::string(controllers::kAnyScenario), "misbehaves in one tick", Table(),
-      +[](const Settings& settings) {
+      name, controllers::kAnyScenario, "misbehaves in one tick", Table(), +[](const Settings& settings) {
         return ControllerFactory{
             [settings](const ControllerContext&) { return std::make_unique<Robot>(kAct, settings.tick); }};
       });

@@ -27,8 +27,7 @@ struct NoSettings {};
 std::vector<controllers::ControllerInfo> Rows() {
   static const controllers::ParameterTable<NoSettings> table({});
   return {controllers::ControllerRow(
-      "loud", std::string(controllers::kAnyScenario), "prints when it is loaded", table,
-      +[](const NoSettings&) {
+      "loud", controllers::kAnyScenario, "prints when it is loaded", table, +[](const NoSettings&) {
         return controllers::ControllerFactory{[](const controllers::ControllerContext& context) {
           if (robots++ != context.robot) throw std::runtime_error("statics of another run");
           return std::make_unique<Robot>();
