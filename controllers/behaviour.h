@@ -15,6 +15,7 @@
 
 #include "base/result.h"
 #include "controllers/common/odometer.h"
+#include "controllers/failure_descriptor.h"
 #include "controllers/parameters.h"
 #include "sim/arena/validity.h"
 #include "sim/run_spec.h"
@@ -85,11 +86,6 @@ ControllerInfo ControllerRow(std::string_view name, std::string_view scenario, s
           [&table, make](const sim::Parameters& resolved) { return make(table.Read(resolved)); }};
 }
 
-// Values that say that there was nothing to measure: of what is never negative, and of a coordinate, which no
-// arena has (sim::kMaxArenaSide).
-inline constexpr double kNotMeasured = -1.0;
-inline constexpr double kNowhere = -1000.0;
-
 // One of the values that a scenario reports of a run.
 struct MetricInfo {
   std::string name;            // "food_window_*" stands for a family, food_window_1, food_window_2...
@@ -100,49 +96,6 @@ struct MetricInfo {
   bool operator==(const MetricInfo&) const = default;
 };
 
-// A way in which the whole swarm can fail, as Evaluate reports it in SwarmFailure.
-struct FailureType {
-  int type = 0;  // SwarmFailure::type: stored, so do not renumber
-  std::string name;
-  std::string column = "";  // where it stands in a map of the types, in words; "" = they have no such order
-  std::string row = "";
-  bool operator==(const FailureType&) const = default;
-};
-
-// What the columns and rows of a map of failure types are.
-struct FailureAxes {
-  std::string columns = "";
-  std::string rows = "";
-  bool operator==(const FailureAxes&) const = default;
-};
-
-// Where a failed run failed, so that two failures can be told to be the same one.
-struct FailurePlace {
-  std::string x;  // metrics, m from the arena's centre
-  std::string y;
-  double same_within = 0.0;  // m: failures that are no farther apart are the same one
-  bool operator==(const FailurePlace&) const = default;
-};
-
-// A way in which failed runs differ that repeats when their cases are simulated again. A failed run is of the
-// first of the scenario's kinds whose metric is at most `at_most`.
-struct FailureKind {
-  std::string metric;
-  double at_most = 0.0;
-  std::string what;  // in words: "no item was taken"
-  bool operator==(const FailureKind&) const = default;
-};
-
-// The range of a metric, cut into equal parts; what lies outside belongs to the outermost ones. Several axes
-// make a grid whose cells tell failures apart.
-struct DescriptorAxis {
-  std::string metric;
-  double min = 0.0;
-  double max = 0.0;
-  int parts = 1;
-  bool operator==(const DescriptorAxis&) const = default;
-};
-
 struct ScenarioInfo {
   std::string name;
   std::string description;
@@ -151,24 +104,14 @@ struct ScenarioInfo {
   std::vector<ParameterInfo> parameters = {};
   std::string time_limit = "time_limit";  // the parameter, in s, after which a run ends at the latest
   std::vector<MetricInfo> metrics;
-  std::vector<FailureType> failure_types = {};
-  FailureAxes failure_axes = {};
-  std::string untyped_failure = "without a type";  // a total failure whose type is -1
   // What is 1 after a run in which a test case broke the swarm, when cases are confirmed and made smaller:
-  // "total_failure" or a yes/no metric.
-  std::string failing = "total_failure";
-  std::optional<FailurePlace> failure_place = {};  // nothing: its failures have no place that repeats
-  // Points that the swarm has to pass in this test case, m. At which of them it fails repeats better than
-  // where exactly. May be empty, and may give none.
-  std::function<std::vector<sim::Vec2>(const sim::Parameters& parameters, const sim::TestCase& test_case)>
-      passages = nullptr;
-  std::vector<FailureKind> failure_kinds = {};
-  std::string failure_note = "";  // what was measured about total failures and their types
-  bool any_controller = false;    // also takes controllers that are written for other scenarios
+  // kTotalFailure or a yes/no metric.
+  std::string failing = kTotalFailure;
+  FailureDescriptor failures = {};
+  FailureTypes failure_types = {};
+  bool any_controller = false;  // also takes controllers that are written for other scenarios
   // What is wrong with RunSpec::definition. nullptr: the scenario takes none.
   std::function<Status(std::string_view definition)> check_definition = nullptr;
-  // Along which failures differ in a way that repeats when a case is simulated again.
-  std::vector<DescriptorAxis> descriptor_axes = {};
   // What arenas of this scenario must offer, given its resolved parameters and the test case.
   std::function<sim::ArenaRequirements(const sim::Parameters& parameters, const sim::TestCase& test_case)>
       requirements = nullptr;

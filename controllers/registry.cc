@@ -103,6 +103,12 @@ const ControllerInfo* FindController(std::string_view name, std::string_view plu
   return known == nullptr ? nullptr : FindByName(std::span<const ControllerInfo>(known->controllers), name);
 }
 
+const ScenarioInfo& DeclaredScenario(const sim::RunSettings& settings) {
+  static const ScenarioInfo nothing{.name = "", .description = "", .default_controller = "", .metrics = {}};
+  const ScenarioInfo* scenario = FindScenario(settings);
+  return scenario == nullptr ? nothing : *scenario;
+}
+
 const ScenarioInfo* FindScenario(const sim::RunSettings& settings) {
   return FindScenario(settings.scenario, settings.scenario_plugin);
 }

@@ -47,6 +47,8 @@ const ControllerInfo* FindController(std::string_view name, std::string_view plu
 // The one that the settings name; nullptr when there is none, or its plug-in is not known here.
 const ScenarioInfo* FindScenario(const sim::RunSettings& settings);
 const ControllerInfo* FindController(const sim::RunSettings& settings);
+// FindScenario, or a row that declares nothing.
+const ScenarioInfo& DeclaredScenario(const sim::RunSettings& settings);
 
 // The settings' scenario. Error: there is none of that name, or its plug-in is not known here.
 Result<const ScenarioInfo*> ScenarioOf(const sim::RunSettings& settings);

@@ -13,8 +13,9 @@ Status CheckFunctions(const controllers::ScenarioInfo& row) {
     return Missing("scenario '" + row.name, std::string(row.create ? "requirements" : "create") +
                                                 ": ScenarioRow(...) puts a whole row together");
   }
-  if (!row.passages && !row.check_definition) return Ok{};
-  return InvalidInput("scenario '" + row.name + "' has " + (row.passages ? "passages" : "check_definition") +
+  if (!row.failures.passages && !row.check_definition) return Ok{};
+  return InvalidInput("scenario '" + row.name + "' has " +
+                      (row.failures.passages ? "passages" : "check_definition") +
                       ", which is for built-in scenarios alone: leave it out");
 }
 

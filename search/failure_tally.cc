@@ -7,26 +7,23 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::string_view kTotalFailure = "total_failure";
 constexpr int kEnoughFailures = 5;
 constexpr int kEnoughPasses = 6;
 
 }  // namespace
 
 std::string_view FailingOf(const sim::RunSettings& settings) {
-  const auto* info = controllers::FindScenario(settings);
-  return info == nullptr ? kTotalFailure : info->failing;
+  return controllers::DeclaredScenario(settings).failing;
 }
 
 bool FailingNeedsMetrics(std::string_view failing) {
-  return failing != kTotalFailure;
+  return failing != controllers::kTotalFailure;
 }
 
 bool Fails(const RunOutcome& run, std::string_view failing) {
   if (run.verdict != sim::Verdict::kCompleted) return false;
   if (!FailingNeedsMetrics(failing)) return run.total_failure;
-  const auto metric = std::ranges::find(run.metrics, failing, &std::pair<std::string, double>::first);
-  return metric != run.metrics.end() && metric->second == 1.0;
+  return controllers::ReportedValue(run.metrics, failing) == 1.0;
 }
 
 void FailureTally::Add(const RunOutcome& run, std::string_view failing) {

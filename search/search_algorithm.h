@@ -11,7 +11,7 @@
 
 #include "base/canonical_encoder.h"
 #include "base/result.h"
-#include "search/experiment/cell_axis.h"
+#include "controllers/failure_descriptor.h"
 #include "sim/arena/test_case.h"
 #include "sim/run_result.h"
 
@@ -75,7 +75,7 @@ struct ArchivedFailure {
 };
 // The cells of a grid over the kinds of failure that hold something, row by row.
 struct ArchiveView {
-  std::vector<CellAxis> axes;  // none: the search keeps no archive
+  std::vector<controllers::DescriptorAxis> axes;  // none: the search keeps no archive
   std::vector<ArchivedFailure> failures;
 };
 

@@ -210,7 +210,7 @@ Status Types(const Desk& desk) {
   for (std::size_t i = 0; i < kTwoSets.size(); ++i) {
     const std::string which = kTwoSets[i];
     const std::string set_name = desk.analysis.Key(which);
-    TRY(const auto failures, desk.runs.Set(set_name, "total_failure"));
+    TRY(const auto failures, desk.runs.Set(set_name, controllers::kTotalFailure));
     TRY(const auto types, desk.runs.Set(set_name, "failure_type"));
     counts[i].assign(names.size(), 0);
     for (const double type : ValuesOf(types)) {

@@ -347,9 +347,8 @@ Result<std::vector<std::vector<SelectedRun>>> StudyRuns::All(const std::string& 
 std::vector<std::string> StudyRuns::FailureTypes(const std::string& set) const {
   std::vector<std::string> names;
   const Experiment& experiment = Part(SplitStudySets(set).front().part).experiment;
-  const auto* scenario = controllers::FindScenario(experiment);
-  if (scenario == nullptr) return names;
-  for (const controllers::FailureType& type : scenario->failure_types) names.push_back(type.name);
+  for (const controllers::FailureType& type : controllers::DeclaredScenario(experiment).failure_types.types)
+    names.push_back(type.name);
   return names;
 }
 

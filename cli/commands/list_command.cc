@@ -128,7 +128,7 @@ std::string RowsText(std::span<const controllers::ScenarioInfo> rows) {
         "\n  " + Wrapped(fmt::format("{}: {}", scenario.name, scenario.description), kTextWidth, 4) + "\n";
     text += fmt::format("    controller unless another is named: {}\n\n", scenario.default_controller);
     text += ParameterTable(scenario.parameters) + (scenario.check_definition ? DefinitionText() : "") + "\n" +
-            MetricTable(scenario.metrics) + FailureTable(scenario.failure_types);
+            MetricTable(scenario.metrics) + FailureTable(scenario.failure_types.types);
   }
   return text;
 }

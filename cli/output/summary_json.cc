@@ -45,7 +45,7 @@ Json ArchiveJson(const SearchSummary& summary) {
   const ArchiveView& archive = summary.archive;
   if (archive.axes.empty()) return {};
   Json descriptors = Json::array();
-  for (const CellAxis& axis : archive.axes) {
+  for (const controllers::DescriptorAxis& axis : archive.axes) {
     descriptors.push_back(
         {{"metric", axis.metric}, {"min", axis.min}, {"max", axis.max}, {"parts", axis.parts}});
   }
@@ -76,7 +76,7 @@ Json OneSearch(const SearchSummary& search, const CampaignSummary& campaign, con
           {"total_failures", search.total_failures},
           {"failing_runs", search.failing_runs},
           {"failure_types", FailureTypeTable(search).ToJson()},
-          {"unclassified_failures", search.types.untyped},
+          {"unclassified_failures", search.untyped_failures},
           {"statistics", FiguresJson(search.statistics)},
           {"history", GenerationTable(search).ToJson()},
           {"population", PopulationTable(population, /*named=*/false).ToJson()},

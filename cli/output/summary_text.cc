@@ -218,14 +218,15 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& a
 std::string TypesText(const CampaignSummary& summary) {
   std::string text;
   for (const SearchSummary& one : summary.searches) {
-    const FailureTypes& types = one.types;
     if (!one.settings.empty()) text += fmt::format("{}\n", Printable(one.settings));
-    text += types.counts.empty() ? "  Its scenario tells no types of failures apart.\n"
-                                 : FailureTypeTable(one).ToText();
-    if (types.untyped > 0)
-      text += fmt::format("  and {} total failures {}\n", FormatCount(types.untyped), types.untyped_name);
-    if (!types.counts.empty() && !types.note.empty())
-      text += fmt::format("  {}\n", Wrapped(types.note, kNoteWidth, 2));
+    text += one.types.types.empty() ? "  Its scenario tells no types of failures apart.\n"
+                                    : FailureTypeTable(one).ToText();
+    if (one.untyped_failures > 0) {
+      text +=
+          fmt::format("  and {} total failures {}\n", FormatCount(one.untyped_failures), one.types.untyped);
+    }
+    if (!one.types.types.empty() && !one.types.note.empty())
+      text += fmt::format("  {}\n", Wrapped(one.types.note, kNoteWidth, 2));
   }
   return text;
 }

@@ -33,16 +33,6 @@ const std::vector<MetricInfo> kForagingMetrics = {
     {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
 };
 
-const std::vector<FailureKind> kFailureKinds = {
-    {"condition_1", 0.0, "a path of beacons, but no item came home"},
-    {"condition_1", 1.0, "never a path of beacons"},
-};
-
-const std::vector<DescriptorAxis> kForagingDescriptorAxes = {
-    {"mean_robots_beacon", 0.0, 10.0, 5},
-    {"spread_x", 0.5, 2.0, 5},
-};
-
 const std::vector<sim::AnnotationStyle> kForagingAnnotations = {
     {"beacon", "", sim::Mark::kBeacon, "beacon at the end"},
     {"states", "beacon", sim::Mark::kFormerBeacon, "beacon earlier"},
@@ -209,13 +199,13 @@ const ScenarioInfo& ForagingScenarioInfo() {
           .default_controller = "foraging",
           .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kForagingAnnotations},
           .metrics = kForagingMetrics,
-          .failure_types = ForagingFailureTypes(),
           .failing = "condition_2",  // condition 1 alone holds in 30 % of empty arenas
-          .failure_kinds = kFailureKinds,
-          .failure_note =
-              "condition 1 alone says little: it holds in 30 % of runs in an empty arena, condition 2 in "
-              "none of 200",
-          .descriptor_axes = kForagingDescriptorAxes,
+          .failures = {.axes = {{"mean_robots_beacon", 0.0, 10.0, 5}, {"spread_x", 0.5, 2.0, 5}},
+                       .kinds = {{"condition_1", 0.0, "a path of beacons, but no item came home"},
+                                 {"condition_1", 1.0, "never a path of beacons"}}},
+          .failure_types = {.types = ForagingFailureTypes(),
+                            .note = "condition 1 alone says little: it holds in 30 % of runs in an empty "
+                                    "arena, condition 2 in none of 200"},
       });
   return info;
 }

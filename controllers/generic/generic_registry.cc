@@ -11,11 +11,6 @@ namespace {
 
 using sim::kPi;
 
-const std::vector<DescriptorAxis> kGenericDescriptorAxes = {
-    {"center_x", -3.0, 3.0, 5},
-    {"center_y", -3.0, 3.0, 5},
-};
-
 const std::vector<sim::AnnotationStyle> kGenericAnnotations = {
     {"area", "start of the robots", sim::Mark::kArea, "area the swarm starts in"},
     {"area", "ground", sim::Mark::kArea, ""},
@@ -80,13 +75,13 @@ const ScenarioInfo& GenericScenarioInfo() {
       .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kGenericAnnotations},
       .parameters = GenericParameters().infos(),
       .metrics = Metrics(),
-      .failure_place = FailurePlace{"center_x", "center_y", 0.6},
+      .failures = {.axes = {{"center_x", -3.0, 3.0, 5}, {"center_y", -3.0, 3.0, 5}},
+                   .place = {{"center_x", "center_y", 0.6}}},
       .any_controller = true,
       .check_definition = [](std::string_view definition) -> Status {
         TRY(ParseDefinition(definition));
         return Ok{};
       },
-      .descriptor_axes = kGenericDescriptorAxes,
       .requirements =
           [](const sim::Parameters& parameters, const sim::TestCase& test_case) {
             return GenericParameters().Read(parameters).Requirements(test_case);

@@ -39,11 +39,6 @@ const std::vector<MetricInfo> kPartitioningMetrics = {
     {"mean_robots_*", "", {}, "robots in that state, mean over the run"},
 };
 
-const std::vector<DescriptorAxis> kPartitioningDescriptorAxes = {
-    {"median_x", -1.5, 1.5, 5},
-    {"median_y", -2.5, 2.5, 5},
-};
-
 const std::vector<sim::AnnotationStyle> kPartitioningAnnotations = {
     {"transfer", "", sim::Mark::kTransfer, "transfer"},
     {"disc", "nest", sim::Mark::kNest, ""},
@@ -274,9 +269,9 @@ const ScenarioInfo& PartitioningScenarioInfo() {
           .default_controller = "task-partitioning",
           .style = {.lost = "trapped", .lost_is_failure = false, .annotations = kPartitioningAnnotations},
           .metrics = kPartitioningMetrics,
-          .failure_types = PartitioningFailureTypes(),
-          .failure_place = FailurePlace{"median_x", "median_y", 0.6},  // chosen: a tenth of the arena
-          .descriptor_axes = kPartitioningDescriptorAxes,
+          .failures = {.axes = {{"median_x", -1.5, 1.5, 5}, {"median_y", -2.5, 2.5, 5}},
+                       .place = {{"median_x", "median_y", 0.6}}},  // chosen: a tenth of the arena
+          .failure_types = {.types = PartitioningFailureTypes()},
       });
   return info;
 }

@@ -17,7 +17,6 @@
 namespace gauntlet::controllers {
 namespace {
 
-constexpr std::string_view kTotalFailure = "total_failure";
 constexpr std::string_view kYesNo = "yes/no";
 // As many as an axis of a map can show.
 constexpr int kMostParts = 1000;
@@ -83,30 +82,30 @@ Status CheckMetrics(const ScenarioInfo& scenario) {
 
 Status CheckFailures(const ScenarioInfo& scenario) {
   std::set<int> types;
-  for (const FailureType& one : scenario.failure_types) {
+  for (const FailureType& one : scenario.failure_types.types) {
     if (one.type < 0 || one.name.empty())
       return InvalidInput(fmt::format("failure type {}: it needs a number from 0 on and a name", one.type));
     if (!types.insert(one.type).second)
       return InvalidInput(fmt::format("failure type {} is given twice", one.type));
   }
-  for (const FailureKind& kind : scenario.failure_kinds) {
+  for (const FailureKind& kind : scenario.failures.kinds) {
     TRY(RequireMetric(scenario, "a failure kind", kind.metric));
     if (!std::isfinite(kind.at_most))
       return InvalidInput(
           fmt::format("the failure kind of '{}' is one up to {}", kind.metric, NumberText(kind.at_most)));
   }
-  if (!scenario.failure_place) return Ok{};
-  for (const std::string& name : {scenario.failure_place->x, scenario.failure_place->y}) {
+  if (!scenario.failures.place) return Ok{};
+  for (const std::string& name : {scenario.failures.place->x, scenario.failures.place->y}) {
     TRY(RequireMetric(scenario, "the failure's place", name));
   }
-  const double same_within = scenario.failure_place->same_within;
+  const double same_within = scenario.failures.place->same_within;
   if (same_within > 0.0 && std::isfinite(same_within)) return Ok{};
   return InvalidInput(fmt::format("the failure's place is the same within {} m; more than 0 is needed",
                                   NumberText(same_within)));
 }
 
 Status CheckAxes(const ScenarioInfo& scenario) {
-  for (const DescriptorAxis& axis : scenario.descriptor_axes) {
+  for (const DescriptorAxis& axis : scenario.failures.axes) {
     TRY(RequireMetric(scenario, "a descriptor axis", axis.metric));
     const bool right = std::isfinite(axis.min) && std::isfinite(axis.max) && axis.min < axis.max;
     if (!right || axis.parts < 1 || axis.parts > kMostParts) {

@@ -60,7 +60,12 @@ void Members(auto& use, FailureType& row) {
   use("column", row.column);
   use("row", row.row);
 }
-void Members(auto& use, FailureAxes& row) {
+// What the columns and rows of a map of failure types are.
+struct MapNames {
+  std::string& columns;
+  std::string& rows;
+};
+void Members(auto& use, MapNames& row) {
   use("columns", row.columns);
   use("rows", row.rows);
 }
@@ -96,13 +101,14 @@ void Members(auto& use, ScenarioInfo& row) {
   use("time_limit", row.time_limit);
   use("metrics", row.metrics);
   use("failing", row.failing);
-  use("failure_types", row.failure_types);
-  use("failure_axes", row.failure_axes);
-  use("untyped_failure", row.untyped_failure);
-  use("failure_note", row.failure_note);
-  use("failure_place", row.failure_place);
-  use("failure_kinds", row.failure_kinds);
-  use("descriptor_axes", row.descriptor_axes);
+  MapNames names{row.failure_types.columns, row.failure_types.rows};
+  use("failure_types", row.failure_types.types);
+  use("failure_axes", names);
+  use("untyped_failure", row.failure_types.untyped);
+  use("failure_note", row.failure_types.note);
+  use("failure_place", row.failures.place);
+  use("failure_kinds", row.failures.kinds);
+  use("descriptor_axes", row.failures.axes);
 }
 
 class Writer {

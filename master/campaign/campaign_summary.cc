@@ -25,20 +25,11 @@ SearchSummary Described(const Experiment& experiment) {
   SearchSummary summary;
   summary.search = experiment.search.algorithm;
   summary.seed = experiment.seed;
-  const auto* scenario = controllers::FindScenario(experiment);
-  if (scenario == nullptr) return summary;
-  for (const controllers::FailureType& one : scenario->failure_types)
-    summary.types.counts.push_back({one.type, one.name});
-  summary.types.untyped_name = scenario->untyped_failure;
-  summary.types.note = scenario->failure_note;
-  if (FailingNeedsMetrics(scenario->failing))
-    summary.failing = controllers::FindMetric(*scenario, scenario->failing)->description;
+  const controllers::ScenarioInfo& scenario = controllers::DeclaredScenario(experiment);
+  summary.types = scenario.failure_types;
+  if (FailingNeedsMetrics(scenario.failing))
+    summary.failing = controllers::FindMetric(scenario, scenario.failing)->description;
   return summary;
-}
-
-void AddFailure(const StoredRun& run, FailureTypes& types) {
-  const auto counted = std::ranges::find(types.counts, run.failure_type, &FailureCount::type);
-  ++(counted != types.counts.end() ? counted->runs : types.untyped);
 }
 
 void AddToRunsWithoutResult(const StoredRun& run, std::vector<RunsWithoutResult>& groups) {
@@ -116,7 +107,11 @@ Status AddRuns(const Experiment& experiment, SearchId id, ResultStore& store, Se
     if (!run.total_failure) return Ok{};
     ++summary.total_failures;
     ++generation.total_failures;
-    AddFailure(run, summary.types);
+    if (summary.types.Find(run.failure_type) != nullptr) {
+      ++summary.runs_of_type[run.failure_type];
+    } else {
+      ++summary.untyped_failures;
+    }
     return Ok{};
   };
   TRY(needs_metrics ? store.ForEachRun(id, 0, add) : store.ForEachRow(id, 0, add));

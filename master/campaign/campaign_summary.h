@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "base/mean_and_range.h"
 #include "base/result.h"
+#include "controllers/failure_descriptor.h"
 #include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
 #include "search/search_algorithm.h"
@@ -41,21 +43,6 @@ struct RunsWithoutResult {
   RunId first_run = 0;  // the first of them
 };
 
-// Total failures of one of the types that the scenario declares.
-struct FailureCount {
-  int type = 0;
-  std::string name;
-  std::uint64_t runs = 0;
-};
-
-// The failures of the types that a scenario declares.
-struct FailureTypes {
-  std::vector<FailureCount> counts;  // of every type
-  std::uint64_t untyped = 0;         // total failures of none of them
-  std::string untyped_name;          // what they are, in words: "without a split"
-  std::string note;                  // ScenarioInfo::failure_note
-};
-
 // How far one search has come, or all of a campaign, and what became of the runs that are stored.
 struct SearchTally {
   SearchProgress progress;
@@ -75,8 +62,10 @@ struct SearchSummary : SearchTally {
   std::string settings;  // in a sweep, what tells it from the others
   std::string search;    // its name
   std::uint64_t seed = 0;
-  std::string failing;  // the scenario's condition in words; "" = a total failure
-  FailureTypes types;
+  std::string failing;                        // the scenario's condition in words; "" = a total failure
+  controllers::FailureTypes types;            // that the scenario declares
+  std::map<int, std::uint64_t> runs_of_type;  // total failures of each that came up
+  std::uint64_t untyped_failures = 0;         // total failures of none of the types
   std::vector<RunsWithoutResult> runs_without_result;      // most frequent first
   std::vector<std::pair<std::string, double>> statistics;  // of the search itself
   std::vector<GenerationSummary> generations;

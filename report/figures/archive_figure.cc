@@ -13,14 +13,6 @@ namespace {
 
 constexpr const char* kTitle = "The fewest obstacles that break the swarm";
 
-// Whether the axes are the coordinates of the place of the failure.
-bool ArePlaces(const ArchiveView& archive, const Experiment& experiment) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
-  return scenario != nullptr && scenario->failure_place &&
-         archive.axes[0].metric == scenario->failure_place->x &&
-         archive.axes[1].metric == scenario->failure_place->y;
-}
-
 std::string Counted(std::size_t obstacles) {
   return obstacles == 1 ? "1 obstacle" : fmt::format("{} obstacles", obstacles);
 }
@@ -44,7 +36,7 @@ analysis::LayoutGrid GridOf(const SearchSummary& summary, const Experiment& expe
   for (int part = 0; part < archive.axes[1].parts; ++part) {
     grid.rows.push_back(RangeText(archive.axes[1], part));
   }
-  const bool places = ArePlaces(archive, experiment);
+  const bool places = controllers::DeclaredScenario(experiment).failures.ArePlaces(archive.axes);
   for (const ArchivedFailure& failure : archive.failures) {
     analysis::GridLayout& layout = grid.layouts.emplace_back();
     layout.column = static_cast<std::size_t>(failure.cell[0]);

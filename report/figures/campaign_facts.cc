@@ -29,9 +29,7 @@ constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
 // The descriptors of an experiment's scenario, nullptr where there are none.
 std::vector<const controllers::MetricInfo*> DescriptorsOf(const Experiment& experiment) {
   std::vector<const controllers::MetricInfo*> descriptors;
-  const auto* scenario = controllers::FindScenario(experiment);
-  if (scenario == nullptr) return descriptors;
-  for (const controllers::MetricInfo& metric : scenario->metrics) {
+  for (const controllers::MetricInfo& metric : controllers::DeclaredScenario(experiment).metrics) {
     if (metric.descriptor) descriptors.push_back(&metric);
   }
   return descriptors;

@@ -22,10 +22,10 @@ analysis::RunFigure FigureOf(const std::string& experiment_name, const ReplayRep
   figure.run = fmt::format("run {}", report.stored.id);
   figure.spec = report.spec;
   figure.result = report.replayed;
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(figure.spec);
-  if (scenario != nullptr) figure.style = scenario->style;
+  const controllers::ScenarioInfo& scenario = controllers::DeclaredScenario(figure.spec);
+  figure.style = scenario.style;
   for (const auto& [name, value] : figure.result.metrics) {
-    const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, name);
+    const auto* info = controllers::FindMetric(scenario, name);
     figure.metrics.emplace_back(name, MetricText(info, value));
   }
   return figure;

@@ -53,17 +53,17 @@ RunMap FailureMap(const CampaignFacts& facts, const controllers::ScenarioInfo& s
   RunMap map;
   map.name = "failure-types";
   map.title = "Types of total failure";
-  map.across_name = scenario.failure_axes.columns;
-  map.down_name = scenario.failure_axes.rows;
+  map.across_name = scenario.failure_types.columns;
+  map.down_name = scenario.failure_types.rows;
   std::map<int, std::pair<std::size_t, std::size_t>> places;
-  for (const controllers::FailureType& type : scenario.failure_types) {
+  for (const controllers::FailureType& type : scenario.failure_types.types) {
     // Types without an order stand one below the other.
     const std::size_t row = PlaceOf(map.rows, std::string(type.row.empty() ? type.name : type.row));
     const std::size_t column = PlaceOf(map.columns, std::string(type.column.empty() ? "runs" : type.column));
     places[type.type] = {row, column};
   }
   Filling filling(facts, map);
-  for (const controllers::FailureType& type : scenario.failure_types) {
+  for (const controllers::FailureType& type : scenario.failure_types.types) {
     const auto [row, column] = places[type.type];
     map.cells[row][column].meaning = type.name;
   }
@@ -84,7 +84,8 @@ RunMap FailureMap(const CampaignFacts& facts, const controllers::ScenarioInfo& s
   });
   map.outcome = fmt::format("{} of {} types came up, in {} runs", seen, places.size(), FormatCount(typed));
   if (untyped > 0) {
-    map.outcome += fmt::format("; {} more total failures {}", FormatCount(untyped), scenario.untyped_failure);
+    map.outcome +=
+        fmt::format("; {} more total failures {}", FormatCount(untyped), scenario.failure_types.untyped);
   }
   map.reading =
       "Each field counts the runs in which the whole swarm failed in that way: the darker, the more. An "
@@ -196,15 +197,15 @@ RunMap BehaviourMap(const CampaignFacts& facts, const std::vector<Bins>& bins) {
 
 std::vector<RunMap> MapsOf(const CampaignFacts& facts) {
   const Experiment& first = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(first);
+  const controllers::ScenarioInfo& scenario = controllers::DeclaredScenario(first);
   const bool one_scenario = std::ranges::all_of(facts.plans, [&](const SearchPlan& plan) {
     return plan.experiment.scenario == first.scenario &&
            plan.experiment.scenario_plugin == first.scenario_plugin;
   });
-  if (scenario == nullptr || !one_scenario) return {};
+  if (!one_scenario) return {};
   std::vector<RunMap> maps;
-  if (!scenario->failure_types.empty()) maps.push_back(FailureMap(facts, *scenario));
-  if (const std::vector<Bins> bins = BinsOf(facts, *scenario); !bins.empty())
+  if (!scenario.failure_types.types.empty()) maps.push_back(FailureMap(facts, scenario));
+  if (const std::vector<Bins> bins = BinsOf(facts, scenario); !bins.empty())
     maps.push_back(BehaviourMap(facts, bins));
   std::erase_if(maps, [](const RunMap& map) { return map.Largest() == 0; });
   return maps;

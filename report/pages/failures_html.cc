@@ -90,7 +90,7 @@ std::string IdOfRun(std::size_t number, RunId run) {
 Table CaseTable(const CampaignPages& pages, std::size_t number, std::size_t most) {
   const CampaignFacts& facts = pages.facts;
   const Experiment& experiment = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment);
+  const controllers::FailureTypes& types = controllers::DeclaredScenario(experiment).failure_types;
   Table table({{">case", "case"},
                {">search", "search"},
                {"name", "name"},
@@ -102,17 +102,12 @@ Table CaseTable(const CampaignPages& pages, std::size_t number, std::size_t most
                {">toughest run", "run"}});
   for (const CaseFacts& one : facts.cases) {
     if (table.size() == most) break;
-    std::string type;
-    if (scenario != nullptr) {
-      const auto known =
-          std::ranges::find(scenario->failure_types, one.failure_type, &controllers::FailureType::type);
-      if (known != scenario->failure_types.end()) type = known->name;
-    }
+    const controllers::FailureType* type = types.Find(one.failure_type);
     const double mean = std::round(one.fitness.mean() * 1e4) / 1e4;  // what is read, in few bytes
     const auto& confirmed = one.confirmation;
     table.AddRow(
         {one.individual, one.search, TextCell(one.name), FitnessCell(mean), CountCell(one.runs),
-         CountCell(one.total_failures), TextCell(type),
+         CountCell(one.total_failures), TextCell(type == nullptr ? "" : type->name),
          TextCell(confirmed ? OutOfCell(confirmed->tally.failures, confirmed->tally.runs()).text : ""),
          one.toughest == 0 ? Cell() : LinkCell(one.toughest, pages.LinkTo(number, one.toughest))});
   }

@@ -112,9 +112,7 @@ Json CampaignJson(const CampaignPages& pages, std::size_t number) {
     columns.push_back({{"key", column.key}, {"title", column.title}, {"number", column.at_right}});
   Json types = Json::array();
   if (const SearchSummary* only = pages.facts.summary.OnlySearch(); only != nullptr) {
-    for (const FailureCount& type : only->types.counts) {
-      if (type.runs > 0) types.push_back(type.name);
-    }
+    for (const auto& [type, runs] : only->runs_of_type) types.push_back(only->types.Find(type)->name);
   }
   return {{"directory", pages.facts.directory},
           {"runs_done", pages.facts.summary.runs_done},

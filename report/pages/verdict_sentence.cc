@@ -17,8 +17,7 @@ std::string Percent(double share) {
 // "swarm of birds"
 std::string SwarmOf(const CampaignFacts& facts) {
   const Experiment& experiment = facts.plans.front().experiment;
-  const auto* scenario = controllers::FindScenario(experiment);
-  return scenario == nullptr ? "swarm" : fmt::format("swarm of {}s", scenario->style.member);
+  return fmt::format("swarm of {}s", controllers::DeclaredScenario(experiment).style.member);
 }
 
 // How the share of failures grew, over all searches.

@@ -93,11 +93,10 @@ RunTable::RunTable(const std::vector<SearchPlan>& plans, const std::vector<std::
   Append(searches_.columns(), columns_);
   Append(ColumnsOfTheRun(), columns_);
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    const Experiment& experiment = plans[i].experiment;
-    const auto* scenario = controllers::FindScenario(experiment);
-    untyped_failures_.emplace_back(scenario == nullptr ? "" : scenario->untyped_failure);
+    const controllers::ScenarioInfo& scenario = controllers::DeclaredScenario(plans[i].experiment);
+    untyped_failures_.push_back(scenario.failure_types.untyped);
     for (const std::string& name : metrics[i]) {
-      const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, name);
+      const auto* info = controllers::FindMetric(scenario, name);
       auto column = std::ranges::find(columns_, name, &DataColumn::name);
       if (column == columns_.end()) {
         column = columns_.insert(columns_.end(), {name, std::string(info == nullptr ? "" : info->unit),

@@ -50,23 +50,22 @@ std::string RunsText(std::uint64_t counted, std::uint64_t runs) {
                      std::isnan(share) ? "-" : fmt::format("{:.1f} %", 100.0 * share));
 }
 
-std::string TypesInShort(const FailureTypes& types) {
-  const auto seen = std::ranges::count_if(types.counts, [](const auto& one) { return one.runs > 0; });
-  std::string text = fmt::format("{} of {}", seen, types.counts.size());
-  if (types.untyped == 0) return text;
-  return fmt::format("{}; {} {} {}", text, FormatCount(types.untyped),
-                     types.untyped == 1 ? "failure" : "failures", types.untyped_name);
+std::string TypesInShort(const SearchSummary& summary) {
+  std::string text = fmt::format("{} of {}", summary.runs_of_type.size(), summary.types.types.size());
+  if (summary.untyped_failures == 0) return text;
+  return fmt::format("{}; {} {} {}", text, FormatCount(summary.untyped_failures),
+                     summary.untyped_failures == 1 ? "failure" : "failures", summary.types.untyped);
 }
 
 }  // namespace
 
 std::size_t CellsOf(const ArchiveView& archive) {
   std::size_t cells = 1;
-  for (const CellAxis& axis : archive.axes) cells *= static_cast<std::size_t>(axis.parts);
+  for (const controllers::DescriptorAxis& axis : archive.axes) cells *= static_cast<std::size_t>(axis.parts);
   return cells;
 }
 
-std::string RangeText(const CellAxis& axis, int part) {
+std::string RangeText(const controllers::DescriptorAxis& axis, int part) {
   const double width = (axis.max - axis.min) / axis.parts;
   return fmt::format("{:.4g} to {:.4g}", axis.min + part * width, axis.min + (part + 1) * width);
 }
@@ -99,8 +98,8 @@ void AddTally(const SearchTally& tally, const SearchSummary* only, Table& table)
   }
   table.AddRow({"total failures", RunsText(tally.total_failures, tally.runs_done)});
   if (only == nullptr) return;
-  if (tally.total_failures > 0 && !only->types.counts.empty())
-    table.AddRow({"failure types", TypesInShort(only->types)});
+  if (tally.total_failures > 0 && !only->types.types.empty())
+    table.AddRow({"failure types", TypesInShort(*only)});
   table.AddRow({"state hash", only->state_hash});
 }
 
@@ -178,8 +177,10 @@ Table PopulationTable(const std::vector<const PopulationMember*>& members, bool 
 
 Table FailureTypeTable(const SearchSummary& summary) {
   Table table({{">type", "type"}, {"total failure", "name"}, {">runs", "runs"}});
-  for (const FailureCount& one : summary.types.counts)
-    table.AddRow({one.type, one.name, CountCell(one.runs)});
+  for (const controllers::FailureType& one : summary.types.types) {
+    const auto runs = summary.runs_of_type.find(one.type);
+    table.AddRow({one.type, one.name, CountCell(runs == summary.runs_of_type.end() ? 0 : runs->second)});
+  }
   return table;
 }
 
@@ -188,7 +189,8 @@ Table ArchiveTable(const SearchSummary& summary, const std::string& replay) {
                                  {">obstacles", "obstacles"}, {">length [m]", "length"},
                                  {">failed", "k n"},          ForPrograms("interval"),
                                  ForPrograms("middle")};
-  for (const CellAxis& axis : summary.archive.axes) columns.emplace_back(">" + axis.metric);
+  for (const controllers::DescriptorAxis& axis : summary.archive.axes)
+    columns.emplace_back(">" + axis.metric);
   columns.insert(columns.end(), {{">run", "run"}, {""}});
   Table table(columns);
   std::vector<ArchivedFailure> failures = summary.archive.failures;
@@ -216,8 +218,8 @@ Table ArchiveTable(const SearchSummary& summary, const std::string& replay) {
 
 Table ArchiveMap(const SearchSummary& summary) {
   const ArchiveView& archive = summary.archive;
-  const CellAxis& across = archive.axes[0];
-  const CellAxis& up = archive.axes[1];
+  const controllers::DescriptorAxis& across = archive.axes[0];
+  const controllers::DescriptorAxis& up = archive.axes[1];
   std::vector<Column> columns = {""};
   for (int x = 0; x < across.parts; ++x) columns.emplace_back(">" + RangeText(across, x));
   Table table(columns);

@@ -12,7 +12,7 @@ namespace gauntlet {
 // Cells of an archive, filled or not.
 std::size_t CellsOf(const ArchiveView& archive);
 // A part of an axis: "-3 to -1.8".
-std::string RangeText(const CellAxis& axis, int part);
+std::string RangeText(const controllers::DescriptorAxis& axis, int part);
 // Of the population that the summary tells of, which holds every archived failure.
 const PopulationMember& MemberOf(const SearchSummary& summary, const ArchivedFailure& failure);
 

@@ -230,8 +230,6 @@ const std::vector<sim::AnnotationStyle> kAnnotations = {
     {"area", "", sim::Mark::kArea, "area the swarm starts in"},
     {"disc", "missed", sim::Mark::kGoal, "where nobody was"},
 };
-const std::vector<controllers::DescriptorAxis> kAxes = {{"missed_x", -3.0, 3.0, 6},
-                                                        {"missed_y", -3.0, 3.0, 6}};
 
 std::vector<controllers::ScenarioInfo> MyScenarios() {
   using S = PatrolSettings;
@@ -254,9 +252,9 @@ std::vector<controllers::ScenarioInfo> MyScenarios() {
               .default_controller = "my-guard",
               .style = {.lost_is_failure = false, .annotations = kAnnotations},
               .metrics = kMetrics,
-              .failure_place = controllers::FailurePlace{"missed_x", "missed_y", 1.0},
-              .any_controller = true,
-              .descriptor_axes = kAxes})};
+              .failures = {.axes = {{"missed_x", -3.0, 3.0, 6}, {"missed_y", -3.0, 3.0, 6}},
+                           .place = {{"missed_x", "missed_y", 1.0}}},
+              .any_controller = true})};
 }
 
 }  // namespace

@@ -53,12 +53,6 @@ std::optional<BrokenRule> CheckArchive(const Experiment& experiment) {
                   Get(experiment, kRuns), ArchiveJudge::kFewestFailures, Get(experiment, kSlots), needed)};
 }
 
-// Whether the axes are the coordinates of where the scenario's failures happen.
-bool ArePlaces(const std::vector<CellAxis>& axes, const controllers::ScenarioInfo& scenario) {
-  return scenario.failure_place && axes.size() == 2 && axes[0].metric == scenario.failure_place->x &&
-         axes[1].metric == scenario.failure_place->y;
-}
-
 // Nothing: the number is no emitter's.
 std::optional<Emitter> RestoreEmitter(CanonicalDecoder& decoder) {
   const std::uint64_t number = decoder.Uint();
@@ -74,7 +68,7 @@ ArchiveSearch::ArchiveSearch(const SearchSetup& setup, const controllers::Scenar
       only_deletion_(policy == LinePolicy::kDeletionOnly),
       failing_(scenario.failing),
       archive_(CellsOf(setup.experiment)),
-      places_(!only_deletion_ && ArePlaces(archive_.grid().axes(), scenario)),
+      places_(!only_deletion_ && scenario.failures.ArePlaces(archive_.grid().axes())),
       proposer_(setup_, generator_, places_, archive_),
       judge_(archive_, prior_, !only_deletion_),
       slots_(static_cast<std::size_t>(Get(setup.experiment, kSlots))) {

@@ -15,7 +15,7 @@ LayoutSize SizeOf(const sim::Genome& obstacles) {
 
 std::size_t DescriptorGrid::cells() const {
   std::size_t cells = 1;
-  for (const CellAxis& axis : axes_) cells *= static_cast<std::size_t>(axis.parts);
+  for (const controllers::DescriptorAxis& axis : axes_) cells *= static_cast<std::size_t>(axis.parts);
   return cells;
 }
 
@@ -23,7 +23,7 @@ std::size_t DescriptorGrid::CellOf(const Descriptor& descriptor) const {
   GAUNTLET_CHECK(descriptor.size() == axes_.size(), "a value for each axis");
   std::size_t cell = 0;
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const CellAxis& axis = axes_[i];
+    const controllers::DescriptorAxis& axis = axes_[i];
     const double part = std::floor((descriptor[i] - axis.min) / (axis.max - axis.min) * axis.parts);
     cell = cell * static_cast<std::size_t>(axis.parts) +
            static_cast<std::size_t>(std::clamp(part, 0.0, axis.parts - 1.0));
@@ -43,7 +43,7 @@ std::vector<int> DescriptorGrid::PartsOf(std::size_t cell) const {
 
 std::optional<Descriptor> DescriptorGrid::Describe(const RunOutcome& run) const {
   Descriptor descriptor;
-  for (const CellAxis& axis : axes_) {
+  for (const controllers::DescriptorAxis& axis : axes_) {
     const auto metric = std::ranges::find(run.metrics, axis.metric, &std::pair<std::string, double>::first);
     if (metric == run.metrics.end() || !std::isfinite(metric->second)) return std::nullopt;
     descriptor.push_back(metric->second);

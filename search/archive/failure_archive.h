@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "search/experiment/cell_axis.h"
+#include "controllers/failure_descriptor.h"
 #include "search/failure_tally.h"
 #include "search/search_algorithm.h"
 
@@ -30,9 +30,9 @@ Descriptor MiddleOf(const std::vector<Descriptor>& failures);
 
 class DescriptorGrid {
  public:
-  explicit DescriptorGrid(std::vector<CellAxis> axes) : axes_(std::move(axes)) {}
+  explicit DescriptorGrid(std::vector<controllers::DescriptorAxis> axes) : axes_(std::move(axes)) {}
 
-  const std::vector<CellAxis>& axes() const { return axes_; }
+  const std::vector<controllers::DescriptorAxis>& axes() const { return axes_; }
   std::size_t cells() const;
   // Row by row: the last axis runs fastest.
   std::size_t CellOf(const Descriptor& descriptor) const;
@@ -42,7 +42,7 @@ class DescriptorGrid {
   std::optional<Descriptor> Describe(const RunOutcome& run) const;
 
  private:
-  std::vector<CellAxis> axes_;
+  std::vector<controllers::DescriptorAxis> axes_;
 };
 
 // A test case with what its runs showed.
@@ -64,7 +64,7 @@ class FailureArchive {
   static constexpr std::size_t kShelf = 3;
   using Shelves = std::map<std::size_t, std::vector<Finding>>;
 
-  explicit FailureArchive(std::vector<CellAxis> axes) : grid_(std::move(axes)) {}
+  explicit FailureArchive(std::vector<controllers::DescriptorAxis> axes) : grid_(std::move(axes)) {}
 
   const DescriptorGrid& grid() const { return grid_; }
   // By cell; no shelf is empty.

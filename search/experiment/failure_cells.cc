@@ -14,7 +14,8 @@
 namespace gauntlet {
 namespace {
 
-Result<CellAxis> ParseAxis(const std::string& text, const controllers::ScenarioInfo& scenario) {
+Result<controllers::DescriptorAxis> ParseAxis(const std::string& text,
+                                              const controllers::ScenarioInfo& scenario) {
   const std::vector<std::string> parts = Split(text, ':');
   const auto wrong = [&](const std::string& what) {
     return InvalidInput(fmt::format("search.cells: '{}': {}", text, what));
@@ -31,18 +32,19 @@ Result<CellAxis> ParseAxis(const std::string& text, const controllers::ScenarioI
   if (controllers::FindMetric(scenario, parts[0]) == nullptr)
     return wrong(fmt::format("{} does not report it: {}", scenario.name,
                              UnknownName("metric", parts[0], scenario.metrics)));
-  return CellAxis{parts[0], *from, *to, *count};
+  return controllers::DescriptorAxis{parts[0], *from, *to, *count};
 }
 
 }  // namespace
 
-Result<std::vector<CellAxis>> ParseCells(const std::string& text, const controllers::ScenarioInfo& scenario) {
-  std::vector<CellAxis> axes;
+Result<std::vector<controllers::DescriptorAxis>> ParseCells(const std::string& text,
+                                                            const controllers::ScenarioInfo& scenario) {
+  std::vector<controllers::DescriptorAxis> axes;
   double cells = 1.0;
   std::istringstream stream(text);
   for (std::string word; stream >> word;) {
     TRY(auto axis, ParseAxis(word, scenario));
-    if (std::ranges::find(axes, axis.metric, &CellAxis::metric) != axes.end())
+    if (std::ranges::find(axes, axis.metric, &controllers::DescriptorAxis::metric) != axes.end())
       return InvalidInput(fmt::format("search.cells: '{}' stands twice", axis.metric));
     cells *= axis.parts;
     axes.push_back(std::move(axis));
@@ -52,20 +54,18 @@ Result<std::vector<CellAxis>> ParseCells(const std::string& text, const controll
   return axes;
 }
 
-std::vector<CellAxis> CellsOf(const Experiment& experiment) {
+std::vector<controllers::DescriptorAxis> CellsOf(const Experiment& experiment) {
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr) return {};
   if (!experiment.search.cells.empty()) return ParseCells(experiment.search.cells, *scenario).value();
-  std::vector<CellAxis> axes;
-  for (const controllers::DescriptorAxis& axis : scenario->descriptor_axes)
-    axes.push_back({std::string(axis.metric), axis.min, axis.max, axis.parts});
-  return axes;
+  return scenario->failures.axes;
 }
 
 std::optional<BrokenRule> CheckCells(const Experiment& experiment) {
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr || experiment.search.cells.empty()) return std::nullopt;
-  const Result<std::vector<CellAxis>> cells = ParseCells(experiment.search.cells, *scenario);
+  const Result<std::vector<controllers::DescriptorAxis>> cells =
+      ParseCells(experiment.search.cells, *scenario);
   if (!cells) return BrokenRule{"search.cells", cells.error().message};
   if (cells->empty()) return BrokenRule{"search.cells", "search.cells names no metric"};
   return std::nullopt;

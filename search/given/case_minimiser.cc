@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "controllers/registry.h"
 #include "search/given/given_search.h"
 
 namespace gauntlet {
@@ -276,8 +277,7 @@ void CaseMinimiser::RollBack() {
 }
 
 MinimisingRules RulesOf(const Experiment& minimisation) {
-  const controllers::FailurePlace* place = FailurePlaceOf(minimisation);
-  return {.same_within = place == nullptr ? 0.0 : place->same_within,
+  return {.same_within = controllers::DeclaredScenario(minimisation).failures.SameWithin(),
           .shorten = ValueOf(kMinimisationParameters[0], minimisation.search.parameters) != 0.0};
 }
 

@@ -15,25 +15,7 @@ namespace {
 // proximity ring.
 constexpr double kAtObstacle = sim::foot_bot::kRadius + 0.1;
 
-std::optional<double> MetricOf(const RunOutcome& run, std::string_view name) {
-  const auto found = std::ranges::find(run.metrics, name, &std::pair<std::string, double>::first);
-  if (found == run.metrics.end() || found->second == controllers::kNowhere) return std::nullopt;
-  return found->second;
-}
-
-std::optional<sim::Vec2> PlaceOfFailure(const RunOutcome& run, const controllers::FailurePlace* declared) {
-  if (declared == nullptr) return std::nullopt;
-  const std::optional<double> x = MetricOf(run, declared->x);
-  const std::optional<double> y = MetricOf(run, declared->y);
-  return x && y ? std::optional(sim::Vec2(*x, *y)) : std::nullopt;
-}
-
 }  // namespace
-
-const controllers::FailurePlace* FailurePlaceOf(const Experiment& experiment) {
-  const auto* info = controllers::FindScenario(experiment);
-  return info == nullptr || !info->failure_place ? nullptr : &*info->failure_place;
-}
 
 std::uint64_t CountVisits(const sim::RobotSummary& robot, const sim::ObstacleGene& obstacle) {
   const sim::OrientedBox box = sim::BoxOf(obstacle);
@@ -43,12 +25,12 @@ std::uint64_t CountVisits(const sim::RobotSummary& robot, const sim::ObstacleGen
 }
 
 RunJudge::RunJudge(const Experiment& experiment)
-    : failing_(FailingOf(experiment)), failure_place_(FailurePlaceOf(experiment)) {}
+    : failing_(FailingOf(experiment)), failures_(controllers::DeclaredScenario(experiment).failures) {}
 
 LayoutRuns RunJudge::WhatBecameOf(const RunOutcome& run, const sim::Genome& obstacles) const {
   LayoutRuns became;
   became.tally.Add(run, failing_);
-  const std::optional<sim::Vec2> place = PlaceOfFailure(run, failure_place_);
+  const std::optional<sim::Vec2> place = failures_.PlaceOf(run.metrics);
   if (place && became.tally.failures > 0) became.places.push_back(*place);
   if (run.robots.empty()) return became;
   for (const sim::ObstacleGene& obstacle : obstacles) {

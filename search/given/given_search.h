@@ -15,9 +15,6 @@
 
 namespace gauntlet {
 
-// Where the scenario's failures happen; nullptr: they have no place.
-const controllers::FailurePlace* FailurePlaceOf(const Experiment& experiment);
-
 // Waypoints at which the robot was at the obstacle, where it stands at the beginning: its proximity ring saw
 // it.
 std::uint64_t CountVisits(const sim::RobotSummary& robot, const sim::ObstacleGene& obstacle);
@@ -32,7 +29,7 @@ class RunJudge {
 
  private:
   const std::string_view failing_;
-  const controllers::FailurePlace* const failure_place_;
+  const controllers::FailureDescriptor& failures_;
 };
 
 // Tells the question what became of runs of its case, each by itself, in the order in which they were asked

@@ -11,13 +11,6 @@
 namespace gauntlet {
 namespace {
 
-using Metrics = std::span<const std::pair<std::string, double>>;
-
-std::optional<double> ValueOf(Metrics metrics, std::string_view name) {
-  const auto metric = std::ranges::find(metrics, name, &std::pair<std::string, double>::first);
-  return metric == metrics.end() ? std::nullopt : std::optional(metric->second);
-}
-
 // 0 for two ways without a place; ways that cannot be one failure are infinitely far apart.
 double Distance(const FailureWay& a, const FailureWay& b) {
   if (a.kind != b.kind || a.place.has_value() != b.place.has_value())
@@ -29,25 +22,15 @@ double Distance(const FailureWay& a, const FailureWay& b) {
 
 FailureWays::FailureWays(const controllers::ScenarioInfo& scenario,
                          const sim::Parameters& scenario_parameters, const sim::TestCase& test_case)
-    : scenario_(scenario) {
-  if (scenario.passages) passages_ = scenario.passages(scenario_parameters, test_case);
+    : descriptor_(scenario.failures) {
+  if (scenario.failures.passages) passages_ = scenario.failures.passages(scenario_parameters, test_case);
 }
 
-FailureWay FailureWays::Of(Metrics metrics) const {
-  FailureWay way;
-  for (; way.kind < scenario_.failure_kinds.size(); ++way.kind) {
-    const controllers::FailureKind& kind = scenario_.failure_kinds[way.kind];
-    const std::optional<double> value = ValueOf(metrics, kind.metric);
-    if (value && *value <= kind.at_most) break;
-  }
-  if (!scenario_.failure_place) return way;
-  const std::optional<double> x = ValueOf(metrics, scenario_.failure_place->x);
-  const std::optional<double> y = ValueOf(metrics, scenario_.failure_place->y);
-  if (!x || !y || *x == controllers::kNowhere || *y == controllers::kNowhere) return way;
-  const sim::Vec2 place(*x, *y);
-  const auto distance = [&](const sim::Vec2& passage) { return (passage - place).norm(); };
-  const auto passage = std::ranges::min_element(passages_, {}, distance);
-  way.place = passage == passages_.end() ? place : *passage;
+FailureWay FailureWays::Of(controllers::MetricValues metrics) const {
+  FailureWay way{descriptor_.KindOf(metrics), descriptor_.PlaceOf(metrics)};
+  if (!way.place || passages_.empty()) return way;
+  const auto distance = [&](const sim::Vec2& passage) { return (passage - *way.place).norm(); };
+  way.place = *std::ranges::min_element(passages_, {}, distance);
   return way;
 }
 
@@ -72,14 +55,14 @@ std::size_t TypicalWay(std::span<const FailureWay> ways) {
 
 std::vector<std::size_t> GroupWays(const controllers::ScenarioInfo& scenario,
                                    std::span<const FailureWay> ways) {
-  const double within = scenario.failure_place ? scenario.failure_place->same_within : 0.0;
   return analysis::GroupByDistance(
-      ways.size(), [&](std::size_t a, std::size_t b) { return Distance(ways[a], ways[b]); }, within);
+      ways.size(), [&](std::size_t a, std::size_t b) { return Distance(ways[a], ways[b]); },
+      scenario.failures.SameWithin());
 }
 
 std::string DescribeWay(const controllers::ScenarioInfo& scenario, const FailureWay& way) {
   std::string text;
-  if (way.kind < scenario.failure_kinds.size()) text = scenario.failure_kinds[way.kind].what;
+  if (way.kind < scenario.failures.kinds.size()) text = scenario.failures.kinds[way.kind].what;
   if (way.place) {
     const auto shown = [](double metres) { return std::round(10.0 * metres) / 10.0 + 0.0; };  // no "-0.0"
     text += fmt::format("{}near ({:.1f}, {:.1f})", text.empty() ? "" : ", ", shown(way.place->x()),

@@ -16,7 +16,7 @@ namespace gauntlet {
 
 // How a run failed, or most of the failed runs of a case.
 struct FailureWay {
-  std::size_t kind = 0;            // of ScenarioInfo::failure_kinds
+  std::size_t kind = 0;            // of FailureDescriptor::kinds
   std::optional<sim::Vec2> place;  // one of the passages, where there are any
 };
 
@@ -27,10 +27,10 @@ class FailureWays {
               const sim::TestCase& test_case);
 
   // `metrics`: of a run that failed.
-  FailureWay Of(std::span<const std::pair<std::string, double>> metrics) const;
+  FailureWay Of(controllers::MetricValues metrics) const;
 
  private:
-  const controllers::ScenarioInfo& scenario_;
+  const controllers::FailureDescriptor& descriptor_;
   std::vector<sim::Vec2> passages_;
 };
 

@@ -23,16 +23,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kFitness = "fitness";
-constexpr const char* kTotalFailure = "total_failure";
 constexpr const char* kFailureType = "failure_type";
 
 bool IsColumn(const std::string& metric) {
-  return metric == kFitness || metric == kTotalFailure || metric == kFailureType;
+  return metric == kFitness || metric == controllers::kTotalFailure || metric == kFailureType;
 }
 
 // What the row of a run with a result says of it.
 std::optional<double> ColumnOf(const StoredRun& run, const std::string& metric) {
-  if (metric == kTotalFailure) return run.total_failure ? 1.0 : 0.0;
+  if (metric == controllers::kTotalFailure) return run.total_failure ? 1.0 : 0.0;
   if (metric == kFailureType) {
     return run.total_failure && run.failure_type >= 0 ? std::optional<double>(run.failure_type)
                                                       : std::nullopt;
@@ -42,15 +41,14 @@ std::optional<double> ColumnOf(const StoredRun& run, const std::string& metric) 
 
 std::optional<double> MetricOf(const sim::RunResult& result, const controllers::MetricInfo* info,
                                const std::string& metric) {
-  const auto found = std::ranges::find(result.metrics, metric, &std::pair<std::string, double>::first);
-  return found == result.metrics.end() ? std::nullopt : MeasuredValue(info, found->second);
+  const std::optional<double> value = controllers::ReportedValue(result.metrics, metric);
+  return value ? MeasuredValue(info, *value) : std::nullopt;
 }
 
 // One value for each stored run of a search, in logical order.
 Result<std::vector<SelectedRun>> LoadValues(const SearchPlan& plan, ResultStore& store,
                                             const std::string& metric) {
-  const controllers::ScenarioInfo* scenario = controllers::FindScenario(plan.experiment);
-  const auto* info = scenario == nullptr ? nullptr : controllers::FindMetric(*scenario, metric);
+  const auto* info = controllers::FindMetric(controllers::DeclaredScenario(plan.experiment), metric);
   std::vector<SelectedRun> values;
   const auto take = [&](const StoredRun& run) -> Status {
     SelectedRun& value = values.emplace_back(
@@ -214,7 +212,7 @@ Status CheckMetric(const Experiment& experiment, const std::string& metric) {
   if (IsColumn(metric) || scenario == nullptr || controllers::FindMetric(*scenario, metric) != nullptr) {
     return Ok{};
   }
-  std::vector<std::string_view> known = {kFitness, kTotalFailure, kFailureType};
+  std::vector<std::string_view> known = {kFitness, controllers::kTotalFailure, kFailureType};
   for (const controllers::MetricInfo& info : scenario->metrics) known.push_back(info.name);
   return InvalidInput(UnknownName("metric", metric, known));
 }

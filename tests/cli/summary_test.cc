@@ -38,11 +38,11 @@ SearchSummary EvolvedSearch() {
   summary.distinct_individuals = 372;
   summary.fitness = FitnessOf({0.0, 0.0045, 0.633});
   summary.total_failures = summary.failing_runs = 231;
-  for (int type = 0; type < 20; ++type) summary.types.counts.push_back({type, "apart", 0});
-  summary.types.counts[12] = {12, "slowly apart", 200};
-  summary.types.counts[3].runs = 30;
-  summary.types.untyped = 1;
-  summary.types.untyped_name = "without a split";
+  for (int type = 0; type < 20; ++type)
+    summary.types.types.push_back({type, type == 12 ? "slowly apart" : "apart"});
+  summary.runs_of_type = {{3, 30}, {12, 200}};
+  summary.untyped_failures = 1;
+  summary.types.untyped = "without a split";
   summary.statistics = {{"clone_rate", 0.61}};
   for (std::uint32_t g = 1; g <= 50; ++g)
     summary.generations.push_back({g, 20, g, FitnessOf({0.3 - 0.006 * g, 0.3 + 0.006 * g, 0.9})});
@@ -131,7 +131,7 @@ TEST(SummaryText, EndsWithCommandsOnTheToughestCase) {
 
 TEST(SummaryText, SpeaksOfNoFailureTypesWhereTheScenarioHasNone) {
   CampaignSummary summary = Evolved();
-  summary.searches[0].types.counts.clear();
+  summary.searches[0].types.types.clear();
   testing_support::ExpectGolden(
       "tests/cli/texts/summary_speaks_of_no_failure_types_where_the_scenario_has_none.txt",
       SummaryText(summary, {}, {"gauntlet", "d"}));
@@ -139,7 +139,7 @@ TEST(SummaryText, SpeaksOfNoFailureTypesWhereTheScenarioHasNone) {
 
 TEST(TypesText, TellsEveryTypeAndWhatHasNone) {
   SearchSummary search = EvolvedSearch();
-  search.types.counts.resize(4);
+  search.types.types.resize(4);
   search.types.note = "Types do not tell failures apart.";
   EXPECT_EQ(TypesText(CampaignOf(search)),
             "  type  total failure  runs\n"
@@ -150,6 +150,7 @@ TEST(TypesText, TellsEveryTypeAndWhatHasNone) {
             "  and 1 total failures without a split\n"
             "  Types do not tell failures apart.\n");
   search.types = {};
+  search.untyped_failures = 0;
   EXPECT_EQ(TypesText(CampaignOf(search)), "  Its scenario tells no types of failures apart.\n");
 }
 

@@ -182,17 +182,17 @@ TEST(Registry, EveryFailureTypeHasItsOwnNumberAndName) {
     SCOPED_TRACE(scenario.name);
     std::set<int> numbers;
     std::set<std::string> labels;
-    for (const FailureType& failure : scenario.failure_types) {
+    for (const FailureType& failure : scenario.failure_types.types) {
       EXPECT_GE(failure.type, 0);
       EXPECT_FALSE(failure.name.empty());
       EXPECT_TRUE(numbers.insert(failure.type).second) << failure.type;
       EXPECT_TRUE(labels.insert(failure.name).second) << failure.name;
     }
   }
-  EXPECT_EQ(FindScenario("flocking")->failure_types.size(), 20U);
-  EXPECT_EQ(FindScenario("foraging")->failure_types.size(), 3U);
-  EXPECT_EQ(FindScenario("task-partitioning")->failure_types.size(), 1U);
-  EXPECT_TRUE(FindScenario("light-flocking")->failure_types.empty());
+  EXPECT_EQ(FindScenario("flocking")->failure_types.types.size(), 20U);
+  EXPECT_EQ(FindScenario("foraging")->failure_types.types.size(), 3U);
+  EXPECT_EQ(FindScenario("task-partitioning")->failure_types.types.size(), 1U);
+  EXPECT_TRUE(FindScenario("light-flocking")->failure_types.types.empty());
 }
 
 TEST(Registry, EveryScenarioHasMetricsThatDescribeBehaviour) {
@@ -203,16 +203,16 @@ TEST(Registry, EveryScenarioHasMetricsThatDescribeBehaviour) {
 
 TEST(Registry, ThePlaceOfAFailureIsMeasuredInMetres) {
   for (const ScenarioInfo& scenario : Scenarios()) {
-    if (!scenario.failure_place) continue;
-    EXPECT_GT(scenario.failure_place->same_within, 0.0) << scenario.name;
-    for (const std::string_view name : {scenario.failure_place->x, scenario.failure_place->y}) {
+    if (!scenario.failures.place) continue;
+    EXPECT_GT(scenario.failures.place->same_within, 0.0) << scenario.name;
+    for (const std::string_view name : {scenario.failures.place->x, scenario.failures.place->y}) {
       const MetricInfo* metric = FindMetric(scenario, name);
       ASSERT_NE(metric, nullptr) << scenario.name << " " << name;
       EXPECT_EQ(metric->unit, "m") << name;
       EXPECT_TRUE(metric->descriptor) << name;
     }
   }
-  EXPECT_TRUE(FindScenario("flocking")->failure_place.has_value());
+  EXPECT_TRUE(FindScenario("flocking")->failures.place.has_value());
 }
 
 TEST(Registry, EveryMetricAScenarioReportsIsDescribed) {

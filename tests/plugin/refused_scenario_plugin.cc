@@ -17,7 +17,6 @@ struct Settings {
 };
 
 const std::vector<controllers::MetricInfo> kMetrics = {{"count", "", {}, "of nothing"}};
-const std::vector<controllers::DescriptorAxis> kAxes = {{"counts", 0.0, 1.0, 2}};
 
 std::vector<ScenarioInfo> Rows() {
   static const controllers::ParameterTable<Settings> table(
@@ -41,13 +40,15 @@ std::vector<ScenarioInfo> Rows() {
 #elif defined(NO_SUCH_TIME_LIMIT)
   row.time_limit = "seconds";
 #elif defined(NO_SUCH_METRIC)
-  row.descriptor_axes = kAxes;
+  row.failures.axes = {{"counts", 0.0, 1.0, 2}};
 #elif defined(FAILS_WITHOUT_A_METRIC)
   row.failing = "count";
 #elif defined(WITHOUT_REQUIREMENTS)
   row.requirements = nullptr;
 #elif defined(WITH_PASSAGES)
-  row.passages = [](const sim::Parameters&, const sim::TestCase&) { return std::vector<sim::Vec2>(); };
+  row.failures.passages = [](const sim::Parameters&, const sim::TestCase&) {
+    return std::vector<sim::Vec2>();
+  };
 #elif defined(THROWS_IN_SCENARIOS)
   throw std::runtime_error("no scenarios today");
 #endif

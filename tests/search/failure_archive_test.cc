@@ -8,7 +8,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-const std::vector<CellAxis> kAxes = {
+const std::vector<controllers::DescriptorAxis> kAxes = {
     {"x", -3.0, 3.0, 5},
     {"y", 0.0, 2.0, 2},
 };

@@ -24,14 +24,14 @@ const std::vector<controllers::FailureKind> kKinds = {{"taken", 0.0, "no item wa
                                                       {"taken", 1e9, "none came home"}};
 
 controllers::ScenarioInfo ScenarioWithPlaces() {
-  return {.name = "toy",
-          .description = "",
-          .default_controller = "",
-          .metrics = {},
-          .failure_place = controllers::FailurePlace{"x", "y", 1.0},
-          .passages = [](const sim::Parameters&, const sim::TestCase&) {
-            return std::vector<sim::Vec2>{{0.0, 0.0}, {2.0, 0.0}};
-          }};
+  return {
+      .name = "toy",
+      .description = "",
+      .default_controller = "",
+      .metrics = {},
+      .failures = {.place = {{"x", "y", 1.0}}, .passages = [](const sim::Parameters&, const sim::TestCase&) {
+                     return std::vector<sim::Vec2>{{0.0, 0.0}, {2.0, 0.0}};
+                   }}};
 }
 
 TEST(FailureGroupsTest, ARunFailsAtThePassageNearestToItsPlace) {
@@ -41,15 +41,15 @@ TEST(FailureGroupsTest, ARunFailsAtThePassageNearestToItsPlace) {
   EXPECT_EQ(ways.Of(Metrics{{"x", controllers::kNowhere}, {"y", controllers::kNowhere}}).place, std::nullopt);
   EXPECT_EQ(ways.Of(Metrics{}).place, std::nullopt);
   controllers::ScenarioInfo anywhere = scenario;
-  anywhere.passages = nullptr;
+  anywhere.failures.passages = nullptr;
   EXPECT_EQ(FailureWays(anywhere, {}, {}).Of(Metrics{{"x", 1.4}, {"y", 0.3}}).place, sim::Vec2(1.4, 0.3));
   EXPECT_EQ(DescribeWay(scenario, {0, sim::Vec2(-0.04, 1.26)}), "near (0.0, 1.3)");
 }
 
 TEST(FailureGroupsTest, KindsArePartedAndNamed) {
   controllers::ScenarioInfo scenario = ScenarioWithPlaces();
-  scenario.failure_place.reset();
-  scenario.failure_kinds = kKinds;
+  scenario.failures.place.reset();
+  scenario.failures.kinds = kKinds;
   const FailureWays ways(scenario, {}, {});
   const std::vector<FailureWay> all = {ways.Of(Metrics{{"taken", 3.0}}), ways.Of(Metrics{{"taken", 0.0}}),
                                        ways.Of(Metrics{{"taken", 1.0}})};

@@ -32,15 +32,12 @@ ScenarioInfo Patrol() {
                       {"missed_x", "m", -1000.0, "where nobody was", true},
                       {"missed_y", "m", -1000.0, "where nobody was", true},
                       {"window_*", "", std::nullopt, "in each window", false}},
-          .failure_types = {{3, "north", "left", "top"}},
-          .failure_axes = {"side", "end"},
-          .untyped_failure = "somewhere",
           .failing = "late",
-          .failure_place = FailurePlace{"missed_x", "missed_y", 0.5},
-          .failure_kinds = {{"window_2", 0.0, "nothing in the second window"}},
-          .failure_note = "measured by nobody",
-          .any_controller = true,
-          .descriptor_axes = {{"missed_x", -3.0, 3.0, 6}}};
+          .failures = {.axes = {{"missed_x", -3.0, 3.0, 6}},
+                       .place = {{"missed_x", "missed_y", 0.5}},
+                       .kinds = {{"window_2", 0.0, "nothing in the second window"}}},
+          .failure_types = {{{3, "north", "left", "top"}}, "side", "end", "somewhere", "measured by nobody"},
+          .any_controller = true};
 }
 
 Result<PluginRows> ReadBack(const PluginRows& rows) {
@@ -58,12 +55,9 @@ void ExpectSame(const ScenarioInfo& told, const ScenarioInfo& row) {
   EXPECT_EQ(told.metrics, row.metrics);
   EXPECT_EQ(told.failing, row.failing);
   EXPECT_EQ(told.failure_types, row.failure_types);
-  EXPECT_EQ(told.failure_axes, row.failure_axes);
-  EXPECT_EQ(told.untyped_failure, row.untyped_failure);
-  EXPECT_EQ(told.failure_note, row.failure_note);
-  EXPECT_EQ(told.failure_place, row.failure_place);
-  EXPECT_EQ(told.failure_kinds, row.failure_kinds);
-  EXPECT_EQ(told.descriptor_axes, row.descriptor_axes);
+  EXPECT_EQ(told.failures.place, row.failures.place);
+  EXPECT_EQ(told.failures.kinds, row.failures.kinds);
+  EXPECT_EQ(told.failures.axes, row.failures.axes);
   EXPECT_EQ(told.requirements, nullptr);
   EXPECT_EQ(told.create, nullptr);
 }
@@ -168,17 +162,18 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"MetricName", [](ScenarioInfo& s) { s.metrics[1].name = "x,y"; }, "metric 'x,y': a name"},
         Mistake{"None", [](ScenarioInfo& s) { s.metrics[1].none = kNan; },
                 "metric 'missed_x': what stands for none must be a number"},
-        Mistake{"Place", [](ScenarioInfo& s) { s.failure_place->x = "x"; },
+        Mistake{"Place", [](ScenarioInfo& s) { s.failures.place->x = "x"; },
                 "the failure's place is of the metric 'x', which is none of its metrics"},
-        Mistake{"Distance", [](ScenarioInfo& s) { s.failure_place->same_within = 0.0; },
+        Mistake{"Distance", [](ScenarioInfo& s) { s.failures.place->same_within = 0.0; },
                 "the same within 0 m; more than 0 is needed"},
-        Mistake{"Kind", [](ScenarioInfo& s) { s.failure_kinds[0].metric = "w"; },
+        Mistake{"Kind", [](ScenarioInfo& s) { s.failures.kinds[0].metric = "w"; },
                 "a failure kind is of the metric 'w'"},
-        Mistake{"TypeTwice", [](ScenarioInfo& s) { s.failure_types.push_back(s.failure_types[0]); },
+        Mistake{"TypeTwice",
+                [](ScenarioInfo& s) { s.failure_types.types.push_back(s.failure_types.types[0]); },
                 "failure type 3 is given twice"},
-        Mistake{"Axis", [](ScenarioInfo& s) { s.descriptor_axes[0].max = -3.0; },
+        Mistake{"Axis", [](ScenarioInfo& s) { s.failures.axes[0].max = -3.0; },
                 "the descriptor axis of 'missed_x' goes from -3 to -3 in 6 parts"},
-        Mistake{"Parts", [](ScenarioInfo& s) { s.descriptor_axes[0].parts = 0; }, "in 0 parts; 1 to 1000"}),
+        Mistake{"Parts", [](ScenarioInfo& s) { s.failures.axes[0].parts = 0; }, "in 0 parts; 1 to 1000"}),
     [](const testing::TestParamInfo<Mistake>& parameter) { return parameter.param.what; });
 
 }  // namespace

@@ -28,18 +28,18 @@ std::string ErrorOfCells(const std::string& cells) {
 TEST(FailureCellsTest, AreTheScenariosUnlessOthersAreGiven) {
   const Result<Experiment> plain = FlockingWith("");
   ASSERT_TRUE(plain.ok()) << plain.error().message;
-  EXPECT_THAT(CellsOf(*plain),
-              ElementsAre(CellAxis{"split_x", -3.0, 3.0, 5}, CellAxis{"split_y", -3.0, 3.0, 5}));
+  EXPECT_THAT(CellsOf(*plain), ElementsAre(controllers::DescriptorAxis{"split_x", -3.0, 3.0, 5},
+                                           controllers::DescriptorAxis{"split_y", -3.0, 3.0, 5}));
   const Result<Experiment> own = FlockingWith("birds_left:0:10:4  split_time:0:150.5:3");
   ASSERT_TRUE(own.ok()) << own.error().message;
-  EXPECT_THAT(CellsOf(*own),
-              ElementsAre(CellAxis{"birds_left", 0.0, 10.0, 4}, CellAxis{"split_time", 0.0, 150.5, 3}));
+  EXPECT_THAT(CellsOf(*own), ElementsAre(controllers::DescriptorAxis{"birds_left", 0.0, 10.0, 4},
+                                         controllers::DescriptorAxis{"split_time", 0.0, 150.5, 3}));
 }
 
 TEST(FailureCellsTest, OfAFamilyOfMetricsOneMayBeNamed) {
   const auto axes = ParseCells("food_window_3:0:20:4", *controllers::FindScenario("foraging"));
   ASSERT_TRUE(axes.ok()) << axes.error().message;
-  EXPECT_THAT(*axes, ElementsAre(CellAxis{"food_window_3", 0.0, 20.0, 4}));
+  EXPECT_THAT(*axes, ElementsAre(controllers::DescriptorAxis{"food_window_3", 0.0, 20.0, 4}));
 }
 
 TEST(FailureCellsTest, SayWhatIsWrong) {
