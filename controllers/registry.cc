@@ -134,6 +134,12 @@ const PluginInfo* FindPlugin(std::string_view hash) {
   return found == Plugins().end() ? nullptr : &*found;
 }
 
+void NamePlugin(std::string_view hash, const std::string& file) {
+  const auto known = std::ranges::find(Plugins(), hash, &PluginInfo::hash);
+  known->file = file;
+  known->brought_along = false;
+}
+
 Result<const ScenarioInfo*> ScenarioOf(const sim::RunSettings& settings) {
   return RowOf<ScenarioInfo>("scenario", settings.scenario, settings.scenario_plugin, Scenarios(),
                              &PluginInfo::scenarios);

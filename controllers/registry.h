@@ -27,7 +27,9 @@ std::span<const ControllerInfo> Controllers();  // those that are built in
 // that was told of it knows names, parameters, metrics and the like.
 struct PluginInfo {
   std::string hash;  // SHA-256 of the library, 64 hexadecimal digits
-  std::string file;  // where it was found
+  std::string file;  // where it is
+  // A campaign or a study, which somebody else may have made, has brought it along. Else the user named it.
+  bool brought_along = false;
   // In a master: what gauntlet-worker said of it, from which the rows come (controllers/rows/plugin_rows.h).
   std::string description;
   std::vector<ControllerInfo> controllers;
@@ -40,6 +42,8 @@ struct PluginInfo {
 // refer to is never freed. Error: one of its controllers or scenarios has the name of a built-in one.
 Status AddPlugin(PluginInfo plugin);
 const PluginInfo* FindPlugin(std::string_view hash);  // nullptr when it is not known
+// The user has named a file with the library of this known plug-in.
+void NamePlugin(std::string_view hash, const std::string& file);
 
 // nullptr when there is none of that name. `plugin`: the hash of the plug-in to look in; "": those built in.
 const ScenarioInfo* FindScenario(std::string_view name, std::string_view plugin = "");

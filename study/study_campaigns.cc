@@ -153,6 +153,7 @@ Status BeginStudy(const std::string& dir, const Study& study) {
   }
   if (fs::exists(dir, error)) {
     if (!fs::is_directory(dir, error)) return InvalidInput(dir + " is no directory");
+    TRY(CheckOnlyWeWrite(dir));
     for (const fs::directory_entry& entry : fs::directory_iterator(dir, error)) {
       const std::string name = entry.path().filename().string();
       // What a write that was killed has left.

@@ -207,9 +207,8 @@ class Reader {
     if (libraries_ == Libraries::kGiven) return Ok{};
     const Result<ExperimentText> text = ReadExperimentText(experiment);
     if (!text) return Ok{};
-    const Result<std::vector<std::string>> files = PluginFilesOf(*text);
-    if (!files) return Ok{};
-    for (const std::string& file : *files) {
+    TRY(const std::vector<std::string> files, PluginFilesOf(*text));
+    for (const std::string& file : files) {
       if (!named_libraries_.insert(file).second) continue;
       TRY(AddPluginFile(file, study_.plugins));
     }

@@ -12,13 +12,16 @@
 namespace gauntlet {
 namespace {
 
+bool IsForeign(const struct stat& status) {
+  return status.st_uid != geteuid() && status.st_uid != 0;
+}
+
 Status Check(const std::string& path, const std::string& directory, const struct stat& status) {
-  const uid_t us = geteuid();
-  if (status.st_uid != us && status.st_uid != 0) {
+  if (IsForeign(status)) {
     return InvalidInput(fmt::format(
         "{} belongs to user {}, not to you (user {}), who so would decide what this command does in your "
-        "name. Look at what the directory holds, then work on a copy of your own: `cp -r {} COPY`",
-        path, status.st_uid, us, PastedPath(directory)));
+        "name. Look at what it holds, its programs too, before you make it yours, which `cp -r {} COPY` does",
+        path, status.st_uid, geteuid(), PastedPath(directory)));
   }
   if (!S_ISLNK(status.st_mode) && (status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
     return InvalidInput(fmt::format(
@@ -45,6 +48,11 @@ Status CheckOnlyWeWrite(const std::string& directory, std::span<const std::strin
     TRY(Check(path, directory, status));
   }
   return Ok{};
+}
+
+bool IsForeign(const std::string& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 && IsForeign(status);
 }
 
 }  // namespace gauntlet

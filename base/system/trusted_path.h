@@ -15,4 +15,7 @@ namespace gauntlet {
 // Directories above it are not looked at.
 Status CheckOnlyWeWrite(const std::string& directory, std::span<const std::string_view> files = {});
 
+// Whether somebody else than this user or root owns what has this name; links are followed. False of nothing.
+bool IsForeign(const std::string& path);
+
 }  // namespace gauntlet

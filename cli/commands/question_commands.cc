@@ -12,6 +12,7 @@
 #include "analysis/tables/section.h"
 #include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
+#include "base/system/trusted_path.h"
 #include "cli/commands.h"
 #include "cli/dry_run.h"
 #include "cli/output/output_file.h"
@@ -172,6 +173,9 @@ Result<ExitCode> RunQuestion(CommandContext& context, const QuestionOptions& opt
   TRY(Call call, PlanCall(options.question, asking));
   TRY(Outputs outputs, OpenOutputs(options));
   if (!call.Simulates()) return Tell(context, options, asking, call, outputs);
+  if (place == Place::kCampaign) {
+    TRY(CheckOnlyWeWrite(options.place));
+  }
   if (call.anew) {
     TRY(MakeRoom(context, call.directory));
   }

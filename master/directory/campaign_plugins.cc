@@ -13,6 +13,7 @@
 #include "controllers/registry.h"
 #include "controllers/rows/plugin_rows.h"
 #include "master/directory/plugins.h"
+#include "master/dispatch/pool/worker_program.h"
 #include "proto/json_text.h"
 
 namespace gauntlet {
@@ -33,16 +34,6 @@ std::set<std::string> PluginsOf(const std::vector<SearchPlan>& plans) {
     hashes.insert({plan.experiment.plugin, plan.experiment.scenario_plugin});
   hashes.erase("");
   return hashes;
-}
-
-// Error: the file holds something else.
-Result<std::string> ReadPlugin(const std::string& path, const std::string& hash) {
-  TRY(std::string bytes, ReadSmallFile(path, controllers::kMaxPluginBytes));
-  if (const std::string found = Sha256(bytes); found != hash) {
-    return InvalidInput(fmt::format(
-        "{} is another plug-in now: its SHA-256 is {}, the searches were begun with {}", path, found, hash));
-  }
-  return bytes;
 }
 
 // What the plug-in has answered to how runs begin: a campaign that is only looked at is not to load it for
@@ -67,14 +58,19 @@ Status KnowAnswers(const std::string& path, const std::string& hash) {
 
 }  // namespace
 
+Status CheckPlugins(const std::vector<SearchPlan>& plans) {
+  for (const std::string& hash : PluginsOf(plans)) {
+    TRY(ReadPlugin(hash));
+  }
+  return Ok{};
+}
+
 Status KeepPlugins(const std::string& folder, const std::vector<SearchPlan>& plans) {
   for (const std::string& hash : PluginsOf(plans)) {
-    const controllers::PluginInfo* plugin = controllers::FindPlugin(hash);
-    GAUNTLET_CHECK(plugin != nullptr, hash);
-    TRY(const std::string library, ReadPlugin(plugin->file, hash));
+    TRY(const std::string library, ReadPlugin(hash));
     TRY(MakeDirectory(folder));
     for (const auto& [ending, content] : {std::pair<const char*, const std::string&>(kLibrary, library),
-                                          {kDescription, plugin->description}}) {
+                                          {kDescription, controllers::FindPlugin(hash)->description}}) {
       TRY(WriteFileAtomically(PathOf(folder, hash, ending), content, kReadableByAll));
     }
     TRY(KeepAnswers(folder, hash));
@@ -91,7 +87,8 @@ Status KnowPlugins(const std::string& folder) {
     const std::string hash = path.stem();
     if (path.extension() != kDescription || !IsSha256(hash)) continue;
     TRY(const std::string description, ReadRegularFile(path));
-    TRY(AddDescribedPlugin(hash, PathOf(folder, hash, kLibrary), description, path.string()));
+    TRY(AddDescribedPlugin(hash, PathOf(folder, hash, kLibrary), description, path.string(),
+                           /*brought_along=*/true));
     TRY(KnowAnswers(PathOf(folder, hash, kBeginnings), hash));
   }
   return Ok{};
@@ -99,7 +96,7 @@ Status KnowPlugins(const std::string& folder) {
 
 Status CheckPlugins(const std::string& folder, const std::vector<SearchPlan>& plans) {
   for (const std::string& hash : PluginsOf(plans)) {
-    TRY(ReadPlugin(PathOf(folder, hash, kLibrary), hash));
+    TRY(ReadCopy(PathOf(folder, hash, kLibrary), hash));
   }
   return Ok{};
 }

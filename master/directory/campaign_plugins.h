@@ -13,6 +13,9 @@ namespace gauntlet {
 
 // `folder` is plugins_path() of a campaign, or plugins/ of a study, and made when it is needed.
 
+// Whether the plug-ins of these searches, all known, may be copied and run in our name. Error: as ReadPlugin.
+Status CheckPlugins(const std::vector<SearchPlan>& plans);
+
 // Copies the plug-ins of these searches into the folder; all are known (master/directory/plugins.h).
 Status KeepPlugins(const std::string& folder, const std::vector<SearchPlan>& plans);
 

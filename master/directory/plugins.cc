@@ -94,7 +94,14 @@ Result<std::string> AddPluginFile(const std::string& file) {
   const Result<std::string> bytes = ReadSmallFile(file, controllers::kMaxPluginBytes);
   if (!bytes) return InvalidInput("plug-in: " + bytes.error().message);
   std::string hash = Sha256(*bytes);
-  if (controllers::FindPlugin(hash) != nullptr) return hash;
+  // Whatever it is called: a campaign that somebody else filled does not speak for the user.
+  if (std::filesystem::exists(std::filesystem::path(file).parent_path() / (hash + ".json"), missing)) {
+    TRY(CheckCopyIsOurs(file));
+  }
+  if (controllers::FindPlugin(hash) != nullptr) {
+    controllers::NamePlugin(hash, file);
+    return hash;
+  }
   TRY(const std::string description, DescribePlugin(file));
   TRY(AddDescribedPlugin(hash, file, description, file));
   return hash;
@@ -128,13 +135,14 @@ Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& 
 }
 
 Status AddDescribedPlugin(const std::string& hash, const std::string& file, const std::string& description,
-                          const std::string& place) {
+                          const std::string& place, bool brought_along) {
   if (controllers::FindPlugin(hash) != nullptr) return Ok{};
   TRY(const nlohmann::json json, ParseJson(description, place));
   TRY(controllers::PluginRows rows, controllers::ReadRows(json, place));
   for (ControllerInfo& row : rows.controllers) row.make = MakeAbsent;
   controllers::PluginInfo plugin{.hash = hash,
                                  .file = file,
+                                 .brought_along = brought_along,
                                  .description = description,
                                  .controllers = std::move(rows.controllers),
                                  .scenarios = std::move(rows.scenarios)};

@@ -11,8 +11,9 @@
 
 namespace gauntlet {
 
-// Makes the library's controllers and scenarios known; its SHA-256. Error: it cannot be read, or why
-// gauntlet-worker refuses it; what is built in has the name of one.
+// Makes the library's controllers and scenarios known, whose file the user names; its SHA-256. Error: it
+// cannot be read, it is a campaign's copy that somebody else could have written, or why gauntlet-worker
+// refuses it; what is built in has the name of one.
 Result<std::string> AddPluginFile(const std::string& file);
 
 // The same, and adds it to those of `hashes`, which are known. Error: also that one of them brings a
@@ -23,9 +24,9 @@ Status AddPluginFile(const std::string& file, std::vector<std::string>& hashes);
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files);
 
 // The same of a library that was described before: `description` as controllers/rows/plugin_rows.h writes it,
-// which is called `place` in errors.
+// which is called `place` in errors; `brought_along` as in controllers::PluginInfo.
 Status AddDescribedPlugin(const std::string& hash, const std::string& file, const std::string& description,
-                          const std::string& place);
+                          const std::string& place, bool brought_along = false);
 
 // What the plug-in has answered to how runs begin (proto/run_beginning.h), by the SHA-256 of the serialized
 // spec, so that it need not be asked again.

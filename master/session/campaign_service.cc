@@ -115,6 +115,7 @@ Status AddPlans(const std::vector<SearchPlan>& plans, ResultStore& store) {
 
 Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>& plans,
                            const std::string& slurm) {
+  TRY(CheckPlugins(plans));
   TRY(CheckSearches(plans));
   TRY(proto::GoldenHashes golden_hashes, GoldenHashesFor(plans));
   CampaignMeta meta;

@@ -11,6 +11,7 @@
 #include "base/nearest_name.h"
 #include "base/printable.h"
 #include "base/system/sha256.h"
+#include "base/system/trusted_path.h"
 #include "search/experiment/definition_table.h"
 #include "search/experiment/key_assignment.h"
 #include "search/experiment/toml_text.h"
@@ -257,6 +258,12 @@ Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment)
     const bool names_library = assignment.path == "plugin" || assignment.path == "scenario_plugin";
     if (names_library && hash != nullptr && IsSha256(*hash))
       files.push_back(folder / "plugins" / (*hash + ".so"));
+  }
+  // Somebody else's file does not choose what runs in our name.
+  for (const std::filesystem::path file : files) {
+    if (!IsForeign(experiment.file_name)) break;
+    const std::string name = file.filename();
+    TRY(CheckOnlyWeWrite(file.parent_path(), std::array<std::string_view, 1>{name}));
   }
   return files;
 }

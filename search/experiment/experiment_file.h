@@ -35,7 +35,8 @@ struct ExperimentText {
 Result<ExperimentText> ReadExperimentText(const std::string& name_or_path);
 
 // The libraries that an experiment's text asks for: those of plugins = ["FILE", ...], by a path relative to
-// the file, and the copy that a resolved experiment has beside it. Errors as above.
+// the file, and the copy that a resolved experiment has beside it. Errors as above; of a file that belongs to
+// somebody else also those of CheckOnlyWeWrite about a library and its folder.
 Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment);
 
 // The resolved experiment, every default written out, with what each key means. ParseExperiment gives back an

@@ -1,6 +1,7 @@
 // Campaigns with plug-ins, as people run them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -11,7 +12,10 @@ namespace gauntlet::testing_support {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
+
+constexpr uid_t kStranger = 54321;
 
 class PluginCampaign : public testing::Test {
  protected:
@@ -118,21 +122,84 @@ TEST_F(PluginCampaign, CanBeMovedReplayedAndExtendedWithoutTheOriginalLibrary) {
   EXPECT_EQ(again.exit_code, 0) << again.err;
 }
 
-TEST_F(PluginCampaign, IsNotResumedWithAReplacedLibrary) {
+TEST_F(PluginCampaign, DoesNothingWithAReplacedLibrary) {
   ASSERT_EQ(RandomTwins().exit_code, 0);
   fs::copy_file(PluginPath("of_faults"), KeptLibrary(), fs::copy_options::overwrite_existing);
-  const ProcessResult result = Gauntlet({"resume", dir_, "--set", "search.cases=6", "--quiet"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("is another plug-in now: its SHA-256 is"));
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"resume", dir_, "--set", "search.cases=6"},
+        {"replay", dir_, "1"},
+        {"confirm", dir_, "1"}}) {
+    const ProcessResult result = Gauntlet(command);
+    EXPECT_EQ(result.exit_code, 2) << command[0];
+    EXPECT_THAT(result.err, HasSubstr("is another plug-in now: its SHA-256 is")) << command[0];
+  }
+  fs::rename(KeptLibrary(), scratch_ / "library");
+  fs::create_symlink(scratch_ / "library", KeptLibrary());
+  const ProcessResult linked = Gauntlet({"replay", dir_, "1"});
+  EXPECT_EQ(linked.exit_code, 2);
+  EXPECT_THAT(linked.err, HasSubstr("is a symbolic link"));
 }
 
-TEST_F(PluginCampaign, IsLookedAtButNotReplayedWhenOthersMayWriteItsLibrary) {
+// A campaign that somebody else could have made is looked at, and nothing of it runs in our name or is made
+// in it. `what` is wrong with `path`.
+void ExpectOnlyLookedAt(const std::string& dir, const std::string& path, const std::string& what) {
+  for (const char* command : {"show", "status"}) EXPECT_EQ(Gauntlet({command, dir}).exit_code, 0) << command;
+  const std::string kept = dir + "/experiment.toml";
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"replay", dir, "1"},
+                                                  {"report", dir, "-o", dir + ".html"},
+                                                  {"confirm", dir, "1"},
+                                                  {"minimise", dir, "1"},
+                                                  {"blame", dir, "1"},
+                                                  {"evaluate", kept, "--from", dir, "--dir", dir + ".new"},
+                                                  {"random", kept, "--cases", "1", "--dir", dir + ".new"}}) {
+    const ProcessResult result = Gauntlet(command);
+    EXPECT_EQ(result.exit_code, 2) << command[0];
+    EXPECT_THAT(result.err, AllOf(HasSubstr(path + " "), HasSubstr(what))) << command[0];
+    EXPECT_FALSE(fs::exists(dir + "/" + command[0])) << command[0];
+    EXPECT_FALSE(fs::exists(dir + ".new")) << command[0];
+  }
+}
+
+TEST_F(PluginCampaign, OnlyLooksAtWhatOthersMayWrite) {
   ASSERT_EQ(RandomTwins().exit_code, 0);
-  fs::permissions(KeptLibrary(), fs::perms::others_write, fs::perm_options::add);
-  EXPECT_EQ(Gauntlet({"show", dir_}).exit_code, 0);
-  const ProcessResult result = Gauntlet({"replay", dir_, "1"});
+  for (const std::string& path : {KeptLibrary(), dir_ + "/plugins", dir_}) {
+    fs::permissions(path, fs::perms::group_write, fs::perm_options::add);
+    ExpectOnlyLookedAt(dir_, path, "other users may write it");
+    fs::permissions(path, fs::perms::group_write, fs::perm_options::remove);
+  }
+}
+
+TEST_F(PluginCampaign, OnlyLooksAtWhatBelongsToOthers) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  ASSERT_EQ(RandomTwins().exit_code, 0);
+  for (const std::string& path : {KeptLibrary(), dir_ + "/plugins", dir_}) {
+    ASSERT_EQ(chown(path.c_str(), kStranger, kStranger), 0);
+    ExpectOnlyLookedAt(dir_, path, "belongs to user 54321, not to you (user 0)");
+    ASSERT_EQ(chown(path.c_str(), 0, 0), 0);
+  }
+}
+
+// Whatever the copy is called: what it holds says whose it is.
+TEST_F(PluginCampaign, TakesNoCopyUnderAnotherNameThatOthersMayWrite) {
+  ASSERT_EQ(RandomTwins().exit_code, 0);
+  const std::string copy = dir_ + "/plugins/innocent.so";
+  fs::copy_file(KeptLibrary(), copy);
+  fs::permissions(copy, fs::perms::group_write, fs::perm_options::add);
+  dir_ = scratch_ / "second";
+  const ProcessResult result = Random(experiment_, {"--plugin", copy, "--set", "controller=twin"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err, HasSubstr("other users may write it"));
+  EXPECT_THAT(result.err, HasSubstr(copy + " has mode"));
+}
+
+TEST_F(PluginCampaign, TakesNoLibraryOfOthersThatTheirExperimentNames) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give files away";
+  fs::copy_file(PluginPath("of_twins"), scratch_ / "theirs.so");
+  std::ofstream(experiment_) << "controller = 'twin'\nplugins = ['theirs.so']\n";
+  for (const std::string name : {"theirs.so", "mine.toml"})
+    ASSERT_EQ(chown((scratch_ / name).c_str(), kStranger, kStranger), 0);
+  const ProcessResult result = Random(experiment_, {});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr((scratch_ / "theirs.so") + " belongs to user 54321"));
 }
 
 // A corpus outlives the library: the cases are asked of the one that is given.

@@ -11,10 +11,14 @@
 #include <utility>
 #include <vector>
 
+#include "base/check.h"
+#include "base/system/atomic_file.h"
 #include "base/system/process_call.h"
+#include "base/system/regular_file.h"
 #include "base/system/sha256.h"
 #include "base/system/trusted_path.h"
 #include "controllers/registry.h"
+#include "controllers/rows/plugin_rows.h"
 #include "master/dispatch/leases/run_limits.h"
 #include "master/dispatch/pool/local_pool.h"
 #include "proto/run_codec.h"
@@ -41,13 +45,13 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
   }
 }
 
-// A campaign's copy of a plug-in (plugins/HASH.so) may be somebody else's, of a campaign that is only looked
-// at: it must not run in our name.
-Status CheckPluginIsOurs(const std::string& file) {
-  const std::filesystem::path path(file);
-  if (!IsSha256(path.stem().string())) return Ok{};
-  const std::string name = path.filename();
-  return CheckOnlyWeWrite(path.parent_path(), std::array<std::string_view, 1>{name});
+// The bytes of the file, if they are that plug-in.
+Result<std::string> OfHash(const std::string& hash, const std::string& file, Result<std::string> bytes) {
+  if (!bytes) return bytes;
+  const std::string holds = Sha256(*bytes);
+  if (holds == hash) return bytes;
+  return InvalidInput(fmt::format(
+      "{} is another plug-in now: its SHA-256 is {}, the searches were begun with {}", file, holds, hash));
 }
 
 // Names the libraries that the run needs.
@@ -55,7 +59,7 @@ Status AddPlugins(const sim::RunSpec& spec, std::vector<std::string>& arguments)
   for (const std::string& hash : std::set{spec.plugin, spec.scenario_plugin}) {
     const auto* plugin = controllers::FindPlugin(hash);
     if (plugin == nullptr) continue;
-    TRY(CheckPluginIsOurs(plugin->file));
+    TRY(ReadPlugin(hash));
     arguments.insert(arguments.end(), {"--plugin", plugin->file});
   }
   return Ok{};
@@ -88,8 +92,29 @@ Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::str
   return proto::DecodeRunResult(output);
 }
 
+Status CheckCopyIsOurs(const std::string& file) {
+  const std::filesystem::path path = std::filesystem::absolute(file);
+  const std::string name = path.filename();
+  const std::string folder = path.parent_path().filename();
+  Status ours = CheckOnlyWeWrite(path.parent_path().parent_path(), std::array<std::string_view, 1>{folder});
+  if (ours) ours = CheckOnlyWeWrite(path.parent_path(), std::array<std::string_view, 1>{name});
+  if (ours) return ours;
+  return Error{ours.error().kind, fmt::format("the plug-in {} would be run: {}", file, ours.error().message)};
+}
+
+Result<std::string> ReadPlugin(const std::string& hash) {
+  const controllers::PluginInfo* plugin = controllers::FindPlugin(hash);
+  GAUNTLET_CHECK(plugin != nullptr, hash);
+  if (plugin->brought_along) return ReadCopy(plugin->file, hash);
+  return OfHash(hash, plugin->file, ReadSmallFile(plugin->file, controllers::kMaxPluginBytes));
+}
+
+Result<std::string> ReadCopy(const std::string& file, const std::string& hash) {
+  TRY(CheckCopyIsOurs(file));
+  return OfHash(hash, file, ReadRegularFile(file, controllers::kMaxPluginBytes));
+}
+
 Result<std::string> DescribePlugin(const std::string& file) {
-  TRY(CheckPluginIsOurs(file));
   return AskPlugin({"--describe-plugin", file}, {}, file);
 }
 

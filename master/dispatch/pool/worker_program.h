@@ -17,6 +17,15 @@ namespace gauntlet {
 // removed.
 Result<sim::RunResult> SimulateInRunner(const sim::RunSpec& spec, const std::string& scratch = "");
 
+// Whether only we could have written DIR/plugins/HASH.so, its folder and DIR (CheckOnlyWeWrite).
+Status CheckCopyIsOurs(const std::string& file);
+
+// The library of a plug-in that is known, to be run or copied in our name. Error: it was brought along by a
+// directory that somebody else could have filled; the file is gone, or holds something else.
+Result<std::string> ReadPlugin(const std::string& hash);
+// The same of DIR/plugins/HASH.so.
+Result<std::string> ReadCopy(const std::string& file, const std::string& hash);
+
 // What the library brings, as gauntlet-worker describes it (controllers/rows/plugin_rows.h). Error: what is
 // wrong with it.
 Result<std::string> DescribePlugin(const std::string& file);
