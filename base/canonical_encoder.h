@@ -15,7 +15,9 @@ namespace gauntlet {
 class CanonicalEncoder {
  public:
   void Uint(std::uint64_t value) {
-    for (int i = 0; i < 8; ++i) bytes_.push_back(static_cast<char>(value >> (8 * i)));
+    char bytes[8];
+    for (int i = 0; i < 8; ++i) bytes[i] = static_cast<char>(value >> (8 * i));
+    bytes_.append(bytes, sizeof bytes);
   }
   void Int(std::int64_t value) { Uint(static_cast<std::uint64_t>(value)); }
   void Double(double value) { Uint(std::bit_cast<std::uint64_t>(value)); }

@@ -25,7 +25,7 @@ struct Key;
 struct SearchSetup {
   Experiment experiment;
   sim::ArenaRequirements requirements;  // of the experiment's scenario for its empty arena
-  std::vector<sim::TestCase> cases;     // of a search through given cases
+  std::vector<sim::TestCase> cases;     // of a search through given cases; of random search the known ones
   const SearchRow* row = nullptr;       // of the experiment's search
   std::span<const Key> keys;            // of all experiments
 };

@@ -105,7 +105,7 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeSearch(const Experiment& experiment
     return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};
   const sim::TestCase empty = EmptyArena(experiment.arena);
   TRY(const auto requirements, controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed)));
-  TRY(auto search, row.make(SetupOf(experiment, requirements)));
+  TRY(auto search, row.make(SetupOf(experiment, requirements, std::move(cases))));
   // Without this every run of the search would be refused for the same reason.
   if (const Status fits = CheckSwarmFits(experiment, empty); !fits.ok()) {
     return InvalidInput("no run can begin, even without obstacles: " + fits.error().message);

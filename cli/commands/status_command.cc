@@ -11,6 +11,7 @@
 #include "cli/options/stop_signal.h"
 #include "proto/json_text.h"
 #include "slurm/slurm_campaign.h"
+#include "study/study_campaigns.h"
 
 namespace gauntlet {
 namespace {
@@ -64,6 +65,15 @@ std::string WithDirectory(std::string sentence, const std::string& directory) {
   return sentence;
 }
 
+// Why nothing runs, or less than could.
+std::string WhyText(const Json& status, const std::string& directory) {
+  if (const Json why = status.value("why_nothing_runs", Json()); why.is_string())
+    return "nothing runs: " + WithDirectory(Printable(why.get<std::string>()), directory) + "\n";
+  if (const Json trouble = status.value("pool_trouble", Json()); trouble.is_string())
+    return "fewer workers than could be used: " + Printable(trouble.get<std::string>()) + "\n";
+  return "";
+}
+
 std::string StatusText(const Json& status, const std::string& directory) {
   const auto count = [&status](const char* key) { return status.value(key, std::uint64_t{0}); };
   std::string text = fmt::format("{}: {}", directory, Printable(status.value("state", "unknown")));
@@ -89,11 +99,7 @@ std::string StatusText(const Json& status, const std::string& directory) {
         "log/master.log\n",
         FormatCount(lone));
   }
-  if (const Json& why = status.value("why_nothing_runs", Json()); why.is_string())
-    text += "nothing runs: " + WithDirectory(Printable(why.get<std::string>()), directory) + "\n";
-  if (const Json& trouble = status.value("pool_trouble", Json());
-      trouble.is_string() && !status.value("why_nothing_runs", Json()).is_string())
-    text += "fewer workers than could be used: " + Printable(trouble.get<std::string>()) + "\n";
+  text += WhyText(status, directory);
   if (const double age = status.value("status_age_seconds", 0.0); age > 5.0)
     text += fmt::format("the master has said nothing for {:.0f} s: frozen, or its disk is slow\n", age);
   text += JobsText(status);
@@ -116,8 +122,16 @@ std::string StatusText(const Json& status, const std::string& directory) {
   return text;
 }
 
-// What Slurm has of a campaign that no master serves.
-void AddJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, Json& status) {
+// What Slurm has of a campaign or study that no master serves. Nothing when it was not submitted.
+void AddJobs(CommandContext& context, const std::string& directory, Json& status) {
+  const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
+  if (!submitted) {
+    // Somebody else's campaign may be looked at; whether Slurm has jobs of it is theirs to ask.
+    status["pool_trouble"] = "Slurm was not asked: " + submitted.error().message;
+    return;
+  }
+  if (!submitted->has_value()) return;
+  const slurm::SlurmCampaign& campaign = **submitted;
   const Result<std::vector<slurm::JobStatus>> jobs = campaign.LivingJobs(*context.slurm());
   if (!jobs) {
     status["pool_trouble"] = jobs.error().message + slurm::NextStep(jobs.error().message);
@@ -139,26 +153,48 @@ void AddJobs(CommandContext& context, const slurm::SlurmCampaign& campaign, Json
   }
 }
 
-// What a campaign does now, and the jobs of a submitted one that no master serves: for a person, or as one
-// JSON document.
-Result<std::string> CurrentStatus(CommandContext& context, const std::string& directory, bool json) {
-  TRY(std::string text, context.campaigns.ReadStatus(directory));
+bool IsServed(const Json& status) {
+  const std::string state = status.value("state", "");
+  return state != "stopped" && state != "finished";
+}
+
+// What a campaign does now, and the jobs of a submitted one that no master serves.
+Result<Json> StatusOf(CommandContext& context, const std::string& directory) {
+  TRY(const std::string text, context.campaigns.ReadStatus(directory));
   Json status = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!status.is_object()) return Error{ErrorKind::kCorrupt, "the status does not parse"};
-  const std::string state = status.value("state", "");
-  if (state == "stopped" || state == "finished") {
-    const Result<std::optional<slurm::SlurmCampaign>> submitted = slurm::SlurmCampaign::Find(directory);
-    // Somebody else's campaign may be looked at; whether Slurm has jobs of it is theirs to ask.
-    if (!submitted) status["pool_trouble"] = "Slurm was not asked: " + submitted.error().message;
-    if (submitted && submitted->has_value()) AddJobs(context, **submitted, status);
-    if (!submitted || submitted->has_value()) text = JsonText(status);
+  if (!IsServed(status)) AddJobs(context, directory, status);
+  return status;
+}
+
+struct CurrentStatus {
+  std::string text;  // for a person
+  Json json;
+  bool served = false;  // some master lives
+};
+
+Result<CurrentStatus> Look(CommandContext& context, const std::string& directory) {
+  if (!IsStudy(directory)) {
+    TRY(Json status, StatusOf(context, directory));
+    return CurrentStatus{StatusText(status, directory), status, IsServed(status)};
   }
-  return json ? text : StatusText(status, directory);
+  CurrentStatus study{"", {{"campaigns", Json::array()}}};
+  for (const std::string& campaign : CampaignsIn(directory)) {
+    TRY(Json status, StatusOf(context, campaign));
+    study.text += (study.text.empty() ? "" : "\n") + StatusText(status, campaign);
+    study.served = study.served || IsServed(status);
+    study.json["campaigns"].push_back({{"directory", campaign}, {"status", std::move(status)}});
+  }
+  if (study.text.empty()) study.text = directory + ": a study, of which no search has begun\n";
+  // The jobs of a submitted study are its own, not its campaigns'.
+  if (!study.served) AddJobs(context, directory, study.json);
+  study.text += WhyText(study.json, directory) + JobsText(study.json);
+  return study;
 }
 
 Result<ExitCode> RunStatus(CommandContext& context, const StatusOptions& options) {
-  TRY(const std::string text, CurrentStatus(context, options.directory, options.json));
-  context.out << text << std::flush;
+  TRY(const CurrentStatus status, Look(context, options.directory));
+  context.out << (options.json ? JsonText(status.json) : status.text) << std::flush;
   return kExitDone;
 }
 
@@ -166,11 +202,10 @@ Result<ExitCode> RunWatch(CommandContext& context, const StatusOptions& options)
   constexpr int kMilliseconds = 1000;
   const StopSignal handlers(/*announced=*/false);  // ends this command, not the campaign
   while (true) {
-    TRY(const bool lives, context.campaigns.MasterLives(options.directory));
-    TRY(const std::string text, CurrentStatus(context, options.directory, /*json=*/false));
+    TRY(const CurrentStatus status, Look(context, options.directory));
     // The screen is cleared on a terminal; elsewhere the states follow each other.
-    context.out << (context.out_is_terminal ? "\x1b[H\x1b[2J" : "") << text << std::flush;
-    if (!lives || StopSignal::ComesWithin(kMilliseconds)) return kExitDone;
+    context.out << (context.out_is_terminal ? "\x1b[H\x1b[2J" : "") << status.text << std::flush;
+    if (!status.served || StopSignal::ComesWithin(kMilliseconds)) return kExitDone;
   }
 }
 
@@ -183,7 +218,8 @@ void AddStatus(CommandParser& parser) {
   command.add_flag("--json", options.json, "print everything as one JSON document");
   command.footer(
       R"(Reads the status that a living master writes every second, or, without a master, what is stored. For a
-submitted campaign it also lists the jobs, with Slurm's state and reason.
+submitted campaign it also lists the jobs, with Slurm's state and reason. DIR may be that of a study: it then
+tells of each of its campaigns.
 
 Examples:
   gauntlet status DIR

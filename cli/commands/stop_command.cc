@@ -1,6 +1,4 @@
 // gauntlet stop: ends a campaign's master, its workers and its jobs.
-#include <filesystem>
-
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -40,10 +38,7 @@ bool CancelLeftovers(CommandContext& context, const std::string& directory) {
 Result<std::string> ServedIn(CommandContext& context, const std::string& directory) {
   if (!IsStudy(directory)) return directory;
   std::string last = directory;
-  for (const StudyStage stage : {StudyStage::kSearches, StudyStage::kEvaluations}) {
-    const std::string campaign = CampaignOf(directory, stage);
-    std::error_code error;
-    if (!std::filesystem::exists(campaign, error)) continue;
+  for (const std::string& campaign : CampaignsIn(directory)) {
     TRY(const bool lives, context.campaigns.MasterLives(campaign));
     if (lives) return campaign;
     last = campaign;

@@ -28,7 +28,6 @@ struct CampaignProgress {
   std::uint64_t total_failures = 0;  // runs so far
   std::uint64_t runs_failed = 0;     // verdict other than completed
   WorkerStatistics workers;
-  double elapsed_seconds = 0.0;             // of this session
   std::optional<double> remaining_seconds;  // at the present rate
 };
 

@@ -211,6 +211,7 @@ Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, Re
   }
   CampaignSummary all = TotalsOf(plans, searches);
   TRY(all.nondeterministic, CountNondeterministic(store));
+  TRY(all.lone_verdicts, CountLoneVerdicts(store));
   return all;
 }
 
@@ -218,7 +219,7 @@ Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultSt
   std::vector<SearchSummary> searches;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     const SearchId id = plans[i].id;
-    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i], store));
+    TRY(const std::unique_ptr<SearchAlgorithm> search, MakeStoredSearch(plans[i], store, /*restored=*/true));
     TRY(SearchSummary summary, Summarise(plans[i].experiment, id, *search, store));
     summary.settings = plans[i].settings;
     searches.push_back(std::move(summary));

@@ -9,15 +9,19 @@
 
 namespace gauntlet {
 
-Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store) {
-  if (!RowOf(plan.experiment).given_cases()) return MakeSearch(plan.experiment);
+Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store,
+                                                          bool restored) {
+  const SearchRow& row = RowOf(plan.experiment);
+  if (!row.given_cases() && (row.individuals != Individuals::kCases || !restored))
+    return MakeSearch(plan.experiment);
   TRY(std::vector<Individual> individuals, store.LoadIndividuals(plan.id));
-  if (individuals.empty()) {
+  if (row.given_cases() && individuals.empty()) {
     return Error{ErrorKind::kCorrupt,
                  "the campaign was stopped before its cases were stored: evaluate them anew"};
   }
   std::vector<sim::TestCase> cases;
   for (Individual& individual : individuals) {
+    if (!row.given_cases() && individual.id != cases.size() + 1) break;  // those behind a gap are drawn
     if (individual.parents.empty())
       cases.push_back(std::move(individual.test_case));  // others were born later
   }

@@ -13,8 +13,10 @@
 namespace gauntlet {
 
 // The search as it was before its first evaluation. kCorrupt when it is a list of given test cases and the
-// store does not hold them.
-Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store);
+// store does not hold them. `restored`: RestoreSearch comes next, so random search takes its cases from the
+// store as well, which is several times as fast as to draw them again.
+Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store,
+                                                          bool restored = false);
 
 // Whether the search has come to the end of the length that its experiment gives it now: one that was made
 // longer since it ended has not. Takes no look at its runs.

@@ -69,7 +69,7 @@ std::uint64_t SearchLoop::runs_done() const {
   return runs;
 }
 
-CampaignProgress SearchLoop::Progress(TimePoint started) {
+CampaignProgress SearchLoop::Progress() {
   CampaignProgress progress;
   progress.searches = parts_.searches.size();
   progress.search.finished = true;
@@ -96,7 +96,6 @@ CampaignProgress SearchLoop::Progress(TimePoint started) {
   rate_samples_.emplace_back(now, progress.runs_done);
   while (rate_samples_.size() > 2 && now - rate_samples_.front().first > kRateWindow)
     rate_samples_.pop_front();
-  progress.elapsed_seconds = std::chrono::duration<double>(now - started).count();
   const auto& [oldest, runs_then] = rate_samples_.front();
   const double seconds = std::chrono::duration<double>(now - oldest).count();
   if (seconds > 0.0) progress.runs_per_second = static_cast<double>(progress.runs_done - runs_then) / seconds;
@@ -133,13 +132,12 @@ Status SearchLoop::EndSession() {
 
 Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
                                     const std::function<void(const CampaignProgress&)>& on_progress) {
-  const TimePoint started = parts_.clock.Now();
-  TimePoint last_report = started - kPollTime;
+  TimePoint last_report = parts_.clock.Now() - kPollTime;
   while (true) {
     TRY(ApplyCommits());
     TRY(Advance());
     if (const TimePoint now = parts_.clock.Now(); now - last_report >= kPollTime) {
-      on_progress(Progress(started));
+      on_progress(Progress());
       last_report = now;
     }
     const bool searched = running_.empty();
@@ -160,7 +158,7 @@ Result<CampaignEnd> SearchLoop::Run(const std::function<StopWish()>& stop,
     StoreEvents();
   }
   TRY(parts_.store.Flush());
-  on_progress(Progress(started));
+  on_progress(Progress());
   return CampaignEnd::kFinished;
 }
 

@@ -52,7 +52,7 @@ class SearchLoop {
   Status ApplyCommits();
   void StoreResults(std::vector<FinishedRun> finished);
   Status EndSession();
-  CampaignProgress Progress(TimePoint started);
+  CampaignProgress Progress();
 
   Parts parts_;
   std::deque<SearchDriver*> waiting_;   // have not begun

@@ -33,6 +33,7 @@ std::uint64_t RandomSearch::Planned() const {
 }
 
 Individual RandomSearch::Draw(IndividualId id) const {
+  if (id <= setup_.cases.size()) return MakeIndividual(id, setup_.cases[id - 1]);
   sim::RandomStream random = GenomeStream(search_seed_, id);
   while (true) {
     Result<sim::TestCase> test_case = generator_.RandomTestCase(random);

@@ -69,7 +69,7 @@ Result<std::vector<SelectedRun>> LoadValues(const SearchPlan& plan, ResultStore&
 // Of the newest evaluation of each member of the population.
 Result<std::vector<SelectedRun>> FinalValues(const SearchPlan& plan, ResultStore& store,
                                              const std::vector<SelectedRun>& all) {
-  TRY(const auto search, MakeStoredSearch(plan, store));
+  TRY(const auto search, MakeStoredSearch(plan, store, /*restored=*/true));
   TRY(const auto saved, RestoreSearch(plan.id, store, *search));
   std::map<IndividualId, std::uint32_t> newest;
   for (const Individual& individual : search->Population()) newest[individual.id] = 0;

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/cli/command_line_fixture.h"
 
 namespace gauntlet {
@@ -100,7 +102,7 @@ TEST_F(CommandLine, StatusShowsWhatRunsWhereAndWhyNothingDoes) {
             "  ab@n2   running  0.2 s  812 (1.5 s, attempt 2), 813 (next)\n"
             "  cd@n3   idle     0.4 s  -\n");
   EXPECT_EQ(Run({"status", "c", "--json"}), kExitDone);
-  EXPECT_EQ(out_.str(), campaigns_.status);
+  EXPECT_EQ(nlohmann::ordered_json::parse(out_.str()), nlohmann::ordered_json::parse(campaigns_.status));
   campaigns_.status =
       R"({"state": "stopped", "master": null, "why_nothing_runs": "no master serves the campaign",
                 "worker_list": []})";

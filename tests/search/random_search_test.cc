@@ -43,6 +43,16 @@ TEST(RandomSearchTest, CaseKIsTheSameHoweverManyCasesThereAre) {
   EXPECT_TRUE(SameRequests(few, many));
 }
 
+TEST(RandomSearchTest, CasesThatAreKnownAreTakenAndTheOthersDrawn) {
+  std::vector<EvaluationRequest> expected = RunToEnd(*MakeRandom(SetupOf(30)), Noise);
+  SearchSetup setup = SetupOf(30);
+  for (std::size_t i = 0; i < 20; ++i) setup.cases.push_back(expected[i].test_case);
+  EXPECT_TRUE(SameRequests(RunToEnd(*MakeRandom(setup), Noise), expected));
+  setup.cases[19].obstacles.clear();
+  expected[19].test_case.obstacles.clear();
+  EXPECT_TRUE(SameRequests(RunToEnd(*MakeRandom(setup), Noise), expected));
+}
+
 TEST(RandomSearchTest, RequestsDoNotDependOnWhenOutcomesArrive) {
   const std::vector<EvaluationRequest> expected = RunToEnd(*MakeRandom(SetupOf(450)), Noise);
   const auto search = MakeRandom(SetupOf(450));
