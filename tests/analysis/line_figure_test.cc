@@ -1,3 +1,4 @@
+// Covers: analysis/figures/run/swarm_motion.cc
 #include "analysis/figures/line_figure.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,5 @@
+// Covers: analysis/figures/arena_drawing.cc, analysis/figures/run/run_panel.cc,
+// analysis/figures/run/run_tracks.cc, analysis/figures/run/trajectory_csv.cc, analysis/figures/svg_canvas.cc
 #include "analysis/figures/run/run_figure.h"
 
 #include <algorithm>

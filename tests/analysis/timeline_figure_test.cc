@@ -1,3 +1,4 @@
+// Covers: analysis/figures/run/run_annotations.cc
 #include <string>
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// Covers: argos/argos_configuration.cc
 #include <argos3/core/utility/configuration/argos_configuration.h>
 #include <argos3/core/utility/datatypes/color.h>
 #include <argos3/core/utility/math/quaternion.h>

@@ -1,3 +1,5 @@
+// Covers: argos/actuators.cc, argos/ci_controller.cc, argos/mailbox.cc, argos/palette.cc, argos/sensors.cc,
+// argos/simulator.cc
 #include "argos/controller_adapter.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // Angles, ranges, vectors and rotations against what ARGoS computes.
+// Covers: argos/utility/arithmetic.cc, argos/utility/quaternion.cc
 #include <argos3/core/utility/math/bearing.h>
 #include <argos3/core/utility/math/quaternion.h>
 #include <argos3/core/utility/math/ray2.h>

@@ -1,3 +1,4 @@
+// Covers: argos/plugin_main.cc
 #include "argos/plugin_rows.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // Random numbers against those that ARGoS draws.
+// Covers: argos/utility/rng.cc
 #include <argos3/core/utility/math/rng.h>
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Covers: argos/utility/color.cc, argos/utility/string_utilities.cc
 #include <argos3/core/utility/datatypes/any.h>
 #include <argos3/core/utility/datatypes/set.h>
 #include <argos3/core/utility/string_utilities.h>

@@ -1,4 +1,5 @@
 // Encodings, hashes and texts that stored data and users depend on.
+// Covers: base/check.cc, base/number_text.cc
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

@@ -1,4 +1,5 @@
 // Text that came from outside.
+// Covers: base/printable.cc, base/shell_quoted.cc, base/split.cc, base/utf8.cc
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 

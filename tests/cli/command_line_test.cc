@@ -1,3 +1,4 @@
+// Covers: cli/main.cc, cli/options/options.cc
 #include "cli/command_line.h"
 
 #include <csignal>

@@ -1,4 +1,5 @@
 // evolve and random with several searches, and what --dry-run says of them.
+// Covers: cli/options/sweep.cc
 #include <cstdlib>
 
 #include <nlohmann/json.hpp>

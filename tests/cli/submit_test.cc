@@ -1,3 +1,4 @@
+// Covers: cli/commands/submit_command.cc, cli/submitted_campaign.cc, slurm/slurm_campaign.cc
 #include <sys/stat.h>
 
 #include <filesystem>

@@ -1,3 +1,4 @@
+// Covers: cli/output/summary_json.cc, cli/output/summary_text.cc, master/campaign/verdict_text.cc
 #include <limits>
 #include <string>
 

@@ -1,3 +1,6 @@
+// Covers: controllers/examples/light_flocking_registry.cc, controllers/flocking/flocking_registry.cc,
+// controllers/foraging/foraging_registry.cc, controllers/generic/generic_registry.cc,
+// controllers/partitioning/partitioning_registry.cc
 #include "controllers/registry.h"
 
 #include <algorithm>

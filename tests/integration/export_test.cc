@@ -1,4 +1,5 @@
 // `export` and `show --json --runs` of real campaigns.
+// Covers: report/tables/exported_tables.cc, report/tables/search_columns.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

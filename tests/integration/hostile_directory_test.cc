@@ -1,5 +1,6 @@
 // Directories that somebody else has filled or may write: what stands there is data, never followed, never
 // waited for, and obeyed only when nobody else can have written it.
+// Covers: master/directory/campaign_keys.cc, master/directory/owned_files.cc
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>

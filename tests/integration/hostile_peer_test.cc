@@ -1,5 +1,6 @@
 // Peers that are no workers of the campaign, against a living master: it tells them why, or drops them, keeps
 // its memory, and ends with the result of an undisturbed campaign.
+// Covers: master/dispatch/wire/connection_watch.cc
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // `gauntlet master --resume` with the settings of the command that began the campaign, and with others.
+// Covers: master/campaign/stored_campaign.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

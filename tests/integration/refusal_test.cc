@@ -1,4 +1,5 @@
 // A hostile world around a running campaign: second masters, damaged files, a full disk, garbage on the port.
+// Covers: sim/run_checks.cc
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,8 @@
 // gauntlet report and gauntlet figure on real campaigns; the report in a real browser.
+// Covers: analysis/figures/run/run_thumbnail.cc, cli/commands/figure_command.cc,
+// cli/commands/report_command.cc, report/figures/campaign_figures.cc, report/figures/replayed_figure.cc,
+// report/pages/answers_html.cc, report/pages/campaign_pages.cc, report/pages/case_html.cc,
+// report/pages/failures_html.cc, report/pages/overview_html.cc, report/pages/verdict_sentence.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

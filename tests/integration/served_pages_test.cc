@@ -1,4 +1,5 @@
 // gauntlet ui on real campaigns, asked by a real browser and by whoever has no business there.
+// Covers: cli/commands/ui_command.cc, report/ui/campaign_feed.cc, report/ui/served_campaigns.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Masters whose workers come from elsewhere: workers that outlive them, status and stop, keys.
+// Covers: cli/options/stop_signal.cc, master/session/campaign_server.cc, master/session/campaign_service.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,4 +1,6 @@
 // What `study` and `tune` have found, as pages of a report and as figures.
+// Covers: cli/output/study_output.cc, report/figures/study_figures.cc, report/pages/study_html.cc,
+// study/study_tables.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // A study as a person runs it: searches, re-simulations and the report by one command, killed on the way.
+// Covers: cli/commands/study_command.cc, cli/study_run.cc, study/study_analysis.cc, study/study_campaigns.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

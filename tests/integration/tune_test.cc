@@ -1,4 +1,5 @@
 // A tuning as a person runs it: killed on the way, scaled down, with its pictures.
+// Covers: cli/commands/tune_command.cc, study/tuning.cc, study/tuning_analysis.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Workers that freeze, lag, answer late, twice or wrongly: the campaign ends as if nothing had been.
+// Covers: worker/connection.cc, worker/main.cc
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // Every command of docs/bring-your-own-controller.md, run in its order.
+// Covers: cli/argos_files.cc, cli/commands/build_controller_command.cc, sdk/example/my_bird.cc
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // Campaigns with plug-ins, as people run them.
+// Covers: master/directory/campaign_plugins.cc, worker/plugin/plugin_files.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

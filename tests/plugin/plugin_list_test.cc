@@ -1,4 +1,6 @@
 // What `gauntlet list --plugin` says of libraries, good ones and bad ones.
+// Covers: base/system/sha256.cc, master/directory/plugins.cc, sdk/plugin.cc,
+// worker/plugin/describe_plugin.cc, worker/plugin/plugin_library.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // What a plug-in does in a run costs that run, and is told.
+// Covers: worker/runner/scratch_folder.cc, worker/runner/separate_process.cc, worker/runner/shifted_clock.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

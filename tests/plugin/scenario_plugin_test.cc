@@ -1,4 +1,5 @@
 // Campaigns whose scenario is a plug-in's, as people run them, and what a scenario's faults cost.
+// Covers: sdk/example/my_patrol.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

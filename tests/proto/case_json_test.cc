@@ -1,3 +1,4 @@
+// Covers: proto/json_text.cc
 #include "proto/case_json.h"
 
 #include <gmock/gmock.h>

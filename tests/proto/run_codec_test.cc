@@ -1,3 +1,4 @@
+// Covers: proto/run_result_codec.cc
 #include "proto/run_codec.h"
 
 #include <gmock/gmock.h>

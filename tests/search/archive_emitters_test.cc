@@ -1,3 +1,4 @@
+// Covers: search/archive/layout_proposer.cc
 #include "search/archive/archive_emitters.h"
 
 #include <gmock/gmock.h>

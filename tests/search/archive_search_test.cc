@@ -1,3 +1,4 @@
+// Covers: search/archive/archive_judge.cc
 #include "search/archive/archive_search.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// Covers: search/evolution/breeding_search.cc, search/evolution/population_search.cc
 #include "search/evolution/genetic_algorithm.h"
 
 #include <gmock/gmock.h>

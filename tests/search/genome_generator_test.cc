@@ -1,3 +1,4 @@
+// Covers: search/experiment/genome_ranges.cc
 #include "search/evolution/genome_generator.h"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Covers: search/search_setup.cc, search/search_table.cc
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
 // Noise of devices and faults of robots: their size, their independence, and that they are refused when
 // wrong.
+// Covers: sim/robot/disturber.cc
 
 #include "sim/robot/disturbances.h"
 

@@ -1,4 +1,5 @@
 // What controllers and scenarios do to each other through range-and-bearing, grippers, lamps and the floor.
+// Covers: sim/sensors/gripper_sensor.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Obstacles that move and obstacles with lights (thesis 7.4), in whole runs.
+// Covers: sim/robot/obstacle_course.cc
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Covers: study/sets/case_set.cc, study/sets/subset.cc
 #include "study/sets/run_set.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// Covers: search/experiment/seed_list.cc, study/study_file.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// Covers: base/system/instruction_set.cc, worker/run_executor.cc
 #include "worker/golden_hash.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
 // Parts of runners that need no process: what an exit means, the frames of the pipe.
+// Covers: worker/runner/pipe.cc
 #include "worker/runner/runner.h"
 
 #include <gmock/gmock.h>

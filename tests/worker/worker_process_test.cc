@@ -1,4 +1,5 @@
 // Real workers against a fake master: results, broken runs, signals, a master that moves, nobody left behind.
+// Covers: worker/runner/fork_server.cc, worker/runner/runner_pool.cc, worker/supervisor.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>

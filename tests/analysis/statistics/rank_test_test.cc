@@ -1,3 +1,4 @@
+// Covers: analysis/statistics/exact_rank_test.cc
 #include "analysis/statistics/rank_test.h"
 
 #include <gmock/gmock.h>

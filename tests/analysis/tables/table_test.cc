@@ -1,3 +1,4 @@
+// Covers: analysis/tables/cell.cc
 #include "analysis/tables/table.h"
 
 #include <limits>

@@ -1,4 +1,5 @@
 // Turning aside, the potential field, and what they read from the proximity ring.
+// Covers: controllers/common/potential_field.cc, controllers/common/turn_aside.cc
 #include <array>
 #include <cmath>
 

@@ -1,3 +1,4 @@
+// Covers: controllers/common/nest_and_food.cc
 #include "controllers/common/nest_and_food.h"
 
 #include <vector>

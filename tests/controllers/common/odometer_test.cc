@@ -1,3 +1,4 @@
+// Covers: sim/sensors/own_motion.cc
 #include "controllers/common/odometer.h"
 
 #include <cmath>

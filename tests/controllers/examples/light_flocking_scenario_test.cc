@@ -1,3 +1,4 @@
+// Covers: controllers/examples/light_flocking_metrics.cc
 #include "controllers/examples/light_flocking_scenario.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Covers: controllers/flocking/swarm_links.cc
 #include "controllers/flocking/failure_classifier.h"
 
 #include <cmath>

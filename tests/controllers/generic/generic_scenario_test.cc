@@ -1,3 +1,4 @@
+// Covers: controllers/generic/items.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// Covers: controllers/generic/contacts.cc
 #include "controllers/generic/measures.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// Covers: controllers/partitioning/partitioning_record.cc
 #include "controllers/partitioning/partitioning_scenario.h"
 
 #include <algorithm>

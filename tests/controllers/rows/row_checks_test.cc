@@ -1,3 +1,4 @@
+// Covers: controllers/rows/row_json.cc
 #include "controllers/rows/row_checks.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // Connections that come back, close, or do not read.
+// Covers: master/dispatch/wire/admission.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // From a hello to a stored result.
+// Covers: master/dispatch/dispatch_log.cc, master/dispatch/wire/worker_connections.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Workers that vanish, come back, and answer late.
+// Covers: master/dispatch/leases/lease_expiry.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Leases, answers, failures.
+// Covers: master/dispatch/leases/lease_answers.cc, master/dispatch/leases/lease_assignment.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Who is believed, without leases: workers say things of runs, and the policy answers.
+// Covers: master/dispatch/trust/worker_record.cc
 #include "master/dispatch/trust/trust_policy.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // Real sockets on the loopback interface; every wait ends with its condition or at a deadline.
+// Covers: master/dispatch/wire/curve_keys.cc
 #include "master/dispatch/wire/zmq_transport.h"
 
 #include <arpa/inet.h>

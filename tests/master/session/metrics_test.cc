@@ -1,3 +1,4 @@
+// Covers: master/session/metrics_page.cc, master/session/metrics_text.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

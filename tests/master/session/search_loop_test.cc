@@ -1,4 +1,5 @@
 // The campaign loop and its searches: what is stored, told and acknowledged when, whatever happens meanwhile.
+// Covers: master/campaign/campaign_summary.cc
 #include "master/session/search_loop.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // What a store refuses to open, and that it leaves alone what it refuses or only reads.
+// Covers: master/store/sqlite_connection.cc, master/store/sqlite_schema.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,4 +1,5 @@
 // What is stored is what is read, and nothing stored can be changed.
+// Covers: master/store/sqlite_tables.cc, master/store/totals_table.cc
 #include "master/store/sqlite_store.h"
 
 #include <gmock/gmock.h>

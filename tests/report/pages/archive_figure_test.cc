@@ -1,3 +1,4 @@
+// Covers: analysis/figures/layout_grid.cc, report/tables/summary_tables.cc
 #include "report/figures/archive_figure.h"
 
 #include <gmock/gmock.h>

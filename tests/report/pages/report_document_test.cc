@@ -1,3 +1,4 @@
+// Covers: report/pages/base64.cc, report/pages/report_page.cc
 #include "report/pages/report_document.h"
 
 #include <gmock/gmock.h>

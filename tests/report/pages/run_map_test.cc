@@ -1,3 +1,4 @@
+// Covers: report/figures/shown_run.cc
 #include "report/figures/run_map.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// Covers: report/figures/campaign_facts.cc
 #include "report/figures/search_course.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// Covers: report/pages/comparison_html.cc
 #include "report/figures/set_comparison.h"
 
 #include <fmt/format.h>

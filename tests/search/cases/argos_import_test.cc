@@ -1,3 +1,4 @@
+// Covers: search/cases/case_file.cc
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

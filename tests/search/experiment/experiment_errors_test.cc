@@ -1,4 +1,5 @@
 // Whatever is wrong with an experiment is refused with its place, its value and what would be right.
+// Covers: base/key.cc, search/experiment/key_assignment.cc, search/experiment/toml_text.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// Covers: search/given/repeated_case.cc
 #include "search/given/given_search.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // What holds of both engines that model contacts.
+// Covers: sim/physics/box2d_engine.cc, sim/physics/contact_island.cc
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Boxes that move, on a way of their own.
+// Covers: sim/physics/way_back.cc
 
 #include <gtest/gtest.h>
 

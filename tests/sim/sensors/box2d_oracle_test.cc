@@ -1,5 +1,6 @@
 // Our rays and lines of sight against Box2D's RayCast. Box2D computes in single precision; where the two
 // disagree about a hit, the ray must graze the shape.
+// Covers: sim/sensors/distance_scanner.cc, sim/sensors/occluders.cc
 #include <box2d/box2d.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

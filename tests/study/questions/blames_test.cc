@@ -1,4 +1,5 @@
 // What is said of the obstacles of a case.
+// Covers: analysis/figures/blame_figure.cc, search/given/layout_question.cc
 #include "study/questions/blames.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
 // How often cases fail again: the reader, the key, and what is told.
+// Covers: search/failure_tally.cc
 #include "study/questions/confirmations.h"
 
 #include <gmock/gmock.h>

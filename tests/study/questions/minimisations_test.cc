@@ -1,4 +1,5 @@
 // What is left of cases, without a process: the key, and what is told.
+// Covers: analysis/figures/layout_strip.cc, study/questions/smallest_layouts.cc
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,5 @@
 // Which cases a call asks about, and what is known of them already.
+// Covers: study/questions/questioned_cases.cc
 #include "study/questions/question.h"
 
 #include <gmock/gmock.h>
