@@ -73,7 +73,8 @@ enum class FailureKind : int {
   kCrashed = 1,      // own fault: SIGSEGV, SIGABRT, an exception, an exit
   kHung = 2,         // own fault: more CPU time than allowed
   kOutOfMemory = 3,  // own fault: more memory than allowed
-  kExternal = 4,     // not the run's fault, never an attempt: killed from outside, dropped by a drain
+  // Ended from outside: with a signal, which counts as an attempt when its worker lives on, or given back.
+  kExternal = 4,
 };
 
 struct RunnerFailure {

@@ -64,10 +64,10 @@ std::string Explained(std::string_view message) {
 }
 
 sim::RunResult ResultOf(const RunnerFailure& failure) {
-  GAUNTLET_CHECK(failure.kind != FailureKind::kExternal, "an external failure gives no verdict");
   sim::RunResult result;
   result.verdict = failure.kind == FailureKind::kHung          ? sim::Verdict::kHung
                    : failure.kind == FailureKind::kOutOfMemory ? sim::Verdict::kOutOfMemory
+                   : failure.kind == FailureKind::kExternal    ? sim::Verdict::kKilled
                                                                : sim::Verdict::kCrashed;
   result.message = Describe(failure);
   sim::SetHashes(result);

@@ -28,7 +28,6 @@ std::string Describe(const RunnerFailure& failure);
 std::string Explained(std::string_view message);
 
 // The result of a run that is given up after such a failure, with its verdict, Describe's words and the hash.
-// The kind is not kExternal.
 sim::RunResult ResultOf(const RunnerFailure& failure);
 
 }  // namespace gauntlet::proto

@@ -20,7 +20,8 @@ enum class Verdict : int {
   kHung = 4,         // it exceeded the limit of CPU time, reproducibly
   kOutOfMemory = 5,  // it exceeded the limit of memory, reproducibly
   kInvalidCommand =
-      6,  // a controller gave a command that cannot be carried out, such as a wheel speed of NaN
+      6,        // a controller gave a command that cannot be carried out, such as a wheel speed of NaN
+  kKilled = 7,  // its process was ended from outside in every attempt, which may be the machine's doing
 };
 
 // How the swarm did, apart from its fitness.

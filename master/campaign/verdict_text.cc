@@ -13,8 +13,8 @@ std::string RuleOf(std::string_view message) {
 }
 
 std::string_view NameOf(sim::Verdict verdict) {
-  constexpr std::string_view kNames[] = {"unknown", "completed",     "refused",        "crashed",
-                                         "hung",    "out-of-memory", "invalid-command"};
+  constexpr std::string_view kNames[] = {"unknown", "completed",     "refused",         "crashed",
+                                         "hung",    "out-of-memory", "invalid-command", "killed"};
   const auto number = static_cast<std::size_t>(verdict);
   return kNames[number < std::size(kNames) ? number : 0];
 }

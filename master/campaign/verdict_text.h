@@ -10,7 +10,7 @@ namespace gauntlet {
 
 // The rule's name in front of "no-path: there is ..."; "" when the message does not begin with one.
 std::string RuleOf(std::string_view message);
-// "completed", "refused", "crashed", "hung", "out-of-memory", "invalid-command".
+// "completed", "refused", "crashed", "hung", "out-of-memory", "invalid-command", "killed".
 std::string_view NameOf(sim::Verdict verdict);
 
 }  // namespace gauntlet

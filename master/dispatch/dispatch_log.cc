@@ -9,8 +9,9 @@
 namespace gauntlet {
 namespace {
 
-constexpr std::size_t kShownBytes = 300;  // of a text that came from a worker
-constexpr std::size_t kMaxEvents = 1000;  // kept until somebody takes them
+constexpr std::size_t kShownBytes = 300;    // of a text that came from a worker
+constexpr std::size_t kMaxEvents = 1000;    // kept until somebody takes them
+constexpr std::uint64_t kFailuresTold = 3;  // of a run that are alike
 // Workers turned away of which events are made, for each of these times; the others are counted.
 constexpr int kRefusalsTold = 10;
 constexpr std::chrono::minutes kRefusalsToldFor{1};
@@ -28,6 +29,23 @@ std::string Shorten(std::string_view text) {
 void DispatchLog::Report(std::string kind, std::string_view text) {
   if (events_.size() >= kMaxEvents) events_.erase(events_.begin(), events_.begin() + kMaxEvents / 2);
   events_.push_back({std::move(kind), Printable(text)});
+}
+
+void DispatchLog::Failed(proto::RunId run, std::string kind, const std::string& how,
+                         const std::string& where) {
+  Failures& failures = failures_[run];
+  failures.kind = std::move(kind);
+  if (++failures.alike[how] <= kFailuresTold)
+    Report(failures.kind, fmt::format("run {} {}{}", run, how, where));
+}
+
+void DispatchLog::Ended(proto::RunId run) {
+  const auto ended = failures_.extract(run);
+  if (ended.empty()) return;
+  for (const auto& [how, count] : ended.mapped().alike) {
+    if (count > kFailuresTold)
+      Report(ended.mapped().kind, fmt::format("run {} {}, {} times in all", run, how, count));
+  }
 }
 
 void DispatchLog::Reject(const std::string& kind, const std::string& text) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,6 +22,10 @@ class DispatchLog {
  public:
   // An event (master/store/event_kinds.h); its text is made fit for one line.
   void Report(std::string kind, std::string_view text);
+  // An attempt at a run failed, in this sense of the word: "was ended from outside by signal 9". The first
+  // three alike are events of this kind, the others are counted until the run has ended.
+  void Failed(proto::RunId run, std::string kind, const std::string& how, const std::string& where);
+  void Ended(proto::RunId run);
   // A message was dropped. Each is counted, of each `kind` the first one is told.
   void Reject(const std::string& kind, const std::string& text);
   // A worker was turned away. Each is counted, a few in a minute are told.
@@ -34,6 +39,11 @@ class DispatchLog {
 
  private:
   std::vector<DispatchEvent> events_;
+  struct Failures {
+    std::string kind;
+    std::map<std::string, std::uint64_t> alike;  // by how they failed
+  };
+  std::map<proto::RunId, Failures> failures_;  // of runs that have not ended
   std::uint64_t rejected_ = 0;
   std::set<std::string> rejected_kinds_;  // that have been told
   std::uint64_t refused_ = 0;

@@ -258,6 +258,7 @@ void RemoteBackend::OnResult(InstanceId worker, proto::LeaseResult message) {
   scheduler_.RunTook(message.cpu_seconds);
   result->trajectory.clear();
   if (result->cpu_seconds == 0.0) result->cpu_seconds = message.cpu_seconds;
+  log_.Ended(message.run_id);
   FinishedRun& finished = finished_.emplace_back();
   finished.id = message.run_id;
   finished.result = std::move(*result);
@@ -282,9 +283,8 @@ void RemoteBackend::OnFailure(InstanceId worker, const proto::LeaseResult& messa
     log_.Reject("lease " + label, fmt::format("worker {} reported on a lease that is not its own", label));
   } else if (answer == Answer::kAccepted) {
     const bool own = failure.kind != proto::FailureKind::kExternal;
-    log_.Report(own ? event::kRunnerFailure : event::kRunReturned,
-                fmt::format("run {} {} on worker {} (lease {:x}){}{}", message.run_id,
-                            proto::Describe(failure), workers_.LabelOf(worker), message.fence,
+    log_.Failed(message.run_id, own ? event::kRunnerFailure : event::kRunReturned, proto::Describe(failure),
+                fmt::format(" on worker {} (lease {:x}){}{}", workers_.LabelOf(worker), message.fence,
                             failure.stderr_tail.empty() ? "" : ": ", Shorten(failure.stderr_tail)));
   }
 }
@@ -338,6 +338,7 @@ void RemoteBackend::Tell(const SchedulerOrders& orders) {
 }
 
 void RemoteBackend::GiveUp(const RunGivenUp& order) {
+  log_.Ended(order.run);
   FinishedRun& run = finished_.emplace_back();
   run.id = order.run;
   run.result = ResultOf(order.failure);

@@ -17,7 +17,7 @@ namespace gauntlet {
 
 bool LeavesBundle(sim::Verdict verdict) {
   return verdict == sim::Verdict::kCrashed || verdict == sim::Verdict::kHung ||
-         verdict == sim::Verdict::kOutOfMemory;
+         verdict == sim::Verdict::kOutOfMemory || verdict == sim::Verdict::kKilled;
 }
 
 std::string BundleName(RunId run) {

@@ -1,5 +1,5 @@
 // What is needed to see a run fail again, anywhere: left in the campaign's directory for every run that
-// crashed, hung or ran out of memory in all its attempts.
+// crashed, hung, ran out of memory or was killed in all its attempts.
 #pragma once
 
 #include <string>

@@ -138,8 +138,8 @@ void RunnerPool::Exited(const RunnerExited& exited, std::vector<WorkerEvent>& ev
   if (slot->jobs > 0) {
     RunnerFailure failure = ClassifyExit(exited.wait_status, slot->output_tail);
     if (slot->broke_protocol) failure.kind = FailureKind::kCrashed;
-    // It ended before it had the job.
-    if (slot->unsent_frames.size() == slot->jobs) failure.kind = FailureKind::kExternal;
+    if (slot->unsent_frames.size() == slot->jobs)
+      failure = {.kind = FailureKind::kExternal, .stderr_tail = "its runner ended before it had the job"};
     events.emplace_back(
         RunnerDied{index, std::move(failure), std::max(0.0, exited.cpu_seconds - slot->process_cpu_seconds)});
   } else {

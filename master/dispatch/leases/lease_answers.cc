@@ -109,11 +109,13 @@ Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const proto::
     ForgetIfDone(id);
     return Answer::kUnwanted;
   }
-  if (failure.kind == proto::FailureKind::kExternal) {
-    Requeue(id, run);
-  } else {
+  const bool leaves = !Standing(worker, workers_.at(worker));
+  if (failure.kind != proto::FailureKind::kExternal || (failure.signal != 0 && !leaves)) {
     NoteAttempt(id, run, worker, failure);
+    return Answer::kAccepted;
   }
+  Requeue(id, run);
+  if (!leaves && trust_.Returned(worker)) Quarantine(worker);
   return Answer::kAccepted;
 }
 
@@ -182,11 +184,19 @@ void Scheduler::Quarantine(InstanceId id) {
   orders_.quarantined.push_back({id, trust_.RecordOf(id)});
   List(id, worker);
   ReleaseAll(id, worker, LeaseState::kCancelled);
+  Reconsider([&](RunId run) { return trust_.Disregard(id, run); });
+}
+
+void Scheduler::Reconsider(const std::function<bool(RunId)>& forget) {
   for (const Place& place : std::set<Place>(failing_)) {
-    if (!trust_.Disregard(id, place.run) || trust_.InDoubt(place.run)) continue;
+    if (!forget(place.run) || trust_.InDoubt(place.run)) continue;
     failing_.erase(place);
     if (runs_.at(place.run).live == 0) queue_.insert(place);
   }
+}
+
+void Scheduler::ForgiveEndsFromOutside(InstanceId worker) {
+  Reconsider([&](RunId run) { return trust_.Excuse(worker, run, listening_); });
 }
 
 }  // namespace gauntlet

@@ -85,7 +85,7 @@ void Scheduler::AssignFailing() {
   for (const Place& place : failing_) {
     if (available_.empty()) return;
     const Run& run = runs_.at(place.run);
-    if (run.live > 0) continue;
+    if (run.live > 0 || trust_.Waits(place.run, listening_)) continue;
     std::vector<InstanceId> free;
     for (const auto& [level, id] : available_) free.push_back(id);
     const auto next = trust_.NextFor(place.run, free, AbleTo(run), !queue_.empty());

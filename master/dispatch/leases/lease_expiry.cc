@@ -56,6 +56,7 @@ bool Scheduler::WorkerDraining(InstanceId id) {
   if (found == workers_.end()) return false;
   found->second.draining = true;
   List(id, found->second);
+  ForgiveEndsFromOutside(id);
   return true;
 }
 
@@ -65,6 +66,7 @@ bool Scheduler::WorkerLeft(InstanceId id) {
   Worker& worker = found->second;
   worker.lost = true;  // gets nothing of what it gives back
   List(id, worker);
+  ForgiveEndsFromOutside(id);
   ReleaseAll(id, worker, LeaseState::kOrphaned);
   while (!worker.loose.empty()) ForgetIfDone(EndLease(worker.loose.back()));
   workers_.erase(found);
@@ -149,6 +151,7 @@ void Scheduler::Excuse(InstanceId id) {
 
 void Scheduler::Lose(InstanceId id, Worker& worker) {
   worker.lost = true;
+  ForgiveEndsFromOutside(id);
   ++statistics_.lost;
   List(id, worker);
   orders_.lost.push_back({id, ReleaseAll(id, worker, LeaseState::kOrphaned)});

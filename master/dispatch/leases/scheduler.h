@@ -18,6 +18,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -135,6 +136,9 @@ class Scheduler {
   void Judge(RunId id);
   void Strike(InstanceId worker);
   void Quarantine(InstanceId id);
+  // Runs of which nobody says any more that they failed, after this, wait like those that nobody has tried.
+  void Reconsider(const std::function<bool(RunId)>& forget);
+  void ForgiveEndsFromOutside(InstanceId worker);  // it goes away
 
   // lease_expiry.cc
   void Heard(InstanceId id, Worker& worker);

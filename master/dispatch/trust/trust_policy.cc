@@ -14,6 +14,13 @@ auto Told(const proto::RunnerFailure& failure) {
   return std::tuple(failure.kind, failure.signal, failure.exit_code);
 }
 
+constexpr std::chrono::seconds kFirstWait{1};      // after an end from outside; doubled by each further one
+constexpr std::chrono::seconds kTimeToGoAway{30};  // so long after it a worker may say that it ends
+
+bool FromOutside(const std::optional<proto::RunnerFailure>& failure) {
+  return failure && failure->kind == proto::FailureKind::kExternal;
+}
+
 bool QuarantineIfDue(WorkerRecord& record) {
   if (!record.deserves_quarantine()) return false;
   return record.quarantined = true;
@@ -43,14 +50,16 @@ TrustPolicy::Workers TrustPolicy::Finished(InstanceId worker, RunId run) {
   somebody_finished_ = true;
   ++found->second.record.finished;
   found->second.record.failed_in_a_row = 0;
+  found->second.record.returned = 0;
   if (ended.empty()) return {};
   Workers quarantined;
   std::set<InstanceId> seen{worker};
   for (const Attempt& attempt : ended.mapped()) {
     const auto wrong = witnesses_.find(attempt.worker);
     if (!attempt.failure || wrong == witnesses_.end() || !seen.insert(attempt.worker).second) continue;
-    ++wrong->second.record.contradicted;
-    if (QuarantineIfDue(wrong->second.record)) quarantined.push_back(attempt.worker);
+    WorkerRecord& record = wrong->second.record;
+    ++(FromOutside(attempt.failure) ? record.outside : record.contradicted);
+    if (QuarantineIfDue(record)) quarantined.push_back(attempt.worker);
   }
   return quarantined;
 }
@@ -61,9 +70,10 @@ void TrustPolicy::Failed(InstanceId worker, RunId run, std::optional<proto::Runn
   Case& attempts = cases_[run];
   const bool again = FailedOn(attempts, worker);
   const bool own = failure.has_value();
-  attempts.push_back({worker, host, record.trusted(), std::move(failure)});
+  attempts.push_back({worker, host, record.trusted(), now, std::move(failure)});
   unjudged_.push_back(run);
   if (!own) return;
+  record.returned = 0;
   if (!first_failure_) first_failure_ = now;
   ++record.failed;
   if (!again) ++record.failed_in_a_row;
@@ -82,14 +92,39 @@ bool TrustPolicy::Strike(InstanceId worker) {
   return QuarantineIfDue(found->second.record);
 }
 
-bool TrustPolicy::Disregard(InstanceId worker, RunId run) {
+bool TrustPolicy::Returned(InstanceId worker) {
+  WorkerRecord& record = witnesses_.at(worker).record;
+  ++record.returned;
+  return QuarantineIfDue(record);
+}
+
+bool TrustPolicy::Erase(RunId run, const std::function<bool(const Attempt&)>& which) {
   const auto found = cases_.find(run);
-  if (found == cases_.end()) return false;
-  const auto said = [worker](const Attempt& attempt) { return attempt.worker == worker; };
-  if (std::erase_if(found->second, said) == 0) return false;
+  if (found == cases_.end() || std::erase_if(found->second, which) == 0) return false;
   unjudged_.push_back(run);
   if (found->second.empty()) cases_.erase(found);
   return true;
+}
+
+bool TrustPolicy::Disregard(InstanceId worker, RunId run) {
+  return Erase(run, [&](const Attempt& attempt) { return attempt.worker == worker; });
+}
+
+bool TrustPolicy::Excuse(InstanceId worker, RunId run, Duration now) {
+  return Erase(run, [&](const Attempt& attempt) {
+    return attempt.worker == worker && FromOutside(attempt.failure) && now - attempt.when < kTimeToGoAway;
+  });
+}
+
+bool TrustPolicy::Waits(RunId run, Duration now) const {
+  Duration wait{};
+  Duration last{};
+  for (const Attempt& attempt : CaseOf(run)) {
+    if (!FromOutside(attempt.failure)) continue;
+    wait = wait == Duration::zero() ? Duration(kFirstWait) : 2 * wait;
+    last = attempt.when;
+  }
+  return wait > Duration::zero() && now - last < wait;
 }
 
 bool TrustPolicy::Audits(RunId run) const {
@@ -141,7 +176,7 @@ std::optional<Verdict> TrustPolicy::Judge(RunId run, const Workers& others, bool
                                           Duration now) const {
   const Case& attempts = CaseOf(run);
   const Picture picture = PictureOf(attempts, others);
-  if (!Condemned(picture, more_to_do, now)) return std::nullopt;
+  if (Waits(run, now) || !Condemned(picture, more_to_do, now)) return std::nullopt;
   // What is told most often, by trusted workers if there are any: it must not depend on who else is there.
   const auto counts = [&](const Attempt& attempt) {
     return attempt.failure && (picture.trusted == 0 || Trusted(attempt));

@@ -8,9 +8,13 @@
 //   - or when nobody is left to ask, after `attempts` attempts on those there are;
 //   - and while no run at all has been finished, only after some patience, once every worker has had a run: a
 //     bad worker may be the first to say hello.
+// An end from outside (a signal that the run's process did not send to itself) is such a failure too, when
+// its worker lives on: a run that always ends so would otherwise be tried for ever. The run waits after each,
+// longer each time, and a worker that drains or goes away meanwhile has said nothing.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -57,12 +61,19 @@ class TrustPolicy {
   // The worker brought the run's result: those who failed the run were wrong, unless it is quarantined itself
   // or unknown. Answers with those who are quarantined for it.
   Workers Finished(InstanceId worker, RunId run);
-  // The run failed on this worker, which is known; without a failure: its answer could not be read.
+  // The run failed on this worker, which is known; without a failure: its answer could not be read. Of kind
+  // kExternal it names the signal.
   void Failed(InstanceId worker, RunId run, std::optional<proto::RunnerFailure> failure, Duration now);
   // It said what it cannot know, or what nobody can read. True: it is quarantined for it.
   bool Strike(InstanceId worker);
+  // It gave a lease back without having begun it. True: it is quarantined for it.
+  bool Returned(InstanceId worker);
   // What it said of the run does not count. False: it has said nothing.
   bool Disregard(InstanceId worker, RunId run);
+  // The worker goes away: what has just ended from outside on it has probably ended for that. The same.
+  bool Excuse(InstanceId worker, RunId run, Duration now);
+  // It was ended from outside, and is not yet tried again.
+  bool Waits(RunId run, Duration now) const;
   // The run has ended with its verdict.
   void Close(RunId run) { cases_.erase(run); }
 
@@ -95,7 +106,8 @@ class TrustPolicy {
   struct Attempt {
     InstanceId worker = 0;
     std::string host;
-    bool trusted = false;                         // the worker, then
+    bool trusted = false;  // the worker, then
+    Duration when{};
     std::optional<proto::RunnerFailure> failure;  // none: the answer could not be read
   };
   using Case = std::vector<Attempt>;
@@ -111,6 +123,7 @@ class TrustPolicy {
 
   const Case& CaseOf(RunId run) const;
   static bool FailedOn(const Case& attempts, InstanceId worker);
+  bool Erase(RunId run, const std::function<bool(const Attempt&)>& which);
   bool Trusted(const Attempt& attempt) const;
   Picture PictureOf(const Case& attempts, const Workers& others) const;
   bool Condemned(const Picture& picture, bool more_to_do, Duration now) const;

@@ -5,6 +5,14 @@
 namespace gauntlet {
 
 std::string InWords(const WorkerRecord& record) {
+  if (record.finished == 0 && record.returned >= WorkerRecord::kMostReturned)
+    return fmt::format("it gave back {} leases in a row, and finished nothing", record.returned);
+  if (record.finished == 0 && record.outside >= WorkerRecord::kMostFaults) {
+    return fmt::format(
+        "{} of its runs, as it says, were ended from outside and then finished by other workers; it finished "
+        "nothing",
+        record.outside);
+  }
   return fmt::format(
       "{} of its {} failed runs were finished by other workers, {} of its answers could not be read or were "
       "to leases that are not its own, and {} of its runs ended well",

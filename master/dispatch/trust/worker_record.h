@@ -12,6 +12,8 @@ struct WorkerRecord {
   static constexpr std::uint64_t kMostFaults = 3;
   // So many runs failed in a row, and it looks like a hole into which all work falls.
   static constexpr std::uint32_t kBlackHole = 3;
+  // It gives back what waits behind a run that crashed, and says so of the crash.
+  static constexpr std::uint64_t kMostReturned = 1024;
   // Failures of a worker count for a verdict while at most one of so many of its runs speaks against it.
   static constexpr std::uint64_t kFinishedForEachFault = 10;
 
@@ -19,18 +21,24 @@ struct WorkerRecord {
   std::uint64_t failed = 0;        // runs that failed on it of themselves, as it says
   std::uint64_t contradicted = 0;  // of these, that another worker finished
   std::uint64_t strikes = 0;       // answers that could not be read, or to leases that it does not have
+  std::uint64_t outside = 0;  // runs that were ended from outside on it, and that another worker finished
+  // Leases that it gave back without a word about the run, since it last said one.
+  std::uint64_t returned = 0;
   // Different runs that failed on it since it finished one, or since another worker failed one of them too.
   std::uint32_t failed_in_a_row = 0;
   bool quarantined = false;
 
   std::uint64_t faults() const { return contradicted + strikes; }
-  bool black_hole() const { return failed_in_a_row >= kBlackHole; }
+  bool black_hole() const { return failed_in_a_row >= kBlackHole || returned >= kMostReturned; }
   bool tried() const { return finished + failed > 0; }
   // Has it worked well enough for its failures to be believed?
   bool trusted() const {
     return !quarantined && finished > 0 && kFinishedForEachFault * faults() <= finished;
   }
-  bool deserves_quarantine() const { return !quarantined && faults() >= kMostFaults && faults() > finished; }
+  bool deserves_quarantine() const {
+    const bool brings_nothing = finished == 0 && (outside >= kMostFaults || returned >= kMostReturned);
+    return !quarantined && (brings_nothing || (faults() >= kMostFaults && faults() > finished));
+  }
 };
 
 // What speaks for and against the worker, in a line for people.

@@ -52,16 +52,38 @@ TEST_F(RemoteBackendTest, EveryKindOfOwnFailureHasItsVerdict) {
   }
 }
 
-TEST_F(RemoteBackendTest, ExternalFailuresNeverBecomeAVerdict) {
+TEST_F(RemoteBackendTest, WhatIsGivenBackNeverBecomesAVerdict) {
   backend_->Submit({{1, "spec"}});
   SayHello("p", HelloOf(kAnna));
   for (int attempt = 1; attempt <= 10; ++attempt) {
     Poll();
-    SendFailure("p", LeasesSentTo("p").at(0), v1::RunnerFailure::KIND_EXTERNAL, 15, "");
+    SendFailure("p", LeasesSentTo("p").at(0), v1::RunnerFailure::KIND_EXTERNAL, 0, "");
   }
   EXPECT_THAT(Poll(), IsEmpty());
   SendResult("p", LeasesSentTo("p").at(0), result_);
   EXPECT_EQ(Poll().at(0).attempt, 11U);
+}
+
+// Such a run would be tried for ever; the same is told three times, and then once more with its count.
+TEST_F(RemoteBackendTest, ARunThatIsAlwaysKilledEndsWithAVerdictAndAFewEvents) {
+  SayHello("p", HelloOf(kAnna));
+  EarnTrust("p");
+  backend_->Submit({{1, "spec"}});
+  std::vector<FinishedRun> finished;
+  int attempts = 0;
+  for (int second = 0; second < 30 && finished.empty(); ++second) {
+    finished = Poll();
+    for (const v1::Lease& lease : LeasesSentTo("p")) {
+      ++attempts;
+      SendFailure("p", lease, v1::RunnerFailure::KIND_EXTERNAL, 9, "");
+    }
+    clock_.Advance(std::chrono::seconds(1));
+    SendHeartbeat("p");
+  }
+  ASSERT_EQ(finished.size(), 1U);
+  EXPECT_EQ(attempts, 3);
+  EXPECT_EQ(finished[0].result.verdict, sim::Verdict::kKilled);
+  EXPECT_EQ(finished[0].result.message, "was ended from outside by signal 9");
 }
 
 TEST_F(RemoteBackendTest, AnUnreadableOrForgedResultIsItsWorkersFaultAndNeverAVerdict) {
@@ -199,7 +221,7 @@ TEST_F(RemoteBackendTest, OnlyAFailureThatCountsLeavesItsOutput) {
   std::vector<FinishedRun> finished;
   for (int attempt = 1; attempt <= 3; ++attempt) {
     see_who_has_it();
-    SendFailure(holder, lease, v1::RunnerFailure::KIND_EXTERNAL, 15, "drained");
+    SendFailure(holder, lease, v1::RunnerFailure::KIND_EXTERNAL, 0, "drained");
     Poll();
     see_who_has_it();
     SendFailure(holder, lease, v1::RunnerFailure::KIND_CRASHED, 6, fmt::format("attempt {}", attempt));

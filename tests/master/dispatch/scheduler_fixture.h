@@ -62,6 +62,7 @@ class SchedulerTest : public testing::Test {
       SchedulerOrders orders = Decide();
       for (auto& lost : orders.lost) all.lost.push_back(lost);
       for (auto& lease : orders.leases) all.leases.push_back(lease);
+      for (auto& run : orders.given_up) all.given_up.push_back(run);
       for (auto& forgotten : orders.forgotten) all.forgotten.push_back(forgotten);
     }
     return all;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/master/dispatch/scheduler_fixture.h"
 
 namespace gauntlet {
@@ -11,6 +13,8 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
+
+const proto::RunnerFailure kKill{proto::FailureKind::kExternal, 9, 0};
 
 TEST_F(SchedulerTest, LeasesRunsInLogicalOrderWithGrowingFences) {
   scheduler_.Submit({3, "spec"});
@@ -84,12 +88,12 @@ TEST_F(SchedulerTest, ThreeOwnFailuresGiveUpTheRun) {
   EXPECT_EQ(scheduler_.LeasesOf(2), 0U);
 }
 
-TEST_F(SchedulerTest, ExternalFailuresAndLostWorkersAreNoAttempts) {
+TEST_F(SchedulerTest, WhatIsGivenBackAndLostWorkersAreNoAttempts) {
   SubmitRuns(1, 1);
   for (InstanceId worker = 10; worker < 20; ++worker) {
     Join(worker);
     const Fence fence = Decide().leases.at(0).lease.fence;
-    EXPECT_EQ(scheduler_.Failed(worker, fence, 1, {proto::FailureKind::kExternal, 15, 0}), Answer::kAccepted);
+    EXPECT_EQ(scheduler_.Failed(worker, fence, 1, {proto::FailureKind::kExternal, 0, 0}), Answer::kAccepted);
     EXPECT_THAT(Decide().leases, SizeIs(1));
     scheduler_.WorkerDied(worker);
   }
@@ -98,6 +102,60 @@ TEST_F(SchedulerTest, ExternalFailuresAndLostWorkersAreNoAttempts) {
   EXPECT_THAT(orders.given_up, IsEmpty());
   EXPECT_EQ(orders.leases.at(0).lease.attempt, 21U);
   EXPECT_EQ(scheduler_.Completed(20, orders.leases[0].lease.fence, 1, 111), Answer::kAccepted);
+}
+
+// A batch system that ends a job kills its runs first and then the worker, or tells it to leave.
+TEST_F(SchedulerTest, ARunThatWasKilledWithItsWorkerIsNoAttempt) {
+  SubmitRuns(1, 1);
+  for (InstanceId worker = 10; worker < 20; ++worker) {
+    Join(worker);
+    const Fence fence = Decide().leases.at(0).lease.fence;
+    EXPECT_EQ(scheduler_.Failed(worker, fence, 1, kKill), Answer::kAccepted);
+    EXPECT_THAT(Decide().leases, IsEmpty()) << "it waits a second";
+    EXPECT_TRUE(worker % 2 == 0 ? scheduler_.WorkerDied(worker) : scheduler_.WorkerDraining(worker));
+  }
+  Join(20);
+  const SchedulerOrders orders = Decide();
+  EXPECT_THAT(orders.given_up, IsEmpty());
+  EXPECT_THAT(orders.leases, SizeIs(1));
+}
+
+TEST_F(SchedulerTest, ARunThatIsAlwaysKilledWaitsLongerEachTimeAndEndsWithAVerdict) {
+  SubmitRuns(1, 1);
+  for (const InstanceId worker : {10U, 11U, 12U}) Join(worker);
+  for (const InstanceId worker : {10U, 11U, 12U}) BringAResult(worker);
+  SchedulerOrders orders = Decide();
+  std::set<InstanceId> asked;
+  for (const int wait : {1, 2, 4}) {
+    ASSERT_THAT(orders.leases, SizeIs(1));
+    asked.insert(orders.leases[0].worker);
+    scheduler_.Failed(orders.leases[0].worker, orders.leases[0].lease.fence, 1, kKill);
+    const auto early = PassTime(std::chrono::milliseconds(1000 * wait - 250), {10, 11, 12});
+    EXPECT_THAT(early.leases, IsEmpty());
+    EXPECT_THAT(early.given_up, IsEmpty());
+    orders = PassTime(std::chrono::milliseconds(500), {10, 11, 12});
+  }
+  EXPECT_THAT(asked, SizeIs(3));
+  ASSERT_THAT(orders.given_up, SizeIs(1));
+  EXPECT_EQ(orders.given_up[0].failure, kKill);
+  EXPECT_EQ(orders.given_up[0].workers, 3U);
+}
+
+TEST_F(SchedulerTest, AWorkerThatOnlyGivesBackIsSlowedAndQuarantined) {
+  SubmitRuns(1, 1);
+  Join(10);
+  bool quarantined = false;
+  int leases = 0;
+  for (int i = 0; i < 5000 && !quarantined; ++i) {
+    const SchedulerOrders orders = Decide();
+    quarantined = !orders.quarantined.empty();
+    for (const LeaseOrder& order : orders.leases) {
+      ++leases;
+      scheduler_.Failed(10, order.lease.fence, 1, {proto::FailureKind::kExternal, 0, 0});
+    }
+  }
+  EXPECT_TRUE(quarantined);
+  EXPECT_EQ(leases, 1024);
 }
 
 TEST_F(SchedulerTest, AnotherWorkersLeaseOrAnotherRunIsRejected) {

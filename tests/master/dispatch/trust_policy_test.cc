@@ -53,6 +53,22 @@ TEST_F(TrustPolicyTest, AVerdictTakesAsManyTrustedWorkersAsAttempts) {
   EXPECT_EQ(verdict->workers, 3U);
 }
 
+TEST_F(TrustPolicyTest, AWorkerOfWhichOnlyEndsFromOutsideComeIsQuarantined) {
+  for (RunId run = 1; run <= 3; ++run) {
+    Fail(10, run, {proto::FailureKind::kExternal, 9, 0});
+    EXPECT_EQ(trust_.Finished(11, run), run < 3 ? TrustPolicy::Workers{} : TrustPolicy::Workers{10});
+  }
+  EXPECT_EQ(
+      InWords(trust_.RecordOf(10)),
+      "3 of its runs, as it says, were ended from outside and then finished by other workers; it finished "
+      "nothing");
+  Prove({12});
+  for (RunId run = 4; run <= 9; ++run) {
+    Fail(12, run, {proto::FailureKind::kExternal, 9, 0});
+    EXPECT_THAT(trust_.Finished(11, run), IsEmpty()) << "a memory killer may have been at it";
+  }
+}
+
 TEST_F(TrustPolicyTest, WhereNobodyElseCanBeAskedOneWorkerIsEnough) {
   Prove({10});
   for (int i = 0; i < 3; ++i) Fail(10);
