@@ -31,6 +31,10 @@ std::string RunsWithoutAResult(const SearchSummary& summary, const std::string& 
   for (std::size_t i = 0; i < std::min(kMostGroups, groups.size()); ++i) {
     text += fmt::format("  {} of {} {}: {}\n", FormatCount(groups[i].runs), FormatCount(summary.runs_done),
                         NameOf(groups[i].verdict), Printable(proto::Explained(groups[i].message)));
+    if (groups[i].verdict == sim::Verdict::kKilled)
+      text +=
+          "    a memory killer or an operator of the machine may have done it: elsewhere it may end "
+          "otherwise\n";
     if (LeavesBundle(groups[i].verdict))
       text += fmt::format(
           "    to see {} again: {}\n", groups[i].runs == 1 ? "it" : "the first",

@@ -317,6 +317,15 @@ TEST_F(PluginCampaign, StudiesAndTuningsRefuseTwoLibrariesThatBringOneName) {
   }
 }
 
+// They would otherwise be tried for ever, as what an operator has killed is.
+TEST_F(PluginCampaign, RunsThatKillThemselvesEndWithAVerdict) {
+  const ProcessResult result =
+      Random("flocking", {"--plugin", PluginPath("of_faults"), "--set", "controller=kill-itself"});
+  EXPECT_EQ(result.exit_code, 1) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("4 of 4 killed: was ended from outside by signal 9"),
+                                HasSubstr("elsewhere it may end otherwise")));
+}
+
 TEST_F(PluginCampaign, FaultyRunsAreResultsThatSaySo) {
   const ProcessResult result =
       Random("flocking", {"--plugin", PluginPath("of_faults"), "--set", "controller=throw"});
