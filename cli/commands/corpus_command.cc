@@ -202,8 +202,8 @@ Result<ExitCode> RunCorpus(CommandContext& context, const CorpusOptions& options
   if (error) return Error{ErrorKind::kIo, fmt::format("{}: {}", options.corpus, error.message())};
   for (const Keepsake& one : kept) {
     const std::string path = fmt::format("{}/{}", options.corpus, one.content.name);
-    TRY(WriteOutputFile(path + ".svg", one.picture));
-    TRY(WriteOutputFile(path + ".json", WriteCorpusCase(one.content)));
+    TRY(WriteOwnFile(path + ".svg", one.picture));
+    TRY(WriteOwnFile(path + ".json", WriteCorpusCase(one.content)));
     context.out << fmt::format("{}.json  {} obstacles, failed in {} of {} fresh runs ({}); picture {}.svg\n",
                                path, one.content.document.test_case.obstacles.size(),
                                one.content.found.failures, one.content.found.runs, one.content.found_in,

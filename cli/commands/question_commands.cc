@@ -136,7 +136,7 @@ Result<Outputs> OpenOutputs(const QuestionOptions& options) {
 Status Keep(const KeptFile& file) {
   std::error_code none;
   if (!file.replaces && fs::exists(file.path, none)) return Ok{};
-  return WriteOutputFile(file.path, file.content);
+  return WriteOwnFile(file.path, file.content);
 }
 
 ExitCode CodeOf(Conclusion conclusion) {

@@ -11,9 +11,52 @@
 
 #include <fmt/format.h>
 
+#include "base/system/atomic_file.h"
+#include "master/directory/campaign_directory.h"
+#include "search/cases/corpus_file.h"
+#include "study/study_campaigns.h"
+
 namespace gauntlet {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error NotOverwritten(const std::string& path, const std::string& what) {
+  return InvalidInput(fmt::format("{} is {}, and not overwritten: name another file", path, what));
+}
+
+// By its place and by what it holds, through links.
+Status CheckOverwritable(const std::string& path) {
+  constexpr std::string_view kDatabase{"SQLite format 3\0", 16};
+  constexpr std::size_t kMostOfACase = 16U << 20;
+  std::error_code error;
+  // "/dev/stdout", "/dev/fd/63": what this process was given
+  if (fs::is_fifo(fs::status(path, error)) && !path.starts_with("/dev/") && !path.starts_with("/proc/"))
+    return InvalidInput(path +
+                        " is a named pipe, whose reader may never come: write to /dev/stdout and pipe that");
+  const fs::path place = fs::weakly_canonical(path, error);
+  if (error) return Ok{};  // said by who opens it
+  if (const auto owner = CampaignDirectory::Owning(place))
+    return NotOverwritten(path, "a file of the campaign " + *owner);
+  if (!fs::is_regular_file(place, error)) return Ok{};
+  if (place == StudyFile(place.parent_path())) return NotOverwritten(path, "the file of a study");
+  std::ifstream file(place, std::ios::binary);
+  std::string head(kDatabase.size(), ' ');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  if (head == kDatabase) return NotOverwritten(path, "a database");
+  if (place.extension() != ".json") return Ok{};
+  const Result<std::string> text = ReadSmallFile(place, kMostOfACase);
+  return text && ParseCorpusCase(*text, path) ? Status(NotOverwritten(path, "a case of a corpus")) : Ok{};
+}
+
+}  // namespace
 
 Result<OutputFile> OutputFile::Open(const std::string& path) {
+  TRY(CheckOverwritable(path));
+  return Begin(path);
+}
+
+Result<OutputFile> OutputFile::Begin(const std::string& path) {
   OutputFile output(path);
   std::error_code error;
   const auto status = std::filesystem::symlink_status(path, error);
@@ -54,6 +97,12 @@ Status OutputFile::Named(const Status& written) const {
 Status OutputFile::OfStream() const {
   if (stream_) return Ok{};
   return Error{ErrorKind::kIo, fmt::format("{}: cannot be written: {}", path_, std::strerror(errno))};
+}
+
+Status WriteOwnFile(const std::string& path, std::string_view content) {
+  TRY(OutputFile output, OutputFile::Begin(path));
+  TRY(output.Write(content));
+  return output.Close();
 }
 
 Status WriteOutputFile(const std::string& path, std::string_view content) {

@@ -18,11 +18,16 @@ namespace gauntlet {
 // nothing may be called.
 class OutputFile {
  public:
+  // A path that the user names. Error: also kInvalidInput when it is a file of a campaign, a study or a
+  // corpus, or any SQLite database, which are never overwritten, or a named pipe.
   static Result<OutputFile> Open(const std::string& path);
   Status Write(std::string_view bytes);
   Status Close();
 
  private:
+  friend Status WriteOwnFile(const std::string& path, std::string_view content);
+
+  static Result<OutputFile> Begin(const std::string& path);
   explicit OutputFile(std::string path) : path_(std::move(path)) {}
   Status Named(const Status& written) const;
   Status OfStream() const;
@@ -32,7 +37,9 @@ class OutputFile {
   std::ofstream stream_;  // of what is no regular file
 };
 
-// The same of a content that is there.
+// The same of a path that the command chooses itself, such as a case of a corpus.
+Status WriteOwnFile(const std::string& path, std::string_view content);
+// The same of a path that the user names, and a content that is there.
 Status WriteOutputFile(const std::string& path, std::string_view content);
 
 // A directory of files. `write` gets the path of a directory to fill, and says how many files it has written;

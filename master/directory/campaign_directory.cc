@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 14> kOwnNames = {
     "searches.json", "origin.json", "snapshot.db", "plugins"};
 
 // What else a master obeys of a campaign, or writes to.
-constexpr std::array<std::string_view, 4> kBesideOwnNames = {"bundles", "campaign.db-wal",
+constexpr std::array<std::string_view, 5> kBesideOwnNames = {"bundles", "campaign.db-wal", "campaign.db-shm",
                                                              "campaign.db-journal", "log/master.log"};
 
 std::string WithoutSlash(std::string path) {
@@ -167,6 +167,16 @@ Result<CampaignDirectory> CampaignDirectory::Open(const std::string& dir) {
                  fmt::format("{} is not a campaign: it holds no campaign.db", directory.path_)};
   }
   return directory;
+}
+
+std::optional<std::string> CampaignDirectory::Owning(const std::string& path) {
+  fs::path below = fs::path(path);
+  for (fs::path dir = below.parent_path(); below.has_relative_path(); dir = below.parent_path()) {
+    const std::string name = below.filename();
+    if (IsCampaign(dir) && (IsOwnName(name) || std::ranges::count(kBesideOwnNames, name) > 0)) return dir;
+    below = dir;
+  }
+  return std::nullopt;
 }
 
 Status CampaignDirectory::CheckTrusted() const {

@@ -39,6 +39,8 @@ class CampaignDirectory {
   // Whether nobody but this user (and root) could have written what the directory holds: to be asked before
   // anything is obeyed that stands there. kInvalidInput says who could, and the way out.
   Status CheckTrusted() const;
+  // The campaign that this path, without links, names a file of: one that masters write or obey.
+  static std::optional<std::string> Owning(const std::string& path);
 
   const std::string& path() const { return path_; }
   std::string experiment_path() const { return path_ + "/experiment.toml"; }

@@ -25,7 +25,10 @@ Result<std::string> ReadFile(const std::filesystem::path& path) {
     return InvalidInput(
         fmt::format("{} is a directory, expected a case file (.json or .argos)", path.string()));
   }
-  Result<std::string> text = ReadSmallFile(path.string(), kMostBytes);
+  const std::string name = path.string();
+  if (std::filesystem::is_fifo(status) && !name.starts_with("/dev/") && !name.starts_with("/proc/"))
+    return InvalidInput(name + " is a named pipe, whose writer may never come: give the case by /dev/stdin");
+  Result<std::string> text = ReadSmallFile(name, kMostBytes);
   if (!text && text.error().kind == ErrorKind::kCorrupt) {
     return InvalidInput(
         fmt::format("{} has more than {} bytes, the most for a case file", path.string(), kMostBytes));

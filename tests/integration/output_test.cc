@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
+#include <filesystem>
 #include <string>
 
 #include "tests/integration/campaign_driver.h"
@@ -9,6 +12,7 @@
 namespace gauntlet::testing_support {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 ProcessResult Shell(const std::string& script) {
@@ -42,6 +46,57 @@ TEST(OutputTest, AClosedProgressPipeDoesNotStopTheCampaign) {
   const ProcessResult status =
       Shell("{ " + command + " > /dev/null; echo $? > '" + code + "'; } 2>&1 | true; cat '" + code + "'");
   EXPECT_EQ(status.out, "0\n") << status.err;
+}
+
+TEST(OutputTest, NothingThatIsStoredIsOverwritten) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  ASSERT_EQ(
+      Gauntlet({"random", "flocking", "--cases", "2", "--workers", "2", "--quiet", "--dir", dir}).exit_code,
+      0);
+  fs::copy_file(dir + "/campaign.db", scratch / "copy.svg");
+  fs::create_symlink(dir + "/campaign.db", scratch / "link.svg");
+  const std::string database = ReadFile(dir + "/campaign.db");
+  for (const std::string& output : {dir + "/campaign.db", dir + "/experiment.toml", dir + "/plugins/new.so",
+                                    scratch / "copy.svg", scratch / "link.svg"}) {
+    for (const std::vector<std::string>& command : {std::vector<std::string>{"report", dir, "-o", output},
+                                                    {"replay", dir, "1", "--svg", output},
+                                                    {"compare", dir, dir, "--svg", output},
+                                                    {"export", dir, "--format", "csv", "--out", output}}) {
+      const ProcessResult refused = Gauntlet(command);
+      EXPECT_EQ(refused.exit_code, 2) << command[0] << " " << output;
+      EXPECT_THAT(refused.err, HasSubstr("not overwritten: name another file"))
+          << command[0] << " " << output;
+    }
+  }
+  EXPECT_EQ(ReadFile(dir + "/campaign.db"), database);
+  EXPECT_EQ(ReadFile(scratch / "copy.svg"), database);
+  EXPECT_FALSE(fs::exists(dir + "/plugins"));
+  EXPECT_EQ(Gauntlet({"replay", dir, "1", "--svg", dir + "/picture.svg"}).exit_code, 0)
+      << "no file of the campaign";
+  EXPECT_EQ(Gauntlet({"replay", dir, "1", "--svg", dir + "/picture.svg"}).exit_code, 0) << "as any file";
+}
+
+// Who opens one waits for the other side.
+TEST(OutputTest, ANamedPipeIsNeitherWrittenNorReadByItsName) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  ASSERT_EQ(
+      Gauntlet({"random", "flocking", "--cases", "1", "--workers", "1", "--quiet", "--dir", dir}).exit_code,
+      0);
+  const std::string pipe = scratch / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"replay", dir, "1", "--svg", pipe},
+                                                  {"evaluate", "flocking", "--case", pipe}}) {
+    const ProcessResult refused = Gauntlet(command);
+    EXPECT_EQ(refused.exit_code, 2) << command[0];
+    EXPECT_THAT(refused.err, HasSubstr(pipe + " is a named pipe")) << command[0];
+  }
+  const ProcessResult piped =
+      Shell("\"$G\" replay '" + dir + "' 1 --svg >(wc -c > '" + scratch / "bytes" +
+            "') > /dev/null && \"$G\" replay '" + dir + "' 1 --svg /dev/stdout | grep -c '</svg>'");
+  EXPECT_EQ(piped.exit_code, 0) << piped.err;
+  EXPECT_EQ(piped.out, "1\n");
 }
 
 // 34 birds find room in the empty arena, so the search begins, but not between 60 obstacles.

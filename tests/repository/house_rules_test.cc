@@ -54,7 +54,8 @@ const Prefixes kRunData = {"sim/geometry/", "sim/arena/", "sim/random/", "sim/ru
                            "sim/run_result.h"};
 const Prefixes kSwarmData = {"sim/observer.h", "sim/run_style.h", "sim/robot/foot_bot.h",
                              "sim/robot/disturbances.h"};
-const Prefixes kBehaviours = {"controllers/registry.h", "controllers/behaviour.h", "controllers/run_start.h",
+const Prefixes kBehaviours = {"controllers/registry.h", "controllers/behaviour.h",
+                              "controllers/failure_descriptor.h", "controllers/run_start.h",
                               "controllers/rows/"};
 
 // The house from the ground up: a room includes rooms that stand before it here, never one that comes later.
