@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/nearest_name.h"
+#include "base/printable.h"
 #include "base/system/atomic_file.h"
 #include "master/directory/plugins.h"
 #include "search/experiment/experiment_file.h"
@@ -46,6 +47,12 @@ class Reader {
     study_.main_file = main_file;
     TRY(ReadFile(main_file, /*main=*/true));
     if (study_.name.empty()) return InvalidInput(main_file + ": the study has no name");
+    if (!IsName(study_.name)) {
+      return InvalidInput(
+          fmt::format("{}: name = \"{}\" is no good folder name: use up to {} letters, digits, '.', '_' "
+                      "or '-', and begin with none of '.' and '-'",
+                      main_file, Printable(study_.name), kMostNameBytes));
+    }
     if (study_.parts.empty()) return InvalidInput(main_file + ": the study has no parts");
     TRY(CheckAnalyses());
     std::erase_if(study_.plugins, [this](const std::string& hash) {

@@ -77,7 +77,9 @@ void AppendJson(const Value& value, std::string& out) {
 
 void AppendCsv(const Value& value, std::string& out) {
   if (const auto* text = std::get_if<std::string>(&value)) {
-    AppendCsvText(*text, out);
+    const bool obeyed =
+        text->size() > 1 && std::string_view("=+-@\t\r").find(text->front()) != std::string_view::npos;
+    AppendCsvText(obeyed ? "'" + *text : *text, out);
   } else if (const auto* holds = std::get_if<bool>(&value)) {
     // R takes no other words for truth values than these; pandas takes them too.
     out += *holds ? "TRUE" : "FALSE";

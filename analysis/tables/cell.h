@@ -30,7 +30,8 @@ Value TextValue(std::string text);
 nlohmann::ordered_json JsonValue(const Value& value);
 // The text of the same. Bytes that are not UTF-8 become U+FFFD.
 void AppendJson(const Value& value, std::string& out);
-// Texts are quoted where they have to be, truth values are TRUE and FALSE.
+// Texts are quoted where they have to be, truth values are TRUE and FALSE. A text that a spreadsheet would
+// take for a formula gets an apostrophe in front.
 void AppendCsv(const Value& value, std::string& out);
 
 struct Cell {

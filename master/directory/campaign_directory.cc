@@ -27,7 +27,7 @@ constexpr std::array<std::string_view, 14> kOwnNames = {
     "searches.json", "origin.json", "snapshot.db", "plugins"};
 
 // What else a master obeys of a campaign, or writes to.
-constexpr std::array<std::string_view, 5> kBesideOwnNames = {"bundles", "campaign.db-wal", "campaign.db-shm",
+constexpr std::array<std::string_view, 4> kBesideOwnNames = {"bundles", "campaign.db-wal",
                                                              "campaign.db-journal", "log/master.log"};
 
 std::string WithoutSlash(std::string path) {
@@ -173,7 +173,8 @@ std::optional<std::string> CampaignDirectory::Owning(const std::string& path) {
   fs::path below = fs::path(path);
   for (fs::path dir = below.parent_path(); below.has_relative_path(); dir = below.parent_path()) {
     const std::string name = below.filename();
-    if (IsCampaign(dir) && (IsOwnName(name) || std::ranges::count(kBesideOwnNames, name) > 0)) return dir;
+    const bool ours = IsOwnName(name) || name.starts_with("campaign.db-") || name == "bundles";
+    if (ours && IsCampaign(dir)) return dir;
     below = dir;
   }
   return std::nullopt;

@@ -81,6 +81,10 @@ TEST(StudyReader, NamesWhatIsWrongAndWhere) {
   EXPECT_EQ(ErrorWith("[compare.c]\n" + sets + "expect = \"more\"\n"),
             "small.toml:11:1: expect = \"more\" is unknown, allowed less, greater");
   EXPECT_EQ(ErrorWith("", ""), "small.toml: the study has no name");
+  EXPECT_EQ(
+      ErrorWith("", "name = \"../../x\"\n"),
+      "small.toml: name = \"../../x\" is no good folder name: use up to 64 letters, digits, '.', '_' or '-', "
+      "and begin with none of '.' and '-'");
   EXPECT_EQ(ErrorWith("", "name = \"small\"\ninclude = \"small\"\n"), "small.toml is included twice");
   EXPECT_EQ(LoadStudy("thesis-floking").error().message,
             "unknown study 'thesis-floking'; did you mean 'thesis-flocking'? (a file is named by a path "

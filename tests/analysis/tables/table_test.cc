@@ -121,6 +121,13 @@ TEST(Table, CsvHoldsValuesNotTexts) {
   EXPECT_EQ(table.ToCsv(), "a,b,c\n\"x,\"\"y\"\"\",0.3333333333333333,TRUE\n,-3,1000\n");
 }
 
+// Names of cases are names of files, which anybody chooses.
+TEST(Table, CsvHoldsNothingThatASpreadsheetExecutes) {
+  Table table({"name", ">x"});
+  for (const char* name : {"=cmd()", "+1", "@x", "-x", "-", "a=b"}) table.AddRow({name, -3});
+  EXPECT_EQ(table.ToCsv(), "name,x\n'=cmd(),-3\n'+1,-3\n'@x,-3\n'-x,-3\n-,-3\na=b,-3\n");
+}
+
 TEST(Table, FirstAndThinnedLeaveRowsOut) {
   Table table({""});
   for (int i = 1; i <= 10; ++i) table.AddRow({i});
