@@ -54,6 +54,14 @@ std::optional<std::uint64_t> StartTimeOf(pid_t pid) {
   return start_time;
 }
 
+pid_t ParentOf(pid_t pid) {
+  std::istringstream fields(StatFromState("/proc/" + std::to_string(pid) + "/stat"));
+  std::string state;
+  pid_t parent = 0;
+  fields >> state >> parent;
+  return parent;
+}
+
 bool AnyThreadIsRunnable(pid_t pid) {
   std::error_code gone;
   std::filesystem::directory_iterator thread("/proc/" + std::to_string(pid) + "/task", gone);

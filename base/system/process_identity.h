@@ -25,6 +25,9 @@ ProcessIdentity IdentifyThisProcess();
 // Start time of a process of this machine; empty when there is none, or only its zombie.
 std::optional<std::uint64_t> StartTimeOf(pid_t pid);
 
+// Who started a process or thread of this machine, or took it over as an orphan; 0 when there is none.
+pid_t ParentOf(pid_t pid);
+
 // Is a thread of this process of this machine running or ready to run? Not when all sleep or are stopped.
 bool AnyThreadIsRunnable(pid_t pid);
 

@@ -110,6 +110,14 @@ void SetSoftLimit(__rlimit_resource resource, rlim_t wanted) {
   setrlimit(resource, &limit);
 }
 
+void SetHardLimit(__rlimit_resource resource, rlim_t wanted, rlim_t above) {
+  rlimit limit{};
+  if (getrlimit(resource, &limit) != 0) return;
+  limit.rlim_max = std::min(wanted + above, limit.rlim_max);
+  limit.rlim_cur = std::min(wanted, limit.rlim_max);
+  setrlimit(resource, &limit);
+}
+
 double CpuSecondsOf(const rusage& usage) {
   double seconds = 0.0;
   for (const timeval& time : {usage.ru_utime, usage.ru_stime})

@@ -23,6 +23,8 @@ Status AllowOpenFiles(rlim_t needed, const std::string& who);
 // Sets the soft limit of this process, no higher than the hard one: a lowered hard limit could never be
 // raised again.
 void SetSoftLimit(__rlimit_resource resource, rlim_t wanted);
+// Lowers both limits of this process for good, the soft one to `wanted` and the hard one so much above it.
+void SetHardLimit(__rlimit_resource resource, rlim_t wanted, rlim_t above = 0);
 
 // User and system time, s.
 double CpuSecondsOf(const rusage& usage);

@@ -45,17 +45,6 @@ void Terminate() {
 void KillItself() {
   kill(getpid(), SIGKILL);
 }
-void KillParent() {
-  kill(getppid(), SIGKILL);
-}
-void KillGroup() {
-  kill(0, SIGKILL);
-}
-void LimitTime() {
-  constexpr rlimit kNone{.rlim_cur = 0, .rlim_max = 0};
-  setrlimit(RLIMIT_CPU, &kNone);
-  for (volatile bool on = true; on;) continue;
-}
 void CloseAll() {
   for (int file = 0; file < 1024; ++file) close(file);
 }
@@ -165,9 +154,6 @@ std::vector<ControllerInfo> Rows() {
           Row<ExitThree>("exit-three"),
           Row<Terminate>("terminate"),
           Row<KillItself>("kill-itself"),
-          Row<KillParent>("kill-parent"),
-          Row<KillGroup>("kill-group"),
-          Row<LimitTime>("limit-time"),
           Row<CloseAll>("close-all"),
           Row<LimitFiles>("limit-files"),
           Row<Spin>("spin"),

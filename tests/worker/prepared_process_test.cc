@@ -20,7 +20,6 @@
 #include "proto/run_codec.h"
 #include "tests/support/process.h"
 #include "tests/support/sanitizer.h"
-#include "worker/run_executor.h"
 #include "worker/runner/pipe.h"
 #include "worker/runner/runner.h"
 
@@ -175,6 +174,28 @@ TEST_F(PreparedProcessTest, PreparesOnceInATemporaryFolderWhoseGroupIsInherited)
   }
   unsetenv("TMPDIR");
   EXPECT_TRUE(fs::is_empty(place.path()));
+}
+
+TEST_F(PreparedProcessTest, AFolderThatACallReplacesIsRemovedWithWhatReplacedIt) {
+  const TemporaryDirectory place;
+  setenv("TMPDIR", place.path().c_str(), /*overwrite=*/1);
+  PreparedProcess process([] {},
+                          [](const std::string&) {
+                            const fs::path here = fs::current_path();
+                            std::ofstream(here / "notes.txt") << "notes";
+                            fs::rename(here, here.string() + "-moved");
+                            fs::create_directory(here);
+                            std::ofstream(here / "more.txt") << "notes";
+                            return std::string("moved");
+                          });
+  for (int call = 0; call < 2; ++call) EXPECT_EQ(Answer(process, ""), "moved");
+  EXPECT_EQ(Answer(process, ""), "moved");
+  process.End();
+  unsetenv("TMPDIR");
+  std::ptrdiff_t left = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(place.path()))
+    left += entry.exists() ? 1 : 0;
+  EXPECT_LE(left, 2) << "of the last call, as long as there is no next one";
 }
 
 TEST_F(PreparedProcessTest, UsesTheFolderThatIsNamed) {

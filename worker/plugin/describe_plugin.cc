@@ -7,14 +7,16 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "base/system/process_tree.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
+#include "worker/runner/prepared_process.h"
 #include "worker/runner/runner.h"
-#include "worker/runner/separate_process.h"
 #include "worker/worker_state.h"
 
 namespace gauntlet::worker {
@@ -47,15 +49,20 @@ int Refuse(const std::string& why) {
 }
 
 // Prints what `ask`, called in a process of its own, says of the library. `when`: in what, for refusals.
-int PrintAnswer(const std::string& library, std::string_view when,
+// `files`: the descriptors that it needs.
+int PrintAnswer(const std::string& library, std::string_view when, std::set<int> files,
                 const std::function<Result<std::string>()>& ask) {
-  const auto work = [&] {
+  const auto work = [&](const std::string&) {
     const Result<std::string> answer = ask();
     return answer ? kAnswered + *answer : kRefused + answer.error().message;
   };
-  const Result<SeparateOutcome> outcome = CallInSeparateProcess(work, {.cpu_limit_seconds = kCpuSeconds,
-                                                                       .memory_limit_bytes = kMemoryBytes,
-                                                                       .wall_limit_seconds = kWallSeconds});
+  TakeOrphans();
+  PreparedProcess process([] {}, work, std::move(files));
+  const Result<SeparateOutcome> outcome = process.Call("", {.cpu_limit_seconds = kCpuSeconds,
+                                                            .memory_limit_bytes = kMemoryBytes,
+                                                            .wall_limit_seconds = kWallSeconds});
+  process.End();
+  EndProcessesBelow();
   if (!outcome) return Refuse(outcome.error().message);
   if (!outcome->bytes) return Refuse(fmt::format("the plug-in {} {}", library, WhatHappened(*outcome, when)));
   const std::string text = outcome->bytes->substr(1);
@@ -69,7 +76,7 @@ int PrintAnswer(const std::string& library, std::string_view when,
 int PrintDescription(const std::string& path, const DescribePluginFunction& describe) {
   std::error_code failed;
   const std::string absolute = std::filesystem::absolute(path, failed);
-  return PrintAnswer(path, "when it was loaded",
+  return PrintAnswer(path, "when it was loaded", {},
                      [&] { return describe({.path = absolute, .name = path, .hash = ""}); });
 }
 
@@ -82,12 +89,13 @@ int PrintBeginning(const std::string& spec, const PluginSettings& plugins,
   if (!files) return Refuse(files.error().message);
   std::string names;
   for (const PluginFile& file : *files) names += (names.empty() ? "" : " with ") + file.name;
-  return PrintAnswer(names, "when it was asked how a run begins", [&]() -> Result<std::string> {
-    for (const PluginFile& file : *files) {
-      TRY(plugins.load(file));
-    }
-    return describe(*asked);
-  });
+  return PrintAnswer(names, "when it was asked how a run begins", DescriptorsOf(*files),
+                     [&]() -> Result<std::string> {
+                       for (const PluginFile& file : *files) {
+                         TRY(plugins.load(file));
+                       }
+                       return describe(*asked);
+                     });
 }
 
 }  // namespace gauntlet::worker

@@ -1,5 +1,6 @@
 #include "worker/plugin/plugin_files.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -51,14 +52,25 @@ Result<PluginFile> PluginFiles::Open(const std::string& hash) {
       if (bytes) break;
     }
     if (!bytes) return bytes.error();
-    UniqueFd memory(memfd_create("plug-in", MFD_CLOEXEC));
+    UniqueFd memory(memfd_create("plug-in", MFD_CLOEXEC | MFD_ALLOW_SEALING));
     if (!memory.valid()) return SystemError("cannot make a file in memory", errno);
     TRY(WriteAll(memory.get(), *bytes));
+    // No run writes into the library of the next one.
+    if (fcntl(memory.get(), F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_GROW | F_SEAL_SHRINK | F_SEAL_SEAL) != 0)
+      return SystemError("cannot seal a file in memory", errno);
     copies_[hash] = {std::move(name), std::move(memory)};
   }
   const Copy& copy = copies_.at(hash);
-  return PluginFile{
-      .path = fmt::format("/proc/self/fd/{}", copy.memory.get()), .name = copy.name, .hash = hash};
+  return PluginFile{.path = fmt::format("/proc/self/fd/{}", copy.memory.get()),
+                    .name = copy.name,
+                    .hash = hash,
+                    .descriptor = copy.memory.get()};
+}
+
+std::set<int> DescriptorsOf(const std::vector<PluginFile>& files) {
+  std::set<int> descriptors;
+  for (const PluginFile& file : files) descriptors.insert(file.descriptor);
+  return descriptors;
 }
 
 Result<std::vector<PluginFile>> PluginFiles::Of(const sim::RunSpec& spec) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,14 @@ namespace gauntlet::worker {
 
 // A library that was read.
 struct PluginFile {
-  std::string path;  // by which dlopen finds it
-  std::string name;  // what messages call it
-  std::string hash;  // 64 hexadecimal digits
+  std::string path;     // by which dlopen finds it
+  std::string name;     // what messages call it
+  std::string hash;     // 64 hexadecimal digits
+  int descriptor = -1;  // what the path needs
 };
+
+// Those that the paths of `files` need.
+std::set<int> DescriptorsOf(const std::vector<PluginFile>& files);
 
 // Makes what a library brings known to the run function. Called in a process that is there for one
 // run.

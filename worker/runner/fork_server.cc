@@ -19,9 +19,14 @@
 #include <filesystem>
 #include <iterator>
 #include <set>
+#include <span>
+#include <vector>
 
 #include "base/system/atomic_file.h"
+#include "base/system/process_identity.h"
+#include "base/system/process_tree.h"
 #include "base/system/resource_limits.h"
+#include "worker/runner/confinement.h"
 #include "worker/runner/scratch_folder.h"
 
 namespace gauntlet::worker {
@@ -42,66 +47,26 @@ struct ForkServerMessage {
   double cpu_seconds = 0.0;
 };
 
-struct ReceivedMessage {
-  ForkServerMessage message;
-  UniqueFd first;
-  UniqueFd second;
-};
-enum class ReceiveState { kNothing, kEnded, kMessage };
-
 // Runners are so much nicer than the supervisor, whose heartbeats must leave in time on the fullest machine.
 constexpr int kRunnerNiceness = 5;
-constexpr std::size_t kDescriptors = 2;
-constexpr std::size_t kDescriptorBytes = kDescriptors * sizeof(int);
 
-bool SendMessage(int control, ForkServerMessage message, int first = -1, int second = -1) {
-  iovec part{.iov_base = &message, .iov_len = sizeof message};
-  msghdr header{};
-  header.msg_iov = &part;
-  header.msg_iovlen = 1;
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(kDescriptorBytes)> space{};
-  if (first >= 0) {
-    header.msg_control = space.data();
-    header.msg_controllen = space.size();
-    cmsghdr* rights = CMSG_FIRSTHDR(&header);
-    rights->cmsg_level = SOL_SOCKET;
-    rights->cmsg_type = SCM_RIGHTS;
-    rights->cmsg_len = CMSG_LEN(kDescriptorBytes);
-    const std::array<int, kDescriptors> fds{first, second};
-    std::memcpy(CMSG_DATA(rights), fds.data(), kDescriptorBytes);
-  }
-  ssize_t sent = -1;
-  do {
-    sent = sendmsg(control, &header, MSG_NOSIGNAL);
-  } while (sent < 0 && errno == EINTR);
-  return sent == static_cast<ssize_t>(sizeof message);
+bool SendMessage(int control, const ForkServerMessage& message, std::span<const int> descriptors = {}) {
+  return SendPacket(control, {reinterpret_cast<const char*>(&message), sizeof message}, descriptors);
 }
 
-// Does not wait. kEnded also when the packet is damaged. Descriptors that did not come along, or found no
-// room here, are invalid.
+enum class ReceiveState { kNothing, kEnded, kMessage };
+struct ReceivedMessage {
+  ForkServerMessage message;
+  std::vector<UniqueFd> descriptors;
+};
+
+// Does not wait. kEnded also when the packet is damaged.
 ReceiveState ReceiveMessage(int control, ReceivedMessage& received) {
-  iovec part{.iov_base = &received.message, .iov_len = sizeof received.message};
-  msghdr header{};
-  header.msg_iov = &part;
-  header.msg_iovlen = 1;
-  alignas(cmsghdr) std::array<char, CMSG_SPACE(kDescriptorBytes)> space{};
-  header.msg_control = space.data();
-  header.msg_controllen = space.size();
-  ssize_t got = -1;
-  do {
-    got = recvmsg(control, &header, MSG_DONTWAIT | MSG_CMSG_CLOEXEC);
-  } while (got < 0 && errno == EINTR);
-  if (got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) return ReceiveState::kNothing;
-  if (got != static_cast<ssize_t>(sizeof received.message)) return ReceiveState::kEnded;
-  const cmsghdr* rights = CMSG_FIRSTHDR(&header);
-  if (rights != nullptr && rights->cmsg_type == SCM_RIGHTS) {
-    // The second one is missing when there was room for one only (MSG_CTRUNC).
-    std::array<int, kDescriptors> fds{-1, -1};
-    std::memcpy(fds.data(), CMSG_DATA(rights),
-                std::min<std::size_t>(rights->cmsg_len - CMSG_LEN(0), kDescriptorBytes));
-    received.first.Reset(fds[0]);
-    received.second.Reset(fds[1]);
-  }
+  std::optional<Packet> packet = ReceivePacket(control, sizeof received.message, MSG_DONTWAIT);
+  if (!packet && errno == EAGAIN) return ReceiveState::kNothing;
+  if (!packet || packet->bytes.size() != sizeof received.message) return ReceiveState::kEnded;
+  std::memcpy(&received.message, packet->bytes.data(), sizeof received.message);
+  received.descriptors = std::move(packet->descriptors);
   return ReceiveState::kMessage;
 }
 
@@ -167,10 +132,8 @@ class Server {
       BecomeRunner(std::move(pipe->second), std::move(output_writer));
     }
     runners_.insert(pid);
-    if (!SendMessage(control_.get(), {.type = ForkServerMessage::kStarted, .pid = pid}, pipe->first.get(),
-                     output_reader.get())) {
-      End();
-    }
+    const std::array descriptors{pipe->first.get(), output_reader.get()};
+    if (!SendMessage(control_.get(), {.type = ForkServerMessage::kStarted, .pid = pid}, descriptors)) End();
   }
 
   [[noreturn]] void BecomeRunner(UniqueFd pipe, UniqueFd output) {
@@ -197,12 +160,21 @@ class Server {
       int status = 0;
       rusage usage{};
       const pid_t pid = wait4(-1, &status, WNOHANG, &usage);
-      if (pid <= 0) return;
-      runners_.erase(pid);
+      if (pid <= 0) break;
+      if (runners_.erase(pid) == 0) continue;  // left by a runner
       Report({.type = ForkServerMessage::kExited,
               .pid = pid,
               .value = status,
               .cpu_seconds = CpuSecondsOf(usage)});
+    }
+    EndOrphans();
+  }
+
+  // What the processes of a runner that has ended have started is now a child of this process.
+  void EndOrphans() {
+    const pid_t self = getpid();
+    for (const pid_t process : ProcessesBelow(self)) {
+      if (ParentOf(process) == self && !runners_.contains(process)) kill(process, SIGKILL);
     }
   }
 
@@ -211,9 +183,7 @@ class Server {
   }
 
   [[noreturn]] void End() {
-    for (const pid_t pid : runners_) kill(pid, SIGKILL);
-    while (wait4(-1, nullptr, 0, nullptr) > 0 || errno == EINTR) {
-    }
+    EndProcessesBelow();
     ScratchFolder::RemoveAbandoned();
     _exit(0);
   }
@@ -225,10 +195,10 @@ class Server {
   std::set<pid_t> runners_;
 };
 
-// The process' life. Ends, with all runners, when `control` ends or `supervisor` dies.
-[[noreturn]] void ForkServerMain(UniqueFd control, pid_t supervisor, const RunFunction& run,
-                                 const PluginSettings& plugins) {
-  if (!DieWithParent(supervisor)) _exit(0);
+// The process' life. Ends when `control` does, as it does with the supervisor, and with it whatever was
+// started here.
+[[noreturn]] void ForkServerMain(UniqueFd control, const RunFunction& run, const PluginSettings& plugins) {
+  TakeOrphans();
   for (const int ignored : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(ignored, SIG_IGN);
   prctl(PR_SET_NAME, "gauntlet-fork");
   Server(std::move(control), run, plugins).Serve();
@@ -267,12 +237,12 @@ bool DieWithParent(pid_t parent) {
 Result<std::unique_ptr<ForkServer>> ForkServer::Start(const RunFunction& run, const PluginSettings& plugins) {
   CheckSingleThreaded();
   TRY(SocketPair control, MakeSocketPair(SOCK_SEQPACKET));
-  const pid_t supervisor = getpid();
+  HideFromOthers();
   const pid_t pid = fork();
   if (pid < 0) return SystemError("cannot start a process", errno);
   if (pid == 0) {
     control.first.Reset();
-    ForkServerMain(std::move(control.second), supervisor, run, plugins);
+    ForkServerMain(std::move(control.second), run, plugins);
   }
   return std::unique_ptr<ForkServer>(new ForkServer(pid, std::move(control.first)));
 }
@@ -316,12 +286,13 @@ std::optional<ForkServerEvent> ForkServer::Receive() {
   const ForkServerMessage& message = received.message;
   switch (message.type) {
     case ForkServerMessage::kStarted:
-      if (!received.first.valid() || !received.second.valid()) {
+      if (received.descriptors.size() < 2) {
         // This process has no room for them (RLIMIT_NOFILE), so nobody could talk to that runner.
         Kill(message.pid, SIGKILL);
         return RunnerNotStarted{EMFILE};
       }
-      return RunnerStarted{message.pid, std::move(received.first), std::move(received.second)};
+      return RunnerStarted{message.pid, std::move(received.descriptors[0]),
+                           std::move(received.descriptors[1])};
     case ForkServerMessage::kNotStarted:
       return RunnerNotStarted{message.value};
     case ForkServerMessage::kExited:

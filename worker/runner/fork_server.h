@@ -4,8 +4,9 @@
 //   supervisor --control socket--> fork server --fork--> runner (one per slot)
 //        ^------------------ pipe and output of the runner, passed by SCM_RIGHTS
 //
-// Nobody survives anybody: runners die with the fork server, the fork server dies with the supervisor
-// (PR_SET_PDEATHSIG, and the end of the sockets), and whoever is a parent reaps its children.
+// Nobody survives anybody: runners die with the fork server (PR_SET_PDEATHSIG), and the fork server ends with
+// the supervisor (the end of the socket), after everything that was ever started below it: it takes orphans
+// over (PR_SET_CHILD_SUBREAPER) and ends them.
 #pragma once
 
 #include <sys/types.h>

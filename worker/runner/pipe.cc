@@ -12,6 +12,9 @@ namespace {
 
 using Length = std::uint32_t;  // in the order of this machine: both ends are processes of it
 
+constexpr std::size_t kMostDescriptors = 2;
+constexpr std::size_t kControlBytes = CMSG_SPACE(kMostDescriptors * sizeof(int));
+
 std::size_t LengthIn(const char* prefix) {
   Length length = 0;
   std::memcpy(&length, prefix, sizeof length);
@@ -26,6 +29,55 @@ Result<SocketPair> MakeSocketPair(int type) {
     return Error{ErrorKind::kIo, fmt::format("socketpair: {}", std::strerror(errno))};
   }
   return SocketPair{UniqueFd(fds[0]), UniqueFd(fds[1])};
+}
+
+bool SendPacket(int socket, std::string_view bytes, std::span<const int> descriptors) {
+  GAUNTLET_CHECK(descriptors.size() <= kMostDescriptors, "more descriptors than a packet carries");
+  iovec part{.iov_base = const_cast<char*>(bytes.data()), .iov_len = bytes.size()};
+  msghdr header{};
+  header.msg_iov = &part;
+  header.msg_iovlen = 1;
+  alignas(cmsghdr) std::array<char, kControlBytes> space{};
+  if (!descriptors.empty()) {
+    header.msg_control = space.data();
+    header.msg_controllen = CMSG_SPACE(descriptors.size_bytes());
+    cmsghdr* rights = CMSG_FIRSTHDR(&header);
+    rights->cmsg_level = SOL_SOCKET;
+    rights->cmsg_type = SCM_RIGHTS;
+    rights->cmsg_len = CMSG_LEN(descriptors.size_bytes());
+    std::memcpy(CMSG_DATA(rights), descriptors.data(), descriptors.size_bytes());
+  }
+  ssize_t sent = -1;
+  do {
+    sent = sendmsg(socket, &header, MSG_NOSIGNAL);
+  } while (sent < 0 && errno == EINTR);
+  return sent == static_cast<ssize_t>(bytes.size());
+}
+
+std::optional<Packet> ReceivePacket(int socket, std::size_t size, int flags) {
+  Packet packet{.bytes = std::string(size, '\0'), .descriptors = {}};
+  iovec part{.iov_base = packet.bytes.data(), .iov_len = size};
+  msghdr header{};
+  header.msg_iov = &part;
+  header.msg_iovlen = 1;
+  alignas(cmsghdr) std::array<char, kControlBytes> space{};
+  header.msg_control = space.data();
+  header.msg_controllen = space.size();
+  ssize_t got = -1;
+  do {
+    errno = 0;
+    got = recvmsg(socket, &header, flags | MSG_CMSG_CLOEXEC);
+  } while (got < 0 && errno == EINTR);
+  if (got <= 0) return std::nullopt;
+  packet.bytes.resize(static_cast<std::size_t>(got));
+  const cmsghdr* rights = CMSG_FIRSTHDR(&header);
+  if (rights != nullptr && rights->cmsg_type == SCM_RIGHTS) {
+    std::array<int, kMostDescriptors> fds{};
+    const std::size_t count = (rights->cmsg_len - CMSG_LEN(0)) / sizeof(int);
+    std::memcpy(fds.data(), CMSG_DATA(rights), count * sizeof(int));
+    for (std::size_t i = 0; i < count; ++i) packet.descriptors.emplace_back(fds[i]);
+  }
+  return packet;
 }
 
 std::string MakeFrame(std::string_view payload) {

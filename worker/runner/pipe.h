@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.h"
 #include "base/system/unique_fd.h"
@@ -20,6 +22,16 @@ Result<SocketPair> MakeSocketPair(int type);
 
 // A frame is its payload's length (4 bytes) and the payload.
 inline constexpr std::size_t kMaxFrameBytes = 1u << 30;
+
+// One packet, with descriptors that the other side gets copies of. Blocking; false: nobody is there.
+bool SendPacket(int socket, std::string_view bytes, std::span<const int> descriptors);
+struct Packet {
+  std::string bytes;
+  std::vector<UniqueFd> descriptors;  // fewer than were sent when this process may not open so many
+};
+// The next packet, of at most `size` bytes with at most two descriptors. `flags` of recvmsg. Empty with
+// errno: there is none (EAGAIN), or the other side has ended (0).
+std::optional<Packet> ReceivePacket(int socket, std::size_t size, int flags);
 
 std::string MakeFrame(std::string_view payload);
 

@@ -5,15 +5,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <span>
 #include <system_error>
 #include <utility>
 
 #include "base/canonical_encoder.h"
-#include "base/system/atomic_file.h"
+#include "base/system/process_tree.h"
 #include "base/system/resource_limits.h"
 #include "worker/runner/fork_server.h"
 
@@ -86,30 +88,20 @@ std::ptrdiff_t EntriesIn(const char* folder) {
   return failed ? -1 : std::distance(begin(entries), end(entries));
 }
 
-bool HasChildren() {
-  siginfo_t ended{};
-  return waitid(P_ALL, 0, &ended, WEXITED | WNOHANG | WNOWAIT) == 0 || errno != ECHILD;
-}
-
 }  // namespace
 
 Result<SeparateOutcome> PreparedProcess::Call(const std::string& request, const SeparateOptions& options) {
-  if (process_ == 0 && !for_each_call_) {
+  if (options.memory_limit_bytes != memory_limit_bytes_) End();
+  if (process_ == 0) {
     TRY(std::optional<SeparateOutcome> ended, Start(options));
     if (ended) return *std::move(ended);
-  }
-  if (for_each_call_) {
-    return CallInSeparateProcess(
-        [&] {
-          prepare_();
-          return work_(request);
-        },
-        options);
   }
   SeparateOptions with_folder = options;
   if (options.scratch.empty()) {
     TRY(RenewFolder());
     with_folder.scratch = folder_->path();
+  } else {
+    TRY(ScratchFolder::Make(options.scratch));
   }
   std::optional<std::string> answer;
   if (WriteFrame(pipe_.get(), Encode(request, with_folder))) answer = Answer();
@@ -128,25 +120,43 @@ Result<std::optional<SeparateOutcome>> PreparedProcess::Start(const SeparateOpti
     Live(std::move(pipe.second), parent, options);
   }
   process_ = child;
+  memory_limit_bytes_ = options.memory_limit_bytes;
   pipe.second.Reset();
   pipe_ = std::move(pipe.first);
   answers_ = FrameBuffer();
+  std::optional<Packet> confined = ReceivePacket(pipe_.get(), 1, 0);
+  if (confined && !confined->descriptors.empty()) guard_.emplace(std::move(confined->descriptors[0]), child);
   const std::optional<std::string> answer = Answer();
   if (!answer) return std::optional(Reap());
-  for_each_call_ = *answer != kPrepared || !folder_->HoldsOnlyEmpty(kOutputFile);
-  if (for_each_call_) End();
-  return std::optional<SeparateOutcome>();
+  if (for_each_call_ || (*answer == kPrepared && folder_->HoldsOnlyEmpty(kOutputFile)))
+    return std::optional<SeparateOutcome>();
+  for_each_call_ = true;
+  End();
+  return Start(options);
 }
 
 void PreparedProcess::Live(UniqueFd pipe, pid_t parent, const SeparateOptions& options) {
-  setpgid(0, 0);
+  setsid();  // without a terminal
   if (!DieWithParent(parent)) _exit(0);
   if (!MoveInto(folder_->path())) _exit(kExitWithoutPlugin);
   folder_->LeaveToParent();
-  Confine(options);
+  const Result<ResultFile> result = ResultFile::Make();
+  if (!result) _exit(kExitWithoutPlugin);
+  std::set<int> kept = files_;
+  kept.insert({pipe.get(), result->descriptor()});
+  CloseAllBut(kept);
+  TakeOrphans();
+  LimitForGood(options);
+  LimitTime(options);
+  {
+    const UniqueFd listener = ConfineToTree();
+    const std::array descriptors{listener.get()};
+    const std::span<const int> sent(descriptors.data(), listener.valid() ? 1 : 0);
+    if (!SendPacket(pipe.get(), "c", sent)) _exit(0);
+  }
   const std::ptrdiff_t descriptors = EntriesIn("/proc/self/fd");
   CallOrEnd([this] {
-    prepare_();
+    if (!for_each_call_) prepare_();
     return std::string();
   });
   std::fflush(nullptr);
@@ -158,10 +168,10 @@ void PreparedProcess::Live(UniqueFd pipe, pid_t parent, const SeparateOptions& o
   if (!WriteFrame(pipe.get(), fit ? kPrepared : kUnfit)) _exit(0);
   alarm(0);
   SetSoftLimit(RLIMIT_CPU, RLIM_INFINITY);
-  Serve(std::move(pipe));
+  Serve(std::move(pipe), *result);
 }
 
-void PreparedProcess::Serve(UniqueFd pipe) const {
+void PreparedProcess::Serve(UniqueFd pipe, const ResultFile& result) const {
   FrameBuffer requests;
   while (true) {
     const std::optional<std::string> message = requests.Next();
@@ -172,15 +182,17 @@ void PreparedProcess::Serve(UniqueFd pipe) const {
     const Request request = DecodeRequest(*message);
     const auto work = [&] {
       pipe.Reset();
+      if (for_each_call_) prepare_();
       return work_(request.request);
     };
-    if (!WriteFrame(pipe.get(), Encode(CallInSeparateProcess(work, request.options)))) _exit(0);
+    if (!WriteFrame(pipe.get(), Encode(CallInSeparateProcess(work, request.options, result)))) _exit(0);
   }
 }
 
 std::optional<std::string> PreparedProcess::Answer() {
   while (true) {
     if (std::optional<std::string> answer = answers_.Next()) return answer;
+    if (guard_) guard_->ServeUntilReadable(pipe_.get());
     if (answers_.ReadFrom(pipe_.get(), FrameBuffer::Wait::kYes) != FrameBuffer::State::kOpen)
       return std::nullopt;
   }
@@ -188,6 +200,7 @@ std::optional<std::string> PreparedProcess::Answer() {
 
 SeparateOutcome PreparedProcess::Reap() {
   pipe_.Reset();
+  guard_.reset();
   cpu_seconds_ = 0.0;
   SeparateOutcome outcome;
   outcome.wait_status = WaitForGroup(std::exchange(process_, 0));

@@ -1,16 +1,21 @@
 // Work in processes of its own, each of which finds something prepared: a library that was loaded. It is
 // prepared once, in a process that does nothing else, and the process of every call is forked from that one:
-// it finds what was prepared as it was then, whatever earlier calls have done.
+// it finds what was prepared as it was then, whatever earlier calls have done. That process is confined
+// (confinement.h), also when it prepares: neither it nor a call does anything to other processes, raises its
+// limits, or leaves processes behind.
 #pragma once
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "base/result.h"
 #include "base/system/unique_fd.h"
+#include "worker/runner/confinement.h"
 #include "worker/runner/pipe.h"
 #include "worker/runner/scratch_folder.h"
 #include "worker/runner/separate_process.h"
@@ -20,9 +25,11 @@ namespace gauntlet::worker {
 class PreparedProcess {
  public:
   // `prepare` ends its process when it fails. A process that prints, leaves files, descriptors, threads or
-  // children when it prepares is not fit for being forked from: then every call prepares for itself.
-  PreparedProcess(std::function<void()> prepare, std::function<std::string(const std::string&)> work)
-      : prepare_(std::move(prepare)), work_(std::move(work)) {}
+  // children when it prepares is not fit for being forked from: then every call prepares for itself. `files`:
+  // those descriptors of this process that the two may use.
+  PreparedProcess(std::function<void()> prepare, std::function<std::string(const std::string&)> work,
+                  std::set<int> files = {})
+      : prepare_(std::move(prepare)), work_(std::move(work)), files_(std::move(files)) {}
   PreparedProcess(const PreparedProcess&) = delete;
   PreparedProcess& operator=(const PreparedProcess&) = delete;
   ~PreparedProcess() { End(); }
@@ -35,10 +42,10 @@ class PreparedProcess {
   double cpu_seconds() const { return cpu_seconds_; }
 
  private:
-  // Nothing: it is prepared, or needs to be for each call. Otherwise how it ended.
+  // Nothing: it is ready for calls. Otherwise how it ended.
   Result<std::optional<SeparateOutcome>> Start(const SeparateOptions& options);
   [[noreturn]] void Live(UniqueFd pipe, pid_t parent, const SeparateOptions& options);
-  [[noreturn]] void Serve(UniqueFd pipe) const;
+  [[noreturn]] void Serve(UniqueFd pipe, const ResultFile& result) const;
   // The next answer; nothing when the process has ended.
   std::optional<std::string> Answer();
   SeparateOutcome Reap();
@@ -47,10 +54,13 @@ class PreparedProcess {
 
   std::function<void()> prepare_;
   std::function<std::string(const std::string&)> work_;
-  pid_t process_ = 0;  // 0: there is none
+  std::set<int> files_;
+  pid_t process_ = 0;                     // 0: there is none
+  std::uint64_t memory_limit_bytes_ = 0;  // of the process, and the most that a call can have
   bool for_each_call_ = false;
   UniqueFd pipe_;
   FrameBuffer answers_;
+  std::optional<TreeGuard> guard_;       // of the process
   std::optional<ScratchFolder> folder_;  // of preparing, then of one call after the other
   double cpu_seconds_ = 0.0;
 };

@@ -131,7 +131,7 @@ class PluginRuns {
       GAUNTLET_CHECK(job.has_value(), "a job that does not decode");
       return EncodeReport(worker::Execute(*job, proto::DecodeRunSpec(job->spec), run_));
     };
-    return processes_.try_emplace(plugins, load, work).first->second;
+    return processes_.try_emplace(plugins, load, work, DescriptorsOf(*files)).first->second;
   }
 
   PluginFiles files_;

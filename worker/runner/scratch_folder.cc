@@ -82,8 +82,12 @@ ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept
     : path_(std::exchange(other.path_, "")), lock_(std::move(other.lock_)) {}
 
 ScratchFolder::~ScratchFolder() {
+  if (!lock_.valid()) return;
   std::error_code ignored;
-  if (lock_.valid()) fs::remove_all(path_, ignored);
+  // A run may have moved it, and put something else in its place.
+  const fs::path now = fs::read_symlink(fmt::format("/proc/self/fd/{}", lock_.get()), ignored);
+  if (!ignored) fs::remove_all(now, ignored);
+  fs::remove_all(path_, ignored);
 }
 
 }  // namespace gauntlet::worker

@@ -23,11 +23,12 @@
 #include <new>
 
 #include "base/system/atomic_file.h"
+#include "base/system/process_tree.h"
 #include "base/system/resource_limits.h"
 #include "base/system/unique_fd.h"
 #include "proto/messages.h"
+#include "worker/runner/confinement.h"
 #include "worker/runner/fork_server.h"
-#include "worker/runner/scratch_folder.h"
 #include "worker/runner/shifted_clock.h"
 
 namespace gauntlet::worker {
@@ -38,7 +39,13 @@ constexpr rlim_t kMostFileBytes = rlim_t{64} << 20;
 // No two processes that live at about the same time have clocks of the same time, and no clock is more than
 // an hour ahead.
 constexpr pid_t kMostShift = 3600;  // s
-constexpr std::size_t kMostResultBytes = std::size_t{1} << 30;
+constexpr rlim_t kMostResultBytes = rlim_t{1} << 30;
+// The memory of a larger one is given back.
+constexpr std::uint64_t kKeptResultBytes = 1 << 20;
+
+rlim_t CpuLimitOf(const SeparateOptions& options) {
+  return static_cast<rlim_t>(std::ceil(options.cpu_limit_seconds));
+}
 
 void WriteToStderr(std::string_view text) {
   // Best effort: there is nobody else to tell.
@@ -48,22 +55,6 @@ void WriteToStderr(std::string_view text) {
 [[noreturn]] void OutOfMemory() {
   WriteToStderr("out of memory\n");
   _exit(kExitOutOfMemory);
-}
-
-// A length and so many bytes: whoever reads it knows whether it is all.
-bool WriteResult(int fd, const std::string& bytes) {
-  SetSoftLimit(RLIMIT_FSIZE, RLIM_INFINITY);
-  const std::uint64_t size = bytes.size();
-  if (pwrite(fd, bytes.data(), bytes.size(), sizeof size) != static_cast<ssize_t>(bytes.size())) return false;
-  return pwrite(fd, &size, sizeof size, 0) == sizeof size;
-}
-
-std::optional<std::string> ReadResult(int fd) {
-  std::uint64_t size = 0;
-  if (pread(fd, &size, sizeof size, 0) != sizeof size || size > kMostResultBytes) return std::nullopt;
-  std::string bytes(size, '\0');
-  if (pread(fd, bytes.data(), size, sizeof size) != static_cast<ssize_t>(size)) return std::nullopt;
-  return bytes;
 }
 
 // Lets what the process allocates from here on lie on pages of 2 MB where the system has them. A new process
@@ -88,16 +79,19 @@ void UseLargePages() {
 }
 
 [[noreturn]] void LiveSeparately(const std::function<std::string()>& work, const SeparateOptions& options,
-                                 pid_t parent, const std::string& folder, int result) {
+                                 pid_t parent, const ResultFile& result) {
   setpgid(0, 0);
+  ShowToOthers();
   if (!DieWithParent(parent)) _exit(0);
-  if (!MoveInto(folder)) _exit(kExitWithoutPlugin);
-  Confine(options);
+  if (!MoveInto(options.scratch)) _exit(kExitWithoutPlugin);
+  LimitTime(options);
+  // Whoever catches the signal is killed a second later.
+  if (options.cpu_limit_seconds > 0.0) SetHardLimit(RLIMIT_CPU, CpuLimitOf(options), 1);
   ShiftTimeOfDay(std::chrono::seconds(getpid() % kMostShift));
   UseLargePages();
   const std::string bytes = CallOrEnd(work);
   std::fflush(nullptr);
-  if (!WriteResult(result, bytes)) {
+  if (!result.Write(bytes)) {
     if (errno == ENOSPC || errno == ENOMEM) OutOfMemory();
     _exit(kExitUnheard);
   }
@@ -106,6 +100,44 @@ void UseLargePages() {
 
 }  // namespace
 
+Result<ResultFile> ResultFile::Make() {
+  ResultFile made;
+  made.file_.Reset(memfd_create("result", MFD_CLOEXEC));
+  rlimit files{};
+  if (!made.file_.valid() || getrlimit(RLIMIT_FSIZE, &files) != 0 ||
+      ftruncate(made.file_.get(), static_cast<off_t>(std::min(files.rlim_cur, kMostResultBytes))) != 0)
+    return SystemError("cannot make a file in memory", errno);
+  return made;
+}
+
+void ResultFile::Clear() const {
+  constexpr std::uint64_t kNothing = 0;
+  // What cannot be cleared is not read either.
+  [[maybe_unused]] const ssize_t written = pwrite(file_.get(), &kNothing, sizeof kNothing, 0);
+}
+
+bool ResultFile::Write(const std::string& bytes) const {
+  const std::uint64_t written = bytes.size() + 1;  // 0 says that nothing was
+  // Limits of files are for what is written, not for what is mapped.
+  void* const begin = mmap(nullptr, sizeof written + bytes.size(), PROT_WRITE, MAP_SHARED, file_.get(), 0);
+  if (begin == MAP_FAILED) return false;
+  std::memcpy(static_cast<char*>(begin) + sizeof written, bytes.data(), bytes.size());
+  std::memcpy(begin, &written, sizeof written);
+  return true;
+}
+
+std::optional<std::string> ResultFile::Read() const {
+  std::uint64_t size = 0;
+  if (pread(file_.get(), &size, sizeof size, 0) != sizeof size || size-- == 0 || size > kMostResultBytes)
+    return std::nullopt;
+  std::string bytes(size, '\0');
+  if (pread(file_.get(), bytes.data(), size, sizeof size) != static_cast<ssize_t>(size)) return std::nullopt;
+  if (size > kKeptResultBytes)
+    fallocate(file_.get(), FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, 0,
+              static_cast<off_t>(sizeof size + size));
+  return bytes;
+}
+
 bool OnlyOthersSend(int signal) {
   // SIGPIPE: the supervisor has closed the pipe.
   constexpr std::array kSignals = {SIGKILL, SIGTERM, SIGINT,  SIGHUP, SIGQUIT,
@@ -113,18 +145,23 @@ bool OnlyOthersSend(int signal) {
   return std::ranges::find(kSignals, signal) != kSignals.end();
 }
 
-void Confine(const SeparateOptions& options) {
-  SetSoftLimit(RLIMIT_CORE, 0);
-  SetSoftLimit(RLIMIT_FSIZE, kMostFileBytes);
-  if (options.cpu_limit_seconds > 0.0)
-    SetSoftLimit(RLIMIT_CPU, static_cast<rlim_t>(std::ceil(options.cpu_limit_seconds)));
-  if (options.memory_limit_bytes > 0) SetSoftLimit(RLIMIT_AS, rlim_t{options.memory_limit_bytes});
+void LimitForGood(const SeparateOptions& options) {
+  SetHardLimit(RLIMIT_CORE, 0);
+  SetHardLimit(RLIMIT_FSIZE, kMostFileBytes);
+  if (options.memory_limit_bytes > 0) SetHardLimit(RLIMIT_AS, rlim_t{options.memory_limit_bytes});
+}
+
+void LimitTime(const SeparateOptions& options) {
+  if (options.cpu_limit_seconds > 0.0) SetSoftLimit(RLIMIT_CPU, CpuLimitOf(options));
   if (options.wall_limit_seconds > 0) alarm(options.wall_limit_seconds);
 }
 
 bool MoveInto(const std::string& folder) {
   __fpurge(stdout);  // what this process' parent had not yet written is not this one's to say
   if (chdir(folder.c_str()) != 0) return false;
+  const char* const temporary = getenv("TMPDIR");
+  if ((temporary == nullptr || temporary != folder) && setenv("TMPDIR", folder.c_str(), /*replace=*/1) != 0)
+    return false;
   const UniqueFd output(
       open(kOutputFile, O_WRONLY | O_CREAT | O_APPEND | O_TRUNC | O_CLOEXEC, kReadableByAll));
   const UniqueFd nothing(open("/dev/null", O_RDONLY | O_CLOEXEC));
@@ -174,19 +211,22 @@ std::string CallOrEnd(const std::function<std::string()>& work) {
 }
 
 Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>& work,
-                                              const SeparateOptions& options) {
-  TRY(const ScratchFolder scratch, ScratchFolder::Make(options.scratch));
-  const UniqueFd result(memfd_create("result", MFD_CLOEXEC));
-  if (!result.valid()) return SystemError("cannot make a file in memory", errno);
+                                              const SeparateOptions& options, const ResultFile& result) {
+  result.Clear();
   const pid_t parent = getpid();
   const pid_t child = fork();
   if (child < 0) return SystemError("cannot start a process", errno);
-  if (child == 0) LiveSeparately(work, options, parent, scratch.path(), result.get());
+  if (child == 0) LiveSeparately(work, options, parent, result);
 
   SeparateOutcome outcome;
-  outcome.wait_status = WaitForGroup(child);
-  if (outcome.wait_status == 0) outcome.bytes = ReadResult(result.get());
-  if (!outcome.bytes) outcome.output_tail = OutputTail(scratch.path());
+  rusage usage{};
+  while (wait4(child, &outcome.wait_status, 0, &usage) < 0 && errno == EINTR) continue;
+  EndProcessesBelow();
+  const bool killed = WIFSIGNALED(outcome.wait_status) && WTERMSIG(outcome.wait_status) == SIGKILL;
+  if (killed && options.cpu_limit_seconds > 0.0 && CpuSecondsOf(usage) >= options.cpu_limit_seconds)
+    outcome.wait_status = SIGXCPU;  // as if it had not caught that signal
+  if (outcome.wait_status == 0) outcome.bytes = result.Read();
+  if (!outcome.bytes) outcome.output_tail = OutputTail(options.scratch);
   return outcome;
 }
 

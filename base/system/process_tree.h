@@ -1,0 +1,28 @@
+// Processes of this machine by who started whom.
+#pragma once
+
+#include <sys/types.h>
+
+#include <vector>
+
+namespace gauntlet {
+
+// Whether `ancestor` has started this process or thread, or what has started it. Orphans belong to the
+// process that takes them over (PR_SET_CHILD_SUBREAPER).
+bool IsBelow(pid_t process, pid_t ancestor);
+
+// All processes below `ancestor`, in no order. A look at every process of the machine, about 1 ms.
+std::vector<pid_t> ProcessesBelow(pid_t ancestor);
+
+// Threads of a process; 0 when there is none.
+int ThreadsOf(pid_t process);
+
+// Whether this process has children, ended ones that nobody has waited for included.
+bool HasChildren();
+
+// From now on this process is the parent of its descendants' orphans.
+void TakeOrphans();
+// Ends and reaps all processes below this one.
+void EndProcessesBelow();
+
+}  // namespace gauntlet
