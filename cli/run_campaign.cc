@@ -149,7 +149,7 @@ Result<ExitCode> Conclude(CommandContext& context, const CampaignRun& campaign, 
                  fmt::format("none of the {} runs gave a result{}", FormatCount(summary.runs_done), why));
     return kExitNegative;
   }
-  if (report.workers.audits > 0 && report.workers.nondeterministic > 0) {
+  if (report.workers.nondeterministic > 0) {
     if (!summary.plugin_controllers.empty()) PrintMessage(context, Printable(WhyNotReproducible(summary)));
     return kExitNegative;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <limits>
 
 #include "base/check.h"
 #include "master/dispatch/wire/admission.h"
@@ -247,6 +248,15 @@ void RemoteBackend::OnResult(InstanceId worker, proto::LeaseResult message) {
   }
   if (result->without_ways && !options_.without_ways) {
     OnUnreadable(worker, message, "its waypoints and annotations are left out");
+    return;
+  }
+  // The kernel would have ended it before.
+  constexpr double kMargin = 60.0;  // s
+  const double most = options_.cpu_limit_seconds > 0.0 ? options_.cpu_limit_seconds + kMargin
+                                                       : std::numeric_limits<double>::max();
+  for (const double seconds : {message.cpu_seconds, result->cpu_seconds}) {
+    if (seconds >= 0.0 && seconds <= most) continue;
+    OnUnreadable(worker, message, fmt::format("{} s of CPU time, 0 to {} can be", seconds, most));
     return;
   }
   const Answer answer = scheduler_.Completed(worker, message.fence, message.run_id, result->hash);

@@ -8,6 +8,7 @@
 
 #include "base/hash.h"
 #include "base/parse_number.h"
+#include "master/directory/campaign_directory.h"
 
 namespace gauntlet {
 namespace {
@@ -16,7 +17,36 @@ std::vector<CaseAnswer>::const_iterator FindKey(const std::vector<CaseAnswer>& a
   return std::ranges::find(answers, key, &CaseAnswer::key);
 }
 
-// The cases that need runs, in a folder that the same call finds again.
+// Gives the call those cases of which nothing is known, and a folder that the same call finds again.
+Call WithCasesOf(Call call, const QuestionedCampaign& questioned, const std::string& folder,
+                 const std::vector<CaseAnswer>& known) {
+  std::set<std::uint64_t> asked;
+  Fnv1a64 hash;
+  for (std::size_t i = 0; i < questioned.cases.size(); ++i) {
+    const CaseInQuestion& one = questioned.cases[i];
+    SearchPlan& plan = call.searches[one.search];
+    const std::uint64_t key = KeyOfCase(plan.experiment, one.test_case);
+    if (FindKey(known, call.cases[i].key) != known.end() || !asked.insert(key).second) continue;
+    hash.AddUint64(key);
+    plan.cases.push_back(one.test_case);
+    plan.cases.back().name = one.name;
+  }
+  std::erase_if(call.searches, [](const SearchPlan& plan) { return plan.cases.empty(); });
+  if (call.searches.size() == 1) call.searches.front().settings.clear();
+  call.directory = fmt::format("{}/{:016x}", folder, hash.value());
+  return call;
+}
+
+// Those of calls that have come to their end.
+std::vector<CaseAnswer> OfEndedCalls(std::vector<CaseAnswer> answers) {
+  std::set<std::string> stopped;
+  for (const CaseAnswer& one : answers) {
+    if (!one.ended) stopped.insert(one.campaign);
+  }
+  std::erase_if(answers, [&](const CaseAnswer& one) { return stopped.contains(one.campaign); });
+  return answers;
+}
+
 Result<Call> PlanInCampaign(const Question& question, const Asking& asking) {
   TRY(const auto questioned,
       question.cases != nullptr ? question.cases(asking) : NamedCases(asking.place, asking.cases));
@@ -30,28 +60,23 @@ Result<Call> PlanInCampaign(const Question& question, const Asking& asking) {
   }
   TRY(std::vector<CaseAnswer> known, AnswersOfCalls(FolderOf(question, asking.place), question.key));
   std::erase_if(known, [&](const CaseAnswer& one) {
-    return !one.ended || (question.enough != nullptr && !question.enough(one, asking));
+    return question.enough != nullptr && !question.enough(one, asking);
   });
-  std::set<std::uint64_t> asked;
-  Fnv1a64 hash;
   for (const CaseInQuestion& one : questioned.cases) {
-    SearchPlan& plan = call.searches[one.search];
-    const std::uint64_t key = KeyOfCase(plan.experiment, one.test_case);
+    const SearchPlan& plan = call.searches[one.search];
     call.cases.push_back({.name = one.name,
                           .run = RunOfName(one.name),
                           .search = one.search,
                           .test_case = one.test_case,
                           .experiment = experiments[one.search],
                           .key = question.key(plan.experiment, one.test_case)});
-    if (FindKey(known, call.cases.back().key) != known.end() || !asked.insert(key).second) continue;
-    hash.AddUint64(key);
-    plan.cases.push_back(one.test_case);
-    plan.cases.back().name = one.name;
   }
-  std::erase_if(call.searches, [](const SearchPlan& plan) { return plan.cases.empty(); });
-  if (call.searches.size() == 1) call.searches.front().settings.clear();
-  call.directory = fmt::format("{}/{:016x}", FolderOf(question, asking.place), hash.value());
-  return call;
+  // The same call, stopped before, is gone on with; another one takes from it what is decided.
+  const std::string folder = FolderOf(question, asking.place);
+  Call same = WithCasesOf(call, questioned, folder, OfEndedCalls(known));
+  if (!same.Simulates() || CampaignDirectory::IsCampaign(same.directory)) return same;
+  std::erase_if(known, [](const CaseAnswer& one) { return !one.decided; });
+  return WithCasesOf(std::move(call), questioned, folder, known);
 }
 
 }  // namespace

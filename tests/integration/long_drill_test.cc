@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/crowd_drill.h"
@@ -13,11 +14,17 @@
 #include "tests/integration/other_user_drill.h"
 #include "tests/integration/service_driver.h"
 #include "tests/integration/stranger.h"
+#include "tests/integration/worker_crowd.h"
 #include "tests/integration/zmtp_fuzz.h"
+#include "tests/perf/noop_runs.h"
 #include "tests/plugin/plugin_files.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
 namespace {
+
+constexpr const char* kGauntlet = GAUNTLET_BINARY_DIR "/gauntlet";
+constexpr const char* kNoopWorker = GAUNTLET_BINARY_DIR "/gauntlet-worker-noop";
 
 SmallCampaign DefaultCampaign() {
   SmallCampaign campaign;
@@ -133,6 +140,52 @@ TEST(LongDrill, TenThousandMessagesOfEachKindFromAnotherUser) {
   SmallCampaign campaign;
   campaign.generations = 300;  // four minutes; the attack takes less than one
   EvolveUnderForgery(campaign, scratch / "c", 10'000);
+}
+
+// 512 workers that come, take runs and go, half of them without a word, again and again for a minute.
+TEST(LongDrill, FiveHundredWorkersThatJoinAndLeaveAllTheTimeLeaveNothing) {
+  const std::vector<std::string> evolve = {"--population", "2000", "--generations", "30", "--quiet"};
+  const std::vector<std::string> noop = {std::string("GAUNTLET_WORKER=") + kNoopWorker};
+  const TemporaryDirectory scratch;
+  const auto gauntlet = [&](std::vector<std::string> arguments, const std::string& dir) {
+    arguments.insert(arguments.begin(), kGauntlet);
+    arguments.insert(arguments.end(), {"--dir", scratch / dir});
+    arguments.insert(arguments.end(), evolve.begin(), evolve.end());
+    return std::make_unique<Process>(arguments, noop);
+  };
+  ASSERT_EQ(gauntlet({"evolve", "flocking"}, "alone")->Wait().exit_code, 0);
+  const auto master = gauntlet({"master", "flocking", "--bind", "tcp://127.0.0.1:*"}, "c");
+  ASSERT_TRUE(Serves(scratch / "c"));
+  const auto descriptors = [&] {
+    const std::filesystem::directory_iterator open(fmt::format("/proc/{}/fd", master->pid()));
+    return std::distance(begin(open), end(open));
+  };
+  double memory = 0.0;
+  std::ptrdiff_t files = 0;
+  int rounds = 0;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  while (std::chrono::steady_clock::now() < end) {
+    {
+      WorkerCrowd crowd(scratch / "c", 512, perf::kNoopGoldenHashes,
+                        1000 * static_cast<std::uint64_t>(++rounds));
+      ASSERT_TRUE(crowd.Join(kPatience)) << master->Err();
+      ASSERT_GE(crowd.AwaitLeases(512, kPatience), 0.0);
+      crowd.SayGoodbye();
+    }
+    if (rounds != 5) continue;
+    memory = ResidentMebibytes(master->pid());
+    files = descriptors();
+  }
+  const auto worker =
+      std::make_unique<Process>(std::vector<std::string>{kNoopWorker, "--dir", scratch / "c", "--quiet"});
+  const double memory_after = ResidentMebibytes(master->pid());
+  EXPECT_TRUE(Eventually([&] { return descriptors() <= files + 16; }, kPatience))
+      << descriptors() << " of " << files;
+  fmt::print("{} times 512 workers, memory {:.1f} -> {:.1f} MiB, descriptors {} -> {}\n", rounds, memory,
+             memory_after, files, descriptors());
+  EXPECT_LT(memory_after, memory + 16.0);
+  EXPECT_EQ(master->Wait().exit_code, 0) << master->Err();
+  EXPECT_EQ(StateHash(scratch / "c"), StateHash(scratch / "alone"));
 }
 
 // Each kind of lie alone, twice and thrice, all pairs of kinds, and threes of different kinds.

@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "tests/integration/campaign_database.h"
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/question_drill.h"
 #include "tests/support/paths.h"
@@ -190,6 +191,21 @@ TEST(ConfirmTest, BudgetsAreComparedByWhatWasConfirmed) {
   EXPECT_GT(table["sets"][0]["cells_with_up_to_3"]["mean"], 0.0);
   EXPECT_EQ(table["sets"][1]["cells_with_up_to_3"]["mean"], 0.0) << "random cases have eight obstacles";
   EXPECT_LE(table["sets"][1]["cells_with_up_to_3"]["p"], 1.0);
+}
+
+// Of a call that was killed, and not repeated as it was.
+TEST(ConfirmTest, WhatAStoppedCallHasDecidedIsNotSimulatedAgain) {
+  const TemporaryDirectory scratch;
+  const std::string dir = scratch / "c";
+  MakeCampaign(dir, 24);
+  const nlohmann::json all = Json(ConfirmAll(dir, 2));
+  const std::string call = std::filesystem::directory_iterator(dir + "/confirm")->path().string();
+  EXPECT_EQ(AlterDatabase(call, "DELETE FROM finished"), 1);
+  const std::string one = all["cases"][1]["run"].dump();
+  EXPECT_EQ(Json({"confirm", dir, one, "--json", "--quiet"})["cases"], nlohmann::json({all["cases"][1]}));
+  const auto calls = std::filesystem::directory_iterator(dir + "/confirm");
+  EXPECT_EQ(std::distance(begin(calls), end(calls)), 1) << "nothing was simulated";
+  EXPECT_EQ(Json(ConfirmAll(dir, 2)), all) << "the same call is gone on with";
 }
 
 TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {

@@ -33,8 +33,9 @@ struct WorkerCrowd::Worker {
   }
 };
 
-WorkerCrowd::WorkerCrowd(const std::string& dir, int workers, const proto::GoldenHashes& golden_hashes)
-    : shared_(std::make_unique<Shared>()) {
+WorkerCrowd::WorkerCrowd(const std::string& dir, int workers, const proto::GoldenHashes& golden_hashes,
+                         std::uint64_t first)
+    : first_(first), shared_(std::make_unique<Shared>()) {
   Result<proto::Access> access = proto::ReadAccess(dir + "/access.json");
   EXPECT_TRUE(access.ok()) << (access.ok() ? "" : access.error().message);
   if (!access) return;
@@ -70,7 +71,7 @@ bool WorkerCrowd::Join(milliseconds patience) {
     }
     socket.connect(shared_->access.endpoints.front());
     proto::Hello hello = shared_->hello;
-    hello.instance_id = i + 1;
+    hello.instance_id = first_ + i;
     workers_[i]->Say(hello);
   }
   next_beat_ = steady_clock::now() + std::chrono::seconds(1);
@@ -109,6 +110,12 @@ std::size_t WorkerCrowd::AnswerAll(const sim::RunResult& result, double cpu_seco
     one->leases.clear();
   }
   return answers;
+}
+
+void WorkerCrowd::SayGoodbye() {
+  for (std::size_t i = 0; i < workers_.size(); i += 2) workers_[i]->Say(proto::Goodbye{});
+  // Until the messages have left.
+  for (const auto& one : workers_) one->socket.set(zmq::sockopt::linger, 1000);
 }
 
 void WorkerCrowd::Beat() {

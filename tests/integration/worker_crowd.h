@@ -15,8 +15,10 @@ namespace gauntlet::testing_support {
 
 class WorkerCrowd {
  public:
-  // For the campaign in `dir`, whose access.json must be there; `golden_hashes` are those of its workers.
-  WorkerCrowd(const std::string& dir, int workers, const proto::GoldenHashes& golden_hashes);
+  // For the campaign in `dir`, whose access.json must be there; `golden_hashes` are those of its workers,
+  // whose instances are `first` and those that follow.
+  WorkerCrowd(const std::string& dir, int workers, const proto::GoldenHashes& golden_hashes,
+              std::uint64_t first = 1);
   WorkerCrowd(const WorkerCrowd&) = delete;
   WorkerCrowd& operator=(const WorkerCrowd&) = delete;
   ~WorkerCrowd();
@@ -28,6 +30,8 @@ class WorkerCrowd {
   double AwaitLeases(std::size_t leases, std::chrono::milliseconds patience);
   // Answers all leases with this result, as one that took so much CPU time. How many there were.
   std::size_t AnswerAll(const sim::RunResult& result, double cpu_seconds);
+  // Every second one says goodbye; all are gone without another word when this object is.
+  void SayGoodbye();
 
  private:
   struct Worker;
@@ -35,6 +39,7 @@ class WorkerCrowd {
   void Listen();
   void Beat();
 
+  std::uint64_t first_;
   std::unique_ptr<Shared> shared_;  // its context ends after all sockets
   std::vector<std::unique_ptr<Worker>> workers_;
   std::chrono::steady_clock::time_point next_beat_{};

@@ -212,7 +212,7 @@ TEST_F(WorkerDrill, TwoAnswersThatDifferMarkTheCampaignAndNameBothWorkers) {
   ASSERT_TRUE(LogBecomes(dir_, "nondeterministic"));
   EXPECT_THAT(MasterLog(dir_), HasSubstr(fmt::format("run {} ended differently", kept->run_id)));
   EXPECT_THAT(MasterLog(dir_), HasSubstr("0000000000001111@scripted gave"));
-  EXPECT_EQ(master_->Wait().exit_code, 0);
+  EXPECT_EQ(master_->Wait().exit_code, 1);
   EXPECT_TRUE(Show(dir_).value("nondeterministic", false));
   EXPECT_EQ(StatusOf(dir_).at("nondeterministic"), 1);
 }

@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"terminate", sim::Verdict::kCrashed, "crashed with exit code 143",
               "the plug-in ended its process by signal 15"},
         Fault{"close-all", sim::Verdict::kCrashed, "crashed with exit code 85",
-              "closed or limited files that are not its own"},
+              "closed files that are not its own"},
         Fault{"limit-files", sim::Verdict::kCompleted, "", ""},
         Fault{"spin", sim::Verdict::kHung, "exceeded its CPU time", ""},
         Fault{"allocate", sim::Verdict::kOutOfMemory, "exceeded its memory", "out of memory"},

@@ -249,7 +249,7 @@ void EndAs(const SeparateOutcome& outcome) {
   }
   const int code = WEXITSTATUS(outcome.wait_status);
   if (code == kExitUnheard)
-    WriteToStderr("the plug-in closed or limited files that are not its own, among them the run's result\n");
+    WriteToStderr("the plug-in closed files that are not its own, among them the run's result\n");
   if (code == 0) WriteToStderr("exit(0) was called before the run had a result\n");
   _exit(code == 0 ? kExitWithoutResult : code);
 }

@@ -48,11 +48,16 @@ void Scheduler::Finish(RunId id, Run& run, InstanceId worker, Fence fence) {
   --unfinished_;
   queue_.erase(PlaceOf(id, run));
   failing_.erase(PlaceOf(id, run));
+  std::vector<InstanceId> hoarders;
   for (const Fence other : run.fences) {
     Lease& lease = leases_.at(other);
     if (lease.state != LeaseState::kLive) continue;
+    if (HasBegun(other, lease) && TakesLong(lease)) hoarders.push_back(lease.worker);
     orders_.cancels.push_back({lease.worker, other});
     Loosen(other, lease, LeaseState::kCancelled);
+  }
+  for (const InstanceId hoarder : hoarders) {
+    if (trust_.Hoarded(hoarder)) Quarantine(hoarder);
   }
   run.audit = !run.given_up && trust_.Audits(id);
   if (!run.audit) {

@@ -109,14 +109,18 @@ std::vector<InstanceId> Scheduler::AbleTo(const Run& run) const {
   return able;
 }
 
-// An idle worker for a second lease.
-std::optional<InstanceId> Scheduler::HelperFor(RunId run, InstanceId owner) const {
+// An idle worker, without the run, for another lease of it.
+std::optional<InstanceId> Scheduler::HelperFor(RunId id) const {
+  const std::vector<Fence>& fences = runs_.at(id).fences;
+  const auto has_it = [&](InstanceId worker) {
+    return std::ranges::any_of(fences, [&](Fence fence) { return leases_.at(fence).worker == worker; });
+  };
   std::vector<InstanceId> idle;
-  for (const auto& [level, id] : available_) {
-    const Worker& worker = workers_.at(id);
-    if (id != owner && worker.live.size() < worker.slots) idle.push_back(id);
+  for (const auto& [level, candidate] : available_) {
+    const Worker& worker = workers_.at(candidate);
+    if (worker.live.size() < worker.slots && !has_it(candidate)) idle.push_back(candidate);
   }
-  return trust_.HelperFor(run, idle);
+  return trust_.HelperFor(id, idle);
 }
 
 std::size_t Scheduler::FirstWaiting(const Worker& worker) const {
@@ -148,7 +152,7 @@ void Scheduler::MoveWaiting() {
     }
     if (!first) return;
     Lease& lease = leases_.at(moved);
-    const std::optional<InstanceId> idle = HelperFor(first->run, lease.worker);
+    const std::optional<InstanceId> idle = HelperFor(first->run);
     if (!idle) return;
     orders_.cancels.push_back({lease.worker, moved});
     Loosen(moved, lease, LeaseState::kCancelled);
@@ -175,24 +179,36 @@ void Scheduler::AssignAudits() {
   }
 }
 
-void Scheduler::AssignCopies() {
-  if (!leasing_ || !queue_.empty() || predicted_seconds_ < 0.0 || !(options_.copy_after > 0.0)) return;
-  // Short runs end before anybody could help.
+bool Scheduler::TakesLong(const Lease& lease) const {
+  if (predicted_seconds_ < 0.0 || !(options_.copy_after > 0.0)) return false;
   const double late =
       std::max(options_.copy_after * predicted_seconds_,
                std::chrono::duration<double>(options_.heartbeat).count() / kChecksPerHeartbeat);
+  return std::chrono::duration<double>(listening_ - lease.begun).count() > late;
+}
+
+bool Scheduler::HasBegun(Fence fence, const Lease& lease) const {
+  const Worker& worker = workers_.at(lease.worker);
+  return std::ranges::find(worker.live, fence) - worker.live.begin() < std::ptrdiff_t{worker.slots};
+}
+
+void Scheduler::AssignCopies() {
+  if (!leasing_ || !queue_.empty()) return;
   struct Slow {
     Duration begun;
     RunId run;
-    InstanceId owner;
   };
+  const auto live = [this](Fence fence) { return leases_.at(fence).state == LeaseState::kLive; };
+  const auto long_or_not_live = [&](Fence fence) { return !live(fence) || TakesLong(leases_.at(fence)); };
   std::vector<Slow> slow;
   for (const auto& [id, worker] : workers_) {
     for (const Fence fence : worker.live) {
       const Lease& lease = leases_.at(fence);
       const Run& run = runs_.at(lease.run);
-      const double seconds = std::chrono::duration<double>(listening_ - lease.begun).count();
-      if (!run.finished && run.live == 1 && seconds > late) slow.push_back({lease.begun, lease.run, id});
+      // All who have it may be slow, or keep it for nothing: each of them is waited for as long.
+      const bool first = fence == *std::ranges::find_if(run.fences, live);
+      if (first && !run.finished && std::ranges::all_of(run.fences, long_or_not_live))
+        slow.push_back({lease.begun, lease.run});
     }
   }
   // What has taken longest gets help first.
@@ -201,7 +217,7 @@ void Scheduler::AssignCopies() {
   });
   for (const Slow& one : slow) {
     if (available_.empty()) return;
-    const std::optional<InstanceId> idle = HelperFor(one.run, one.owner);
+    const std::optional<InstanceId> idle = HelperFor(one.run);
     if (!idle) continue;
     ++statistics_.copies;
     Grant(*idle, one.run);

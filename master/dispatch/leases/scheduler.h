@@ -120,9 +120,12 @@ class Scheduler {
   void AssignFailing();
   void AssignAudits();
   void AssignCopies();
+  // It has been worked at unusually long, and short runs end before anybody could help.
+  bool TakesLong(const Lease& lease) const;
+  bool HasBegun(Fence fence, const Lease& lease) const;
   void MoveWaiting();
   std::vector<InstanceId> AbleTo(const Run& run) const;  // all but who has kept it too long already
-  std::optional<InstanceId> HelperFor(RunId run, InstanceId owner) const;
+  std::optional<InstanceId> HelperFor(RunId id) const;
   std::size_t FirstWaiting(const Worker& worker) const;  // in its live leases: certainly not begun
   bool Alone(InstanceId worker) const;                   // there is no other worker
 

@@ -51,6 +51,7 @@ TrustPolicy::Workers TrustPolicy::Finished(InstanceId worker, RunId run) {
   ++found->second.record.finished;
   found->second.record.failed_in_a_row = 0;
   found->second.record.returned = 0;
+  found->second.record.hoarded = 0;
   if (ended.empty()) return {};
   Workers quarantined;
   std::set<InstanceId> seen{worker};
@@ -74,6 +75,7 @@ void TrustPolicy::Failed(InstanceId worker, RunId run, std::optional<proto::Runn
   unjudged_.push_back(run);
   if (!own) return;
   record.returned = 0;
+  record.hoarded = 0;
   if (!first_failure_) first_failure_ = now;
   ++record.failed;
   if (!again) ++record.failed_in_a_row;
@@ -95,6 +97,12 @@ bool TrustPolicy::Strike(InstanceId worker) {
 bool TrustPolicy::Returned(InstanceId worker) {
   WorkerRecord& record = witnesses_.at(worker).record;
   ++record.returned;
+  return QuarantineIfDue(record);
+}
+
+bool TrustPolicy::Hoarded(InstanceId worker) {
+  WorkerRecord& record = witnesses_.at(worker).record;
+  ++record.hoarded;
   return QuarantineIfDue(record);
 }
 

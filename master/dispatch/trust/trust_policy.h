@@ -68,6 +68,8 @@ class TrustPolicy {
   bool Strike(InstanceId worker);
   // It gave a lease back without having begun it. True: it is quarantined for it.
   bool Returned(InstanceId worker);
+  // It kept a run unusually long, and another worker has finished it. True: it is quarantined for it.
+  bool Hoarded(InstanceId worker);
   // What it said of the run does not count. False: it has said nothing.
   bool Disregard(InstanceId worker, RunId run);
   // The worker goes away: what has just ended from outside on it has probably ended for that. The same.

@@ -13,6 +13,11 @@ std::string InWords(const WorkerRecord& record) {
         "nothing",
         record.outside);
   }
+  if (record.finished == 0 && record.hoarded >= WorkerRecord::kMostFaults) {
+    return fmt::format(
+        "it kept {} runs unusually long, until other workers had finished them; it finished nothing",
+        record.hoarded);
+  }
   return fmt::format(
       "{} of its {} failed runs were finished by other workers, {} of its answers could not be read or were "
       "to leases that are not its own, and {} of its runs ended well",

@@ -22,6 +22,9 @@ struct WorkerRecord {
   std::uint64_t contradicted = 0;  // of these, that another worker finished
   std::uint64_t strikes = 0;       // answers that could not be read, or to leases that it does not have
   std::uint64_t outside = 0;  // runs that were ended from outside on it, and that another worker finished
+  // Runs that it kept so long that others got them too, and finished them first, since it last said
+  // something.
+  std::uint64_t hoarded = 0;
   // Leases that it gave back without a word about the run, since it last said one.
   std::uint64_t returned = 0;
   // Different runs that failed on it since it finished one, or since another worker failed one of them too.
@@ -36,7 +39,8 @@ struct WorkerRecord {
     return !quarantined && finished > 0 && kFinishedForEachFault * faults() <= finished;
   }
   bool deserves_quarantine() const {
-    const bool brings_nothing = finished == 0 && (outside >= kMostFaults || returned >= kMostReturned);
+    const bool brings_nothing =
+        finished == 0 && (outside >= kMostFaults || hoarded >= kMostFaults || returned >= kMostReturned);
     return !quarantined && (brings_nothing || (faults() >= kMostFaults && faults() > finished));
   }
 };

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/master/dispatch/remote_backend_fixture.h"
 
 namespace gauntlet {
@@ -50,6 +52,18 @@ TEST_F(RemoteBackendTest, EveryKindOfOwnFailureHasItsVerdict) {
     EXPECT_EQ(finished[0].result.verdict, expectation.verdict);
     EXPECT_EQ(finished[0].result.message, expectation.message);
   }
+}
+
+TEST_F(RemoteBackendTest, AResultOfMoreCpuTimeThanItMayTakeIsNotBelieved) {
+  SayHello("p", HelloOf(kAnna));
+  for (RunId run = 1; const double seconds : {1e9, -1.0, std::nan("")}) {
+    backend_->Submit({{run, "spec"}});
+    Poll();
+    SendResult("p", LeasesSentTo("p").at(0), result_, seconds);
+    EXPECT_THAT(Poll(), IsEmpty());
+    ++run;
+  }
+  EXPECT_THAT(EventsOf("worker-quarantined"), HasSubstr("3 of its answers could not be read"));
 }
 
 TEST_F(RemoteBackendTest, WhatIsGivenBackNeverBecomesAVerdict) {

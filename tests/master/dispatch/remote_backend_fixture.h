@@ -99,12 +99,13 @@ class RemoteBackendTest : public testing::Test {
     envelope.mutable_heartbeat()->mutable_held_leases()->Add(held.begin(), held.end());
     transport_.Deliver(peer, envelope.SerializeAsString());
   }
-  void SendResult(const PeerId& peer, const v1::Lease& lease, const std::string& result) {
+  void SendResult(const PeerId& peer, const v1::Lease& lease, const std::string& result,
+                  double cpu_seconds = 0.25) {
     v1::Envelope envelope;
     envelope.mutable_lease_result()->set_fence(lease.fence());
     envelope.mutable_lease_result()->set_run_id(lease.run_id());
     envelope.mutable_lease_result()->set_result(result);
-    envelope.mutable_lease_result()->set_cpu_seconds(0.25);
+    envelope.mutable_lease_result()->set_cpu_seconds(cpu_seconds);
     transport_.Deliver(peer, envelope.SerializeAsString());
   }
   void SendFailure(const PeerId& peer, const v1::Lease& lease, v1::RunnerFailure::Kind kind, int signal,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "tests/master/dispatch/scheduler_fixture.h"
 
@@ -209,6 +210,44 @@ TEST_F(SchedulerTest, AnIdleWorkerGetsACopyOfARunThatTakesLong) {
   const SchedulerOrders after = Decide();
   ASSERT_EQ(after.cancels.size(), 1U) << "the first is told to stop";
   EXPECT_EQ(after.cancels[0].fence, first.leases[0].lease.fence);
+}
+
+// Both who have it may keep it for nothing.
+TEST_F(SchedulerTest, AThirdWorkerGetsARunThatTakesLongOnTwo) {
+  for (const InstanceId worker : {1, 2, 3}) Join(worker);
+  SubmitRuns(1, 1);
+  std::set<InstanceId> asked{Decide().leases.at(0).worker};
+  scheduler_.RunTook(1.0);
+  for (int copy = 0; copy < 2; ++copy) {
+    const SchedulerOrders copied = PassTime(milliseconds(2500), {1, 2, 3});
+    ASSERT_THAT(copied.leases, SizeIs(1));
+    asked.insert(copied.leases[0].worker);
+  }
+  EXPECT_THAT(asked, SizeIs(3));
+}
+
+TEST_F(SchedulerTest, WhoKeepsRunsUntilOthersHaveFinishedThemIsQuarantined) {
+  Join(1);
+  SubmitRuns(1, 1);
+  Decide();
+  scheduler_.RunTook(1.0);
+  Join(2);
+  std::vector<WorkerQuarantined> quarantined;
+  for (RunId run = 1; run <= 3; ++run) {
+    EXPECT_THAT(quarantined, IsEmpty());
+    const SchedulerOrders copied = PassTime(milliseconds(2500), {1, 2});
+    ASSERT_THAT(copied.leases, SizeIs(1)) << run;
+    EXPECT_EQ(copied.leases[0].worker, 2U);
+    EXPECT_EQ(scheduler_.Completed(2, copied.leases[0].lease.fence, run, 77), Answer::kAccepted);
+    scheduler_.WorkerDraining(2);
+    scheduler_.Submit({run + 1, "spec"});
+    quarantined = Decide().quarantined;
+    Join(2);
+  }
+  ASSERT_THAT(quarantined, SizeIs(1));
+  EXPECT_EQ(quarantined[0].worker, 1U);
+  EXPECT_EQ(InWords(quarantined[0].record),
+            "it kept 3 runs unusually long, until other workers had finished them; it finished nothing");
 }
 
 TEST_F(SchedulerTest, NobodyGetsACopyWhileRunsWait) {
