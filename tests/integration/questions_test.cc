@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <signal.h>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -198,14 +199,30 @@ TEST(ConfirmTest, WhatAStoppedCallHasDecidedIsNotSimulatedAgain) {
   const TemporaryDirectory scratch;
   const std::string dir = scratch / "c";
   MakeCampaign(dir, 24);
-  const nlohmann::json all = Json(ConfirmAll(dir, 2));
-  const std::string call = std::filesystem::directory_iterator(dir + "/confirm")->path().string();
-  EXPECT_EQ(AlterDatabase(call, "DELETE FROM finished"), 1);
-  const std::string one = all["cases"][1]["run"].dump();
-  EXPECT_EQ(Json({"confirm", dir, one, "--json", "--quiet"})["cases"], nlohmann::json({all["cases"][1]}));
-  const auto calls = std::filesystem::directory_iterator(dir + "/confirm");
-  EXPECT_EQ(std::distance(begin(calls), end(calls)), 1) << "nothing was simulated";
-  EXPECT_EQ(Json(ConfirmAll(dir, 2)), all) << "the same call is gone on with";
+  const auto calls = [&] {
+    std::error_code none;
+    std::vector<std::string> found;
+    for (const auto& call : std::filesystem::directory_iterator(dir + "/confirm", none))
+      found.push_back(call.path());
+    return found;
+  };
+  const auto master = StartGauntlet(ConfirmAll(dir, 1), {"GAUNTLET_WORKER=" + WorkerPath() + "-slow",
+                                                         "GAUNTLET_TEST_RUN_MILLISECONDS=100"});
+  // Three cases with five runs each, of which the first case's come first.
+  ASSERT_TRUE(Eventually(
+      [&] {
+        return calls().size() == 1 && std::filesystem::exists(calls()[0] + "/campaign.db") &&
+               StoredRuns(calls()[0]).size() >= 5;
+      },
+      kPatience));
+  master->Signal(SIGKILL);
+  master->Wait();
+  ASSERT_LT(StoredRuns(calls()[0]).size(), 15U);
+
+  EXPECT_EQ(Json({"confirm", dir, "4", "--json", "--quiet"})["cases"][0]["n"], 5);
+  EXPECT_EQ(calls().size(), 1U) << "nothing was simulated";
+  EXPECT_EQ(Json(ConfirmAll(dir, 2))["cases"].size(), 3U);
+  EXPECT_EQ(calls().size(), 1U) << "the same call is gone on with";
 }
 
 TEST(ConfirmTest, WhatIsKnownIsNotSimulatedAgain) {
