@@ -31,16 +31,15 @@ std::string TargetOf(const char* link) {
   return size > 0 ? std::string(target.data(), static_cast<std::size_t>(size)) : std::string();
 }
 
-// The fields of a stat file of /proc from the third, the state, on; empty when there is none. The second
-// field is the program's name in parentheses, which may hold anything.
+}  // namespace
+
 std::string StatFromState(const std::string& path) {
   std::ifstream file(path);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
+  // The second field is the program's name in parentheses, which may hold anything.
   const std::size_t name_end = text.rfind(") ");
   return name_end == std::string::npos ? "" : text.substr(name_end + 2);
 }
-
-}  // namespace
 
 std::optional<std::uint64_t> StartTimeOf(pid_t pid) {
   std::istringstream fields(StatFromState("/proc/" + std::to_string(pid) + "/stat"));

@@ -25,6 +25,9 @@ ProcessIdentity IdentifyThisProcess();
 // Start time of a process of this machine; empty when there is none, or only its zombie.
 std::optional<std::uint64_t> StartTimeOf(pid_t pid);
 
+// The fields of a stat file of /proc from the third, the state, on; empty when there is none.
+std::string StatFromState(const std::string& path);
+
 // Who started a process or thread of this machine, or took it over as an orphan; 0 when there is none.
 pid_t ParentOf(pid_t pid);
 

@@ -9,6 +9,8 @@
 #include <csignal>
 #include <filesystem>
 #include <iterator>
+#include <map>
+#include <sstream>
 #include <string>
 #include <system_error>
 
@@ -27,13 +29,23 @@ bool IsBelow(pid_t process, pid_t ancestor) {
 }
 
 std::vector<pid_t> ProcessesBelow(pid_t ancestor) {
-  std::vector<pid_t> below;
+  std::map<pid_t, pid_t> parents;
   std::error_code failed;
   for (fs::directory_iterator entry("/proc", failed), end; !failed && entry != end; entry.increment(failed)) {
     const std::string name = entry->path().filename();
     pid_t process = 0;
-    const bool named = std::from_chars(name.data(), name.data() + name.size(), process).ec == std::errc();
-    if (named && IsBelow(process, ancestor)) below.push_back(process);
+    if (std::from_chars(name.data(), name.data() + name.size(), process).ec == std::errc())
+      parents[process] = ParentOf(process);
+  }
+  std::vector<pid_t> below;
+  for (const auto& [process, parent] : parents) {
+    pid_t above = parent;
+    // Read one after the other, the parents may form a circle where a number was given again.
+    for (std::size_t steps = 0; above > 1 && above != ancestor && steps < parents.size(); ++steps) {
+      const auto known = parents.find(above);
+      above = known == parents.end() ? 0 : known->second;
+    }
+    if (above == ancestor && above > 1) below.push_back(process);
   }
   return below;
 }
@@ -42,6 +54,16 @@ int ThreadsOf(pid_t process) {
   std::error_code failed;
   const fs::directory_iterator threads("/proc/" + std::to_string(process) + "/task", failed);
   return failed ? 0 : static_cast<int>(std::distance(begin(threads), end(threads)));
+}
+
+double CpuSecondsOf(pid_t process) {
+  std::istringstream fields(StatFromState("/proc/" + std::to_string(process) + "/stat"));
+  std::string skipped;
+  for (int field = 3; field < 14; ++field) fields >> skipped;
+  double ticks = 0.0;
+  double all = 0.0;
+  for (int field = 14; field < 18 && fields >> ticks; ++field) all += ticks;
+  return all / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
 bool HasChildren() {

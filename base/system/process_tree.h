@@ -17,6 +17,9 @@ std::vector<pid_t> ProcessesBelow(pid_t ancestor);
 // Threads of a process; 0 when there is none.
 int ThreadsOf(pid_t process);
 
+// User and system time of a process and of its children that have ended, s; 0 when there is none.
+double CpuSecondsOf(pid_t process);
+
 // Whether this process has children, ended ones that nobody has waited for included.
 bool HasChildren();
 

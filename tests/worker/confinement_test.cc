@@ -147,6 +147,19 @@ TEST_F(ConfinementTest, WhoIgnoresTheCpuLimitIsEndedByIt) {
   EXPECT_EQ(WTERMSIG(outcome->wait_status), SIGXCPU);
 }
 
+TEST_F(ConfinementTest, TheCpuLimitIsForAllThatItStartsTogether) {
+  PreparedProcess process([] {},
+                          [](const std::string&) -> std::string {
+                            for (int child = 0; child < 3; ++child) (void)fork();
+                            for (volatile bool on = true; on;) continue;
+                            return "";
+                          });
+  const Result<SeparateOutcome> outcome = process.Call("", {.cpu_limit_seconds = 4.0});
+  ASSERT_TRUE(outcome.ok());
+  EXPECT_EQ(WTERMSIG(outcome->wait_status), SIGXCPU);
+  EXPECT_LT(process.cpu_seconds(), 8 * 4.0);
+}
+
 TEST_F(ConfinementTest, StartsOnlySoManyProcessesAndLeavesNone) {
   const testing_support::TemporaryDirectory shared;
   const std::string started = Confined([&] {

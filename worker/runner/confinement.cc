@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -56,6 +58,9 @@ constexpr std::array kRefusedCalls = {SCMP_SYS(pidfd_send_signal), SCMP_SYS(pidf
 // What a super-user keeps: rights over files, as a run in a container needs them, and ports below 1024.
 constexpr std::array kKeptCapabilities = {CAP_CHOWN,  CAP_DAC_OVERRIDE, CAP_DAC_READ_SEARCH,
                                           CAP_FOWNER, CAP_FSETID,       CAP_NET_BIND_SERVICE};
+
+// A process alone is told of its limit by a signal, and ends of it up to a second later.
+constexpr double kMargin = 2.0;  // s
 
 void DropCapabilities() {
   __user_cap_header_struct header{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
@@ -144,18 +149,33 @@ TreeGuard::TreeGuard(UniqueFd listener, pid_t root)
 
 TreeGuard::~TreeGuard() = default;
 
-void TreeGuard::ServeUntilReadable(int fd) {
+bool TreeGuard::ServeUntilReadable(int fd, double cpu_limit) {
+  constexpr std::chrono::milliseconds kLook{1000};  // a look costs 1 ms
+  auto next_look = std::chrono::steady_clock::now() + kLook;
+  bool ended = false;
   while (true) {
     std::array<pollfd, 2> polled{{{.fd = fd, .events = POLLIN, .revents = 0},
                                   {.fd = listener_.get(), .events = POLLIN, .revents = 0}}};
-    if (poll(polled.data(), polled.size(), -1) < 0) continue;
-    if (polled[0].revents != 0) return;
+    if (poll(polled.data(), polled.size(), static_cast<int>(kLook.count())) < 0) continue;
+    if (polled[0].revents != 0) return ended;
     if ((polled[1].revents & POLLIN) != 0) {
       Answer();
-    } else {
+    } else if (polled[1].revents != 0) {
       listener_.Reset();  // nobody is left who could ask
     }
+    if (cpu_limit <= 0.0 || std::chrono::steady_clock::now() < next_look) continue;
+    ended = EndIfOver(cpu_limit) || ended;
+    next_look = std::chrono::steady_clock::now() + kLook;
   }
+}
+
+bool TreeGuard::EndIfOver(double cpu_limit) const {
+  const std::vector<pid_t> below = ProcessesBelow(root_);
+  double seconds = 0.0;
+  for (const pid_t process : below) seconds += CpuSecondsOf(process);
+  if (seconds <= cpu_limit + kMargin) return false;
+  for (const pid_t process : below) kill(process, SIGKILL);
+  return true;
 }
 
 void TreeGuard::Answer() {
@@ -186,11 +206,19 @@ bool TreeGuard::Allows() const {
 }
 
 bool TreeGuard::HasRoom() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now < full_until_) return false;
   if (tasks_ >= kMostTasksOfTree) {
     tasks_ = ThreadsOf(root_);
     for (const pid_t process : ProcessesBelow(root_)) tasks_ += ThreadsOf(process);
   }
-  return tasks_++ < kMostTasksOfTree;
+  // Whoever asks in vain and without end gets the answer at once, and uses its own time.
+  if (tasks_ >= kMostTasksOfTree) {
+    full_until_ = now + std::chrono::milliseconds(100);
+    return false;
+  }
+  ++tasks_;
+  return true;
 }
 
 }  // namespace gauntlet::worker

@@ -8,6 +8,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <memory>
 #include <set>
 
@@ -37,8 +38,9 @@ class TreeGuard {
  public:
   TreeGuard(UniqueFd listener, pid_t root);
   ~TreeGuard();
-  // Answers what the tree asks until `fd` can be read.
-  void ServeUntilReadable(int fd);
+  // Answers what the tree asks until `fd` can be read. Once all below the root have had `cpu_limit` of CPU
+  // time together, s, they are killed; 0: no limit. True: they were.
+  bool ServeUntilReadable(int fd, double cpu_limit);
 
  private:
   struct Messages;
@@ -46,10 +48,13 @@ class TreeGuard {
   void Answer();
   bool Allows() const;
   bool HasRoom();
+  // Kills the tree below its root when it has had too much.
+  bool EndIfOver(double cpu_limit) const;
 
   UniqueFd listener_;
   pid_t root_;
   std::unique_ptr<Messages> messages_;
+  std::chrono::steady_clock::time_point full_until_{};  // when it is counted again
   int tasks_ = 1;  // at most so many are there: when last counted, and what was allowed since
 };
 

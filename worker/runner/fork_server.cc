@@ -199,6 +199,7 @@ class Server {
 // started here.
 [[noreturn]] void ForkServerMain(UniqueFd control, const RunFunction& run, const PluginSettings& plugins) {
   TakeOrphans();
+  setpgid(0, 0);  // or a signal that kills the supervisor's group would leave what runs have started
   for (const int ignored : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(ignored, SIG_IGN);
   prctl(PR_SET_NAME, "gauntlet-fork");
   Server(std::move(control), run, plugins).Serve();

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -104,9 +105,11 @@ Result<SeparateOutcome> PreparedProcess::Call(const std::string& request, const 
     TRY(ScratchFolder::Make(options.scratch));
   }
   std::optional<std::string> answer;
-  if (WriteFrame(pipe_.get(), Encode(request, with_folder))) answer = Answer();
+  if (WriteFrame(pipe_.get(), Encode(request, with_folder))) answer = Answer(options.cpu_limit_seconds);
   if (!answer) return Reap();
-  return DecodeOutcome(*answer, cpu_seconds_);
+  TRY(SeparateOutcome outcome, DecodeOutcome(*answer, cpu_seconds_));
+  if (over_limit_ && !outcome.bytes) outcome.wait_status = SIGXCPU;
+  return outcome;
 }
 
 Result<std::optional<SeparateOutcome>> PreparedProcess::Start(const SeparateOptions& options) {
@@ -126,7 +129,7 @@ Result<std::optional<SeparateOutcome>> PreparedProcess::Start(const SeparateOpti
   answers_ = FrameBuffer();
   std::optional<Packet> confined = ReceivePacket(pipe_.get(), 1, 0);
   if (confined && !confined->descriptors.empty()) guard_.emplace(std::move(confined->descriptors[0]), child);
-  const std::optional<std::string> answer = Answer();
+  const std::optional<std::string> answer = Answer(options.cpu_limit_seconds);
   if (!answer) return std::optional(Reap());
   if (for_each_call_ || (*answer == kPrepared && folder_->HoldsOnlyEmpty(kOutputFile)))
     return std::optional<SeparateOutcome>();
@@ -189,10 +192,11 @@ void PreparedProcess::Serve(UniqueFd pipe, const ResultFile& result) const {
   }
 }
 
-std::optional<std::string> PreparedProcess::Answer() {
+std::optional<std::string> PreparedProcess::Answer(double cpu_limit) {
+  over_limit_ = false;
   while (true) {
     if (std::optional<std::string> answer = answers_.Next()) return answer;
-    if (guard_) guard_->ServeUntilReadable(pipe_.get());
+    if (guard_) over_limit_ = guard_->ServeUntilReadable(pipe_.get(), cpu_limit) || over_limit_;
     if (answers_.ReadFrom(pipe_.get(), FrameBuffer::Wait::kYes) != FrameBuffer::State::kOpen)
       return std::nullopt;
   }

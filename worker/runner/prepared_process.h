@@ -46,8 +46,8 @@ class PreparedProcess {
   Result<std::optional<SeparateOutcome>> Start(const SeparateOptions& options);
   [[noreturn]] void Live(UniqueFd pipe, pid_t parent, const SeparateOptions& options);
   [[noreturn]] void Serve(UniqueFd pipe, const ResultFile& result) const;
-  // The next answer; nothing when the process has ended.
-  std::optional<std::string> Answer();
+  // The next answer; nothing when the process has ended. `cpu_limit`: of all that it starts, s.
+  std::optional<std::string> Answer(double cpu_limit);
   SeparateOutcome Reap();
   // Makes the folder new unless nobody can tell it from a new one.
   Status RenewFolder();
@@ -62,6 +62,7 @@ class PreparedProcess {
   FrameBuffer answers_;
   std::optional<TreeGuard> guard_;       // of the process
   std::optional<ScratchFolder> folder_;  // of preparing, then of one call after the other
+  bool over_limit_ = false;              // the last call was ended for its CPU time
   double cpu_seconds_ = 0.0;
 };
 
