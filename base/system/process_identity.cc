@@ -5,7 +5,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <system_error>
 
@@ -35,7 +34,8 @@ std::string TargetOf(const char* link) {
 
 std::string StatFromState(const std::string& path) {
   std::ifstream file(path);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::string text;
+  std::getline(file, text, '\0');  // nothing, and no exception, when the process ends meanwhile
   // The second field is the program's name in parentheses, which may hold anything.
   const std::size_t name_end = text.rfind(") ");
   return name_end == std::string::npos ? "" : text.substr(name_end + 2);

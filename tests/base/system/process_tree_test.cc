@@ -53,6 +53,20 @@ TEST_F(ProcessTreeTest, EndsOrphansToo) {
   EXPECT_EQ(kill(grandchild_, 0), -1);
 }
 
+// A process may end between the opening and the reading of what the kernel says of it.
+TEST(ProcessTree, IsReadWhileProcessesComeAndGo) {
+  const pid_t restless = fork();
+  if (restless == 0) {
+    while (true) {
+      if (fork() == 0) _exit(0);
+      waitpid(-1, nullptr, 0);
+    }
+  }
+  for (int look = 0; look < 300; ++look) EXPECT_LE(ProcessesBelow(restless).size(), 2U);
+  kill(restless, SIGKILL);
+  waitpid(restless, nullptr, 0);
+}
+
 TEST(ProcessTree, OfAProcessThatIsNotThereIsEmpty) {
   EXPECT_THAT(ProcessesBelow(-5), testing::IsEmpty());
   EXPECT_EQ(ThreadsOf(-5), 0);
