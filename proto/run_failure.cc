@@ -23,7 +23,7 @@ std::string SignalName(int number) {
 std::string MeaningOfExit(int code) {
   switch (code) {
     case kExitUnheard:
-      return "the controller closed or limited files that are not its own";
+      return "the controller closed files that are not its own";
     case kExitException:
       return "an exception that nobody caught";
     case kExitWithoutResult:
