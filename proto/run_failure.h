@@ -10,8 +10,7 @@
 namespace gauntlet::proto {
 
 // Exit codes by which a run's process says why it gave up. Outside the range that programs commonly use.
-inline constexpr int kExitUnheard =
-    85;  // its result could not be handed over: it closed our files
+inline constexpr int kExitUnheard = 85;  // its result could not be handed over: it closed our files
 inline constexpr int kExitOutOfMemory = 86;
 inline constexpr int kExitException = 87;
 inline constexpr int kExitWithoutPlugin = 88;  // the plug-in that it needs cannot be had here

@@ -196,9 +196,10 @@ class Server {
 };
 
 // The process' life. Ends when `control` does, as it does with the supervisor, and with it whatever was
-// started here.
+// started here. A stopped one would not see that: the supervisor's death continues it.
 [[noreturn]] void ForkServerMain(UniqueFd control, const RunFunction& run, const PluginSettings& plugins) {
   TakeOrphans();
+  prctl(PR_SET_PDEATHSIG, SIGCONT);
   setpgid(0, 0);  // or a signal that kills the supervisor's group would leave what runs have started
   for (const int ignored : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) signal(ignored, SIG_IGN);
   prctl(PR_SET_NAME, "gauntlet-fork");
