@@ -31,7 +31,7 @@ struct PluginInfo {
   // A campaign or a study, which somebody else may have made, has brought it along. Else the user named it.
   bool brought_along = false;
   // In a master: what gauntlet-worker said of it, from which the rows come (controllers/rows/plugin_rows.h).
-  std::string description;
+  std::string description = {};
   std::vector<ControllerInfo> controllers;
   std::vector<ScenarioInfo> scenarios = {};  // in a master without the functions of their rows
   // In a master: how a run in one of its scenarios begins, as a process answers that loads the library.
