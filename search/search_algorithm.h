@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "controllers/failure_descriptor.h"
 #include "sim/arena/test_case.h"
 #include "sim/run_result.h"
+#include "sim/run_spec.h"
 
 namespace gauntlet {
 
@@ -27,6 +29,8 @@ struct EvaluationRequest {
   std::uint32_t generation = 0;  // 1 = initial population; for display
   sim::TestCase test_case;
   std::vector<IndividualId> parents;  // their runs tell how long this one's will take
+  // That its runs have instead of the experiment's; nullptr = those. Only of a search over settings.
+  std::shared_ptr<const sim::RunSettings> settings = nullptr;
 };
 
 // What came of one run.

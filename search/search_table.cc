@@ -82,7 +82,8 @@ std::uint64_t RunSeed(const Experiment& experiment, const EvaluationRequest& eva
 
 sim::RunSpec SpecOfRun(const Experiment& experiment, const EvaluationRequest& evaluation,
                        std::uint32_t replicate) {
-  return SpecOf(experiment, evaluation.test_case, RunSeed(experiment, evaluation, replicate));
+  const sim::RunSettings& settings = evaluation.settings != nullptr ? *evaluation.settings : experiment;
+  return {settings, evaluation.test_case, RunSeed(experiment, evaluation, replicate)};
 }
 
 Status CheckSwarmFits(const Experiment& experiment, const sim::TestCase& test_case) {

@@ -64,12 +64,21 @@ struct StoreSpec {
   bool trajectories = false;  // the robots' waypoints and the annotations too; replay computes them anyway
 };
 
+// What a fit is asked for (search/fit).
+struct FitSpec {
+  std::string vary;     // VariedKey::ToText, blanks in between
+  std::string targets;  // FitTarget::ToText, "; " in between
+  int runs = 20'000;    // for all settings together; those of the judgement come on top
+  int judged = 1'000;   // of the chosen setting on each kind of cases
+};
+
 struct Experiment : sim::RunSettings {
   std::string name;
   std::string description;
   ArenaSpec arena;
   GenomeSpec genome;
   SearchSpec search;
+  FitSpec fit;
   std::uint64_t seed = 1;
   StoreSpec store;
 };

@@ -75,7 +75,8 @@ int FitPlan::RunsJudged() const {
   return sum;
 }
 
-Result<FitPlan> MakeFitPlan(const FitSpec& spec, const Experiment& experiment, std::span<const Key> keys) {
+Result<FitPlan> MakeFitPlan(const Experiment& experiment, std::span<const Key> keys) {
+  const FitSpec& spec = experiment.fit;
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr)
     return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};

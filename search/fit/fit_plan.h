@@ -13,14 +13,6 @@
 
 namespace gauntlet {
 
-// What is asked for, as a resolved experiment holds it.
-struct FitSpec {
-  std::string vary;     // VariedKey::ToText, blanks in between
-  std::string targets;  // FitTarget::ToText, "; " in between
-  int runs = 20'000;    // for all settings together; those of the judgement come on top
-  int judged = 1'000;   // of the chosen setting on each kind of cases
-};
-
 struct FitPlan {
   static constexpr std::size_t kRounds = 4;  // the first covers the ranges, the others what is likely by then
 
@@ -38,9 +30,9 @@ struct FitPlan {
   int RunsJudged() const;
 };
 
-// `keys`: all of the experiment, those of its scenario and controller among them. Error: there is no such
-// scenario; that of ParseVariedKeys or ParseFitTargets; fewer runs than a posterior needs, and how many it
-// needs.
-Result<FitPlan> MakeFitPlan(const FitSpec& spec, const Experiment& experiment, std::span<const Key> keys);
+// Of experiment.fit. `keys`: all of the experiment, those of its scenario and controller among them. Error:
+// there is no such scenario; that of ParseVariedKeys or ParseFitTargets; fewer runs than a posterior needs,
+// and how many it needs.
+Result<FitPlan> MakeFitPlan(const Experiment& experiment, std::span<const Key> keys);
 
 }  // namespace gauntlet

@@ -58,6 +58,7 @@ enum class SeedPurpose : std::uint32_t {
   kMinimise = 6,
   kBlame = 7,
   kCheck = 8,
+  kFit = 9,
 };
 
 // The seed of one run. Seeds are derived, never drawn in order, so any run can be repeated alone.

@@ -21,8 +21,9 @@ inline Experiment ToyExperiment() {
 }
 
 inline Result<FitPlan> ToyPlan(const FitSpec& spec) {
-  const Experiment experiment = ToyExperiment();
-  return MakeFitPlan(spec, experiment, AllKeysOf(experiment));
+  Experiment experiment = ToyExperiment();
+  experiment.fit = spec;
+  return MakeFitPlan(experiment, AllKeysOf(experiment));
 }
 
 // A run at three places: its fitness moves and spreads with them, and so does how often birds are lost.
