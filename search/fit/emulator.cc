@@ -25,7 +25,14 @@ constexpr double kNuggetWidth = 1.5;
 // Steps of the search, in logarithms.
 constexpr double kSteps[] = {0.8, 0.4, 0.2};
 
-// Column by column, so that no sum depends on how it is cut.
+double Sum(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < a.size(); ++i) sum += a(i) * b(i);
+  return sum;
+}
+
+}  // namespace
+
 bool Cholesky(Eigen::MatrixXd& matrix) {
   const Eigen::Index n = matrix.rows();
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -37,22 +44,13 @@ bool Cholesky(Eigen::MatrixXd& matrix) {
   return true;
 }
 
-// L^-1 b in place.
-void Solve(const Eigen::MatrixXd& factor, Eigen::VectorXd& b) {
+void SolveLower(const Eigen::MatrixXd& factor, Eigen::VectorXd& b) {
   const Eigen::Index n = factor.rows();
   for (Eigen::Index j = 0; j < n; ++j) {
     b(j) /= factor(j, j);
     b.tail(n - j - 1) -= b(j) * factor.col(j).tail(n - j - 1);
   }
 }
-
-double Sum(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < a.size(); ++i) sum += a(i) * b(i);
-  return sum;
-}
-
-}  // namespace
 
 Emulator::Emulator(Eigen::MatrixXd inputs, std::span<const double> values, std::span<const double> noise)
     : inputs_(std::move(inputs)), values_(inputs_.cols()), noise_(inputs_.cols()) {
@@ -129,7 +127,7 @@ bool Emulator::Factorise(const Shape& shape, Eigen::Index stride) {
     factor_(j, j) += noise_(j * stride) + nugget_ + kJitter;
   }
   if (!Cholesky(factor_)) return false;
-  Solve(factor_, solution_);
+  SolveLower(factor_, solution_);
   return true;
 }
 
@@ -149,7 +147,7 @@ double Emulator::LogEvidence(const Shape& shape, Eigen::Index stride) {
 Emulator::Prediction Emulator::At(const Input& input) const {
   Eigen::VectorXd covariance(used_.cols());
   for (Eigen::Index i = 0; i < used_.cols(); ++i) covariance(i) = Kernel(input, used_.col(i));
-  Solve(factor_, covariance);
+  SolveLower(factor_, covariance);
   const double variance = Kernel(input, input) - Sum(covariance, covariance) + nugget_;
   return {middle_ + scale_ * Sum(covariance, solution_), Squared(scale_) * std::max(variance, 0.0)};
 }

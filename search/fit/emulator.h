@@ -15,6 +15,12 @@ inline double Squared(double x) {
   return x * x;
 }
 
+// The lower triangle L of L L' in place of a symmetric matrix, of which the lower triangle is read; false
+// when it is not positive definite. Column by column, so that no sum depends on how it is cut.
+bool Cholesky(Eigen::MatrixXd& matrix);
+// L^-1 b in place.
+void SolveLower(const Eigen::MatrixXd& factor, Eigen::VectorXd& b);
+
 class Emulator {
  public:
   using Input = Eigen::Ref<const Eigen::VectorXd>;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "analysis/statistics/sample.h"
 #include "base/check.h"
 #include "base/nearest_name.h"
 #include "base/parse_number.h"
@@ -169,20 +170,6 @@ class TargetParser {
   FitTarget target_;
 };
 
-double MeanOf(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
-// Linear between order statistics (Hyndman and Fan 1996, type 7).
-double QuantileOf(std::span<const double> sorted, double quantile) {
-  const double place = quantile * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
-}
-
 }  // namespace
 
 std::string FitCases::ToText() const {
@@ -335,16 +322,11 @@ std::vector<double> StatisticOf(const FitTarget& target, std::vector<double> val
     case Statistic::kMean:
     case Statistic::kShare:
     case Statistic::kEvery:
-      return {MeanOf(values)};
-    case Statistic::kSd: {
-      const double mean = MeanOf(values);
-      double sum = 0.0;
-      for (const double value : values) sum += (value - mean) * (value - mean);
-      return {std::sqrt(sum / static_cast<double>(values.size() - 1))};
-    }
+      return {analysis::Describe(values).mean};
+    case Statistic::kSd:
+      return {analysis::Describe(values).sd.value()};
     case Statistic::kQuantile:
-      std::ranges::sort(values);
-      return {QuantileOf(values, target.quantile)};
+      return {analysis::Quantile(values, target.quantile)};
     case Statistic::kDistribution:
       return BlockMeans(std::move(values));
   }

@@ -43,19 +43,12 @@ struct Quadratic {
   double log_determinant = 0.0;
 };
 std::optional<Quadratic> QuadraticOf(Eigen::MatrixXd matrix, Eigen::VectorXd r) {
+  if (!Cholesky(matrix)) return std::nullopt;
+  SolveLower(matrix, r);
   Quadratic result;
-  const Eigen::Index n = matrix.rows();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index k = 0; k < j; ++k) {
-      for (Eigen::Index i = j; i < n; ++i) matrix(i, j) -= matrix(j, k) * matrix(i, k);
-    }
-    if (!(matrix(j, j) > 0.0)) return std::nullopt;
-    const double root = std::sqrt(matrix(j, j));
-    for (Eigen::Index i = j; i < n; ++i) matrix(i, j) /= root;
-    r(j) /= root;
-    for (Eigen::Index i = j + 1; i < n; ++i) r(i) -= r(j) * matrix(i, j);
-    result.form += r(j) * r(j);
-    result.log_determinant += 2.0 * sim::Log(root);
+  for (Eigen::Index i = 0; i < r.size(); ++i) {
+    result.form += Squared(r(i));
+    result.log_determinant += 2.0 * sim::Log(matrix(i, i));
   }
   return result;
 }
@@ -78,15 +71,15 @@ bool SameRuns(const FitTarget& a, const FitTarget& b) {
 SettingStatistics StatisticsOf(SettingsPoint place, std::span<const FitTarget> targets,
                                const std::vector<std::vector<double>>& values, sim::RandomStream random) {
   SettingStatistics statistics{.place = std::move(place)};
-  std::size_t components = 0;
+  std::vector<std::size_t> target_of;  // [component]
   for (std::size_t t = 0; t < targets.size(); ++t) {
     std::vector<double> ours = StatisticOf(targets[t], values[t]);
     ours.resize(ComponentsOf(targets[t]), kNotMeasured);
     statistics.values.insert(statistics.values.end(), ours.begin(), ours.end());
     statistics.runs.insert(statistics.runs.end(), ours.size(), static_cast<double>(values[t].size()));
-    components += ours.size();
+    target_of.insert(target_of.end(), ours.size(), t);
   }
-  const auto n = static_cast<Eigen::Index>(components);
+  const auto n = std::ssize(target_of);
   statistics.covariance = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixXd resampled(n, kResamples);
   for (int sample = 0; sample < kResamples; ++sample) {
@@ -109,7 +102,12 @@ SettingStatistics StatisticsOf(SettingsPoint place, std::span<const FitTarget> t
     }
   }
   for (Eigen::Index a = 0; a < n; ++a) {
+    const auto at = static_cast<std::size_t>(a);
+    const FitTarget& target = targets[target_of[at]];
     for (Eigen::Index b = 0; b <= a; ++b) {
+      const auto other = static_cast<std::size_t>(b);
+      // Runs of different cases know nothing of each other.
+      if (!SameRuns(target, targets[target_of[other]])) continue;
       double sum_a = 0.0;
       double sum_b = 0.0;
       double product = 0.0;
@@ -119,30 +117,11 @@ SettingStatistics StatisticsOf(SettingsPoint place, std::span<const FitTarget> t
         product += resampled(a, sample) * resampled(b, sample);
       }
       const double covariance = (product - sum_a * sum_b / kResamples) / (kResamples - 1);
-      const double runs = std::sqrt(statistics.runs[static_cast<std::size_t>(a)] *
-                                    statistics.runs[static_cast<std::size_t>(b)]);
-      statistics.covariance(a, b) = statistics.covariance(b, a) = covariance * runs;
+      statistics.covariance(a, b) = statistics.covariance(b, a) =
+          covariance * std::sqrt(statistics.runs[at] * statistics.runs[other]);
     }
-  }
-  Eigen::Index row = 0;
-  for (const FitTarget& target : targets) {
-    for (std::size_t i = 0; i < ComponentsOf(target); ++i, ++row) {
-      const auto at = static_cast<std::size_t>(row);
-      double& variance = statistics.covariance(row, row);
-      variance = std::max(variance, LeastVariance(target, statistics.values[at], statistics.runs[at]));
-    }
-  }
-  // Runs of different cases know nothing of each other.
-  Eigen::Index a = 0;
-  for (const FitTarget& one : targets) {
-    for (std::size_t i = 0; i < ComponentsOf(one); ++i, ++a) {
-      Eigen::Index b = 0;
-      for (const FitTarget& other : targets) {
-        for (std::size_t j = 0; j < ComponentsOf(other); ++j, ++b) {
-          if (!SameRuns(one, other)) statistics.covariance(a, b) = 0.0;
-        }
-      }
-    }
+    double& variance = statistics.covariance(a, a);
+    variance = std::max(variance, LeastVariance(target, statistics.values[at], statistics.runs[at]));
   }
   return statistics;
 }

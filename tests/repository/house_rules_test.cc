@@ -111,7 +111,7 @@ const std::vector<Room>& House() {
        kRunData + kSwarmData + Prefixes{"sim/run_start.h"},
        {"box2d", "zmq"}},
       {"search",
-       {"base", "search/experiment"},
+       {"base", "analysis", "search/experiment"},
        kRunData + kSwarmData + kBehaviours + Prefixes{"controllers/generic/formula.h"},
        kTheOutsideWorld},
       {"master/http",
