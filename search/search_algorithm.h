@@ -96,6 +96,8 @@ struct SearchProgress {
 // told. They come from the stored runs; an error of reading them is passed on.
 using History = std::function<Status(const std::function<void(const EvaluationOutcome&)>& visit)>;
 
+class FitRounds;
+
 class SearchAlgorithm {
  public:
   virtual ~SearchAlgorithm() = default;
@@ -112,6 +114,8 @@ class SearchAlgorithm {
   // The current population, in a fixed order (all cases told so far for searches without survivors).
   virtual const std::vector<Individual>& Population() const = 0;
   virtual ArchiveView Archive() const { return {}; }
+  // Of a search over settings; else nullptr.
+  virtual const FitRounds* Fit() const { return nullptr; }
   // Individuals born since the last call, so that they can be stored once.
   virtual std::vector<Individual> TakeNewborns() = 0;
   // A figure or two of the search itself, e.g. {"clone_rate", 0.61}.

@@ -48,6 +48,10 @@ struct SearchRow {
   // any place of a list, and so have clones.
   bool seeds_of_cases = false;
 
+  // Runs have settings of their own (EvaluationRequest::settings), which only SpecOfRun knows: nothing that
+  // takes the experiment for that of all its runs takes such a search. Cases may be handed to it.
+  bool varies_settings = false;
+
   bool given_cases() const { return question != nullptr; }
   bool Related() const { return individuals == Individuals::kPopulation; }
   bool Breeds() const { return Related() && !given_cases(); }

@@ -14,6 +14,7 @@
 #include "search/evolution/genetic_algorithm.h"
 #include "search/evolution/random_search.h"
 #include "search/evolution/steady_state_search.h"
+#include "search/fit/fit_search.h"
 #include "search/given/case_blame.h"
 #include "search/given/case_minimiser.h"
 #include "search/given/repeated_case.h"
@@ -29,7 +30,7 @@ std::string_view NameOf(Individuals individuals) {
 std::span<const SearchRow> Searches() {
   static const std::array rows = {GeneticRow(),        SteadyStateRow(), RandomRow(),       ArchiveRow(),
                                   RandomDeletionRow(), CaseListRow(),    ResimulationRow(), ConfirmationRow(),
-                                  MinimisationRow(),   BlameRow(),       CheckRow()};
+                                  MinimisationRow(),   BlameRow(),       CheckRow(),        FitRow()};
   return rows;
 }
 

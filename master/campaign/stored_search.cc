@@ -12,8 +12,8 @@ namespace gauntlet {
 Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan, ResultStore& store,
                                                           bool restored) {
   const SearchRow& row = RowOf(plan.experiment);
-  if (!row.given_cases() && (row.individuals != Individuals::kCases || !restored))
-    return MakeSearch(plan.experiment);
+  const bool handed = row.given_cases() || row.varies_settings;
+  if (!handed && (row.individuals != Individuals::kCases || !restored)) return MakeSearch(plan.experiment);
   TRY(std::vector<Individual> individuals, store.LoadIndividuals(plan.id));
   if (row.given_cases() && individuals.empty()) {
     return Error{ErrorKind::kCorrupt,
@@ -21,7 +21,7 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan
   }
   std::vector<sim::TestCase> cases;
   for (Individual& individual : individuals) {
-    if (!row.given_cases() && individual.id != cases.size() + 1) break;  // those behind a gap are drawn
+    if (!handed && individual.id != cases.size() + 1) break;  // those behind a gap are drawn
     if (individual.parents.empty())
       cases.push_back(std::move(individual.test_case));  // others were born later
   }
@@ -29,6 +29,7 @@ Result<std::unique_ptr<SearchAlgorithm>> MakeStoredSearch(const SearchPlan& plan
 }
 
 bool HasFinished(const StoredSearch& stored, const Experiment& experiment, const SearchAlgorithm& search) {
+  if (RowOf(experiment).info.length.empty()) return stored.finished_with > 0;
   const auto runs_each = static_cast<std::uint64_t>(experiment.search.replicates);
   const RunId last = RunIdOf(stored.id, 1) - 1 + search.Progress().evaluations_planned * runs_each;
   return stored.finished_with > 0 && stored.finished_with >= last;

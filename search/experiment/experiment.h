@@ -66,10 +66,11 @@ struct StoreSpec {
 
 // What a fit is asked for (search/fit).
 struct FitSpec {
-  std::string vary;     // VariedKey::ToText, blanks in between
-  std::string targets;  // FitTarget::ToText, "; " in between
-  int runs = 20'000;    // for all settings together; those of the judgement come on top
-  int judged = 1'000;   // of the chosen setting on each kind of cases
+  std::string vary;                // VariedKey::ToText, blanks in between
+  std::string targets;             // FitTarget::ToText, "; " in between
+  int runs = 20'000;               // for all settings together; those of the judgement come on top
+  int judged = 1'000;              // of the chosen setting on each kind of cases
+  std::string search = "genetic";  // of the fitted experiment, in place of the fit
 };
 
 struct Experiment : sim::RunSettings {

@@ -209,6 +209,24 @@ std::vector<Key> SearchKeys(const Catalogue& catalogue) {
   return keys;
 }
 
+std::vector<Key> FitKeys(const Catalogue& catalogue) {
+  constexpr auto kFit = &Experiment::fit;
+  std::vector<Key> keys = {
+      FieldKey<kFit, &FitSpec::vary>(
+          "fit.vary", "KEY=LOW..HIGH, KEY=LOW..HIGH:log or KEY=A|B, with spaces between several"),
+      FieldKey<kFit, &FitSpec::targets>("fit.targets", "what runs are to be like: gauntlet fit writes it"),
+      NumberKey<kFit, &FitSpec::runs>("fit.runs", "", 1, 1e8,
+                                      "for all settings together; those of the judgement come on top"),
+      NumberKey<kFit, &FitSpec::judged>("fit.judged", "", 20, 1e5,
+                                        "runs of the chosen setting on each kind of cases"),
+      FieldKey<kFit, &FitSpec::search>("fit.search", "search.algorithm of the fitted experiment"),
+  };
+  keys.back().type = KeyType::kChoice;
+  keys.back().choices = AlgorithmKey(catalogue).choices;
+  for (Key& key : keys) key.rare = key.came_later = true;
+  return keys;
+}
+
 std::vector<Key> ArenaKeys() {
   constexpr auto kArena = &Experiment::arena;
   return {
@@ -275,6 +293,7 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   add(GenomeKeys(), &Key::of_searches);
   add({AlgorithmKey(catalogue)}, nullptr);
   add(SearchKeys(catalogue), &Key::of_searches);
+  add(FitKeys(catalogue), &Key::of_searches);
   add(NoiseKeys(), &Key::disturbs);
   add({FieldKey<&Experiment::store, &StoreSpec::trajectories>(
           "store.trajectories",

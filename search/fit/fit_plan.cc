@@ -80,6 +80,9 @@ Result<FitPlan> MakeFitPlan(const Experiment& experiment, std::span<const Key> k
   const controllers::ScenarioInfo* scenario = controllers::FindScenario(experiment);
   if (scenario == nullptr)
     return Error{ErrorKind::kNotFound, fmt::format("there is no scenario '{}'", experiment.scenario)};
+  if (experiment.search.replicates != 1)
+    return InvalidInput(fmt::format("search.replicates = {}: a fit simulates every evaluation once",
+                                    experiment.search.replicates));
   if (spec.targets.empty()) return InvalidInput("there is no target to fit to");
   FitPlan plan;
   TRY(plan.varied, ParseVariedKeys(WordsOf(spec.vary), keys, experiment));

@@ -54,8 +54,7 @@ std::vector<SettingsPoint> FitRounds::Propose() {
     std::erase_if(places, [&](const SettingsPoint& place) { return !allowed_(place); });
     return places;
   }
-  while (statistics_.size() < settings_.size() && !settings_[statistics_.size()].judged)
-    statistics_.push_back(StatisticsOf(statistics_.size()));
+  Summarise();
   const std::size_t judged = settings_.size() - statistics_.size();
   if (!why().empty() || Chosen() != nullptr || judged >= kCandidates) return {};
   const std::unique_ptr<FitPosterior> posterior = Posterior();
@@ -67,6 +66,11 @@ std::vector<SettingsPoint> FitRounds::Propose() {
                        [&](const FitSetting& one) { return one.ValuesOf(plan_.varied) == values; });
   });
   return candidates;
+}
+
+void FitRounds::Summarise() {
+  while (statistics_.size() < settings_.size() && !settings_[statistics_.size()].judged)
+    statistics_.push_back(StatisticsOf(statistics_.size()));
 }
 
 void FitRounds::Begin(std::vector<SettingsPoint> places) {

@@ -42,6 +42,9 @@ class FitRounds {
   // That these of the proposed ones are simulated.
   void Begin(std::vector<SettingsPoint> places);
   void Tell(std::size_t setting, std::size_t cases, const RunOutcome& run, TargetReader& reader);
+  // Works out the statistics of settings that are not judged, once all their runs are told. Propose does it
+  // too.
+  void Summarise();
   bool judging() const { return round_ > FitPlan::kRounds; }
   // Why there is no posterior; "" = there is, or it is not known yet.
   std::string why() const;

@@ -206,6 +206,7 @@ Status FitSearch::RestoreRest(CanonicalDecoder& decoder, const History& history)
   if (!expected.empty() || evaluations_done_ != told)
     return Damaged(
         fmt::format("it has seen {} evaluations, but the runs of {} are stored", told, evaluations_done_));
+  rounds_.Summarise();
   ended_ = rounds_.judging() && rounds_.Chosen() != nullptr;
   return Ok{};
 }
@@ -213,7 +214,7 @@ Status FitSearch::RestoreRest(CanonicalDecoder& decoder, const History& history)
 SearchRow FitRow() {
   return {.info = {.name = "fit",
                    .description = "settings under which runs are as they were measured: gauntlet fit",
-                   .keys = {"genome."}},
+                   .keys = {"genome.", "fit."}},
           .number = 9,
           .title = "fit of settings",
           .plan =
@@ -222,7 +223,8 @@ SearchRow FitRow() {
               },
           .make = Make<FitSearch>,
           .purpose = sim::SeedPurpose::kFit,
-          .command = "fit"};
+          .command = "fit",
+          .varies_settings = true};
 }
 
 }  // namespace gauntlet

@@ -30,7 +30,7 @@ class FitSearch final : public PopulationSearch {
   // At the end of each round.
   bool AtBoundary() const override { return asked_.empty() && unasked_.empty(); }
 
-  const FitRounds& rounds() const { return rounds_; }
+  const FitRounds* Fit() const override { return &rounds_; }
 
  private:
   struct Asked {

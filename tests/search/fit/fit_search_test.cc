@@ -35,7 +35,7 @@ SettingsPoint PlaceOf(const FitSearch& search, const EvaluationRequest& request)
   Experiment experiment;
   static_cast<sim::RunSettings&>(experiment) = *request.settings;
   SettingsPoint place;
-  for (const VariedKey& key : search.rounds().plan().varied)
+  for (const VariedKey& key : search.Fit()->plan().varied)
     place.push_back(key.PlaceOf(key.key.get(experiment)));
   return place;
 }
@@ -49,7 +49,7 @@ EvaluationOutcome OutcomeOf(const FitSearch& search, const EvaluationRequest& re
 std::vector<EvaluationRequest> Drive(FitSearch& search, std::size_t at_once, std::size_t until = 100) {
   std::vector<EvaluationRequest> all;
   std::size_t told = 0;
-  while (!search.Progress().finished && !(search.AtBoundary() && search.rounds().round() == until)) {
+  while (!search.Progress().finished && !(search.AtBoundary() && search.Fit()->round() == until)) {
     for (EvaluationRequest& request : search.Ask()) all.push_back(std::move(request));
     for (std::size_t i = 0; i < at_once && told < all.size(); ++i, ++told)
       search.Tell(OutcomeOf(search, all[told]));
@@ -60,14 +60,14 @@ std::vector<EvaluationRequest> Drive(FitSearch& search, std::size_t at_once, std
 TEST(FitSearchTest, EverySettingHasItsOwnRunsOnEveryKindOfCases) {
   const auto search = MakeFit();
   const auto requests = Drive(*search, 400);
-  const FitPlan& plan = search->rounds().plan();
+  const FitPlan& plan = search->Fit()->plan();
   std::map<const sim::RunSettings*, std::size_t> runs;
   for (const EvaluationRequest& request : requests) ++runs[request.settings.get()];
-  EXPECT_EQ(runs.size(), search->rounds().settings().size());
+  EXPECT_EQ(runs.size(), search->Fit()->settings().size());
   EXPECT_EQ(runs[requests.front().settings.get()], static_cast<std::size_t>(plan.RunsEach()));
   EXPECT_EQ(runs[requests.back().settings.get()], static_cast<std::size_t>(plan.RunsJudged()));
   EXPECT_EQ(search->Progress().evaluations_planned, requests.size());
-  EXPECT_NE(search->rounds().Chosen(), nullptr);
+  EXPECT_NE(search->Fit()->Chosen(), nullptr);
 }
 
 TEST(FitSearchTest, RandomCasesAreFreshForEachSetting) {
