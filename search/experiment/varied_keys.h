@@ -18,9 +18,9 @@ struct VariedKey {
   Key key;
   double low = 0.0;  // of numbers, ends included
   double high = 0.0;
-  bool log = false;              // even on the logarithmic scale
-  double step = 0.0;             // of the grid that values lie on; 0 = none
-  std::vector<KeyValue> values;  // of flags and choices, instead of a range
+  bool log = false;                   // even on the logarithmic scale
+  double step = 0.0;                  // of the grid that values lie on; 0 = none
+  std::vector<KeyValue> values = {};  // of flags and choices, instead of a range
 
   bool listed() const { return !values.empty(); }
   KeyValue ValueAt(double place) const;

@@ -15,8 +15,8 @@ namespace gauntlet {
 
 struct FitSetting {
   SettingsPoint place;
-  bool judged = false;                      // chosen: its values have two digits that count
-  std::vector<std::vector<double>> values;  // [target][run]; NaN: nothing to measure
+  bool judged = false;                           // chosen: its values have two digits that count
+  std::vector<std::vector<double>> values = {};  // [target][run]; NaN: nothing to measure
   int runs = 0;
   int without_result = 0;  // of these
 
@@ -32,6 +32,7 @@ class FitRounds {
   FitRounds(FitPlan plan, std::uint64_t seed, FitPosterior::Allowed allowed);
 
   const FitPlan& plan() const { return plan_; }
+  std::uint64_t seed() const { return seed_; }
   const std::vector<FitSetting>& settings() const { return settings_; }
   std::size_t round() const { return round_; }  // that have been proposed
 

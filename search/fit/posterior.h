@@ -22,9 +22,9 @@ namespace gauntlet {
 // What runs of one setting gave: for the numbers of all targets, one behind the other ("components").
 struct SettingStatistics {
   SettingsPoint place;
-  std::vector<double> values;  // NaN: there was nothing to measure
-  Eigen::MatrixXd covariance;  // of `values`, times `runs`: what a single run would give
-  std::vector<double> runs;    // that a component stands on
+  std::vector<double> values = {};  // NaN: there was nothing to measure
+  Eigen::MatrixXd covariance = {};  // of `values`, times `runs`: what a single run would give
+  std::vector<double> runs = {};    // that a component stands on
 
   bool Whole() const;  // every component has a value
 };
