@@ -53,6 +53,7 @@ void AddExport(CommandParser& parser);
 void AddImport(CommandParser& parser);
 void AddStudy(CommandParser& parser);
 void AddTune(CommandParser& parser);
+void AddFit(CommandParser& parser);
 void AddBuildController(CommandParser& parser);
 void AddSubmit(CommandParser& parser);
 void AddMaster(CommandParser& parser);
@@ -63,8 +64,8 @@ void AddList(CommandParser& parser);
 
 // In the order of `gauntlet --help`.
 inline constexpr void (*kCommands[])(CommandParser&) = {
-    AddEvolve, AddRandom, AddResume, AddShow,  AddReplay, AddQuestions, AddCorpus, AddCompare,
-    AddStudy,  AddTune,   AddReport, AddUi,    AddFigure, AddExport,    AddImport, AddBuildController,
-    AddSubmit, AddMaster, AddStatus, AddWatch, AddStop,   AddList};
+    AddEvolve,          AddRandom, AddResume, AddShow,   AddReplay, AddQuestions, AddCorpus, AddCompare,
+    AddStudy,           AddTune,   AddFit,    AddReport, AddUi,     AddFigure,    AddExport, AddImport,
+    AddBuildController, AddSubmit, AddMaster, AddStatus, AddWatch,  AddStop,      AddList};
 
 }  // namespace gauntlet

@@ -51,11 +51,11 @@ struct Tuning {
 // The part in which the final populations of a tuning's part are simulated again.
 std::string AgainPart(const std::string& part);
 
-// What of a tuning is other than its file says; "" and empty: nothing.
+// What of a study is other than its file says; "" and empty: nothing.
 struct TuningChanges {
   std::string experiment;
   std::string repeats;            // as it was typed
-  std::vector<std::string> sets;  // "key=value"
+  std::vector<std::string> sets;  // "key=value", of every part that does not say otherwise
 
   bool operator==(const TuningChanges&) const = default;
 };

@@ -178,6 +178,8 @@ class Reader {
       if (part.from.empty())
         return InvalidInput(fmt::format("{}: [part.{}] needs the key experiment", table.where, part.name));
       std::tie(name, sets) = sources_.at(part.from);
+    } else {
+      sets = study_.changes.sets;
     }
     std::ranges::move(table.Sets(), std::back_inserter(sets));
     sources_[part.name] = {name, sets};

@@ -18,6 +18,7 @@
 #include "master/store/event_kinds.h"
 #include "proto/run_codec.h"
 #include "report/tables/summary_tables.h"
+#include "search/search_table.h"
 #include "study/questions/question_table.h"
 #include "study/sets/subset.h"
 
@@ -181,6 +182,9 @@ Result<CampaignFacts> ReadFacts(const std::string& dir) {
   facts.plans = campaign.plans;
   TRY(facts.summary, Summarise(facts.plans, store));
   TRY(facts.answers, ReadAnswers(dir));
+  if (RowOf(facts.plans.front().experiment).varies_settings) {
+    TRY(facts.fit, ReadFit(dir));
+  }
   for (const auto question : kQuestions) {
     TRY(auto told, ToldCases(question(), dir));
     std::ranges::move(told, std::back_inserter(facts.told_cases));

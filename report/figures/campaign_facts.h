@@ -10,6 +10,7 @@
 #include "master/campaign/campaign_summary.h"
 #include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
+#include "study/fits/fit_result.h"
 #include "study/questions/confirmations.h"
 #include "study/questions/question.h"
 
@@ -60,7 +61,8 @@ struct CampaignFacts {
   std::vector<SearchPlan> plans;
   CampaignSummary summary;
   CampaignAnswers answers;
-  std::vector<ToldCase> told_cases = {};  // what questions about them say, one question after the other
+  std::optional<FitResult> fit = std::nullopt;  // that the campaign is
+  std::vector<ToldCase> told_cases = {};        // what questions about them say, one question after the other
   CampaignHistory history;
   std::vector<std::string> notes;  // what a reader has to know, a sentence each
   std::vector<RunFacts> runs;      // in logical order, search by search

@@ -11,11 +11,13 @@
 #include "controllers/registry.h"
 #include "report/figures/archive_figure.h"
 #include "report/figures/campaign_figures.h"
+#include "report/figures/fit_figure.h"
 #include "report/pages/answers_html.h"
 #include "report/pages/campaign_pages.h"
 #include "report/pages/html_text.h"
 #include "report/tables/summary_tables.h"
 #include "search/search_table.h"
+#include "study/fits/fit_text.h"
 
 namespace gauntlet {
 namespace {
@@ -153,6 +155,10 @@ std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
       "from</h3>\n{}</div></div>\n",
       TestedHtml(facts), ProvenanceHtml(facts));
   html += CoursesHtml(pages);
+  if (facts.fit) {
+    for (const Section& section : TellFit(*facts.fit, facts.directory, "gauntlet")) html += ToHtml(section);
+  }
+  for (const NamedFigure& figure : FitFigures(facts)) html += FigureHtml(figure, facts.directory);
   for (const NamedFigure& figure : ArchiveFigures(facts)) html += FigureHtml(figure, facts.directory);
   html += SearchesHtml(facts.summary) + CommandsHtml(facts);
   return html + fmt::format(

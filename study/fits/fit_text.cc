@@ -1,0 +1,127 @@
+#include "study/fits/fit_text.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/number_text.h"
+#include "base/shell_quoted.h"
+#include "proto/json_text.h"
+
+namespace gauntlet {
+namespace {
+
+constexpr const char* kTitle = "Settings under which runs are as they were measured";
+
+Table KeyTable(const FitResult& fit) {
+  Table table({{"key", "key"},
+               {"range", "range"},
+               {"chosen", "chosen"},
+               {"likely (90 %)", "likely"},
+               ForPrograms("determined"),
+               {""}});
+  for (const FittedKey& key : fit.keys)
+    table.AddRow({key.path, key.range, Cell(key.chosen.empty() ? "-" : key.chosen, TextValue(key.chosen)),
+                  Cell(key.likely.empty() ? "-" : key.likely, TextValue(key.likely)), Cell(key.determined),
+                  key.determined ? "" : "not determined"});
+  return table;
+}
+
+Table TargetTable(const FitResult& fit) {
+  Table table({{"target", "target"},
+               {"wanted", "wanted"},
+               {">ours", "ours"},
+               {"(95 %)", "interval"},
+               {">standard errors away", "misfit"},
+               {"", "met"}});
+  for (const JudgedTarget& target : fit.targets) {
+    table.AddRow({target.title, target.wanted, DecimalCell(target.ours, 3),
+                  Cell(fmt::format("{:.3f} to {:.3f}", target.interval.low, target.interval.high),
+                       fmt::format("{} {}", target.interval.low, target.interval.high)),
+                  DecimalCell(target.misfit, 1), Cell(target.met ? "met" : "NOT MET", target.met)});
+  }
+  return table;
+}
+
+// The sentences below the settings.
+std::vector<std::string> WhatKeysSay(const FitResult& fit) {
+  std::vector<std::string> sentences;
+  std::vector<std::string> open;
+  for (const FittedKey& key : fit.keys) {
+    if (!key.determined) open.push_back(key.path);
+  }
+  if (!open.empty())
+    sentences.push_back(
+        fmt::format("These targets do not determine {}: the likely values fill more than {:.0f} % of "
+                    "the range, or every choice is left.",
+                    fmt::join(open, ", "), 100.0 * kUndetermined));
+  for (const TradeOff& one : fit.trade_offs) {
+    sentences.push_back(fmt::format(
+        "{} and {} make up for each other: where one is {}, the other is {} (rank correlation {:.2f}).",
+        one.one, one.other, "higher", one.correlation > 0.0 ? "higher too" : "lower", one.correlation));
+  }
+  return sentences;
+}
+
+std::string Outcome(const FitResult& fit) {
+  if (!fit.why.empty()) return fmt::format("There is nothing to choose from: {}.", fit.why);
+  if (!fit.finished) return "The fit is not finished: what stands here is what is known by now.";
+  if (fit.targets.empty()) return "No setting of the ranges can be simulated and is likely.";
+  const auto met = std::ranges::count(fit.targets, true, &JudgedTarget::met);
+  if (fit.Met()) return "The chosen setting meets every target.";
+  return fmt::format("No setting meets all targets; the chosen one, the likeliest, meets {} of {}.", met,
+                     fit.targets.size());
+}
+
+}  // namespace
+
+std::vector<Section> TellFit(const FitResult& fit, const std::string& dir, const std::string& program) {
+  Section settings{.title = kTitle, .table = KeyTable(fit), .sentences = WhatKeysSay(fit)};
+  settings.lead = {fmt::format(
+      "{} of {} were held against {}{}.", Counted(fit.runs, "run"),
+      Counted(fit.settings + fit.candidates, "setting"), Counted(fit.plan.targets.size(), "target"),
+      fit.candidates > 1 ? fmt::format("; {} of the settings were judged on fresh cases, the last is "
+                                       "the chosen one",
+                                       fit.candidates)
+                         : "")};
+  Section targets{.title = "Targets, and what the chosen setting gives in fresh runs",
+                  .table = TargetTable(fit)};
+  if (fit.targets.empty()) targets.title = "Targets";
+  targets.sentences = {Outcome(fit)};
+  targets.sentences.insert(targets.sentences.end(), fit.contradictions.begin(), fit.contradictions.end());
+  const std::string place = PastedPath(dir);
+  if (!fit.finished) {
+    targets.commands = {{fmt::format("{} resume {}", program, place), "go on"}};
+  } else if (fit.fitted) {
+    targets.commands = {
+        {fmt::format("{} fit {} -o fitted.toml", program, place), "the chosen setting as an experiment"},
+        {fmt::format("{} fit {} --predict {} --draws 20", program, place, PastedPath(fit.experiment.name)),
+         "what the other accepted settings would make of a result"},
+        {fmt::format("{} figure {} settings -o settings.svg --csv settings.csv", program, place),
+         "all accepted settings with their weights"},
+        {fmt::format("{} report {} -o fit.html", program, place), "the same as a page"}};
+  }
+  return {std::move(settings), std::move(targets)};
+}
+
+std::string FitJson(const FitResult& fit, const std::string& dir) {
+  nlohmann::ordered_json trade_offs = nlohmann::ordered_json::array();
+  for (const TradeOff& one : fit.trade_offs)
+    trade_offs.push_back({{"keys", {one.one, one.other}}, {"rank_correlation", one.correlation}});
+  return JsonText({{"directory", dir},
+                   {"finished", fit.finished},
+                   {"met", fit.Met()},
+                   {"runs", fit.runs},
+                   {"settings", fit.settings},
+                   {"judged", fit.candidates},
+                   {"accepted", fit.accepted.size()},
+                   {"keys", KeyTable(fit).ToJson()},
+                   {"trade_offs", std::move(trade_offs)},
+                   {"targets", TargetTable(fit).ToJson()},
+                   {"contradictions", fit.contradictions},
+                   {"outcome", Outcome(fit)}});
+}
+
+}  // namespace gauntlet
