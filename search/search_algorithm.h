@@ -27,8 +27,8 @@ struct EvaluationRequest {
   std::uint32_t evaluation = 0;  // 0 = the individual's first
   std::uint32_t replicates = 1;  // runs, each with its own seed
   std::uint32_t generation = 0;  // 1 = initial population; for display
-  sim::TestCase test_case;
-  std::vector<IndividualId> parents;  // their runs tell how long this one's will take
+  sim::TestCase test_case = {};
+  std::vector<IndividualId> parents = {};  // their runs tell how long this one's will take
   // That its runs have instead of the experiment's; nullptr = those. Only of a search over settings.
   std::shared_ptr<const sim::RunSettings> settings = nullptr;
 };

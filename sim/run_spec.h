@@ -31,6 +31,8 @@ struct RunSettings {
   std::string plugin;  // SHA-256 of the library that brings the controller, hexadecimal; "": it is built in
   PhysicsKind physics = PhysicsKind::kImpulse;
   Disturbances disturbances;
+
+  bool operator==(const RunSettings&) const = default;
 };
 
 struct RunSpec : RunSettings {

@@ -142,11 +142,7 @@ Result<Keepsake> KeepsakeOf(CommandContext& context, const CorpusOptions& option
     return KeepsakeOfRun(context, options, run);
   }
   TRY(const QuestionedCampaign questioned, CasesOfRuns(options.directory, {}));
-  if (questioned.plans.size() > 1) {
-    return InvalidInput(fmt::format(
-        "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
-        options.directory, questioned.plans.size(), text));
-  }
+  TRY(CheckTakesFiles(questioned, options.directory, text));
   return KeepsakeOfFile(options, text, questioned.plans.front().experiment);
 }
 

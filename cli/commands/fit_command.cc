@@ -265,7 +265,7 @@ The file of targets (docs/fit.md explains it):
   runs = 100
 
 Examples:
-  gauntlet fit task-partitioning --targets lab.toml --vary controller_parameters.wait_limit=5..60:log -o lab-fitted.toml
+  gauntlet fit task-partitioning --targets lab.toml --vary controller_parameters.wait_time=5..300:log -o lab-fitted.toml
   gauntlet fit my.toml --targets lab.toml --vary physics=impulse|box2d --vary scenario_parameters.robots=4..8 --budget 5000
   gauntlet fit campaigns/my-fit --predict flocking --draws 50
   gauntlet fit my.toml --targets lab.toml --vary scenario_parameters.robots=4..8 --print-experiment > fit.toml)");

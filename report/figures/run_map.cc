@@ -12,6 +12,7 @@
 #include "base/number_text.h"
 #include "controllers/registry.h"
 #include "sim/geometry/trigonometry.h"
+#include "study/sets/subset.h"
 
 namespace gauntlet {
 namespace {
@@ -197,6 +198,7 @@ RunMap BehaviourMap(const CampaignFacts& facts, const std::vector<Bins>& bins) {
 
 std::vector<RunMap> MapsOf(const CampaignFacts& facts) {
   const Experiment& first = facts.plans.front().experiment;
+  if (!CheckOneSetting(facts.plans, facts.directory)) return {};
   const controllers::ScenarioInfo& scenario = controllers::DeclaredScenario(first);
   const bool one_scenario = std::ranges::all_of(facts.plans, [&](const SearchPlan& plan) {
     return plan.experiment.scenario == first.scenario &&

@@ -227,7 +227,8 @@ std::string FitTarget::Wanted() const {
     case Demand::kEquals:
       break;
   }
-  if (statistic == Statistic::kDistribution) return fmt::format("as measured (n = {:g})", n);
+  if (statistic == Statistic::kDistribution)
+    return fmt::format("as measured, mean {:.4g} (n = {:g})", analysis::Describe(values).mean, n);
   return fmt::format("{:g} (n = {:g})", values[0], n);
 }
 

@@ -136,7 +136,7 @@ double MisfitOf(const FitTarget& target, std::span<const double> ours, const Eig
     return std::numeric_limits<double>::infinity();
   if (target.demand == Demand::kEvery) {
     const double share = std::clamp(ours[0], 1e-9, 1.0);
-    return std::sqrt(-2.0 * target.n * sim::Log(share));
+    return std::sqrt(std::max(0.0, -2.0 * target.n * sim::Log(share)));
   }
   Eigen::VectorXd difference(n);
   for (Eigen::Index i = 0; i < n; ++i) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/comparison.h"
+#include "analysis/statistics/proportions.h"
 #include "analysis/statistics/rank_test.h"
 #include "analysis/statistics/sample.h"
 #include "analysis/tables/table.h"
@@ -147,6 +148,15 @@ void AddContradictions(const FitRounds& rounds, const FitPosterior& posterior, F
   }
 }
 
+// 95 %, of a statistic that stands on so many runs, each of which has the variance.
+analysis::Interval IntervalOf(const FitTarget& target, double ours, double variance, double runs) {
+  if (!target.formula.empty())
+    return analysis::WilsonInterval(static_cast<std::uint32_t>(std::lround(ours * runs)),
+                                    static_cast<std::uint32_t>(runs), analysis::kConfidence);
+  const double error = kNormal95 * std::sqrt(variance / runs);
+  return {ours - error, ours + error};
+}
+
 void AddJudgement(const FitRounds& rounds, FitResult& fit) {
   const std::size_t last = rounds.settings().size() - 1;
   const FitSetting& setting = rounds.settings()[last];
@@ -167,8 +177,7 @@ void AddJudgement(const FitRounds& rounds, FitResult& fit) {
     JudgedTarget judged{.title = target.Title(), .wanted = target.Wanted()};
     judged.misfit = MisfitOf(target, ours, both);
     judged.ours = analysis::Describe(ours).mean;
-    const double error = kNormal95 * std::sqrt(each.mean() / runs);
-    judged.interval = {judged.ours - error, judged.ours + error};
+    judged.interval = IntervalOf(target, judged.ours, each.mean(), runs);
     judged.met =
         target.demand == FitTarget::Demand::kEvery ? ours.front() == 1.0 : judged.misfit <= kMetWithin;
     fit.targets.push_back(std::move(judged));

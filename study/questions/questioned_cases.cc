@@ -28,11 +28,28 @@ namespace {
 
 constexpr std::string_view kOfRun = "run ";  // begins the name of a run's case
 
-Result<CaseInQuestion> CaseOfRun(ResultStore& store, RunId id, const std::string& dir) {
+// The number of the plan with the run's settings, which is added where they are its own.
+std::size_t PlanOf(const sim::RunSpec& spec, std::size_t search, std::vector<SearchPlan>& plans) {
+  if (!RowOf(plans.at(search).experiment).varies_settings) return search;
+  const sim::RunSettings& settings = spec;
+  const auto has = [&](const SearchPlan& plan) {
+    const sim::RunSettings& its = plan.experiment;
+    return its == settings;
+  };
+  const auto known = std::find_if(plans.begin() + static_cast<std::ptrdiff_t>(search), plans.end(), has);
+  if (known != plans.end()) return static_cast<std::size_t>(known - plans.begin());
+  plans.push_back({"", plans[search].experiment});
+  static_cast<sim::RunSettings&>(plans.back().experiment) = settings;
+  return plans.size() - 1;
+}
+
+Result<CaseInQuestion> CaseOfRun(ResultStore& store, RunId id, const std::string& dir,
+                                 std::vector<SearchPlan>& plans) {
   TRY(const auto run, store.LoadRun(id));
   if (!run.has_value()) return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in {}", id, dir)};
   TRY(auto spec, proto::DecodeRunSpec(run->spec));
-  return CaseInQuestion{fmt::format("{}{}", kOfRun, id), run->search - 1, std::move(spec.test_case)};
+  const std::size_t plan = PlanOf(spec, run->search - 1, plans);
+  return CaseInQuestion{fmt::format("{}{}", kOfRun, id), plan, std::move(spec.test_case)};
 }
 
 // Every different case of a subset, named by its first run in it.
@@ -45,11 +62,12 @@ Result<QuestionedCampaign> CasesOfSubset(const std::string& dir, const std::stri
     const std::string failing(FailingOf(search.plan.experiment));
     TRY(const auto runs, SelectRuns(search, store, opened.subset, failing));
     std::set<IndividualId> individuals;
-    std::set<std::uint64_t> cases;
+    std::set<std::pair<std::size_t, std::uint64_t>> cases;
     for (const SelectedRun& run : runs) {
       if ((only_failing && run.value != 1.0) || !individuals.insert(run.individual).second) continue;
-      TRY(auto one, CaseOfRun(store, run.run, dir));
-      if (cases.insert(CaseHash(one.test_case)).second) questioned.cases.push_back(std::move(one));
+      TRY(auto one, CaseOfRun(store, run.run, dir, questioned.plans));
+      if (cases.insert({one.search, CaseHash(one.test_case)}).second)
+        questioned.cases.push_back(std::move(one));
     }
     return Ok{};
   };
@@ -64,7 +82,7 @@ Result<QuestionedCampaign> CasesOfRuns(const std::string& dir, const std::vector
   TRY(auto plans, ReadSearchPlans(campaign.directory));
   QuestionedCampaign questioned{std::move(plans), {}};
   for (const RunId id : runs) {
-    TRY(auto one, CaseOfRun(*campaign.store, id, dir));
+    TRY(auto one, CaseOfRun(*campaign.store, id, dir, questioned.plans));
     questioned.cases.push_back(std::move(one));
   }
   return questioned;
@@ -105,6 +123,16 @@ std::optional<CaseRefusal> RefusalOf(const Experiment& experiment, const sim::Te
   return std::nullopt;
 }
 
+Status CheckTakesFiles(const QuestionedCampaign& questioned, const std::string& dir,
+                       const std::string& file) {
+  const bool fit = RowOf(questioned.plans.front().experiment).varies_settings;
+  if (questioned.plans.size() == 1 && !fit) return Ok{};
+  const std::string what = fit ? "runs" : fmt::format("{} searches", questioned.plans.size());
+  return InvalidInput(
+      fmt::format("{} has {} with different settings: to which would the file {} belong? Name runs instead",
+                  dir, what, file));
+}
+
 Result<QuestionedCampaign> NamedCases(const std::string& dir, const std::vector<std::string>& names) {
   if (const auto swapped = std::ranges::find_if(names, CampaignDirectory::IsCampaign);
       swapped != names.end() && !CampaignDirectory::IsCampaign(dir)) {
@@ -123,10 +151,8 @@ Result<QuestionedCampaign> NamedCases(const std::string& dir, const std::vector<
     files.push_back({std::filesystem::path(text).filename().string(), 0, std::move(loaded.test_case)});
   }
   TRY(QuestionedCampaign questioned, CasesOfRuns(dir, runs));
-  if (!files.empty() && questioned.plans.size() > 1) {
-    return InvalidInput(fmt::format(
-        "{} has {} searches with different settings: to which would the file {} belong? Name runs instead",
-        dir, questioned.plans.size(), files.front().name));
+  if (!files.empty()) {
+    TRY(CheckTakesFiles(questioned, dir, files.front().name));
   }
   for (CaseInQuestion& file : files) {
     if (const auto refusal = RefusalOf(questioned.plans.front().experiment, file.test_case))

@@ -35,6 +35,9 @@ Result<QuestionedCampaign> PopulationCases(const std::string& dir);
 // there or breaks a rule, a file could belong to several searches, or the campaign does not come first.
 Result<QuestionedCampaign> NamedCases(const std::string& dir, const std::vector<std::string>& names);
 
+// Error: to which settings of the campaign a file would belong cannot be told.
+Status CheckTakesFiles(const QuestionedCampaign& questioned, const std::string& dir, const std::string& file);
+
 // Why the experiment's swarm cannot be put into a case.
 struct CaseRefusal {
   std::string rule;  // "no-path"; "" when it is none of a name

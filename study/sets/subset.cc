@@ -180,6 +180,14 @@ Result<std::vector<SetPart>> SplitSet(const std::string& text) {
   return parts;
 }
 
+Status CheckOneSetting(const std::vector<SearchPlan>& plans, const std::string& place) {
+  const auto varies = [](const SearchPlan& plan) { return RowOf(plan.experiment).varies_settings; };
+  if (std::ranges::none_of(plans, varies)) return Ok{};
+  return InvalidInput(fmt::format(
+      "{} is a fit: its runs have different settings, so they are neither one set nor cases for other runs",
+      place));
+}
+
 Result<OpenedSubset> OpenSubset(const SetPart& part) {
   TRY(const auto subset, ParseSubset(part.rest, part.path));
   TRY(auto stored, OpenStoredCampaign(part.path));

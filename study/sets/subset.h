@@ -54,6 +54,10 @@ struct SubsetSearch {
   std::string place;  // the campaign's, with the search's number where it has several
   bool finished = false;
 };
+// Error: runs of one of the searches have settings of their own (SearchRow::varies_settings), so that they
+// cannot be taken together.
+Status CheckOneSetting(const std::vector<SearchPlan>& plans, const std::string& place);
+
 // Visits them in the order of their numbers, until one of the visits fails. Error: there is no such search.
 Status ForEachSearch(const std::vector<SearchPlan>& plans, ResultStore& store, const std::string& place,
                      const Subset& subset, const std::function<Status(const SubsetSearch&)>& visit);

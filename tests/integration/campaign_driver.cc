@@ -102,6 +102,19 @@ SmallCampaign SmallRandom() {
   return campaign;
 }
 
+SmallCampaign SmallFit() {
+  SmallCampaign campaign;
+  campaign.name = "fit";
+  campaign.population = campaign.generations = 0;
+  campaign.settings = {"search.algorithm=fit",
+                       "scenario_parameters.time_limit=5",
+                       "fit.vary=controller_parameters.turn_rate=0.5..2 scenario_parameters.birds=4..9",
+                       "fit.targets=metric=angular_order value=0.8 n=50; metric=birds_left value=6 n=50",
+                       "fit.runs=660",
+                       "fit.judged=40"};
+  return campaign;
+}
+
 SmallCampaign SmallEvaluation() {
   SmallCampaign campaign;
   campaign.name = "evaluation";

@@ -54,6 +54,8 @@ SmallCampaign SmallSteadyState();
 SmallCampaign SmallArchive();
 // Random cases of flocking, so many short runs that states are saved on the way.
 SmallCampaign SmallRandom();
+// Settings of flocking, fitted to two targets; its runs are cut short.
+SmallCampaign SmallFit();
 // A given case with many replicates.
 SmallCampaign SmallEvaluation();
 // "COMMAND EXPERIMENT --dir DIR ..." with everything that makes this campaign what it is.

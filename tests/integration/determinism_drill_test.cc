@@ -33,7 +33,7 @@ class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {};
 
 INSTANTIATE_TEST_SUITE_P(Experiments, DeterminismDrill,
                          testing::Values(SmallCampaign{}, SmallForaging(), SmallPartitioning(),
-                                         SmallSteadyState(), SmallArchive(), SmallRandom(),
+                                         SmallSteadyState(), SmallArchive(), SmallRandom(), SmallFit(),
                                          SmallEvaluation()),
                          [](const testing::TestParamInfo<SmallCampaign>& parameter) {
                            return parameter.param.name;

@@ -52,10 +52,7 @@ TEST(FrontPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
 }
 
 TEST(CaseFilesPageTest, ShowsAFileAsItIsReadAndWritten) {
-  const std::string page = ReadFile(GAUNTLET_SOURCE_DIR "/docs/case-files.md");
-  const std::string fence = "```json\n";
-  const std::size_t begin = page.find(fence) + fence.size();
-  const std::string shown = page.substr(begin, page.find("```", begin) - begin);
+  const std::string shown = FencedText("case-files.md", "json");
   const TemporaryDirectory scratch;
   std::ofstream(scratch / "one-wall.json") << shown;
   for (const std::vector<std::string>& arguments :

@@ -46,6 +46,22 @@ DocumentedPage ReadPage(const std::string& file) {
   return page;
 }
 
+ProcessResult RunCommands(const DocumentedPage& page, const std::string& folder) {
+  {
+    std::ofstream script(folder + "/script");
+    script << "cd '" << folder << "'\nPATH='" << GAUNTLET_BINARY_DIR << "':$PATH\n";
+    for (const std::string& command : page.commands) script << command << "\n";
+  }
+  return RunProcess({"/bin/bash", "-eux", folder + "/script"}, {}, std::chrono::seconds(400));
+}
+
+std::string FencedText(const std::string& file, const std::string& language) {
+  const std::string page = ReadFile(std::string(GAUNTLET_SOURCE_DIR "/docs/") + file);
+  const std::string fence = "```" + language + "\n";
+  const std::size_t begin = page.find(fence) + fence.size();
+  return page.substr(begin, page.find("```", begin) - begin);
+}
+
 std::vector<std::string> Words(const std::string& text) {
   std::istringstream stream(text);
   return {std::istream_iterator<std::string>(stream), {}};

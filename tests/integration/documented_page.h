@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/process.h"
+
 namespace gauntlet::testing_support {
 
 // Of the lines that are indented by four blanks outside of fenced blocks: commands are those that begin with
@@ -14,6 +16,11 @@ struct DocumentedPage {
 };
 // `file`: below docs/.
 DocumentedPage ReadPage(const std::string& file);
+
+// Runs its commands in their order in `folder`, until one of them fails.
+ProcessResult RunCommands(const DocumentedPage& page, const std::string& folder);
+// The text of the first fenced block of the page, TOML or JSON.
+std::string FencedText(const std::string& file, const std::string& language);
 
 // The blank-separated words of a text.
 std::vector<std::string> Words(const std::string& text);

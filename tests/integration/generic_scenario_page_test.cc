@@ -27,21 +27,13 @@ TEST(GenericScenarioPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
   const DocumentedPage page = ReadPage("generic-scenario.md");
   EXPECT_GE(page.commands.size(), 7U);
   EXPECT_GE(page.quoted.size(), 6U);
-  {
-    std::ofstream script(scratch / "script");
-    script << "cd '" << scratch.path() << "'\nPATH='" << GAUNTLET_BINARY_DIR << "':$PATH\n";
-    for (const std::string& command : page.commands) script << command << "\n";
-  }
-  const ProcessResult result =
-      RunProcess({"/bin/bash", "-eux", scratch / "script"}, {}, std::chrono::seconds(200));
+  const ProcessResult result = RunCommands(page, scratch.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   ExpectQuoted(page, AsRead(result.out, scratch.path()));
 }
 
 TEST(GenericScenarioPageTest, ItsFileIsTheShippedOne) {
-  const std::string page = TextOf("docs/generic-scenario.md");
-  const std::size_t begin = page.find("```toml\n") + 8;
-  std::istringstream lines(page.substr(begin, page.find("```", begin) - begin));
+  std::istringstream lines(FencedText("generic-scenario.md", "toml"));
   const std::string shipped = TextOf("experiments/gathering.toml");
   for (std::string line; std::getline(lines, line);) EXPECT_THAT(shipped, HasSubstr(line));
 }

@@ -25,13 +25,7 @@ TEST(OwnControllerPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
   const DocumentedPage page = ReadPage("bring-your-own-controller.md");
   EXPECT_GE(page.commands.size(), 15U);
   EXPECT_GE(page.quoted.size(), 10U);
-  {
-    std::ofstream script(scratch / "script");
-    script << "cd '" << scratch.path() << "'\nPATH='" << GAUNTLET_BINARY_DIR << "':$PATH\n";
-    for (const std::string& command : page.commands) script << command << "\n";
-  }
-  const ProcessResult result =
-      RunProcess({"/bin/bash", "-eux", scratch / "script"}, {}, std::chrono::seconds(400));
+  const ProcessResult result = RunCommands(page, scratch.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   ExpectQuoted(page, AsRead(result.out, scratch.path()));
   EXPECT_TRUE(fs::exists(scratch / "cases/case-04.argos"));

@@ -1,0 +1,107 @@
+// Covers: study/fits/fit_text.cc
+#include "study/fits/fit_result.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "search/experiment/experiment_file.h"
+#include "study/fits/fit_text.h"
+#include "tests/search/fit/toy_fit.h"
+
+namespace gauntlet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::UnorderedElementsAre;
+
+const std::string kTurn = "controller_parameters.turn_rate";
+const std::string kSpeed = "controller_parameters.bird_speed";
+const std::string kFactor = "controller_parameters.turning_speed_factor";
+
+FitResult ToyResult(const std::string& vary, const std::string& targets, int runs = 4000) {
+  Experiment experiment = ToyExperiment();
+  experiment.fit = {.vary = vary, .targets = targets, .runs = runs, .judged = 200};
+  FitRounds rounds(ToyPlan(experiment.fit).value(), 11, Everywhere);
+  sim::RandomStream random(5, sim::StreamPurpose::kTest, 0);
+  Finish(rounds, random);
+  return ResultOf(experiment, rounds, true);
+}
+
+// ToyRun's fitness does not move where its mean is held against the first key alone.
+TEST(FitResultTest, TellsWhatIsLikelyAndJudgesTheChosenSetting) {
+  const FitResult fit = ToyResult(
+      kTurn + "=0.5..1.5", "metric=fitness value=0.75 n=1000; metric=fitness statistic=sd value=0.5 n=1000");
+  EXPECT_THAT(fit.trade_offs, IsEmpty());
+  EXPECT_THAT(fit.contradictions, IsEmpty());
+  ASSERT_THAT(fit.keys, SizeIs(1));
+  EXPECT_TRUE(fit.keys[0].determined);
+  EXPECT_EQ(fit.keys[0].range, "0.5..1.5");
+  ASSERT_TRUE(fit.fitted);
+  // 3 x^2 = 0.75 at x = 0.5, the middle of the range.
+  const double chosen = fit.fitted->controller_parameters.at("turn_rate");
+  EXPECT_NEAR(chosen, 1.0, 0.06);
+  EXPECT_EQ(fit.keys[0].chosen, ToSet(chosen));
+  EXPECT_EQ(fit.fitted->search.algorithm, "genetic");
+  double weights = 0.0;
+  for (const AcceptedSetting& one : fit.accepted) weights += one.weight;
+  EXPECT_NEAR(weights, 1.0, 1e-9);
+  EXPECT_THAT(AcceptedCsv(fit), testing::StartsWith("weight," + kTurn + "\n"));
+}
+
+TEST(FitResultTest, AKeyThatNothingDependsOnIsNotDetermined) {
+  // Of the share of runs that lose birds, of which the toy has an equal share along a line of two keys.
+  const FitResult fit = ToyResult(kTurn + "=0.5..1.5 scenario_parameters.rejoin_time=0..600",
+                                  "metric=fitness value=0.75 n=1000", 3000);
+  ASSERT_THAT(fit.keys, SizeIs(2));
+  EXPECT_TRUE(fit.keys[0].determined);
+  EXPECT_FALSE(fit.keys[1].determined);
+  const std::string told = ToText(TellFit(fit, "dir", "gauntlet").front());
+  EXPECT_THAT(told, HasSubstr("These targets do not determine scenario_parameters.rejoin_time"));
+}
+
+TEST(FitResultTest, KeysThatMakeUpForEachOtherAreNamed) {
+  const FitResult fit =
+      ToyResult(kTurn + "=0.5..1.5 " + kFactor + "=0..1", "metric=fitness value=1.5 n=2000");
+  ASSERT_THAT(fit.trade_offs, SizeIs(1));
+  EXPECT_EQ(fit.trade_offs[0].one, kTurn);
+  EXPECT_EQ(fit.trade_offs[0].other, kFactor);
+  EXPECT_LT(fit.trade_offs[0].correlation, -0.5);
+  EXPECT_THAT(ToText(TellFit(fit, "dir", "gauntlet").front()), HasSubstr("make up for each other"));
+}
+
+TEST(FitResultTest, TargetsThatContradictEachOtherAreNamed) {
+  const FitResult fit =
+      ToyResult(kTurn + "=0.5..1.5 " + kSpeed + "=0.01..0.1:log",
+                "metric=fitness value=2.5 n=1000; metric=fitness statistic=median value=0.5 n=1000");
+  EXPECT_FALSE(fit.Met());
+  EXPECT_THAT(
+      fit.contradictions,
+      ElementsAre("Two targets contradict each other: mean of fitness, random (2.5 (n = 1000)) and median of "
+                  "fitness, random (0.5 (n = 1000)). Each alone can be met."));
+  EXPECT_THAT(ToText(TellFit(fit, "dir", "gauntlet").back()),
+              HasSubstr("No setting meets all targets; the chosen one, the likeliest, meets"));
+}
+
+TEST(FitResultTest, ATargetOutOfReachIsNamedAlone) {
+  const FitResult fit = ToyResult(kTurn + "=0.5..1.5", "metric=fitness value=30 n=1000", 1000);
+  EXPECT_THAT(
+      fit.contradictions,
+      ElementsAre("No setting within the ranges gives the mean of fitness, random that is wanted (30 (n = "
+                  "1000))."));
+}
+
+TEST(FitResultTest, TheFittedExperimentReadsBack) {
+  const FitResult fit = ToyResult(kTurn + "=0.5..1.5", "metric=fitness value=0.75 n=1000", 1000);
+  const std::string toml = FittedToml(fit, "campaigns/one");
+  EXPECT_THAT(toml, HasSubstr("# mean of fitness, random: wanted 0.75 (n = 1000), got "));
+  const Result<Experiment> read = ParseExperiment(toml, "fitted.toml", {}, BuiltInCatalogue());
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(read->controller_parameters, fit.fitted->controller_parameters);
+  EXPECT_EQ(read->name, fit.experiment.name + "-fitted");
+}
+
+}  // namespace
+}  // namespace gauntlet
