@@ -47,20 +47,23 @@ Result<int> NumberFrom(const char* option, const std::string& text, int most, in
 
 // What a new campaign is made of.
 Result<SearchPlan> PlanFit(CommandContext& context, const FitOptions& options) {
+  TRY(Experiment experiment, LoadExperimentWith(options.experiment, {}));
+  TRY(experiment.fit.runs, NumberFrom("--budget", options.budget, 100'000'000, experiment.fit.runs));
+  const bool is_fit = RowOf(experiment).varies_settings;
+  if (is_fit && options.targets.empty() && options.vary.empty()) return SearchPlan{"", std::move(experiment)};
   if (options.targets.empty())
     return InvalidInput("held against what? --targets FILE.toml names the file with the measured values");
   if (options.vary.empty())
     return InvalidInput(
         "what may vary? --vary KEY=LOW..HIGH for each such key ('gauntlet list' has them all)");
-  TRY(Experiment experiment, LoadExperimentWith(options.experiment, {}));
   TRY(FitTargets targets, ReadTargetFile(options.targets, experiment));
   for (const std::string& notice : targets.notices) PrintMessage(context, notice);
   FitSpec& spec = experiment.fit;
   TRY(const auto varied, ParseVariedKeys(options.vary, AllKeysOf(experiment), experiment));
+  spec.vary.clear();
   for (const VariedKey& key : varied) spec.vary += (spec.vary.empty() ? "" : " ") + key.ToText();
   spec.targets = std::move(targets.text);
-  TRY(spec.runs, NumberFrom("--budget", options.budget, 100'000'000, spec.runs));
-  spec.search = experiment.search.algorithm;
+  if (!is_fit) spec.search = experiment.search.algorithm;
   experiment.search.algorithm = "fit";
   experiment.search.replicates = 1;
   TRY(MakeFitPlan(experiment, AllKeysOf(experiment)));
@@ -167,9 +170,20 @@ Result<ExitCode> Predict(CommandContext& context, const FitOptions& options, con
   return kExitDone;
 }
 
-// Prints what is known of the fit, and writes the fitted experiment.
+// Prints what is known of the fit, and writes the fitted experiment; of what is predicted, that alone.
 Result<ExitCode> Tell(CommandContext& context, const FitOptions& options, const std::string& dir) {
   TRY(const FitResult fit, ReadFit(dir));
+  if (!options.output.empty() && fit.fitted && fit.finished) {
+    TRY(WriteOutputFile(options.output, FittedToml(fit, dir)));
+    PrintMessage(context, fmt::format("wrote {}", options.output));
+    for (const std::string& hash : {fit.fitted->scenario_plugin, fit.fitted->plugin}) {
+      if (!hash.empty())
+        PrintMessage(context,
+                     fmt::format("it needs the library {}/plugins/{}.so in plugins/ beside it", dir, hash));
+    }
+  } else if (!options.output.empty()) {
+    PrintMessage(context, fmt::format("{} was not written: no setting is chosen yet", options.output));
+  }
   if (!options.predict.empty()) return Predict(context, options, fit, dir);
   if (options.running.json) {
     context.out << FitJson(fit, dir);
@@ -177,12 +191,6 @@ Result<ExitCode> Tell(CommandContext& context, const FitOptions& options, const 
     for (const Section& section : TellFit(fit, dir, context.program)) context.out << ToText(section);
   }
   context.out << std::flush;
-  if (!options.output.empty() && fit.fitted && fit.finished) {
-    TRY(WriteOutputFile(options.output, FittedToml(fit, dir)));
-    PrintMessage(context, fmt::format("wrote {}", options.output));
-  } else if (!options.output.empty()) {
-    PrintMessage(context, fmt::format("{} was not written: no setting is chosen yet", options.output));
-  }
   return fit.finished && !fit.Met() ? kExitNegative : kExitDone;
 }
 
@@ -250,7 +258,7 @@ void AddFit(CommandParser& parser) {
       R"(Simulates different settings, learns how the measured quantities follow from them, and keeps the settings that are
 likely, given what was measured (a synthetic likelihood over Gaussian-process emulators, in four rounds). The chosen
 setting is the likeliest, rounded to two digits that count; it is judged on fresh cases. Exit 1 when it misses a
-target. In place of EXPERIMENT stands the directory of a fit to tell it again.
+target. In place of EXPERIMENT stands the directory of a fit to tell it again, or its experiment.
 
 The file of targets (docs/fit.md explains it):
   [[target]]                      # value, or at_most, or at_least

@@ -35,7 +35,8 @@ TEST(FitPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
     if (!call.is_directory()) continue;
     EXPECT_THAT(ReadFile(call.path() / "experiment.toml"), testing::Not(HasSubstr("\nspeed = 0.05 ")));
   }
-  const ProcessResult again = Gauntlet({"fit", fit, "--predict", "task-partitioning", "--draws", "2", "--json"});
+  const ProcessResult again =
+      Gauntlet({"fit", fit, "--predict", "task-partitioning", "--draws", "2", "--json"});
   EXPECT_EQ(again.exit_code, 0) << again.err;
   EXPECT_THAT(again.err, testing::Not(HasSubstr("draw 1 of 2"))) << "its draws are known";
 }

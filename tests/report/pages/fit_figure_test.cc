@@ -13,7 +13,8 @@ namespace {
 CampaignFacts ThreeDraws() {
   CampaignFacts facts = FactsOf("flocking");
   facts.fit.emplace();
-  facts.fit->plan = ToyPlan({.vary = kToyVary, .targets = "metric=fitness value=1 n=100", .runs = 5000}).value();
+  facts.fit->plan =
+      ToyPlan({.vary = kToyVary, .targets = "metric=fitness value=1 n=100", .runs = 5000}).value();
   facts.fit->draws = {{0.1, 0.2, 0.3}, {0.1, 0.2, 0.3}, {0.5, 1.0, 0.0}};
   facts.fit->accepted = {{{0.5, 1.0, 0.0}, 1.0 / 3.0}, {{0.1, 0.2, 0.3}, 2.0 / 3.0}};
   facts.fit->chosen = SettingsPoint{0.5, 1.0, 0.0};
@@ -28,7 +29,8 @@ TEST(FitFigureTest, DrawsEveryKeyAndEveryTwoOfThem) {
   const std::string svg = figures.front().svg();
   ASSERT_TRUE(document.load_string(svg.c_str()));
   EXPECT_EQ(document.select_nodes("//*[@class='square']").size(), 6U);
-  EXPECT_EQ(document.select_nodes("//*[@class='draw']").size(), 9U) << "three points in each of three squares";
+  EXPECT_EQ(document.select_nodes("//*[@class='draw']").size(), 9U)
+      << "three points in each of three squares";
   EXPECT_EQ(document.select_nodes("//*[@class='part']").size(), 6U) << "two bars in each of three squares";
   EXPECT_EQ(document.select_nodes("//*[@class='chosen']").size(), 6U);
   EXPECT_EQ(figures.front().csv(),

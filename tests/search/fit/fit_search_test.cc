@@ -17,7 +17,7 @@ const std::string kTargets =
 
 SearchSetup SetupOfFit(const std::string& vary = kToyVary, const std::string& targets = kTargets) {
   static const SearchRow row = FitRow();
-  Experiment experiment = ToyExperiment();
+  Experiment experiment = FittedToy();
   experiment.fit = {.vary = vary, .targets = targets, .runs = 3000, .judged = 100};
   const sim::TestCase empty = EmptyArena(experiment.arena);
   SearchSetup setup = SetupOf(experiment, {}, {empty, empty});
@@ -151,7 +151,7 @@ TEST(FitSearchTest, NeedsTheCasesThatItsTargetsAreAbout) {
 TEST(FitSearchTest, ARunHasTheSettingsOfItsEvaluation) {
   const auto search = MakeFit();
   const EvaluationRequest request = search->Ask().front();
-  Experiment experiment = ToyExperiment();
+  Experiment experiment = FittedToy();
   const sim::RunSpec spec = SpecOfRun(experiment, request, 0);
   EXPECT_EQ(spec.controller_parameters, request.settings->controller_parameters);
   EXPECT_NE(spec.controller_parameters, experiment.controller_parameters);

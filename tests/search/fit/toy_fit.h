@@ -16,12 +16,12 @@ inline const std::string kToyVary =
     "controller_parameters.turn_rate=0.5..1.5 controller_parameters.bird_speed=0.01..0.1:log "
     "controller_parameters.turning_speed_factor=0..1";
 
-inline Experiment ToyExperiment() {
+inline Experiment FittedToy() {
   return ParseExperiment("", "toy.toml", {"scenario=flocking"}, BuiltInCatalogue()).value();
 }
 
 inline Result<FitPlan> ToyPlan(const FitSpec& spec) {
-  Experiment experiment = ToyExperiment();
+  Experiment experiment = FittedToy();
   experiment.fit = spec;
   return MakeFitPlan(experiment, AllKeysOf(experiment));
 }
@@ -64,6 +64,20 @@ inline std::string ToyMeasured(const SettingsPoint& hidden, sim::RandomStream& r
                      StatisticOf(targets[1], values[1])[0], StatisticOf(targets[2], values[2])[0]);
 }
 
+// Where a setting stands in the three ranges of kToyVary; in the middle of those that do not vary.
+inline SettingsPoint ToyPlaceOf(const FitPlan& plan, const FitSetting& setting) {
+  static const std::vector<VariedKey> all =
+      ToyPlan({.vary = kToyVary, .targets = "metric=fitness value=1 n=9"})->varied;
+  const std::vector<KeyValue> values = setting.ValuesOf(plan.varied);
+  SettingsPoint place(all.size(), 0.5);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (all[k].key.path == plan.varied[i].key.path) place[k] = all[k].PlaceOf(values[i]);
+    }
+  }
+  return place;
+}
+
 // Simulates what the fit asks for, to its end.
 inline void Finish(FitRounds& rounds, sim::RandomStream& random) {
   const FitPlan& plan = rounds.plan();
@@ -75,9 +89,7 @@ inline void Finish(FitRounds& rounds, sim::RandomStream& random) {
     rounds.Begin(places);
     const std::size_t first = rounds.settings().size() - places.size();
     for (std::size_t i = first; i < rounds.settings().size(); ++i) {
-      SettingsPoint place;
-      const std::vector<KeyValue> values = rounds.settings()[i].ValuesOf(plan.varied);
-      for (std::size_t k = 0; k < values.size(); ++k) place.push_back(plan.varied[k].PlaceOf(values[k]));
+      const SettingsPoint place = ToyPlaceOf(plan, rounds.settings()[i]);
       for (std::size_t cases = 0; cases < plan.cases.size(); ++cases) {
         const int runs = rounds.judging() ? plan.judged[cases] : plan.runs[cases];
         for (int run = 0; run < runs; ++run) rounds.Tell(i, cases, ToyRun(place, random), reader);

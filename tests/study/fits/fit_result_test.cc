@@ -22,7 +22,7 @@ const std::string kSpeed = "controller_parameters.bird_speed";
 const std::string kFactor = "controller_parameters.turning_speed_factor";
 
 FitResult ToyResult(const std::string& vary, const std::string& targets, int runs = 4000) {
-  Experiment experiment = ToyExperiment();
+  Experiment experiment = FittedToy();
   experiment.fit = {.vary = vary, .targets = targets, .runs = runs, .judged = 200};
   FitRounds rounds(ToyPlan(experiment.fit).value(), 11, Everywhere);
   sim::RandomStream random(5, sim::StreamPurpose::kTest, 0);
@@ -30,17 +30,17 @@ FitResult ToyResult(const std::string& vary, const std::string& targets, int run
   return ResultOf(experiment, rounds, true);
 }
 
-// ToyRun's fitness does not move where its mean is held against the first key alone.
+// The toy's mean fitness is 3 x^2 + sin(1) where only its first key varies.
 TEST(FitResultTest, TellsWhatIsLikelyAndJudgesTheChosenSetting) {
   const FitResult fit = ToyResult(
-      kTurn + "=0.5..1.5", "metric=fitness value=0.75 n=1000; metric=fitness statistic=sd value=0.5 n=1000");
+      kTurn + "=0.5..1.5", "metric=fitness value=1.591 n=1000; metric=fitness statistic=sd value=0.5 n=1000");
   EXPECT_THAT(fit.trade_offs, IsEmpty());
   EXPECT_THAT(fit.contradictions, IsEmpty());
   ASSERT_THAT(fit.keys, SizeIs(1));
   EXPECT_TRUE(fit.keys[0].determined);
   EXPECT_EQ(fit.keys[0].range, "0.5..1.5");
   ASSERT_TRUE(fit.fitted);
-  // 3 x^2 = 0.75 at x = 0.5, the middle of the range.
+  // That is 1.591 at x = 0.5, the middle of the range.
   const double chosen = fit.fitted->controller_parameters.at("turn_rate");
   EXPECT_NEAR(chosen, 1.0, 0.06);
   EXPECT_EQ(fit.keys[0].chosen, ToSet(chosen));
@@ -52,9 +52,9 @@ TEST(FitResultTest, TellsWhatIsLikelyAndJudgesTheChosenSetting) {
 }
 
 TEST(FitResultTest, AKeyThatNothingDependsOnIsNotDetermined) {
-  // Of the share of runs that lose birds, of which the toy has an equal share along a line of two keys.
-  const FitResult fit = ToyResult(kTurn + "=0.5..1.5 scenario_parameters.rejoin_time=0..600",
-                                  "metric=fitness value=0.75 n=1000", 3000);
+  const FitResult fit = ToyResult(
+      kTurn + "=0.5..1.5 scenario_parameters.rejoin_time=0..600",
+      "metric=fitness value=1.591 n=1000; statistic=share value=1 n=100 formula=fitness < 1000", 3000);
   ASSERT_THAT(fit.keys, SizeIs(2));
   EXPECT_TRUE(fit.keys[0].determined);
   EXPECT_FALSE(fit.keys[1].determined);
@@ -75,12 +75,12 @@ TEST(FitResultTest, KeysThatMakeUpForEachOtherAreNamed) {
 TEST(FitResultTest, TargetsThatContradictEachOtherAreNamed) {
   const FitResult fit =
       ToyResult(kTurn + "=0.5..1.5 " + kSpeed + "=0.01..0.1:log",
-                "metric=fitness value=2.5 n=1000; metric=fitness statistic=median value=0.5 n=1000");
+                "metric=fitness value=2.5 n=1000; metric=fitness statistic=median value=1 n=1000");
   EXPECT_FALSE(fit.Met());
   EXPECT_THAT(
       fit.contradictions,
       ElementsAre("Two targets contradict each other: mean of fitness, random (2.5 (n = 1000)) and median of "
-                  "fitness, random (0.5 (n = 1000)). Each alone can be met."));
+                  "fitness, random (1 (n = 1000)). Each alone can be met."));
   EXPECT_THAT(ToText(TellFit(fit, "dir", "gauntlet").back()),
               HasSubstr("No setting meets all targets; the chosen one, the likeliest, meets"));
 }
@@ -94,9 +94,9 @@ TEST(FitResultTest, ATargetOutOfReachIsNamedAlone) {
 }
 
 TEST(FitResultTest, TheFittedExperimentReadsBack) {
-  const FitResult fit = ToyResult(kTurn + "=0.5..1.5", "metric=fitness value=0.75 n=1000", 1000);
+  const FitResult fit = ToyResult(kTurn + "=0.5..1.5", "metric=fitness value=1.591 n=1000", 1000);
   const std::string toml = FittedToml(fit, "campaigns/one");
-  EXPECT_THAT(toml, HasSubstr("# mean of fitness, random: wanted 0.75 (n = 1000), got "));
+  EXPECT_THAT(toml, HasSubstr("# mean of fitness, random: wanted 1.591 (n = 1000), got "));
   const Result<Experiment> read = ParseExperiment(toml, "fitted.toml", {}, BuiltInCatalogue());
   ASSERT_TRUE(read.ok()) << read.error().message;
   EXPECT_EQ(read->controller_parameters, fit.fitted->controller_parameters);

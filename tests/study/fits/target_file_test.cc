@@ -94,9 +94,9 @@ TEST_F(TargetFileTest, WhatCannotBeATargetIsNamedWithItsPlace) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"", "targets.toml: there is no [[target]], so there is nothing to fit to"},
       {"[[tragte]]\nvalue = 1\n", "targets.toml:1:1: unknown table 'tragte'; did you mean 'target'?"},
-      {"[target]\nvalue = 1\n", "targets.toml:2:9: targets are written as [[target]]"},
+      {"[target]\nvalue = 1\n", "targets.toml:2:1: targets are written as [[target]]"},
       {"[[target]]\nmetrik = \"fitness\"\n",
-       "targets.toml:2:10: unknown key 'metrik'; did you mean 'metric'?"},
+       "targets.toml:2:1: unknown key 'metrik'; did you mean 'metric'?"},
       {"[[target]]\nmetric = \"food_taken\"\nvalue = 1\nn = 5\n",
        "target 'cases=random metric=food_taken n=5 value=1': flocking does not report it: unknown metric "
        "'food_taken'; known: fitness, total_failure, angular_order, birds_left, proportion_left, "
@@ -119,7 +119,8 @@ TEST_F(TargetFileTest, WhatCannotBeATargetIsNamedWithItsPlace) {
       {"[[target]]\ncsv = \"none.csv\"\ncolumn = \"time\"\n", "none.csv: No such file or directory"},
       {"[[target]]\ncases = \"blocked.json\"\nmetric = \"fitness\"\nvalue = 1\nn = 5\n",
        "a robot's centre needs 0.1 m of room there"},
-      {"[[require]]\nformula = \"birds == 10\"\nruns = 10\n", "arrival_time, timeout"}};
+      {"[[require]]\nformula = \"birds == 10\"\nruns = 10\n",
+       "unknown measure 'birds'; did you mean 'birds_left'?"}};
   for (const auto& [text, message] : wrong) {
     SCOPED_TRACE(text);
     EXPECT_THAT(ErrorOf(text), testing::HasSubstr(message));
