@@ -10,7 +10,7 @@ namespace gauntlet::analysis {
 namespace {
 
 // Pixels.
-constexpr double kPageLeft = 48.0;
+constexpr double kPageLeft = 72.0;
 constexpr double kPageTop = 128.0;
 constexpr double kSquare = 150.0;
 constexpr double kGap = 14.0;

@@ -79,7 +79,9 @@ class Predictor {
   // The figures of draw `number`, whose runs stand in the folder. Nothing when it was stopped.
   Result<std::optional<Figures>> Predict(std::size_t number, const std::vector<std::string>& settings) {
     const std::string directory = fmt::format("{}/draw-{}", folder_, number + 1);
-    return IsOfStudy() ? PredictStudy(directory, settings) : PredictExperiment(directory, settings);
+    std::vector<std::string> sets = options_.experiment.sets;
+    sets.insert(sets.end(), settings.begin(), settings.end());
+    return IsOfStudy() ? PredictStudy(directory, sets) : PredictExperiment(directory, sets);
   }
 
  private:
@@ -90,8 +92,8 @@ class Predictor {
   }
 
   Result<std::optional<Figures>> PredictStudy(const std::string& directory,
-                                              const std::vector<std::string>& settings) {
-    TRY(const Study study, LoadStudy(options_.predict, {.experiment = "", .repeats = "", .sets = settings}));
+                                              const std::vector<std::string>& sets) {
+    TRY(const Study study, LoadStudy(options_.predict, {.experiment = "", .repeats = "", .sets = sets}));
     TRY(BeginStudy(directory, study));
     std::ostringstream unread;
     CommandContext quiet{unread,        context_.err,     context_.err_is_terminal,
@@ -108,11 +110,11 @@ class Predictor {
   }
 
   Result<std::optional<Figures>> PredictExperiment(const std::string& directory,
-                                                   const std::vector<std::string>& settings) {
+                                                   const std::vector<std::string>& sets) {
     ExperimentOptions what{.experiment = options_.predict,
                            .directory = directory,
                            .seed = "",
-                           .sets = settings,
+                           .sets = sets,
                            .plugins = options_.experiment.plugins};
     TRY(const Experiment experiment, LoadExperimentWith(what, {}));
     CampaignRun campaign;
@@ -199,12 +201,13 @@ Result<ExitCode> RunStoredFit(CommandContext& context, const FitOptions& options
   const std::string& dir = options.experiment.experiment;
   const bool of_new = !options.targets.empty() || !options.vary.empty() || !options.budget.empty() ||
                       !options.experiment.directory.empty() || !options.experiment.seed.empty() ||
-                      !options.experiment.sets.empty() || options.dry_run || options.print;
+                      (!options.experiment.sets.empty() && options.predict.empty()) || options.dry_run ||
+                      options.print;
   if (of_new)
-    return InvalidInput(
-        fmt::format("{} is a campaign: what it fits is decided; only -o, --predict and --draws "
-                    "go with it",
-                    dir));
+    return InvalidInput(fmt::format(
+        "{} is a campaign: what it fits is decided; only -o, and --predict with --draws and --set, "
+        "go with it",
+        dir));
   return Tell(context, options, dir);
 }
 
@@ -275,7 +278,7 @@ The file of targets (docs/fit.md explains it):
 Examples:
   gauntlet fit task-partitioning --targets lab.toml --vary controller_parameters.wait_time=5..300:log -o lab-fitted.toml
   gauntlet fit my.toml --targets lab.toml --vary physics=impulse|box2d --vary scenario_parameters.robots=4..8 --budget 5000
-  gauntlet fit campaigns/my-fit --predict flocking --draws 50
+  gauntlet fit campaigns/my-fit --predict flocking --draws 50 --set search.generations=20
   gauntlet fit my.toml --targets lab.toml --vary scenario_parameters.robots=4..8 --print-experiment > fit.toml)");
 }
 

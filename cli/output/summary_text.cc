@@ -176,6 +176,9 @@ std::vector<NextCommand> WorthTrying(const SearchSummary& summary, const Campaig
                                      const HintContext& context) {
   const std::string directory = PastedPath(context.directory);
   std::vector<NextCommand> commands;
+  if (const SearchRow* row = FindSearch(summary.search); row != nullptr && row->varies_settings)
+    commands.push_back(
+        {fmt::format("{} fit {}", context.program, directory), "the settings that it has found"});
   if (const auto members = Toughest(summary); !members.empty()) {
     const PopulationMember& best = *members.front();
     commands.push_back(

@@ -20,7 +20,11 @@ analysis::PairsFigure PairsOf(const FitResult& fit) {
       .chosen = fit.chosen.value_or(SettingsPoint())};
   for (const VariedKey& key : fit.plan.varied) {
     const std::size_t dot = key.key.path.rfind('.');
-    const auto end = [&](double place) { return ToSet(key.ValueAt(place)); };
+    const auto end = [&](double place) {
+      const KeyValue value = key.ValueAt(place);
+      const auto* number = std::get_if<double>(&value);
+      return number == nullptr ? ToSet(value) : fmt::format("{:.3g}", *number);
+    };
     figure.axes.push_back({key.key.path.substr(dot == std::string::npos ? 0 : dot + 1), end(0.0), end(1.0)});
   }
   return figure;

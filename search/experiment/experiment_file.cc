@@ -289,7 +289,9 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
     keys.insert(std::ranges::find(keys, "scenario", &Key::path) + 1, ScenarioPluginKey());
 
   if (const auto* search = FindByName(catalogue.searches, experiment.search.algorithm))
-    std::erase_if(keys, [&](const Key& key) { return key.rare && !Reads(*search, key.path); });
+    std::erase_if(keys, [&](const Key& key) {
+      return key.rare && !Reads(*search, key.path) && key.get(experiment) == key.default_value;
+    });
 
   std::string text;
   for (const std::string& line : header) text += line.empty() ? "#\n" : fmt::format("# {}\n", line);

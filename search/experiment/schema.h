@@ -23,7 +23,7 @@ struct Key : SettingsKey<Experiment> {
   bool of_searches = false;  // has none where the search does not read it (Reads)
   bool disturbs = false;     // says what is wrong with robots: "faults", "noise.DEVICE.NAME"
   bool came_later = false;   // than stored campaigns: left out of identities where it has its default
-  bool rare = false;         // not written where the search does not read it
+  bool rare = false;         // not written where it has its default and the search does not read it
 };
 
 // A broken rule that concerns more than one key, and the key to point at.

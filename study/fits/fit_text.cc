@@ -13,7 +13,7 @@
 namespace gauntlet {
 namespace {
 
-constexpr const char* kTitle = "Settings under which runs are as they were measured";
+constexpr const char* kTitle = "Settings that are likely, given what was measured";
 
 Table KeyTable(const FitResult& fit) {
   Table table({{"key", "key"},
@@ -37,9 +37,7 @@ Table TargetTable(const FitResult& fit) {
                {">standard errors away", "misfit"},
                {"", "met"}});
   for (const JudgedTarget& target : fit.targets) {
-    table.AddRow({target.title, target.wanted, DecimalCell(target.ours, 3),
-                  Cell(fmt::format("{:.3f} to {:.3f}", target.interval.low, target.interval.high),
-                       fmt::format("{} {}", target.interval.low, target.interval.high)),
+    table.AddRow({target.title, target.wanted, DecimalCell(target.ours, 3), IntervalCell(target.interval),
                   DecimalCell(target.misfit, 1), Cell(target.met ? "met" : "NOT MET", target.met)});
   }
   return table;

@@ -157,7 +157,7 @@ const std::vector<Room>& House() {
        {"box2d", "zmq", "sqlite3"}},
       {"study/fits",
        {"base", "base/system", "proto", "analysis", "search/experiment", "search/cases", "search",
-        "master/store", "master/directory", "master/campaign", "study/sets", "study/questions"},
+        "master/campaign", "study/sets", "study/questions"},
        kRunData + kBehaviours,
        {"box2d", "zmq", "sqlite3"}},
       {"study",

@@ -36,7 +36,7 @@ TEST(FitFigureTest, DrawsEveryKeyAndEveryTwoOfThem) {
   EXPECT_EQ(figures.front().csv(),
             "weight,controller_parameters.turn_rate,controller_parameters.bird_speed,"
             "controller_parameters.turning_speed_factor\n"
-            "0.3333333333333333,1,0.1,0\n0.6666666666666666,0.6,0.015848931924611134,0.3\n");
+            "0.3333333333333333,1.0,0.1,0.0\n0.6666666666666666,0.6,0.015848931924611127,0.3\n");
 }
 
 TEST(FitFigureTest, ThereIsNoneOfACampaignThatIsNoFit) {
