@@ -193,15 +193,12 @@ Status PopulationSearch::Restore(CanonicalDecoder& decoder, const History& histo
   if (!decoder.ok()) return Damaged("it is cut off");
   if (identity != identity_) return Mismatch(identity, identity_);
   evaluations_done_ = decoder.Uint();
-  if (const std::uint64_t planned = Progress().evaluations_planned; evaluations_done_ > planned) {
-    std::string length;
-    for (const Key& key : setup_.keys) {
-      if (key.path != setup_.row->info.length) continue;
-      length = fmt::format(": {} = {}", key.path, ToToml(key.get(setup_.experiment)));
-    }
+  const std::uint64_t planned = Progress().evaluations_planned;
+  const auto length = std::ranges::find(setup_.keys, setup_.row->info.length, &Key::path);
+  if (length != setup_.keys.end() && evaluations_done_ > planned) {
     return InvalidInput(
-        fmt::format("the saved search state has {} evaluations, but the experiment ends after {}{}",
-                    evaluations_done_, planned, length));
+        fmt::format("the saved search state has {} evaluations, but the experiment ends after {}: {} = {}",
+                    evaluations_done_, planned, length->path, ToToml(length->get(setup_.experiment))));
   }
   newborns_.clear();
   TRY(RestoreRest(decoder, history));

@@ -130,6 +130,28 @@ TEST(FitSearchTest, GoesOnFromASavedRoundAsIfItHadNotStopped) {
   }
 }
 
+TEST(FitSearchTest, JudgesAFewSettingsWhereEachBreaksACondition) {
+  const SearchSetup setup = SetupOfFit(
+      kToyVary, "metric=fitness value=1.5 n=100; statistic=every cases=empty runs=30 formula=birds_left < 0");
+  const auto search = MakeFit(setup);
+  const auto all = Drive(*search, 400);
+  EXPECT_EQ(search->Fit()->Chosen(), nullptr);
+  EXPECT_EQ(std::ranges::count_if(search->Fit()->settings(), &FitSetting::judged),
+            static_cast<std::ptrdiff_t>(FitRounds::kCandidates));
+  CanonicalEncoder encoder;
+  search->Save(encoder);
+  const std::string state = encoder.Take();
+  CanonicalDecoder decoder(state);
+  const auto again = MakeFit(setup);
+  const Status restored = again->Restore(decoder, [&](const auto& visit) -> Status {
+    for (const EvaluationRequest& request : all) visit(OutcomeOf(*again, request));
+    return Ok{};
+  });
+  ASSERT_TRUE(restored.ok()) << restored.error().message;
+  EXPECT_THAT(again->Ask(), testing::IsEmpty());
+  EXPECT_TRUE(again->Progress().finished);
+}
+
 TEST(FitSearchTest, AStateOfOtherRunsIsDamaged) {
   const auto stopped = MakeFit();
   Drive(*stopped, 400, 1);
