@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "base/nearest_name.h"
-#include "base/number_text.h"
 #include "base/split.h"
 #include "search/experiment/key_assignment.h"
 
@@ -75,13 +74,6 @@ Status CheckType(const Assignment& assignment, const std::string& kind, const st
 Error UnknownKey(const Assignment& assignment, const std::string& key,
                  const std::vector<std::string_view>& known) {
   return InvalidInput(fmt::format("{}: {}", assignment.where, UnknownName("key", key, known)));
-}
-
-std::string TextOf(const TomlValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
-  if (const auto* number = std::get_if<double>(&value)) return NumberText(*number);
-  return std::get<bool>(value) ? "true" : "false";
 }
 
 Status AddToTable(const Assignment& assignment, StudyFileContent& content) {

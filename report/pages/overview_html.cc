@@ -137,6 +137,14 @@ std::string SearchesHtml(const CampaignSummary& summary) {
                      SearchesTable(summary).ToHtml());
 }
 
+// The settings that were found; what became of single runs is not what a fit is about.
+std::string FitHtml(const CampaignFacts& facts) {
+  std::string html;
+  for (const Section& section : TellFit(*facts.fit, facts.directory, "gauntlet")) html += ToHtml(section);
+  for (const NamedFigure& figure : FitFigures(facts)) html += FigureHtml(figure, facts.directory);
+  return html;
+}
+
 }  // namespace
 
 std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
@@ -149,16 +157,12 @@ std::string OverviewHtml(const CampaignPages& pages, std::size_t number) {
     for (const std::string& note : facts.notes) html += fmt::format("<li>{}</li>\n", Html(note));
     html += "</ul>\n";
   }
-  html += DistinctFailuresHtml(pages, number);
+  html += facts.fit ? FitHtml(facts) : DistinctFailuresHtml(pages, number);
   html += fmt::format(
       "<div class=\"columns\"><div><h3>What was tested</h3>\n{}</div>\n<div><h3>Where it comes "
       "from</h3>\n{}</div></div>\n",
       TestedHtml(facts), ProvenanceHtml(facts));
-  html += CoursesHtml(pages);
-  if (facts.fit) {
-    for (const Section& section : TellFit(*facts.fit, facts.directory, "gauntlet")) html += ToHtml(section);
-  }
-  for (const NamedFigure& figure : FitFigures(facts)) html += FigureHtml(figure, facts.directory);
+  if (!facts.fit) html += CoursesHtml(pages);
   for (const NamedFigure& figure : ArchiveFigures(facts)) html += FigureHtml(figure, facts.directory);
   html += SearchesHtml(facts.summary) + CommandsHtml(facts);
   return html + fmt::format(

@@ -6,6 +6,7 @@
 #include "base/number_text.h"
 #include "controllers/registry.h"
 #include "report/pages/campaign_pages.h"
+#include "study/fits/fit_text.h"
 
 namespace gauntlet {
 namespace {
@@ -67,6 +68,7 @@ std::string VerdictOf(const CampaignPages& pages) {
   if (summary.runs_failed == summary.runs_done)
     return fmt::format("No run gave a result: of {} runs none could be simulated to its end.",
                        FormatCount(summary.runs_done));
+  if (facts.fit) return OutcomeOf(*facts.fit);
   if (summary.total_failures == 0) {
     return fmt::format("The {} held out: in none of {} runs did it fail as a whole.{}", SwarmOf(facts),
                        FormatCount(summary.runs_done), Confirmed(facts));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/key.h"
+#include "base/number_text.h"
 #include "base/utf8.h"
 
 namespace gauntlet {
@@ -193,6 +194,14 @@ Result<Assignment> ReadSet(const std::string& set, const std::string& option) {
   if (!value.has_value()) return InvalidInput(where + ": the value is not valid UTF-8 text");
   assignment.value = std::move(*value);
   return assignment;
+}
+
+std::string TextOf(const TomlValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *integer);
+  if (const auto* number = std::get_if<double>(&value)) return NumberText(*number);
+  if (const auto* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  return "";
 }
 
 std::string KindOf(const TomlValue& value) {

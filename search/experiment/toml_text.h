@@ -39,6 +39,9 @@ Result<std::vector<Assignment>> ReadToml(std::string_view text, const std::strin
 // text that is not UTF-8.
 Result<Assignment> ReadSet(const std::string& set, const std::string& option = "--set");
 
+// A text, number or truth value as people write it; "" of another kind.
+std::string TextOf(const TomlValue& value);
+
 // "text", "a whole number", "a table": for messages.
 std::string KindOf(const TomlValue& value);
 

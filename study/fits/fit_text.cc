@@ -63,7 +63,9 @@ std::vector<std::string> WhatKeysSay(const FitResult& fit) {
   return sentences;
 }
 
-std::string Outcome(const FitResult& fit) {
+}  // namespace
+
+std::string OutcomeOf(const FitResult& fit) {
   if (!fit.why.empty()) return fmt::format("There is nothing to choose from: {}.", fit.why);
   if (!fit.finished) return "The fit is not finished: what stands here is what is known by now.";
   if (fit.targets.empty()) return "No setting of the ranges can be simulated and is likely.";
@@ -72,8 +74,6 @@ std::string Outcome(const FitResult& fit) {
   return fmt::format("No setting meets all targets; the chosen one, the likeliest, meets {} of {}.", met,
                      fit.targets.size());
 }
-
-}  // namespace
 
 std::vector<Section> TellFit(const FitResult& fit, const std::string& dir, const std::string& program) {
   Section settings{.title = kTitle, .table = KeyTable(fit), .sentences = WhatKeysSay(fit)};
@@ -87,7 +87,7 @@ std::vector<Section> TellFit(const FitResult& fit, const std::string& dir, const
   Section targets{.title = "Targets, and what the chosen setting gives in fresh runs",
                   .table = TargetTable(fit)};
   if (fit.targets.empty()) targets.title = "Targets";
-  targets.sentences = {Outcome(fit)};
+  targets.sentences = {OutcomeOf(fit)};
   targets.sentences.insert(targets.sentences.end(), fit.contradictions.begin(), fit.contradictions.end());
   const std::string place = PastedPath(dir);
   if (!fit.finished) {
@@ -119,7 +119,7 @@ std::string FitJson(const FitResult& fit, const std::string& dir) {
                    {"trade_offs", std::move(trade_offs)},
                    {"targets", TargetTable(fit).ToJson()},
                    {"contradictions", fit.contradictions},
-                   {"outcome", Outcome(fit)}});
+                   {"outcome", OutcomeOf(fit)}});
 }
 
 }  // namespace gauntlet

@@ -43,13 +43,6 @@ struct WrittenTarget {
   }
 };
 
-std::string TomlText(const TomlValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* number = std::get_if<double>(&value)) return NumberText(*number);
-  if (const auto* whole = std::get_if<std::int64_t>(&value)) return fmt::format("{}", *whole);
-  return "";
-}
-
 class TargetFileReader {
  public:
   TargetFileReader(std::string path, const Experiment& experiment)
@@ -94,7 +87,7 @@ class TargetFileReader {
     if (other != nullptr || std::holds_alternative<bool>(one.value))
       return InvalidInput(
           fmt::format("{}: {} is {}, expected a number or text", one.where, key, KindOf(one.value)));
-    tables_.back().values[key] = TomlText(one.value);
+    tables_.back().values[key] = TextOf(one.value);
     return Ok{};
   }
 
