@@ -254,18 +254,32 @@ std::string FitTarget::ToText() const {
 std::vector<double> BlockMeans(std::vector<double> values) {
   GAUNTLET_CHECK(!values.empty(), "no value");
   std::ranges::sort(values);
-  const auto count = static_cast<double>(values.size());
-  std::vector<double> means;
-  for (std::size_t block = 0; block < kBlocks; ++block) {
-    const double begin = count * static_cast<double>(block) / kBlocks;
-    const double end = count * static_cast<double>(block + 1) / kBlocks;
-    double sum = 0.0;
-    for (auto i = static_cast<std::size_t>(begin); i < values.size() && static_cast<double>(i) < end; ++i) {
-      const auto at = static_cast<double>(i);
-      sum += values[i] * (std::min(at + 1.0, end) - std::max(at, begin));
+  // The quantile function: straight between the values at their places, and on beyond the outermost.
+  const auto n = static_cast<double>(values.size());
+  constexpr double kBeyond = 0.625;  // of a distance between two places
+  const double first_step = values.size() > 1 ? values[1] - values[0] : 0.0;
+  const double last_step = values.size() > 1 ? values.back() - values[values.size() - 2] : 0.0;
+  std::vector<std::pair<double, double>> points = {{0.0, values.front() - kBeyond * first_step}};
+  for (const double value : values)
+    points.emplace_back((static_cast<double>(points.size()) - 0.375) / (n + 0.25), value);
+  points.emplace_back(1.0, values.back() + kBeyond * last_step);
+  std::vector<double> means(kBlocks, 0.0);
+  double sum = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const auto [begin, from] = points[i - 1];
+    const auto [end, to] = points[i];
+    for (std::size_t block = 0; block < kBlocks; ++block) {
+      const double low = std::max(begin, static_cast<double>(block) / kBlocks);
+      const double high = std::min(end, static_cast<double>(block + 1) / kBlocks);
+      if (low >= high) continue;
+      const double share = ((low + high) / 2.0 - begin) / (end - begin);
+      const double area = (high - low) * (from + share * (to - from));
+      means[block] += kBlocks * area;
+      sum += area;
     }
-    means.push_back(sum / (end - begin));
   }
+  const double mean = analysis::Describe(values).mean;
+  for (double& one : means) one += mean - sum;
   return means;
 }
 

@@ -221,12 +221,14 @@ Eigen::MatrixXd FitPosterior::CovarianceNear(const Eigen::VectorXd& input) const
   return sum / static_cast<double>(count);
 }
 
-void FitPosterior::Predict(const SettingsPoint& place, Eigen::VectorXd& mean, Eigen::VectorXd& unsure,
+void FitPosterior::Predict(const SettingsPoint& place, std::span<const std::size_t> only,
+                           Eigen::VectorXd& mean, Eigen::VectorXd& unsure,
                            Eigen::MatrixXd& covariance) const {
   const Eigen::VectorXd input = InputOf(place);
-  mean.resize(std::ssize(emulators_));
-  unsure.resize(std::ssize(emulators_));
+  mean = unsure = Eigen::VectorXd::Zero(std::ssize(emulators_));
   for (Eigen::Index c = 0; c < mean.size(); ++c) {
+    const std::size_t target = target_of_[static_cast<std::size_t>(c)];
+    if (!only.empty() && std::ranges::find(only, target) == only.end()) continue;
     const Emulator::Prediction predicted = emulators_[static_cast<std::size_t>(c)].At(input);
     mean(c) = predicted.mean;
     unsure(c) = predicted.variance;
@@ -268,7 +270,7 @@ double FitPosterior::LogLikelihood(const SettingsPoint& place, std::span<const s
   Eigen::VectorXd mean;
   Eigen::VectorXd unsure;
   Eigen::MatrixXd covariance;
-  Predict(place, mean, unsure, covariance);
+  Predict(place, only, mean, unsure, covariance);
   std::vector<std::size_t> equalities;
   double log = 0.0;
   const auto add = [&](std::size_t t) {
@@ -296,7 +298,7 @@ double FitPosterior::Misfit(const SettingsPoint& place, std::size_t target) cons
   Eigen::VectorXd mean;
   Eigen::VectorXd unsure;
   Eigen::MatrixXd covariance;
-  Predict(place, mean, unsure, covariance);
+  Predict(place, {&target, 1}, mean, unsure, covariance);
   const Part& part = parts_[target];
   const auto begin = static_cast<Eigen::Index>(part.begin);
   const auto count = static_cast<Eigen::Index>(part.count);

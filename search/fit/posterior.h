@@ -67,8 +67,9 @@ class FitPosterior {
   Eigen::MatrixXd CovarianceNear(const Eigen::VectorXd& input) const;
   double LogOfEqualities(std::span<const std::size_t> targets, const Eigen::VectorXd& mean,
                          const Eigen::VectorXd& unsure, const Eigen::MatrixXd& covariance) const;
-  void Predict(const SettingsPoint& place, Eigen::VectorXd& mean, Eigen::VectorXd& unsure,
-               Eigen::MatrixXd& covariance) const;
+  // Of components of `only`, of all when it is empty; others are 0.
+  void Predict(const SettingsPoint& place, std::span<const std::size_t> only, Eigen::VectorXd& mean,
+               Eigen::VectorXd& unsure, Eigen::MatrixXd& covariance) const;
 
   std::span<const VariedKey> varied_;
   std::span<const FitTarget> targets_;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "controllers/registry.h"
+#include "sim/random/random_stream.h"
 
 namespace gauntlet {
 namespace {
@@ -60,11 +61,32 @@ TEST(FitTargetsTest, StatisticsAreThoseOfTextbooks) {
 }
 
 TEST(FitTargetsTest, BlocksShareTheValuesBetweenThem) {
-  EXPECT_THAT(BlockMeans({6, 5, 4, 3, 2, 1}), ElementsAre(1, 2, 3, 4, 5, 6));
-  // Nine values: each block is a value and a half.
-  EXPECT_THAT(BlockMeans({1, 1, 1, 2, 2, 2, 3, 3, 3}),
-              Pointwise(DoubleNear(1e-12), std::vector<double>{1, 1, 2, 2, 3, 3}));
+  // The first value stands at .1 (.625 / 6.25), the second at .26: from 0 to 1/6 the line goes from .375
+  // to 1.4167.
+  const std::vector<double> blocks = BlockMeans({6, 5, 4, 3, 2, 1});
+  EXPECT_NEAR(blocks[0], 0.375 + 1.0 / 12 / 0.16, 1e-12);
+  for (std::size_t block = 0; block < kBlocks; ++block)
+    EXPECT_NEAR(blocks[block] + blocks[kBlocks - 1 - block], 7.0, 1e-12);
   EXPECT_THAT(BlockMeans({7}), Pointwise(DoubleNear(1e-12), std::vector<double>(kBlocks, 7)));
+}
+
+// Normal values of mean 0 and standard deviation 1, whose blocks are 6 (pdf(q) - pdf(q')) between the
+// quantiles q and q' of k/6.
+TEST(FitTargetsTest, BlocksOfFewValuesAreThoseOfManyOnAverage) {
+  constexpr int kSamples = 20'000;
+  for (const int count : {20, 100}) {
+    std::vector<double> sums(kBlocks, 0.0);
+    sim::RandomStream random(3, sim::StreamPurpose::kTest);
+    for (int sample = 0; sample < kSamples; ++sample) {
+      std::vector<double> values;
+      for (int i = 0; i < count; ++i) values.push_back(random.Gaussian());
+      const std::vector<double> means = BlockMeans(values);
+      for (std::size_t block = 0; block < kBlocks; ++block) sums[block] += means[block] / kSamples;
+    }
+    EXPECT_THAT(sums, Pointwise(DoubleNear(0.035),
+                                std::vector<double>{-1.4991, -0.6825, -0.2121, 0.2121, 0.6825, 1.4991}))
+        << count;
+  }
 }
 
 // Of equal samples the mean difference of blocks is the Wasserstein-1 distance once they are as many.

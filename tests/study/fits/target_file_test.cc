@@ -71,7 +71,8 @@ TEST_F(TargetFileTest, AColumnOfMeasuredRunsIsADistribution) {
   const FitTarget& target = targets->front();
   EXPECT_EQ(target.statistic, FitTarget::Statistic::kDistribution);
   EXPECT_EQ(target.n, 6.0);
-  EXPECT_THAT(target.values, testing::Pointwise(testing::DoubleNear(1e-12), {0.1, 0.2, 0.3, 0.4, 0.5, 0.6}));
+  EXPECT_THAT(target.values,
+              testing::Pointwise(testing::DoubleNear(1e-12), BlockMeans({0.1, 0.2, 0.3, 0.4, 0.5, 0.6})));
 }
 
 TEST_F(TargetFileTest, CasesOfFilesAreHandedInOnce) {
