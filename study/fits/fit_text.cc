@@ -78,7 +78,7 @@ std::string OutcomeOf(const FitResult& fit) {
 std::vector<Section> TellFit(const FitResult& fit, const std::string& dir, const std::string& program) {
   Section settings{.title = kTitle, .table = KeyTable(fit), .sentences = WhatKeysSay(fit)};
   settings.lead = {fmt::format(
-      "{} of {} were held against {}{}.", Counted(fit.runs, "run"),
+      "{} runs of {} were held against {}{}.", FormatCount(fit.runs),
       Counted(fit.settings + fit.candidates, "setting"), Counted(fit.plan.targets.size(), "target"),
       fit.candidates > 1 ? fmt::format("; {} of the settings were judged on fresh cases, the last is "
                                        "the chosen one",
