@@ -1,12 +1,14 @@
 // gauntlet fit: settings under which the simulated swarm behaves as it was measured.
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "base/hash.h"
 #include "base/parse_number.h"
 #include "base/shell_quoted.h"
 #include "cli/commands.h"
@@ -70,6 +72,27 @@ Result<SearchPlan> PlanFit(CommandContext& context, const FitOptions& options) {
   return SearchPlan{"", std::move(experiment), std::move(targets.cases)};
 }
 
+bool IsStudyName(const std::string& name) {
+  const std::vector<std::string> shipped = ShippedStudies();
+  if (std::ranges::count(shipped, name) > 0) return true;
+  return name.ends_with(".toml") && LoadStudy(name).ok();
+}
+
+// The same for the same study or experiment with the same settings.
+Result<std::uint64_t> IdentityOfPredicted(const FitOptions& options) {
+  Fnv1a64 hash;
+  for (const std::string& set : options.experiment.sets) hash.AddBytes(set);
+  if (IsStudyName(options.predict)) {
+    TRY(const Study study, LoadStudy(options.predict));
+    for (const auto& [name, text] : study.texts) hash.AddBytes(text);
+    return hash.value();
+  }
+  ExperimentOptions what{.experiment = options.predict, .plugins = options.experiment.plugins};
+  TRY(const Experiment experiment, LoadExperimentWith(what, {}));
+  hash.AddBytes(WriteExperiment(experiment, {}, BuiltInCatalogue()));
+  return hash.value();
+}
+
 // Of a study or an experiment, under settings of one draw.
 class Predictor {
  public:
@@ -81,16 +104,10 @@ class Predictor {
     const std::string directory = fmt::format("{}/draw-{}", folder_, number + 1);
     std::vector<std::string> sets = options_.experiment.sets;
     sets.insert(sets.end(), settings.begin(), settings.end());
-    return IsOfStudy() ? PredictStudy(directory, sets) : PredictExperiment(directory, sets);
+    return IsStudyName(options_.predict) ? PredictStudy(directory, sets) : PredictExperiment(directory, sets);
   }
 
  private:
-  bool IsOfStudy() const {
-    const std::vector<std::string> shipped = ShippedStudies();
-    if (std::ranges::count(shipped, options_.predict) > 0) return true;
-    return options_.predict.ends_with(".toml") && LoadStudy(options_.predict).ok();
-  }
-
   Result<std::optional<Figures>> PredictStudy(const std::string& directory,
                                               const std::vector<std::string>& sets) {
     TRY(const Study study, LoadStudy(options_.predict, {.experiment = "", .repeats = "", .sets = sets}));
@@ -144,8 +161,11 @@ Result<ExitCode> Predict(CommandContext& context, const FitOptions& options, con
                          const std::string& dir) {
   TRY(const int draws, NumberFrom("--draws", options.draws, 1000, 20));
   if (!fit.finished || fit.draws.empty())
-    return InvalidInput(fmt::format("{} has no accepted settings to draw from", dir));
-  const std::string folder = fmt::format("{}/predict/{}", dir, fs::path(options.predict).stem().string());
+    return InvalidInput(fmt::format(
+        "{} {}", dir, fit.finished ? "has no accepted settings to draw from" : "is not finished"));
+  TRY(const std::uint64_t identity, IdentityOfPredicted(options));
+  const std::string folder =
+      fmt::format("{}/predict/{}-{:016x}", dir, fs::path(options.predict).stem().string(), identity);
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return Error{ErrorKind::kIo, fmt::format("{}: {}", folder, error.message())};
@@ -160,7 +180,7 @@ Result<ExitCode> Predict(CommandContext& context, const FitOptions& options, con
     if (!figures) return kExitStopped;
     TRY(file.Add(all[next], *figures));
   }
-  const Table ranges = file.Ranges();
+  const Table ranges = file.Ranges(all.size());
   if (options.running.json) {
     context.out << JsonText({{"directory", dir}, {"draws", all.size()}, {"figures", ranges.ToJson()}});
   } else {
@@ -178,7 +198,7 @@ Result<ExitCode> Tell(CommandContext& context, const FitOptions& options, const 
   if (!options.output.empty() && fit.fitted && fit.finished) {
     TRY(WriteOutputFile(options.output, FittedToml(fit, dir)));
     PrintMessage(context, fmt::format("wrote {}", options.output));
-    for (const std::string& hash : {fit.fitted->scenario_plugin, fit.fitted->plugin}) {
+    for (const std::string& hash : std::set<std::string>{fit.fitted->scenario_plugin, fit.fitted->plugin}) {
       if (!hash.empty())
         PrintMessage(context,
                      fmt::format("it needs the library {}/plugins/{}.so in plugins/ beside it", dir, hash));
@@ -193,7 +213,8 @@ Result<ExitCode> Tell(CommandContext& context, const FitOptions& options, const 
     for (const Section& section : TellFit(fit, dir, context.program)) context.out << ToText(section);
   }
   context.out << std::flush;
-  return fit.finished && !fit.Met() ? kExitNegative : kExitDone;
+  const bool unwritten = !options.output.empty() && !fit.finished;
+  return unwritten || (fit.finished && !fit.Met()) ? kExitNegative : kExitDone;
 }
 
 // Of a fit that is there: what was found, or the rest of it.
@@ -221,6 +242,9 @@ Result<ExitCode> RunFit(CommandContext& context, const FitOptions& options) {
       return InvalidInput("--print-experiment: an experiment holds no cases, and a target is about some");
     context.out << WriteExperiment(plan.experiment, {}, BuiltInCatalogue()) << std::flush;
     return kExitDone;
+  }
+  if (!options.output.empty()) {
+    TRY(OutputFile::Open(options.output));  // without it the runs would be for nothing
   }
   const std::vector<SearchPlan> plans = {plan};
   TRY(CampaignRun campaign, LocalRun(plans, options));

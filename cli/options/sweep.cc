@@ -167,6 +167,8 @@ Result<std::vector<SearchPlan>> PlanSearches(const ExperimentOptions& options,
     if (!plans.empty() && seeds.empty()) plan.experiment.seed = plans.front().experiment.seed;
     std::ranges::move(WithSeeds(plan, seeds), std::back_inserter(plans));
   }
+  if (plans.size() > 1 && RowOf(plans.front().experiment).varies_settings)
+    return InvalidInput("a campaign holds one fit: start one for each seed or setting");
 
   std::vector<ExtraSet> settings = extra;
   for (const std::string& set : options.sets)

@@ -62,7 +62,7 @@ Emulator::Emulator(Eigen::MatrixXd inputs, std::span<const double> values, std::
   double squares = 0.0;
   for (const double value : values) squares += Squared(value - middle_);
   scale_ = std::sqrt(squares / static_cast<double>(n));
-  if (!(scale_ > 0.0)) scale_ = 1.0;
+  if (!(scale_ > 1e-12 * std::abs(middle_))) scale_ = 1.0;  // but for rounding they are equal
   for (Eigen::Index i = 0; i < n; ++i) {
     values_(i) = (values[static_cast<std::size_t>(i)] - middle_) / scale_;
     noise_(i) = noise[static_cast<std::size_t>(i)] / Squared(scale_);

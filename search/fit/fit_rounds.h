@@ -33,6 +33,7 @@ class FitRounds {
 
   const FitPlan& plan() const { return plan_; }
   std::uint64_t seed() const { return seed_; }
+  const FitPosterior::Allowed& allowed() const { return allowed_; }
   const std::vector<FitSetting>& settings() const { return settings_; }
   std::size_t round() const { return round_; }  // that have been proposed
 

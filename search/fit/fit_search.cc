@@ -1,6 +1,8 @@
 #include "search/fit/fit_search.h"
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,18 +15,28 @@
 namespace gauntlet {
 namespace {
 
-// Rules between keys concern these alone.
+// Rules between keys, and whether a swarm can begin, depend on these alone.
 bool HasRules(std::span<const VariedKey> varied) {
   return std::ranges::any_of(varied, [](const VariedKey& one) {
-    return one.key.path.starts_with("genome.") || one.key.path.starts_with("arena.");
+    constexpr std::array<std::string_view, 3> kTables = {"genome.", "arena.", "scenario_parameters."};
+    return std::ranges::any_of(kTables, [&](auto table) { return one.key.path.starts_with(table); });
   });
+}
+
+// Why no swarm begins with these settings, as far as can be told at once: a plug-in's process answers only
+// for settings that are simulated.
+Status CheckBegins(const Experiment& experiment) {
+  if (const auto broken = CheckRules(experiment, BuiltInCatalogue())) return InvalidInput(broken->message);
+  if (!experiment.scenario_plugin.empty()) return Ok{};
+  const sim::TestCase empty = EmptyArena(experiment.arena);
+  TRY(controllers::RequirementsOf(SpecOf(experiment, empty, experiment.seed)));
+  return CheckSwarmFits(experiment, empty);
 }
 
 FitPosterior::Allowed BreaksNoRule(const Experiment& experiment, const FitPlan& plan) {
   if (!HasRules(plan.varied)) return [](const SettingsPoint&) { return true; };
   return [experiment, varied = plan.varied](const SettingsPoint& place) {
-    const auto values = FitSetting{.place = place}.ValuesOf(varied);
-    return !CheckRules(WithValues(experiment, varied, values), BuiltInCatalogue()).has_value();
+    return CheckBegins(WithValues(experiment, varied, FitSetting{.place = place}.ValuesOf(varied))).ok();
   };
 }
 
@@ -51,7 +63,23 @@ Result<std::unique_ptr<FitSearch>> FitSearch::Create(const SearchSetup& setup) {
         fmt::format("a target is about {}, and {} are given", Counted(given, "case"), setup.cases.size()));
   SearchSetup own = setup;
   own.cases.resize(given);  // those that a store has behind them belong to settings
-  return std::unique_ptr<FitSearch>(new FitSearch(own, std::move(plan)));
+  std::unique_ptr<FitSearch> search(new FitSearch(own, std::move(plan)));
+  TRY(search->CheckSomeBegin());
+  return search;
+}
+
+Status FitSearch::CheckSomeBegin() {
+  const std::vector<VariedKey>& varied = rounds_.plan().varied;
+  const SettingsPoint middle(varied.size(), 0.5);
+  Status begins =
+      CheckBegins(WithValues(setup_.experiment, varied, FitSetting{.place = middle}.ValuesOf(varied)));
+  for (const SettingsPoint& place : rounds_.Propose()) {
+    const Result<Beginning> beginning = BeginningOf({.place = place});
+    if (beginning.ok()) return Ok{};
+    begins = beginning.error();
+  }
+  return InvalidInput("no setting of the ranges can be simulated: " +
+                      (begins.ok() ? "there are none" : begins.error().message));
 }
 
 Result<FitSearch::Beginning> FitSearch::BeginningOf(const FitSetting& setting) const {

@@ -21,7 +21,7 @@ class FitSearch final : public PopulationSearch {
  public:
   static constexpr std::size_t kLookahead = 1000;  // Ask waits while so many evaluations are outstanding
 
-  // Error: that of MakeFitPlan; a target is about cases that were not handed in.
+  // Error: that of MakeFitPlan; a target is about cases that were not handed in; no setting can be simulated.
   static Result<std::unique_ptr<FitSearch>> Create(const SearchSetup& setup);
 
   std::vector<EvaluationRequest> Ask() override;
@@ -55,6 +55,7 @@ class FitSearch final : public PopulationSearch {
   void SaveRest(CanonicalEncoder& encoder) const override;
   Status RestoreRest(CanonicalDecoder& decoder, const History& history) override;
 
+  Status CheckSomeBegin();
   void BeginRound();
   // What the settings of the last round are simulated with.
   void AddMembers();

@@ -85,7 +85,8 @@ class TargetParser {
   }
 
   Result<double> TakeNumber(const std::string& key, double low, double high) {
-    const std::string word = Take(key).value_or("");
+    if (!fields_.contains(key)) return Wrong(text_, fmt::format("{} is missing", key));
+    const std::string word = *Take(key);
     const auto number = ParseNumber<double>(word);
     if (number && *number >= low && *number <= high) return *number;
     return Wrong(text_, fmt::format("{} = {}: a number from {} to {} is needed", key, word, low, high));
@@ -95,7 +96,8 @@ class TargetParser {
     std::string name = Take("statistic").value_or("mean");
     if (name == "median") {
       name = "quantile";
-      fields_.emplace("quantile", "0.5");
+      if (!fields_.emplace("quantile", "0.5").second)
+        return Wrong(text_, "quantile has no place beside median");
     }
     const auto known = std::ranges::find(kStatistics, name);
     if (known == kStatistics.end()) {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "analysis/statistics/sample.h"
 #include "base/check.h"
 #include "sim/geometry/trigonometry.h"
 
@@ -15,7 +16,7 @@ namespace {
 using Demand = FitTarget::Demand;
 
 constexpr double kNever = -1e30;  // a logarithm
-constexpr int kResamples = 60;
+constexpr int kResamples = 200;
 constexpr std::size_t kNeighbours = 12;
 constexpr double kKeepShare = 0.5;   // of the population that counts after a step of the temperature
 constexpr int kMoves = 4;            // of each draw at each temperature
@@ -53,13 +54,19 @@ std::optional<Quadratic> QuadraticOf(Eigen::MatrixXd matrix, Eigen::VectorXd r) 
   return result;
 }
 
-// A variance that no finite sample of a share or of whole numbers shows: half a run more of each kind.
-double LeastVariance(const FitTarget& target, double value, double runs) {
-  const bool share =
-      target.statistic == FitTarget::Statistic::kShare || target.statistic == FitTarget::Statistic::kEvery;
-  if (!share) return 0.0;
-  const double shrunk = (value * runs + 0.5) / (runs + 1.0);
-  return shrunk * (1.0 - shrunk);
+// A variance that no finite sample of few different values shows: of zeros and ones that of half a run more
+// of each, of other numbers what two runs more do that are as far apart as the others.
+double LeastVariance(const std::vector<double>& values) {
+  std::vector<double> measured = values;
+  std::erase_if(measured, [](double value) { return !std::isfinite(value); });
+  if (measured.size() < 2) return 0.0;
+  const auto runs = static_cast<double>(measured.size());
+  const analysis::Description all = analysis::Describe(measured);
+  if (std::ranges::all_of(measured, [](double value) { return value == 0.0 || value == 1.0; })) {
+    const double share = (all.mean * runs + 0.5) / (runs + 1.0);
+    return share * (1.0 - share);
+  }
+  return 2.0 * Squared(*all.sd) / (runs + 1.0);
 }
 
 bool SameRuns(const FitTarget& a, const FitTarget& b) {
@@ -121,7 +128,7 @@ SettingStatistics StatisticsOf(SettingsPoint place, std::span<const FitTarget> t
           covariance * std::sqrt(statistics.runs[at] * statistics.runs[other]);
     }
     double& variance = statistics.covariance(a, a);
-    variance = std::max(variance, LeastVariance(target, statistics.values[at], statistics.runs[at]));
+    variance = std::max(variance, LeastVariance(values[target_of[at]]));
   }
   return statistics;
 }

@@ -122,18 +122,16 @@ double LeastMisfit(const FitPosterior& posterior, const std::vector<std::size_t>
 
 // Which targets no setting meets: alone, or two of them together.
 void AddContradictions(const FitRounds& rounds, const FitPosterior& posterior, FitResult& fit) {
-  const auto anywhere = [](const SettingsPoint&) { return true; };
   const auto meets = [&](const std::vector<std::size_t>& targets) {
-    return LeastMisfit(posterior, targets, rounds.seed(), anywhere) <= kMetWithin;
+    return LeastMisfit(posterior, targets, rounds.seed(), rounds.allowed()) <= kMetWithin;
   };
   std::vector<std::size_t> possible;
   for (std::size_t t = 0; t < fit.plan.targets.size(); ++t) {
     if (meets({t})) {
       possible.push_back(t);
     } else {
-      fit.contradictions.push_back(
-          fmt::format("No setting within the ranges gives the {} that is wanted ({}).",
-                      fit.plan.targets[t].Title(), fit.plan.targets[t].Wanted()));
+      fit.contradictions.push_back(fmt::format("No setting within the ranges meets this target: {} ({}).",
+                                               fit.plan.targets[t].Title(), fit.plan.targets[t].Wanted()));
     }
   }
   for (std::size_t i = 0; i < possible.size(); ++i) {
@@ -204,6 +202,7 @@ FitResult ResultOf(const Experiment& experiment, const FitRounds& rounds, bool f
   FitResult fit{.experiment = experiment, .plan = rounds.plan(), .finished = finished, .why = rounds.why()};
   for (const FitSetting& setting : rounds.settings()) {
     fit.runs += static_cast<std::uint64_t>(setting.runs);
+    fit.without_result += static_cast<std::uint64_t>(setting.without_result);
     ++(setting.judged ? fit.candidates : fit.settings);
   }
   const std::unique_ptr<FitPosterior> posterior = rounds.Posterior();

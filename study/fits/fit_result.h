@@ -49,6 +49,7 @@ struct FitResult {
   FitPlan plan;
   bool finished = false;
   std::uint64_t runs = 0;
+  std::uint64_t without_result = 0;            // of these
   std::size_t settings = 0;                    // simulated, without those that were judged
   std::size_t candidates = 0;                  // that were judged
   std::string why = {};                        // there is no posterior; "" = there is one

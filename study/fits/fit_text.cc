@@ -71,8 +71,7 @@ std::string OutcomeOf(const FitResult& fit) {
   if (fit.targets.empty()) return "No setting of the ranges can be simulated and is likely.";
   const auto met = std::ranges::count(fit.targets, true, &JudgedTarget::met);
   if (fit.Met()) return "The chosen setting meets every target.";
-  return fmt::format("No setting meets all targets; the chosen one, the likeliest, meets {} of {}.", met,
-                     fit.targets.size());
+  return fmt::format("The chosen setting meets {} of {} targets.", met, fit.targets.size());
 }
 
 std::vector<Section> TellFit(const FitResult& fit, const std::string& dir, const std::string& program) {
@@ -84,6 +83,9 @@ std::vector<Section> TellFit(const FitResult& fit, const std::string& dir, const
                                        "the chosen one",
                                        fit.candidates)
                          : "")};
+  if (fit.without_result > 0)
+    settings.lead.push_back(
+        fmt::format("{} of the runs ended without a result.", FormatCount(fit.without_result)));
   Section targets{.title = "Targets, and what the chosen setting gives in fresh runs",
                   .table = TargetTable(fit)};
   if (fit.targets.empty()) targets.title = "Targets";
@@ -95,7 +97,7 @@ std::vector<Section> TellFit(const FitResult& fit, const std::string& dir, const
   } else if (fit.fitted) {
     targets.commands = {
         {fmt::format("{} fit {} -o fitted.toml", program, place), "the chosen setting as an experiment"},
-        {fmt::format("{} fit {} --predict {} --draws 20", program, place, PastedPath(fit.experiment.name)),
+        {fmt::format("{} fit {} --predict fitted.toml --draws 20", program, place),
          "what the other accepted settings would make of a result"},
         {fmt::format("{} figure {} settings -o settings.svg --csv settings.csv", program, place),
          "all accepted settings with their weights"},
@@ -112,6 +114,7 @@ std::string FitJson(const FitResult& fit, const std::string& dir) {
                    {"finished", fit.finished},
                    {"met", fit.Met()},
                    {"runs", fit.runs},
+                   {"without_result", fit.without_result},
                    {"settings", fit.settings},
                    {"judged", fit.candidates},
                    {"accepted", fit.accepted.size()},

@@ -82,14 +82,16 @@ Result<PredictionFile> PredictionFile::Open(const std::string& path) {
     const std::vector<std::string>& cells = lines[i].cells;
     const auto draw = ParseNumber<std::size_t>(cells.at(0));
     const bool next = draw && *draw == file.draws_.size() + 1;
-    if (cells.size() != 3 || !draw || (!next && *draw != file.draws_.size()))
+    const bool same = draw && *draw == file.draws_.size() && *draw > 0;
+    const auto value = ParseNumber<double>(cells.back());
+    const bool is_setting = cells.size() == 3 && cells[1] == kSettingsName;
+    if (cells.size() != 3 || (!next && !same) || (!is_setting && !(value && std::isfinite(*value))))
       return Error{ErrorKind::kCorrupt,
                    fmt::format("{}:{}: no line draw,name,value in order", path, lines[i].number)};
     if (next) file.draws_.emplace_back();
-    const auto value = ParseNumber<double>(cells[2]);
-    if (cells[1] == kSettingsName) {
+    if (is_setting) {
       file.draws_.back().settings.push_back(cells[2]);
-    } else if (value) {
+    } else {
       file.draws_.back().figures[cells[1]] = *value;
     }
   }
@@ -110,7 +112,7 @@ Status PredictionFile::Add(const std::vector<std::string>& settings, const Figur
   return WriteFileAtomically(path_, Text(), kReadableByAll);
 }
 
-Table PredictionFile::Ranges() const {
+Table PredictionFile::Ranges(std::size_t count) const {
   Table table({{"figure", "figure"},
                {">draws", "draws"},
                {">lowest", "lowest"},
@@ -118,8 +120,8 @@ Table PredictionFile::Ranges() const {
                {">highest", "highest"},
                {"middle 90 %", "likely"}});
   std::map<std::string, std::vector<double>> values;
-  for (const Drawn& one : draws_) {
-    for (const auto& [name, value] : one.figures) values[name].push_back(value);
+  for (std::size_t i = 0; i < std::min(count, draws_.size()); ++i) {
+    for (const auto& [name, value] : draws_[i].figures) values[name].push_back(value);
   }
   for (auto& [name, of_draws] : values) {
     std::ranges::sort(of_draws);

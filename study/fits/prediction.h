@@ -27,12 +27,11 @@ class PredictionFile {
   // There may be none yet. Error: it cannot be read, or is no such file.
   static Result<PredictionFile> Open(const std::string& path);
 
-  bool Has(std::size_t draw) const { return draw < draws_.size(); }
   std::size_t size() const { return draws_.size(); }
   // Of the next draw: its settings and its figures. They are on disk afterwards.
   Status Add(const std::vector<std::string>& settings, const Figures& figures);
-  // The range of each figure over the draws.
-  Table Ranges() const;
+  // The range of each figure over the first draws.
+  Table Ranges(std::size_t count) const;
 
  private:
   struct Drawn {

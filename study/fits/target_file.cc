@@ -80,7 +80,7 @@ class TargetFileReader {
       return InvalidInput(fmt::format("{}: targets are written as [[{}]]", one.where, kind));
     if (std::ranges::find(kTargetKeys, key) == kTargetKeys.end())
       return InvalidInput(fmt::format("{}: {}", one.where, UnknownName("key", key, kTargetKeys)));
-    if (key == "cases" && other != nullptr && other->texts) {
+    if (key == "cases" && other != nullptr && other->texts && !other->texts->empty()) {
       tables_.back().files = *other->texts;
       return Ok{};
     }
@@ -97,7 +97,8 @@ class TargetFileReader {
     if (table.values.contains("csv")) {
       TRY(AddMeasured(table));
     }
-    if (table.kind == "require") table.values.emplace("statistic", "every");
+    if (table.kind == "require" && !table.values.emplace("statistic", "every").second)
+      return InvalidInput(fmt::format("{}: statistic has no place in [[require]]", table.where));
     if (table.values.contains("formula") && table.kind == "target")
       table.values.emplace("statistic", "share");
     const std::string formula = table.Take("formula");
@@ -166,7 +167,9 @@ class TargetFileReader {
       return AddCase(std::move(loaded.test_case), name);
     }
     const Result<std::vector<CaseSet>> sets = ReadCaseSets(beside);
-    if (!sets && sets.error().kind == ErrorKind::kNotFound) return ParseFitCases(name).error();
+    if (!sets && sets.error().kind == ErrorKind::kNotFound)
+      return InvalidInput(fmt::format(
+          "cases = {}: neither random, random:N, empty, a case file nor a campaign's subset", name));
     if (!sets) return sets.error();
     for (const CaseSet& set : *sets) {
       for (const Individual& member : set.members) {

@@ -82,6 +82,7 @@ std::string WhatIsTested(const Experiment& experiment) {
 Status AddCampaign(const std::string& dir, YieldSet& set) {
   TRY(const auto campaign, OpenStoredCampaign(dir));
   const std::vector<SearchPlan>& plans = campaign.plans;
+  TRY(CheckOneSetting(plans, dir));
   TRY(const auto candidates, CandidatesOf(dir, plans));
   TRY(const auto confirmations, ReadConfirmations(dir));
   std::map<std::uint64_t, const Confirmation*> known;

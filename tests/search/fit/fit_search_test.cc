@@ -170,6 +170,27 @@ TEST(FitSearchTest, NeedsTheCasesThatItsTargetsAreAbout) {
   EXPECT_EQ(FitSearch::Create(setup).error().message, "a target is about 2 cases, and 1 are given");
 }
 
+TEST(FitSearchTest, SettingsThatCannotBeSimulatedAreNeverDrawn) {
+  // A flock of fewer birds than min_swarm, 5, fails before it begins.
+  const auto search =
+      MakeFit(SetupOfFit(kToyVary + " scenario_parameters.birds=3..8", "metric=fitness value=1.5 n=100"));
+  Drive(*search, 400, FitPlan::kRounds);
+  const auto draws = search->Fit()->Accepted(*search->Fit()->Posterior());
+  ASSERT_FALSE(draws.empty());
+  const VariedKey& birds = search->Fit()->plan().varied.back();
+  for (const SettingsPoint& draw : draws) EXPECT_GE(std::get<std::int64_t>(birds.ValueAt(draw.back())), 5);
+}
+
+TEST(FitSearchTest, RangesInWhichNothingBeginsAreAnError) {
+  const std::string targets = "metric=fitness value=1.5 n=100";
+  EXPECT_THAT(FitSearch::Create(SetupOfFit("scenario_parameters.birds=1..4", targets)).error().message,
+              testing::StartsWith("no setting of the ranges can be simulated: swarm-size: "));
+  EXPECT_THAT(FitSearch::Create(SetupOfFit("genome.length_min=1.5..2 genome.length_max=0.5..1.4", targets))
+                  .error()
+                  .message,
+              testing::StartsWith("no setting of the ranges can be simulated: genome.length_min = "));
+}
+
 TEST(FitSearchTest, ARunHasTheSettingsOfItsEvaluation) {
   const auto search = MakeFit();
   const EvaluationRequest request = search->Ask().front();

@@ -136,7 +136,7 @@ TEST(FitTargetsTest, SayWhatIsWrong) {
   };
   EXPECT_EQ(wrong("metric=fitness"), "one of value, at_most and at_least is needed");
   EXPECT_EQ(wrong("metric=fitness value=1 at_most=2 n=9"), "one of value, at_most and at_least is needed");
-  EXPECT_EQ(wrong("metric=fitness value=1"), "n = : a number from 2 to 1000000000 is needed");
+  EXPECT_EQ(wrong("metric=fitness value=1"), "n is missing");
   EXPECT_EQ(wrong("metric=fitness value=1 n=0"), "n = 0: a number from 2 to 1000000000 is needed");
   EXPECT_EQ(wrong("metric=food value=1 n=9"),
             "flocking does not report it: " +

@@ -41,6 +41,21 @@ TEST(StatisticsOfTest, AShareOfNoneIsNotCertain) {
   EXPECT_NEAR(ours.covariance(0, 0), 0.5 / 41.0, 1e-3);
 }
 
+// A median of equal numbers, and a flag that nobody ever raised, are not exact.
+TEST(StatisticsOfTest, FewDifferentValuesAreNotCertain) {
+  const auto targets =
+      ParseFitTargets("statistic=median metric=splits value=1 n=20; metric=total_failure value=0.1 n=20",
+                      *controllers::FindScenario("flocking"))
+          .value();
+  std::vector<double> splits(20, 3.0);
+  splits.front() = 9.0;
+  const SettingStatistics statistics =
+      StatisticsOf({0.5}, targets, {splits, std::vector<double>(20, 0.0)}, {1, sim::StreamPurpose::kTest});
+  // 2 * 1.8 / 21, of a variance of 1.8; half of 21 runs.
+  EXPECT_NEAR(statistics.covariance(0, 0), 2.0 * 1.8 / 21.0, 1e-9);
+  EXPECT_NEAR(statistics.covariance(1, 1), 0.5 / 21.0 * (20.5 / 21.0), 1e-9);
+}
+
 TEST(MisfitOfTest, CountsStandardErrors) {
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(1, 1) * 0.04;
   EXPECT_NEAR(MisfitOf(Targets("metric=fitness value=1 n=10")[0], std::vector{1.4}, one), 2.0, 1e-6);

@@ -38,10 +38,9 @@ TEST(PredictionTest, TheFileGrowsDrawByDrawAndIsGoneOnWith) {
     ASSERT_TRUE(file.Add({"a=2", "b=3"}, {{"fitness, mean", 0.75}}).ok());
   }
   auto file = PredictionFile::Open(path).value();
-  EXPECT_TRUE(file.Has(1));
-  EXPECT_FALSE(file.Has(2));
+  EXPECT_EQ(file.size(), 2U);
   ASSERT_TRUE(file.Add({"a=3", "b=4"}, {{"fitness, mean", 0.25}}).ok());
-  const nlohmann::json ranges = PredictionFile::Open(path)->Ranges().ToJson();
+  const nlohmann::json ranges = PredictionFile::Open(path)->Ranges(3).ToJson();
   ASSERT_THAT(ranges, SizeIs(2));
   EXPECT_EQ(ranges[0].at("figure"), "fitness, mean");
   EXPECT_EQ(ranges[0].at("draws"), 3);
@@ -49,14 +48,18 @@ TEST(PredictionTest, TheFileGrowsDrawByDrawAndIsGoneOnWith) {
   EXPECT_EQ(ranges[0].at("median"), 0.5);
   EXPECT_EQ(ranges[0].at("highest"), 0.75);
   EXPECT_EQ(ranges[1].at("draws"), 1);
+  EXPECT_EQ(file.Ranges(2).ToJson()[0].at("draws"), 2);
 }
 
 TEST(PredictionTest, AFileThatIsNoneIsNamed) {
   const TemporaryDirectory folder;
-  std::ofstream(folder / "draws.csv") << "draw,name,value\n2,a,1\n";
-  const auto file = PredictionFile::Open(folder / "draws.csv");
-  ASSERT_FALSE(file.ok());
-  EXPECT_THAT(file.error().message, testing::EndsWith("draws.csv:2: no line draw,name,value in order"));
+  for (const char* line : {"2,a,1", "0,settings,x", "1,a,nan", "1,a,word", "1,a"}) {
+    std::ofstream(folder / "draws.csv")
+        << (std::string(line) == "1,a" ? "draw,name\n" : "draw,name,value\n") << line << "\n";
+    const auto file = PredictionFile::Open(folder / "draws.csv");
+    ASSERT_FALSE(file.ok()) << line;
+    EXPECT_THAT(file.error().message, testing::EndsWith("draws.csv:2: no line draw,name,value in order"));
+  }
 }
 
 }  // namespace

@@ -120,6 +120,16 @@ TEST_F(TargetFileTest, WhatCannotBeATargetIsNamedWithItsPlace) {
       {"[[target]]\ncsv = \"none.csv\"\ncolumn = \"time\"\n", "none.csv: No such file or directory"},
       {"[[target]]\ncases = \"blocked.json\"\nmetric = \"fitness\"\nvalue = 1\nn = 5\n",
        "a robot's centre needs 0.1 m of room there"},
+      {"[[target]]\ncases = [\"empty\", \"random\"]\nmetric = \"fitness\"\nvalue = 1\nn = 5\n",
+       "cases = empty: neither random"},
+      {"[[target]]\ncases = \"given:1-3\"\nmetric = \"fitness\"\nvalue = 1\nn = 5\n",
+       "cases = given:1-3: neither"},
+      {"[[target]]\ncases = []\nmetric = \"fitness\"\nvalue = 1\nn = 5\n", "cases is an array"},
+      {"[[target]]\nmetric = \"fitness\"\nvalue = 1\n", "n is missing"},
+      {"[[target]]\nmetric = \"fitness\"\nstatistic = \"median\"\nquantile = 0.9\nvalue = 1\nn = 5\n",
+       "quantile has no place beside median"},
+      {"[[require]]\nformula = \"splits == 0\"\nstatistic = \"mean\"\nruns = 9\n",
+       "statistic has no place in [[require]]"},
       {"[[require]]\nformula = \"birds == 10\"\nruns = 10\n",
        "unknown measure 'birds'; did you mean 'birds_left'?"}};
   for (const auto& [text, message] : wrong) {
