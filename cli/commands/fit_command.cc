@@ -87,7 +87,9 @@ Result<std::uint64_t> IdentityOfPredicted(const FitOptions& options) {
     for (const auto& [name, text] : study.texts) hash.AddBytes(text);
     return hash.value();
   }
-  ExperimentOptions what{.experiment = options.predict, .plugins = options.experiment.plugins};
+  ExperimentOptions what;
+  what.experiment = options.predict;
+  what.plugins = options.experiment.plugins;
   TRY(const Experiment experiment, LoadExperimentWith(what, {}));
   hash.AddBytes(WriteExperiment(experiment, {}, BuiltInCatalogue()));
   return hash.value();
