@@ -99,14 +99,17 @@ Result<std::uint64_t> IdentityOfPredicted(const FitOptions& options) {
 class Predictor {
  public:
   Predictor(CommandContext& context, const FitOptions& options, std::string folder)
-      : context_(context), options_(options), folder_(std::move(folder)) {}
+      : context_(context),
+        options_(options),
+        folder_(std::move(folder)),
+        is_study_(IsStudyName(options.predict)) {}
 
   // The figures of draw `number`, whose runs stand in the folder. Nothing when it was stopped.
   Result<std::optional<Figures>> Predict(std::size_t number, const std::vector<std::string>& settings) {
     const std::string directory = fmt::format("{}/draw-{}", folder_, number + 1);
     std::vector<std::string> sets = options_.experiment.sets;
     sets.insert(sets.end(), settings.begin(), settings.end());
-    return IsStudyName(options_.predict) ? PredictStudy(directory, sets) : PredictExperiment(directory, sets);
+    return is_study_ ? PredictStudy(directory, sets) : PredictExperiment(directory, sets);
   }
 
  private:
@@ -156,6 +159,7 @@ class Predictor {
   CommandContext& context_;
   const FitOptions& options_;
   std::string folder_;
+  bool is_study_;
 };
 
 // Runs what is to be predicted under one draw after the other; those that are there already stay.
