@@ -32,8 +32,8 @@ TEST(DistinctFailuresTest, AreCountedAndToldToughestFirst) {
             "  1  run 8     5 of 5      1  near (8.0, 0.0)         -  gauntlet replay c/confirm/1 80 --svg "
             "failure-1.svg\n"
             "  and 1 more; see show --json\n");
-  const auto json = DistinctFailuresTable(DistinctFailures(answers.confirmations, {})).ToJson();
-  EXPECT_EQ(json.at(0).dump(),
+  const auto rows = DistinctFailuresTable(DistinctFailures(answers.confirmations, {})).ToJson();
+  EXPECT_EQ(rows.at(0).dump(),
             R"j({"k":5,"n":5,"interval":[0.25,0.75],"cases":["run 8"],"what":"near (8.0, 0.0)",)j"
             R"j("smallest":null,"confirmed":true,"example":{"campaign":"c/confirm/1","run":80}})j");
 }

@@ -114,8 +114,9 @@ TEST(Documents, IndexLinksEveryPage) {
   const std::set<std::string> links = LinksOf("docs/README.md");
   for (const std::string& document : Documents()) {
     const fs::path path = document;
-    if (path.parent_path() == "docs" && document != "docs/README.md")
+    if (path.parent_path() == "docs" && document != "docs/README.md") {
       EXPECT_THAT(links, Contains(path.filename().string()));
+    }
   }
 }
 

@@ -407,7 +407,9 @@ TEST(House, FoldersAreSeenAtAGlance) {
     if (file.ends_with(".cc")) ++sources[fs::path(file).parent_path().string()];
   }
   for (const auto& [folder, count] : sources) {
-    if (!tables.contains(folder)) EXPECT_LE(count, 12) << folder;
+    if (!tables.contains(folder)) {
+      EXPECT_LE(count, 12) << folder;
+    }
   }
 }
 

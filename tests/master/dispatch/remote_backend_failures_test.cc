@@ -56,10 +56,10 @@ TEST_F(RemoteBackendTest, EveryKindOfOwnFailureHasItsVerdict) {
 
 TEST_F(RemoteBackendTest, AResultOfMoreCpuTimeThanItMayTakeIsNotBelieved) {
   SayHello("p", HelloOf(kAnna));
-  for (RunId run = 1; const double seconds : {1e9, -1.0, std::nan("")}) {
+  for (RunId run = 1; const double cpu_time : {1e9, -1.0, std::nan("")}) {
     backend_->Submit({{run, "spec"}});
     Poll();
-    SendResult("p", LeasesSentTo("p").at(0), result_, seconds);
+    SendResult("p", LeasesSentTo("p").at(0), result_, cpu_time);
     EXPECT_THAT(Poll(), IsEmpty());
     ++run;
   }
