@@ -111,7 +111,8 @@ class World {
     auto* worker = Pick([](const ModelWorker& w) { return Runs(w) && !w.leases.empty(); });
     if (worker == nullptr) return;
     const auto [fence, run] = Take(worker->second.leases);
-    if (kind != proto::FailureKind::kExternal) ++failures_[run];
+    // A signal from outside speaks against the run while its worker stays.
+    if (kind != proto::FailureKind::kExternal || !worker->second.draining) ++failures_[run];
     scheduler_.Failed(worker->first, fence, run, {kind, 11, 0});
   }
 
