@@ -229,22 +229,27 @@ Eigen::MatrixXd FitPosterior::CovarianceNear(const Eigen::VectorXd& input) const
 }
 
 void FitPosterior::Predict(const SettingsPoint& place, std::span<const std::size_t> only,
-                           Eigen::VectorXd& mean, Eigen::VectorXd& unsure,
+                           Eigen::VectorXd& mean, Eigen::MatrixXd& unsure,
                            Eigen::MatrixXd& covariance) const {
   const Eigen::VectorXd input = InputOf(place);
-  mean = unsure = Eigen::VectorXd::Zero(std::ssize(emulators_));
+  covariance = CovarianceNear(input);
+  mean = Eigen::VectorXd::Zero(std::ssize(emulators_));
+  Eigen::VectorXd variance = mean;
   for (Eigen::Index c = 0; c < mean.size(); ++c) {
     const std::size_t target = target_of_[static_cast<std::size_t>(c)];
     if (!only.empty() && std::ranges::find(only, target) == only.end()) continue;
     const Emulator::Prediction predicted = emulators_[static_cast<std::size_t>(c)].At(input);
     mean(c) = predicted.mean;
-    unsure(c) = predicted.variance;
+    variance(c) = predicted.variance;
   }
-  covariance = CovarianceNear(input);
+  // What emulators learnt from the same runs is wrong together, as those runs are.
+  const Eigen::VectorXd scale = (variance.array() / (covariance.diagonal().array() + 1e-300)).sqrt();
+  unsure = scale.asDiagonal() * covariance * scale.asDiagonal();
+  unsure.diagonal() = variance;
 }
 
 double FitPosterior::LogOfEqualities(std::span<const std::size_t> targets, const Eigen::VectorXd& mean,
-                                     const Eigen::VectorXd& unsure, const Eigen::MatrixXd& covariance) const {
+                                     const Eigen::MatrixXd& unsure, const Eigen::MatrixXd& covariance) const {
   std::vector<Eigen::Index> components;
   std::vector<double> wanted;
   for (const std::size_t t : targets) {
@@ -265,9 +270,9 @@ double FitPosterior::LogOfEqualities(std::span<const std::size_t> targets, const
       // Of two samples of one set of runs the smaller is a part of the larger.
       const double runs = std::max(targets_[target_of_[static_cast<std::size_t>(row)]].n,
                                    targets_[target_of_[static_cast<std::size_t>(column)]].n);
-      total(a, b) = covariance(row, column) / runs;
+      total(a, b) = covariance(row, column) / runs + unsure(row, column);
     }
-    total(a, a) = total(a, a) * (1.0 + 1e-6) + unsure(row) + 1e-300;
+    total(a, a) = total(a, a) * (1.0 + 1e-6) + 1e-300;
   }
   const auto quadratic = QuadraticOf(total, difference);
   return quadratic ? -0.5 * (quadratic->form + quadratic->log_determinant) : kNever;
@@ -275,7 +280,7 @@ double FitPosterior::LogOfEqualities(std::span<const std::size_t> targets, const
 
 double FitPosterior::LogLikelihood(const SettingsPoint& place, std::span<const std::size_t> only) const {
   Eigen::VectorXd mean;
-  Eigen::VectorXd unsure;
+  Eigen::MatrixXd unsure;
   Eigen::MatrixXd covariance;
   Predict(place, only, mean, unsure, covariance);
   std::vector<std::size_t> equalities;
@@ -288,7 +293,7 @@ double FitPosterior::LogLikelihood(const SettingsPoint& place, std::span<const s
       log += target.n * sim::Log(std::clamp(mean(row), 1e-9, 1.0));
       return;
     }
-    const double variance = unsure(row) + (target.n > 0.0 ? covariance(row, row) / target.n : 0.0);
+    const double variance = unsure(row, row) + (target.n > 0.0 ? covariance(row, row) / target.n : 0.0);
     const double above = (mean(row) - target.values[0]) / std::sqrt(variance + 1e-300);
     log += LogNormalCdf(std::clamp(target.demand == Demand::kAtMost ? -above : above, -1e6, 1e6));
   };
@@ -303,7 +308,7 @@ double FitPosterior::LogLikelihood(const SettingsPoint& place, std::span<const s
 
 double FitPosterior::Misfit(const SettingsPoint& place, std::size_t target) const {
   Eigen::VectorXd mean;
-  Eigen::VectorXd unsure;
+  Eigen::MatrixXd unsure;
   Eigen::MatrixXd covariance;
   Predict(place, {&target, 1}, mean, unsure, covariance);
   const Part& part = parts_[target];
@@ -312,8 +317,7 @@ double FitPosterior::Misfit(const SettingsPoint& place, std::size_t target) cons
   std::vector<double> ours;
   for (Eigen::Index i = 0; i < count; ++i) ours.push_back(mean(begin + i));
   const double n = targets_[target].n;
-  Eigen::MatrixXd total = covariance.block(begin, begin, count, count) / (n > 0.0 ? n : 1e300);
-  for (Eigen::Index i = 0; i < count; ++i) total(i, i) += unsure(begin + i);
+  const Eigen::MatrixXd total = (covariance / (n > 0.0 ? n : 1e300) + unsure).block(begin, begin, count, count);
   return MisfitOf(targets_[target], ours, total);
 }
 

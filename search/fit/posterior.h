@@ -66,10 +66,11 @@ class FitPosterior {
   // The covariance of a single run near a place: the mean over its neighbours.
   Eigen::MatrixXd CovarianceNear(const Eigen::VectorXd& input) const;
   double LogOfEqualities(std::span<const std::size_t> targets, const Eigen::VectorXd& mean,
-                         const Eigen::VectorXd& unsure, const Eigen::MatrixXd& covariance) const;
-  // Of components of `only`, of all when it is empty; others are 0.
+                         const Eigen::MatrixXd& unsure, const Eigen::MatrixXd& covariance) const;
+  // Expectations, the covariance of what is not known of them, and that of a single run; of components of
+  // `only`, of all when it is empty; others are 0.
   void Predict(const SettingsPoint& place, std::span<const std::size_t> only, Eigen::VectorXd& mean,
-               Eigen::VectorXd& unsure, Eigen::MatrixXd& covariance) const;
+               Eigen::MatrixXd& unsure, Eigen::MatrixXd& covariance) const;
 
   std::span<const VariedKey> varied_;
   std::span<const FitTarget> targets_;
