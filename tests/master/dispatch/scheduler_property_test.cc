@@ -111,8 +111,7 @@ class World {
     auto* worker = Pick([](const ModelWorker& w) { return Runs(w) && !w.leases.empty(); });
     if (worker == nullptr) return;
     const auto [fence, run] = Take(worker->second.leases);
-    // A signal from outside speaks against the run while its worker stays.
-    if (kind != proto::FailureKind::kExternal || !worker->second.draining) ++failures_[run];
+    ++failures_[run];  // an end from outside is one while the scheduler takes the worker for one that stays
     scheduler_.Failed(worker->first, fence, run, {kind, 11, 0});
   }
 

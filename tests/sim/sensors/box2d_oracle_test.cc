@@ -140,7 +140,7 @@ RC_GTEST_PROP(Box2dOracle, LinesOfSightAreThoseOfBox2d, (std::uint64_t seed)) {
   const bool ours = !sight.clear;
   // Wherever its ends go within what it holds for, the answer stays.
   for (int i = 0; i < 10; ++i) {
-    const auto shift = [&] { return 0.999 * sight.holds * UnitVector(random.Uniform(-kPi, kPi)); };
+    const auto shift = [&]() -> Vec2 { return 0.999 * sight.holds * UnitVector(random.Uniform(-kPi, kPi)); };
     const Vec2 near_a = a + shift();
     RC_ASSERT(occluders.SightBetween(all, near_a, b + shift()).clear == sight.clear);
   }
