@@ -17,7 +17,7 @@ TEST(FitPageTest, EveryCommandOnItWorksAndSaysWhatItQuotes) {
   std::ofstream(scratch / "targets.toml") << FencedText("fit.md", "toml");
   const DocumentedPage page = ReadPage("fit.md");
   EXPECT_GE(page.commands.size(), 8U);
-  EXPECT_GE(page.quoted.size(), 10U);
+  EXPECT_GE(page.quoted.size(), 9U);
   const ProcessResult result = RunCommands(page, scratch.path());
   ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
   ExpectQuoted(page, AsRead(result.out, scratch.path()));
