@@ -243,7 +243,8 @@ void FitPosterior::Predict(const SettingsPoint& place, std::span<const std::size
     variance(c) = predicted.variance;
   }
   // What emulators learnt from the same runs is wrong together, as those runs are.
-  const Eigen::VectorXd scale = (variance.array() / (covariance.diagonal().array() + 1e-300)).sqrt();
+  const Eigen::ArrayXd of_runs = covariance.diagonal();
+  const Eigen::VectorXd scale = (of_runs > 0.0).select((variance.array() / of_runs).sqrt(), 0.0);
   unsure = scale.asDiagonal() * covariance * scale.asDiagonal();
   unsure.diagonal() = variance;
 }
@@ -317,7 +318,8 @@ double FitPosterior::Misfit(const SettingsPoint& place, std::size_t target) cons
   std::vector<double> ours;
   for (Eigen::Index i = 0; i < count; ++i) ours.push_back(mean(begin + i));
   const double n = targets_[target].n;
-  const Eigen::MatrixXd total = (covariance / (n > 0.0 ? n : 1e300) + unsure).block(begin, begin, count, count);
+  const Eigen::MatrixXd total =
+      (covariance / (n > 0.0 ? n : 1e300) + unsure).block(begin, begin, count, count);
   return MisfitOf(targets_[target], ours, total);
 }
 

@@ -111,7 +111,7 @@ class World {
     auto* worker = Pick([](const ModelWorker& w) { return Runs(w) && !w.leases.empty(); });
     if (worker == nullptr) return;
     const auto [fence, run] = Take(worker->second.leases);
-    ++failures_[run];  // an end from outside is one while the scheduler takes the worker for one that stays
+    ++failures_[run];  // at most: an end from outside speaks against the run only if its worker stays
     scheduler_.Failed(worker->first, fence, run, {kind, 11, 0});
   }
 

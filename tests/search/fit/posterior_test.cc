@@ -144,6 +144,27 @@ TEST_F(FitPosteriorTest, TargetsThatContradictEachOtherAreFarFromBothAtEveryPlac
   EXPECT_LT(alone, 1.0);
 }
 
+// A large number that is the same in all runs of a setting.
+TEST(FitPosteriorOfExactRunsTest, TellsPlacesApart) {
+  const FitPlan plan = ToyPlan({.vary = kToyVary,
+                                .targets = "metric=fitness value=500000 n=10; metric=splits value=1 n=10",
+                                .runs = 4800})
+                           .value();
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  std::vector<SettingStatistics> settings;
+  for (int i = 0; i < 40; ++i) {
+    const SettingsPoint place = {random.Uniform(), random.Uniform(), random.Uniform()};
+    settings.push_back({.place = place,
+                        .values = {1e6 * place[0], 1.0},
+                        .covariance = Eigen::MatrixXd::Zero(2, 2),
+                        .runs = {20.0, 20.0}});
+  }
+  const FitPosterior posterior(plan.varied, plan.targets, settings);
+  const double far = posterior.LogLikelihood({0.9, 0.5, 0.5});
+  EXPECT_GT(far, -1e29);
+  EXPECT_GT(posterior.LogLikelihood({0.5, 0.5, 0.5}), far);
+}
+
 TEST_F(FitPosteriorTest, AChoiceIsLearntToo) {
   Simulate("metric=fitness value=1.5 n=100",
            "controller_parameters.turn_rate=0.5..1.5 physics=impulse|box2d");
