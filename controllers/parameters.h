@@ -24,6 +24,8 @@ struct ParameterInfo {
   double max = 0.0;
   bool integer = false;
   std::string description;  // one line, with the source of the default
+  bool came_later =
+      false;  // than stored campaigns: left out of specs and identities where it has its default
 
   bool operator==(const ParameterInfo&) const = default;
 };
@@ -86,6 +88,9 @@ struct IntoTicks {
   }
 };
 
+// The last member of a row that came later than stored campaigns: its default is what was done before.
+inline constexpr bool kCameLater = true;
+
 template <typename Settings>
 struct Parameter {
   std::string_view name;
@@ -95,6 +100,7 @@ struct Parameter {
   double max;
   Fill<Settings> fill;
   std::string_view description;
+  bool came_later = false;
 };
 
 // The parameters of a scenario or a controller, which together give its settings.
@@ -131,7 +137,7 @@ class ParameterTable {
   void Append(const Rows& rows) {
     for (const Parameter<Settings>& row : rows) {
       infos_.push_back({std::string(row.name), std::string(row.unit), row.default_value, row.min, row.max,
-                        row.fill.integer, std::string(row.description)});
+                        row.fill.integer, std::string(row.description), row.came_later});
       set_.push_back(row.fill.set);
     }
   }

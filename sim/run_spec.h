@@ -12,7 +12,8 @@
 namespace gauntlet::sim {
 
 // Parameter name -> value in SI units; booleans are 0 or 1. Resolved: every parameter of the scenario or
-// controller stands here, so a later change of a default cannot change a stored run.
+// controller stands here, so a later change of a default cannot change a stored run. Left out are those that
+// came later than stored runs and have their default, which is what was done before.
 using Parameters = std::map<std::string, double>;
 
 // Which physics simulates a run; see sim/physics/physics_engine.h.

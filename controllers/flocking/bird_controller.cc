@@ -9,6 +9,7 @@
 #include "controllers/common/proximity.h"
 #include "controllers/common/steering.h"
 #include "controllers/flocking/flocking_scenario.h"
+#include "controllers/parameters.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet::controllers {
@@ -154,6 +155,13 @@ sim::DeviceSet BirdController::Devices() const {
 }
 
 void BirdController::Step(const sim::ControlStep& step) {
+  step.actuators.beacon = kBirdColor;
+  if (turn_ticks_ > 0) {
+    --turn_ticks_;
+    step.actuators.Drive(turn_.forward, turn_.turn);
+    return;
+  }
+
   const std::span<const sim::Blob> blobs = step.readings.blobs;
   Reactions reactions{settings_.speed, settings_.turn_rate, settings_.straight_within,
                       settings_.turning_speed_factor};
@@ -183,8 +191,11 @@ void BirdController::Step(const sim::ControlStep& step) {
     wander_.Turned(command.turn * sim::kTickSeconds);
   }
   if (!wanders || command.turn == 0.0) wander_.Reset();
+  if (!wanders && command.turn != 0.0 && settings_.turn_angle > 0.0) {
+    turn_ = command;
+    turn_ticks_ = ToTicks(settings_.turn_angle / std::fabs(command.turn)) - 1;  // this tick is the first
+  }
 
-  step.actuators.beacon = kBirdColor;
   step.actuators.Drive(command.forward, command.turn);
 }
 

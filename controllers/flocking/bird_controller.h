@@ -3,16 +3,18 @@
 #pragma once
 
 #include "controllers/common/random_walk.h"
+#include "controllers/common/steering.h"
 #include "sim/robot/controller.h"
 
 namespace gauntlet::controllers {
 
 struct BirdSettings {
-  double speed = 0.0;                  // m/s, v_b
-  double turn_rate = 0.0;              // rad/s, omega_t
-  double straight_within = 0.0;        // rad
-  double turning_speed_factor = 0.0;   // forward speed while turning
-  double obstacle_distance = 0.0;      // m beyond the body, d_obs
+  double speed = 0.0;                 // m/s, v_b
+  double turn_rate = 0.0;             // rad/s, omega_t
+  double straight_within = 0.0;       // rad
+  double turning_speed_factor = 0.0;  // forward speed while turning
+  double turn_angle = 0.0;         // rad; a turn goes on that far once begun; 0 = is decided anew each tick
+  double obstacle_distance = 0.0;  // m beyond the body, d_obs
   double obstacle_speed_factor = 0.0;  // forward speed beside an obstacle
   double separation_distance = 0.0;    // m between centres, d_sep
   RandomWalkParameters wander;
@@ -22,7 +24,8 @@ struct BirdSettings {
 };
 
 // One bird. Sees red birds and the blue prey with the camera, obstacles with the proximity ring; remembers
-// nothing but the angle of its random walk. Not for sharing between threads.
+// nothing but the angle of its random walk and, with a turn angle, the turn that it has begun. Not for
+// sharing between threads.
 class BirdController : public sim::Controller {
  public:
   explicit BirdController(const BirdSettings& settings);
@@ -35,6 +38,8 @@ class BirdController : public sim::Controller {
   double least_obstacle_reading_;
   sim::Vec2 straight_edge_;  // to the left of what counts as straight ahead
   RandomWalk wander_;
+  DriveCommand turn_;         // the turn that was begun
+  sim::Tick turn_ticks_ = 0;  // that it still goes on
 };
 
 }  // namespace gauntlet::controllers

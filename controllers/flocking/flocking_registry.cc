@@ -104,6 +104,11 @@ const ParameterTable<BirdSettings>& BirdParameters() {
        "a smaller bearing means straight on (released controller)"},
       {"turning_speed_factor", "", 0.5, 0.0, 1.0, Into<&S::turning_speed_factor>(),
        "forward speed while turning (chosen)"},
+      {"turn_angle", "rad", 0.0, 0.0, kPi, Into<&S::turn_angle>(),
+       "a turn once begun goes on this far, whatever is seen meanwhile (Moeslinger et al. 2011: left or "
+       "right "
+       "by a certain angle); 0 = decided anew in every tick",
+       kCameLater},
       {"obstacle_distance", "m", 0.10, 0.005, 0.10, Into<&S::obstacle_distance>(),
        "obstacles nearer than this to the body are avoided (ARGoS: range of the proximity ring)"},
       {"obstacle_speed_factor", "", 0.5, 0.0, 1.0, Into<&S::obstacle_speed_factor>(),

@@ -161,8 +161,10 @@ std::vector<Key> ParameterKeys(const std::string& table, std::span<const control
     key.get = [info](const Experiment& e) {
       return controllers::KeyValueOf(info, ValueOf(info, MemberAt<Path...>(e)));
     };
-    key.set = [name = std::string(info.name)](Experiment& e, const KeyValue& v) {
-      MemberAt<Path...>(e)[name] = NumberOf(v);
+    key.rare = info.came_later;
+    key.set = [info](Experiment& e, const KeyValue& v) {
+      MemberAt<Path...>(e)[info.name] = NumberOf(v);
+      if (info.came_later && NumberOf(v) == info.default_value) MemberAt<Path...>(e).erase(info.name);
     };
   }
   return keys;

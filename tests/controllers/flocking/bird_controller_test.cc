@@ -129,6 +129,25 @@ TEST(BirdController, WanderingTurnsAsFarAsItDrew) {
   EXPECT_NEAR(turn, std::copysign(kTurnRate, drawn), 1e-12);
 }
 
+TEST(BirdController, GoesOnWithATurnUntilItsAngleWhateverItSees) {
+  BirdSettings settings = Original();
+  settings.turn_angle = 30.0 * kDegree;  // at 45 degrees/s: 6.7 ticks, so 7
+  BirdController bird(settings);
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  const auto turn_with = [&](const std::vector<Blob>& blobs) {
+    sim::SensorReadings readings;
+    readings.blobs = blobs;
+    sim::Actuators actuators;
+    bird.Step({1, readings, actuators, random});
+    EXPECT_EQ(actuators.beacon, Color::kRed);
+    return actuators.right_wheel > actuators.left_wheel;
+  };
+  EXPECT_FALSE(turn_with({Prey(1.0, 0)}));
+  EXPECT_TRUE(turn_with({Prey(1.0, 12)}));
+  for (int tick = 2; tick <= 7; ++tick) EXPECT_TRUE(turn_with({Prey(1.0, 0)})) << tick;
+  EXPECT_FALSE(turn_with({Prey(1.0, 0)}));
+}
+
 TEST(BirdController, IgnoresLightsThatAreNoRobots) {
   const Blob lamp = Blob::At(0.2, 0.0, Color::kYellow);
   ExpectDrive(Decide(Original(), {lamp}), kSpeed, 0.0);

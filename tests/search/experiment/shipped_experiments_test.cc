@@ -123,6 +123,22 @@ TEST_F(ShippedExperimentsTest, WrittenResolvedFlockingReadsBackEqual) {
   EXPECT_EQ(read->scenario_parameters, experiment.scenario_parameters);
 }
 
+// Campaigns that were stored before there was a parameter go on: theirs are the same settings as its default.
+TEST_F(ShippedExperimentsTest, AParameterThatCameLaterStandsNowhereAtItsDefault) {
+  const std::string key = "controller_parameters.turn_angle=";
+  for (const auto& [value, stands] : {std::pair("0", false), std::pair("0.5", true)}) {
+    const Experiment experiment = *LoadExperiment("flocking", {key + value}, BuiltInCatalogue());
+    EXPECT_EQ(experiment.controller_parameters.contains("turn_angle"), stands);
+    const std::string text = WriteExperiment(experiment, {}, BuiltInCatalogue());
+    EXPECT_EQ(text.find("turn_angle") != std::string::npos, stands);
+    const Result<Experiment> read = ParseExperiment(text, "experiment.toml", {}, BuiltInCatalogue());
+    ASSERT_TRUE(read.ok()) << read.error().message;
+    EXPECT_EQ(read->controller_parameters, experiment.controller_parameters);
+  }
+  const Experiment unset = *LoadExperiment("flocking", {key + "0.5", key + "0"}, BuiltInCatalogue());
+  EXPECT_FALSE(unset.controller_parameters.contains("turn_angle"));
+}
+
 TEST_F(ShippedExperimentsTest, UnknownNameSuggestsTheNearest) {
   const Result<Experiment> experiment = LoadExperiment("floking", {}, BuiltInCatalogue());
   ASSERT_FALSE(experiment.ok());
