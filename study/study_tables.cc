@@ -9,6 +9,20 @@
 #include "base/number_text.h"
 
 namespace gauntlet {
+namespace {
+
+// What a published figure says, by the rule that judges it: the mean or the standard deviation of a set, or
+// the size of a comparison's effect. The same for a set that is printed in several tables, and for the rank
+// sums, mean ranks, U and A of a comparison, which follow from each other. "" of any other figure.
+std::string QuantityOf(const StudySection& section, const PublishedRow& row) {
+  const std::string rule = row.rule.substr(0, row.rule.find(' '));
+  if (rule == "effect") return section.name;
+  if ((rule != "mean" && rule != "sd") || !section.compared) return "";
+  const bool first = row.figure.find(".first.") != std::string::npos;
+  return rule + " of " + section.compared->sets[first ? 0 : 1].name;
+}
+
+}  // namespace
 
 std::string TallyInWords(const StudyReport& report) {
   std::map<std::string, int> tally;
@@ -20,10 +34,23 @@ std::string TallyInWords(const StudyReport& report) {
   for (const StudySection& section : report.sections) count(section.published);
   count(report.elsewhere);
   if (all == 0) return "";
-  return fmt::format(
+  std::string words = fmt::format(
       "Of {} published figures {} agree with ours, {} differ, {} stand beside ours without being judged, and "
       "{} have no counterpart here.",
       all, tally["agrees"], tally["differs"], tally["not judged"], tally["not computed"]);
+  std::map<std::string, bool> quantities;  // whether they agree, where they are printed first
+  for (const StudySection& section : report.sections) {
+    for (const JudgedRow& row : section.published) {
+      if (const std::string quantity = QuantityOf(section, row.row); !quantity.empty())
+        quantities.emplace(quantity, row.verdict == "agrees");
+    }
+  }
+  if (quantities.empty()) return words;
+  const auto agree = std::ranges::count(quantities, true, [](const auto& one) { return one.second; });
+  return words + fmt::format(
+                     " Many of them say the same: of {} means, standard deviations and effect sizes, each "
+                     "counted once, {} agree.",
+                     quantities.size(), agree);
 }
 
 std::string TimeInWords(const StudyReport& report) {
