@@ -72,7 +72,9 @@ TEST(ShippedRunsList, HasEveryShippedExperimentAndAtLeast200Runs) {
   }
   EXPECT_GE(runs, 200u);
   for (const std::string name :
-       {"flocking", "flocking-improved", "foraging", "task-partitioning", "task-partitioning-convergence"}) {
+       {"flocking", "flocking-improved", "foraging", "task-partitioning", "task-partitioning-convergence",
+        "flocking-fitted", "flocking-fitted-improved", "foraging-fitted", "foraging-fitted-improved",
+        "task-partitioning-fitted", "task-partitioning-fitted-improved"}) {
     EXPECT_THAT(commands, testing::HasSubstr("evolve " + name + " "));
   }
 }

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet {
 namespace {
@@ -112,6 +114,28 @@ TEST_F(ShippedExperimentsTest, TaskPartitioningReusesTheParametersOfTable51) {
   EXPECT_EQ(convergence->scenario_parameters.at("start_mode"), 1.0);
 }
 
+// They are held against published figures: no later default may change them.
+TEST_F(ShippedExperimentsTest, FittedExperimentsWriteEveryValueOutAndAreOneSwarmWithTheirImprovedOnes) {
+  for (const std::string name : {"flocking", "foraging", "task-partitioning"}) {
+    std::vector<Experiment> pair;
+    for (const std::string suffix : {"-fitted", "-fitted-improved"}) {
+      const std::string path = GAUNTLET_SOURCE_DIR "/experiments/" + name + suffix + ".toml";
+      const std::string text = (std::ostringstream() << std::ifstream(path).rdbuf()).str();
+      pair.push_back(LoadExperiment(name + suffix, {}, BuiltInCatalogue()).value());
+      for (const sim::Parameters& parameters :
+           {pair.back().scenario_parameters, pair.back().controller_parameters}) {
+        for (const auto& [key, value] : parameters)
+          EXPECT_NE(text.find("\n" + key + " = "), std::string::npos) << path << ": " << key;
+      }
+    }
+    EXPECT_EQ(pair[0].scenario_parameters, pair[1].scenario_parameters);
+    EXPECT_EQ(pair[1].controller, name + "-improved");
+    for (const auto& [key, value] : pair[0].controller_parameters)
+      EXPECT_EQ(pair[1].controller_parameters.at(key), value) << key;
+    EXPECT_EQ(pair[0].genome.length_max, 0.9) << "one generator of obstacles for all three behaviours";
+  }
+}
+
 TEST_F(ShippedExperimentsTest, WrittenResolvedFlockingReadsBackEqual) {
   const Experiment experiment =
       *LoadExperiment("flocking", {"seed=5", "search.generations=3"}, BuiltInCatalogue());
@@ -146,8 +170,10 @@ TEST_F(ShippedExperimentsTest, UnknownNameSuggestsTheNearest) {
   EXPECT_THAT(experiment.error().message,
               StartsWith("unknown experiment 'floking'; did you mean 'flocking'?"));
   EXPECT_EQ(LoadExperiment("quux", {}, BuiltInCatalogue()).error().message,
-            "unknown experiment 'quux'; shipped: flocking, flocking-improved, foraging, gathering, "
-            "task-partitioning, task-partitioning-convergence (a file is named by a path ending in .toml)");
+            "unknown experiment 'quux'; shipped: flocking, flocking-fitted, flocking-fitted-improved, "
+            "flocking-improved, foraging, foraging-fitted, foraging-fitted-improved, gathering, "
+            "task-partitioning, task-partitioning-convergence, task-partitioning-fitted, "
+            "task-partitioning-fitted-improved (a file is named by a path ending in .toml)");
   setenv("GAUNTLET_EXPERIMENTS_DIR", "no-such-folder", 1);
   EXPECT_THAT(LoadExperiment("flocking", {}, BuiltInCatalogue()).error().message,
               StartsWith("there is no experiment 'flocking', because none can be read in no-such-folder"));
