@@ -24,8 +24,9 @@ struct ParameterInfo {
   double max = 0.0;
   bool integer = false;
   std::string description;  // one line, with the source of the default
-  bool came_later =
-      false;  // than stored campaigns: left out of specs and identities where it has its default
+  // Than stored campaigns: left out of specs and identities where it has its default. Not told as JSON, since
+  // a plug-in, whose rows come so, is another one when it gains a parameter.
+  bool came_later = false;
 
   bool operator==(const ParameterInfo&) const = default;
 };

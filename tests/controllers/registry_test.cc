@@ -97,10 +97,11 @@ TEST(ResolveParameters, NamesTheNearestKnownParameter) {
 TEST(ResolveParameters, ListsWhatThereIsWhenNothingIsNear) {
   const auto resolved = ResolveParameters(FindController("flocking")->parameters, {{"catch_up_gain", 2.0}});
   ASSERT_FALSE(resolved.ok());
-  EXPECT_EQ(resolved.error().message,
-            "unknown parameter 'catch_up_gain'; known: bird_speed, turn_rate, straight_within, "
-            "turning_speed_factor, obstacle_distance, obstacle_speed_factor, separation_distance, "
-            "wander_turn_probability, wander_turn_limit");
+  EXPECT_EQ(
+      resolved.error().message,
+      "unknown parameter 'catch_up_gain'; known: bird_speed, turn_rate, straight_within, "
+      "turning_speed_factor, turn_angle, obstacle_distance, obstacle_speed_factor, separation_distance, "
+      "wander_turn_probability, wander_turn_limit");
 }
 
 TEST(ResolveParameters, RefusesValuesOutOfRange) {

@@ -87,7 +87,9 @@ TEST(RowJson, ControllersReadBackWithoutTheirFunctions) {
     EXPECT_EQ(told.name, row.name);
     EXPECT_EQ(told.scenario, row.scenario);
     EXPECT_EQ(told.description, row.description);
-    EXPECT_EQ(told.parameters, row.parameters);
+    std::vector<ParameterInfo> parameters = row.parameters;
+    for (ParameterInfo& parameter : parameters) parameter.came_later = false;  // is not told
+    EXPECT_EQ(told.parameters, parameters);
     EXPECT_EQ(told.make, nullptr);
   }
 }
