@@ -106,8 +106,7 @@ const ParameterTable<BirdSettings>& BirdParameters() {
        "forward speed while turning (chosen)"},
       {"turn_angle", "rad", 0.0, 0.0, kPi, Into<&S::turn_angle>(),
        "a turn once begun goes on this far, whatever is seen meanwhile (Moeslinger et al. 2011: left or "
-       "right "
-       "by a certain angle); 0 = decided anew in every tick",
+       "right by a certain angle); 0 = decided anew in every tick",
        kCameLater},
       {"obstacle_distance", "m", 0.10, 0.005, 0.10, Into<&S::obstacle_distance>(),
        "obstacles nearer than this to the body are avoided (ARGoS: range of the proximity ring)"},

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <initializer_list>
 #include <map>
 #include <string>
 
@@ -26,7 +27,9 @@ class ThesisStudy : public testing::Test {
                  claim["holds"].get<bool>() ? "holds" : "does not hold");
     }
   }
-  bool Holds(const std::string& analysis) const { return claims_.at(analysis); }
+  void ExpectHolds(std::initializer_list<const char*> analyses) const {
+    for (const char* analysis : analyses) EXPECT_TRUE(claims_.at(analysis)) << analysis;
+  }
   double Figure(const std::string& name) const { return report_["figures"].at(name); }
   // As docs/thesis.md tells them, bit for bit the same runs on every machine.
   void ExpectShown(const std::string& set, double mean, double sd) const {
@@ -41,8 +44,7 @@ class ThesisStudy : public testing::Test {
 
 TEST_F(ThesisStudy, EvolvedCoursesBreakFlocks) {
   Run("thesis-flocking");
-  for (const char* claim : {"severity-3", "severity-5", "severity-7", "worst-3", "worst-5", "worst-7"})
-    EXPECT_TRUE(Holds(claim)) << claim;
+  ExpectHolds({"severity-3", "severity-5", "severity-7", "worst-3", "worst-5", "worst-7"});
   ExpectShown("severity-5.second", 0.640, 0.228);
   ExpectShown("severity-5.first", 0.153, 0.282);
   ExpectShown("pair-1.second", 0.145, 0.267);
@@ -53,8 +55,7 @@ TEST_F(ThesisStudy, EvolvedCoursesBreakFlocks) {
 
 TEST_F(ThesisStudy, EvolvedCoursesStarveTheNestAndTheImprovedControllerStandsThemBetter) {
   Run("thesis-foraging");
-  for (const char* claim : {"vp-severity", "vp-worst", "vp-pair-1", "condition-1", "condition-2"})
-    EXPECT_TRUE(Holds(claim)) << claim;
+  ExpectHolds({"vp-severity", "vp-worst", "vp-pair-1", "condition-1", "condition-2"});
   ExpectShown("vp-severity.second", 4.830, 1.505);
   ExpectShown("vp-severity.first", 1.270, 1.309);
   ExpectShown("vp-pair-1.second", 2.040, 1.601);
@@ -65,8 +66,7 @@ TEST_F(ThesisStudy, EvolvedCoursesStarveTheNestAndTheImprovedControllerStandsThe
 
 TEST_F(ThesisStudy, EvolvedCoursesStopTheRelayBugSStandsThemBetterAndConvergenceSuffers) {
   Run("thesis-partitioning");
-  for (const char* claim : {"sps-severity", "sps-worst", "sps-pair-1", "sps-pair-2", "failures"})
-    EXPECT_TRUE(Holds(claim)) << claim;
+  ExpectHolds({"sps-severity", "sps-worst", "sps-pair-1", "sps-pair-2", "failures"});
   ExpectShown("sps-severity.second", 4.560, 1.274);
   ExpectShown("sps-severity.first", 0.400, 0.899);
   ExpectShown("sps-pair-1.second", 3.000, 1.752);
