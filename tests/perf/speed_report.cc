@@ -2,18 +2,12 @@
 // calibration kernel in the same process; where it goes; how the physics engines compare; what a robot-tick
 // costs with 6 to 500 robots. User CPU, everything included; medians of interleaved repeats.
 // speed_report --rows: one pass over all loads for scripts (pair_builds): name, ms per run, kernels per run.
-// speed_report --baseline: the file that --guard reads, measured here.
-// speed_report --guard BASELINE: fails when a load costs over 20 % more kernels than the file says, ten times
-// in a row. A noisy machine slows both sides of a ratio.
 
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <limits>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,8 +21,6 @@ namespace gauntlet::perf {
 namespace {
 
 constexpr int kRepeats = 5;
-constexpr int kGuardRounds = 10;
-constexpr double kTolerance = 1.2;
 
 // Square roots and divisions in a chain and memory that fits the first cache: what a tick is made of.
 double CalibrationCost() {
@@ -69,7 +61,7 @@ Sample Measure(const Load& load, sim::PhysicsKind physics = sim::RunSpec{}.physi
   return sample;
 }
 
-std::vector<Load> GuardedLoads() {
+std::vector<Load> RunLoads() {
   std::vector<Load> loads = ShippedLoads();
   for (Load& load : ArgosLoads()) loads.push_back(std::move(load));
   return loads;
@@ -140,7 +132,7 @@ void ReportEngines(const std::vector<Load>& loads) {
 }
 
 int PrintRows() {
-  std::vector<Load> loads = GuardedLoads();
+  std::vector<Load> loads = RunLoads();
   loads.push_back(CrowdLoads().back());
   for (const Load& load : loads) {
     const Sample sample = Measure(load);
@@ -149,46 +141,8 @@ int PrintRows() {
   return 0;
 }
 
-int PrintBaseline() {
-  for (const Load& load : GuardedLoads()) {
-    std::vector<double> kernels;
-    for (int repeat = 0; repeat < kRepeats; ++repeat) kernels.push_back(Measure(load).kernels);
-    fmt::print("{} {:.2f}\n", load.name, Median(kernels));
-  }
-  return 0;
-}
-
-int Guard(const std::string& file) {
-  std::map<std::string, double> baseline;
-  std::ifstream lines(file);
-  if (!lines) {
-    fmt::print(stderr, "{}: cannot be read\n", file);
-    return 2;
-  }
-  std::string name;
-  for (double kernels = 0.0; lines >> name >> kernels;) baseline[name] = kernels;
-  int slower = 0;
-  for (const Load& load : GuardedLoads()) {
-    const auto expected = baseline.find(load.name);
-    if (expected == baseline.end() || !(expected->second > 0.0)) {
-      fmt::print(stderr, "{}: a line '{} KERNELS' is expected, with a positive number\n", file, load.name);
-      return 2;
-    }
-    // What disturbs one round has passed by the tenth, a slower simulation is slower in all.
-    double least = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < kGuardRounds && least > kTolerance * expected->second; ++round) {
-      least = std::min(least, Measure(load).kernels);
-    }
-    const bool slow = least > kTolerance * expected->second;
-    fmt::print("{:<66}{:>9.2f} kernels, baseline{:>9.2f}: {:+.0f} %{}\n", load.what, least, expected->second,
-               100.0 * (least / expected->second - 1.0), slow ? ", slower by more than 20 %" : "");
-    slower += slow ? 1 : 0;
-  }
-  return slower == 0 ? 0 : 1;
-}
-
 int Report(const std::string& svg_file) {
-  const std::vector<Load> loads = GuardedLoads();
+  const std::vector<Load> loads = RunLoads();
   ReportRuns(loads);
   ReportStages(loads);
   ReportEngines(CrowdLoads());
@@ -199,10 +153,8 @@ int Report(const std::string& svg_file) {
 int Main(const std::vector<std::string>& arguments) {
   if (arguments.empty()) return Report("");
   if (arguments.size() == 1 && arguments[0] == "--rows") return PrintRows();
-  if (arguments.size() == 1 && arguments[0] == "--baseline") return PrintBaseline();
   if (arguments.size() == 2 && arguments[0] == "--svg") return Report(arguments[1]);
-  if (arguments.size() == 2 && arguments[0] == "--guard") return Guard(arguments[1]);
-  fmt::print(stderr, "usage: speed_report [--svg FILE | --rows | --baseline | --guard BASELINE]\n");
+  fmt::print(stderr, "usage: speed_report [--svg FILE | --rows]\n");
   return 2;
 }
 
