@@ -118,7 +118,7 @@ TEST_F(CommandRunsTest, ATemplateIsFilled) {
 }
 
 TEST_F(CommandRunsTest, TheTimeOfAllItsProcessesIsTheRuns) {
-  const Ran ran = Sh("timeout 0.3 sh -c 'while :; do :; done'" + std::string(kReports));
+  const Ran ran = Sh("perl -e '1 while (times)[0] < 0.1'" + std::string(kReports));
   ASSERT_TRUE(ran.result.has_value()) << ran.said;
   EXPECT_GT(ran.report.cpu_seconds, 0.05);
   EXPECT_EQ(ran.result->cpu_seconds, ran.report.cpu_seconds);
