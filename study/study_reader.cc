@@ -13,6 +13,7 @@
 #include "base/nearest_name.h"
 #include "base/printable.h"
 #include "base/system/atomic_file.h"
+#include "master/directory/commands.h"
 #include "master/directory/plugins.h"
 #include "search/experiment/experiment_file.h"
 #include "search/experiment/seed_list.h"
@@ -194,7 +195,7 @@ class Reader {
       });
       sets.emplace_back("search.algorithm=cases");
     }
-    TRY(AddLibrariesOf(name));
+    TRY(AddLibrariesOf(name, sets));
     Result<Experiment> experiment = LoadExperiment(name, sets, catalogue_);
     if (!experiment) {
       return Error{experiment.error().kind,
@@ -212,10 +213,12 @@ class Reader {
 
   // Makes known what the experiment's file asks for by its key plugins. What is wrong with the file itself is
   // said by who reads it next.
-  Status AddLibrariesOf(const std::string& experiment) {
-    if (libraries_ == Libraries::kGiven) return Ok{};
+  Status AddLibrariesOf(const std::string& experiment, const std::vector<std::string>& sets) {
     const Result<ExperimentText> text = ReadExperimentText(experiment);
     if (!text) return Ok{};
+    TRY(const std::optional<std::string> command, AddCommandOf(*text, sets, {}));
+    catalogue_.command = command.value_or("");
+    if (libraries_ == Libraries::kGiven) return Ok{};
     TRY(const std::vector<std::string> files, PluginFilesOf(*text));
     for (const std::string& file : files) {
       if (!named_libraries_.insert(file).second) continue;
@@ -232,7 +235,8 @@ class Reader {
     StudyAnalysis& analysis = study_.analyses.emplace_back(StudyAnalysis{table, std::nullopt});
     if (analysis.kind != "tune") return Ok{};
     TRY(AddLibrariesOf(study_.changes.experiment.empty() ? table.Key("experiment")
-                                                         : study_.changes.experiment));
+                                                         : study_.changes.experiment,
+                       {}));
     TRY(auto expanded, ExpandTuning(table, study_.changes, catalogue_));
     analysis.tuning = std::move(expanded.tuning);
     for (const StudyFileTable& part : expanded.parts) {

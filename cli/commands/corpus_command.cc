@@ -19,6 +19,7 @@
 #include "cli/output/output_file.h"
 #include "report/figures/replayed_figure.h"
 #include "search/cases/case_file.h"
+#include "search/experiment/experiment_file.h"
 #include "search/search_setup.h"
 #include "study/questions/confirmations.h"
 #include "study/questions/corpus_experiment.h"
@@ -209,7 +210,7 @@ Result<ExitCode> RunCorpus(CommandContext& context, const CorpusOptions& options
   for (const Keepsake& one : kept) plugins.insert(one.plugins.begin(), one.plugins.end());
   std::string named;  // the campaign's own copies
   for (const std::string& hash : plugins)
-    named += " --plugin " + PastedPath(fmt::format("{}/plugins/{}.so", options.directory, hash));
+    named += " --plugin " + PastedPath(PluginFileIn(options.directory + "/plugins", hash));
   context.out << fmt::format("\nDoes the controller still fail? {} check {}{}\n", context.program,
                              PastedPath(options.corpus), named)
               << std::flush;

@@ -207,7 +207,7 @@ Result<ExitCode> Tell(CommandContext& context, const FitOptions& options, const 
     for (const std::string& hash : std::set<std::string>{fit.fitted->scenario_plugin, fit.fitted->plugin}) {
       if (!hash.empty())
         PrintMessage(context,
-                     fmt::format("it needs the library {}/plugins/{}.so in plugins/ beside it", dir, hash));
+                     fmt::format("it needs {} in plugins/ beside it", PluginFileIn(dir + "/plugins", hash)));
     }
   } else if (!options.output.empty()) {
     PrintMessage(context, fmt::format("{} was not written: no setting is chosen yet", options.output));

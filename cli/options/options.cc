@@ -90,6 +90,8 @@ void AddExperimentOptions(CLI::App& command, ExperimentOptions& options) {
   AddValue(command, "--set", "KEY=VALUE", options.sets,
            "change one value of the experiment, e.g. --set search.mutation_probability=0.1; repeatable");
   AddPluginOption(command, options.plugins);
+  AddValue(command, "--allow-file", "FILE", options.allowed_files,
+           "of a command: a file from elsewhere that every run finds in its folder; repeatable");
 }
 
 void AddPluginOption(CLI::App& command, std::vector<std::string>& plugins) {
@@ -211,11 +213,7 @@ Result<Experiment> LoadExperimentWith(const ExperimentOptions& options, const st
   TRY(const std::uint64_t seed, options.seed.empty() ? 0 : ParseSeed(options.seed));
   TRY(const std::vector<std::string> sets, JoinSets(options.sets, extra));
   TRY(const ExperimentText text, ReadExperimentText(options.experiment));
-  TRY(std::vector<std::string> files, PluginFilesOf(text));
-  files.insert(files.end(), options.plugins.begin(), options.plugins.end());
-  TRY(std::vector<std::string> plugins, AddPluginFiles(files));
-  Catalogue catalogue = BuiltInCatalogue();
-  catalogue.plugins = std::move(plugins);
+  TRY(const Catalogue catalogue, CatalogueFor(text, sets, options.plugins, options.allowed_files));
   Result<Experiment> experiment = ParseExperiment(text.text, text.file_name, sets, catalogue);
   if (!experiment) return AsTyped(experiment.error(), extra);
   if (!options.seed.empty()) experiment->seed = seed;

@@ -44,7 +44,8 @@ struct ExperimentOptions {
   std::string directory;
   std::string seed;
   std::vector<std::string> sets;
-  std::vector<std::string> plugins;  // libraries
+  std::vector<std::string> plugins;        // libraries
+  std::vector<std::string> allowed_files;  // of a command, from outside the experiment's folder
 };
 // How long a genetic search is.
 struct SizeOptions {

@@ -12,14 +12,15 @@
 #include "base/system/sha256.h"
 #include "controllers/registry.h"
 #include "controllers/rows/plugin_rows.h"
+#include "master/directory/commands.h"
 #include "master/directory/plugins.h"
 #include "master/dispatch/pool/worker_program.h"
 #include "proto/json_text.h"
+#include "search/experiment/experiment_file.h"
 
 namespace gauntlet {
 namespace {
 
-constexpr const char* kLibrary = ".so";
 constexpr const char* kDescription = ".json";
 constexpr const char* kBeginnings = ".beginnings.json";
 
@@ -69,8 +70,14 @@ Status KeepPlugins(const std::string& folder, const std::vector<SearchPlan>& pla
   for (const std::string& hash : PluginsOf(plans)) {
     TRY(const std::string library, ReadPlugin(hash));
     TRY(MakeDirectory(folder));
-    for (const auto& [ending, content] : {std::pair<const char*, const std::string&>(kLibrary, library),
-                                          {kDescription, controllers::FindPlugin(hash)->description}}) {
+    const controllers::PluginInfo& plugin = *controllers::FindPlugin(hash);
+    const bool command = IsCommandFile(plugin.file);
+    if (command) {
+      TRY(CopyCommandFiles(plugin.file, folder));
+    }
+    for (const auto& [ending, content] :
+         {std::pair<const char*, const std::string&>(command ? kCommandEnding : ".so", library),
+          {kDescription, plugin.description}}) {
       TRY(WriteFileAtomically(PathOf(folder, hash, ending), content, kReadableByAll));
     }
     TRY(KeepAnswers(folder, hash));
@@ -87,7 +94,7 @@ Status KnowPlugins(const std::string& folder) {
     const std::string hash = path.stem();
     if (path.extension() != kDescription || !IsSha256(hash)) continue;
     TRY(const std::string description, ReadRegularFile(path));
-    TRY(AddDescribedPlugin(hash, PathOf(folder, hash, kLibrary), description, path.string(),
+    TRY(AddDescribedPlugin(hash, PluginFileIn(folder, hash), description, path.string(),
                            /*brought_along=*/true));
     TRY(KnowAnswers(PathOf(folder, hash, kBeginnings), hash));
   }
@@ -96,7 +103,7 @@ Status KnowPlugins(const std::string& folder) {
 
 Status CheckPlugins(const std::string& folder, const std::vector<SearchPlan>& plans) {
   for (const std::string& hash : PluginsOf(plans)) {
-    TRY(ReadCopy(PathOf(folder, hash, kLibrary), hash));
+    TRY(ReadCopy(PluginFileIn(folder, hash), hash));
   }
   return Ok{};
 }

@@ -16,10 +16,12 @@
 #include "base/system/sha256.h"
 #include "controllers/registry.h"
 #include "controllers/rows/row_checks.h"
+#include "master/directory/commands.h"
 #include "master/dispatch/pool/worker_program.h"
 #include "proto/json_text.h"
 #include "proto/run_beginning.h"
 #include "proto/run_codec.h"
+#include "search/search_table.h"
 
 namespace gauntlet {
 namespace {
@@ -102,6 +104,7 @@ Result<std::string> AddPluginFile(const std::string& file) {
     controllers::NamePlugin(hash, file);
     return hash;
   }
+  if (IsCommandFile(file)) return AddCommandFile(file);
   TRY(const std::string description, DescribePlugin(file));
   TRY(AddDescribedPlugin(hash, file, description, file));
   return hash;
@@ -134,6 +137,18 @@ Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& 
   return hashes;
 }
 
+Result<Catalogue> CatalogueFor(const ExperimentText& experiment, const std::vector<std::string>& sets,
+                               const std::vector<std::string>& files,
+                               const std::vector<std::string>& allowed) {
+  TRY(std::vector<std::string> all, PluginFilesOf(experiment));
+  all.insert(all.end(), files.begin(), files.end());
+  Catalogue catalogue = BuiltInCatalogue();
+  TRY(catalogue.plugins, AddPluginFiles(all));
+  TRY(const std::optional<std::string> command, AddCommandOf(experiment, sets, allowed));
+  catalogue.command = command.value_or("");
+  return catalogue;
+}
+
 Status AddDescribedPlugin(const std::string& hash, const std::string& file, const std::string& description,
                           const std::string& place, bool brought_along) {
   if (controllers::FindPlugin(hash) != nullptr) return Ok{};
@@ -146,7 +161,7 @@ Status AddDescribedPlugin(const std::string& hash, const std::string& file, cons
                                  .description = description,
                                  .controllers = std::move(rows.controllers),
                                  .scenarios = std::move(rows.scenarios)};
-  if (!plugin.scenarios.empty()) plugin.begin = Begin;
+  if (!plugin.scenarios.empty()) plugin.begin = IsCommandFile(file) ? BeginCommand : Begin;
   return controllers::AddPlugin(std::move(plugin));
 }
 

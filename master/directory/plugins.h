@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "search/experiment/experiment_file.h"
 
 namespace gauntlet {
 
@@ -22,6 +23,12 @@ Status AddPluginFile(const std::string& file, std::vector<std::string>& hashes);
 
 // The same of several files, in their order.
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files);
+
+// What the experiment may name: what is built in, what its text asks for (PluginFilesOf), `files`, and what its
+// table [command] defines (AddCommandOf, with `sets` and `allowed`).
+Result<Catalogue> CatalogueFor(const ExperimentText& experiment, const std::vector<std::string>& sets,
+                               const std::vector<std::string>& files = {},
+                               const std::vector<std::string>& allowed = {});
 
 // The same of a library that was described before: `description` as controllers/rows/plugin_rows.h writes it,
 // which is called `place` in errors; `brought_along` as in controllers::PluginInfo.

@@ -9,6 +9,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/clock.h"
 #include "base/system/regular_file.h"
+#include "controllers/command/definition.h"
 #include "controllers/registry.h"
 #include "master/campaign/stored_campaign.h"
 #include "master/campaign/stored_check.h"
@@ -21,6 +22,7 @@
 #include "master/store/event_kinds.h"
 #include "master/store/run_numbers.h"
 #include "proto/json_text.h"
+#include "proto/run_failure.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
 
@@ -52,8 +54,9 @@ Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
 
 // The controller whose golden hash says whether a machine computes the experiment's runs as another does. Of
 // a plug-in, whose library is the same everywhere, it is the scenario's own; where that is of a plug-in too,
-// any that is built in, for the arithmetic that all share.
+// any that is built in, for the arithmetic that all share. Of a command it is what its probe says.
 std::string GoldenControllerOf(const Experiment& experiment) {
+  if (experiment.scenario == controllers::command::kScenario) return kGoldenCommand + experiment.plugin;
   if (experiment.plugin.empty()) return experiment.controller;
   if (experiment.scenario_plugin.empty())
     return std::string(controllers::FindScenario(experiment.scenario)->default_controller);
@@ -89,6 +92,22 @@ Status CheckSearches(const std::vector<SearchPlan>& plans) {
   return Ok{};
 }
 
+// Whether a command's arena without obstacles can begin, which only a run of it tells.
+Status CheckCommands(const std::vector<SearchPlan>& plans) {
+  std::set<std::string> known;
+  for (const SearchPlan& plan : plans) {
+    const Experiment& experiment = plan.experiment;
+    if (experiment.scenario != controllers::command::kScenario || !known.insert(experiment.plugin).second)
+      continue;
+    TRY(const sim::RunResult result,
+        SimulateInRunner(SpecOf(experiment, EmptyArena(experiment.arena), experiment.seed)));
+    if (result.verdict == sim::Verdict::kCompleted) continue;
+    return InvalidInput(fmt::format("the program gives no result in the arena without obstacles: it {}",
+                                    proto::Explained(result.message)));
+  }
+  return Ok{};
+}
+
 // The files that say what the campaign is to do, but for slurm.toml. `begun_with`: version and golden hashes
 // are those of the campaign's beginning.
 CampaignTexts TextsOf(const std::vector<SearchPlan>& plans, const std::string& version,
@@ -118,6 +137,7 @@ Result<NewCampaign> Create(const std::string& dir, const std::vector<SearchPlan>
   TRY(CheckPlugins(plans));
   TRY(CheckSearches(plans));
   TRY(proto::GoldenHashes golden_hashes, GoldenHashesFor(plans));
+  TRY(CheckCommands(plans));
   CampaignMeta meta;
   meta.software_version = GAUNTLET_VERSION;
   meta.golden_hashes = proto::WriteGoldenHashes(golden_hashes);

@@ -34,7 +34,9 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   std::string command = fmt::format("gauntlet-worker --run-spec run.spec --cpu-limit {} --memory-limit {}",
                                     context.limits.cpu_limit_seconds, context.limits.memory_limit_bytes);
   for (const std::string& plugin : std::set{spec.plugin, spec.scenario_plugin}) {
-    if (!plugin.empty()) command += fmt::format(" --plugin ../../plugins/{}.so", plugin);
+    if (plugin.empty()) continue;
+    const std::filesystem::path file = PluginFileIn(context.directory + "/plugins", plugin);
+    command += fmt::format(" --plugin ../../plugins/{}", file.filename().string());
   }
   const proto::GoldenHashes& known = context.campaign.golden_hashes;
   const auto golden = known.find(spec.controller);

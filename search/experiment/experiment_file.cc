@@ -12,6 +12,7 @@
 #include "base/printable.h"
 #include "base/system/sha256.h"
 #include "base/system/trusted_path.h"
+#include "search/experiment/command_table.h"
 #include "search/experiment/definition_table.h"
 #include "search/experiment/key_assignment.h"
 #include "search/experiment/toml_text.h"
@@ -59,7 +60,7 @@ class Reader {
   Status AssignAll(bool base) {
     for (const Assignment& assignment : assignments_) {
       const bool is_base = std::ranges::count(kBaseKeys, assignment.path) > 0;
-      if (base != is_base || InDefinition(assignment.path)) continue;
+      if (base != is_base || InDefinition(assignment.path) || InCommand(assignment.path)) continue;
       TRY(Assign(assignment));
     }
     return Ok{};
@@ -164,16 +165,23 @@ class Reader {
     return Ok{};
   }
 
-  // What [generic] says, of the scenario that it is for.
+  // What [generic] says, of the scenario that it is for. What [command] says is known (ReadCommand).
   Status Define() {
-    if (scenario_->check_definition) {
-      TRY(experiment_.definition, ReadDefinition(assignments_, file_name_));
-      return Ok{};
+    using controllers::command::kScenario;
+    if (experiment_.scenario != kScenario) {
+      TRY(RefuseStray(InCommand, kScenario));
     }
-    const auto stray = std::ranges::find_if(assignments_, InDefinition, &Assignment::path);
+    if (!scenario_->check_definition) return RefuseStray(InDefinition, "generic");
+    TRY(experiment_.definition, ReadDefinition(assignments_, file_name_));
+    return Ok{};
+  }
+
+  // A key of the table of another scenario.
+  Status RefuseStray(bool (*in_table)(std::string_view), std::string_view scenario) const {
+    const auto stray = std::ranges::find_if(assignments_, in_table, &Assignment::path);
     if (stray == assignments_.end()) return Ok{};
-    return InvalidInput(fmt::format("{}: {} defines the scenario 'generic', and this is '{}'", stray->where,
-                                    stray->path, experiment_.scenario));
+    return InvalidInput(fmt::format("{}: {} defines the scenario '{}', and this is '{}'", stray->where,
+                                    stray->path, scenario, experiment_.scenario));
   }
 
   // The row of that name, built in or a plug-in's. `what` it is, the key that names it; `rows` of a plug-in.
@@ -182,8 +190,16 @@ class Reader {
   Result<const Info*> ResolveRow(const std::string& what, const std::string& name,
                                  std::span<const Info> built_in,
                                  std::vector<Info> controllers::PluginInfo::*rows, std::string& plugin) {
-    const std::string given = std::exchange(plugin, "");
+    std::string given = std::exchange(plugin, "");
     if (const Info* row = FindByName(built_in, name)) return row;
+    if (given.empty() && name == (what == "scenario" ? controllers::command::kScenario
+                                                     : controllers::command::kController)) {
+      given = what == "scenario" ? catalogue_.command : experiment_.scenario_plugin;
+      if (given.empty())
+        return InvalidInput(fmt::format("{}: the {} '{}' needs a table [command] in the experiment's file, with "
+                                        "run, metrics, fitness and failure at least",
+                                        PlaceOf(what), what, name));
+    }
     if (!given.empty() && controllers::FindPlugin(given) == nullptr) {
       const std::string key = what == "controller" ? "plugin" : "scenario_plugin";
       return InvalidInput(
@@ -244,6 +260,12 @@ Result<Experiment> ParseExperiment(std::string_view text, const std::string& fil
   return experiment;
 }
 
+std::string PluginFileIn(const std::string& folder, const std::string& hash) {
+  const std::string command = fmt::format("{}/{}{}", folder, hash, kCommandEnding);
+  std::error_code missing;
+  return std::filesystem::exists(command, missing) ? command : fmt::format("{}/{}.so", folder, hash);
+}
+
 Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment) {
   const Result<std::vector<Assignment>> assignments = ReadToml(experiment.text, experiment.file_name);
   if (!assignments) return Error{assignments.error().kind, Printable(assignments.error().message)};
@@ -257,7 +279,7 @@ Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment)
     const auto* hash = std::get_if<std::string>(&assignment.value);
     const bool names_library = assignment.path == "plugin" || assignment.path == "scenario_plugin";
     if (names_library && hash != nullptr && IsSha256(*hash))
-      files.push_back(folder / "plugins" / (*hash + ".so"));
+      files.push_back(PluginFileIn((folder / "plugins").string(), *hash));
   }
   // Somebody else's file does not choose what runs in our name.
   for (const std::filesystem::path file : files) {

@@ -34,6 +34,14 @@ struct ExperimentText {
 // The text that LoadExperiment would read.
 Result<ExperimentText> ReadExperimentText(const std::string& name_or_path);
 
+// Of a definition of a command (controllers/command/definition.h), where a library has ".so".
+inline constexpr const char* kCommandEnding = ".command";
+inline bool IsCommandFile(std::string_view file) {
+  return file.ends_with(kCommandEnding);
+}
+// FOLDER/HASH.command where there is one, else FOLDER/HASH.so.
+std::string PluginFileIn(const std::string& folder, const std::string& hash);
+
 // The libraries that an experiment's text asks for: those of plugins = ["FILE", ...], by a path relative to
 // the file, and the copy that a resolved experiment has beside it. Errors as above; of a file that belongs to
 // somebody else also those of CheckOnlyWeWrite about a library and its folder.

@@ -9,6 +9,7 @@
 
 #include "base/nearest_name.h"
 #include "base/system/sha256.h"
+#include "controllers/command/definition.h"
 #include "search/experiment/genome_ranges.h"
 #include "search/experiment/objective.h"
 #include "sim/arena/color.h"
@@ -359,6 +360,23 @@ std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& cont
   return ParameterKeys<&Experiment::controller_parameters>("controller_parameters", controller.parameters);
 }
 
+namespace {
+
+// What a program of the user's knows nothing of.
+std::optional<BrokenRule> CheckRulesOfCommand(const Experiment& experiment, const Catalogue& catalogue) {
+  for (const Key& key : CommonKeys(catalogue)) {
+    const bool meaningless = key.disturbs || key.path == "physics" || key.path == "genome.moving" ||
+                             key.path == "genome.lights";
+    if (!meaningless || key.get(experiment) == key.default_value) continue;
+    return BrokenRule{key.path, fmt::format("{} = {} is for this engine, and a program of yours simulates the "
+                                            "runs of the scenario 'command': leave it out",
+                                            key.path, ToToml(key.get(experiment)))};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue) {
   if (!IsName(experiment.name)) {
     return BrokenRule{"name",
@@ -374,6 +392,9 @@ std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalog
     return BrokenRule{"arena.wall_thickness",
                       fmt::format("arena.wall_thickness = {} must not exceed half of arena.side = {}",
                                   experiment.arena.wall_thickness, experiment.arena.side)};
+  }
+  if (experiment.scenario == controllers::command::kScenario) {
+    if (auto broken = CheckRulesOfCommand(experiment, catalogue)) return broken;
   }
   const SearchInfo* search = FindByName(catalogue.searches, experiment.search.algorithm);
   return search->check == nullptr ? std::nullopt : search->check(experiment);

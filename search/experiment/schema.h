@@ -50,6 +50,7 @@ struct Catalogue {
   std::span<const controllers::ControllerInfo> controllers;
   std::span<const SearchInfo> searches;
   std::vector<std::string> plugins = {};  // SHA-256 of those whose rows may be named too
+  std::string command = {};               // of these, the experiment's own command, which may have namesakes
 };
 
 // Keys of every experiment, those of all searches among them, in the order they are written. Defaults are

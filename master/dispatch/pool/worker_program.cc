@@ -125,9 +125,15 @@ Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {
                    controllers::FindPlugin(spec.scenario_plugin)->file);
 }
 
-Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers) {
+Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& names) {
   std::vector<std::string> arguments = {"--golden"};
-  arguments.insert(arguments.end(), controllers.begin(), controllers.end());
+  arguments.insert(arguments.end(), names.begin(), names.end());
+  for (const std::string& name : names) {
+    if (!name.starts_with(kGoldenCommand)) continue;
+    const std::string hash = name.substr(kGoldenCommand.size());
+    TRY(ReadPlugin(hash));
+    arguments.insert(arguments.end(), {"--plugin", controllers::FindPlugin(hash)->file});
+  }
   TRY(const std::string output, RunWorkerProgram(std::move(arguments), {}));
   if (output.empty()) return proto::GoldenHashes();
   Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(output);

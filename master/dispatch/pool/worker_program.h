@@ -34,7 +34,9 @@ Result<std::string> DescribePlugin(const std::string& file);
 // (proto/run_beginning.h). The plug-in is known. Error: why there is no answer.
 Result<std::string> DescribeBeginning(const sim::RunSpec& spec);
 
-// Of those of these controllers that gauntlet-worker was built with.
-Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& controllers);
+// Of those of these controllers that gauntlet-worker was built with, and of commands, which are known: those
+// are named "command:HASH", and their golden hash is of what their probe prints here.
+inline const std::string kGoldenCommand = "command:";
+Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& names);
 
 }  // namespace gauntlet

@@ -1,0 +1,15 @@
+// What a command brings, as a plug-in's rows: its scenario with the metrics, its controller with the
+// parameters.
+#pragma once
+
+#include "controllers/command/definition.h"
+#include "controllers/rows/plugin_rows.h"
+#include "sim/run_spec.h"
+#include "sim/run_start.h"
+
+namespace gauntlet::controllers::command {
+
+// Without functions.
+PluginRows RowsOf(const Definition& definition);
+
+}  // namespace gauntlet::controllers::command

@@ -1,0 +1,143 @@
+#include "controllers/command/outcome.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <vector>
+
+#include "base/nearest_name.h"
+#include "base/number_text.h"
+#include "base/printable.h"
+#include "controllers/command/metric_source.h"
+#include "controllers/command/placeholders.h"
+#include "controllers/command/trajectory_file.h"
+#include "controllers/generic/formula.h"
+
+namespace gauntlet::controllers::command {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMostOutBytes = std::size_t{64} << 20;
+
+// The whole file, or its end; nothing when there is none.
+std::optional<std::string> EndOfFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  if (!file) return std::nullopt;
+  const auto size = static_cast<std::size_t>(file.tellg());
+  std::string bytes(std::min(size, kMostOutBytes), '\0');
+  file.seekg(static_cast<std::streamoff>(size - bytes.size()));
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+struct Printed {
+  std::string out;
+  std::string err;
+};
+Printed PrintedIn(const std::string& folder) {
+  return {EndOfFile(folder + "/" + kStdoutFile).value_or(""), EndOfFile(folder + "/" + kStderrFile).value_or("")};
+}
+
+std::optional<json> ObjectIn(std::string_view text) {
+  json object = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!object.is_object()) return std::nullopt;
+  return object;
+}
+
+std::optional<json> LastObject(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t begin = text.rfind('\n', text.size() - 1) + 1;  // npos + 1 = 0
+    const std::string_view line = text.substr(begin);
+    if (line.find('{') < line.size() && line.size() <= kMostLineBytes) {
+      if (auto object = ObjectIn(line)) return object;
+    }
+    text = text.substr(0, begin == 0 ? 0 : begin - 1);
+  }
+  return std::nullopt;
+}
+
+Result<json> ReportOf(const std::string& folder, std::string_view out) {
+  if (const std::optional<std::string> file = EndOfFile(folder + "/" + kOutFile)) {
+    if (auto object = ObjectIn(*file)) return std::move(*object);
+    return InvalidInput(std::string(kOutFile) +
+                        " holds no JSON object (NaN and Infinity, which some programs write, are no JSON)");
+  }
+  if (auto object = LastObject(out)) return std::move(*object);
+  return InvalidInput(std::string("it has neither written ") + kOutFile +
+                      " ({out}) nor printed a line that is a JSON object");
+}
+
+Result<double> ReportedNumber(const json& report, const std::string& name) {
+  const auto found = report.find(name);
+  if (found == report.end()) {
+    std::vector<std::string> names;
+    for (const auto& [key, value] : report.items()) names.push_back(key);
+    return InvalidInput("it reports no '" + name + "'; " +
+                        (names.empty() ? "its JSON object is empty" : "it reports " + Printable(NamesOf(names))));
+  }
+  if (found->is_boolean()) return found->get<bool>() ? 1.0 : 0.0;
+  if (found->is_number() && std::isfinite(found->get<double>())) return found->get<double>();
+  return InvalidInput("'" + name + "' = " + Printable(found->dump(-1, ' ', false, json::error_handler_t::replace)) +
+                      " is no finite number");
+}
+
+// Formulas see the values of the metrics that stand before them.
+Result<double> Computed(const std::string& formula, const sim::RunResult& result) {
+  std::vector<std::string> names;
+  std::vector<double> values;
+  for (const auto& [name, value] : result.metrics) {
+    names.push_back(name);
+    values.push_back(value);
+  }
+  TRY(generic::Formula compiled, generic::Formula::Compile(formula, names));
+  return compiled.Evaluate(values);
+}
+
+}  // namespace
+
+std::optional<std::string> RefusedBy(const Definition& definition, const std::string& folder) {
+  if (definition.refused.empty()) return std::nullopt;
+  const Printed printed = PrintedIn(folder);
+  for (const std::string& pattern : definition.refused) {
+    for (const std::string* text : {&printed.out, &printed.err}) {
+      if (auto line = FirstLineWith(pattern, *text)) return line;
+    }
+  }
+  return std::nullopt;
+}
+
+Result<sim::RunResult> OutcomeOf(const Definition& definition, const sim::RunSpec& spec,
+                                 const std::string& folder) {
+  sim::RunResult result;
+  const Printed printed = PrintedIn(folder);
+  std::optional<json> report;
+  for (const Metric& metric : definition.metrics) {
+    double value = 0.0;
+    if (!metric.from.empty()) {
+      TRY(value, ReadSource(metric.from, printed.out, printed.err, folder));
+    } else if (!metric.formula.empty()) {
+      TRY(value, Computed(metric.formula, result));
+    } else {
+      if (!report) {
+        TRY(report, ReportOf(folder, printed.out));
+      }
+      TRY(value, ReportedNumber(*report, metric.name));
+    }
+    result.metrics.emplace_back(metric.name, value);
+  }
+  TRY(result.fitness, Computed(definition.fitness, result));
+  TRY(const double failed, Computed(definition.failure, result));
+  result.failure.total = failed != 0.0;
+  if (!definition.trajectory.empty()) {
+    TRY(ReadTrajectory(folder + "/" + definition.trajectory, definition.trajectory, spec.record_trajectory,
+                       result));
+  }
+  sim::SetHashes(result);
+  return result;
+}
+
+}  // namespace gauntlet::controllers::command
