@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "base/system/process_tree.h"
+#include "controllers/command/placeholders.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
 #include "tests/support/paths.h"
@@ -99,7 +100,7 @@ TEST_F(CommandRunsTest, AProgramGetsItsCaseAndItsMetricsAreTheResult) {
   const Ran ran = Run(spec);
   ASSERT_TRUE(ran.result.has_value()) << ran.said;
   EXPECT_EQ(ran.result->verdict, sim::Verdict::kCompleted);
-  EXPECT_EQ(ran.result->fitness, 7.5);
+  EXPECT_EQ(ran.result->fitness, controllers::command::SeedOf(7) + 0.5);
   EXPECT_EQ(ran.result->metrics.at(0).first, "score");
   EXPECT_EQ(ran.result->hash, sim::HashOf(*ran.result));
   EXPECT_EQ(ran.said, "");
@@ -107,14 +108,12 @@ TEST_F(CommandRunsTest, AProgramGetsItsCaseAndItsMetricsAreTheResult) {
 
 TEST_F(CommandRunsTest, ATemplateIsFilled) {
   auto definition = ShellDefinition(R"(mv "$0" "$1")");
-  definition.files = {folder_.AddFile("worlds.d/a.json",
-                                      R"({"score": @seed@})"
-                                      "\n",
-                                      false)};
+  definition.files = {folder_.AddFile(
+      "worlds.d/a.json", "{\"score\": @seed@, \"boxes\": [\n@obstacles@\n@number@\n@end@\n]}\n", false)};
   definition.case_template = "worlds.d/a.json";
   const Ran ran = Run(definition);
   ASSERT_TRUE(ran.result.has_value()) << ran.said;
-  EXPECT_EQ(ran.result->fitness, 7.0);
+  EXPECT_EQ(ran.result->fitness, controllers::command::SeedOf(7));
 }
 
 TEST_F(CommandRunsTest, TheTimeOfAllItsProcessesIsTheRuns) {
@@ -140,12 +139,12 @@ TEST_F(CommandRunsTest, WhatItLeavesIsRemovedAlsoWhenItIsReadOnly) {
 }
 
 TEST_F(CommandRunsTest, ARefusedCaseIsAResultWithoutTheNameOfTheFolder) {
-  auto definition = ShellDefinition(R"(printf 'noise\nno place: \033[1m%s/x\n' "$PWD" >&2; exit 1)");
+  auto definition = ShellDefinition(R"(printf 'noise\nno place: \a%s/x\n' "$PWD" >&2; exit 1)");
   definition.refused = {"no place"};
   const Ran ran = Run(definition);
   ASSERT_TRUE(ran.result.has_value()) << ran.said;
   EXPECT_EQ(ran.result->verdict, sim::Verdict::kRefused);
-  EXPECT_EQ(ran.result->message, "the program refuses this case: no place: \\x1b[1mx");
+  EXPECT_EQ(ran.result->message, "the program refuses this case: no place: \\x07x");
   definition.run[2] = "printf 'no place: %0999d\\n' 1; exit 1";
   const Ran wordy = Run(definition);
   ASSERT_TRUE(wordy.result.has_value()) << wordy.said;
