@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "tests/support/process.h"
@@ -14,11 +15,8 @@ namespace {
 
 using testing::AllOf;
 using testing::Contains;
-using testing::EndsWith;
-using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-using testing_support::TemporaryDirectory;
 
 controllers::command::Definition WithSetup(const std::string& setup) {
   controllers::command::Definition definition = ShellDefinition("true");
@@ -62,9 +60,10 @@ TEST(CommandEnvironmentTest, WhatSetupStartsDoesNotStay) {
   if (testing_support::kSanitized) GTEST_SKIP();
   const auto environment = EnvironmentAfterSetup(WithSetup("sleep 600 & export STARTED=$!"));
   ASSERT_TRUE(environment.ok());
-  for (const std::string& entry : *environment) {
-    if (entry.starts_with("STARTED=")) EXPECT_FALSE(testing_support::Alive(std::atoi(entry.c_str() + 8)));
-  }
+  const auto started = std::ranges::find_if(
+      *environment, [](const std::string& entry) { return entry.starts_with("STARTED="); });
+  ASSERT_NE(started, environment->end());
+  EXPECT_FALSE(testing_support::Alive(std::atoi(started->substr(8).c_str())));
 }
 
 TEST(CommandEnvironmentTest, ARunHasItsFolderAndItsCores) {
