@@ -25,13 +25,13 @@ std::vector<sim::RoundedBox> BoxesOf(const std::vector<Shape>& shapes) {
 sim::ArenaRequirements RequirementsOf(const Definition& definition) {
   sim::ArenaRequirements asked;
   asked.inflation = definition.robot_radius;
-  asked.cell_size = std::min(sim::OccupancyGrid::kCellSize, definition.robot_radius / 2.0);
   asked.keep_outs = BoxesOf(definition.keep_outs);
   asked.standing = BoxesOf(definition.standing);
   asked.least_side = kLeastArenaSide;
   asked.anywhere = true;
   asked.asks_for_path = !definition.points.empty();
   if (!asked.asks_for_path) return asked;
+  asked.cell_size = std::min(sim::OccupancyGrid::kCellSize, definition.robot_radius / 2.0);
   const auto place = [](const Point& point) { return sim::Vec2(point.x, point.y); };
   asked.start = place(definition.points.front());
   // A single point is its own goal: it only has to be free.

@@ -61,6 +61,7 @@ TEST(RequirementsTest, ASinglePointOnlyHasToBeFreeAndWithoutOneNothingDoes) {
   EXPECT_EQ(RuleOf(definition, on_nest), "start-blocked");
   definition.points.clear();
   EXPECT_EQ(RuleOf(definition, on_nest), "");
+  EXPECT_EQ(RequirementsOf(definition).cell_size, sim::OccupancyGrid::kCellSize) << "of no use";
 }
 
 TEST(RequirementsTest, ShapesAreDiscsAndTurnedRectangles) {
