@@ -26,6 +26,10 @@ std::string MeaningOfExit(int code) {
       return "the controller closed files that are not its own";
     case kExitException:
       return "an exception that nobody caught";
+    case kExitOverDisk:
+      return "its folder grew beyond its limit";
+    case kExitWithoutMetrics:
+      return "its outcome could not be read";
     case kExitWithoutResult:
       return "exit was called before the run's end";
     default:

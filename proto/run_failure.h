@@ -15,6 +15,10 @@ inline constexpr int kExitOutOfMemory = 86;
 inline constexpr int kExitException = 87;
 inline constexpr int kExitWithoutPlugin = 88;  // the plug-in that it needs cannot be had here
 inline constexpr int kExitWithoutResult = 89;  // somebody called exit(0) before there was a result
+// Of runs that are a program: it ended with one of these codes itself, as the last line on stderr says.
+inline constexpr int kExitOfProgram = 90;
+inline constexpr int kExitOverDisk = 91;        // its folder grew beyond its limit
+inline constexpr int kExitWithoutMetrics = 92;  // it ended with code 0, but not with what is asked of it
 // And so much more than the number of a signal that a plug-in sent to itself, as a shell says it.
 inline constexpr int kExitSignalled = 128;
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/system/resource_limits.h"
+#include "worker/command/probe.h"
 #include "worker/worker_process.h"
 #include "worker/worker_state.h"
 
@@ -116,7 +117,8 @@ void AddRunSpec(CLI::App& app, SpecOptions& line) {
       ->check(CLI::NonNegativeNumber)
       ->needs(spec);
   app.add_option("--plugin", line.plugins.files,
-                 "With --run-spec and --describe-beginning: a plug-in that the spec names; repeatable")
+                 "With --run-spec and --describe-beginning: a plug-in that the spec names; repeatable. The "
+                 "definition of a command is HASH.command, beside the folder `files`; also with --golden")
       ->type_name("FILE")
       ->allow_extra_args(false);
   const auto keep = [&line](const std::string& folder) {  // a run is made in a folder of its own
@@ -124,7 +126,7 @@ void AddRunSpec(CLI::App& app, SpecOptions& line) {
   };
   app.add_option_function<std::string>(
          "--scratch", keep,
-         "With --run-spec: working directory for the run of a plug-in; keeps what the run writes")
+         "With --run-spec: working directory for the run of a plug-in or command; keeps what it writes")
       ->type_name("DIR")
       ->needs(spec);
 }
@@ -140,7 +142,7 @@ void AddOptions(CLI::App& app, CommandLine& line) {
       app.add_option("--golden", line.golden,
                      "Print a line with the golden hash of each of these controllers (default: all). It is "
                      "equal for builds that compute the controller's runs equally; controllers that are not "
-                     "built in are left out")
+                     "built in are left out. command:HASH, with --plugin: that of a command's probe")
           ->type_name("[CONTROLLER...]")
           ->expected(0, -1)
           ->excludes(die);
@@ -164,8 +166,12 @@ void AddOptions(CLI::App& app, CommandLine& line) {
     option->excludes(golden)->excludes(spec)->excludes(describe)->excludes(beginning);
 }
 
-int PrintGoldenHashes(const proto::GoldenHashes& hashes) {
-  fmt::print("{}", proto::WriteGoldenHashes(hashes));
+int PrintGoldenHashes(const Result<proto::GoldenHashes>& hashes) {
+  if (!hashes) {
+    fmt::print(stderr, "gauntlet-worker: {}\n", hashes.error().message);
+    return kExitRefused;
+  }
+  fmt::print("{}", proto::WriteGoldenHashes(*hashes));
   if (std::fflush(stdout) == 0) return 0;
   fmt::print(stderr, "gauntlet-worker: the golden hashes cannot be written to stdout\n");
   return 4;
@@ -183,7 +189,8 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   std::erase(line.golden, "");  // what CLI11 puts there when no name follows
-  if (app.count("--golden") > 0) return PrintGoldenHashes(functions.golden_hashes(line.golden));
+  if (app.count("--golden") > 0)
+    return PrintGoldenHashes(GoldenHashesOf(line.golden, functions.golden_hashes, line.spec.plugins));
   if (app.count("--describe-plugin") > 0)
     return PrintDescription(line.described_plugin, functions.describe_plugin);
   line.spec.plugins.load = functions.load_plugin;
@@ -195,7 +202,7 @@ int Obey(int argc, char** argv, const WorkerFunctions& functions) {
   }
   line.worker.plugins.load = functions.load_plugin;
   if (app.count("--plugin") > 0 && app.count("--run-spec") == 0) {
-    fmt::print(stderr, "gauntlet-worker: --plugin is for --run-spec and --describe-beginning\n");
+    fmt::print(stderr, "gauntlet-worker: --plugin is for --run-spec, --describe-beginning and --golden\n");
     return kExitRefused;
   }
   if (app.count("--run-spec") > 0) {

@@ -27,6 +27,7 @@
 #include "proto/access_file.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
+#include "worker/command/probe.h"
 #include "worker/runner/fork_server.h"
 #include "worker/runner/runner_pool.h"
 #include "worker/supervisor.h"
@@ -213,6 +214,12 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
     return access.error().kind == ErrorKind::kNotFound ? kExitOrphaned : kExitRefused;
   }
   if (!access->has_value()) return kExitDone;
+  Result<proto::GoldenHashes> golden_hashes =
+      GoldenHashesOf((*access)->controllers, options.golden_hashes, options.plugins);
+  if (!golden_hashes) {
+    spdlog::error("{}", golden_hashes.error().message);
+    return kExitRefused;
+  }
 
   SupervisorOptions supervisor_options;
   supervisor_options.access_path = options.access_path;
@@ -226,7 +233,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
                             .slots = static_cast<std::uint32_t>(options.slots),
                             .process = Identity(),
                             .allocation = options.allocation,
-                            .golden_hashes = options.golden_hashes((*access)->controllers)};
+                            .golden_hashes = *std::move(golden_hashes)};
   spdlog::info("instance {:016x}, {} slot(s), campaign {}, {}", settings.identity.instance_id, options.slots,
                (*access)->campaign_id, (*access)->endpoints.front());
   return Supervise(std::move(supervisor_options), std::move(**access), **fork_server, signals.get());
@@ -256,7 +263,7 @@ int RunOneSpec(const SpecOptions& options, const RunFunction& run) {
       fmt::print(stderr, "gauntlet-worker: the run {}\n", DescribeEnd(DecodeRunResult(result)));
   } else {
     const RunnerFailure& failure = std::get<RunnerFailure>(outcome);
-    if (failure.exit_code == kExitWithoutPlugin) {
+    if (IsWithoutPlugin(failure)) {
       fmt::print(stderr, "gauntlet-worker: {}", failure.stderr_tail);
       return kExitRefused;
     }

@@ -166,7 +166,7 @@ void WorkerState::On(RunnerDied& died) {
   const bool reported = slot.state == SlotState::kRunning;
   slot.state = SlotState::kStarting;
   if (!reported) return;
-  if (died.failure.exit_code == kExitWithoutPlugin) return GiveUp(died.failure.stderr_tail, kExitRefused);
+  if (IsWithoutPlugin(died.failure)) return GiveUp(died.failure.stderr_tail, kExitRefused);
   const Given run = std::move(slot.runs.front());
   EndRuns(slot);
   if (!run.wanted) return;

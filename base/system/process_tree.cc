@@ -8,6 +8,7 @@
 #include <charconv>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <map>
 #include <sstream>
@@ -50,6 +51,22 @@ std::vector<pid_t> ProcessesBelow(pid_t ancestor) {
   return below;
 }
 
+std::vector<pid_t> SampleBelow(pid_t ancestor) {
+  static const bool listed = access("/proc/thread-self/children", F_OK) == 0;
+  if (!listed) return ProcessesBelow(ancestor);
+  std::vector<pid_t> below{ancestor};
+  for (std::size_t i = 0; i < below.size(); ++i) {
+    std::error_code gone;
+    fs::directory_iterator thread("/proc/" + std::to_string(below[i]) + "/task", gone);
+    for (const fs::directory_iterator end; !gone && thread != end; thread.increment(gone)) {
+      std::ifstream children(thread->path() / "children");
+      for (pid_t child = 0; children >> child;) below.push_back(child);
+    }
+  }
+  below.erase(below.begin());
+  return below;
+}
+
 int ThreadsOf(pid_t process) {
   std::error_code failed;
   const fs::directory_iterator threads("/proc/" + std::to_string(process) + "/task", failed);
@@ -64,6 +81,14 @@ double CpuSecondsOf(pid_t process) {
   double all = 0.0;
   for (int field = 14; field < 18 && fields >> ticks; ++field) all += ticks;
   return all / static_cast<double>(sysconf(_SC_CLK_TCK));
+}
+
+std::uint64_t ResidentBytesOf(pid_t process) {
+  std::ifstream sizes("/proc/" + std::to_string(process) + "/statm");
+  std::uint64_t all = 0;
+  std::uint64_t resident = 0;
+  sizes >> all >> resident;
+  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 bool HasChildren() {

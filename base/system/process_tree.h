@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace gauntlet {
@@ -13,12 +14,17 @@ bool IsBelow(pid_t process, pid_t ancestor);
 
 // All processes below `ancestor`, in no order. A look at every process of the machine, about 1 ms.
 std::vector<pid_t> ProcessesBelow(pid_t ancestor);
+// The same by a look at those processes alone, where the kernel lists children (CONFIG_PROC_CHILDREN): for
+// who looks often. Some that start or end meanwhile may be missing.
+std::vector<pid_t> SampleBelow(pid_t ancestor);
 
 // Threads of a process; 0 when there is none.
 int ThreadsOf(pid_t process);
 
 // User and system time of a process and of its children that have ended, s; 0 when there is none.
 double CpuSecondsOf(pid_t process);
+// What of its memory is in RAM, bytes, shared pages included; 0 when there is none.
+std::uint64_t ResidentBytesOf(pid_t process);
 
 // Whether this process has children, ended ones that nobody has waited for included.
 bool HasChildren();

@@ -103,7 +103,7 @@ const std::vector<Room>& House() {
        {"zmq", "sqlite3", "box2d"}},
       {"worker",
        {"base", "base/system", "sim", "sim/geometry", "sim/random", "sdk", "proto"},
-       kBehaviours,
+       kBehaviours + Prefixes{"controllers/command/"},
        {"box2d", "sqlite3", "toml++", "pugixml"}},
       {"analysis", {"base"}, kRunData + kSwarmData, {"zmq", "google/", "sqlite3", "box2d", "thread", "sys/"}},
       {"search/experiment",

@@ -54,6 +54,20 @@ TEST(ClassifyExitTest, ExitsAreOwnFaultsAndOneCodeMeansMemory) {
   EXPECT_EQ(ClassifyExit(Exited(3), "").exit_code, 3);
 }
 
+TEST(ClassifyExitTest, AProgramsOwnCodeIsTakenFromTheLastLine) {
+  const RunnerFailure failure = ClassifyExit(Exited(kExitOfProgram), "words\n" + ExitCodeLine(86));
+  EXPECT_EQ(failure.kind, FailureKind::kCrashed);
+  EXPECT_EQ(failure.exit_code, 86);
+  EXPECT_EQ(ClassifyExit(Exited(kExitOfProgram), ExitCodeLine(86) + "words\n").exit_code, kExitOfProgram);
+  EXPECT_EQ(ClassifyExit(Exited(3), ExitCodeLine(86)).exit_code, 3);
+}
+
+TEST(ClassifyExitTest, OnlyARunnersOwnCodeSaysThatAPluginCannotBeHad) {
+  EXPECT_TRUE(IsWithoutPlugin(ClassifyExit(Exited(kExitWithoutPlugin), "no such library\n")));
+  EXPECT_FALSE(IsWithoutPlugin(ClassifyExit(Exited(kExitOfProgram), ExitCodeLine(kExitWithoutPlugin))));
+  EXPECT_FALSE(IsWithoutPlugin(ClassifyExit(Signalled(SIGKILL), "")));
+}
+
 TEST(ClassifyExitTest, KeepsTheEndOfTheOutputAsUtf8) {
   const RunnerFailure failure = ClassifyExit(Signalled(SIGABRT), std::string(10'000, 'a') + "the end\xff");
   EXPECT_THAT(failure.stderr_tail, SizeIs(proto::kMaxStderrTail));

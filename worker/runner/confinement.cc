@@ -158,14 +158,18 @@ bool TreeGuard::ServeUntilReadable(int fd, double cpu_limit) {
                                   {.fd = listener_.get(), .events = POLLIN, .revents = 0}}};
     if (poll(polled.data(), polled.size(), static_cast<int>(kLook.count())) < 0) continue;
     if (polled[0].revents != 0) return ended;
-    if ((polled[1].revents & POLLIN) != 0) {
-      Answer();
-    } else if (polled[1].revents != 0) {
-      listener_.Reset();  // nobody is left who could ask
-    }
+    Serve(polled[1].revents);
     if (cpu_limit <= 0.0 || std::chrono::steady_clock::now() < next_look) continue;
     ended = EndIfOver(cpu_limit) || ended;
     next_look = std::chrono::steady_clock::now() + kLook;
+  }
+}
+
+void TreeGuard::Serve(short found) {
+  if ((found & POLLIN) != 0) {
+    Answer();
+  } else if (found != 0) {
+    listener_.Reset();  // nobody is left who could ask
   }
 }
 

@@ -41,6 +41,9 @@ class TreeGuard {
   // Answers what the tree asks until `fd` can be read. Once all below the root have had `cpu_limit` of CPU
   // time together, s, they are killed; 0: no limit. True: they were.
   bool ServeUntilReadable(int fd, double cpu_limit);
+  // For whoever polls himself: for POLLIN of what, and what to do when poll has found these events.
+  int fd() const { return listener_.get(); }
+  void Serve(short found);
 
  private:
   struct Messages;

@@ -12,9 +12,12 @@
 #include <map>
 
 #include "base/canonical_encoder.h"
+#include "base/parse_number.h"
 #include "base/system/resource_limits.h"
 #include "base/utf8.h"
+#include "controllers/command/definition.h"
 #include "proto/run_codec.h"
+#include "worker/command/command_runs.h"
 #include "worker/runner/pipe.h"
 #include "worker/runner/prepared_process.h"
 
@@ -68,16 +71,19 @@ RunnerReport Execute(const RunnerJob& job, const Result<sim::RunSpec>& spec, con
   RunnerReport report;
   report.cpu_seconds = SecondsOf(CLOCK_THREAD_CPUTIME_ID) - start;
   result.cpu_seconds = report.cpu_seconds;
-  const bool record = spec.ok() && spec->record_trajectory;
-  report.result = job.without_ways && !record
-                      ? proto::EncodeWithoutWays(result)
-                      : proto::EncodeRunResult(result, record ? proto::TrajectoryEncoding::kInclude
-                                                              : proto::TrajectoryEncoding::kLeaveOut);
-  if (job.max_result_bytes > 0 && report.result.size() > job.max_result_bytes) {
-    report.result = proto::EncodeRunResult(result, proto::TrajectoryEncoding::kLeaveOut);
-  }
+  report.result = EncodeResult(job, spec.ok() && spec->record_trajectory, result);
   report.process_cpu_seconds = SecondsOf(CLOCK_PROCESS_CPUTIME_ID);
   return report;
+}
+
+constexpr std::string_view kEndedWith = "the program ended with exit code ";
+
+// What ExitCodeLine says at the end of a text.
+std::optional<int> ExitCodeIn(std::string_view text) {
+  const std::size_t begin = text.rfind(kEndedWith);
+  if (begin == std::string_view::npos || !text.ends_with('\n')) return std::nullopt;
+  text.remove_suffix(1);
+  return ParseNumber<int>(text.substr(begin + kEndedWith.size()));
 }
 
 [[noreturn]] void EndWithoutPlugin(const Error& error) {
@@ -111,6 +117,9 @@ class PluginRuns {
     return EncodeReport(*report);
   }
 
+  // Ends the processes that have loaded plug-ins; they are started again when they are needed.
+  void EndProcesses() { processes_.clear(); }
+
  private:
   using ControllersAndScenarios = std::pair<std::string, std::string>;
 
@@ -140,6 +149,16 @@ class PluginRuns {
 };
 
 }  // namespace
+
+std::string EncodeResult(const RunnerJob& job, bool record, const sim::RunResult& result) {
+  std::string bytes = job.without_ways && !record
+                          ? proto::EncodeWithoutWays(result)
+                          : proto::EncodeRunResult(result, record ? proto::TrajectoryEncoding::kInclude
+                                                                  : proto::TrajectoryEncoding::kLeaveOut);
+  if (job.max_result_bytes > 0 && bytes.size() > job.max_result_bytes)
+    bytes = proto::EncodeRunResult(result, proto::TrajectoryEncoding::kLeaveOut);
+  return bytes;
+}
 
 std::string EncodeJob(const RunnerJob& job) {
   CanonicalEncoder encoder;
@@ -194,10 +213,23 @@ RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail) {
     return failure;
   }
   failure.exit_code = WEXITSTATUS(wait_status);
+  if (const auto own = failure.exit_code == kExitOfProgram ? ExitCodeIn(stderr_tail) : std::nullopt) {
+    failure.exit_code = *own;
+    failure.kind = FailureKind::kCrashed;
+    return failure;
+  }
   failure.kind = failure.exit_code == kExitOutOfMemory     ? FailureKind::kOutOfMemory
                  : failure.exit_code == kExitWithoutPlugin ? FailureKind::kExternal
                                                            : FailureKind::kCrashed;
   return failure;
+}
+
+bool IsWithoutPlugin(const RunnerFailure& failure) {
+  return failure.kind == FailureKind::kExternal && failure.exit_code == kExitWithoutPlugin;
+}
+
+std::string ExitCodeLine(int exit_code) {
+  return fmt::format("{}{}\n", kEndedWith, exit_code);
 }
 
 RunnerFailure WaitedTooLong(double wall_seconds) {
@@ -209,6 +241,7 @@ void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugins)
   SetSoftLimit(RLIMIT_CORE, 0);
   Limits limits;
   PluginRuns plugin_runs(plugins, run);
+  CommandRuns command_runs(plugins);
   FrameBuffer messages;
   while (true) {
     const std::optional<std::string> message = messages.Next();
@@ -222,6 +255,10 @@ void RunnerMain(int pipe, const RunFunction& run, const PluginSettings& plugins)
     const std::string report = CallOrEnd([&] {
       const Result<sim::RunSpec> spec = proto::DecodeRunSpec(job->spec);
       const bool of_plugins = spec.ok() && !(spec->plugin.empty() && spec->scenario_plugin.empty());
+      if (of_plugins && spec->scenario == controllers::command::kScenario) {
+        plugin_runs.EndProcesses();  // or the program's end would be theirs
+        return command_runs.Execute(*job, *spec);
+      }
       if (of_plugins) return plugin_runs.Execute(*job, *spec);
       return EncodeReport(Execute(*job, spec, run));
     });

@@ -48,6 +48,8 @@ struct RunnerReport {
   double process_cpu_seconds = 0.0;  // of the runner since its start
 };
 
+// A result as it was asked for; `record`: with its trajectory.
+std::string EncodeResult(const RunnerJob& job, bool record, const sim::RunResult& result);
 std::string EncodeJob(const RunnerJob& job);
 std::optional<RunnerJob> DecodeJob(std::string_view bytes);
 std::string EncodeReport(const RunnerReport& report);
@@ -57,6 +59,10 @@ std::optional<RunnerReport> DecodeReport(std::string_view bytes);
 // on itself, SIGXCPU (the CPU limit) and any exit; SIGKILL, SIGTERM and the other signals that only somebody
 // else sends are external, and so is that the plug-in of a run cannot be had here (kExitWithoutPlugin).
 proto::RunnerFailure ClassifyExit(int wait_status, std::string_view stderr_tail);
+// Whether it says that what a run needs cannot be had here.
+bool IsWithoutPlugin(const proto::RunnerFailure& failure);
+// The last line on stderr of a runner that ends with kExitOfProgram: ClassifyExit takes the code from it.
+std::string ExitCodeLine(int exit_code);
 
 // A run that sleeps or waits uses no CPU time, so its limit never ends it. So many times its CPU limit of
 // wall time does: so late that a run at work on a crowded machine has met its CPU limit long before.

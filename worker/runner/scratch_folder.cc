@@ -30,6 +30,21 @@ UniqueFd Lock(const fs::path& folder) {
   return opened;
 }
 
+// Folders whose owner may not write are made writable first.
+void RemoveWhole(const fs::path& folder) {
+  std::error_code failed;
+  fs::remove_all(folder, failed);
+  if (!failed) return;
+  fs::permissions(folder, fs::perms::owner_all, fs::perm_options::add, failed);
+  fs::recursive_directory_iterator entry(folder, failed);
+  for (const fs::recursive_directory_iterator end; !failed && entry != end; entry.increment(failed)) {
+    std::error_code ignored;
+    if (entry->symlink_status(ignored).type() == fs::file_type::directory)
+      fs::permissions(entry->path(), fs::perms::owner_all, fs::perm_options::add, ignored);
+  }
+  fs::remove_all(folder, failed);
+}
+
 }  // namespace
 
 void ScratchFolder::RemoveAbandoned() {
@@ -38,8 +53,7 @@ void ScratchFolder::RemoveAbandoned() {
   for (fs::directory_iterator entry(place, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
     if (!entry->path().filename().string().starts_with(kLocked)) continue;
-    std::error_code kept;
-    if (Lock(entry->path()).valid()) fs::remove_all(entry->path(), kept);
+    if (Lock(entry->path()).valid()) RemoveWhole(entry->path());
   }
 }
 
@@ -86,8 +100,8 @@ ScratchFolder::~ScratchFolder() {
   std::error_code ignored;
   // A run may have moved it, and put something else in its place.
   const fs::path now = fs::read_symlink(fmt::format("/proc/self/fd/{}", lock_.get()), ignored);
-  if (!ignored) fs::remove_all(now, ignored);
-  fs::remove_all(path_, ignored);
+  if (!ignored) RemoveWhole(now);
+  RemoveWhole(path_);
 }
 
 }  // namespace gauntlet::worker

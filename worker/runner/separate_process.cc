@@ -230,23 +230,24 @@ Result<SeparateOutcome> CallInSeparateProcess(const std::function<std::string()>
   return outcome;
 }
 
+void EndBySignal(int number, const char* what) {
+  if (OnlyOthersSend(number) && number != SIGKILL) {
+    WriteToStderr(fmt::format("{} ended its process by signal {} ({})\n", what, number, strsignal(number)));
+    _exit(kExitSignalled + number);
+  }
+  SetSoftLimit(RLIMIT_CORE, 0);
+  signal(number, SIG_DFL);
+  sigset_t only;
+  sigemptyset(&only);
+  sigaddset(&only, number);
+  sigprocmask(SIG_UNBLOCK, &only, nullptr);
+  raise(number);
+  _exit(kExitSignalled + number);  // of a signal that ends nobody
+}
+
 void EndAs(const SeparateOutcome& outcome) {
   WriteToStderr(outcome.output_tail);
-  if (WIFSIGNALED(outcome.wait_status)) {
-    const int number = WTERMSIG(outcome.wait_status);
-    if (OnlyOthersSend(number) && number != SIGKILL) {
-      WriteToStderr(
-          fmt::format("the plug-in ended its process by signal {} ({})\n", number, strsignal(number)));
-      _exit(kExitSignalled + number);
-    }
-    SetSoftLimit(RLIMIT_CORE, 0);
-    signal(number, SIG_DFL);
-    sigset_t only;
-    sigemptyset(&only);
-    sigaddset(&only, number);
-    sigprocmask(SIG_UNBLOCK, &only, nullptr);
-    raise(number);
-  }
+  if (WIFSIGNALED(outcome.wait_status)) EndBySignal(WTERMSIG(outcome.wait_status), "the plug-in");
   const int code = WEXITSTATUS(outcome.wait_status);
   if (code == kExitUnheard)
     WriteToStderr("the plug-in closed files that are not its own, among them the run's result\n");

@@ -15,9 +15,12 @@
 namespace gauntlet::worker {
 
 using proto::kExitException;
+using proto::kExitOfProgram;
 using proto::kExitOutOfMemory;
+using proto::kExitOverDisk;
 using proto::kExitSignalled;
 using proto::kExitUnheard;
+using proto::kExitWithoutMetrics;
 using proto::kExitWithoutPlugin;
 using proto::kExitWithoutResult;
 
@@ -84,10 +87,13 @@ std::string OutputTail(const std::string& folder);
 // User and system time of this process and of its children that have ended, s.
 double SecondsWithChildren();
 
+// Ends this process by the signal that ended another one. A signal as SIGTERM or SIGUSR1 that met that
+// process alone came from what runs in it, so this one says so, with the name of `what` that is, and exits
+// with kExitSignalled and its number; but SIGKILL, by which the kernel ends a process when memory is short,
+// stays somebody else's.
+[[noreturn]] void EndBySignal(int number, const char* what);
 // Ends this process in the way in which a separate one ended without a result, after saying on stderr what
-// that one printed last. A signal as SIGTERM or SIGUSR1 that met that process alone came from what runs in
-// it, so this one exits with kExitSignalled and its number; but SIGKILL, by which the kernel ends a process
-// when memory is short, stays somebody else's.
+// that one printed last.
 [[noreturn]] void EndAs(const SeparateOutcome& outcome);
 
 }  // namespace gauntlet::worker

@@ -40,10 +40,18 @@ class ProcessTreeTest : public testing::Test {
 TEST_F(ProcessTreeTest, KnowsWhoIsBelowWhom) {
   EXPECT_THAT(ProcessesBelow(getpid()), testing::UnorderedElementsAre(child_, grandchild_));
   EXPECT_THAT(ProcessesBelow(child_), testing::ElementsAre(grandchild_));
+  EXPECT_THAT(SampleBelow(getpid()), testing::UnorderedElementsAre(child_, grandchild_));
   EXPECT_FALSE(IsBelow(child_, grandchild_));
   EXPECT_FALSE(IsBelow(child_, child_));
   // The thread sanitizer has one of its own in each.
   EXPECT_EQ(ThreadsOf(child_), testing_support::kSanitized ? ThreadsOf(grandchild_) : 1);
+}
+
+TEST_F(ProcessTreeTest, KnowsTheMemoryThatAProcessHasInUse) {
+  EXPECT_GT(ResidentBytesOf(getpid()), std::uint64_t{1} << 20);
+  const pid_t none = child_;
+  EndProcessesBelow();
+  EXPECT_EQ(ResidentBytesOf(none), 0U);
 }
 
 TEST_F(ProcessTreeTest, EndsOrphansToo) {
