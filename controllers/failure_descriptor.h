@@ -32,7 +32,7 @@ std::optional<double> ReportedValue(MetricValues metrics, std::string_view name)
 
 // Where a failed run failed, so that two failures can be told to be the same one.
 struct FailurePlace {
-  std::string x;  // metrics, m from the arena's centre
+  std::string x;  // metrics, m, in the coordinates of the test case
   std::string y;
   double same_within = 0.0;  // m: failures that are no farther apart are the same one
   bool operator==(const FailurePlace&) const = default;

@@ -181,7 +181,8 @@ class CaseReader {
     return {{"name", Into(test_case.name)},           {"side_x", Into(test_case.side_x)},
             {"side_y", Into(test_case.side_y)},       {"wall_thickness", Into(test_case.wall_thickness)},
             {"obstacles", Into(test_case.obstacles)}, {"spawn_area", Into(test_case.spawn_area)},
-            {"robots", Into(test_case.robots)},       {"start_poses", Into(test_case.start_poses)}};
+            {"robots", Into(test_case.robots)},       {"start_poses", Into(test_case.start_poses)},
+            {"center_x", Into(test_case.center.x())}, {"center_y", Into(test_case.center.y())}};
   }
   Reader Into(sim::TestCase& test_case) { return Object(KeysOf(test_case)); }
 
@@ -228,8 +229,10 @@ nlohmann::ordered_json JsonOf(const sim::TestCase& test_case) {
   nlohmann::ordered_json written = {{"name", test_case.name},
                                     {"side_x", test_case.side_x},
                                     {"side_y", test_case.side_y},
-                                    {"wall_thickness", test_case.wall_thickness},
-                                    {"obstacles", nlohmann::ordered_json::array()}};
+                                    {"wall_thickness", test_case.wall_thickness}};
+  if (test_case.center.x() != 0.0) written["center_x"] = test_case.center.x();
+  if (test_case.center.y() != 0.0) written["center_y"] = test_case.center.y();
+  written["obstacles"] = nlohmann::ordered_json::array();
   for (const sim::ObstacleGene& gene : test_case.obstacles) written["obstacles"].push_back(JsonOf(gene));
   if (const auto& area = test_case.spawn_area) {
     written["spawn_area"] = {{"min_x", area->min.x()},

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "base/number_text.h"
 #include "proto/json_text.h"
@@ -32,12 +33,73 @@ Status CheckDistance(std::string_view what, double distance) {
                                   NumberText(kMaxDistance)));
 }
 
+Status CheckBoxes(std::string_view what, const std::vector<sim::RoundedBox>& boxes) {
+  for (const auto& [box, radius] : boxes) {
+    TRY(CheckPlace(what, box.center));
+    TRY(CheckDistance(what, radius));
+  }
+  return Ok{};
+}
+
 OrderedJson PointJson(const sim::Vec2& point) {
   return OrderedJson::array({point.x(), point.y()});
 }
 
 sim::Vec2 PointOf(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>()};
+}
+
+OrderedJson BoxesJson(const std::vector<sim::RoundedBox>& boxes) {
+  OrderedJson json = OrderedJson::array();
+  for (const auto& [box, radius] : boxes) {
+    json.push_back({{"at", PointJson(box.center)},
+                    {"half_extents", PointJson(box.half_extents)},
+                    {"axis", PointJson(box.axis)},
+                    {"radius", radius}});
+  }
+  return json;
+}
+
+std::vector<sim::RoundedBox> BoxesOf(const Json& json) {
+  std::vector<sim::RoundedBox> boxes;
+  for (const Json& box : json) {
+    boxes.push_back({{PointOf(box.at("at")), PointOf(box.at("half_extents")), PointOf(box.at("axis"))},
+                     box.at("radius").get<double>()});
+  }
+  return boxes;
+}
+
+// What few scenarios ask for is written only where it is asked for: other answers keep their bytes.
+OrderedJson RequirementsJson(const sim::ArenaRequirements& asked) {
+  const sim::ArenaRequirements usual;
+  OrderedJson json = {{"start", PointJson(asked.start)},
+                      {"goal", PointJson(asked.goal)},
+                      {"clearance", asked.clearance},
+                      {"inflation", asked.inflation}};
+  if (asked.cell_size != usual.cell_size) json["cell_size"] = asked.cell_size;
+  if (!asked.asks_for_path) json["asks_for_path"] = false;
+  for (const sim::Vec2& goal : asked.further_goals) json["further_goals"].push_back(PointJson(goal));
+  if (!asked.keep_outs.empty()) json["keep_outs"] = BoxesJson(asked.keep_outs);
+  if (!asked.standing.empty()) json["standing"] = BoxesJson(asked.standing);
+  if (asked.least_side != usual.least_side) json["least_side"] = asked.least_side;
+  if (asked.anywhere) json["anywhere"] = true;
+  return json;
+}
+
+sim::ArenaRequirements AskedIn(const Json& json) {
+  sim::ArenaRequirements asked{.start = PointOf(json.at("start")),
+                               .goal = PointOf(json.at("goal")),
+                               .clearance = json.at("clearance"),
+                               .inflation = json.at("inflation")};
+  asked.cell_size = json.value("cell_size", asked.cell_size);
+  asked.asks_for_path = json.value("asks_for_path", asked.asks_for_path);
+  for (const Json& goal : json.value("further_goals", Json::array()))
+    asked.further_goals.push_back(PointOf(goal));
+  asked.keep_outs = BoxesOf(json.value("keep_outs", Json::array()));
+  asked.standing = BoxesOf(json.value("standing", Json::array()));
+  asked.least_side = json.value("least_side", asked.least_side);
+  asked.anywhere = json.value("anywhere", asked.anywhere);
+  return asked;
 }
 
 OrderedJson RobotJson(const sim::StartingRobot& robot) {
@@ -122,7 +184,9 @@ Status CheckBeginning(const sim::RunBeginning& beginning) {
   const sim::ArenaRequirements& asked = beginning.requirements;
   for (const Status& right :
        {CheckPlace("start", asked.start), CheckPlace("goal", asked.goal),
-        CheckDistance("clearance", asked.clearance), CheckDistance("inflation", asked.inflation)}) {
+        CheckDistance("clearance", asked.clearance), CheckDistance("inflation", asked.inflation),
+        CheckDistance("cell", asked.cell_size), CheckBoxes("keep-out", asked.keep_outs),
+        CheckBoxes("standing box", asked.standing)}) {
     if (!right) return InvalidInput("what it asks of an arena is wrong: " + right.error().message);
   }
   if (!beginning.start) return Ok{};
@@ -135,13 +199,8 @@ Status CheckBeginning(const sim::RunBeginning& beginning) {
 }
 
 std::string WriteBeginning(const sim::RunBeginning& beginning) {
-  const sim::ArenaRequirements& asked = beginning.requirements;
   OrderedJson json = {{"format", kBeginningFormat},
-                      {"requirements",
-                       {{"start", PointJson(asked.start)},
-                        {"goal", PointJson(asked.goal)},
-                        {"clearance", asked.clearance},
-                        {"inflation", asked.inflation}}}};
+                      {"requirements", RequirementsJson(beginning.requirements)}};
   if (beginning.start) {
     json["start"] = StartJson(*beginning.start);
   } else {
@@ -156,11 +215,7 @@ Result<sim::RunBeginning> ReadBeginning(std::string_view text, const std::string
   try {
     if (json.at("format") != kBeginningFormat)
       return InvalidInput(fmt::format("{}: no beginning of a run in format {}", place, kBeginningFormat));
-    const Json& asked = json.at("requirements");
-    beginning.requirements = {.start = PointOf(asked.at("start")),
-                              .goal = PointOf(asked.at("goal")),
-                              .clearance = asked.at("clearance"),
-                              .inflation = asked.at("inflation")};
+    beginning.requirements = AskedIn(json.at("requirements"));
     if (const auto refused = json.find("refused"); refused != json.end()) {
       beginning.start = InvalidInput(refused->get<std::string>());
     } else {

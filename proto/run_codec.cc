@@ -26,6 +26,8 @@ void ToProto(const sim::TestCase& test_case, v1::TestCase& message) {
   message.set_side_x(test_case.side_x);
   message.set_side_y(test_case.side_y);
   message.set_wall_thickness(test_case.wall_thickness);
+  if (test_case.center.x() != 0.0) message.set_center_x(test_case.center.x());
+  if (test_case.center.y() != 0.0) message.set_center_y(test_case.center.y());
   for (const sim::ObstacleGene& gene : test_case.obstacles) {
     v1::Obstacle& obstacle = *message.add_obstacles();
     obstacle.set_x(gene.x);
@@ -166,6 +168,8 @@ sim::TestCase ReadTestCase(const v1::TestCase& wire, SpecReader& reader) {
   if (wire.has_wall_thickness()) {
     test_case.wall_thickness = reader.Finite(wire.wall_thickness(), "wall_thickness");
   }
+  test_case.center.x() = reader.Finite(wire.center_x(), "center_x");
+  test_case.center.y() = reader.Finite(wire.center_y(), "center_y");
   reader.RequireAtMost(wire.obstacles(), static_cast<int>(sim::kMaxObstacles), "obstacles");
   if (!reader.ok()) return test_case;
   test_case.obstacles.reserve(static_cast<std::size_t>(wire.obstacles_size()));

@@ -23,6 +23,10 @@ void AddCase(const sim::TestCase& test_case, Fnv1a64& hash) {
     hash.AddDouble(pose.position.y());
     hash.AddDouble(pose.heading);
   }
+  if (test_case.center != sim::Vec2::Zero()) {
+    hash.AddDouble(test_case.center.x());
+    hash.AddDouble(test_case.center.y());
+  }
   if (!test_case.spawn_area.has_value()) return;
   for (const sim::Vec2& corner : {test_case.spawn_area->min, test_case.spawn_area->max}) {
     hash.AddDouble(corner.x());
@@ -44,14 +48,16 @@ std::uint64_t CaseHash(const sim::TestCase& test_case) {
 
 sim::TestCase EmptyArena(const ArenaSpec& arena) {
   sim::TestCase test_case;
-  test_case.side_x = arena.side;
-  test_case.side_y = arena.side;
+  const sim::Vec2 sides = arena.Sides();
+  test_case.side_x = sides.x();
+  test_case.side_y = sides.y();
+  test_case.center = arena.Center();
   test_case.wall_thickness = arena.wall_thickness;
   return test_case;
 }
 
 GenomeGenerator MakeGenerator(const SearchSetup& setup) {
-  return {setup.experiment.genome, EmptyArena(setup.experiment.arena), setup.requirements};
+  return {GenomeOf(setup.experiment), EmptyArena(setup.experiment.arena), setup.requirements};
 }
 
 std::uint64_t SearchSeed(const SearchSetup& setup) {

@@ -22,13 +22,14 @@ double GridStep(const FigureFrame& frame) {
 }
 
 void DrawWalls(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
-  const sim::Vec2 outer{frame.half_x(), frame.half_y()};
+  const sim::Vec2 first = frame.min();
+  const sim::Vec2 last = frame.max();
   const sim::Vec2& min = arena.interior_min();
   const sim::Vec2& max = arena.interior_max();
-  DrawBox(canvas, frame, {-outer.x(), max.y()}, outer, "class=\"wall\"");
-  DrawBox(canvas, frame, -outer, {outer.x(), min.y()}, "class=\"wall\"");
-  DrawBox(canvas, frame, {max.x(), min.y()}, {outer.x(), max.y()}, "class=\"wall\"");
-  DrawBox(canvas, frame, {-outer.x(), min.y()}, {min.x(), max.y()}, "class=\"wall\"");
+  DrawBox(canvas, frame, {first.x(), max.y()}, last, "class=\"wall\"");
+  DrawBox(canvas, frame, first, {last.x(), min.y()}, "class=\"wall\"");
+  DrawBox(canvas, frame, {max.x(), min.y()}, {last.x(), max.y()}, "class=\"wall\"");
+  DrawBox(canvas, frame, {first.x(), min.y()}, {min.x(), max.y()}, "class=\"wall\"");
 }
 
 void DrawStanding(SvgCanvas& canvas, const FigureFrame& frame, const sim::Arena& arena) {
@@ -121,18 +122,20 @@ std::vector<Pixel> DrawObstacleNumbers(SvgCanvas& canvas, const FigureFrame& fra
 void DrawAxes(SvgCanvas& canvas, const FigureFrame& frame) {
   const double step = GridStep(frame);
   const auto label = [step](double value) {
-    const int decimals = step < 1.0 ? 1 : 0;
+    const int decimals = step < 0.1 ? 2 : step < 1.0 ? 1 : 0;
     const double shown = std::abs(value) < step / 100 ? 0.0 : value;
     std::string text = fmt::format("{:.{}f}", std::abs(shown), decimals);
     return shown < 0 ? "\u2212" + text : text;
   };
-  for (double x = -std::floor(frame.half_x() / step) * step; x <= frame.half_x(); x += step) {
-    const Pixel p = frame.At({x, -frame.half_y()});
+  const sim::Vec2 min = frame.min();
+  const sim::Vec2 max = frame.max();
+  for (double x = std::ceil(min.x() / step) * step; x <= max.x(); x += step) {
+    const Pixel p = frame.At({x, min.y()});
     canvas.Line(p, {p.x, p.y + 6}, "class=\"tick\"");
     canvas.Text({p.x, p.y + 20}, label(x), "class=\"axis\" text-anchor=\"middle\"");
   }
-  for (double y = -std::floor(frame.half_y() / step) * step; y <= frame.half_y(); y += step) {
-    const Pixel p = frame.At({-frame.half_x(), y});
+  for (double y = std::ceil(min.y() / step) * step; y <= max.y(); y += step) {
+    const Pixel p = frame.At({min.x(), y});
     canvas.Line(p, {p.x - 6, p.y}, "class=\"tick\"");
     canvas.Text({p.x - 10, p.y + 4.5}, label(y), "class=\"axis\" text-anchor=\"end\"");
   }

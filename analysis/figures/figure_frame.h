@@ -11,7 +11,7 @@
 
 namespace gauntlet::analysis {
 
-// Metres (x right, y up, origin in the middle of the arena) to pixels (y down).
+// Metres (x right, y up) to pixels (y down).
 class FigureFrame {
  public:
   static constexpr double kArenaPixels = 690.0;  // the longer side, walls included
@@ -22,20 +22,25 @@ class FigureFrame {
   static constexpr double kLeastHeight = 790.0;  // so that the legend fits beside a flat arena
 
   explicit FigureFrame(const sim::TestCase& test_case)
-      : half_x_((test_case.side_x + test_case.wall_thickness) / 2),
+      : center_(test_case.center),
+        half_x_((test_case.side_x + test_case.wall_thickness) / 2),
         half_y_((test_case.side_y + test_case.wall_thickness) / 2),
         scale_(kArenaPixels / (2 * std::max(half_x_, half_y_))) {}
 
   double scale() const { return scale_; }    // pixels per metre
   double half_x() const { return half_x_; }  // m, to the walls' outer faces
   double half_y() const { return half_y_; }
+  // The corners of the walls' outer faces, m.
+  sim::Vec2 min() const { return center_ - sim::Vec2(half_x_, half_y_); }
+  sim::Vec2 max() const { return center_ + sim::Vec2(half_x_, half_y_); }
   double right() const { return kLeft + 2 * half_x_ * scale_; }  // pixels
   double bottom() const { return kTop + 2 * half_y_ * scale_; }
   double page_width() const { return right() + kPanel; }
   double page_height() const { return std::max(bottom() + kBottom, kLeastHeight); }
 
   Pixel At(const sim::Vec2& p) const {
-    return {kLeft + (p.x() + half_x_) * scale_, kTop + (half_y_ - p.y()) * scale_};
+    const sim::Vec2 place = p - center_;
+    return {kLeft + (place.x() + half_x_) * scale_, kTop + (half_y_ - place.y()) * scale_};
   }
 
   std::vector<Pixel> At(const std::vector<sim::Vec2>& points) const {
@@ -45,6 +50,7 @@ class FigureFrame {
   }
 
  private:
+  sim::Vec2 center_;  // m, of the arena
   double half_x_;
   double half_y_;
   double scale_;

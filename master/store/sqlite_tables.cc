@@ -37,6 +37,10 @@ std::string EncodeParents(const Individual& individual) {
   return encoder.Take();
 }
 
+// What a stored test case has.
+constexpr std::uint64_t kHasRobots = 1;
+constexpr std::uint64_t kHasCenter = 2;
+
 std::string EncodeTestCase(const sim::TestCase& test_case) {
   CanonicalEncoder encoder;
   encoder.String(test_case.name);
@@ -51,8 +55,14 @@ std::string EncodeTestCase(const sim::TestCase& test_case) {
     encoder.Double(area.max.x());
     encoder.Double(area.max.y());
   }
-  encoder.Bool(test_case.robots.has_value());
+  // A bit each: stored cases around the origin keep their bytes.
+  const bool elsewhere = test_case.center != sim::Vec2::Zero();
+  encoder.Uint((test_case.robots ? kHasRobots : 0) | (elsewhere ? kHasCenter : 0));
   if (test_case.robots) encoder.Int(*test_case.robots);
+  if (elsewhere) {
+    encoder.Double(test_case.center.x());
+    encoder.Double(test_case.center.y());
+  }
   // At the end, and only where there are some: stored cases without keep their bytes.
   for (const sim::Pose& pose : test_case.start_poses) {
     encoder.Double(pose.position.x());
@@ -83,7 +93,11 @@ bool DecodeTestCase(std::string_view bytes, sim::TestCase& test_case) {
       *corner = sim::Vec2(x, y);
     }
   }
-  if (decoder.Bool()) test_case.robots = static_cast<int>(decoder.Int());
+  const std::uint64_t has = decoder.Uint();
+  if ((has & kHasRobots) != 0) test_case.robots = static_cast<int>(decoder.Int());
+  if ((has & kHasCenter) != 0) {
+    for (double* value : {&test_case.center.x(), &test_case.center.y()}) *value = decoder.Double();
+  }
   while (decoder.ok() && !decoder.AtEnd()) {
     sim::Pose& pose = test_case.start_poses.emplace_back();
     for (double* value : {&pose.position.x(), &pose.position.y(), &pose.heading}) *value = decoder.Double();

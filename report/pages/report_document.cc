@@ -34,8 +34,8 @@ unsigned Quantised(double share, double most) {
 
 void AppendPose(const sim::RobotState& state, const sim::TestCase& arena, std::vector<unsigned char>& bytes) {
   constexpr unsigned kTurn = 256;
-  const unsigned x = Quantised(state.x / arena.side_x + 0.5, 4095.0);
-  const unsigned y = Quantised(state.y / arena.side_y + 0.5, 4095.0);
+  const unsigned x = Quantised((state.x - arena.center.x()) / arena.side_x + 0.5, 4095.0);
+  const unsigned y = Quantised((state.y - arena.center.y()) / arena.side_y + 0.5, 4095.0);
   const unsigned heading = Quantised(state.heading / (2 * std::numbers::pi) + 0.5, kTurn) % kTurn;
   for (const unsigned byte : {x & 255U, (x >> 8U) | ((y & 15U) << 4U), y >> 4U, heading})
     bytes.push_back(static_cast<unsigned char>(byte));
@@ -131,6 +131,7 @@ Json ReplayDocument(const analysis::RunFigure& figure) {
                {"wall", test_case.wall_thickness},   {"robots", robots},
                {"guide", analysis::GuideOf(figure)}, {"guide_name", figure.style.guide},
                {"member", figure.style.member},      {"sight_range", SightRangeOf(figure.spec)}};
+  if (test_case.center != sim::Vec2::Zero()) json["center"] = PointJson(test_case.center);
   Json lost = Json::array();
   for (const sim::RobotSummary& robot : figure.result.robots) lost.push_back(robot.lost);
   json["lost"] = std::move(lost);

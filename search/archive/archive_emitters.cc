@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "search/experiment/genome_ranges.h"
 #include "sim/geometry/trigonometry.h"
 
 namespace gauntlet {
@@ -35,8 +36,16 @@ double OnGrid(double value, double low, double high, double step) {
   const double divisions = std::round(1.0 / step);
   return std::round(value * divisions) / divisions;
 }
-double PlaceOnGrid(double place, const GenomeSpec& spec) {
-  return OnGrid(place, spec.position_min, spec.position_max, spec.step);
+void PutOnGrid(const sim::Vec2& place, const GenomeSpec& spec, sim::ObstacleGene& gene) {
+  auto [min, max] = spec.Places();
+  if (spec.places && spec.step > 0.0) {  // whose ends need not lie on the grid
+    const GridRange x = GridOf(min.x(), max.x(), spec.step);
+    const GridRange y = GridOf(min.y(), max.y(), spec.step);
+    min = sim::Vec2(static_cast<double>(x.first), static_cast<double>(y.first)) / x.divisions;
+    max = sim::Vec2(static_cast<double>(x.last), static_cast<double>(y.last)) / x.divisions;
+  }
+  gene.x = OnGrid(place.x(), min.x(), max.x(), spec.step);
+  gene.y = OnGrid(place.y(), min.y(), max.y(), spec.step);
 }
 double LengthOnGrid(double length, const GenomeSpec& spec) {
   return OnGrid(length, spec.length_min, spec.length_max, spec.step);
@@ -94,9 +103,7 @@ std::optional<sim::Genome> Mirrored(const sim::Genome& obstacles, const Way& way
   const double axis = sim::AngleOf(way.goal - way.start) / sim::kDegree;
   sim::Genome mirrored = obstacles;
   for (sim::ObstacleGene& gene : mirrored) {
-    const sim::Vec2 center = Mirrored({gene.x, gene.y}, way);
-    gene.x = PlaceOnGrid(center.x(), generator.spec());
-    gene.y = PlaceOnGrid(center.y(), generator.spec());
+    PutOnGrid(Mirrored({gene.x, gene.y}, way), generator.spec(), gene);
     gene.orientation_deg = WholeTurn(2.0 * axis - gene.orientation_deg);
     for (sim::Vec2& point : gene.path) point = Mirrored(point, way);
   }
@@ -132,8 +139,7 @@ std::optional<sim::Genome> Across(const sim::Vec2& place, int count, const Way& 
     const double side = i - 0.5 * (count - 1);
     const sim::Vec2 center = middle + side * kSpacing * spec.length_max * across;
     sim::ObstacleGene gene = generator.RandomGene(random);
-    gene.x = PlaceOnGrid(center.x(), spec);
-    gene.y = PlaceOnGrid(center.y(), spec);
+    PutOnGrid(center, spec, gene);
     gene.length = DrawLongest(kLongest, spec, random);
     const double leaning = side > 0.0 ? lean : side < 0.0 ? -lean : 0.0;
     gene.orientation_deg = WholeTurn(turn + leaning + kTurnInRow * random.Gaussian());
@@ -156,8 +162,8 @@ std::optional<sim::Genome> Jittered(const sim::Genome& obstacles, const GenomeGe
                                     sim::RandomStream& random) {
   sim::Genome jittered = obstacles;
   for (sim::ObstacleGene& gene : jittered) {
-    gene.x = PlaceOnGrid(gene.x + kPlaceJitter * random.Gaussian(), generator.spec());
-    gene.y = PlaceOnGrid(gene.y + kPlaceJitter * random.Gaussian(), generator.spec());
+    const double x = gene.x + kPlaceJitter * random.Gaussian();
+    PutOnGrid({x, gene.y + kPlaceJitter * random.Gaussian()}, generator.spec(), gene);
     gene.length = LengthOnGrid(gene.length + kLengthJitter * random.Gaussian(), generator.spec());
     gene.orientation_deg = WholeTurn(gene.orientation_deg + kTurnNoise * random.Gaussian());
   }

@@ -34,7 +34,7 @@ LayoutProposer::LayoutProposer(const SearchSetup& setup, const GenomeGenerator& 
     : generator_(generator),
       places_(places),
       way_{setup.requirements.start, setup.requirements.goal},
-      inflation_(setup.requirements.inflation),
+      requirements_(setup.requirements),
       archive_(archive) {}
 
 Proposal LayoutProposer::Random(sim::RandomStream& random) const {
@@ -54,7 +54,7 @@ Proposal LayoutProposer::Random(sim::RandomStream& random) const {
 }
 
 double LayoutProposer::Promise(const sim::TestCase& test_case) const {
-  const sim::OccupancyGrid grid(sim::Arena(test_case), inflation_);
+  const sim::OccupancyGrid grid = GridFor(test_case, requirements_);
   std::set<std::size_t> cells;
   const std::vector<sim::Vec2> path = sim::PlanPath(grid, way_.start, way_.goal);
   for (std::size_t i = 1; i < path.size(); ++i) {

@@ -70,7 +70,7 @@ class LayoutProposer {
   const GenomeGenerator& generator_;
   const bool places_;
   const Way way_;
-  const double inflation_;  // m, of obstacles, where the swarm's way is planned
+  const sim::ArenaRequirements& requirements_;
   FailureArchive& archive_;
 };
 

@@ -70,13 +70,15 @@ void AppendBox(xml_node arena, std::string_view id, const sim::ObstacleGene& box
 }
 
 void AppendBoxes(xml_node arena, const sim::TestCase& test_case) {
-  const double x = test_case.side_x;
-  const double y = test_case.side_y;
+  const double x = test_case.center.x();
+  const double y = test_case.center.y();
+  const double along_x = test_case.side_x;
+  const double along_y = test_case.side_y;
   const double thickness = test_case.wall_thickness;
-  AppendBox(arena, kWallIds[0], {0.0, y / 2, x, thickness, 0.0});
-  AppendBox(arena, kWallIds[1], {0.0, -y / 2, x, thickness, 0.0});
-  AppendBox(arena, kWallIds[2], {x / 2, 0.0, y, thickness, 90.0});
-  AppendBox(arena, kWallIds[3], {-x / 2, 0.0, y, thickness, 90.0});
+  AppendBox(arena, kWallIds[0], {x, y + along_y / 2, along_x, thickness, 0.0});
+  AppendBox(arena, kWallIds[1], {x, y - along_y / 2, along_x, thickness, 0.0});
+  AppendBox(arena, kWallIds[2], {x + along_x / 2, y, along_y, thickness, 90.0});
+  AppendBox(arena, kWallIds[3], {x - along_x / 2, y, along_y, thickness, 90.0});
   for (std::size_t i = 0; i < test_case.obstacles.size(); ++i)
     AppendBox(arena, ObstacleId(i + 1), test_case.obstacles[i]);
 }
@@ -265,7 +267,7 @@ ArgosFile WriteArgos(const sim::RunSpec& spec, const sim::RunStart& start,
   const xml_node arena =
       Append(root, "arena",
              {{"size", fmt::format("{},{},{}", test_case.side_x, test_case.side_y, height)},
-              {"center", fmt::format("0,0,{}", height / 2.0)}});
+              {"center", fmt::format("{},{},{}", test_case.center.x(), test_case.center.y(), height / 2.0)}});
   Append(arena, "floor", {{"id", "floor"}, {"source", "loop_functions"}, {"pixels_per_meter", "50"}});
   AppendBoxes(arena, test_case);
   AppendLights(arena, start.lights);

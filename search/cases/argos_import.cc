@@ -137,7 +137,9 @@ class Importer {
     test_case_.name = file_name_;
     test_case_.side_x = size[0];
     test_case_.side_y = size[1];
-    center_ = {center[0], center[1]};
+    // Foreign files are moved to the origin: those of our own that lie elsewhere are meant to.
+    sim::Vec2& middle = known_.empty() ? center_ : test_case_.center;
+    middle = {center[0], center[1]};
     for (const pugi::xml_node child : arena.children()) {
       if (child.type() != pugi::node_element) continue;
       TRY(ReadEntity(child));

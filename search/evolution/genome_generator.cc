@@ -32,8 +32,9 @@ GenomeGenerator::GenomeGenerator(const GenomeSpec& spec, const sim::TestCase& ar
 
 sim::ObstacleGene GenomeGenerator::RandomGene(sim::RandomStream& random) const {
   sim::ObstacleGene gene;
-  gene.x = Draw(spec_.position_min, spec_.position_max, spec_.step, random);
-  gene.y = Draw(spec_.position_min, spec_.position_max, spec_.step, random);
+  const sim::Vec2 place = DrawPlace(random);
+  gene.x = place.x();
+  gene.y = place.y();
   gene.length = Draw(spec_.length_min, spec_.length_max, spec_.step, random);
   gene.width = Draw(spec_.width_min, spec_.width_max, spec_.step, random);
   gene.orientation_deg = random.Below(360);
@@ -42,12 +43,15 @@ sim::ObstacleGene GenomeGenerator::RandomGene(sim::RandomStream& random) const {
   return gene;
 }
 
+sim::Vec2 GenomeGenerator::DrawPlace(sim::RandomStream& random) const {
+  const auto [min, max] = spec_.Places();
+  const double x = Draw(min.x(), max.x(), spec_.step, random);
+  return {x, Draw(min.y(), max.y(), spec_.step, random)};
+}
+
 void GenomeGenerator::SetInMotion(sim::RandomStream& random, sim::ObstacleGene& gene) const {
   gene.speed = Draw(spec_.speed_min, spec_.speed_max, kSpeedStep, random);
-  for (int i = 0; i < spec_.waypoints; ++i) {
-    const double x = Draw(spec_.position_min, spec_.position_max, spec_.step, random);
-    gene.path.emplace_back(x, Draw(spec_.position_min, spec_.position_max, spec_.step, random));
-  }
+  for (int i = 0; i < spec_.waypoints; ++i) gene.path.push_back(DrawPlace(random));
 }
 
 template <typename Append>
@@ -86,11 +90,18 @@ Result<sim::TestCase> GenomeGenerator::RandomTestCase(sim::RandomStream& random)
   for (int start = 0; start < kMaxRestarts; ++start) {
     if (std::optional<sim::Genome> genome = TryGenome(random)) return WithObstacles(std::move(*genome));
   }
-  return InvalidInput(fmt::format(
-      "no valid test case found in {} starts with genome.genes = {}, positions {} to {} m, lengths {} to {} "
-      "m, widths {} to {} m in an arena of {} x {} m: use fewer or smaller obstacles",
-      kMaxRestarts, spec_.genes, spec_.position_min, spec_.position_max, spec_.length_min, spec_.length_max,
-      spec_.width_min, spec_.width_max, arena_.side_x, arena_.side_y));
+  const auto [min, max] = spec_.Places();
+  const std::string positions =
+      spec_.places ? fmt::format("x {} to {} m, y {} to {} m", min.x(), max.x(), min.y(), max.y())
+                   : fmt::format("positions {} to {} m", min.x(), max.x());
+  const std::size_t keep_outs = requirements_.keep_outs.size();
+  const std::string or_else =
+      keep_outs == 0 ? "" : fmt::format(", or leave more room than the {} keep-outs do", keep_outs);
+  return InvalidInput(
+      fmt::format("no valid test case found in {} starts with genome.genes = {}, {}, lengths {} to {} "
+                  "m, widths {} to {} m in an arena of {} x {} m: use fewer or smaller obstacles{}",
+                  kMaxRestarts, spec_.genes, positions, spec_.length_min, spec_.length_max, spec_.width_min,
+                  spec_.width_max, arena_.side_x, arena_.side_y, or_else));
 }
 
 sim::TestCase GenomeGenerator::WithObstacles(sim::Genome genome) const {

@@ -39,6 +39,8 @@ class GenomeGenerator {
   const GenomeSpec& spec() const { return spec_; }
 
  private:
+  // A centre, uniform in the places.
+  sim::Vec2 DrawPlace(sim::RandomStream& random) const;
   void SetInMotion(sim::RandomStream& random, sim::ObstacleGene& gene) const;
   // Nothing when a gene found no place in tries_per_gene draws. `append` puts it into the arena, or says why
   // not.

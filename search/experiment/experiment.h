@@ -2,10 +2,13 @@
 // back resolved.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "sim/arena/color.h"
+#include "sim/arena/test_case.h"
 #include "sim/run_spec.h"
 
 namespace gauntlet {
@@ -26,7 +29,12 @@ struct GenomeSpec {
   double speed_max = 0.03;  // m/s
   double lights = 0.0;      // share of the genes that carry lights (thesis 7.4)
   sim::Color light_color = sim::Color::kRed;
-  int tries_per_gene = 500;  // redraws of one gene before the whole case starts anew
+  int tries_per_gene = 500;                   // redraws of one gene before the whole case starts anew
+  std::optional<sim::Rectangle> places = {};  // of centres, instead of position_min to position_max both ways
+
+  sim::Rectangle Places() const {
+    return places.value_or(sim::Rectangle{{position_min, position_min}, {position_max, position_max}});
+  }
 };
 
 enum class ParentSelection { kAllParentBestHalf, kTwoBestParentsTwoWorseAway, kTwoRandomParentsTwoWorseAway };
@@ -57,6 +65,23 @@ struct SearchSpec {
 struct ArenaSpec {
   double side = 6.0;            // m
   double wall_thickness = 0.1;  // m
+  // The rectangle that a program's arena is instead, m; all 0: there is none.
+  double x_min = 0.0;
+  double x_max = 0.0;
+  double y_min = 0.0;
+  double y_max = 0.0;
+
+  bool HasRectangle() const { return x_min != 0.0 || x_max != 0.0 || y_min != 0.0 || y_max != 0.0; }
+  // m. Decimals stay decimals: 0.3 - 0.2 is 0.1.
+  sim::Vec2 Sides() const {
+    return HasRectangle() ? ToNanometres({x_max - x_min, y_max - y_min}) : sim::Vec2(side, side);
+  }
+  sim::Vec2 Center() const { return ToNanometres(sim::Vec2(x_min + x_max, y_min + y_max) / 2.0); }
+
+ private:
+  static sim::Vec2 ToNanometres(const sim::Vec2& metres) {
+    return {std::round(metres.x() * 1e9) / 1e9, std::round(metres.y() * 1e9) / 1e9};
+  }
 };
 
 // What is kept of a run. No influence on any result.
@@ -83,6 +108,15 @@ struct Experiment : sim::RunSettings {
   std::uint64_t seed = 1;
   StoreSpec store;
 };
+
+// Its genome, whose obstacles stand in the arena's rectangle when there is one.
+inline GenomeSpec GenomeOf(const Experiment& experiment) {
+  GenomeSpec genome = experiment.genome;
+  const ArenaSpec& arena = experiment.arena;
+  if (arena.HasRectangle())
+    genome.places = sim::Rectangle{{arena.x_min, arena.y_min}, {arena.x_max, arena.y_max}};
+  return genome;
+}
 
 // A run with the experiment's settings. Those that its search asks for: SpecOfRun (search_table.h).
 inline sim::RunSpec SpecOf(const Experiment& experiment, const sim::TestCase& test_case, std::uint64_t seed) {

@@ -48,6 +48,9 @@ class Reader {
     TRY(ResolveNames());
     TRY(AssignAll(/*base=*/false));
     TRY(Define());
+    for (const Key& key : keys_) {
+      if (SaidByRectangle(experiment_, key.path)) key.set(experiment_, key.default_value);
+    }
     if (experiment_.name.empty()) experiment_.name = NameFromFile(file_name_);
     if (const std::optional<BrokenRule> broken = CheckRules(experiment_, catalogue_)) {
       return InvalidInput(fmt::format("{}: {}", PlaceOf(broken->path), broken->message));
@@ -312,6 +315,7 @@ std::string WriteExperiment(const Experiment& experiment, const std::vector<std:
 
   if (const auto* search = FindByName(catalogue.searches, experiment.search.algorithm))
     std::erase_if(keys, [&](const Key& key) {
+      if (SaidByRectangle(experiment, key.path)) return true;
       return key.rare && !Reads(*search, key.path) && key.get(experiment) == key.default_value;
     });
 

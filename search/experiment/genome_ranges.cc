@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 namespace gauntlet {
 namespace {
@@ -13,16 +13,23 @@ namespace {
 constexpr double kGridSlack = 1e-6;
 
 struct Range {
-  std::string_view name;
+  std::string_view name;  // keys NAME_min and NAME_max
   double min;
   double max;
 };
 
-std::array<Range, 4> RangesOf(const GenomeSpec& spec) {
-  return {{{"position", spec.position_min, spec.position_max},
-           {"length", spec.length_min, spec.length_max},
-           {"width", spec.width_min, spec.width_max},
-           {"speed", spec.speed_min, spec.speed_max}}};
+constexpr std::string_view kSpeed = "genome.speed";
+
+std::vector<Range> RangesOf(const GenomeSpec& spec) {
+  std::vector<Range> ranges = {{"genome.position", spec.position_min, spec.position_max}};
+  if (spec.places) {
+    const auto& [min, max] = *spec.places;
+    ranges = {{"arena.x", min.x(), max.x()}, {"arena.y", min.y(), max.y()}};
+  }
+  ranges.push_back({"genome.length", spec.length_min, spec.length_max});
+  ranges.push_back({"genome.width", spec.width_min, spec.width_max});
+  ranges.push_back({kSpeed, spec.speed_min, spec.speed_max});
+  return ranges;
 }
 
 }  // namespace
@@ -36,8 +43,8 @@ GridRange GridOf(double min, double max, double step) {
 Status CheckGenomeSpec(const GenomeSpec& spec) {
   for (const Range& range : RangesOf(spec)) {
     if (!(range.min <= range.max)) {
-      return InvalidInput(fmt::format("genome.{0}_min = {1} must not exceed genome.{0}_max = {2}", range.name,
-                                      range.min, range.max));
+      return InvalidInput(
+          fmt::format("{0}_min = {1} must not exceed {0}_max = {2}", range.name, range.min, range.max));
     }
   }
   if (const GridRange speeds = GridOf(spec.speed_min, spec.speed_max, kSpeedStep);
@@ -55,12 +62,11 @@ Status CheckGenomeSpec(const GenomeSpec& spec) {
                     spec.step));
   }
   for (const Range& range : RangesOf(spec)) {
-    if (range.name == "speed") continue;  // has a grid of its own
+    if (range.name == kSpeed) continue;  // has a grid of its own
     const GridRange grid = GridOf(range.min, range.max, spec.step);
     if (grid.first > grid.last) {
-      return InvalidInput(
-          fmt::format("genome.{0}_min = {1} to genome.{0}_max = {2} holds no multiple of genome.step = {3}",
-                      range.name, range.min, range.max, spec.step));
+      return InvalidInput(fmt::format("{0}_min = {1} to {0}_max = {2} holds no multiple of genome.step = {3}",
+                                      range.name, range.min, range.max, spec.step));
     }
   }
   return Ok{};

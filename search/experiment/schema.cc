@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "base/nearest_name.h"
 #include "base/system/sha256.h"
 #include "controllers/command/definition.h"
+#include "controllers/command/requirements.h"
 #include "search/experiment/genome_ranges.h"
 #include "search/experiment/objective.h"
 #include "sim/arena/color.h"
+#include "sim/arena/validity.h"
 #include "sim/robot/disturbances.h"
 
 namespace gauntlet {
@@ -230,6 +233,24 @@ std::vector<Key> FitKeys(const Catalogue& catalogue) {
   return keys;
 }
 
+constexpr double kLeastRectangleSide = controllers::command::kLeastArenaSide;
+
+std::vector<Key> RectangleKeys() {
+  constexpr auto kArena = &Experiment::arena;
+  constexpr double kMost = sim::kMaxCoordinate;
+  std::vector<Key> keys = {
+      NumberKey<kArena, &ArenaSpec::x_min>(
+          "arena.x_min", "m", -kMost, kMost,
+          "with the next three the arena of a program, instead of arena.side "
+          "and genome.position_*"),
+      NumberKey<kArena, &ArenaSpec::x_max>("arena.x_max", "m", -kMost, kMost, "likewise"),
+      NumberKey<kArena, &ArenaSpec::y_min>("arena.y_min", "m", -kMost, kMost, "likewise"),
+      NumberKey<kArena, &ArenaSpec::y_max>("arena.y_max", "m", -kMost, kMost, "likewise"),
+  };
+  for (Key& key : keys) key.rare = key.came_later = true;
+  return keys;
+}
+
 std::vector<Key> ArenaKeys() {
   constexpr auto kArena = &Experiment::arena;
   return {
@@ -293,6 +314,7 @@ std::vector<Key> CommonKeys(const Catalogue& catalogue) {
   };
   add({FaultsKey()}, &Key::disturbs);
   add(ArenaKeys(), nullptr);
+  add(RectangleKeys(), nullptr);
   add(GenomeKeys(), &Key::of_searches);
   add({AlgorithmKey(catalogue)}, nullptr);
   add(SearchKeys(catalogue), &Key::of_searches);
@@ -360,6 +382,12 @@ std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& cont
   return ParameterKeys<&Experiment::controller_parameters>("controller_parameters", controller.parameters);
 }
 
+bool SaidByRectangle(const Experiment& experiment, std::string_view path) {
+  constexpr std::array<std::string_view, 3> kSaid = {"arena.side", "genome.position_min",
+                                                     "genome.position_max"};
+  return experiment.arena.HasRectangle() && std::ranges::count(kSaid, path) > 0;
+}
+
 namespace {
 
 // What a program of the user's knows nothing of.
@@ -375,6 +403,39 @@ std::optional<BrokenRule> CheckRulesOfCommand(const Experiment& experiment, cons
   return std::nullopt;
 }
 
+std::optional<BrokenRule> CheckRectangle(const Experiment& experiment) {
+  const ArenaSpec& arena = experiment.arena;
+  if (!arena.HasRectangle()) return std::nullopt;
+  if (experiment.scenario != controllers::command::kScenario) {
+    const auto keys = RectangleKeys();
+    const auto given =
+        std::ranges::find_if(keys, [&](const Key& key) { return key.get(experiment) != KeyValue(0.0); });
+    return BrokenRule{given->path, fmt::format("{} = {}: arenas of this engine are squares around the "
+                                               "origin: set arena.side",
+                                               given->path, ToToml(given->get(experiment)))};
+  }
+  const sim::Vec2 sides = arena.Sides();
+  for (const auto& [axis, min, max, side] :
+       {std::tuple{"x", arena.x_min, arena.x_max, sides.x()}, {"y", arena.y_min, arena.y_max, sides.y()}}) {
+    if (side >= kLeastRectangleSide && side <= sim::kMaxArenaSide) continue;
+    return BrokenRule{
+        fmt::format("arena.{}_max", axis),
+        fmt::format("arena.{0}_min = {1} to arena.{0}_max = {2}: want {3} to {4} m between them "
+                    "(a rectangle has x_min, x_max, y_min and y_max)",
+                    axis, min, max, kLeastRectangleSide, sim::kMaxArenaSide)};
+  }
+  return std::nullopt;
+}
+
+std::optional<BrokenRule> CheckWalls(const ArenaSpec& arena) {
+  const double shorter = arena.Sides().minCoeff();
+  if (arena.wall_thickness <= shorter / 2.0) return std::nullopt;
+  const std::string what = arena.HasRectangle() ? "the arena's shorter side" : "arena.side";
+  return BrokenRule{"arena.wall_thickness",
+                    fmt::format("arena.wall_thickness = {} must not exceed half of {} = {}",
+                                arena.wall_thickness, what, shorter)};
+}
+
 }  // namespace
 
 std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue) {
@@ -384,18 +445,15 @@ std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalog
                                   "'_' or '-', and begin with none of '.' and '-'",
                                   QuoteToml(experiment.name))};
   }
-  if (const Status genome = CheckGenomeSpec(experiment.genome); !genome.ok()) {
+  if (const auto broken = CheckRectangle(experiment)) return broken;
+  if (const Status genome = CheckGenomeSpec(GenomeOf(experiment)); !genome.ok()) {
     const std::string& message = genome.error().message;
     return BrokenRule{message.substr(0, message.find(' ')), message};
-  }
-  if (experiment.arena.wall_thickness > experiment.arena.side / 2.0) {
-    return BrokenRule{"arena.wall_thickness",
-                      fmt::format("arena.wall_thickness = {} must not exceed half of arena.side = {}",
-                                  experiment.arena.wall_thickness, experiment.arena.side)};
   }
   if (experiment.scenario == controllers::command::kScenario) {
     if (auto broken = CheckRulesOfCommand(experiment, catalogue)) return broken;
   }
+  if (const auto broken = CheckWalls(experiment.arena)) return broken;
   const SearchInfo* search = FindByName(catalogue.searches, experiment.search.algorithm);
   return search->check == nullptr ? std::nullopt : search->check(experiment);
 }

@@ -66,6 +66,9 @@ double ValueOf(const controllers::ParameterInfo& info, const sim::Parameters& gi
 std::vector<Key> ScenarioParameterKeys(const controllers::ScenarioInfo& scenario);
 std::vector<Key> ControllerParameterKeys(const controllers::ControllerInfo& controller);
 
+// Whether the experiment does not read the key, because its arena's rectangle says it.
+bool SaidByRectangle(const Experiment& experiment, std::string_view path);
+
 // The first rule between keys that the experiment breaks. `experiment.search.algorithm` is in the catalogue.
 std::optional<BrokenRule> CheckRules(const Experiment& experiment, const Catalogue& catalogue);
 

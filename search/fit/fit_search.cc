@@ -90,7 +90,7 @@ Result<FitSearch::Beginning> FitSearch::BeginningOf(const FitSetting& setting) c
   const sim::TestCase empty = EmptyArena(experiment->arena);
   TRY(const auto requirements, controllers::RequirementsOf(SpecOf(*experiment, empty, experiment->seed)));
   TRY(CheckSwarmFits(*experiment, empty));
-  GenomeGenerator generator(experiment->genome, empty, requirements);
+  GenomeGenerator generator(GenomeOf(*experiment), empty, requirements);
   sim::RandomStream trial = GenomeStream(search_seed_, 0);
   TRY(generator.RandomTestCase(trial));
   return Beginning{std::move(experiment), std::move(generator)};

@@ -9,9 +9,11 @@ Arena::Arena(const TestCase& test_case) {
   const double half_x = test_case.side_x / 2.0;
   const double half_y = test_case.side_y / 2.0;
   const double thickness = test_case.wall_thickness;
-  interior_max_ = {half_x - thickness / 2.0, half_y - thickness / 2.0};
-  interior_min_ = -interior_max_;
-  GAUNTLET_CHECK(interior_max_.x() > 0.0 && interior_max_.y() > 0.0,
+  const Vec2& center = test_case.center;
+  const Vec2 interior = {half_x - thickness / 2.0, half_y - thickness / 2.0};
+  interior_max_ = center + interior;
+  interior_min_ = center - interior;
+  GAUNTLET_CHECK(interior.x() > 0.0 && interior.y() > 0.0,
                  "an arena without interior: judge the test case with CheckValidity first");
 
   obstacles_.reserve(test_case.obstacles.size());
@@ -29,10 +31,10 @@ Arena::Arena(const TestCase& test_case) {
   // Walls overlap in the corners, so that no gap is left there.
   const Vec2 along_x = {half_x + thickness / 2.0, thickness / 2.0};
   const Vec2 along_y = {thickness / 2.0, half_y + thickness / 2.0};
-  walls_ = {{{0.0, half_y}, along_x, {1.0, 0.0}},
-            {{0.0, -half_y}, along_x, {1.0, 0.0}},
-            {{half_x, 0.0}, along_y, {1.0, 0.0}},
-            {{-half_x, 0.0}, along_y, {1.0, 0.0}}};
+  walls_ = {{{center.x(), center.y() + half_y}, along_x, {1.0, 0.0}},
+            {{center.x(), center.y() - half_y}, along_x, {1.0, 0.0}},
+            {{center.x() + half_x, center.y()}, along_y, {1.0, 0.0}},
+            {{center.x() - half_x, center.y()}, along_y, {1.0, 0.0}}};
 
   boxes_ = obstacles_;
   boxes_.insert(boxes_.end(), walls_.begin(), walls_.end());

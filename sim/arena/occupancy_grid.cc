@@ -13,15 +13,15 @@ namespace {
 
 constexpr std::size_t kNoRun = std::numeric_limits<std::size_t>::max();
 
-int CellsAcross(double metres) {
+int CellsAcross(double metres, double cell_size) {
   // 6.0 / 0.05 is 120 up to rounding; a part of a cell counts as one.
-  return static_cast<int>(std::ceil(metres / OccupancyGrid::kCellSize - 1e-9));
+  return static_cast<int>(std::ceil(metres / cell_size - 1e-9));
 }
 
 // Index of the cell that holds `offset` metres from the grid's edge; -1 or `count` outside, also for numbers
 // that no int can hold.
-int CellIndex(double offset, int count) {
-  const double index = std::floor(offset / OccupancyGrid::kCellSize);
+int CellIndex(double offset, double cell_size, int count) {
+  const double index = std::floor(offset / cell_size);
   if (!(index >= 0.0)) return -1;
   return index < count ? static_cast<int>(index) : count;
 }
@@ -115,15 +115,17 @@ class FreeRuns {
 
 }  // namespace
 
-OccupancyGrid::OccupancyGrid(const Arena& arena, double inflation)
+OccupancyGrid::OccupancyGrid(const Arena& arena, double inflation, double cell_size)
     : interior_min_(arena.interior_min()),
       interior_max_(arena.interior_max()),
       inflation_(inflation),
-      columns_(CellsAcross(2.0 * arena.walls()[2].center.x())),
-      rows_(CellsAcross(2.0 * arena.walls()[0].center.y())),
+      cell_size_(cell_size),
+      columns_(CellsAcross(arena.walls()[2].center.x() - arena.walls()[3].center.x(), cell_size)),
+      rows_(CellsAcross(arena.walls()[0].center.y() - arena.walls()[1].center.y(), cell_size)),
       origin_(arena.walls()[3].center.x(), arena.walls()[1].center.y()),
       blocked_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0) {
   GAUNTLET_CHECK(inflation >= 0.0 && std::isfinite(inflation), "inflation " + std::to_string(inflation));
+  GAUNTLET_CHECK(cell_size > 0.0, "cells of " + std::to_string(cell_size) + " m");
   BlockWalls();
   for (const OrientedBox& box : arena.obstacles()) AddObstacle(box);
 }
@@ -141,10 +143,12 @@ void OccupancyGrid::BlockWalls() {
   }
 }
 
-void OccupancyGrid::AddObstacle(const OrientedBox& box) {
-  obstacles_.push_back(box);
+void OccupancyGrid::AddObstacle(const RoundedBox& shape) {
+  const OrientedBox& box = shape.box;
+  const double inflation = inflation_ + shape.radius;
+  obstacles_.push_back(shape);
   // One cell more on every side, so that rounding here cannot leave out a cell that the distance includes.
-  const double reach = inflation_ + kCellSize;
+  const double reach = inflation + cell_size_;
   const Vec2 half = BoundingHalfExtents(box) + Vec2(reach, reach);
   const Cell first = CellAt(box.center - half);
   const Cell last = CellAt(box.center + half);
@@ -152,7 +156,7 @@ void OccupancyGrid::AddObstacle(const OrientedBox& box) {
   const int column_end = std::min(last.column + 1, columns_);
   const int row_begin = std::max(first.row, 0);
   const int row_end = std::min(last.row + 1, rows_);
-  const double squared_inflation = inflation_ * inflation_;
+  const double squared_inflation = inflation * inflation;
   for (int row = row_begin; row < row_end; ++row) {
     for (int column = column_begin; column < column_end; ++column) {
       const double squared_distance = SquaredDistance(box, CenterOf({column, row}));
@@ -164,13 +168,14 @@ void OccupancyGrid::AddObstacle(const OrientedBox& box) {
 }
 
 Cell OccupancyGrid::CellAt(const Vec2& p) const {
-  return {CellIndex(p.x() - origin_.x(), columns_), CellIndex(p.y() - origin_.y(), rows_)};
+  return {CellIndex(p.x() - origin_.x(), cell_size_, columns_),
+          CellIndex(p.y() - origin_.y(), cell_size_, rows_)};
 }
 
 double OccupancyGrid::Clearance(const Vec2& p) const {
   double clearance = std::min(std::min(p.x() - interior_min_.x(), interior_max_.x() - p.x()),
                               std::min(p.y() - interior_min_.y(), interior_max_.y() - p.y()));
-  for (const OrientedBox& box : obstacles_) clearance = std::min(clearance, Distance(box, p));
+  for (const RoundedBox& one : obstacles_) clearance = std::min(clearance, Distance(one.box, p) - one.radius);
   return clearance;
 }
 

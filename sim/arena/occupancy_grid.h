@@ -1,5 +1,5 @@
-// The arena as cells of 0.05 m that a robot's centre may or may not be in (obstacles are inflated by 0.10 m),
-// with the connected components of the free cells.
+// The arena as cells, by default of 0.05 m, that a robot's centre may or may not be in (obstacles are
+// inflated, by default by 0.10 m), with the connected components of the free cells.
 #pragma once
 
 #include <cstdint>
@@ -22,15 +22,17 @@ class OccupancyGrid {
   static constexpr double kDefaultInflation = 0.10;  // m: body 0.085 + 0.015 margin
 
   // A cell is blocked when its centre is less than `inflation` metres from an obstacle or a wall's inner
-  // face, or beyond the wall. The grid spans the walls' centre lines; inflation >= 0.
-  OccupancyGrid(const Arena& arena, double inflation);
+  // face, or beyond the wall. The grid spans the walls' centre lines; inflation >= 0, cell_size (m) > 0.
+  OccupancyGrid(const Arena& arena, double inflation, double cell_size = kCellSize);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
   double inflation() const { return inflation_; }
+  double cell_size() const { return cell_size_; }
   // Adds one more obstacle, as after a gene was appended. Blocked cells only grow. Touches only the cells
   // near the box.
-  void AddObstacle(const OrientedBox& box);
+  void AddObstacle(const OrientedBox& box) { AddObstacle(RoundedBox{box}); }
+  void AddObstacle(const RoundedBox& shape);
 
   bool InGrid(Cell cell) const {
     return cell.column >= 0 && cell.row >= 0 && cell.column < columns_ && cell.row < rows_;
@@ -39,7 +41,7 @@ class OccupancyGrid {
   // Row-major, columns() * rows(): 1 = blocked.
   const std::vector<std::uint8_t>& blocked() const { return blocked_; }
   Vec2 CenterOf(Cell cell) const {
-    return {origin_.x() + (cell.column + 0.5) * kCellSize, origin_.y() + (cell.row + 0.5) * kCellSize};
+    return {origin_.x() + (cell.column + 0.5) * cell_size_, origin_.y() + (cell.row + 0.5) * cell_size_};
   }
   // The lower left corner of cell (0, 0), m.
   const Vec2& origin() const { return origin_; }
@@ -65,10 +67,11 @@ class OccupancyGrid {
   Vec2 interior_min_;
   Vec2 interior_max_;
   double inflation_;
+  double cell_size_;
   int columns_;
   int rows_;
   Vec2 origin_;
-  std::vector<OrientedBox> obstacles_;
+  std::vector<RoundedBox> obstacles_;
   std::vector<std::uint8_t> blocked_;  // row-major, 0 or 1
 };
 

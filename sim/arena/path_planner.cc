@@ -129,13 +129,14 @@ class ThetaStar {
 
 bool PathIsFree(const OccupancyGrid& grid, const Vec2& a, const Vec2& b) {
   if (!grid.Free(grid.CellAt(a)) || !grid.Free(grid.CellAt(b))) return false;
-  const int steps = static_cast<int>(std::ceil((b - a).norm() / kPathSampleDistance));
+  const double apart = std::min(kPathSampleDistance, kPathSampleCells * grid.cell_size());
+  const int steps = static_cast<int>(std::ceil((b - a).norm() / apart));
   if (steps == 0) return true;
   // Coordinates in units of cells with 32 binary places: exact sums, and shifting gives the index. All
   // samples lie between two points of the grid, so none needs a check against its edges.
   constexpr double kOne = 4294967296.0;
-  const Vec2 from = (a - grid.origin()) / OccupancyGrid::kCellSize * kOne;
-  const Vec2 step = (b - a) / OccupancyGrid::kCellSize * (kOne / steps);
+  const Vec2 from = (a - grid.origin()) / grid.cell_size() * kOne;
+  const Vec2 step = (b - a) / grid.cell_size() * (kOne / steps);
   auto x = static_cast<std::int64_t>(from.x());
   auto y = static_cast<std::int64_t>(from.y());
   const auto step_x = static_cast<std::int64_t>(step.x());

@@ -9,8 +9,9 @@
 
 namespace gauntlet::sim {
 
-// Largest distance between two samples of a line of sight, m.
+// Largest distance between two samples of a line of sight, m, and in grids of finer cells, in cells.
 inline constexpr double kPathSampleDistance = 0.02;
+inline constexpr double kPathSampleCells = 0.4;
 
 // Waypoints from start to goal, both included (the exact points, not their cells' centres); empty when there
 // is no path. Ties are broken by cell index, so the path is a function of its inputs. Never longer than the

@@ -89,7 +89,7 @@ class Spawner {
       }
     }
     if (last.row < 0) return;
-    const Vec2 half(OccupancyGrid::kCellSize / 2.0, OccupancyGrid::kCellSize / 2.0);
+    const Vec2 half = Vec2::Constant(grid_.cell_size() / 2.0);
     bounds_ = {grid_.CenterOf(first) - half, grid_.CenterOf(last) + half};
   }
 

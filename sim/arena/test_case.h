@@ -29,6 +29,9 @@ struct TestCase {
   // Where each of `robots` starts, in their order, instead of where the seed puts it. Empty: the seed
   // decides.
   std::vector<Pose> start_poses = {};
+  // m, the middle of the arena. Only programs of a user's have arenas elsewhere than around the origin
+  // (ArenaRequirements::anywhere).
+  Vec2 center = Vec2::Zero();
 };
 
 }  // namespace gauntlet::sim

@@ -27,8 +27,22 @@ std::string GeneText(const ObstacleGene& gene, std::size_t index) {
          NumberText(gene.orientation_deg) + " degrees)";
 }
 
+// Where the arena lies.
+std::optional<Violation> JudgeCenter(const TestCase& test_case, const ArenaRequirements& requirements) {
+  const Vec2& center = test_case.center;
+  if (center == Vec2::Zero()) return std::nullopt;
+  const std::string arena = "the arena lies around " + PlaceText(center) + " m, ";
+  if (!center.allFinite()) return Violation{kFiniteNumbers, -1, arena + "which is not finite"};
+  if (!requirements.anywhere)
+    return Violation{kLimits, -1, arena + "but this scenario is simulated around the origin only"};
+  const Vec2 half = Vec2(test_case.side_x, test_case.side_y) / 2.0;
+  if ((center.cwiseAbs() + half).maxCoeff() <= kMaxCoordinate) return std::nullopt;
+  return Violation{kLimits, -1,
+                   arena + "but must end within " + NumberText(kMaxCoordinate) + " m of the origin"};
+}
+
 // The rules that concern nothing but the numbers of the arena itself.
-std::optional<Violation> JudgeArenaNumbers(const TestCase& test_case) {
+std::optional<Violation> JudgeArenaNumbers(const TestCase& test_case, const ArenaRequirements& requirements) {
   const auto broken = [&](ValidityRule rule, const std::string& what) {
     return Violation{rule, -1,
                      "the arena (" + NumberText(test_case.side_x) + " x " + NumberText(test_case.side_y) +
@@ -41,15 +55,20 @@ std::optional<Violation> JudgeArenaNumbers(const TestCase& test_case) {
   if (!(shorter > 0.0 && test_case.wall_thickness > 0.0)) {
     return broken(kPositiveSize, "must have positive sides and walls");
   }
-  if (shorter < kMinArenaSide || longer > kMaxArenaSide) {
-    return broken(kLimits, "must have sides of " + NumberText(kMinArenaSide) + " to " +
+  if (shorter < requirements.least_side || longer > kMaxArenaSide) {
+    return broken(kLimits, "must have sides of " + NumberText(requirements.least_side) + " to " +
                                NumberText(kMaxArenaSide) + " m");
   }
   if (test_case.wall_thickness < kMinThickness || test_case.wall_thickness > shorter / 2.0) {
     return broken(kLimits,
                   "must have walls of " + NumberText(kMinThickness) + " m to half of its shorter side");
   }
-  return std::nullopt;
+  const double cell = requirements.cell_size;
+  if (!(cell > 0.0 && test_case.side_x / cell * (test_case.side_y / cell) <= kMaxCells)) {
+    return broken(kLimits, "has more than " + NumberText(kMaxCells / 1e6) + " million cells of " +
+                               NumberText(cell) + " m, in which ways are looked for");
+  }
+  return JudgeCenter(test_case, requirements);
 }
 
 // Spawn area, number of robots, number of obstacles.
@@ -93,15 +112,16 @@ std::optional<Violation> JudgeSwarmNumbers(const TestCase& test_case) {
   return std::nullopt;
 }
 
-// The arena without obstacles, or one to stand in for it when its numbers cannot be built.
-Arena EmptyArena(const TestCase& test_case) {
+// The grid without obstacles, or one to stand in for it when its numbers cannot be built.
+OccupancyGrid EmptyGrid(const TestCase& test_case, const ArenaRequirements& requirements) {
+  if (JudgeArenaNumbers(test_case, requirements))
+    return OccupancyGrid(Arena(TestCase{}), requirements.inflation);
   TestCase empty;
-  if (!JudgeArenaNumbers(test_case)) {
-    empty.side_x = test_case.side_x;
-    empty.side_y = test_case.side_y;
-    empty.wall_thickness = test_case.wall_thickness;
-  }
-  return Arena(empty);
+  empty.side_x = test_case.side_x;
+  empty.side_y = test_case.side_y;
+  empty.wall_thickness = test_case.wall_thickness;
+  empty.center = test_case.center;
+  return GridFor(empty, requirements);
 }
 
 Violation BrokenByGene(ValidityRule rule, const ObstacleGene& gene, std::size_t index,
@@ -152,17 +172,18 @@ std::optional<Violation> JudgeGeneNumbers(const ObstacleGene& gene, std::size_t 
 
 // Whether anything of the obstacle is ever within the outer faces of the walls, judged by the smallest
 // axis-aligned rectangle around it.
-bool ReachesArena(const ObstacleGene& gene, const Vec2& outer) {
+bool ReachesArena(const ObstacleGene& gene, const Vec2& middle, const Vec2& outer) {
   const OrientedBox box = BoxOf(gene);
   const Vec2 reach = outer + BoundingHalfExtents(box);
-  const auto reaches = [&reach](const Vec2& center) {
-    return (center.cwiseAbs().array() <= reach.array()).all();
+  const auto reaches = [&](const Vec2& center) {
+    return ((center - middle).cwiseAbs().array() <= reach.array()).all();
   };
   return reaches(box.center) || std::any_of(gene.path.begin(), gene.path.end(), reaches);
 }
 
-// The least distance of the obstacle from `place` on its whole path.
-double LeastDistance(const ObstacleGene& gene, const Vec2& place) {
+// The least distance of the obstacle from a point or a box on its whole path.
+template <typename Place>
+double LeastDistance(const ObstacleGene& gene, const Place& place) {
   constexpr double kStride = 0.01;  // m between the places of the obstacle that are looked at
   OrientedBox box = BoxOf(gene);
   double least = Distance(box, place);
@@ -179,41 +200,85 @@ double LeastDistance(const ObstacleGene& gene, const Vec2& place) {
   return least;
 }
 
-bool LeavesPathIn(const OccupancyGrid& grid, const ArenaRequirements& requirements) {
-  return grid.Connected(grid.CellAt(requirements.start), grid.CellAt(requirements.goal));
+// The first goal that is as asked; nullptr: none is.
+const Vec2* FindGoal(const ArenaRequirements& requirements, const auto& asked) {
+  if (asked(requirements.goal)) return &requirements.goal;
+  const auto found = std::ranges::find_if(requirements.further_goals, asked);
+  return found == requirements.further_goals.end() ? nullptr : &*found;
 }
 
-// Start and goal free in `grid`; `culprit` begins the message.
+// What the scenario keeps free of obstacles.
+std::optional<Violation> JudgePlaces(const ObstacleGene& gene, std::size_t index,
+                                     const ArenaRequirements& requirements) {
+  const auto too_near = [&](const Vec2& place) {
+    return !(LeastDistance(gene, place) >= requirements.clearance);
+  };
+  const auto broken = [&](const Vec2& place, const std::string& name) {
+    return BrokenByGene(kClearance, gene, index,
+                        "is " + NumberText(LeastDistance(gene, place)) + " m from the " + name + " " +
+                            PlaceText(place) + "; want at least " + NumberText(requirements.clearance) +
+                            " m");
+  };
+  if (requirements.asks_for_path && requirements.clearance > 0.0) {
+    if (too_near(requirements.start)) return broken(requirements.start, "start");
+    if (const Vec2* goal = FindGoal(requirements, too_near)) return broken(*goal, "goal");
+  }
+  for (std::size_t i = 0; i < requirements.keep_outs.size(); ++i) {
+    const auto& [box, radius] = requirements.keep_outs[i];
+    if (LeastDistance(gene, box) > radius) continue;
+    return BrokenByGene(kKeepOut, gene, index,
+                        "touches keep-out " + std::to_string(i + 1) + ", around " + PlaceText(box.center) +
+                            ", where no obstacle may be");
+  }
+  return std::nullopt;
+}
+
+// A goal that is not connected with the start; nullptr: there is none.
+const Vec2* GoalCutOff(const OccupancyGrid& grid, const ArenaRequirements& requirements) {
+  if (!requirements.asks_for_path) return nullptr;
+  const Cell start = grid.CellAt(requirements.start);
+  return FindGoal(requirements, [&](const Vec2& goal) { return !grid.Connected(start, grid.CellAt(goal)); });
+}
+
+// Start and goals free in `grid`; `culprit` begins the message.
 std::optional<Violation> JudgeEnds(const OccupancyGrid& grid, const ArenaRequirements& requirements, int gene,
                                    const auto& culprit) {
-  const Cell start = grid.CellAt(requirements.start);
-  const Cell goal = grid.CellAt(requirements.goal);
-  const bool start_free = grid.Free(start);
-  if (start_free && grid.Free(goal)) return std::nullopt;
+  if (!requirements.asks_for_path) return std::nullopt;
+  const bool start_free = grid.Free(grid.CellAt(requirements.start));
+  const Vec2* goal =
+      FindGoal(requirements, [&](const Vec2& place) { return !grid.Free(grid.CellAt(place)); });
+  if (start_free && goal == nullptr) return std::nullopt;
   const std::string room =
       "; a robot's centre needs " + NumberText(requirements.inflation) + " m of room there";
   if (!start_free) {
     return Violation{kStartBlocked, gene,
                      culprit() + " blocks the start " + PlaceText(requirements.start) + room};
   }
-  return Violation{kGoalBlocked, gene, culprit() + " blocks the goal " + PlaceText(requirements.goal) + room};
+  return Violation{kGoalBlocked, gene, culprit() + " blocks the goal " + PlaceText(*goal) + room};
 }
 
 std::optional<Violation> JudgePath(const OccupancyGrid& grid, const ArenaRequirements& requirements, int gene,
                                    const auto& culprit) {
-  if (LeavesPathIn(grid, requirements)) return std::nullopt;
+  const Vec2* goal = GoalCutOff(grid, requirements);
+  if (goal == nullptr) return std::nullopt;
   return Violation{kNoPath, gene,
                    culprit() + " leaves no path from " + PlaceText(requirements.start) + " to " +
-                       PlaceText(requirements.goal) + " for a robot's body"};
+                       PlaceText(*goal) + " for a robot's body"};
 }
 
 }  // namespace
 
 std::string_view NameOf(ValidityRule rule) {
-  constexpr std::string_view kNames[] = {"finite-numbers", "positive-size", "contained-obstacle",
-                                         "start-blocked",  "goal-blocked",  "clearance",
-                                         "no-path",        "limits",        "outside-arena"};
+  constexpr std::string_view kNames[] = {
+      "finite-numbers", "positive-size", "contained-obstacle", "start-blocked", "goal-blocked", "clearance",
+      "no-path",        "limits",        "outside-arena",      "keep-out"};
   return kNames[static_cast<std::size_t>(rule)];
+}
+
+OccupancyGrid GridFor(const TestCase& test_case, const ArenaRequirements& requirements) {
+  OccupancyGrid grid(Arena(test_case), requirements.inflation, requirements.cell_size);
+  for (const RoundedBox& shape : requirements.standing) grid.AddObstacle(shape);
+  return grid;
 }
 
 std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaRequirements& requirements) {
@@ -231,18 +296,21 @@ std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaReq
 
 IncrementalValidity::IncrementalValidity(const TestCase& empty_arena, const ArenaRequirements& requirements)
     : requirements_(requirements),
+      center_(empty_arena.center),
       outer_(Vec2(empty_arena.side_x, empty_arena.side_y) / 2.0 + Vec2::Constant(empty_arena.wall_thickness)),
-      arena_violation_(JudgeArenaNumbers(empty_arena)),
-      grid_(EmptyArena(empty_arena), requirements.inflation),
+      arena_violation_(JudgeArenaNumbers(empty_arena, requirements)),
+      grid_(EmptyGrid(empty_arena, requirements)),
       candidate_(grid_) {
   if (!arena_violation_) arena_violation_ = JudgeSwarmNumbers(empty_arena);
-  const auto wall = [] { return std::string("the wall"); };
-  if (!arena_violation_) arena_violation_ = JudgeEnds(grid_, requirements_, -1, wall);
-  if (!arena_violation_) arena_violation_ = JudgePath(grid_, requirements_, -1, wall);
+  const auto itself = [&] {
+    return std::string(requirements.standing.empty() ? "the wall" : "what stands in the arena itself");
+  };
+  if (!arena_violation_) arena_violation_ = JudgeEnds(grid_, requirements_, -1, itself);
+  if (!arena_violation_) arena_violation_ = JudgePath(grid_, requirements_, -1, itself);
 }
 
 bool IncrementalValidity::LeavesPath() const {
-  return LeavesPathIn(grid_, requirements_);
+  return GoalCutOff(grid_, requirements_) == nullptr;
 }
 
 std::optional<Violation> IncrementalValidity::TryAppend(const ObstacleGene& gene) {
@@ -271,10 +339,14 @@ std::optional<Violation> IncrementalValidity::JudgeGene(const ObstacleGene& gene
   if (arena_violation_) return arena_violation_;
   const std::size_t index = boxes_.size();
   if (std::optional<Violation> violation = JudgeGeneNumbers(gene, index)) return violation;
-  if (!ReachesArena(gene, outer_)) {
+  if (!ReachesArena(gene, center_, outer_)) {
+    const bool in_middle = center_ == Vec2::Zero();
     return BrokenByGene(kOutsideArena, gene, index,
-                        "lies outside the arena, which ends at x = " + NumberText(outer_.x()) +
-                            " m and y = " + NumberText(outer_.y()) + " m with its walls");
+                        "lies outside the arena, which " +
+                            (in_middle ? "ends at x = " + NumberText(outer_.x()) +
+                                             " m and y = " + NumberText(outer_.y()) + " m with its walls"
+                                       : "reaches from " + PlaceText(center_ - outer_) + " to " +
+                                             PlaceText(center_ + outer_) + " m with its walls"));
   }
   const OrientedBox box = BoxOf(gene);
   const auto around = std::find_if(boxes_.begin(), boxes_.end(),
@@ -283,14 +355,7 @@ std::optional<Violation> IncrementalValidity::JudgeGene(const ObstacleGene& gene
     return BrokenByGene(kContainedObstacle, gene, index,
                         "lies wholly inside obstacle " + std::to_string(around - boxes_.begin() + 1));
   }
-  for (const auto& [place, name] : {std::pair{requirements_.start, "start"}, {requirements_.goal, "goal"}}) {
-    if (requirements_.clearance <= 0.0) break;
-    const double distance = LeastDistance(gene, place);
-    if (distance >= requirements_.clearance) continue;
-    return BrokenByGene(kClearance, gene, index,
-                        "is " + NumberText(distance) + " m from the " + name + " " + PlaceText(place) +
-                            "; want at least " + NumberText(requirements_.clearance) + " m");
-  }
+  if (std::optional<Violation> violation = JudgePlaces(gene, index, requirements_)) return violation;
   candidate_ = grid_;
   candidate_.AddObstacle(box);
   return JudgeEnds(candidate_, requirements_, static_cast<int>(index), [&] { return GeneText(gene, index); });

@@ -24,6 +24,7 @@ enum class ValidityRule {
   kNoPath,        // "no-path": no path from start to goal for a robot's body
   kLimits,        // "limits": a number beyond what is simulated (constants below)
   kOutsideArena,  // "outside-arena": an obstacle nowhere reaches into the arena, also not on its path
+  kKeepOut,       // "keep-out": an obstacle touches what the scenario keeps free, also on its path
 };
 std::string_view NameOf(ValidityRule rule);
 
@@ -40,6 +41,7 @@ inline constexpr double kMinThickness = 0.001;     // m; of walls and obstacles
 inline constexpr double kMaxObstacleSize = 200.0;  // m
 inline constexpr double kMaxCoordinate = 1000.0;   // m
 inline constexpr std::size_t kMaxObstacles = 1000;
+inline constexpr double kMaxCells = 4e6;  // of a grid; the largest arena has as many by default
 
 // What a scenario demands of its arenas.
 struct ArenaRequirements {
@@ -47,13 +49,24 @@ struct ArenaRequirements {
   Vec2 goal = Vec2::Zero();   // destination, or the food
   double clearance = 0.0;     // m kept free around start and goal; 0 = none
   double inflation = OccupancyGrid::kDefaultInflation;
+  double cell_size = OccupancyGrid::kCellSize;  // m; robots with less room need finer cells
+  bool asks_for_path = true;                    // false: start and goal mean nothing, no path is looked for
+  std::vector<Vec2> further_goals = {};         // each connected with the start, as the goal is
+  std::vector<RoundedBox> keep_outs = {};       // what no obstacle may touch
+  std::vector<RoundedBox> standing = {};        // what blocks robots in the arena itself
+  double least_side = kMinArenaSide;            // m, of the arena
+  bool anywhere = false;                        // the arena's centre need not be the origin
 };
 
+// The arena as robots of the scenario may go about in it. The test case obeys the rules up to "limits".
+OccupancyGrid GridFor(const TestCase& test_case, const ArenaRequirements& requirements);
+
 // The first broken rule, or nothing: the arena first, then gene by gene in the order finite-numbers,
-// positive-size, limits, outside-arena, contained-obstacle, clearance, start-blocked, goal-blocked, no-path.
-// Gene ranges are not checked here (they belong to the generator), nor is whether the swarm fits (see Spawn).
-// An obstacle that moves is judged where it begins, its clearance on its whole path. Messages count obstacles
-// from 1.
+// positive-size, limits, outside-arena, contained-obstacle, clearance, keep-out, start-blocked, goal-blocked,
+// no-path. Gene ranges are not checked here (they belong to the generator), nor is whether the swarm fits
+// (see Spawn). An obstacle that moves is judged where it begins, its distance from what is kept free on its
+// whole path.
+// Messages count obstacles from 1.
 std::optional<Violation> CheckValidity(const TestCase& test_case, const ArenaRequirements& requirements);
 
 // Judges one gene after another, as generation and repair need it: O(cells) per gene instead of a fresh
@@ -68,7 +81,7 @@ class IncrementalValidity {
   // The same without the dearest rule, that a path is left. Obstacles only ever take paths away: when one
   // is left in the end, each gene would have left one.
   std::optional<Violation> TryAppendWhateverPathIsLeft(const ObstacleGene& gene);
-  // Whether the start is connected with the goal.
+  // Whether the start is connected with every goal.
   bool LeavesPath() const;
 
   // The rule that the arena breaks without any obstacle.
@@ -84,7 +97,8 @@ class IncrementalValidity {
   void Take(const ObstacleGene& gene);
 
   ArenaRequirements requirements_;
-  Vec2 outer_;  // half sides to the outer faces of the walls, m
+  Vec2 center_;  // m, of the arena
+  Vec2 outer_;   // half sides to the outer faces of the walls, m
   std::optional<Violation> arena_violation_;
   OccupancyGrid grid_;
   OccupancyGrid candidate_;  // grid_ with the gene under judgement; kept to reuse its memory

@@ -1,5 +1,11 @@
 #include "sim/geometry/oriented_box.h"
 
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "sim/geometry/ray_cast.h"
+
 namespace gauntlet::sim {
 namespace {
 
@@ -46,6 +52,19 @@ bool ContainsBox(const OrientedBox& outer, const OrientedBox& inner) {
 
 double Distance(const OrientedBox& box, const Vec2& p) {
   return std::sqrt(SquaredDistance(box, p));
+}
+
+double Distance(const OrientedBox& a, const OrientedBox& b) {
+  // Of two that lie apart a corner is among the nearest points; two may cross with all corners outside.
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [one, other] : {std::pair{&a, &b}, {&b, &a}}) {
+    const auto corners = Corners(*one);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (SegmentTouches(*other, corners[i], corners[(i + 1) % corners.size()])) return 0.0;
+      least = std::min(least, Distance(*other, corners[i]));
+    }
+  }
+  return least;
 }
 
 Polygon ClipToRectangle(const OrientedBox& box, const Vec2& min, const Vec2& max) {

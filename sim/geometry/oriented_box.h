@@ -20,6 +20,12 @@ struct OrientedBox {
 // lose by rounding, so that a box contains its own corners, and far less than anything a robot can notice.
 inline constexpr double kContainsTolerance = 1e-9;
 
+// Everything within `radius` of a box; a disc is what lies around a box without extent.
+struct RoundedBox {
+  OrientedBox box;
+  double radius = 0.0;  // m
+};
+
 // p in the frame of the box (centre at the origin, length along x).
 inline Vec2 ToLocal(const OrientedBox& box, const Vec2& p) {
   const Vec2 d = p - box.center;
@@ -52,6 +58,8 @@ inline double SquaredDistance(const OrientedBox& box, const Vec2& p) {
 }
 // Euclidean distance; 0 inside.
 double Distance(const OrientedBox& box, const Vec2& p);
+// Between the nearest points of both; 0 when they touch.
+double Distance(const OrientedBox& a, const OrientedBox& b);
 
 using Polygon = std::vector<Vec2>;  // convex, corners counter-clockwise; empty = nothing left
 

@@ -13,6 +13,8 @@
 #include <gtest/gtest.h>
 #include <pugixml.hpp>
 
+#include "analysis/figures/arena_drawing.h"
+#include "analysis/figures/layout_grid.h"
 #include "analysis/figures/run/trajectory_csv.h"
 #include "analysis/figures/svg_canvas.h"
 
@@ -354,6 +356,33 @@ TEST(RunFigureTest, MovingAndLitObstaclesShowTheirPathAndTheirLamps) {
     ++lamps;
   }
   EXPECT_EQ(lamps, 2u) << "only its right side is inside the walls (half of it is beyond), and the legend";
+}
+
+TEST(LayoutGridTest, AnArenaElsewhereIsDrawnAlike) {
+  LayoutGrid grid;
+  grid.columns = grid.rows = {"all"};
+  grid.arena.wall_thickness = 0.125;
+  grid.layouts = {
+      {.column = 0, .row = 0, .caption = "", .obstacles = {{0.5, 1.0, 1.0, 0.25, 30.0}}, .place = {}}};
+  const std::string here = DrawLayoutGrid(grid);
+  grid.arena.center = {16.0, -64.0};
+  grid.layouts[0].obstacles = {{16.5, -63.0, 1.0, 0.25, 30.0}};
+  EXPECT_EQ(DrawLayoutGrid(grid), here);
+}
+
+TEST(ArenaDrawingTest, AxesNameThePlacesOfTheArena) {
+  sim::TestCase test_case;
+  test_case.side_x = 0.5;
+  test_case.side_y = 2.0;
+  test_case.wall_thickness = 0.01;
+  test_case.center = {10.0, -1.0};
+  const FigureFrame frame(test_case);
+  SvgCanvas canvas(frame.page_width(), frame.page_height(), "", "");
+  DrawAxes(canvas, frame);
+  const std::string svg = canvas.Take();
+  for (const char* label : {">9.8<", ">10.0<", ">10.2<", ">0.0<", ">\u22122.0<"})
+    EXPECT_THAT(svg, HasSubstr(label));
+  for (const char* label : {">9.6<", ">0.2<", ">\u22122.2<"}) EXPECT_THAT(svg, Not(HasSubstr(label)));
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(CaseJsonTest, ALineageSurvivesTheRoundTrip) {
   EXPECT_EQ(ParseCaseJson(text, "case.json")->obstacles, document.test_case.obstacles);
   EXPECT_EQ(CaseError(R"({"lineage": {"parent": {"lineage": {}}}})"),
             "case.json: lineage.parent: unknown key 'lineage'; known: name, side_x, side_y, wall_thickness, "
-            "obstacles, spawn_area, robots, start_poses");
+            "obstacles, spawn_area, robots, start_poses, center_x, center_y");
   EXPECT_EQ(CaseError(R"({"lineage": {"verified": {"interval": [1]}}})"),
             "case.json: lineage.verified.interval must be a list of two numbers, not a list");
 }
@@ -141,7 +141,7 @@ TEST(CaseJsonTest, AnUnknownKeyIsRefusedWithTheNearestKnownOne) {
             "case.json: obstacles[1]: unknown key 'lenght'; did you mean 'length'?");
   EXPECT_EQ(CaseError("{\"quux\": 1}"),
             "case.json: unknown key 'quux'; known: name, side_x, side_y, wall_thickness, obstacles, "
-            "spawn_area, robots, start_poses, lineage");
+            "spawn_area, robots, start_poses, center_x, center_y, lineage");
 }
 
 TEST(CaseJsonTest, AWrongTypeIsRefusedWhereItStands) {

@@ -103,4 +103,32 @@ TEST(RunBeginning, RefusesForeignText) {
 }
 
 }  // namespace
+TEST(RunBeginning, WhatFewScenariosAskForIsWrittenOnlyThere) {
+  sim::RunBeginning written = Beginning();
+  const std::string usual = WriteBeginning(written);
+  for (const char* key : {"cell_size", "asks_for_path", "further_goals", "keep_outs", "standing", "anywhere"})
+    EXPECT_EQ(usual.find(key), std::string::npos) << key;
+  sim::ArenaRequirements& asked = written.requirements;
+  asked.cell_size = 0.0085;
+  asked.asks_for_path = false;
+  asked.further_goals = {{1.0 / 3.0, 2.0}};
+  asked.keep_outs = {{{{1.0, 2.0}, {0.1, 0.2}, {0.6, 0.8}}, 0.0}};
+  asked.standing = {{{{-1.0, 2.0}, {0.0, 0.0}}, 0.3}};
+  asked.least_side = 0.1;
+  asked.anywhere = true;
+  const std::string text = WriteBeginning(written);
+  const Result<sim::RunBeginning> read = ReadBeginning(text, "here");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  EXPECT_EQ(WriteBeginning(*read), text);
+  EXPECT_EQ(read->requirements.cell_size, 0.0085);
+  EXPECT_FALSE(read->requirements.asks_for_path);
+  EXPECT_EQ(read->requirements.further_goals, asked.further_goals);
+  EXPECT_EQ(read->requirements.keep_outs.at(0).box.axis, sim::Vec2(0.6, 0.8));
+  EXPECT_EQ(read->requirements.standing.at(0).radius, 0.3);
+  EXPECT_EQ(read->requirements.least_side, 0.1);
+  EXPECT_TRUE(read->requirements.anywhere);
+  asked.keep_outs[0].radius = -1.0;
+  EXPECT_THAT(CheckBeginning(written).error().message, HasSubstr("its keep-out is -1 m"));
+}
+
 }  // namespace gauntlet::proto

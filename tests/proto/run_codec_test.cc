@@ -191,4 +191,20 @@ RC_GTEST_PROP(RunCodecProperty, DamagedResultsAreNeverTakenForGood, ()) {
 }
 
 }  // namespace
+TEST(RunCodecTest, ACentreIsWrittenOnlyWhereItIsNotTheOrigin) {
+  sim::RunSpec spec = SampleSpec();
+  const std::string bytes = EncodeRunSpec(spec);
+  const std::string text = WriteCaseJson(spec.test_case);
+  EXPECT_EQ(text.find("center"), std::string::npos);
+  for (const auto& [center, fields] :
+       {std::pair{sim::Vec2(1.0 / 3.0, -2.5), 2U}, {sim::Vec2(0.0, 1e-9), 1U}, {sim::Vec2(0.0, 0.0), 0U}}) {
+    spec.test_case.center = center;
+    EXPECT_EQ(EncodeRunSpec(spec).size(), bytes.size() + fields * 9);  // a tag and 8 bytes each
+    EXPECT_EQ(DecodeRunSpec(EncodeRunSpec(spec))->test_case.center, center);
+    EXPECT_EQ(ParseCaseJson(WriteCaseJson(spec.test_case), "case.json")->center, center);
+  }
+  EXPECT_EQ(EncodeRunSpec(spec), bytes);
+  EXPECT_EQ(WriteCaseJson(spec.test_case), text);
+}
+
 }  // namespace gauntlet::proto

@@ -123,5 +123,27 @@ TEST(ArchiveEmittersTest, ARowLiesAcrossTheWay) {
   EXPECT_GT(lean, 60.0);
 }
 
+TEST(ArchiveEmittersTest, WhatIsMovedStaysInARectangleWhoseEndsLieBesideTheGrid) {
+  SearchSetup setup = ToySetup();
+  setup.experiment.arena = {.x_min = 1.05, .x_max = 4.05, .y_min = -0.95, .y_max = 2.05};
+  setup.requirements = {.inflation = 0.02, .asks_for_path = false, .anywhere = true};
+  const GenomeGenerator generator = MakeGenerator(setup);
+  sim::RandomStream random = GenomeStream(1, 1);
+  const sim::Genome corners = {{1.1, -0.9, 0.5, 0.1, 0.0}, {4.0, 2.0, 0.5, 0.1, 0.0}};
+  int at_the_end = 0;
+  for (int i = 0; i < 100; ++i) {
+    const auto jittered = Jittered(corners, generator, random);
+    ASSERT_TRUE(jittered.has_value());
+    for (const sim::ObstacleGene& gene : *jittered) {
+      ASSERT_GE(gene.x, 1.1);
+      ASSERT_LE(gene.x, 4.0);
+      ASSERT_GE(gene.y, -0.9);
+      ASSERT_LE(gene.y, 2.0);
+      at_the_end += gene.x == 4.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(at_the_end, 10);
+}
+
 }  // namespace
 }  // namespace gauntlet

@@ -182,5 +182,56 @@ TEST(CheckGenomeSpecTest, RefusesSpeedsThatCannotBeDrawn) {
             "genome.speed_min = 0.02 must not exceed genome.speed_max = 0.0109");
 }
 
+// A 2 x 1 m arena whose corners lie beside the grid.
+SearchSetup SetupOfRectangle() {
+  SearchSetup setup = ToySetup();
+  setup.experiment.arena = {
+      .wall_thickness = 0.02, .x_min = 10.05, .x_max = 12.05, .y_min = -1.05, .y_max = -0.05};
+  setup.experiment.genome = {.genes = 4, .length_max = 0.5, .width_max = 0.2, .moving = 0.5};
+  setup.requirements.start = {10.25, -0.25};
+  setup.requirements.goal = {11.75, -0.75};
+  setup.requirements.inflation = 0.02;
+  setup.requirements.anywhere = true;
+  return setup;
+}
+
+TEST(GenomeGeneratorTest, ARectangleSaysWhereCentresAndPathsLie) {
+  const GenomeGenerator generator = MakeGenerator(SetupOfRectangle());
+  std::set<double> x;
+  std::set<double> y;
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  for (int i = 0; i < 500; ++i) {
+    const sim::ObstacleGene gene = generator.RandomGene(random);
+    x.insert(gene.x);
+    y.insert(gene.y);
+    for (const sim::Vec2& point : gene.path) {
+      x.insert(point.x());
+      y.insert(point.y());
+    }
+  }
+  EXPECT_EQ(x.size(), 20U);
+  EXPECT_EQ(*x.begin(), 10.1);
+  EXPECT_EQ(*x.rbegin(), 12.0);
+  EXPECT_EQ(y.size(), 10U);
+  EXPECT_EQ(*y.begin(), -1.0);
+  EXPECT_EQ(*y.rbegin(), -0.1);
+  const Result<sim::TestCase> test_case = generator.RandomTestCase(random);
+  ASSERT_TRUE(test_case.ok()) << test_case.error().message;
+  EXPECT_EQ(test_case->center, sim::Vec2(11.05, -0.55));
+  EXPECT_TRUE(generator.Valid(test_case->obstacles));
+}
+
+TEST(GenomeGeneratorTest, KeepOutsThatLeaveNoRoomAreNamed) {
+  SearchSetup setup = SetupOfRectangle();
+  setup.experiment.genome.tries_per_gene = 5;
+  setup.requirements.keep_outs = {{{{11.0, -0.5}, {0.0, 0.0}}, 3.0}};
+  sim::RandomStream random(1, sim::StreamPurpose::kTest);
+  EXPECT_EQ(
+      MakeGenerator(setup).RandomTestCase(random).error().message,
+      "no valid test case found in 100 starts with genome.genes = 4, x 10.05 to 12.05 m, y -1.05 to -0.05 "
+      "m, lengths 0.4 to 0.5 m, widths 0.1 to 0.2 m in an arena of 2 x 1 m: use fewer or smaller obstacles, "
+      "or leave more room than the 1 keep-outs do");
+}
+
 }  // namespace
 }  // namespace gauntlet

@@ -97,5 +97,16 @@ TEST(MakeSearchTest, ASwarmThatDoesNotFitIntoTheEmptyArenaIsRefused) {
   EXPECT_TRUE(search.ok()) << search.error().message;
 }
 
+TEST(CaseHash, KnowsWhereAnArenaLies) {
+  sim::TestCase test_case;
+  const std::uint64_t around_origin = CaseHash(test_case);
+  test_case.center = {0.0, 1.0};
+  EXPECT_NE(CaseHash(test_case), around_origin);
+  test_case.center = {1.0, 0.0};
+  EXPECT_NE(CaseHash(test_case), around_origin);
+  test_case.center = {0.0, 0.0};
+  EXPECT_EQ(CaseHash(test_case), around_origin);
+}
+
 }  // namespace
 }  // namespace gauntlet

@@ -17,16 +17,20 @@ function draw(parent, name, attributes) {
 
 const pointsOf = (points) => points.map((p) => p.join(',')).join(' ');
 
+// Of the arena; the origin where it is not said.
+const middleOf = (run) => run.center ?? [0, 0];
+
 // Four bytes a pose: 12 bits for x and for y over the arena, 8 for the heading.
 function unpack(run) {
   const bytes = Uint8Array.from(atob(run.poses), (letter) => letter.charCodeAt(0));
   const frames = [];
+  const [middle_x, middle_y] = middleOf(run);
   for (let at = 0, frame = 0; frame < run.times.length; ++frame) {
     const robots = [];
     for (let robot = 0; robot < run.robots; ++robot, at += 4) {
       const x = bytes[at] | (bytes[at + 1] & 15) << 8;
       const y = bytes[at + 1] >> 4 | bytes[at + 2] << 4;
-      robots.push([(x / 4095 - 0.5) * run.side_x, (y / 4095 - 0.5) * run.side_y,
+      robots.push([middle_x + (x / 4095 - 0.5) * run.side_x, middle_y + (y / 4095 - 0.5) * run.side_y,
                    (bytes[at + 3] / 256 - 0.5) * 2 * Math.PI]);
     }
     frames.push(robots);
@@ -97,10 +101,11 @@ class Replay {
   makePicture(place) {
     const run = this.run;
     const [w, h] = [run.side_x + run.wall, run.side_y + run.wall];
-    const svg = draw(place, 'svg', {viewBox: [-w / 2, -h / 2, w, h].join(' '), role: 'img',
+    const [x, y] = middleOf(run);
+    const svg = draw(place, 'svg', {viewBox: [x - w / 2, -y - h / 2, w, h].join(' '), role: 'img',
                                     'aria-label': 'The arena from above'});
     const up = draw(svg, 'g', {transform: 'scale(1 -1)'});  // y goes up
-    draw(up, 'rect', {x: -run.side_x / 2, y: -run.side_y / 2, width: run.side_x, height: run.side_y,
+    draw(up, 'rect', {x: x - run.side_x / 2, y: y - run.side_y / 2, width: run.side_x, height: run.side_y,
                       fill: 'none', stroke: '#3a424c', 'stroke-width': run.wall});
     for (const box of run.obstacles)
       draw(up, 'polygon', {points: pointsOf(box), fill: '#cbc4b6', stroke: '#857c6c', 'stroke-width': 0.015});

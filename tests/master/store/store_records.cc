@@ -66,6 +66,7 @@ Individual MakeIndividual(IndividualId id) {
   if (id % 2 == 0)
     individual.test_case.spawn_area = sim::Rectangle{sim::Vec2(-1.5, -2.5), sim::Vec2(0.5, 1.5)};
   if (id % 3 == 0) individual.test_case.robots = static_cast<int>(id);
+  if (id % 5 == 0) individual.test_case.center = {0.25, -static_cast<double>(id)};
   return individual;
 }
 
@@ -96,7 +97,8 @@ bool SameBirth(const Individual& a, const Individual& b) {
     return false;
   return a.id == b.id && a.parents == b.parents && a.birth_generation == b.birth_generation &&
          x.name == y.name && x.side_x == y.side_x && x.side_y == y.side_y &&
-         x.wall_thickness == y.wall_thickness && x.obstacles == y.obstacles && x.robots == y.robots;
+         x.wall_thickness == y.wall_thickness && x.obstacles == y.obstacles && x.robots == y.robots &&
+         x.center == y.center;
 }
 
 ScratchDirectory::ScratchDirectory() {

@@ -105,5 +105,21 @@ TEST(VerdictTest, SaysWhatCameOfIt) {
   EXPECT_EQ(VerdictOf(pages), "Nothing has been simulated yet.");
 }
 
+TEST(ReplayDocumentTest, AnArenaElsewhereHasTheSameBytesAndItsCentre) {
+  analysis::RunFigure figure = FigureOf(8);
+  const ordered_json json = ReplayDocument(figure);
+  EXPECT_FALSE(json.contains("center"));
+  figure.spec.test_case.center = {-16.0, 64.0};
+  for (auto& tick : figure.result.trajectory) {
+    for (sim::RobotState& state : tick) {
+      state.x -= 16.0F;
+      state.y += 64.0F;
+    }
+  }
+  const ordered_json moved = ReplayDocument(figure);
+  EXPECT_EQ(moved["center"], ordered_json({-16.0, 64.0}));
+  EXPECT_EQ(moved["poses"], json["poses"]);
+}
+
 }  // namespace
 }  // namespace gauntlet

@@ -196,6 +196,7 @@ RC_GTEST_PROP(ArgosExportProperty, IsReadBackToTheBit, ()) {
   written.side_x = number(1.0, 20.0);
   written.side_y = number(1.0, 20.0);
   written.wall_thickness = number(0.05, 0.3);
+  if (*rc::gen::arbitrary<bool>()) written.center = {number(-9, 9), number(-9, 9)};
   const int obstacles = *rc::gen::inRange(0, 6);
   for (int i = 0; i < obstacles; ++i) {
     sim::ObstacleGene& gene = written.obstacles.emplace_back(sim::ObstacleGene{

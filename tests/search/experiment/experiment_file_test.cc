@@ -210,7 +210,8 @@ RC_GTEST_PROP(ExperimentFileTest, WhatIsWrittenReadsBackAsTheSame, ()) {
   genome.speed_min = 0.005;
   genome.speed_max = std::max(genome.speed_max, 0.006);
   if (genome.length_max > 50.0 || genome.width_max > 50.0) RC_DISCARD("beyond the range");
-  experiment.arena.wall_thickness = std::min(experiment.arena.wall_thickness, experiment.arena.side / 2.0);
+  const double side = experiment.arena.side;
+  experiment.arena = {.side = side, .wall_thickness = std::min(experiment.arena.wall_thickness, side / 2.0)};
 
   const std::string text = WriteExperiment(experiment, {"header"}, ToyCatalogue());
   const Result<Experiment> read = ParseToy(text);

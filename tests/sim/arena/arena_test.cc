@@ -98,4 +98,17 @@ TEST(ArenaTest, LineOfSightIsThatNoBoxTouchesTheSegmentWhereverItsEndsAre) {
 }
 
 }  // namespace
+TEST(ArenaTest, LiesAroundItsCentre) {
+  TestCase test_case;
+  test_case.center = {8.0, -0.5};
+  const Arena arena(test_case);
+  EXPECT_EQ(arena.interior_min(), Vec2(5.05, -3.45));
+  EXPECT_EQ(arena.interior_max(), Vec2(10.95, 2.45));
+  EXPECT_EQ(arena.walls()[0].center, Vec2(8.0, 2.5));
+  EXPECT_EQ(arena.walls()[3].center, Vec2(5.0, -0.5));
+  EXPECT_TRUE(arena.InInterior({8.0, 0.0}));
+  EXPECT_FALSE(arena.InInterior({0.0, 0.0}));
+  EXPECT_TRUE(arena.LineOfSight({5.5, 0.0}, {10.5, 0.0}));
+}
+
 }  // namespace gauntlet::sim

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <limits>
 #include <vector>
 
+#include "sim/arena/path_planner.h"
 #include "tests/sim/arena/random_arenas.h"
 
 namespace gauntlet::sim {
@@ -166,4 +168,44 @@ TEST(OccupancyGridTest, ASpiralIsOneComponent) {
 }
 
 }  // namespace
+TEST(OccupancyGridTest, ATranslatedArenaHasTheSameCells) {
+  TestCase test_case;
+  test_case.side_x = 3.0;
+  const OccupancyGrid grid(Arena(test_case), 0.1);
+  test_case.center = {1.5, 3.0};  // then one corner is the origin
+  const OccupancyGrid moved(Arena(test_case), 0.1);
+  EXPECT_EQ(moved.columns(), 60);
+  EXPECT_EQ(moved.rows(), 120);
+  EXPECT_EQ(moved.origin(), Vec2(0.0, 0.0));
+  EXPECT_EQ(moved.blocked(), grid.blocked());
+  EXPECT_EQ(moved.CellAt({0.06, 0.01}), (Cell{1, 0}));
+}
+
+TEST(OccupancyGridTest, CellsMayBeFiner) {
+  TestCase test_case;
+  test_case.side_x = test_case.side_y = 0.5;
+  test_case.wall_thickness = 0.01;
+  const OccupancyGrid grid(Arena(test_case), 0.017, 0.0085);
+  EXPECT_EQ(grid.columns(), 59);
+  EXPECT_EQ(grid.cell_size(), 0.0085);
+  for (int column = 0; column < grid.columns(); ++column)
+    ASSERT_EQ(grid.CellAt(grid.CenterOf({column, 7})), (Cell{column, 7}));
+  // 0.005 m of wall and 0.017 m of robot: the centre of the third cell is 0.02125 m from the wall's line.
+  EXPECT_FALSE(grid.Free({2, 30}));
+  EXPECT_TRUE(grid.Free({3, 30}));
+  EXPECT_EQ(PlanPath(grid, {-0.2, -0.2}, {0.2, 0.2}).size(), 2u);
+}
+
+TEST(OccupancyGridTest, ADiscIsABoxWithoutExtentAndARadius) {
+  OccupancyGrid grid(Arena(TestCase{}), 0.1);
+  grid.AddObstacle(RoundedBox{{{0.5, 0.5}, Vec2::Zero()}, 0.4});
+  for (int row = 10; row < grid.rows() - 10; ++row) {
+    for (int column = 10; column < grid.columns() - 10; ++column) {
+      const double distance = (grid.CenterOf({column, row}) - Vec2(0.5, 0.5)).norm();
+      if (std::fabs(distance - 0.5) > 1e-9) ASSERT_EQ(grid.Free({column, row}), distance > 0.5);
+    }
+  }
+  EXPECT_NEAR(grid.Clearance({1.5, 0.5}), 0.6, 1e-12);
+}
+
 }  // namespace gauntlet::sim

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
 #include <cmath>
 #include <functional>
@@ -45,7 +46,8 @@ TEST(ValidityTest, RuleNamesAreTheCommandLinesContract) {
                                                      {ValidityRule::kClearance, "clearance"},
                                                      {ValidityRule::kNoPath, "no-path"},
                                                      {ValidityRule::kLimits, "limits"},
-                                                     {ValidityRule::kOutsideArena, "outside-arena"}};
+                                                     {ValidityRule::kOutsideArena, "outside-arena"},
+                                                     {ValidityRule::kKeepOut, "keep-out"}};
   for (const auto& [rule, name] : names) EXPECT_EQ(NameOf(rule), name);
 }
 
@@ -323,4 +325,135 @@ TEST(IncrementalValidityTest, AnImpossibleArenaTakesNoGene) {
 }
 
 }  // namespace
+// With numbers that are sums of few powers of two all sums are exact.
+RC_GTEST_PROP(ValidityProperty, ATranslatedArenaGivesTheSameVerdicts, ()) {
+  const auto dyadic = [](int least, int most) { return *rc::gen::inRange(least, most + 1) / 16.0; };
+  ArenaRequirements requirements = CornerToCorner();
+  requirements.inflation = 0.125;
+  requirements.cell_size = 0.0625;
+  requirements.clearance = 0.5;
+  requirements.further_goals = {{2.5, -2.5}};
+  requirements.keep_outs = {{{{1.0, 1.0}, {0.25, 0.5}}}, {{{-1.0, 0.0}, {0.0, 0.0}}, 0.25}};
+  requirements.standing = {{{{0.0, -2.0}, {0.0, 0.0}}, 0.5}};
+  requirements.anywhere = true;
+  const Vec2 shift(std::exp2(*rc::gen::inRange(-2, 9)), -std::exp2(*rc::gen::inRange(-2, 9)));
+  ArenaRequirements shifted = requirements;
+  shifted.start += shift;
+  shifted.goal += shift;
+  for (Vec2& goal : shifted.further_goals) goal += shift;
+  for (auto* boxes : {&shifted.keep_outs, &shifted.standing})
+    for (RoundedBox& one : *boxes) one.box.center += shift;
+  TestCase there;
+  there.center = shift;
+  IncrementalValidity here_judge(TestCase{}, requirements);
+  IncrementalValidity there_judge(there, shifted);
+  RC_ASSERT(!here_judge.arena_violation() && !there_judge.arena_violation());
+  for (int i = 0; i < 12; ++i) {
+    ObstacleGene gene = {dyadic(-60, 60), dyadic(-60, 60), dyadic(1, 60), dyadic(1, 8),
+                         static_cast<double>(*rc::gen::inRange(0, 360))};
+    if (*rc::gen::inRange(0, 4) == 0) {
+      gene.path = {{dyadic(-48, 48), dyadic(-48, 48)}};
+      gene.speed = 0.03125;
+    }
+    ObstacleGene moved = gene;
+    moved.x += shift.x();
+    moved.y += shift.y();
+    for (Vec2& point : moved.path) point += shift;
+    const auto here_violation = here_judge.TryAppend(gene);
+    const auto there_violation = there_judge.TryAppend(moved);
+    RC_ASSERT(here_violation.has_value() == there_violation.has_value());
+    if (here_violation) RC_ASSERT(here_violation->rule == there_violation->rule);
+  }
+  RC_ASSERT(here_judge.grid().blocked() == there_judge.grid().blocked());
+}
+
+TEST(ValidityTest, OnlyScenariosThatSaySoHaveArenasElsewhere) {
+  TestCase test_case;
+  test_case.center = {0.25, 0.0};
+  ArenaRequirements requirements = CornerToCorner();
+  ExpectViolation(test_case, requirements, ValidityRule::kLimits, -1,
+                  "the arena lies around (0.25, 0) m, but this scenario is simulated around the origin only");
+  requirements.anywhere = true;
+  EXPECT_FALSE(CheckValidity(test_case, requirements));
+  test_case.obstacles = {{-3.2, 0.0, 0.5, 0.5, 0.0}};
+  ExpectViolation(test_case, requirements, ValidityRule::kOutsideArena, 0,
+                  "lies outside the arena, which reaches from (-2.85, -3.1) to (3.35, 3.1) m with its walls");
+  test_case.center = {998.0, 0.0};
+  ExpectViolation(test_case, requirements, ValidityRule::kLimits, -1, "must end within 1000 m of the origin");
+  test_case.center = {kInfinity, 0.0};
+  ExpectViolation(test_case, requirements, ValidityRule::kFiniteNumbers, -1, "which is not finite");
+}
+
+TEST(ValidityTest, NoObstacleTouchesAKeepOut) {
+  ArenaRequirements requirements = CornerToCorner();
+  requirements.keep_outs = {{{{1.0, 0.0}, {0.5, 0.25}}}, {{{-1.0, 0.0}, Vec2::Zero()}, 0.5}};
+  EXPECT_FALSE(
+      CheckValidity(WithObstacles({{1.0, 0.75, 2.0, 0.5, 0.0}, {-1.0, 0.875, 1.0, 0.5, 0.0}}), requirements));
+  ExpectViolation(WithObstacles({{1.0, 0.5, 2.0, 0.5, 0.0}}), requirements, ValidityRule::kKeepOut, 0,
+                  "touches keep-out 1, around (1, 0), where no obstacle may be");
+  ExpectViolation(WithObstacles({{-1.0, 0.75, 1.0, 0.5, 0.0}}), requirements, ValidityRule::kKeepOut, 0,
+                  "touches keep-out 2, around (-1, 0), where no obstacle may be");
+  TestCase moving = WithObstacles({{-2.0, 1.0, 0.2, 0.2, 0.0}});
+  EXPECT_FALSE(CheckValidity(moving, requirements));
+  moving.obstacles[0].path = {{-2.0, 0.0}, {0.0, 0.0}};
+  moving.obstacles[0].speed = 0.02;
+  ExpectViolation(moving, requirements, ValidityRule::kKeepOut, 0, "touches keep-out 2");
+}
+
+TEST(ValidityTest, WhatStandsInTheArenaIsJudgedBeforeAnyObstacle) {
+  ArenaRequirements requirements = CornerToCorner();
+  requirements.standing = {{{{0.0, 1.6}, {0.1, 1.4}}}, {{{0.0, -1.6}, {0.1, 1.4}}}};
+  EXPECT_FALSE(CheckValidity({}, requirements));  // a gap of 0.4 m
+  ExpectViolation(WithObstacles({{0.0, 0.0, 0.2, 0.3, 0.0}}), requirements, ValidityRule::kNoPath, 0,
+                  "obstacle 1");
+  requirements.standing.push_back({{{0.0, 0.0}, Vec2::Zero()}, 0.15});
+  ExpectViolation({}, requirements, ValidityRule::kNoPath, -1,
+                  "what stands in the arena itself leaves no path from (2.5, 2.5) to (-2.5, -2.5)");
+  requirements.standing.push_back({{{2.5, 2.5}, {0.1, 0.1}}});
+  ExpectViolation({}, requirements, ValidityRule::kStartBlocked, -1,
+                  "what stands in the arena itself blocks");
+}
+
+TEST(ValidityTest, EveryFurtherGoalIsConnectedWithTheStart) {
+  ArenaRequirements requirements = CornerToCorner();
+  requirements.clearance = 0.2;
+  requirements.further_goals = {{2.5, -2.5}, {-2.5, 2.5}};
+  EXPECT_FALSE(CheckValidity({}, requirements));
+  ExpectViolation(WithObstacles({{-2.1, 2.1, 2.6, 0.1, 45.0}}), requirements, ValidityRule::kNoPath, 0,
+                  "leaves no path from (2.5, 2.5) to (-2.5, 2.5)");
+  ExpectViolation(WithObstacles({{2.5, -2.25, 0.2, 0.2, 0.0}}), requirements, ValidityRule::kClearance, 0,
+                  "is 0.15 m from the goal (2.5, -2.5)");
+  requirements.clearance = 0.0;
+  ExpectViolation(WithObstacles({{2.5, -2.5, 0.2, 0.2, 0.0}}), requirements, ValidityRule::kGoalBlocked, 0,
+                  "blocks the goal (2.5, -2.5)");
+}
+
+TEST(ValidityTest, AScenarioMayAskForNoPath) {
+  ArenaRequirements requirements;
+  requirements.start = requirements.goal = {50.0, 50.0};
+  requirements.clearance = 100.0;
+  requirements.asks_for_path = false;
+  EXPECT_FALSE(CheckValidity(WithObstacles({{0.0, 0.0, 6.0, 6.0, 0.0}}), requirements));
+}
+
+TEST(ValidityTest, SmallArenasNeedAScenarioThatTakesThemAndGridsHaveALimit) {
+  TestCase small;
+  small.side_x = small.side_y = 0.1;
+  small.wall_thickness = 0.01;
+  ArenaRequirements requirements;
+  ExpectViolation(small, requirements, ValidityRule::kLimits, -1, "must have sides of 1 to 100 m");
+  requirements.least_side = 0.1;
+  requirements.inflation = 0.017;
+  requirements.cell_size = 0.0085;
+  EXPECT_FALSE(CheckValidity(small, requirements));
+  TestCase large;
+  large.side_x = large.side_y = 100.0;
+  ExpectViolation(large, requirements, ValidityRule::kLimits, -1,
+                  "has more than 4 million cells of 0.0085 m, in which ways are looked for");
+  requirements.cell_size = 0.05;
+  EXPECT_FALSE(CheckValidity(large, requirements));
+  requirements.cell_size = std::nan("");
+  ExpectViolation(large, requirements, ValidityRule::kLimits, -1, "cells of nan m");
+}
+
 }  // namespace gauntlet::sim
