@@ -17,6 +17,7 @@
 #include "controllers/rows/row_json.h"
 #include "master/directory/plugins.h"
 #include "proto/json_text.h"
+#include "search/experiment/command_table.h"
 #include "search/experiment/definition_table.h"
 #include "search/experiment/experiment_file.h"
 #include "search/experiment/schema.h"
@@ -133,9 +134,17 @@ std::string RowsText(std::span<const controllers::ScenarioInfo> rows) {
   return text;
 }
 
+// What an experiment may say of a program of the user's.
+std::string CommandText() {
+  return "\n  command: a program of yours simulates the runs (docs/any-simulator.md)\n\n" +
+         KeyTable(CommandKeys(), 4) +
+         "\n    Of metric, parameter, point, keep_out, standing, axis and refused there may be several: in a file\n"
+         "    one [[command.metric]] after the other.\n";
+}
+
 std::string ScenariosText() {
   return "Scenarios (--set scenario=NAME, --set scenario_parameters.PARAMETER=VALUE)\n" +
-         RowsText(controllers::Scenarios());
+         RowsText(controllers::Scenarios()) + CommandText();
 }
 
 std::string RowsText(std::span<const controllers::ControllerInfo> rows) {

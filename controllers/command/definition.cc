@@ -10,6 +10,7 @@
 #include "base/number_text.h"
 #include "controllers/command/metric_source.h"
 #include "controllers/command/placeholders.h"
+#include "controllers/command/trajectory_measures.h"
 #include "controllers/generic/formula.h"
 #include "sim/arena/validity.h"
 
@@ -168,7 +169,7 @@ const std::vector<List>& Lists() {
     std::vector<List> all = {
         ListOf<M>("metric", &Definition::metrics,
                   {FieldKey<M, &M::name>("name", "letters, digits and _"),
-                   FieldKey<M, &M::from>("from", "log:PATTERN or csv:FILE:COLUMN; without it, from the JSON"),
+                   FieldKey<M, &M::from>("from", "log:PATTERN, csv:FILE:COLUMN or trajectory:MEASURE; without it, from the JSON"),
                    FieldKey<M, &M::formula>("formula", "of the metrics before it, in place of `from`"),
                    FieldKey<M, &M::unit>("unit", "for people; yes/no of 0 and 1")}),
         ListOf<ParameterInfo>("parameter", &Definition::parameters, ParameterKeys()),
@@ -307,7 +308,9 @@ class Checks {
         return Complaint{path, "the metric '" + metric.name + "' is given twice"};
       if (!metric.from.empty() && !metric.formula.empty())
         return Complaint{path, "the metric '" + metric.name + "' has both `from` and `formula`: one is possible"};
-      if (!metric.from.empty()) {
+      if (metric.from.starts_with(kTrajectorySource)) {
+        if (auto complaint = MeasureComplaint(Numbered("metric", i, "from"), metric.from)) return complaint;
+      } else if (!metric.from.empty()) {
         if (const Status right = CheckSource(metric.from); !right)
           return Complaint{Numbered("metric", i, "from"),
                            "the metric '" + metric.name + "': " + right.error().message};
@@ -322,6 +325,13 @@ class Checks {
       return Complaint{"metrics", "metrics is missing: names of the numbers that the program reports, such as "
                                   "[\"items\"]"};
     return std::nullopt;
+  }
+
+  Found MeasureComplaint(const std::string& path, const std::string& from) const {
+    const std::string name = from.substr(kTrajectorySource.size());
+    if (definition_.trajectory.empty()) return Complaint{path, path + " = " + from + " needs the key trajectory"};
+    if (FindByName(TrajectoryMeasureNames(), name) != nullptr) return std::nullopt;
+    return Complaint{path, path + ": " + UnknownName("measure", name, TrajectoryMeasureNames())};
   }
 
   static bool IsVariable(const std::string& name) {

@@ -166,7 +166,7 @@ std::optional<std::string> FirstLineWith(const std::string& pattern, std::string
 Status CheckSource(const std::string& source) {
   if (source.starts_with(kLog)) return CheckPattern(source.substr(kLog.size()));
   if (source.starts_with(kCsv) && CsvOf(source)) return Ok{};
-  return InvalidInput("from = '" + Printable(source) + "' is neither log:PATTERN nor csv:FILE:COLUMN");
+  return InvalidInput("from = '" + Printable(source) + "' is none of log:PATTERN, csv:FILE:COLUMN and trajectory:MEASURE");
 }
 
 Result<double> ReadSource(const std::string& source, std::string_view out, std::string_view err,

@@ -1,8 +1,10 @@
 #include "controllers/command/outcome.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "controllers/command/metric_source.h"
 #include "controllers/command/placeholders.h"
 #include "controllers/command/trajectory_file.h"
+#include "controllers/command/trajectory_measures.h"
 #include "controllers/generic/formula.h"
 
 namespace gauntlet::controllers::command {
@@ -114,10 +117,21 @@ Result<sim::RunResult> OutcomeOf(const Definition& definition, const sim::RunSpe
                                  const std::string& folder) {
   sim::RunResult result;
   const Printed printed = PrintedIn(folder);
+  std::map<std::string, double> measured;
+  const auto of_trajectory = [](const Metric& metric) { return metric.from.starts_with(kTrajectorySource); };
+  const bool measures = std::ranges::any_of(definition.metrics, of_trajectory);
+  if (!definition.trajectory.empty()) {
+    TRY(ReadTrajectory(folder + "/" + definition.trajectory, definition.trajectory,
+                       spec.record_trajectory || measures, result));
+  }
+  if (measures) measured = TrajectoryMeasures(definition, spec, result.trajectory);
+  if (!spec.record_trajectory) result.trajectory.clear();
   std::optional<json> report;
   for (const Metric& metric : definition.metrics) {
     double value = 0.0;
-    if (!metric.from.empty()) {
+    if (of_trajectory(metric)) {
+      value = measured.at(metric.from.substr(kTrajectorySource.size()));
+    } else if (!metric.from.empty()) {
       TRY(value, ReadSource(metric.from, printed.out, printed.err, folder));
     } else if (!metric.formula.empty()) {
       TRY(value, Computed(metric.formula, result));
@@ -132,10 +146,6 @@ Result<sim::RunResult> OutcomeOf(const Definition& definition, const sim::RunSpe
   TRY(result.fitness, Computed(definition.fitness, result));
   TRY(const double failed, Computed(definition.failure, result));
   result.failure.total = failed != 0.0;
-  if (!definition.trajectory.empty()) {
-    TRY(ReadTrajectory(folder + "/" + definition.trajectory, definition.trajectory, spec.record_trajectory,
-                       result));
-  }
   sim::SetHashes(result);
   return result;
 }

@@ -90,6 +90,12 @@ Error TakenTwice(const std::string& first, const std::string& second, std::strin
 }  // namespace
 
 Result<std::string> AddPluginFile(const std::string& file) {
+  if (file.ends_with(".toml")) {
+    TRY(const ExperimentText experiment, ReadExperimentText(file));
+    TRY(const std::optional<std::string> command, AddCommandOf(experiment, {}, {}));
+    if (command) return *command;
+    return InvalidInput(fmt::format("plug-in: {} has no table [command]", file));
+  }
   std::error_code missing;
   if (std::filesystem::exists(file, missing) && !std::filesystem::is_regular_file(file, missing))
     return InvalidInput(fmt::format("plug-in: {} is no regular file", file));

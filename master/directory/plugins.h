@@ -12,7 +12,8 @@
 
 namespace gauntlet {
 
-// Makes the library's controllers and scenarios known, whose file the user names; its SHA-256. Error: it
+// Makes the library's controllers and scenarios known, whose file the user names; its SHA-256. An experiment's
+// file, NAME.toml, stands for the command that it defines. Error: it
 // cannot be read, it is a campaign's copy that somebody else could have written, or why gauntlet-worker
 // refuses it; what is built in has the name of one.
 Result<std::string> AddPluginFile(const std::string& file);

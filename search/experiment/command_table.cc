@@ -14,8 +14,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view kTable = "command";
-constexpr std::string_view kBegin = "command.";
+constexpr std::string_view kCommandTable = "command";
+constexpr std::string_view kInCommand = "command.";
 
 // Nothing of what no value of the table is.
 std::optional<json> JsonOf(const TomlValue& value) {
@@ -44,14 +44,14 @@ Status Put(json& table, std::string_view path, json value) {
     if (number && place->is_object() && place->empty()) *place = json::array();
     if (place->is_array()) {
       if (!number || *number < 1 || *number > place->size() + 1)
-        return InvalidInput(fmt::format("{}{}: the elements of a list are numbered 1, 2, 3, ...", kBegin, path));
+        return InvalidInput(fmt::format("{}{}: the elements of a list are numbered 1, 2, 3, ...", kInCommand, path));
       if (*number == place->size() + 1) place->push_back(json::object());
       place = &(*place)[*number - 1];
     } else if (place->is_object()) {
       place = &(*place)[name];
       if (place->is_null()) *place = json::object();
     } else {
-      return InvalidInput(fmt::format("{}{}: a value stands where a table is meant", kBegin, path));
+      return InvalidInput(fmt::format("{}{}: a value stands where a table is meant", kInCommand, path));
     }
     if (dot == std::string_view::npos) break;
     rest.remove_prefix(dot + 1);
@@ -67,8 +67,8 @@ std::string PlaceOf(std::span<const Assignment> assignments, const std::string& 
   std::string place = file_name;
   std::size_t best = 0;
   for (const Assignment& assignment : assignments) {
-    if (!assignment.path.starts_with(kBegin)) continue;
-    const std::string_view own = std::string_view(assignment.path).substr(kBegin.size());
+    if (!assignment.path.starts_with(kInCommand)) continue;
+    const std::string_view own = std::string_view(assignment.path).substr(kInCommand.size());
     const bool near = path == own || path.starts_with(std::string(own) + ".");
     if (near && own.size() >= best) {
       best = own.size();
@@ -82,12 +82,12 @@ std::string PlaceOf(std::span<const Assignment> assignments, const std::string& 
 
 std::vector<KeyInfo> CommandKeys() {
   std::vector<KeyInfo> keys = controllers::command::Keys();
-  for (KeyInfo& key : keys) key.path = std::string(kBegin) + key.path;
+  for (KeyInfo& key : keys) key.path = std::string(kInCommand) + key.path;
   return keys;
 }
 
 bool InCommand(std::string_view path) {
-  return path == kTable || path.starts_with(kBegin);
+  return path == kCommandTable || path.starts_with(kInCommand);
 }
 
 Result<std::optional<controllers::command::Definition>> ReadCommand(const ExperimentText& experiment,
@@ -104,13 +104,13 @@ Result<std::optional<controllers::command::Definition>> ReadCommand(const Experi
   }
   json table = json::object();
   for (const Assignment& assignment : *assignments) {
-    if (!assignment.path.starts_with(kBegin)) continue;
+    if (!assignment.path.starts_with(kInCommand)) continue;
     std::optional<json> value = JsonOf(assignment.value);
     const std::string& where = assignment.where;
     if (!value)
       return InvalidInput(fmt::format("{}: {} is {}, expected a number, text, true or false, or a list of texts",
                                       where, assignment.path, KindOf(assignment.value)));
-    if (const Status put = Put(table, std::string_view(assignment.path).substr(kBegin.size()), std::move(*value));
+    if (const Status put = Put(table, std::string_view(assignment.path).substr(kInCommand.size()), std::move(*value));
         !put)
       return InvalidInput(Printable(fmt::format("{}: {}", where, put.error().message)));
   }

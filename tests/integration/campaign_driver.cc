@@ -102,6 +102,14 @@ SmallCampaign SmallRandom() {
   return campaign;
 }
 
+SmallCampaign SmallCommand(bool noise) {
+  SmallCampaign campaign;
+  campaign.name = "command";
+  campaign.experiment = GAUNTLET_SOURCE_DIR "/tests/integration/programs/course.toml";
+  campaign.settings = {fmt::format("controller_parameters.noise={}", noise ? 1 : 0)};
+  return campaign;
+}
+
 SmallCampaign SmallFit() {
   SmallCampaign campaign;
   campaign.name = "fit";

@@ -56,6 +56,8 @@ SmallCampaign SmallArchive();
 SmallCampaign SmallRandom();
 // Settings of flocking, fitted to two targets; its runs are cut short.
 SmallCampaign SmallFit();
+// A program of a few milliseconds, programs/course.toml. With `noise`, its runs are not reproducible.
+SmallCampaign SmallCommand(bool noise = false);
 // A given case with many replicates.
 SmallCampaign SmallEvaluation();
 // "COMMAND EXPERIMENT --dir DIR ..." with everything that makes this campaign what it is.
