@@ -8,7 +8,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kTable =
+constexpr const char* kCommand =
     "scenario = \"command\"\n"
     "[command]\n"
     "run = [\"sim\", \"{case}\"]\n"
@@ -16,13 +16,13 @@ constexpr const char* kTable =
     "fitness = \"items\"\n"
     "failure = \"items < 5\"\n";
 
-std::string ErrorOf(const std::string& more, const std::vector<std::string>& sets = {}) {
-  const auto command = ReadCommand({kTable + more, "my.toml"}, sets);
+std::string ComplaintOf(const std::string& more, const std::vector<std::string>& sets = {}) {
+  const auto command = ReadCommand({kCommand + more, "my.toml"}, sets);
   return command.ok() ? "" : command.error().message;
 }
 
 TEST(CommandTable, BecomesADefinition) {
-  const auto command = ReadCommand({std::string(kTable) +
+  const auto command = ReadCommand({std::string(kCommand) +
                                         "cores = 2\nplace = { x = \"items\", y = \"items\", same_within = 1 }\n"
                                         "[[command.parameter]]\nname = \"speed\"\nhigh = 1\n"
                                         "[[command.parameter]]\nname = \"range\"\nhigh = 2.5\n",
@@ -46,14 +46,14 @@ TEST(CommandTable, AnExperimentWithoutItHasNone) {
 }
 
 TEST(CommandTable, SaysWhereWhatIsWrongStands) {
-  EXPECT_THAT(ErrorOf("cores = 0\n"), HasSubstr("my.toml:7:1: cores = 0"));
-  EXPECT_THAT(ErrorOf("[[command.metric]]\nname = \"a\"\nfrom = \"log:(\"\n"), HasSubstr("my.toml:9:1: the metric 'a'"));
-  EXPECT_THAT(ErrorOf("corse = 1\n"), HasSubstr("my.toml:7:1: [command]: unknown key 'corse'; did you mean 'cores'?"));
-  EXPECT_THAT(ErrorOf("", {"command.cores=two"}), HasSubstr("--set command.cores=two: cores = \"two\""));
-  EXPECT_THAT(ErrorOf("", {"command.metric.2.name=b"}), HasSubstr("numbered 1, 2, 3"));
-  EXPECT_THAT(ErrorOf("", {"command.cores.x=1"}), HasSubstr("--set command.cores.x=1"));
-  EXPECT_THAT(ErrorOf("cores = 2001-01-01\n"), HasSubstr("is a date or time, expected"));
-  EXPECT_THAT(ErrorOf("cores = \n"), HasSubstr("my.toml:7"));
+  EXPECT_THAT(ComplaintOf("cores = 0\n"), HasSubstr("my.toml:7:1: cores = 0"));
+  EXPECT_THAT(ComplaintOf("[[command.metric]]\nname = \"a\"\nfrom = \"log:(\"\n"), HasSubstr("my.toml:9:1: the metric 'a'"));
+  EXPECT_THAT(ComplaintOf("corse = 1\n"), HasSubstr("my.toml:7:1: [command]: unknown key 'corse'; did you mean 'cores'?"));
+  EXPECT_THAT(ComplaintOf("", {"command.cores=two"}), HasSubstr("--set command.cores=two: cores = \"two\""));
+  EXPECT_THAT(ComplaintOf("", {"command.metric.2.name=b"}), HasSubstr("numbered 1, 2, 3"));
+  EXPECT_THAT(ComplaintOf("", {"command.cores.x=1"}), HasSubstr("--set command.cores.x=1"));
+  EXPECT_THAT(ComplaintOf("cores = 2001-01-01\n"), HasSubstr("is a date or time, expected"));
+  EXPECT_THAT(ComplaintOf("cores = \n"), HasSubstr("my.toml:7"));
 }
 
 TEST(CommandTable, EveryListedKeyIsInIt) {
