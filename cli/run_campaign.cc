@@ -57,9 +57,8 @@ std::string Timing(const SessionReport& report) {
                         FormatCount(workers.audits - workers.audits_alone));
     if (workers.audits_alone > 0)
       line += fmt::format(", {} again on the only one there was", FormatCount(workers.audits_alone));
-    line += fmt::format(", {}", workers.nondeterministic == 0
-                                    ? "all equal"
-                                    : fmt::format("{} ENDED DIFFERENTLY", workers.nondeterministic));
+    const std::uint64_t different = workers.nondeterministic + workers.differences;
+    line += different == 0 ? ", all equal" : fmt::format(", {} ENDED DIFFERENTLY", different);
   }
   return line;
 }

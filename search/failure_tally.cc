@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "controllers/command/definition.h"
 #include "controllers/registry.h"
 
 namespace gauntlet {
@@ -9,8 +10,13 @@ namespace {
 
 constexpr int kEnoughFailures = 5;
 constexpr int kEnoughPasses = 6;
+constexpr int kMostForAVerdict = kEnoughFailures + kEnoughPasses - 1;
 
 }  // namespace
+
+bool StartsProgram(const sim::RunSettings& settings) {
+  return settings.scenario == controllers::command::kScenario;
+}
 
 std::string_view FailingOf(const sim::RunSettings& settings) {
   return controllers::DeclaredScenario(settings).failing;
@@ -54,13 +60,15 @@ std::string_view NameOf(FailureVerdict verdict) {
 
 int RunsToVerdict(const FailureTally& tally, int replicates) {
   if (tally.errors > 0) return 0;
-  if (replicates > 0) return std::max(0, replicates - tally.runs());
-  return std::max(0, std::min(kEnoughFailures - tally.failures, kEnoughPasses - tally.passes));
+  if (replicates > 0) return std::max(0, replicates - std::max(tally.runs(), tally.refused));
+  return std::max(0, std::min({kEnoughFailures - tally.failures, kEnoughPasses - tally.passes,
+                               kMostForAVerdict - tally.refused}));
 }
 
 FailureVerdict VerdictOf(const FailureTally& tally, int replicates) {
   if (tally.errors > 0) return FailureVerdict::kError;
   if (RunsToVerdict(tally, replicates) > 0) return FailureVerdict::kOpen;
+  if (tally.mostly_refused()) return FailureVerdict::kError;
   if (2 * tally.failures >= tally.runs()) return FailureVerdict::kFail;
   return tally.failures > 0 ? FailureVerdict::kFlaky : FailureVerdict::kPass;
 }

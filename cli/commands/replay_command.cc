@@ -115,7 +115,10 @@ Result<ExitCode> RunReplay(CommandContext& context, const ReplayOptions& options
   }
   context.out << (options.json ? ReplayJson(replay.report) : Text(replay, figure)) << std::flush;
   if (replay.report.differences.empty()) return kExitDone;
-  PrintMessage(context, fmt::format("run {} of {} was not reproduced: {}", run, options.directory,
+  const bool may_differ =
+      replay.reproducible == Reproducible::kUnknown || replay.reproducible == Reproducible::kNo;
+  PrintMessage(context, fmt::format("run {} of {} was not reproduced{}: {}", run, options.directory,
+                                    may_differ ? ", and its program is not known to be reproducible" : "",
                                     replay.report.differences.front()));
   return kExitNegative;
 }

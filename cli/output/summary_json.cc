@@ -112,6 +112,10 @@ std::string SummaryJson(const CampaignSummary& summary, const CampaignAnswers& a
                         const std::string& directory) {
   const SearchSummary* only = summary.OnlySearch();
   Json json = only != nullptr ? OneSearch(*only, summary, directory) : SweepJson(summary, directory);
+  if (const ObservedReproducibility& seen = summary.reproducibility; seen.observed()) {
+    json["reproducible"] = seen.Name();
+    json["reproducible_hosts"] = seen.Hosts();
+  }
   json["confirmed"] = ConfirmationsTable(answers.confirmations).ToJson();
   json["distinct_failures"] =
       DistinctFailuresTable(DistinctFailures(answers.confirmations, answers.smallest_layouts)).ToJson();

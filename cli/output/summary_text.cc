@@ -160,11 +160,13 @@ std::string SweepText(const CampaignSummary& summary, const CampaignAnswers& ans
                       const HintContext& context) {
   const auto finished = std::ranges::count(summary.searches, true, &SearchSummary::finished);
   const std::string directory = PastedPath(context.directory);
+  const ObservedReproducibility& seen = summary.reproducibility;
   return fmt::format("{}: {} searches, {} finished, {} runs, {} of them total failures\n\n",
                      Printable(summary.experiment), summary.searches.size(), finished,
                      FormatCount(summary.runs_done), FormatCount(summary.total_failures)) +
-         WarningsText(summary) + SearchesTable(summary).ToText() +
-         DistinctFailuresText(answers, context.program) +
+         WarningsText(summary) +
+         (seen.observed() ? fmt::format("reproducible: {}\n\n", Printable(InWords(seen))) : "") +
+         SearchesTable(summary).ToText() + DistinctFailuresText(answers, context.program) +
          Hints(context, summary.finished,
                {{fmt::format("{0} compare {1}:search:1 {1}:search:{2}", context.program, directory,
                              summary.searches.size()),
@@ -216,6 +218,7 @@ std::string SummaryText(const CampaignSummary& summary, const CampaignAnswers& a
   }
   Table facts({"", ""});
   AddTally(*only, only, facts);
+  AddReproducibility(summary, facts);
   return text + facts.ToText() + RunsWithoutAResult(*only, context.directory) + Generations(*only) +
          (only->archive.axes.empty() ? Members(*only) : ArchiveText(*only, context)) +
          DistinctFailuresText(answers, context.program) +

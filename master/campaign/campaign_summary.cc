@@ -212,6 +212,7 @@ Result<CampaignSummary> SummariseTotals(const std::vector<SearchPlan>& plans, Re
   CampaignSummary all = TotalsOf(plans, searches);
   TRY(all.nondeterministic, CountNondeterministic(store));
   TRY(all.lone_verdicts, CountLoneVerdicts(store));
+  TRY(all.reproducibility, ReadReproducibility(plans, store));
   return all;
 }
 
@@ -228,6 +229,7 @@ Result<CampaignSummary> Summarise(const std::vector<SearchPlan>& plans, ResultSt
   all.searches = std::move(searches);
   TRY(all.nondeterministic, CountNondeterministic(store));
   TRY(all.lone_verdicts, CountLoneVerdicts(store));
+  TRY(all.reproducibility, ReadReproducibility(plans, store));
   return all;
 }
 

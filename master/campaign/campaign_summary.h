@@ -10,6 +10,7 @@
 #include "base/mean_and_range.h"
 #include "base/result.h"
 #include "controllers/failure_descriptor.h"
+#include "master/campaign/observed_reproducibility.h"
 #include "master/directory/search_plans.h"
 #include "master/store/result_store.h"
 #include "search/search_algorithm.h"
@@ -80,6 +81,7 @@ struct CampaignSummary : SearchTally {
   std::vector<SearchSummary> searches;  // in the order of their numbers
   std::uint64_t nondeterministic = 0;   // second results of a spec that differed from the first
   std::uint64_t lone_verdicts = 0;      // runs that were given up on the word of a single worker
+  ObservedReproducibility reproducibility;
   // The controllers that plug-ins bring: what is to blame when results differ.
   std::set<std::string> plugin_controllers = {};
   std::string as_of = "";  // CampaignView::as_of

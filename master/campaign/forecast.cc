@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "master/campaign/observed_reproducibility.h"
 #include "master/store/packing.h"
 #include "master/store/run_numbers.h"
 #include "proto/run_codec.h"
@@ -112,7 +113,7 @@ Result<Forecast> MakeForecast(const std::vector<SearchPlan>& plans,
         ++forecast.measured_without_result;
         forecast.why_without_result = result.message;
       }
-      size.Add(runs[i], result, plans[search * plans.size() / sampled].experiment.store.trajectories);
+      size.Add(runs[i], result, KeepsWays(plans[search * plans.size() / sampled].experiment));
     }
   }
   forecast.seconds_per_run = seconds / static_cast<double>(forecast.measured_runs);

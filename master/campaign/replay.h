@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "master/dispatch/trust/reproducibility.h"
 #include "master/store/result_store.h"
 #include "search/experiment/experiment.h"
 #include "sim/run_result.h"
@@ -27,6 +28,7 @@ struct CampaignReplay {
   Experiment experiment;
   ReplayReport report;
   std::string as_of = "";  // CampaignView::as_of
+  Reproducible reproducible = Reproducible::kPromised;
 };
 
 // Error: the run is not there (kNotFound), or its row contradicts the result stored in it (kCorrupt).

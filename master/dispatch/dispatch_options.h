@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "master/dispatch/trust/reproducibility.h"
 #include "proto/golden_hashes.h"
 
 namespace gauntlet {
@@ -30,6 +31,10 @@ struct DispatchOptions {
   // When no run waits, an idle worker gets a copy of a run that has taken this many times the predicted time
   // on another; the first answer counts. 0 = never.
   double copy_after = 2.0;
+  // Of the campaign's runs, as is known so far.
+  Reproducible reproducible = Reproducible::kPromised;
+  // Leases that the workers of one host have at once, together; 0 = as many as they have slots for.
+  int most_per_host = 0;
   // Share of runs, 0 to 1, that another worker simulates once more, to be compared.
   double audit_share = 0.0;
   // CPU time of one runner on one run, s; only there to end what would never end. Campaigns give more for

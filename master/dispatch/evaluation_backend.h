@@ -45,6 +45,7 @@ struct WorkerStatistics {
   std::uint64_t duplicates = 0;
   std::uint64_t rejected_messages = 0;
   std::uint64_t nondeterministic = 0;  // duplicates whose result differed from the first one
+  std::uint64_t differences = 0;       // the same, where nobody promises that there is none
   std::uint64_t copies = 0;            // runs that an idle worker got although another had them
   std::uint64_t audits = 0;            // runs simulated twice on purpose, and compared
   std::uint64_t audits_alone = 0;      // of these, by the same worker: there was no other

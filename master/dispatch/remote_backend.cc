@@ -151,6 +151,9 @@ void RemoteBackend::BuryEnded(TimePoint now) {
 PoolView RemoteBackend::ViewForPool() const {
   PoolView view;
   view.unfinished_runs = shutting_down_ ? 0 : static_cast<int>(scheduler_.unfinished());
+  // What is simulated once more to learn about a program is not behind other runs, and is waited for.
+  if (!shutting_down_ && options_.reproducible != Reproducible::kPromised)
+    view.unfinished_runs += static_cast<int>(scheduler_.Statistics().audits_open);
   for (const auto& [id, worker] : workers_.all()) {
     if (scheduler_.Connected(id)) view.workers.push_back({worker.allocation, scheduler_.Works(id)});
   }
@@ -259,7 +262,8 @@ void RemoteBackend::OnResult(InstanceId worker, proto::LeaseResult message) {
     OnUnreadable(worker, message, fmt::format("{} s of CPU time, 0 to {} can be", seconds, most));
     return;
   }
-  const Answer answer = scheduler_.Completed(worker, message.fence, message.run_id, result->hash);
+  const Answer answer = scheduler_.Completed(worker, message.fence, message.run_id, result->hash,
+                                             result->verdict == sim::Verdict::kCompleted);
   if (answer == Answer::kRejected) {
     const std::string& label = workers_.LabelOf(worker);
     log_.Reject("lease " + label, fmt::format("worker {} answered a lease that is not its own", label));
@@ -345,6 +349,10 @@ void RemoteBackend::Tell(const SchedulerOrders& orders) {
                             mismatch.run, workers_.LabelOf(mismatch.first_worker), mismatch.first_hash,
                             workers_.LabelOf(mismatch.second_worker), mismatch.second_hash));
   }
+  if (const auto& news = orders.reproducibility) {
+    log_.Report(news->state == Reproducible::kYes ? event::kReproducible : event::kNotReproducible,
+                news->text);
+  }
 }
 
 void RemoteBackend::GiveUp(const RunGivenUp& order) {
@@ -355,7 +363,14 @@ void RemoteBackend::GiveUp(const RunGivenUp& order) {
   run.worker = workers_.LabelOf(order.worker);
   run.attempt = order.leases;
   run.stderr_tail = order.failure.stderr_tail;
-  const bool alone = order.workers == 1;
+  if (order.first_ending) {
+    log_.Report(event::kRunGivenUp,
+                fmt::format("run {} {} on worker {}: its first ending counts, because it is not known to be "
+                            "reproducible",
+                            order.run, run.result.message, run.worker));
+    return;
+  }
+  const bool alone = order.alone();
   log_.Report(alone ? event::kRunGivenUpAlone : event::kRunGivenUp,
               fmt::format("run {} {} in {} of {} attempts, {}", order.run, run.result.message, order.alike,
                           order.attempts,

@@ -12,6 +12,7 @@
 
 #include "base/system/atomic_file.h"
 #include "base/system/process_identity.h"
+#include "master/campaign/observed_reproducibility.h"
 #include "master/campaign/stored_search.h"
 #include "master/directory/campaign_keys.h"
 #include "master/dispatch/leases/run_limits.h"
@@ -34,7 +35,7 @@ DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_sha
   DispatchOptions limits;
   limits.audit_share = audit_share;
   limits.without_ways =
-      std::ranges::none_of(plans, [](const SearchPlan& plan) { return plan.experiment.store.trajectories; });
+      std::ranges::none_of(plans, [](const SearchPlan& plan) { return KeepsWays(plan.experiment); });
   for (const SearchPlan& plan : plans) {
     limits.cpu_limit_seconds = std::max(limits.cpu_limit_seconds, CpuLimitSeconds(plan.experiment));
   }
@@ -153,6 +154,8 @@ Status CampaignServer::StartPool() {
 }
 
 Status CampaignServer::RestoreSearches() {
+  TRY(const ObservedReproducibility observed, ReadReproducibility(plans_, *campaign_.store));
+  dispatch_.reproducible = observed.state;
   backend_ = std::make_unique<RemoteBackend>(identity_, dispatch_, *transport_, clock_, pool_.get());
   backend_->WatchFd(campaign_.store->CommitNotifier());
   SearchLoop::Parts parts{{}, *backend_, *campaign_.store, clock_};
@@ -249,7 +252,7 @@ Result<SessionReport> CampaignServer::Report(CampaignEnd end) {
               fmt::format("{} runs were simulated on a second worker, {} again on the only one there "
                           "was, {} ended differently",
                           report.workers.audits - report.workers.audits_alone, report.workers.audits_alone,
-                          report.workers.nondeterministic));
+                          report.workers.nondeterministic + report.workers.differences));
   }
   NoteEvent(end == CampaignEnd::kFinished ? event::kFinished : event::kStop,
             fmt::format("{} runs stored", loop_->runs_done()));

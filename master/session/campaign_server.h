@@ -65,7 +65,7 @@ class CampaignServer {
   const SteadyClock clock_;
   const TimePoint started_ = clock_.Now();
   const double cpu_before_;  // s
-  const DispatchOptions dispatch_;
+  DispatchOptions dispatch_;
   MasterView view_;
   TimePoint next_status_ = started_;
   std::optional<Error> outdated_;  // a newer master has begun, or what this one writes is gone

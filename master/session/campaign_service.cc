@@ -238,7 +238,8 @@ class Campaigns final : public CampaignService {
     if (report.damage.empty()) {
       TRY(CheckSeed(experiment, report.stored));
     }
-    return CampaignReplay{experiment, std::move(report), campaign.as_of};
+    TRY(const ObservedReproducibility observed, ReadReproducibility(plans, *campaign.store));
+    return CampaignReplay{experiment, std::move(report), campaign.as_of, observed.state};
   }
 
   Result<bool> MasterLives(const std::string& dir) override {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "master/campaign/observed_reproducibility.h"
 #include "master/campaign/stored_search.h"
 #include "proto/run_codec.h"
 #include "search/search_table.h"
@@ -107,7 +108,7 @@ void SearchDriver::Store(FinishedRun finished) {
   if (has_generations_) ticks_[run.individual] = static_cast<double>(finished.result.ticks);
   if (parts_.on_run) parts_.on_run(run, finished);
   // Encoded anew: what a worker may have put in beside the result is not stored.
-  run.result = parts_.plan.experiment.store.trajectories
+  run.result = KeepsWays(parts_.plan.experiment)
                    ? proto::EncodeRunResult(finished.result, proto::TrajectoryEncoding::kLeaveOut)
                    : proto::EncodeWithoutWays(finished.result);
   run.message = finished.result.message;

@@ -31,5 +31,8 @@ inline constexpr const char* kRunReturned = "run-returned";            // a work
 inline constexpr const char* kRunGivenUp = "run-given-up";             // failed in every attempt
 inline constexpr const char* kRunGivenUpAlone = "run-given-up-alone";  // likewise, all on one worker
 inline constexpr const char* kNondeterministic = "nondeterministic";
+// Of a program of the user's, what was observed (master/campaign/observed_reproducibility.h reads it).
+inline constexpr const char* kReproducible = "reproducible";
+inline constexpr const char* kNotReproducible = "not-reproducible";
 
 }  // namespace gauntlet::event

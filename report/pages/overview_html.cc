@@ -56,6 +56,7 @@ std::string TestedHtml(const CampaignFacts& facts) {
                                             search.plan == nullptr ? "" : search.plan(experiment))
                               : fmt::format("{} searches in one campaign", facts.plans.size())});
   AddTally(summary, summary.OnlySearch(), table);
+  AddReproducibility(summary, table);
   table.AddRow({"state", summary.finished ? "finished" : "not finished"});
   return table.ToHtml();
 }

@@ -10,6 +10,7 @@
 #include "analysis/statistics/comparison.h"
 #include "analysis/statistics/proportions.h"
 #include "base/check.h"
+#include "base/printable.h"
 #include "search/archive/failure_archive.h"
 #include "search/search_table.h"
 
@@ -101,6 +102,11 @@ void AddTally(const SearchTally& tally, const SearchSummary* only, Table& table)
   if (tally.total_failures > 0 && !only->types.types.empty())
     table.AddRow({"failure types", TypesInShort(*only)});
   table.AddRow({"state hash", only->state_hash});
+}
+
+void AddReproducibility(const CampaignSummary& summary, Table& table) {
+  if (summary.reproducibility.observed())
+    table.AddRow({"reproducible", Printable(InWords(summary.reproducibility))});
 }
 
 std::string WhyNotReproducible(const CampaignSummary& summary) {

@@ -18,6 +18,8 @@ const PopulationMember& MemberOf(const SearchSummary& summary, const ArchivedFai
 
 // Facts of one search, or of all (`only` is nullptr), added to a table of names and texts.
 void AddTally(const SearchTally& tally, const SearchSummary* only, Table& table);
+// Of a campaign whose runs start a program of the user's: whether they end the same once more.
+void AddReproducibility(const CampaignSummary& summary, Table& table);
 // What a reader has to know before trusting a figure, a sentence each.
 std::vector<std::string> WarningsOf(const CampaignSummary& summary);
 // Of a campaign with controllers of plug-ins: what is to blame when results differ.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -146,8 +147,14 @@ double PopulationSearch::FitnessOf(const EvaluationOutcome& outcome, const sim::
   return (tally.passes + tally.failures * of_failure) / tally.runs();
 }
 
+bool PopulationSearch::MostlyRefused(const EvaluationOutcome& outcome) const {
+  if (!StartsProgram(setup_.experiment)) return false;
+  const auto refused = std::ranges::count(outcome.runs, sim::Verdict::kRefused, &RunOutcome::verdict);
+  return 2 * refused >= std::ssize(outcome.runs);
+}
+
 void PopulationSearch::Record(const EvaluationOutcome& outcome, Individual& individual) const {
-  if (!outcome.completed || !std::isfinite(outcome.fitness)) {
+  if (!outcome.completed || !std::isfinite(outcome.fitness) || MostlyRefused(outcome)) {
     ++individual.failed_evaluations;
     return;
   }

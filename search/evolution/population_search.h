@@ -85,6 +85,8 @@ class PopulationSearch : public SearchAlgorithm {
     std::uint32_t evaluation;
   };
 
+  // Of a program's runs, which may be refused by chance: half of them or more were.
+  bool MostlyRefused(const EvaluationOutcome& outcome) const;
   // What search.objective makes of the outcome; lower = tougher.
   double FitnessOf(const EvaluationOutcome& outcome, const sim::Genome& obstacles) const;
 

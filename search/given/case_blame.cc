@@ -26,6 +26,7 @@ std::unique_ptr<LayoutQuestion> AskForBlame(const Experiment& experiment, const 
 
 bool ClearlyLess(const FailureTally& without, const FailureTally& whole) {
   if (without.runs() == 0 || whole.runs() == 0) return false;
+  if (without.mostly_refused() || whole.mostly_refused()) return false;
   const double n1 = whole.runs();
   const double n2 = without.runs();
   const double difference = whole.failures / n1 - without.failures / n2;

@@ -50,7 +50,7 @@ int RunsToDecide(const FailureTally& tally) {
   if (evidence >= kBound || evidence <= -kBound) return 0;
   const int to_accept = static_cast<int>(std::ceil((kBound - evidence) / kOfFailure));
   const int to_refuse = static_cast<int>(std::ceil((kBound + evidence) / -kOfPass));
-  return std::min({to_accept, to_refuse, kMostRuns - Told(tally)});
+  return std::min({to_accept, to_refuse, kMostRuns - Told(tally), kMostRuns - tally.refused});
 }
 
 sim::ObstacleGene& ObstacleOf(Layout& layout, std::size_t obstacle) {
@@ -121,15 +121,18 @@ int CaseMinimiser::RunsNeeded() const {
   const FailureTally& tally = told_.tally;
   if (phase_ == Phase::kOriginal) return RunsToVerdict(tally, /*replicates=*/0);
   if (phase_ == Phase::kEmpty)
-    return std::min(kClearMajority - std::abs(Majority(tally)), kMostRuns - Told(tally));
+    return std::min(
+        {kClearMajority - std::abs(Majority(tally)), kMostRuns - Told(tally), kMostRuns - tally.refused});
   if (phase_ != Phase::kVerify) return RunsToDecide(tally);
   // Of the case as it is, which cannot be taken back, the figure is wanted all the same.
   const bool refused = Told(tally) - tally.failures > kVerifyingRuns - kVerifyingFailures;
-  return refused && steps_.size() > 1 ? 0 : std::min(kVerifiedAtOnce, kVerifyingRuns - Told(tally));
+  const int left = kVerifyingRuns - std::max(Told(tally), tally.refused);
+  return refused && steps_.size() > 1 ? 0 : std::min(kVerifiedAtOnce, left);
 }
 
 bool CaseMinimiser::Fails() const {
   const FailureTally& tally = told_.tally;
+  if (tally.mostly_refused()) return false;
   if (phase_ == Phase::kOriginal) return VerdictOf(tally, /*replicates=*/0) == FailureVerdict::kFail;
   if (phase_ == Phase::kEmpty) return Majority(tally) > 0;
   if (phase_ == Phase::kVerify) return IsReliable(tally) && SameFailures(told_);
@@ -159,7 +162,7 @@ void CaseMinimiser::Decide(bool fails) {
   switch (phase_) {
     case Phase::kOriginal:
       original_ = told_;
-      if (original_.tally.errors > 0) return End(MinimisedTo::kError);
+      if (original_.tally.errors > 0 || original_.tally.mostly_refused()) return End(MinimisedTo::kError);
       if (!fails) return End(MinimisedTo::kNoFailure);
       steps_ = {trying_};
       return Try(Phase::kEmpty, {.layout = {}});

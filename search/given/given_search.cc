@@ -25,10 +25,16 @@ std::uint64_t CountVisits(const sim::RobotSummary& robot, const sim::ObstacleGen
 }
 
 RunJudge::RunJudge(const Experiment& experiment)
-    : failing_(FailingOf(experiment)), failures_(controllers::DeclaredScenario(experiment).failures) {}
+    : failing_(FailingOf(experiment)),
+      leaves_out_refused_(StartsProgram(experiment)),
+      failures_(controllers::DeclaredScenario(experiment).failures) {}
 
 LayoutRuns RunJudge::WhatBecameOf(const RunOutcome& run, const sim::Genome& obstacles) const {
   LayoutRuns became;
+  if (leaves_out_refused_ && run.verdict == sim::Verdict::kRefused) {
+    ++became.tally.refused;
+    return became;
+  }
   became.tally.Add(run, failing_);
   const std::optional<sim::Vec2> place = failures_.PlaceOf(run.metrics);
   if (place && became.tally.failures > 0) became.places.push_back(*place);

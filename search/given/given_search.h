@@ -29,6 +29,7 @@ class RunJudge {
 
  private:
   const std::string_view failing_;
+  const bool leaves_out_refused_;
   const controllers::FailureDescriptor& failures_;
 };
 

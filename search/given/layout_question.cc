@@ -23,6 +23,7 @@ void LayoutRuns::Add(const LayoutRuns& more) {
   tally.failures += more.tally.failures;
   tally.passes += more.tally.passes;
   tally.errors += more.tally.errors;
+  tally.refused += more.tally.refused;
   places.insert(places.end(), more.places.begin(), more.places.end());
   visits.resize(std::max(visits.size(), more.visits.size()));
   for (std::size_t i = 0; i < more.visits.size(); ++i) visits[i] += more.visits[i];

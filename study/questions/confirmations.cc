@@ -61,8 +61,8 @@ Result<Experiment> AboutConfirmation(const Experiment& experiment, const Asking&
 
 // A run without a result would end without one again.
 bool HasEnoughRuns(const CaseAnswer& answer, const Asking& asking) {
-  const FailureTally tally = answer.tally();
-  return tally.errors > 0 || tally.runs() >= ReplicatesOf(asking).value();
+  const int replicates = ReplicatesOf(asking).value();
+  return replicates == 0 || RunsToVerdict(answer.tally(), replicates) == 0;
 }
 
 Result<Told> TellConfirmations(const Asking& asking, const Call& /*call*/,

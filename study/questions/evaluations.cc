@@ -137,6 +137,7 @@ struct Evaluation {
   std::size_t completed = 0;
   std::size_t failures = 0;
   std::size_t without_result = 0;
+  std::size_t left_out = 0;  // of these (StartsProgram)
   const CaseRun* toughest = nullptr;
 
   explicit Evaluation(const CaseAnswer& answer) {
@@ -144,6 +145,7 @@ struct Evaluation {
       if (run.result.failure.total) ++failures;
       if (run.result.verdict != sim::Verdict::kCompleted) {
         ++without_result;
+        left_out += static_cast<std::size_t>(run.became.tally.refused);
         continue;
       }
       fitness_sum += run.result.fitness;
@@ -155,7 +157,9 @@ struct Evaluation {
 };
 
 // A run may still be refused when the swarm is set up (no room to spawn): that is the case's fault too.
+// Unless it is one of a program's that are left out.
 CaseAnswer WithRefusal(CaseAnswer answer) {
+  if (const FailureTally tally = answer.tally(); tally.refused > 0 && !tally.mostly_refused()) return answer;
   for (const CaseRun& run : answer.runs) {
     if (run.result.verdict != sim::Verdict::kRefused || !answer.refused.empty()) continue;
     answer.refused_rule = RuleOf(run.result.message);
@@ -176,8 +180,9 @@ std::string RemarkOn(const CaseAnswer& answer, const Evaluation& evaluation) {
   if (!answer.refused_rule.empty()) return "refused: " + answer.refused_rule;
   if (answer.runs.empty()) return answer.refused.empty() ? "" : "error";
   if (evaluation.without_result == 0) return "";
-  return fmt::format("{} without a result: {}", evaluation.without_result,
-                     NameOf(answer.runs.front().result.verdict));
+  const auto first = std::ranges::find_if(
+      answer.runs, [](const CaseRun& run) { return run.result.verdict != sim::Verdict::kCompleted; });
+  return fmt::format("{} without a result: {}", evaluation.without_result, NameOf(first->result.verdict));
 }
 
 // The mean of all cases and how often they failed, and how to see the toughest run.
@@ -188,7 +193,7 @@ void Conclude(const Asking& asking, const Call& call, const std::vector<Evaluati
   std::size_t failures = 0;
   const CaseRun* toughest = nullptr;
   for (const Evaluation& one : all) {
-    runs += one.completed + one.without_result;
+    runs += one.completed + one.without_result - one.left_out;
     failures += one.failures;
     if (one.toughest == nullptr) continue;
     sum += one.Mean();

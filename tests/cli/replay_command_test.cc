@@ -112,6 +112,14 @@ TEST_F(Replay, DifferenceExitsOneAndSaysWhatDiffers) {
             "gauntlet: wrote " + Path("r.svg") +
                 "\n"
                 "gauntlet: run 12 of d was not reproduced: hash differs: stored 1234, replayed 9999\n");
+  for (const Reproducible known : {Reproducible::kUnknown, Reproducible::kNo, Reproducible::kYes}) {
+    campaigns_.replay.reproducible = known;
+    EXPECT_EQ(Run({"replay", "d", "12"}), kExitNegative);
+    EXPECT_EQ(err_.str(),
+              std::string("gauntlet: run 12 of d was not reproduced") +
+                  (known == Reproducible::kYes ? "" : ", and its program is not known to be reproducible") +
+                  ": hash differs: stored 1234, replayed 9999\n");
+  }
   EXPECT_TRUE(std::filesystem::exists(Path("r.svg"))) << "the picture helps to see why";
 }
 

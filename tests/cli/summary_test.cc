@@ -189,6 +189,21 @@ TEST(SummaryText, AnEmptyCampaignIsNoProblem) {
   testing_support::ExpectGolden("tests/cli/texts/summary_an_empty_campaign_is_no_problem.txt", text);
 }
 
+TEST(SummaryText, OfAProgramItIsSaidWhetherItIsReproducible) {
+  CampaignSummary summary = Evolved();
+  EXPECT_THAT(SummaryText(summary, {}, {"gauntlet", "d"}), Not(HasSubstr("reproducible")));
+  EXPECT_FALSE(Json::parse(SummaryJson(summary, {}, "d")).contains("reproducible"));
+  summary.reproducibility = {Reproducible::kYes, "hosts a, b"};
+  EXPECT_THAT(SummaryText(summary, {}, {"gauntlet", "d"}),
+              HasSubstr("\n  reproducible    yes (hosts a, b)\n"));
+  const Json json = Json::parse(SummaryJson(summary, {}, "d"));
+  EXPECT_EQ(json.at("reproducible"), "yes");
+  EXPECT_EQ(json.at("reproducible_hosts"), Json({"a", "b"}));
+  EXPECT_EQ(json.at("nondeterministic"), false);
+  summary.reproducibility = {Reproducible::kUnknown, ""};
+  EXPECT_EQ(Json::parse(SummaryJson(summary, {}, "d")).at("reproducible"), "unknown");
+}
+
 TEST(SummaryText, NondeterminismIsShouted) {
   CampaignSummary summary = Evolved();
   summary.nondeterministic = 1;

@@ -118,7 +118,8 @@ const std::vector<Room>& House() {
        {"box2d", "zmq"}},
       {"search",
        {"base", "analysis", "search/experiment"},
-       kRunData + kSwarmData + kBehaviours + Prefixes{"controllers/generic/formula.h"},
+       kRunData + kSwarmData + kBehaviours +
+           Prefixes{"controllers/generic/formula.h", "controllers/command/definition.h"},
        kTheOutsideWorld},
       {"master/http",
        {"base", "base/system"},
@@ -139,7 +140,7 @@ const std::vector<Room>& House() {
        {"box2d", "zmq", "sqlite3"}},
       {"master/campaign",
        {"base", "proto", "search/experiment", "search", "master/store", "master/dispatch",
-        "master/directory"},
+        "master/dispatch/trust", "master/directory"},
        kRunData + kSwarmData + kBehaviours,
        {"box2d", "zmq", "sqlite3"}},
       {"master/session",

@@ -55,6 +55,20 @@ Accounts AccountsOf(const std::vector<EvaluationRequest>& requests) {
   return accounts;
 }
 
+TEST(GeneticAlgorithmTest, ACaseThatAProgramRefusesInHalfOfItsRunsHasNoFitness) {
+  for (const bool program : {true, false}) {
+    SearchSetup setup = SetupOf(ParentSelection::kTwoBestParentsTwoWorseAway);
+    if (program) setup.experiment.scenario = "command";
+    const auto search = MakeGenetic(setup);
+    const IndividualId first = search->Ask().at(0).individual;
+    search->Tell(OutcomeOfRuns(first, 0, {{.verdict = sim::Verdict::kRefused}, {.fitness = 0.5}}));
+    const Individual& told = search->Population().at(0);
+    EXPECT_EQ(told.id, first);
+    EXPECT_EQ(told.failed_evaluations, program ? 1U : 0U);
+    EXPECT_EQ(told.evaluations, program ? 0U : 1U);
+  }
+}
+
 TEST(GeneticAlgorithmTest, TwoParentSchemesSimulateEverybodyInEveryGeneration) {
   for (const ParentSelection selection :
        {ParentSelection::kTwoBestParentsTwoWorseAway, ParentSelection::kTwoRandomParentsTwoWorseAway}) {

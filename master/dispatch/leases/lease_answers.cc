@@ -5,7 +5,7 @@
 
 namespace gauntlet {
 
-Answer Scheduler::Completed(InstanceId worker, Fence fence, RunId id, std::uint64_t hash) {
+Answer Scheduler::Completed(InstanceId worker, Fence fence, RunId id, std::uint64_t hash, bool to_its_end) {
   const auto found = leases_.find(fence);
   if (found == leases_.end()) {
     const auto known = runs_.find(id);
@@ -19,8 +19,8 @@ Answer Scheduler::Completed(InstanceId worker, Fence fence, RunId id, std::uint6
       if (run.acknowledged) orders_.acknowledgements.push_back({worker, fence});
       return Answer::kRepeated;
     }
-    if (run.finished) return CompareDuplicate(id, run, worker, fence, hash);
-    Accept(id, run, worker, fence, hash);
+    if (run.finished) return CompareDuplicate(id, run, worker, fence, hash, Duration::zero());
+    Accept(id, run, worker, fence, hash, to_its_end);
     return Answer::kAccepted;
   }
 
@@ -28,15 +28,18 @@ Answer Scheduler::Completed(InstanceId worker, Fence fence, RunId id, std::uint6
   if (lease.worker != worker || lease.run != id) return Misaddressed(worker, fence, lease);
   if (lease.state == LeaseState::kAnswered) return Answer::kRepeated;
   Run& run = runs_.at(id);
+  const Duration granted = lease.granted;
   EndLease(fence);
-  if (run.finished) return CompareDuplicate(id, run, worker, fence, hash);
+  if (run.finished) return CompareDuplicate(id, run, worker, fence, hash, granted);
   leases_[fence] = Lease{id, worker, LeaseState::kAnswered, listening_};
-  Accept(id, run, worker, fence, hash);
+  Accept(id, run, worker, fence, hash, to_its_end);
   return Answer::kAccepted;
 }
 
-void Scheduler::Accept(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash) {
+void Scheduler::Accept(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash,
+                       bool to_its_end) {
   run.hash = hash;
+  if (to_its_end) trust_.reproducibility().Check(id, trust_.HostOf(worker));
   Finish(id, run, worker, fence);
   for (const InstanceId wrong : trust_.Finished(worker, id)) Quarantine(wrong);
 }
@@ -59,7 +62,9 @@ void Scheduler::Finish(RunId id, Run& run, InstanceId worker, Fence fence) {
   for (const InstanceId hoarder : hoarders) {
     if (trust_.Hoarded(hoarder)) Quarantine(hoarder);
   }
-  run.audit = !run.given_up && trust_.Audits(id);
+  const Reproducibility& seen = trust_.reproducibility();
+  run.audit = !run.given_up && (trust_.Audits(id) || seen.Checks(id));
+  if (seen.observed()) run.audit_from = listening_ + Reproducibility::kPause;
   if (!run.audit) {
     run.spec = {};
     return;
@@ -68,18 +73,31 @@ void Scheduler::Finish(RunId id, Run& run, InstanceId worker, Fence fence) {
   audits_.insert(id);
 }
 
-Answer Scheduler::CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash) {
+Answer Scheduler::CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash,
+                                   Duration granted) {
   ++statistics_.duplicates;
   orders_.acknowledgements.push_back({worker, fence});
-  if (run.given_up || run.hash != hash) {
-    ++statistics_.nondeterministic;
-    orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, hash});
+  const bool same = !run.given_up && run.hash == hash;
+  if (!same) NoteDifference(id, run, worker, hash);
+  if (run.audit && granted >= run.audit_from && (worker != run.finished_by || Alone(worker))) {
+    if (same) trust_.reproducibility().Same(id, trust_.HostOf(worker));
+    EndAudit(id, run, worker);
   }
-  if (run.audit && (worker != run.finished_by || Alone(worker))) EndAudit(id, run, worker);
   // Its only worker audited itself, and then others came.
   if (run.audit) Requeue(id, run);
   ForgetIfDone(id);
   return Answer::kDuplicate;
+}
+
+// `hash`: 0 of a failure.
+void Scheduler::NoteDifference(RunId id, const Run& run, InstanceId worker, std::uint64_t hash) {
+  if (!trust_.reproducibility().observed()) {
+    ++statistics_.nondeterministic;
+    orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, hash});
+  } else if (!run.killed) {
+    ++statistics_.differences;
+    trust_.reproducibility().Differs(id, trust_.HostOf(worker));
+  }
 }
 
 void Scheduler::EndAudit(RunId id, Run& run, InstanceId by) {
@@ -104,14 +122,7 @@ Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const proto::
   EndLease(fence);
   orders_.acknowledgements.push_back({worker, fence});
   if (run.finished) {
-    if (run.audit && failure.kind != proto::FailureKind::kExternal &&
-        ++run.audit_failures >= options_.attempts) {
-      ++statistics_.nondeterministic;
-      orders_.mismatches.push_back({id, run.finished_by, worker, run.hash, 0});
-      EndAudit(id, run, worker);
-    }
-    Requeue(id, run);
-    ForgetIfDone(id);
+    FailedAfterwards(id, run, worker, failure);
     return Answer::kUnwanted;
   }
   const bool leaves = !Standing(worker, workers_.at(worker));
@@ -122,6 +133,18 @@ Answer Scheduler::Failed(InstanceId worker, Fence fence, RunId id, const proto::
   Requeue(id, run);
   if (!leaves && trust_.Returned(worker)) Quarantine(worker);
   return Answer::kAccepted;
+}
+
+// A run that has finished.
+void Scheduler::FailedAfterwards(RunId id, Run& run, InstanceId worker, const proto::RunnerFailure& failure) {
+  const bool own = failure.kind != proto::FailureKind::kExternal && !run.given_up;
+  const bool once = own && trust_.reproducibility().first_ending_counts();
+  if (once || (own && run.audit && ++run.audit_failures >= options_.attempts)) {
+    NoteDifference(id, run, worker, 0);
+    if (run.audit) EndAudit(id, run, worker);
+  }
+  Requeue(id, run);
+  ForgetIfDone(id);
 }
 
 Answer Scheduler::Unreadable(InstanceId worker, Fence fence, RunId id) {
@@ -161,10 +184,11 @@ Answer Scheduler::Misaddressed(InstanceId worker, Fence fence, const Lease& leas
 
 void Scheduler::NoteAttempt(RunId id, const Run& run, InstanceId worker,
                             std::optional<proto::RunnerFailure> failure) {
-  trust_.Failed(worker, id, std::move(failure), listening_);
+  const bool alone = trust_.Failed(worker, id, std::move(failure), listening_);
   queue_.erase(PlaceOf(id, run));
   failing_.insert(PlaceOf(id, run));
   List(worker, workers_.at(worker));
+  if (alone) Quarantine(worker);
 }
 
 void Scheduler::Strike(InstanceId worker) {
@@ -178,8 +202,9 @@ void Scheduler::Judge(RunId id) {
   const std::optional<Verdict> verdict = trust_.Judge(id, AbleTo(run), !queue_.empty(), listening_);
   if (!verdict) return;
   run.given_up = true;
+  run.killed = verdict->failure.kind == proto::FailureKind::kExternal;
   orders_.given_up.push_back({*verdict, id, run.leases});
-  if (verdict->workers == 1) ++statistics_.lone_verdicts;
+  if (verdict->alone()) ++statistics_.lone_verdicts;
   Finish(id, run, verdict->worker, 0);
   trust_.Close(id);
 }

@@ -6,15 +6,36 @@
 namespace gauntlet {
 
 void Scheduler::List(InstanceId id, Worker& worker) {
+  ListAlone(id, worker);
+  if (options_.most_per_host == 0) return;
+  const std::string& host = trust_.HostOf(id);
+  for (auto& [other, beside] : workers_) {
+    if (other != id && trust_.HostOf(other) == host) ListAlone(other, beside);
+  }
+}
+
+bool Scheduler::IsFull(const std::string& host) const {
+  if (options_.most_per_host == 0) return false;
+  std::size_t leases = 0;
+  for (const auto& [id, worker] : workers_) {
+    if (trust_.HostOf(id) == host) leases += worker.live.size();
+  }
+  return leases >= static_cast<std::size_t>(options_.most_per_host);
+}
+
+void Scheduler::ListAlone(InstanceId id, Worker& worker) {
   const std::uint32_t slots = Standing(id, worker) ? worker.slots : 0;
   const auto busy = static_cast<std::uint32_t>(std::min<std::size_t>(slots, worker.live.size()));
   slots_ = slots_ - std::exchange(worker.counted_slots, slots) + slots;
   busy_ = busy_ - std::exchange(worker.counted_busy, busy) + busy;
   if (std::exchange(worker.listed, false)) available_.erase({worker.level, id});
-  if (slots == 0 || worker.blocked || Slowed(id, worker)) return;
+  if (slots == 0 || worker.blocked || Slowed(id, worker) || IsFull(trust_.HostOf(id))) return;
   // Work is only given ahead to who has done some.
-  const std::uint32_t credit = trust_.RecordOf(id).finished > 0 ? Credit() : options_.credit;
-  const std::size_t least = std::size_t{worker.slots} * options_.credit;
+  // What waits at a worker cannot be moved to another one where it might then have two endings.
+  const bool one_by_one = trust_.reproducibility().first_ending_counts();
+  const std::uint32_t least_credit = one_by_one ? 1 : options_.credit;
+  const std::uint32_t credit = trust_.RecordOf(id).finished > 0 && !one_by_one ? Credit() : least_credit;
+  const std::size_t least = std::size_t{worker.slots} * least_credit;
   const std::size_t most = std::max(least, std::min(std::size_t{worker.slots} * credit, kMostAtAWorker));
   // Many short runs are leased at once, when half of them are done: then a message costs a fraction.
   worker.filled = worker.live.size() >= most ||
@@ -136,6 +157,7 @@ void Scheduler::MoveWaiting() {
   // A shorter one has begun before the message arrives.
   constexpr double kWorthMoving = 0.002;  // s
   if (!leasing_ || !queue_.empty() || predicted_seconds_ < kWorthMoving) return;
+  if (trust_.reproducibility().first_ending_counts()) return;
   while (!available_.empty() && available_.begin()->first == 0) {
     std::optional<Place> first;
     Fence moved = 0;
@@ -170,12 +192,38 @@ void Scheduler::AssignAudits() {
   if (!leasing_ || !queue_.empty() || available_.empty()) return;
   for (auto next = audits_.begin(); next != audits_.end() && !available_.empty();) {
     const RunId id = *next;
+    if (listening_ < runs_.at(id).audit_from || trust_.reproducibility().Checks(id)) {
+      ++next;
+      continue;
+    }
     const InstanceId first = runs_.at(id).finished_by;
     const auto other = std::find_if(available_.begin(), available_.end(),
                                     [&](const auto& place) { return place.second != first || Alone(first); });
     if (other == available_.end()) return;
     next = audits_.erase(next);
     Grant(other->second, id);
+  }
+}
+
+// Before runs that wait: until this is known, nobody helps anybody.
+void Scheduler::AssignChecks() {
+  if (!leasing_) return;
+  for (const auto& open : trust_.reproducibility().open()) {
+    const RunId id = open.first;
+    const Run& run = runs_.at(id);
+    const auto waiting = audits_.find(id);
+    if (waiting == audits_.end() || listening_ < run.audit_from) continue;
+    // On another host, if there is one, else by another worker. If those are busy they are waited for.
+    const auto rank = [&](InstanceId worker) {
+      return trust_.HostOf(worker) != open.second ? 2 : worker != run.finished_by ? 1 : 0;
+    };
+    int best = 0;
+    for (const InstanceId worker : AbleTo(run)) best = std::max(best, rank(worker));
+    const auto free =
+        std::ranges::find_if(available_, [&](const auto& place) { return rank(place.second) == best; });
+    if (free == available_.end()) continue;
+    audits_.erase(waiting);
+    Grant(free->second, id);
   }
 }
 
@@ -193,7 +241,7 @@ bool Scheduler::HasBegun(Fence fence, const Lease& lease) const {
 }
 
 void Scheduler::AssignCopies() {
-  if (!leasing_ || !queue_.empty()) return;
+  if (!leasing_ || !queue_.empty() || trust_.reproducibility().first_ending_counts()) return;
   struct Slow {
     Duration begun;
     RunId run;

@@ -17,7 +17,8 @@ Scheduler::Scheduler(const DispatchOptions& options, Fence first_fence)
     : options_(options),
       first_fence_(first_fence),
       next_fence_(first_fence),
-      trust_({options.attempts, options.lost_after * options.heartbeat, options.audit_share}) {
+      trust_({options.attempts, options.lost_after * options.heartbeat, options.audit_share,
+              options.reproducible}) {
   GAUNTLET_CHECK(options.attempts >= 1 && options.credit >= 1 && options.lost_after >= 1 &&
                      options.heartbeat.count() > 0,
                  "dispatch options out of range");
@@ -83,6 +84,7 @@ void Scheduler::ForgetIfDone(RunId id) {
 
 SchedulerOrders Scheduler::Decide(TimePoint now) {
   Advance(now);
+  AssignChecks();
   if (listening_ >= next_check_) {
     next_check_ = listening_ + Duration(options_.heartbeat) / kChecksPerHeartbeat;
     for (auto& [id, worker] : workers_) {
@@ -98,6 +100,7 @@ SchedulerOrders Scheduler::Decide(TimePoint now) {
   Assign();
   MoveWaiting();
   AssignAudits();
+  orders_.reproducibility = trust_.reproducibility().TakeNews();
   return std::exchange(orders_, {});
 }
 

@@ -13,7 +13,8 @@
 // audited; a finished run is remembered until its audit has been answered.
 //
 // No worker is believed alone while there are others: a run that failed goes to workers that have not failed
-// it, and one whose runs only fail while others finish them gets no more (master/dispatch/trust).
+// it, and one whose runs only fail while others finish them gets no more (master/dispatch/trust). But of a
+// program that is not known to be reproducible no run is leased twice for speed, and its first ending counts.
 #pragma once
 
 #include <cstdint>
@@ -62,7 +63,8 @@ class Scheduler {
   bool WorkerLeft(InstanceId id);      // said goodbye: nothing will come from it any more
   bool WorkerDied(InstanceId id);      // its process is gone; what it sent before may still arrive
 
-  Answer Completed(InstanceId worker, Fence fence, RunId id, std::uint64_t hash);
+  // `to_its_end`: it was simulated so far, and not refused.
+  Answer Completed(InstanceId worker, Fence fence, RunId id, std::uint64_t hash, bool to_its_end = true);
   Answer Failed(InstanceId worker, Fence fence, RunId id, const proto::RunnerFailure& failure);
   // It answered with something that is no result. That is its own fault: the run waits for others.
   Answer Unreadable(InstanceId worker, Fence fence, RunId id);
@@ -111,7 +113,9 @@ class Scheduler {
   }
 
   // lease_assignment.cc
-  void List(InstanceId id, Worker& worker);  // where it belongs in available_, slots_ and busy_
+  void List(InstanceId id, Worker& worker);       // and, of a host with a limit, the others there
+  void ListAlone(InstanceId id, Worker& worker);  // where it belongs in available_, slots_ and busy_
+  bool IsFull(const std::string& host) const;     // it has most_per_host leases
   bool Slowed(InstanceId id, const Worker& worker) const;
   std::uint32_t Credit() const;  // leases per slot, by the predicted length of a run
   bool ManyWait() const;         // so many that nobody waits for a single one of them
@@ -119,6 +123,7 @@ class Scheduler {
   void Assign();
   void AssignFailing();
   void AssignAudits();
+  void AssignChecks();  // the audits that tell whether the program is reproducible
   void AssignCopies();
   // It has been worked at unusually long, and short runs end before anybody could help.
   bool TakesLong(const Lease& lease) const;
@@ -130,9 +135,12 @@ class Scheduler {
   bool Alone(InstanceId worker) const;                   // there is no other worker
 
   // lease_answers.cc
-  void Accept(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);
+  void Accept(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash, bool to_its_end);
   void Finish(RunId id, Run& run, InstanceId worker, Fence fence);
-  Answer CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash);
+  Answer CompareDuplicate(RunId id, Run& run, InstanceId worker, Fence fence, std::uint64_t hash,
+                          Duration granted);
+  void NoteDifference(RunId id, const Run& run, InstanceId worker, std::uint64_t hash);
+  void FailedAfterwards(RunId id, Run& run, InstanceId worker, const proto::RunnerFailure& failure);
   void EndAudit(RunId id, Run& run, InstanceId by);
   Answer Misaddressed(InstanceId worker, Fence fence, const Lease& lease);
   void NoteAttempt(RunId id, const Run& run, InstanceId worker, std::optional<proto::RunnerFailure> failure);

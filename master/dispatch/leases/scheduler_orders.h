@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "master/dispatch/trust/trust_policy.h"
@@ -56,6 +57,7 @@ struct SchedulerOrders {
   std::vector<WorkerLost> lost;
   std::vector<ResultMismatch> mismatches;
   std::vector<WorkerQuarantined> quarantined;
+  std::optional<ReproducibilityNews> reproducibility;
   std::vector<InstanceId> back;       // these were lost, and are heard again
   std::vector<InstanceId> forgotten;  // these lost workers are unknown from now on
 };

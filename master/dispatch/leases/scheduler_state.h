@@ -36,9 +36,11 @@ struct Run {
   std::uint32_t leases = 0;  // given so far
   bool finished = false;
   bool given_up = false;
+  bool killed = false;  // given up, and always ended from outside
   bool acknowledged = false;
   bool audit = false;  // is to be simulated once more, and has not been
   std::uint32_t audit_failures = 0;
+  Duration audit_from{};  // a lease that was given before is no audit
   Fence accepted = 0;
   InstanceId finished_by = 0;
   std::uint64_t hash = 0;

@@ -43,6 +43,18 @@ bool TrustPolicy::Trusted(const Attempt& attempt) const {
   return found == witnesses_.end() ? attempt.trusted : found->second.record.trusted();
 }
 
+void TrustPolicy::Meet(InstanceId worker, const std::string& host) {
+  const auto [witness, is_new] = witnesses_.try_emplace(worker);
+  witness->second.host = host;
+  if (is_new) witness->second.all_before = all_;
+}
+
+const std::string& TrustPolicy::HostOf(InstanceId worker) const {
+  static const std::string unknown;
+  const auto found = witnesses_.find(worker);
+  return found == witnesses_.end() ? unknown : found->second.host;
+}
+
 TrustPolicy::Workers TrustPolicy::Finished(InstanceId worker, RunId run) {
   const auto ended = cases_.extract(run);
   const auto found = witnesses_.find(worker);
@@ -52,6 +64,9 @@ TrustPolicy::Workers TrustPolicy::Finished(InstanceId worker, RunId run) {
   found->second.record.failed_in_a_row = 0;
   found->second.record.returned = 0;
   found->second.record.hoarded = 0;
+  ++all_.finished;
+  found->second.failed_since = 0;
+  found->second.all_before = all_;
   if (ended.empty()) return {};
   Workers quarantined;
   std::set<InstanceId> seen{worker};
@@ -65,26 +80,43 @@ TrustPolicy::Workers TrustPolicy::Finished(InstanceId worker, RunId run) {
   return quarantined;
 }
 
-void TrustPolicy::Failed(InstanceId worker, RunId run, std::optional<proto::RunnerFailure> failure,
+bool TrustPolicy::Failed(InstanceId worker, RunId run, std::optional<proto::RunnerFailure> failure,
                          Duration now) {
-  auto& [host, record] = witnesses_.at(worker);
+  Witness& witness = witnesses_.at(worker);
+  WorkerRecord& record = witness.record;
   Case& attempts = cases_[run];
   const bool again = FailedOn(attempts, worker);
   const bool own = failure.has_value();
-  attempts.push_back({worker, host, record.trusted(), now, std::move(failure)});
+  attempts.push_back({worker, witness.host, record.trusted(), now, std::move(failure)});
   unjudged_.push_back(run);
-  if (!own) return;
+  if (!own) return false;
   record.returned = 0;
   record.hoarded = 0;
   if (!first_failure_) first_failure_ = now;
   ++record.failed;
   if (!again) ++record.failed_in_a_row;
-  if (PictureOf(attempts, {}).workers <= 1) return;
+  ++all_.failed;
+  ++witness.failed_since;
+  if (FailsAlone(witness)) {
+    record.failed_alone = witness.failed_since;
+    return QuarantineIfDue(record);
+  }
+  if (PictureOf(attempts, {}).workers <= 1) return false;
   // It is the run, as it seems: nobody looks like a black hole for it.
   for (const Attempt& attempt : attempts) {
     if (const auto known = witnesses_.find(attempt.worker); known != witnesses_.end() && attempt.failure)
       known->second.record.failed_in_a_row = 0;
   }
+  return false;
+}
+
+// Its runs fail one after the other, and of those that others had meanwhile at most one in so many.
+bool TrustPolicy::FailsAlone(const Witness& witness) const {
+  if (!reproducibility_.first_ending_counts() || witness.failed_since < WorkerRecord::kMostInARow)
+    return false;
+  const std::uint64_t finished = all_.finished - witness.all_before.finished;
+  const std::uint64_t failed = all_.failed - witness.all_before.failed - witness.failed_since;
+  return finished >= WorkerRecord::kFinishedForEachFault * (1 + failed);
 }
 
 bool TrustPolicy::Strike(InstanceId worker) {
@@ -163,10 +195,10 @@ TrustPolicy::Picture TrustPolicy::PictureOf(const Case& attempts, const Workers&
   }
   for (const InstanceId worker : others) {
     if (FailedOn(attempts, worker)) continue;
-    const auto& [host, record] = witnesses_.at(worker);
+    const Witness& witness = witnesses_.at(worker);
     ++picture.unasked;
-    if (!record.tried()) ++picture.untried;
-    if (picture.only_host && host != *picture.only_host) picture.elsewhere = true;
+    if (!witness.record.tried()) ++picture.untried;
+    if (picture.only_host && witness.host != *picture.only_host) picture.elsewhere = true;
   }
   return picture;
 }
@@ -180,9 +212,21 @@ bool TrustPolicy::Condemned(const Picture& picture, bool more_to_do, Duration no
   return picture.untried == 0 && picture.workers >= options_.attempts;
 }
 
+const TrustPolicy::Attempt* TrustPolicy::FirstEnding(const Case& attempts) const {
+  if (!reproducibility_.first_ending_counts()) return nullptr;
+  const auto ended = std::ranges::find_if(attempts, [this](const Attempt& attempt) {
+    const auto known = witnesses_.find(attempt.worker);
+    const bool believed = known == witnesses_.end() || !known->second.record.quarantined;
+    return believed && attempt.failure && !FromOutside(attempt.failure);
+  });
+  return ended == attempts.end() ? nullptr : &*ended;
+}
+
 std::optional<Verdict> TrustPolicy::Judge(RunId run, const Workers& others, bool more_to_do,
                                           Duration now) const {
   const Case& attempts = CaseOf(run);
+  if (const Attempt* first = FirstEnding(attempts); first != nullptr)
+    return Verdict{first->worker, *first->failure, 1, 1, 1, /*first_ending=*/true};
   const Picture picture = PictureOf(attempts, others);
   if (Waits(run, now) || !Condemned(picture, more_to_do, now)) return std::nullopt;
   // What is told most often, by trusted workers if there are any: it must not depend on who else is there.
@@ -214,16 +258,17 @@ std::optional<InstanceId> TrustPolicy::NextFor(RunId run, const Workers& free, c
   std::optional<InstanceId> best;
   std::pair<bool, std::ptrdiff_t> best_rank;
   for (const InstanceId worker : free) {
-    const auto& [host, record] = witnesses_.at(worker);
+    const Witness& witness = witnesses_.at(worker);
     if (picture.unasked > 0) {
-      if (FailedOn(attempts, worker) || (picture.elsewhere && host == *picture.only_host)) continue;
+      if (FailedOn(attempts, worker) || (picture.elsewhere && witness.host == *picture.only_host)) continue;
       // Whom nobody trusts yet can say little, and may earn trust meanwhile. Where nobody has finished
       // anything, those who have failed something have said enough.
-      const bool said_enough = !somebody_finished_ && record.tried() && picture.workers >= options_.attempts;
-      if (enough && !record.trusted() && (more_to_do || said_enough)) continue;
+      const bool said_enough =
+          !somebody_finished_ && witness.record.tried() && picture.workers >= options_.attempts;
+      if (enough && !witness.record.trusted() && (more_to_do || said_enough)) continue;
     }
     // Trusted ones first, then those that have tried it least often.
-    const std::pair rank{record.trusted(), -std::ranges::count(attempts, worker, &Attempt::worker)};
+    const std::pair rank{witness.record.trusted(), -std::ranges::count(attempts, worker, &Attempt::worker)};
     if (best && rank <= best_rank) continue;
     best = worker;
     best_rank = rank;

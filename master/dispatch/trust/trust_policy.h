@@ -11,6 +11,9 @@
 // An end from outside (a signal that the run's process did not send to itself) is such a failure too, when
 // its worker lives on: a run that always ends so would otherwise be tried for ever. The run waits after each,
 // longer each time, and a worker that drains or goes away meanwhile has said nothing.
+//
+// All this takes a run for a pure function. Of a program that is not known to be one (reproducibility.h) a
+// run's own first ending counts, and what is held against a worker is that only its runs fail.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +26,7 @@
 #include <vector>
 
 #include "base/system/clock.h"
+#include "master/dispatch/trust/reproducibility.h"
 #include "master/dispatch/trust/worker_record.h"
 #include "proto/messages.h"
 
@@ -38,12 +42,16 @@ struct Verdict {
   std::uint32_t alike = 0;       // how many these were
   std::uint32_t attempts = 0;    // failures of all sorts
   std::uint32_t workers = 0;     // on which it failed; 1: there was no other to ask
+  bool first_ending = false;     // which counts, and nobody else was asked
+
+  bool alone() const { return workers == 1 && !first_ending; }  // because there was nobody else
 };
 
 struct TrustOptions {
   std::uint32_t attempts = 3;  // failures that make a verdict
   Duration patience{};         // since the first failure, while no run has been finished
   double audit_share = 0.0;    // of runs that are simulated once more, 0 to 1
+  Reproducible reproducible = Reproducible::kPromised;  // as is known so far
 };
 
 // Workers are known from Meet to Forget. Times are those of one clock, which begins anywhere.
@@ -51,19 +59,24 @@ class TrustPolicy {
  public:
   using Workers = std::vector<InstanceId>;
 
-  explicit TrustPolicy(const TrustOptions& options) : options_(options) {}
+  explicit TrustPolicy(const TrustOptions& options)
+      : options_(options), reproducibility_(options.reproducible) {}
+
+  Reproducibility& reproducibility() { return reproducibility_; }
+  const Reproducibility& reproducibility() const { return reproducibility_; }
 
   // Keeps the record of one that is known.
-  void Meet(InstanceId worker, const std::string& host) { witnesses_[worker].host = host; }
+  void Meet(InstanceId worker, const std::string& host);
   void Forget(InstanceId worker) { witnesses_.erase(worker); }
   const WorkerRecord& RecordOf(InstanceId worker) const { return witnesses_.at(worker).record; }
+  const std::string& HostOf(InstanceId worker) const;  // "" when nobody knows
 
   // The worker brought the run's result: those who failed the run were wrong, unless it is quarantined itself
   // or unknown. Answers with those who are quarantined for it.
   Workers Finished(InstanceId worker, RunId run);
   // The run failed on this worker, which is known; without a failure: its answer could not be read. Of kind
-  // kExternal it names the signal.
-  void Failed(InstanceId worker, RunId run, std::optional<proto::RunnerFailure> failure, Duration now);
+  // kExternal it names the signal. True: the worker is quarantined for it.
+  bool Failed(InstanceId worker, RunId run, std::optional<proto::RunnerFailure> failure, Duration now);
   // It said what it cannot know, or what nobody can read. True: it is quarantined for it.
   bool Strike(InstanceId worker);
   // It gave a lease back without having begun it. True: it is quarantined for it.
@@ -101,9 +114,15 @@ class TrustPolicy {
   std::optional<InstanceId> HelperFor(RunId run, const Workers& free) const;
 
  private:
+  struct Tally {  // of runs
+    std::uint64_t finished = 0;
+    std::uint64_t failed = 0;
+  };
   struct Witness {
     std::string host;
     WorkerRecord record;
+    std::uint64_t failed_since = 0;  // it last finished a run
+    Tally all_before = {};           // of all workers, then
   };
   struct Attempt {
     InstanceId worker = 0;
@@ -129,12 +148,17 @@ class TrustPolicy {
   bool Trusted(const Attempt& attempt) const;
   Picture PictureOf(const Case& attempts, const Workers& others) const;
   bool Condemned(const Picture& picture, bool more_to_do, Duration now) const;
+  // That is the run's verdict; nullptr: there is none, or it does not count.
+  const Attempt* FirstEnding(const Case& attempts) const;
+  bool FailsAlone(const Witness& witness) const;
 
   TrustOptions options_;
+  Reproducibility reproducibility_;
   std::map<InstanceId, Witness> witnesses_;
   std::unordered_map<RunId, Case> cases_;  // of runs that have failed and are unfinished
   std::vector<RunId> unjudged_;            // of these, about which something new is known
   bool somebody_finished_ = false;         // a run, for this master
+  Tally all_;
   std::optional<Duration> first_failure_;
 };
 

@@ -5,6 +5,10 @@
 namespace gauntlet {
 
 std::string InWords(const WorkerRecord& record) {
+  if (record.failed_alone > 0) {
+    return fmt::format("its last {} runs failed, and other workers finished nearly all of theirs meanwhile",
+                       record.failed_alone);
+  }
   if (record.finished == 0 && record.returned >= WorkerRecord::kMostReturned)
     return fmt::format("it gave back {} leases in a row, and finished nothing", record.returned);
   if (record.finished == 0 && record.outside >= WorkerRecord::kMostFaults) {

@@ -14,6 +14,8 @@ struct WorkerRecord {
   static constexpr std::uint32_t kBlackHole = 3;
   // It gives back what waits behind a run that crashed, and says so of the crash.
   static constexpr std::uint64_t kMostReturned = 1024;
+  // So many runs failed in a row while others finished nearly all of theirs, and its failures are its own.
+  static constexpr std::uint64_t kMostInARow = 8;
   // Failures of a worker count for a verdict while at most one of so many of its runs speaks against it.
   static constexpr std::uint64_t kFinishedForEachFault = 10;
 
@@ -29,6 +31,9 @@ struct WorkerRecord {
   std::uint64_t returned = 0;
   // Different runs that failed on it since it finished one, or since another worker failed one of them too.
   std::uint32_t failed_in_a_row = 0;
+  // Runs that failed on it in a row, when others hardly failed any meanwhile; else 0. Only where nobody can
+  // contradict it, because a run's first ending counts.
+  std::uint64_t failed_alone = 0;
   bool quarantined = false;
 
   std::uint64_t faults() const { return contradicted + strikes; }
@@ -41,7 +46,8 @@ struct WorkerRecord {
   bool deserves_quarantine() const {
     const bool brings_nothing =
         finished == 0 && (outside >= kMostFaults || hoarded >= kMostFaults || returned >= kMostReturned);
-    return !quarantined && (brings_nothing || (faults() >= kMostFaults && faults() > finished));
+    return !quarantined &&
+           (brings_nothing || failed_alone > 0 || (faults() >= kMostFaults && faults() > finished));
   }
 };
 

@@ -100,6 +100,31 @@ TEST_F(RemoteBackendTest, ARunThatIsAlwaysKilledEndsWithAVerdictAndAFewEvents) {
   EXPECT_EQ(finished[0].result.message, "was ended from outside by signal 9");
 }
 
+TEST_F(RemoteBackendTest, OfAProgramOneCrashIsTheVerdictAndADifferenceAnEvent) {
+  Connect(nullptr, /*without_ways=*/false, Reproducible::kUnknown);
+  backend_->Submit({{1, "spec"}, {2, "spec"}});
+  SayHello("p", HelloOf(kAnna));
+  Poll();
+  SendFailure("p", LeasesSentTo("p").at(0), v1::RunnerFailure::KIND_CRASHED, 11, "");
+  const std::vector<FinishedRun> crashed = Poll();
+  ASSERT_THAT(crashed, SizeIs(1));
+  EXPECT_EQ(crashed[0].result.message, "crashed with signal 11");
+  EXPECT_EQ(EventsOf("run-given-up"),
+            "run 1 crashed with signal 11 on worker 000000000000000a@node7: its first ending counts, because "
+            "it is not known to be reproducible\n");
+  EXPECT_EQ(backend_->Statistics().lone_verdicts, 0U);
+  SendResult("p", LeasesSentTo("p").at(0), result_);
+  EXPECT_THAT(Poll(), SizeIs(1));
+  for (int i = 0; i < 5 && backend_->Statistics().busy == 0; ++i) {
+    clock_.Advance(milliseconds(500));
+    SendHeartbeat("p");
+    Poll();
+  }
+  SendResult("p", LeasesSentTo("p").at(0), proto::EncodeRunResult(SampleResult(0.25)));
+  EXPECT_THAT(Poll(), IsEmpty());
+  EXPECT_EQ(EventsOf("not-reproducible"), "run 2 ended differently when it was simulated again on node7\n");
+}
+
 TEST_F(RemoteBackendTest, AnUnreadableOrForgedResultIsItsWorkersFaultAndNeverAVerdict) {
   backend_->Submit({{1, "spec"}});
   SayHello("p", HelloOf(kAnna));

@@ -59,13 +59,14 @@ class RemoteBackendTest : public testing::Test {
  protected:
   RemoteBackendTest() { Connect(nullptr); }
 
-  void Connect(WorkerPool* pool, bool without_ways = false) {
+  void Connect(WorkerPool* pool, bool without_ways = false, Reproducible known = Reproducible::kPromised) {
     DispatchOptions options;
     options.credit = 1;
     options.many_waiting = 1'000'000;  // never so many: leases are given one by one
     options.cpu_limit_seconds = 75.0;
     options.memory_limit_bytes = 123456789;
     options.without_ways = without_ways;
+    options.reproducible = known;
     backend_.emplace(CampaignIdentity{"campaign-1", 5, "1.2.3", {{"first", 0xfeed}, {"second", 0xf00d}}},
                      options, transport_, clock_, pool);
   }

@@ -33,11 +33,14 @@ struct ModelWorker {
 
 class World {
  public:
-  World(std::uint32_t credit, double audit_share)
-      : audits_(audit_share > 0.0), scheduler_(Options(credit, audit_share), 1ULL << 32) {}
+  World(std::uint32_t credit, double audit_share, Reproducible known)
+      : known_(known),
+        audits_(audit_share > 0.0),
+        scheduler_(Options(credit, audit_share, known), 1ULL << 32) {}
 
-  static DispatchOptions Options(std::uint32_t credit, double audit_share) {
+  static DispatchOptions Options(std::uint32_t credit, double audit_share, Reproducible known) {
     DispatchOptions options;
+    options.reproducible = known;
     options.credit = credit;
     options.audit_share = audit_share;
     return options;
@@ -177,7 +180,7 @@ class World {
       RC_ASSERT(order.lease.fence > last_fence_);
       last_fence_ = order.lease.fence;
       RC_ASSERT(expected_.contains(order.lease.run_id));
-      RC_ASSERT(!finished_.contains(order.lease.run_id) || audits_);
+      RC_ASSERT(!finished_.contains(order.lease.run_id) || audits_ || known_ == Reproducible::kUnknown);
       ever_leased_[order.lease.fence] = {order.worker, order.lease.run_id};
       ModelWorker& worker = workers_.at(order.worker);
       if (!worker.alive && *rc::gen::arbitrary<bool>()) {
@@ -198,12 +201,13 @@ class World {
       if (worker != workers_.end() && Runs(worker->second)) worker->second.leases.erase(order.fence);
     }
     for (const RunGivenUp& run : orders.given_up) {
-      RC_ASSERT(failures_[run.run] >= 3);
+      RC_ASSERT(failures_[run.run] >= (known_ == Reproducible::kPromised ? 3 : 1));
       End(run.run);
       given_up_.insert(run.run);
     }
     // Only a run that failed of itself may end in two ways.
     for (const ResultMismatch& mismatch : orders.mismatches) {
+      RC_ASSERT(known_ == Reproducible::kPromised);
       RC_ASSERT(given_up_.contains(mismatch.run) ||
                 (mismatch.second_hash == 0 && failures_[mismatch.run] >= 3));
     }
@@ -294,6 +298,7 @@ class World {
     unstored_.insert(run);
   }
 
+  Reproducible known_;
   bool audits_;
   testing_support::FakeClock clock_;
   Scheduler scheduler_;
@@ -312,7 +317,10 @@ class World {
 
 RC_GTEST_PROP(SchedulerProperty, NoRunIsLostNoneEndsTwiceAndAllEnd, ()) {
   const auto credit = *rc::gen::inRange<std::uint32_t>(1, 4);
-  World world(credit, *rc::gen::element(0.0, 0.0, 0.5, 1.0));
+  const auto audit_share = *rc::gen::element(0.0, 0.0, 0.5, 1.0);
+  World world(credit, audit_share,
+              *rc::gen::element(Reproducible::kPromised, Reproducible::kPromised, Reproducible::kUnknown,
+                                Reproducible::kYes, Reproducible::kNo));
   const int steps = *rc::gen::inRange(1, 300);
   for (int step = 0; step < steps; ++step) {
     const int what = *rc::gen::inRange(0, 40);

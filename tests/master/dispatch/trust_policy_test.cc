@@ -173,6 +173,43 @@ TEST_F(TrustPolicyTest, AForgottenWorkersFailureKeepsTheTrustThatItHad) {
   EXPECT_TRUE(trust_.Judge(kRun, {11, 12, 13}, true, kNow));
 }
 
+TEST_F(TrustPolicyTest, OfAProgramThatMayBeRandomTheFirstEndingIsTheVerdict) {
+  for (const Reproducible known : {Reproducible::kUnknown, Reproducible::kNo}) {
+    trust_ = TrustPolicy({.attempts = 3, .patience = seconds(3), .reproducible = known});
+    for (const InstanceId worker : all_) trust_.Meet(worker, "host");
+    Fail(10, kRun, {proto::FailureKind::kExternal, 9, 0});
+    trust_.Failed(11, kRun, std::nullopt, kNow);
+    EXPECT_FALSE(Judge()) << "these say nothing of the run";
+    Fail(12, kRun, kHang);
+    Fail(13);
+    const auto verdict = Judge();
+    ASSERT_TRUE(verdict);
+    EXPECT_EQ(verdict->worker, 12U);
+    EXPECT_EQ(verdict->failure, kHang);
+    EXPECT_TRUE(verdict->first_ending);
+    EXPECT_FALSE(verdict->alone());
+  }
+}
+
+TEST_F(TrustPolicyTest, AQuarantinedWorkersCrashIsNoEnding) {
+  trust_ = TrustPolicy({.attempts = 3, .patience = seconds(3), .reproducible = Reproducible::kUnknown});
+  for (const InstanceId worker : all_) trust_.Meet(worker, "host");
+  for (int i = 0; i < 3; ++i) trust_.Strike(10);
+  Fail(10);
+  EXPECT_FALSE(Judge());
+}
+
+TEST_F(TrustPolicyTest, WhereNobodyContradictsItWhoFailsAloneIsQuarantined) {
+  trust_ = TrustPolicy({.attempts = 3, .patience = seconds(3), .reproducible = Reproducible::kNo});
+  for (const InstanceId worker : all_) trust_.Meet(worker, "host");
+  for (int i = 0; i < 10; ++i) Prove({11});
+  for (RunId run = 1; run < WorkerRecord::kMostInARow; ++run)
+    EXPECT_FALSE(trust_.Failed(10, run, kCrash, kNow));
+  EXPECT_TRUE(trust_.Failed(10, 99, kCrash, kNow));
+  EXPECT_EQ(InWords(trust_.RecordOf(10)),
+            "its last 8 runs failed, and other workers finished nearly all of theirs meanwhile");
+}
+
 TEST(TrustPolicyAudit, AuditsAboutItsShareOfRuns) {
   const TrustPolicy none({.audit_share = 0.0});
   const TrustPolicy quarter({.audit_share = 0.25});

@@ -113,10 +113,13 @@ TEST_P(SearchDriverTest, TellsTheSameLiveAndAfterACrash) {
   }
 }
 
-TEST(SearchDriverStoreTest, StoresTheWaysOfRobotsOnlyWhenAskedTo) {
-  for (const bool trajectories : {false, true}) {
+TEST(SearchDriverStoreTest, StoresTheWaysOfRobotsWhenAskedToAndThoseThatAProgramSaid) {
+  for (const auto& [asked, program] :
+       {std::pair(false, false), std::pair(true, false), std::pair(false, true)}) {
     Experiment experiment = ToyExperiment();
-    experiment.store.trajectories = trajectories;
+    experiment.store.trajectories = asked;
+    if (program) experiment.scenario = "command";
+    const bool trajectories = asked || program;
     MemoryStore store;
     ToySession session({experiment}, store, [](const sim::RunSpec& spec) {
       sim::RunResult result = ToyRun(spec);

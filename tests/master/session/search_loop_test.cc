@@ -10,6 +10,7 @@
 #include <set>
 
 #include "master/campaign/campaign_summary.h"
+#include "master/store/event_kinds.h"
 #include "proto/run_codec.h"
 #include "search/search_table.h"
 #include "tests/master/session/toy_campaign.h"
@@ -239,6 +240,18 @@ TEST(SearchLoopTest, AFinishedSearchWaitsForAudits) {
   ASSERT_TRUE(end.ok());
   EXPECT_EQ(*end, CampaignEnd::kFinished);
   EXPECT_EQ(after_the_end, 3);
+}
+
+TEST(SearchLoopTest, WhatWasSeenOfAProgramIsKnownToTheNextMasterAndPartOfNoState) {
+  Experiment experiment = ToyExperiment();
+  experiment.scenario = "command";
+  MemoryStore store;
+  ToySession session({experiment}, store);
+  session.backend.events = {{event::kNotReproducible, "run 1 ended differently"}};
+  ASSERT_TRUE(session.Run().ok());
+  EXPECT_EQ(ReadReproducibility(PlansOf({experiment}), store).value().Name(), "no");
+  MemoryStore without = FinishedToyCampaign({experiment});
+  EXPECT_EQ(EndOf(store, experiment), EndOf(without, experiment));
 }
 
 TEST(SearchLoopTest, SearchesOfASweepEndAsTheyWouldAlone) {

@@ -67,6 +67,8 @@ TEST(CaseBlameTest, OfManyObstaclesThePairsOfThoseThatRobotsVisitedMostAreTried)
 
 TEST(ClearlyLessTest, IsMoreThanThreeStandardErrors) {
   const FailureTally whole{.failures = 30};
+  EXPECT_FALSE(ClearlyLess({.passes = 15, .refused = 15}, whole)) << "half of its runs were left out";
+  EXPECT_TRUE(ClearlyLess({.passes = 16, .refused = 14}, whole));
   EXPECT_FALSE(ClearlyLess({.failures = 23, .passes = 7}, whole));
   EXPECT_TRUE(ClearlyLess({.failures = 20, .passes = 10}, whole));
   EXPECT_FALSE(ClearlyLess({.failures = 30}, {.failures = 15, .passes = 15}));  // more often

@@ -116,6 +116,32 @@ TEST(CaseMinimiserTest, ARunWithoutAResultEndsIt) {
   EXPECT_EQ(minimiser.outcome(), MinimisedTo::kError);
 }
 
+TEST(CaseMinimiserTest, RunsThatAreLeftOutAreMadeUpFor) {
+  CaseMinimiser minimiser(Boxes(2), kRules);
+  // Of five runs one is refused, but that of obstacle 1 alone mostly.
+  int asked = 0;
+  const auto tell = [&] {
+    const bool alone = minimiser.layout().kept == Kept{1};
+    LayoutRuns told;
+    for (int i = minimiser.runs(); i > 0; --i) {
+      const bool refused = ++asked % 5 == 0 || (alone && asked % 3 != 0);
+      const bool fails = Holds(minimiser.layout().kept, 1);
+      ++(refused ? told.tally.refused : fails ? told.tally.failures : told.tally.passes);
+    }
+    minimiser.Tell(told);
+  };
+  while (minimiser.runs() > 0 && asked < 2000) tell();
+  EXPECT_EQ(minimiser.outcome(), MinimisedTo::kLayout);
+  EXPECT_EQ(minimiser.verification().tally.runs(), 30);
+  EXPECT_EQ(minimiser.layout().kept, (Kept{0, 1})) << "what is mostly refused does not count as failing";
+}
+
+TEST(CaseMinimiserTest, ACaseThatIsMostlyRefusedIsNone) {
+  CaseMinimiser minimiser(Boxes(2), kRules);
+  while (minimiser.runs() > 0) minimiser.Tell({.tally = {.refused = minimiser.runs()}});
+  EXPECT_EQ(minimiser.outcome(), MinimisedTo::kError);
+}
+
 // Obstacle 0 alone is lucky in the tests that choose it and not afterwards.
 TEST(CaseMinimiserTest, TakesBackWhatWasLuckAndGoesOnWithOneObstacleMore) {
   CaseMinimiser minimiser(Boxes(4), kRules);

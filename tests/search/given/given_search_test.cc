@@ -292,6 +292,29 @@ TEST(FailureTallyTest, KeepsTheFourVerdictsApart) {
   EXPECT_EQ(VerdictOf({.failures = 10, .passes = 10}, 20), FailureVerdict::kFail);
 }
 
+TEST(FailureTallyTest, RefusedRunsOfAProgramAreLeftOutUntilTheyAreHalf) {
+  EXPECT_EQ(VerdictOf({.failures = 5, .passes = 5, .refused = 9}, 0), FailureVerdict::kFail);
+  EXPECT_EQ(VerdictOf({.passes = 6, .refused = 5}, 0), FailureVerdict::kPass);
+  EXPECT_EQ(VerdictOf({.passes = 6, .refused = 6}, 0), FailureVerdict::kError);
+  EXPECT_EQ(VerdictOf({.failures = 10, .passes = 10, .refused = 19}, 20), FailureVerdict::kFail);
+  EXPECT_EQ(VerdictOf({.failures = 10, .passes = 9, .refused = 20}, 20), FailureVerdict::kError);
+  EXPECT_EQ(RunsToVerdict({.failures = 10, .passes = 8, .refused = 4}, 20), 2) << "they are made up for";
+  EXPECT_EQ(RunsToVerdict({.refused = 8}, 0), 2) << "after which all ten were refused";
+  EXPECT_EQ(VerdictOf({.refused = 10}, 0), FailureVerdict::kError);
+}
+
+TEST(RunJudgeTest, ARefusedRunIsLeftOutOfAProgramAndAnErrorElsewhere) {
+  Experiment experiment;
+  for (const bool program : {true, false}) {
+    experiment.scenario = program ? "command" : "flocking";
+    const RunJudge judge(experiment);
+    const FailureTally refused = judge.WhatBecameOf({.verdict = sim::Verdict::kRefused}, {}).tally;
+    EXPECT_EQ(refused.refused, program ? 1 : 0);
+    EXPECT_EQ(refused.errors, program ? 0 : 1);
+    EXPECT_EQ(judge.WhatBecameOf({.verdict = sim::Verdict::kCrashed}, {}).tally.errors, 1);
+  }
+}
+
 TEST(FailureTallyTest, ForagingFailsByItsSecondConditionAlone) {
   Experiment foraging;
   foraging.scenario = "foraging";
