@@ -12,6 +12,7 @@
 #include <map>
 #include <utility>
 
+#include "base/nearest_name.h"
 #include "base/printable.h"
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"

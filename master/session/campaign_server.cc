@@ -15,6 +15,7 @@
 #include "master/campaign/observed_reproducibility.h"
 #include "master/campaign/stored_search.h"
 #include "master/directory/campaign_keys.h"
+#include "master/directory/commands.h"
 #include "master/dispatch/leases/run_limits.h"
 #include "master/dispatch/pool/local_pool.h"
 #include "master/session/bind_endpoint.h"
@@ -38,6 +39,13 @@ DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_sha
       std::ranges::none_of(plans, [](const SearchPlan& plan) { return KeepsWays(plan.experiment); });
   for (const SearchPlan& plan : plans) {
     limits.cpu_limit_seconds = std::max(limits.cpu_limit_seconds, CpuLimitSeconds(plan.experiment));
+    if (plan.experiment.scenario != controllers::command::kScenario) continue;
+    // One that cannot be read gives no run either, and is told there.
+    const auto command = CommandOf(plan.experiment.scenario_plugin);
+    if (!command) continue;
+    limits.cores_per_run = std::max(limits.cores_per_run, command->cores);
+    const int most = command->at_once;
+    if (most > 0) limits.most_per_host = limits.most_per_host == 0 ? most : std::min(limits.most_per_host, most);
   }
   return limits;
 }

@@ -7,20 +7,29 @@ namespace gauntlet {
 
 void Scheduler::List(InstanceId id, Worker& worker) {
   ListAlone(id, worker);
-  if (options_.most_per_host == 0) return;
+  if (!LimitsHosts()) return;
   const std::string& host = trust_.HostOf(id);
   for (auto& [other, beside] : workers_) {
     if (other != id && trust_.HostOf(other) == host) ListAlone(other, beside);
   }
 }
 
+bool Scheduler::LimitsHosts() const {
+  return options_.most_per_host > 0 || options_.cores_per_run > 1;
+}
+
 bool Scheduler::IsFull(const std::string& host) const {
-  if (options_.most_per_host == 0) return false;
+  if (!LimitsHosts()) return false;
   std::size_t leases = 0;
+  std::size_t slots = 0;
   for (const auto& [id, worker] : workers_) {
-    if (trust_.HostOf(id) == host) leases += worker.live.size();
+    if (trust_.HostOf(id) != host) continue;
+    leases += worker.live.size();
+    slots += worker.slots;
   }
-  return leases >= static_cast<std::size_t>(options_.most_per_host);
+  const std::size_t side_by_side = std::max<std::size_t>(1, slots / static_cast<std::size_t>(options_.cores_per_run));
+  const auto most = static_cast<std::size_t>(options_.most_per_host);
+  return leases >= (most == 0 ? side_by_side : std::min(most, side_by_side));
 }
 
 void Scheduler::ListAlone(InstanceId id, Worker& worker) {
