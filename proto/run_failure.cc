@@ -28,6 +28,8 @@ std::string MeaningOfExit(int code) {
       return "an exception that nobody caught";
     case kExitOverDisk:
       return "its folder grew beyond its limit";
+    case kExitOverProcesses:
+      return "it had more processes than it may";
     case kExitWithoutMetrics:
       return "its outcome could not be read";
     case kExitWithoutResult:

@@ -19,6 +19,7 @@ inline constexpr int kExitWithoutResult = 89;  // somebody called exit(0) before
 inline constexpr int kExitOfProgram = 90;
 inline constexpr int kExitOverDisk = 91;        // its folder grew beyond its limit
 inline constexpr int kExitWithoutMetrics = 92;  // it ended with code 0, but not with what is asked of it
+inline constexpr int kExitOverProcesses = 93;   // it had more processes than it may
 // And so much more than the number of a signal that a plug-in sent to itself, as a shell says it.
 inline constexpr int kExitSignalled = 128;
 

@@ -2,12 +2,22 @@
 
 namespace gauntlet::controllers::command {
 
+namespace {
+
+const std::vector<sim::AnnotationStyle> kAnnotations = {
+    {"area", kStanding, sim::Mark::kArea, "what stands there in every case"},
+    {"disc", kStanding, sim::Mark::kGoal, "what stands there in every case"},
+    {"disc", "", sim::Mark::kGoal, ""},
+};
+
+}  // namespace
+
 PluginRows RowsOf(const Definition& definition) {
   ScenarioInfo scenario;
   scenario.name = kScenario;
   scenario.description = "a program of yours simulates the run (docs/any-simulator.md)";
   scenario.default_controller = kController;
-  scenario.style = {.lost_is_failure = false};
+  scenario.style = {.lost = "", .lost_is_failure = false, .annotations = kAnnotations};
   scenario.time_limit = kWallLimit;
   scenario.parameters = {{.name = kWallLimit,
                           .unit = "s",

@@ -4,8 +4,6 @@
 
 #include "controllers/command/definition.h"
 #include "controllers/rows/plugin_rows.h"
-#include "sim/run_spec.h"
-#include "sim/run_start.h"
 
 namespace gauntlet::controllers::command {
 

@@ -22,6 +22,10 @@ inline constexpr const char* kScenario = "command";
 inline constexpr const char* kController = "program";
 // The scenario's one parameter.
 inline constexpr const char* kWallLimit = "wall_limit";
+// Before the SHA-256 of a definition: what its probe prints stands for it among golden hashes.
+inline constexpr const char* kGoldenPrefix = "command:";
+// In pictures, the label of Definition::standing.
+inline constexpr const char* kStanding = "standing";
 inline constexpr std::size_t kMostFileBytes = std::size_t{256} << 20;
 
 // What lies in the folder of every run.

@@ -100,6 +100,28 @@ Result<double> Computed(const std::string& formula, const sim::RunResult& result
   return compiled.Evaluate(values);
 }
 
+// What a picture shows besides robots and obstacles.
+std::vector<sim::Annotation> PlacesOf(const Definition& definition) {
+  std::vector<sim::Annotation> places;
+  for (const Shape& shape : definition.standing) {
+    const sim::Vec2 center(shape.x, shape.y);
+    if (shape.radius > 0.0) {
+      places.push_back({.kind = "disc", .label = kStanding, .points = {center}, .radius = shape.radius, .robots = {}});
+      continue;
+    }
+    const auto box = BoxOf(sim::ObstacleGene{shape.x, shape.y, shape.length, shape.width, shape.degrees});
+    const auto corners = Corners(box);
+    places.push_back({.kind = "area", .label = kStanding, .points = {corners.begin(), corners.end()}, .robots = {}});
+  }
+  for (const Point& point : definition.points)
+    places.push_back({.kind = "disc",
+                      .label = point.name,
+                      .points = {sim::Vec2(point.x, point.y)},
+                      .radius = definition.robot_radius,
+                      .robots = {}});
+  return places;
+}
+
 }  // namespace
 
 std::optional<std::string> RefusedBy(const Definition& definition, const std::string& folder) {
@@ -146,6 +168,7 @@ Result<sim::RunResult> OutcomeOf(const Definition& definition, const sim::RunSpe
   TRY(result.fitness, Computed(definition.fitness, result));
   TRY(const double failed, Computed(definition.failure, result));
   result.failure.total = failed != 0.0;
+  result.annotations = PlacesOf(definition);
   sim::SetHashes(result);
   return result;
 }

@@ -106,7 +106,7 @@ SmallCampaign SmallCommand(bool noise) {
   SmallCampaign campaign;
   campaign.name = "command";
   campaign.experiment = GAUNTLET_SOURCE_DIR "/tests/integration/programs/course.toml";
-  campaign.settings = {fmt::format("controller_parameters.noise={}", noise ? 1 : 0)};
+  campaign.settings = {std::string("controller_parameters.noise=") + (noise ? "1" : "0")};
   return campaign;
 }
 

@@ -72,7 +72,7 @@ sim::RunResult Refused(std::string message) {
 
 // Whether a runner says something of its own by this code.
 bool IsOurs(int exit_code) {
-  return exit_code >= kExitUnheard && exit_code <= kExitWithoutMetrics;
+  return exit_code >= kExitUnheard && exit_code <= kExitOverProcesses;
 }
 
 std::string WholeLines(std::string text) {
@@ -133,6 +133,8 @@ Result<CommandRuns::Ended> CommandRuns::RunIn(const std::string& folder, const s
     ended.exit_code = kExitOutOfMemory;
   } else if (outcome.exceeded == ExceededLimit::kDisk) {
     ended.exit_code = kExitOverDisk;
+  } else if (outcome.exceeded == ExceededLimit::kProcesses) {
+    ended.exit_code = kExitOverProcesses;
   } else if (WIFSIGNALED(outcome.wait_status)) {
     ended.signal = WTERMSIG(outcome.wait_status);
   } else if (outcome.wait_status != 0) {

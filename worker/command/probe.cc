@@ -40,7 +40,7 @@ std::string ProbeAll(const std::vector<std::string>& hashes, const PluginSetting
   for (const std::string& hash : hashes) {
     const Result<std::uint64_t> probed = ProbeOf(files, hash);
     if (!probed) return kNotProbed + probed.error().message;
-    golden[kCommandPrefix + hash] = *probed;
+    golden[command::kGoldenPrefix + hash] = *probed;
   }
   return kProbed + proto::WriteGoldenHashes(golden);
 }
@@ -107,8 +107,8 @@ Result<proto::GoldenHashes> GoldenHashesOf(const std::vector<std::string>& names
   std::vector<std::string> others;
   std::vector<std::string> hashes;
   for (const std::string& name : names) {
-    if (name.starts_with(kCommandPrefix)) {
-      hashes.push_back(name.substr(std::string_view(kCommandPrefix).size()));
+    if (name.starts_with(command::kGoldenPrefix)) {
+      hashes.push_back(name.substr(std::string_view(command::kGoldenPrefix).size()));
     } else {
       others.push_back(name);
     }

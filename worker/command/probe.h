@@ -13,9 +13,6 @@
 
 namespace gauntlet::worker {
 
-// Golden hashes of commands have this and the definition's SHA-256 as their name.
-inline constexpr const char* kCommandPrefix = "command:";
-
 // Runs a definition's probe, after its setup, in a folder with its files; without one, only looks for the
 // program. Uses RunWatched, as it is described there. Error: the program is not there, the probe failed or
 // took more than a minute; with what it printed.

@@ -125,7 +125,7 @@ Result<Image> MakeImage(const WatchedOptions& options) {
   TakeUsualSignals();
   int failed = chdir(options.folder.c_str()) == 0 ? 0 : errno;
   if (options.confine) {
-    const UniqueFd listener = ConfineToTree();
+    const UniqueFd listener = ConfineToTree(Starting::kFree);
     const std::array descriptors{listener.get()};
     SendPacket(socket, "c", {descriptors.data(), listener.valid() ? std::size_t{1} : std::size_t{0}});
   }
@@ -203,7 +203,9 @@ class Watch {
     // First what has ended, or a process that ends meanwhile counts twice.
     double seconds = ChildrensSeconds() - before_;
     std::uint64_t bytes = 0;
-    for (const pid_t process : SampleBelow(getpid())) {
+    const std::vector<pid_t> processes = SampleBelow(getpid());
+    if (processes.size() > kMostProcesses) return ExceededLimit::kProcesses;
+    for (const pid_t process : processes) {
       seconds += gauntlet::CpuSecondsOf(process);
       bytes += ResidentBytesOf(process);
     }
@@ -302,6 +304,8 @@ std::string HowItEnded(const WatchedOptions& options, const WatchedOutcome& outc
       return fmt::format("{}{} MB of memory", kExceeded, options.memory_bytes / kMegabyte);
     case ExceededLimit::kDisk:
       return fmt::format("{}{} MB in its folder", kExceeded, options.disk_bytes / kMegabyte);
+    case ExceededLimit::kProcesses:
+      return fmt::format("{}{} processes", kExceeded, kMostProcesses);
     case ExceededLimit::kNone:
       break;
   }

@@ -26,7 +26,9 @@ struct WatchedOptions {
   bool confine = true;
 };
 
-enum class ExceededLimit { kNone, kWall, kCpu, kMemory, kDisk };
+enum class ExceededLimit { kNone, kWall, kCpu, kMemory, kDisk, kProcesses };
+// How many processes a program may have at the same time.
+inline constexpr std::size_t kMostProcesses = 512;
 
 struct WatchedOutcome {
   int wait_status = 0;  // of the program; its processes were killed when a limit was exceeded

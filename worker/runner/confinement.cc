@@ -78,7 +78,7 @@ void DropCapabilities() {
   syscall(SYS_capset, &header, sets.data());
 }
 
-bool AddRules(scmp_filter_ctx filter) {
+bool AddRules(scmp_filter_ctx filter, Starting starting) {
   const auto add = [&](std::uint32_t action, int call) {
     return seccomp_rule_add_array(filter, action, call, 0, nullptr) == 0;
   };
@@ -86,22 +86,24 @@ bool AddRules(scmp_filter_ctx filter) {
     const scmp_arg_cmp others{.arg = naming.argument, .op = SCMP_CMP_NE, .datum_a = 0, .datum_b = 0};
     if (seccomp_rule_add_array(filter, SCMP_ACT_NOTIFY, naming.call, 1, &others) != 0) return false;
   }
+  if (!std::ranges::all_of(kRefusedCalls, [&](int call) { return add(SCMP_ACT_ERRNO(EPERM), call); }))
+    return false;
+  if (starting == Starting::kFree) return true;
   // What clone3 is asked lies in memory, which a filter does not see; the C library then takes clone.
   return std::ranges::all_of(kStartingCalls, [&](int call) { return add(SCMP_ACT_NOTIFY, call); }) &&
-         std::ranges::all_of(kRefusedCalls, [&](int call) { return add(SCMP_ACT_ERRNO(EPERM), call); }) &&
          add(SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3));
 }
 
 }  // namespace
 
-UniqueFd ConfineToTree() {
+UniqueFd ConfineToTree(Starting starting) {
   prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   DropCapabilities();
   const scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
   if (filter == nullptr) return UniqueFd();
   UniqueFd listener;
   seccomp_attr_set(filter, SCMP_FLTATR_CTL_SSB, 1);  // processors speculate as without a filter
-  if (AddRules(filter) && seccomp_load(filter) == 0) listener.Reset(seccomp_notify_fd(filter));
+  if (AddRules(filter, starting) && seccomp_load(filter) == 0) listener.Reset(seccomp_notify_fd(filter));
   seccomp_release(filter);
   return listener;
 }

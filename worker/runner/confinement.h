@@ -19,11 +19,15 @@ namespace gauntlet::worker {
 // How many processes and threads a tree may have at the same time. The next one is refused (EAGAIN).
 inline constexpr int kMostTasksOfTree = 256;
 
+// Whether new processes and threads are asked for. A signal that comes meanwhile lets the call fail (EINTR), which
+// a program of our own making tries again and a shell does not.
+enum class Starting { kAsked, kFree };
+
 // Called by the root. From now on it and all below it can gain no rights (PR_SET_NO_NEW_PRIVS), have none of
 // a super-user but those over files and low ports, and ask as above. The listener; invalid where the kernel
 // has no such filter (seccomp with SECCOMP_RET_USER_NOTIF, Linux 5.5) or grants none: then they are not kept
 // from other processes of their user.
-UniqueFd ConfineToTree();
+UniqueFd ConfineToTree(Starting starting = Starting::kAsked);
 
 // Closes every file of this process but its standard streams and those.
 void CloseAllBut(const std::set<int>& kept);

@@ -20,6 +20,7 @@ using proto::kExitOutOfMemory;
 using proto::kExitOverDisk;
 using proto::kExitSignalled;
 using proto::kExitUnheard;
+using proto::kExitOverProcesses;
 using proto::kExitWithoutMetrics;
 using proto::kExitWithoutPlugin;
 using proto::kExitWithoutResult;

@@ -128,7 +128,8 @@ void DrawWaysLegend(SvgCanvas& canvas, Panel& panel, const RunFigure& figure,
   const std::size_t kept = count(TrackKind::kKept);
   const std::size_t lost = count(TrackKind::kLost);
   if (kept > 0) {
-    panel.Row(fmt::format("{} {}, not {}", kept, Plural(kept, style.member), style.lost),
+    const std::string not_lost = style.lost.empty() ? "" : ", not " + style.lost;
+    panel.Row(fmt::format("{} {}{}", kept, Plural(kept, style.member), not_lost),
               [&](Pixel p) { DrawWaySwatch(canvas, p, kKeptColor, 2.0); });
   }
   if (lost > 0) {
@@ -222,6 +223,7 @@ std::string DescribeOutcome(const RunFigure& figure) {
     const std::string_view what = result.verdict == sim::Verdict::kRefused ? "refused" : "the run failed";
     return fmt::format("{}: {}", what, result.message);
   }
+  if (style.lost.empty()) return result.failure.total ? "total failure" : "no failure";
   const int guide = GuideOf(figure);
   std::size_t members = 0;
   std::size_t lost = 0;

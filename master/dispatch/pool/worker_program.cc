@@ -17,6 +17,7 @@
 #include "base/system/regular_file.h"
 #include "base/system/sha256.h"
 #include "base/system/trusted_path.h"
+#include "controllers/command/definition.h"
 #include "controllers/registry.h"
 #include "controllers/rows/plugin_rows.h"
 #include "master/dispatch/leases/run_limits.h"
@@ -129,8 +130,9 @@ Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::str
   std::vector<std::string> arguments = {"--golden"};
   arguments.insert(arguments.end(), names.begin(), names.end());
   for (const std::string& name : names) {
-    if (!name.starts_with(kGoldenCommand)) continue;
-    const std::string hash = name.substr(kGoldenCommand.size());
+    constexpr std::string_view kPrefix = controllers::command::kGoldenPrefix;
+    if (!name.starts_with(kPrefix)) continue;
+    const std::string hash = name.substr(kPrefix.size());
     TRY(ReadPlugin(hash));
     arguments.insert(arguments.end(), {"--plugin", controllers::FindPlugin(hash)->file});
   }

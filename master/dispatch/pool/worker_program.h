@@ -35,8 +35,8 @@ Result<std::string> DescribePlugin(const std::string& file);
 Result<std::string> DescribeBeginning(const sim::RunSpec& spec);
 
 // Of those of these controllers that gauntlet-worker was built with, and of commands, which are known: those
-// are named "command:HASH", and their golden hash is of what their probe prints here.
-inline const std::string kGoldenCommand = "command:";
+// are named by kGoldenPrefix (controllers/command/definition.h), and their golden hash is of what their probe
+// prints here.
 Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& names);
 
 }  // namespace gauntlet

@@ -161,7 +161,7 @@ TEST_F(CommandRunsTest, ExitCodesArePassedOnAsTheyAre) {
 }
 
 TEST_F(CommandRunsTest, ItsExitCodesAreNotTakenForOurs) {
-  for (int code = kExitUnheard; code <= kExitWithoutMetrics; ++code) {
+  for (int code = kExitUnheard; code <= kExitOverProcesses; ++code) {
     const Ran ran = Sh("printf 'no newline'; exit " + std::to_string(code));
     EXPECT_EQ(ran.wait_status, kExitOfProgram << 8);
     EXPECT_EQ(ran.failure().kind, FailureKind::kCrashed);
