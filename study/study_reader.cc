@@ -234,9 +234,8 @@ class Reader {
     }
     StudyAnalysis& analysis = study_.analyses.emplace_back(StudyAnalysis{table, std::nullopt});
     if (analysis.kind != "tune") return Ok{};
-    TRY(AddLibrariesOf(study_.changes.experiment.empty() ? table.Key("experiment")
-                                                         : study_.changes.experiment,
-                       {}));
+    TRY(AddLibrariesOf(
+        study_.changes.experiment.empty() ? table.Key("experiment") : study_.changes.experiment, {}));
     TRY(auto expanded, ExpandTuning(table, study_.changes, catalogue_));
     analysis.tuning = std::move(expanded.tuning);
     for (const StudyFileTable& part : expanded.parts) {

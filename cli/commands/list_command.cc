@@ -138,7 +138,8 @@ std::string RowsText(std::span<const controllers::ScenarioInfo> rows) {
 std::string CommandText() {
   return "\n  command: a program of yours simulates the runs (docs/any-simulator.md)\n\n" +
          KeyTable(CommandKeys(), 4) +
-         "\n    Of metric, parameter, point, keep_out, standing, axis and refused there may be several: in a file\n"
+         "\n    Of metric, parameter, point, keep_out, standing, axis and refused there may be several: in a "
+         "file\n"
          "    one [[command.metric]] after the other.\n";
 }
 

@@ -29,8 +29,11 @@ PluginRows RowsOf(const Definition& definition) {
     const std::string what = !metric.from.empty()      ? "from " + metric.from
                              : !metric.formula.empty() ? metric.formula
                                                        : "as the program reports it";
-    scenario.metrics.push_back(
-        {.name = metric.name, .unit = metric.unit, .none = std::nullopt, .description = what, .descriptor = true});
+    scenario.metrics.push_back({.name = metric.name,
+                                .unit = metric.unit,
+                                .none = std::nullopt,
+                                .description = what,
+                                .descriptor = true});
   }
   scenario.failures = {.axes = definition.axes, .place = definition.place};
   ControllerInfo controller{.name = kController,

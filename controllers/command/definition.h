@@ -67,7 +67,7 @@ struct Definition {
   std::vector<Metric> metrics;
   std::string fitness;  // formulas of metrics
   std::string failure;
-  double cpu_limit = 0.0;  // s of all its processes; 0: wall_limit times cores
+  double cpu_limit = 0.0;     // s of all its processes; 0: wall_limit times cores
   double wall_limit = 600.0;  // s
   int memory = 2048;          // MB of all its processes
   int disk = 1024;            // MB in its folder

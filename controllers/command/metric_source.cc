@@ -87,8 +87,8 @@ Result<double> FromLog(const std::string& pattern, std::string_view out, std::st
 }
 
 std::vector<std::string_view> FieldsOf(std::string_view line) {
-  const char separator = line.find(',') != std::string_view::npos   ? ','
-                         : line.find(';') != std::string_view::npos ? ';'
+  const char separator = line.find(',') != std::string_view::npos    ? ','
+                         : line.find(';') != std::string_view::npos  ? ';'
                          : line.find('\t') != std::string_view::npos ? '\t'
                                                                      : ' ';
   std::vector<std::string_view> fields;
@@ -166,7 +166,8 @@ std::optional<std::string> FirstLineWith(const std::string& pattern, std::string
 Status CheckSource(const std::string& source) {
   if (source.starts_with(kLog)) return CheckPattern(source.substr(kLog.size()));
   if (source.starts_with(kCsv) && CsvOf(source)) return Ok{};
-  return InvalidInput("from = '" + Printable(source) + "' is none of log:PATTERN, csv:FILE:COLUMN and trajectory:MEASURE");
+  return InvalidInput("from = '" + Printable(source) +
+                      "' is none of log:PATTERN, csv:FILE:COLUMN and trajectory:MEASURE");
 }
 
 Result<double> ReadSource(const std::string& source, std::string_view out, std::string_view err,

@@ -42,7 +42,8 @@ struct Printed {
   std::string err;
 };
 Printed PrintedIn(const std::string& folder) {
-  return {EndOfFile(folder + "/" + kStdoutFile).value_or(""), EndOfFile(folder + "/" + kStderrFile).value_or("")};
+  return {EndOfFile(folder + "/" + kStdoutFile).value_or(""),
+          EndOfFile(folder + "/" + kStderrFile).value_or("")};
 }
 
 std::optional<json> ObjectIn(std::string_view text) {
@@ -79,12 +80,14 @@ Result<double> ReportedNumber(const json& report, const std::string& name) {
   if (found == report.end()) {
     std::vector<std::string> names;
     for (const auto& [key, value] : report.items()) names.push_back(key);
-    return InvalidInput("it reports no '" + name + "'; " +
-                        (names.empty() ? "its JSON object is empty" : "it reports " + Printable(NamesOf(names))));
+    return InvalidInput(
+        "it reports no '" + name + "'; " +
+        (names.empty() ? "its JSON object is empty" : "it reports " + Printable(NamesOf(names))));
   }
   if (found->is_boolean()) return found->get<bool>() ? 1.0 : 0.0;
   if (found->is_number() && std::isfinite(found->get<double>())) return found->get<double>();
-  return InvalidInput("'" + name + "' = " + Printable(found->dump(-1, ' ', false, json::error_handler_t::replace)) +
+  return InvalidInput("'" + name +
+                      "' = " + Printable(found->dump(-1, ' ', false, json::error_handler_t::replace)) +
                       " is no finite number");
 }
 
@@ -106,12 +109,14 @@ std::vector<sim::Annotation> PlacesOf(const Definition& definition) {
   for (const Shape& shape : definition.standing) {
     const sim::Vec2 center(shape.x, shape.y);
     if (shape.radius > 0.0) {
-      places.push_back({.kind = "disc", .label = kStanding, .points = {center}, .radius = shape.radius, .robots = {}});
+      places.push_back(
+          {.kind = "disc", .label = kStanding, .points = {center}, .radius = shape.radius, .robots = {}});
       continue;
     }
     const auto box = BoxOf(sim::ObstacleGene{shape.x, shape.y, shape.length, shape.width, shape.degrees});
     const auto corners = Corners(box);
-    places.push_back({.kind = "area", .label = kStanding, .points = {corners.begin(), corners.end()}, .robots = {}});
+    places.push_back(
+        {.kind = "area", .label = kStanding, .points = {corners.begin(), corners.end()}, .robots = {}});
   }
   for (const Point& point : definition.points)
     places.push_back({.kind = "disc",

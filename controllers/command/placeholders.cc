@@ -142,8 +142,8 @@ Result<TemplateParts> SplitTemplate(std::string_view text) {
                       "; what stands between the two is repeated for each obstacle");
 }
 
-const std::array<std::string_view, 9> kOfObstacles = {"number",      "x",          "y",       "length", "width",
-                                                      "half_length", "half_width", "degrees", "radians"};
+const std::array<std::string_view, 9> kOfObstacles = {
+    "number", "x", "y", "length", "width", "half_length", "half_width", "degrees", "radians"};
 
 Result<std::string> Filled(const Definition& definition, std::string_view text, const sim::RunSpec& spec,
                            const sim::Genome& obstacles) {

@@ -71,7 +71,8 @@ class Reader {
     if (!(time >= 0.0 && time * sim::kTicksPerSecond <= kMostTicks))
       return InvalidInput(": time " + NumberText(time) + "; s from the beginning are expected");
     sighting.tick = ToTicks(time);
-    if (sighting.tick < last_tick_) return InvalidInput(": time " + NumberText(time) + " lies before the last");
+    if (sighting.tick < last_tick_)
+      return InvalidInput(": time " + NumberText(time) + " lies before the last");
     last_tick_ = sighting.tick;
     TRY(sighting.state.x, Number(fields, kX));
     TRY(sighting.state.y, Number(fields, kY));
@@ -98,11 +99,14 @@ class Reader {
     result.trajectory_hash = hash_.value();
     const std::size_t states = seen_.size() * (static_cast<std::size_t>(last_tick_) + 1);
     if (record && states > kMostStates)
-      return InvalidInput(" is too long to be replayed: " + FormatCount(states) + " places, one for each 0.1 s");
+      return InvalidInput(" is too long to be replayed: " + FormatCount(states) +
+                          " places, one for each 0.1 s");
     if (record) result.trajectory.assign(static_cast<std::size_t>(last_tick_) + 1, {});
     for (const std::vector<Sighting>& robot : seen_) {
       sim::RobotSummary& summary = result.robots.emplace_back();
-      const auto pose = [](const sim::RobotState& state) { return sim::Pose{state.position(), state.heading}; };
+      const auto pose = [](const sim::RobotState& state) {
+        return sim::Pose{state.position(), state.heading};
+      };
       summary.start = pose(robot.front().state);
       summary.end = pose(robot.back().state);
       for (std::size_t i = 1; i < robot.size(); ++i) {
@@ -130,8 +134,8 @@ class Reader {
     const std::string_view field = Field(fields, column);
     const std::optional<double> number = ParseNumber<double>(field);
     if (number && std::isfinite(*number)) return *number;
-    return InvalidInput(": " + std::string(kColumns[column]) + " = '" + Printable(std::string(field.substr(0, 40))) +
-                        "' is no finite number");
+    return InvalidInput(": " + std::string(kColumns[column]) + " = '" +
+                        Printable(std::string(field.substr(0, 40))) + "' is no finite number");
   }
 
   std::optional<std::array<std::size_t, kColumns.size()>> columns_;  // where each stands; beyond: nowhere

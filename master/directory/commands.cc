@@ -17,6 +17,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
 #include "base/system/sha256.h"
+#include "base/system/trusted_path.h"
 #include "base/system/unique_fd.h"
 #include "controllers/command/command_rows.h"
 #include "controllers/command/placeholders.h"
@@ -42,7 +43,8 @@ class TemporaryFolder {
     if (!folder.path_.empty()) return folder.path_;
     std::error_code failed;
     std::string made = fs::temp_directory_path(failed) / "gauntlet-run-XXXXXX";
-    if (mkdtemp(made.data()) == nullptr) return SystemError("cannot make a folder for temporary files", errno);
+    if (mkdtemp(made.data()) == nullptr)
+      return SystemError("cannot make a folder for temporary files", errno);
     folder.lock_.Reset(open(made.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     flock(folder.lock_.get(), LOCK_EX | LOCK_NB);
     return folder.path_ = made;
@@ -138,6 +140,10 @@ Result<std::optional<std::string>> AddCommandOf(const ExperimentText& experiment
                                                 const std::vector<std::string>& allowed) {
   TRY(std::optional<Definition> definition, ReadCommand(experiment, sets));
   if (!definition) return std::optional<std::string>();
+  if (IsForeign(experiment.file_name))
+    return InvalidInput(fmt::format("{}: its program would run in your name, and another user owns the file; a "
+                                    "copy of it and of what lies beside it is yours (cp -r)",
+                                    experiment.file_name));
   const fs::path parent = fs::path(experiment.file_name).parent_path();
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
   std::vector<Source> sources;
@@ -167,7 +173,8 @@ Result<std::optional<std::string>> AddCommandOf(const ExperimentText& experiment
     TRY(std::string bytes, ReadSmallFile(path, controllers::command::kMostFileBytes));
     TRY(add(fs::path(path).filename(), path, std::move(bytes)));
   }
-  if (!definition->case_template.empty() && FindByName(definition->files, definition->case_template) == nullptr)
+  if (!definition->case_template.empty() &&
+      FindByName(definition->files, definition->case_template) == nullptr)
     return InvalidInput(fmt::format("{}: template = \"{}\" is none of `files`", experiment.file_name,
                                     Printable(definition->case_template)));
   std::ranges::sort(definition->files, {}, &File::name);
@@ -190,7 +197,8 @@ Result<Definition> CommandOf(const std::string& hash) {
   if (plugin == nullptr) return InvalidInput("the command " + hash + " is not known");
   TRY(const std::string text, ReadRegularFile(plugin->file, kMostDefinitionBytes));
   if (Sha256(text) != hash)
-    return InvalidInput(fmt::format("{} is another command now: its SHA-256 is {}", plugin->file, Sha256(text)));
+    return InvalidInput(
+        fmt::format("{} is another command now: its SHA-256 is {}", plugin->file, Sha256(text)));
   return controllers::command::Parse(text);
 }
 
@@ -199,8 +207,8 @@ Status CopyCommandFiles(const std::string& file, const std::string& folder) {
   TRY(const Definition definition, controllers::command::Parse(text));
   for (const File& one : definition.files) {
     const std::string name = fmt::format("{}/{}", kCommandFiles, one.hash);
-    TRY(const std::string bytes, ReadRegularFile(fs::path(file).parent_path() / name,
-                                                 controllers::command::kMostFileBytes));
+    TRY(const std::string bytes,
+        ReadRegularFile(fs::path(file).parent_path() / name, controllers::command::kMostFileBytes));
     if (Sha256(bytes) != one.hash)
       return InvalidInput(fmt::format("{} has changed: it is no longer {}", name, one.name));
     TRY(KeepFile(fmt::format("{}/{}", folder, kCommandFiles), one.hash, bytes));

@@ -12,10 +12,10 @@
 
 namespace gauntlet {
 
-// Makes the library's controllers and scenarios known, whose file the user names; its SHA-256. An experiment's
-// file, NAME.toml, stands for the command that it defines. Error: it
-// cannot be read, it is a campaign's copy that somebody else could have written, or why gauntlet-worker
-// refuses it; what is built in has the name of one.
+// Makes the library's controllers and scenarios known, whose file the user names; its SHA-256. An
+// experiment's file, NAME.toml, stands for the command that it defines. Error: it cannot be read, it is a
+// campaign's copy that somebody else could have written, or why gauntlet-worker refuses it; what is built in
+// has the name of one.
 Result<std::string> AddPluginFile(const std::string& file);
 
 // The same, and adds it to those of `hashes`, which are known. Error: also that one of them brings a
@@ -25,8 +25,8 @@ Status AddPluginFile(const std::string& file, std::vector<std::string>& hashes);
 // The same of several files, in their order.
 Result<std::vector<std::string>> AddPluginFiles(const std::vector<std::string>& files);
 
-// What the experiment may name: what is built in, what its text asks for (PluginFilesOf), `files`, and what its
-// table [command] defines (AddCommandOf, with `sets` and `allowed`).
+// What the experiment may name: what is built in, what its text asks for (PluginFilesOf), `files`, and what
+// its table [command] defines (AddCommandOf, with `sets` and `allowed`).
 Result<Catalogue> CatalogueFor(const ExperimentText& experiment, const std::vector<std::string>& sets,
                                const std::vector<std::string>& files = {},
                                const std::vector<std::string>& allowed = {});

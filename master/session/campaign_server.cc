@@ -45,7 +45,8 @@ DispatchOptions LimitsFor(const std::vector<SearchPlan>& plans, double audit_sha
     if (!command) continue;
     limits.cores_per_run = std::max(limits.cores_per_run, command->cores);
     const int most = command->at_once;
-    if (most > 0) limits.most_per_host = limits.most_per_host == 0 ? most : std::min(limits.most_per_host, most);
+    if (most > 0)
+      limits.most_per_host = limits.most_per_host == 0 ? most : std::min(limits.most_per_host, most);
   }
   return limits;
 }

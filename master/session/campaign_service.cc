@@ -56,7 +56,8 @@ Result<proto::GoldenHashes> CheckGoldenHashes(const CampaignMeta& meta) {
 // a plug-in, whose library is the same everywhere, it is the scenario's own; where that is of a plug-in too,
 // any that is built in, for the arithmetic that all share. Of a command it is what its probe says.
 std::string GoldenControllerOf(const Experiment& experiment) {
-  if (experiment.scenario == controllers::command::kScenario) return controllers::command::kGoldenPrefix + experiment.plugin;
+  if (experiment.scenario == controllers::command::kScenario)
+    return controllers::command::kGoldenPrefix + experiment.plugin;
   if (experiment.plugin.empty()) return experiment.controller;
   if (experiment.scenario_plugin.empty())
     return std::string(controllers::FindScenario(experiment.scenario)->default_controller);

@@ -26,8 +26,10 @@ std::optional<json> JsonOf(const TomlValue& value) {
   }
   return std::visit(
       [](const auto& held) -> std::optional<json> {
-        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, OtherToml>) return std::nullopt;
-        else return json(held);
+        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, OtherToml>)
+          return std::nullopt;
+        else
+          return json(held);
       },
       value);
 }
@@ -44,7 +46,8 @@ Status Put(json& table, std::string_view path, json value) {
     if (number && place->is_object() && place->empty()) *place = json::array();
     if (place->is_array()) {
       if (!number || *number < 1 || *number > place->size() + 1)
-        return InvalidInput(fmt::format("{}{}: the elements of a list are numbered 1, 2, 3, ...", kInCommand, path));
+        return InvalidInput(
+            fmt::format("{}{}: the elements of a list are numbered 1, 2, 3, ...", kInCommand, path));
       if (*number == place->size() + 1) place->push_back(json::object());
       place = &(*place)[*number - 1];
     } else if (place->is_object()) {
@@ -108,9 +111,11 @@ Result<std::optional<controllers::command::Definition>> ReadCommand(const Experi
     std::optional<json> value = JsonOf(assignment.value);
     const std::string& where = assignment.where;
     if (!value)
-      return InvalidInput(fmt::format("{}: {} is {}, expected a number, text, true or false, or a list of texts",
-                                      where, assignment.path, KindOf(assignment.value)));
-    if (const Status put = Put(table, std::string_view(assignment.path).substr(kInCommand.size()), std::move(*value));
+      return InvalidInput(
+          fmt::format("{}: {} is {}, expected a number, text, true or false, or a list of texts", where,
+                      assignment.path, KindOf(assignment.value)));
+    if (const Status put =
+            Put(table, std::string_view(assignment.path).substr(kInCommand.size()), std::move(*value));
         !put)
       return InvalidInput(Printable(fmt::format("{}: {}", where, put.error().message)));
   }

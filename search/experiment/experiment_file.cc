@@ -195,9 +195,10 @@ class Reader {
                                  std::vector<Info> controllers::PluginInfo::*rows, std::string& plugin) {
     std::string given = std::exchange(plugin, "");
     if (const Info* row = FindByName(built_in, name)) return row;
-    const bool command = name == (what == "scenario" ? controllers::command::kScenario
-                                                     : controllers::command::kController);
-    if (command && given.empty()) given = what == "scenario" ? catalogue_.command : experiment_.scenario_plugin;
+    const bool command =
+        name == (what == "scenario" ? controllers::command::kScenario : controllers::command::kController);
+    if (command && given.empty())
+      given = what == "scenario" ? catalogue_.command : experiment_.scenario_plugin;
     if (!given.empty() && controllers::FindPlugin(given) == nullptr) {
       const std::string key = what == "controller" ? "plugin" : "scenario_plugin";
       return InvalidInput(
@@ -218,9 +219,10 @@ class Reader {
       known.insert(known.end(), more.begin(), more.end());
     }
     if (command)
-      return InvalidInput(fmt::format("{}: the {} '{}' needs a table [command] in the experiment's file, with "
-                                      "run, metrics, fitness and failure at least",
-                                      PlaceOf(what), what, name));
+      return InvalidInput(
+          fmt::format("{}: the {} '{}' needs a table [command] in the experiment's file, with "
+                      "run, metrics, fitness and failure at least",
+                      PlaceOf(what), what, name));
     return InvalidInput(
         fmt::format("{}: {}", PlaceOf(what), UnknownName(what, name, std::span<const Info>(known))));
   }

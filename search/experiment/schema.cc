@@ -393,12 +393,13 @@ namespace {
 // What a program of the user's knows nothing of.
 std::optional<BrokenRule> CheckRulesOfCommand(const Experiment& experiment, const Catalogue& catalogue) {
   for (const Key& key : CommonKeys(catalogue)) {
-    const bool meaningless = key.disturbs || key.path == "physics" || key.path == "genome.moving" ||
-                             key.path == "genome.lights";
+    const bool meaningless =
+        key.disturbs || key.path == "physics" || key.path == "genome.moving" || key.path == "genome.lights";
     if (!meaningless || key.get(experiment) == key.default_value) continue;
-    return BrokenRule{key.path, fmt::format("{} = {} is for this engine, and a program of yours simulates the "
-                                            "runs of the scenario 'command': leave it out",
-                                            key.path, ToToml(key.get(experiment)))};
+    return BrokenRule{key.path,
+                      fmt::format("{} = {} is for this engine, and a program of yours simulates the "
+                                  "runs of the scenario 'command': leave it out",
+                                  key.path, ToToml(key.get(experiment)))};
   }
   return std::nullopt;
 }

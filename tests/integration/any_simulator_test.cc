@@ -7,6 +7,7 @@
 
 #include "tests/integration/campaign_driver.h"
 #include "tests/integration/documented_page.h"
+#include "tests/support/paths.h"
 
 namespace gauntlet::testing_support {
 namespace {
@@ -40,8 +41,9 @@ class ProgramTest : public testing::Test {
                                         << more;
   }
   ProcessResult Evolve(std::vector<std::string> more = {}) {
-    std::vector<std::string> arguments = {"evolve", scratch_ / "my.toml", "--dir", scratch_ / "c", "--quiet",
-                                          "--generations", "2", "--population", "6", "--json"};
+    std::vector<std::string> arguments = {
+        "evolve", scratch_ / "my.toml", "--dir", scratch_ / "c", "--quiet", "--generations",
+        "2",      "--population",       "6",     "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Gauntlet(arguments);
   }
@@ -97,7 +99,8 @@ TEST_F(ProgramTest, ThatCannotWorkIsToldBeforeAnythingIsMade) {
 
 TEST_F(ProgramTest, ThatIsMissingOrNoProgramIsNamed) {
   Program("");
-  for (const auto& [run, said] : {std::pair("no-such-program", "no-such-program"), {"./data.txt", "data.txt"}}) {
+  for (const auto& [run, said] :
+       {std::pair("no-such-program", "no-such-program"), {"./data.txt", "data.txt"}}) {
     std::ofstream(scratch_ / "data.txt") << "data";
     std::ofstream(scratch_ / "my.toml") << "scenario = \"command\"\n[command]\nrun = [\"" << run
                                         << "\"]\nfiles = [\"data.txt\"]\nmetrics = [\"items\"]\n"
@@ -110,8 +113,8 @@ TEST_F(ProgramTest, ThatIsMissingOrNoProgramIsNamed) {
 
 TEST_F(ProgramTest, WhatMeansNothingHereIsRefusedByName) {
   Program("echo '{\"items\": 1}'\n");
-  for (const char* set : {"noise.proximity.gaussian=0.1", "faults=1:wheels@5", "physics=box2d", "genome.moving=0.5",
-                          "genome.lights=1"}) {
+  for (const char* set : {"noise.proximity.gaussian=0.1", "faults=1:wheels@5", "physics=box2d",
+                          "genome.moving=0.5", "genome.lights=1"}) {
     const ProcessResult result = Evolve({"--set", set});
     EXPECT_EQ(result.exit_code, 2) << set;
     EXPECT_THAT(result.err, HasSubstr(std::string(set).substr(0, std::string(set).find('='))));
@@ -124,13 +127,16 @@ TEST_F(ProgramTest, ACorpusIsCheckedWithAMendedProgram) {
   ASSERT_EQ(Evolve().exit_code, 0);
   const std::string campaign = scratch_ / "c";
   ASSERT_EQ(Gauntlet({"minimise", campaign, "1", "--quiet"}).exit_code, 0);
-  const ProcessResult kept = Gauntlet({"corpus", "add", campaign, "1", "--to", scratch_ / "corpus", "--quiet"});
+  const ProcessResult kept =
+      Gauntlet({"corpus", "add", campaign, "1", "--to", scratch_ / "corpus", "--quiet"});
   ASSERT_EQ(kept.exit_code, 0) << kept.err;
   EXPECT_THAT(kept.out, HasSubstr(".command"));
-  const ProcessResult failing = Gauntlet({"check", scratch_ / "corpus", "--plugin", scratch_ / "my.toml", "--quiet"});
+  const ProcessResult failing =
+      Gauntlet({"check", scratch_ / "corpus", "--plugin", scratch_ / "my.toml", "--quiet"});
   EXPECT_EQ(failing.exit_code, 1) << failing.out << failing.err;
   Program("echo '{\"items\": 9}'\n");
-  const ProcessResult mended = Gauntlet({"check", scratch_ / "corpus", "--plugin", scratch_ / "my.toml", "--quiet"});
+  const ProcessResult mended =
+      Gauntlet({"check", scratch_ / "corpus", "--plugin", scratch_ / "my.toml", "--quiet"});
   EXPECT_EQ(mended.exit_code, 0) << mended.out << mended.err;
 }
 

@@ -33,8 +33,8 @@ class DeterminismDrill : public testing::TestWithParam<SmallCampaign> {};
 
 INSTANTIATE_TEST_SUITE_P(Experiments, DeterminismDrill,
                          testing::Values(SmallCampaign{}, SmallForaging(), SmallPartitioning(),
-                                         SmallSteadyState(), SmallArchive(), SmallRandom(), SmallFit(), SmallCommand(),
-                                         SmallEvaluation()),
+                                         SmallSteadyState(), SmallArchive(), SmallRandom(), SmallFit(),
+                                         SmallCommand(), SmallEvaluation()),
                          [](const testing::TestParamInfo<SmallCampaign>& parameter) {
                            return parameter.param.name;
                          });

@@ -27,7 +27,8 @@ bool Scheduler::IsFull(const std::string& host) const {
     leases += worker.live.size();
     slots += worker.slots;
   }
-  const std::size_t side_by_side = std::max<std::size_t>(1, slots / static_cast<std::size_t>(options_.cores_per_run));
+  const std::size_t side_by_side =
+      std::max<std::size_t>(1, slots / static_cast<std::size_t>(options_.cores_per_run));
   const auto most = static_cast<std::size_t>(options_.most_per_host);
   return leases >= (most == 0 ? side_by_side : std::min(most, side_by_side));
 }

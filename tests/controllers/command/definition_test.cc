@@ -1,3 +1,4 @@
+// Covers: controllers/command/definition_checks.cc
 #include "controllers/command/definition.h"
 
 #include <gmock/gmock.h>
@@ -93,7 +94,8 @@ TEST(CommandDefinition, SaysWhatIsWrongAndWithWhichKey) {
       {{{"run", {"sim", "{cas}"}}}, "did you mean 'case'?"},
       {{{"run", {"sim", "{parameters.speed}"}}}, "unknown placeholder 'parameters.speed'"},
       {{{"run", {"sim", "{case"}}}, "a '{' without '}'"},
-      {{{"fitness", "item"}}, "fitness: fitness = \"item\": character 1: unknown measure 'item'; did you mean"},
+      {{{"fitness", "item"}},
+       "fitness: fitness = \"item\": character 1: unknown measure 'item'; did you mean"},
       {{{"metrics", {"items", "items"}}}, "the metric 'items' is given twice"},
       {{{"metrics", {"items", "2nd"}}}, "begins with a letter"},
       {{{"metric", ListOf({{"name", "a"}, {"from", "log:("}})}}, "metric.2.from"},
@@ -116,7 +118,8 @@ TEST(CommandDefinition, SaysWhatIsWrongAndWithWhichKey) {
       {{{"point", ListOf({{"x", 1}})}}, "points have names that differ"},
       {{{"refused", ListOf({{"pattern", "(?=a)"}})}}, "refused.1.pattern: the pattern (?=a)"},
   };
-  for (const Wrong& wrong : all) EXPECT_THAT(ComplaintAbout(wrong.more), HasSubstr(wrong.complaint)) << wrong.more;
+  for (const Wrong& wrong : all)
+    EXPECT_THAT(ComplaintAbout(wrong.more), HasSubstr(wrong.complaint)) << wrong.more;
 }
 
 TEST(CommandDefinition, WhatIsNoCanonicalTextIsRefused) {

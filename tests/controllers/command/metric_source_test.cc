@@ -34,7 +34,8 @@ TEST(LogSource, StandardErrorIsReadWhereStandardOutputSaysNothing) {
 }
 
 TEST(LogSource, LooksAtTheBeginningOfALineOnly) {
-  EXPECT_EQ(Read("log:(\\d)$", std::string(kMostLineBytes, 'x') + "5\n"), "nothing that it printed matches (\\d)$");
+  EXPECT_EQ(Read("log:(\\d)$", std::string(kMostLineBytes, 'x') + "5\n"),
+            "nothing that it printed matches (\\d)$");
 }
 
 TEST(LogSource, AHostilePatternTakesLinearTime) {
@@ -43,7 +44,8 @@ TEST(LogSource, AHostilePatternTakesLinearTime) {
 }
 
 TEST(LogSource, WhatIsNoFiniteNumberIsSaid) {
-  EXPECT_EQ(Read("log:v=(\\S+)", "v=nan"), "the last match of v=(\\S+) says 'nan', which is no finite number");
+  EXPECT_EQ(Read("log:v=(\\S+)", "v=nan"),
+            "the last match of v=(\\S+) says 'nan', which is no finite number");
   EXPECT_THAT(Read("log:v=(\\S+)", "v=many"), HasSubstr("'many', which is no finite number"));
 }
 

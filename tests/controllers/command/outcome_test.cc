@@ -18,7 +18,9 @@ using testing_support::TemporaryDirectory;
 
 class OutcomeTest : public testing::Test {
  protected:
-  void Leave(const std::string& name, const std::string& content) { std::ofstream(scratch_ / name) << content; }
+  void Leave(const std::string& name, const std::string& content) {
+    std::ofstream(scratch_ / name) << content;
+  }
   Result<sim::RunResult> Outcome(const json& more = json::object()) {
     return OutcomeOf(DefinitionWith(more), {}, scratch_.path());
   }

@@ -29,8 +29,8 @@ sim::RunSpec SomeRun() {
 }
 
 TEST(Placeholders, AreReplacedWithinAnArgumentAndNeverSplitOne) {
-  const Definition definition =
-      WithSpeed({{"run", {"sim", "--case={case}", "{out} {seed64}", "v={parameters.speed}", "{{x}}", "a b"}}});
+  const Definition definition = WithSpeed(
+      {{"run", {"sim", "--case={case}", "{out} {seed64}", "v={parameters.speed}", "{{x}}", "a b"}}});
   EXPECT_THAT(ArgumentsOf(definition, SomeRun()),
               ElementsAre("sim", "--case=case.json", "out.json 1099511627782", "v=0.25", "{x}", "a b"));
 }
@@ -52,13 +52,15 @@ TEST(Placeholders, SeedsThatFollowEachOtherDiffer) {
 constexpr const char* kTemplate =
     "<seed>@seed@</seed>\n"
     "# @obstacles@\n"
-    "<box id=\"b@number@\" x=\"@x@\" y=\"@y@\" l=\"@length@\" h=\"@half_width@\" r=\"@radians@\" d=\"@degrees@\"/>\n"
+    "<box id=\"b@number@\" x=\"@x@\" y=\"@y@\" l=\"@length@\" h=\"@half_width@\" r=\"@radians@\" "
+    "d=\"@degrees@\"/>\n"
     "# @end@\n"
     "mail a@@b, v @parameters.speed@, @ alone, a @b c@\n";
 
 TEST(Template, RepeatsTheMarkedLinesForEachObstacle) {
   const Definition definition = WithSpeed();
-  ASSERT_TRUE(CheckTemplate(definition, kTemplate).ok()) << CheckTemplate(definition, kTemplate).error().message;
+  ASSERT_TRUE(CheckTemplate(definition, kTemplate).ok())
+      << CheckTemplate(definition, kTemplate).error().message;
   EXPECT_EQ(FillTemplate(definition, kTemplate, SomeRun()),
             "<seed>519</seed>\n"
             "<box id=\"b1\" x=\"1.5\" y=\"-2\" l=\"0.5\" h=\"0.1\" r=\"1.5707963267948966\" d=\"90\"/>\n"
@@ -81,7 +83,8 @@ TEST(Template, SaysTheLineOfWhatIsWrong) {
   EXPECT_THAT(wrong("@obstacles@\n@x@\n"), HasSubstr("there is no line with @end@"));
   EXPECT_THAT(wrong("@end@\n"), HasSubstr("line 1: one line with @obstacles@"));
   EXPECT_THAT(wrong("@obstacles@\n@end@\n@obstacles@\n@end@\n"), HasSubstr("line 3"));
-  EXPECT_THAT(wrong("a\n@obstacles@\n@xx@\n@end@\n"), HasSubstr("line 3: unknown mark 'xx'; did you mean 'x'?"));
+  EXPECT_THAT(wrong("a\n@obstacles@\n@xx@\n@end@\n"),
+              HasSubstr("line 3: unknown mark 'xx'; did you mean 'x'?"));
   EXPECT_THAT(wrong("@x@\n@obstacles@\n@end@\n"), HasSubstr("line 1: unknown mark 'x'"));
 }
 

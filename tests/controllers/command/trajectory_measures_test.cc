@@ -20,8 +20,8 @@ std::vector<std::vector<sim::RobotState>> Meeting() {
 }
 
 TEST(TrajectoryMeasures, AreThoseOfGenericInTheProgramsCoordinates) {
-  const Definition definition = DefinitionWith(
-      {{"point", nlohmann::json::array({{{"name", "goal"}, {"x", 11}, {"y", 1}}})}});
+  const Definition definition =
+      DefinitionWith({{"point", nlohmann::json::array({{{"name", "goal"}, {"x", 11}, {"y", 1}}})}});
   sim::RunSpec spec;
   spec.test_case.center = {12.0, 1.0};
   const auto measured = TrajectoryMeasures(definition, spec, Meeting());

@@ -19,14 +19,18 @@ using testing_support::TemporaryDirectory;
 
 class CommandsTest : public testing::Test {
  protected:
-  void Write(const std::string& name, const std::string& content) { std::ofstream(scratch_ / name) << content; }
-  ExperimentText Experiment(const std::string& more) {
-    return {"scenario = \"command\"\n[command]\nrun = [\"./sim\", \"{case}\"]\nmetrics = [\"items\"]\n"
-            "fitness = \"items\"\nfailure = \"items < 5\"\n" +
-                more,
-            scratch_ / "my.toml"};
+  void Write(const std::string& name, const std::string& content) {
+    std::ofstream(scratch_ / name) << content;
   }
-  Result<controllers::command::Definition> Added(const std::string& more, const std::vector<std::string>& allowed = {}) {
+  ExperimentText Experiment(const std::string& more) {
+    return {
+        "scenario = \"command\"\n[command]\nrun = [\"./sim\", \"{case}\"]\nmetrics = [\"items\"]\n"
+        "fitness = \"items\"\nfailure = \"items < 5\"\n" +
+            more,
+        scratch_ / "my.toml"};
+  }
+  Result<controllers::command::Definition> Added(const std::string& more,
+                                                 const std::vector<std::string>& allowed = {}) {
     TRY(const std::optional<std::string> hash, AddCommandOf(Experiment(more), {}, allowed));
     return CommandOf(*hash);
   }
@@ -86,7 +90,8 @@ TEST_F(CommandsTest, FilesStayBelowTheExperimentUnlessTheUserNamesThem) {
 
 TEST_F(CommandsTest, ATemplateIsOneOfTheFilesAndRight) {
   Write("course.xml", "<a/>\n");
-  EXPECT_THAT(ErrorOf("template = \"course.xml\"\n"), HasSubstr("template = \"course.xml\" is none of `files`"));
+  EXPECT_THAT(ErrorOf("template = \"course.xml\"\n"),
+              HasSubstr("template = \"course.xml\" is none of `files`"));
   EXPECT_THAT(ErrorOf("template = \"course.xml\"\nfiles = [\"course.xml\"]\n"),
               HasSubstr("course.xml: there is no line with @obstacles@"));
 }

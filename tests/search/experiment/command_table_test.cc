@@ -22,12 +22,12 @@ std::string ComplaintOf(const std::string& more, const std::vector<std::string>&
 }
 
 TEST(CommandTable, BecomesADefinition) {
-  const auto command = ReadCommand({std::string(kCommand) +
-                                        "cores = 2\nplace = { x = \"items\", y = \"items\", same_within = 1 }\n"
-                                        "[[command.parameter]]\nname = \"speed\"\nhigh = 1\n"
-                                        "[[command.parameter]]\nname = \"range\"\nhigh = 2.5\n",
-                                    "my.toml"},
-                                   {"command.wall_limit=30", "search.runs=5", "command.parameter.2.default=1"});
+  const auto command = ReadCommand(
+      {std::string(kCommand) + "cores = 2\nplace = { x = \"items\", y = \"items\", same_within = 1 }\n"
+                               "[[command.parameter]]\nname = \"speed\"\nhigh = 1\n"
+                               "[[command.parameter]]\nname = \"range\"\nhigh = 2.5\n",
+       "my.toml"},
+      {"command.wall_limit=30", "search.runs=5", "command.parameter.2.default=1"});
   ASSERT_TRUE(command.ok()) << command.error().message;
   ASSERT_TRUE(command->has_value());
   EXPECT_EQ((*command)->run, (std::vector<std::string>{"sim", "{case}"}));
@@ -47,8 +47,10 @@ TEST(CommandTable, AnExperimentWithoutItHasNone) {
 
 TEST(CommandTable, SaysWhereWhatIsWrongStands) {
   EXPECT_THAT(ComplaintOf("cores = 0\n"), HasSubstr("my.toml:7:1: cores = 0"));
-  EXPECT_THAT(ComplaintOf("[[command.metric]]\nname = \"a\"\nfrom = \"log:(\"\n"), HasSubstr("my.toml:9:1: the metric 'a'"));
-  EXPECT_THAT(ComplaintOf("corse = 1\n"), HasSubstr("my.toml:7:1: [command]: unknown key 'corse'; did you mean 'cores'?"));
+  EXPECT_THAT(ComplaintOf("[[command.metric]]\nname = \"a\"\nfrom = \"log:(\"\n"),
+              HasSubstr("my.toml:9:1: the metric 'a'"));
+  EXPECT_THAT(ComplaintOf("corse = 1\n"),
+              HasSubstr("my.toml:7:1: [command]: unknown key 'corse'; did you mean 'cores'?"));
   EXPECT_THAT(ComplaintOf("", {"command.cores=two"}), HasSubstr("--set command.cores=two: cores = \"two\""));
   EXPECT_THAT(ComplaintOf("", {"command.metric.2.name=b"}), HasSubstr("numbered 1, 2, 3"));
   EXPECT_THAT(ComplaintOf("", {"command.cores.x=1"}), HasSubstr("--set command.cores.x=1"));
