@@ -277,7 +277,7 @@ ReadDefinition Read(const json& table) {
   for (const std::string& name : reported)
     all.push_back({.name = name, .from = "", .formula = "", .unit = ""});
   definition.metrics.insert(definition.metrics.begin(), all.begin(), all.end());
-  read.complaint = FindContradiction(definition);
+  read.complaint = FindContradiction(definition, reported.size());
   return read;
 }
 

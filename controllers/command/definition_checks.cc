@@ -19,7 +19,7 @@ using generic::Formula;
 
 class Checks {
  public:
-  explicit Checks(const Definition& definition) : definition_(definition) {}
+  Checks(const Definition& definition, std::size_t named) : definition_(definition), named_(named) {}
 
   std::optional<Complaint> Find() {
     for (const auto check : {&Checks::Run, &Checks::Files, &Checks::Metrics, &Checks::Judgement,
@@ -82,7 +82,10 @@ class Checks {
   Found Metrics() {
     for (std::size_t i = 0; i < definition_.metrics.size(); ++i) {
       const Metric& metric = definition_.metrics[i];
-      const std::string path = Numbered("metric", i, "name");
+      const auto path_of = [&](const char* key) {
+        return i < named_ ? std::string("metrics") : Numbered("metric", i - named_, key);
+      };
+      const std::string path = path_of("name");
       if (!IsVariable(metric.name))
         return Complaint{path, "the metric '" + metric.name +
                                    "': a name has letters, digits and _, begins with a letter, and is no "
@@ -93,15 +96,13 @@ class Checks {
         return Complaint{path,
                          "the metric '" + metric.name + "' has both `from` and `formula`: one is possible"};
       if (metric.from.starts_with(kTrajectorySource)) {
-        if (auto complaint = MeasureComplaint(Numbered("metric", i, "from"), metric.from)) return complaint;
+        if (auto complaint = MeasureComplaint(path_of("from"), metric.from)) return complaint;
       } else if (!metric.from.empty()) {
         if (const Status right = CheckSource(metric.from); !right)
-          return Complaint{Numbered("metric", i, "from"),
-                           "the metric '" + metric.name + "': " + right.error().message};
+          return Complaint{path_of("from"), "the metric '" + metric.name + "': " + right.error().message};
       }
       if (!metric.formula.empty()) {
-        if (auto complaint = FormulaComplaint(Numbered("metric", i, "formula"), metric.formula))
-          return complaint;
+        if (auto complaint = FormulaComplaint(path_of("formula"), metric.formula)) return complaint;
       }
       names_.push_back(metric.name);
     }
@@ -212,13 +213,14 @@ class Checks {
   }
 
   const Definition& definition_;
+  std::size_t named_;
   std::vector<std::string> names_;  // of metrics
 };
 
 }  // namespace
 
-std::optional<Complaint> FindContradiction(const Definition& definition) {
-  return Checks(definition).Find();
+std::optional<Complaint> FindContradiction(const Definition& definition, std::size_t named) {
+  return Checks(definition, named).Find();
 }
 
 }  // namespace gauntlet::controllers::command

@@ -12,7 +12,7 @@ import math
 import random
 import sys
 
-RADIUS, TICK, LIMIT = 0.05, 0.2, 60.0  # m, s, s
+RADIUS, TICK, LIMIT = 0.05, 0.2, 40.0  # m, s, s
 DOOR = 2.0, 1.0  # m: the middle of the doorway
 # x, y, length, width (m) and degrees, counter-clockwise: the wall between the rooms
 WALLS = [(2.0, 0.3, 0.1, 0.6, 0.0), (2.0, 1.7, 0.1, 0.6, 0.0)]

@@ -72,7 +72,7 @@ std::string PlaceOf(std::span<const Assignment> assignments, const std::string& 
   for (const Assignment& assignment : assignments) {
     if (!assignment.path.starts_with(kInCommand)) continue;
     const std::string_view own = std::string_view(assignment.path).substr(kInCommand.size());
-    const bool near = path == own || path.starts_with(std::string(own) + ".");
+    const bool near = path == own || path.starts_with(std::string(own) + ".") || own.starts_with(path + ".");
     if (near && own.size() >= best) {
       best = own.size();
       place = assignment.where;

@@ -127,8 +127,7 @@ TEST_F(ProgramTest, ACorpusIsCheckedWithAMendedProgram) {
   ASSERT_EQ(Evolve().exit_code, 0);
   const std::string campaign = scratch_ / "c";
   ASSERT_EQ(Gauntlet({"minimise", campaign, "1", "--quiet"}).exit_code, 0);
-  const ProcessResult kept =
-      Gauntlet({"corpus", "add", campaign, "1", "--to", scratch_ / "corpus", "--quiet"});
+  const ProcessResult kept = Gauntlet({"corpus", "add", campaign, "1", "--to", scratch_ / "corpus"});
   ASSERT_EQ(kept.exit_code, 0) << kept.err;
   EXPECT_THAT(kept.out, HasSubstr(".command"));
   const ProcessResult failing =

@@ -69,8 +69,9 @@ Status AddPlugins(const sim::RunSpec& spec, std::vector<std::string>& arguments)
 // What gauntlet-worker prints with these arguments, which ask something of the library.
 Result<std::string> AskPlugin(std::vector<std::string> arguments, std::string_view input,
                               const std::string& library) {
-  // The worker has limits of its own; this one is for a worker that is stuck.
-  const CallOptions options{.deadline = std::chrono::seconds(60)};
+  // The worker has limits of its own, a minute for a command's setup and its probe each; this one is for a
+  // worker that is stuck.
+  const CallOptions options{.deadline = std::chrono::seconds(150)};
   arguments.insert(arguments.begin(), WorkerProgramPath());
   TRY(const CallOutput output, CallProcess(arguments, input, options));
   if (output.exit_code == 0) return output.out;
@@ -129,14 +130,17 @@ Result<std::string> DescribeBeginning(const sim::RunSpec& spec) {
 Result<proto::GoldenHashes> GoldenHashesOfThisMachine(const std::vector<std::string>& names) {
   std::vector<std::string> arguments = {"--golden"};
   arguments.insert(arguments.end(), names.begin(), names.end());
+  std::string command;
   for (const std::string& name : names) {
     constexpr std::string_view kPrefix = controllers::command::kGoldenPrefix;
     if (!name.starts_with(kPrefix)) continue;
     const std::string hash = name.substr(kPrefix.size());
     TRY(ReadPlugin(hash));
-    arguments.insert(arguments.end(), {"--plugin", controllers::FindPlugin(hash)->file});
+    command = controllers::FindPlugin(hash)->file;
+    arguments.insert(arguments.end(), {"--plugin", command});
   }
-  TRY(const std::string output, RunWorkerProgram(std::move(arguments), {}));
+  TRY(const std::string output, command.empty() ? RunWorkerProgram(std::move(arguments), {})
+                                                : AskPlugin(std::move(arguments), {}, command));
   if (output.empty()) return proto::GoldenHashes();
   Result<proto::GoldenHashes> hashes = proto::ReadGoldenHashes(output);
   if (hashes) return hashes;
