@@ -36,6 +36,7 @@ struct DispatchOptions {
   // Leases that the workers of one host have at once, together; 0 = as many as they have slots for.
   int most_per_host = 0;
   int cores_per_run = 1;  // that a run takes of its host: so many slots there are busy with it
+  bool LimitsHosts() const { return most_per_host > 0 || cores_per_run > 1; }
   // Share of runs, 0 to 1, that another worker simulates once more, to be compared.
   double audit_share = 0.0;
   // CPU time of one runner on one run, s; only there to end what would never end. Campaigns give more for

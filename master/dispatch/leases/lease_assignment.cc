@@ -7,19 +7,15 @@ namespace gauntlet {
 
 void Scheduler::List(InstanceId id, Worker& worker) {
   ListAlone(id, worker);
-  if (!LimitsHosts()) return;
+  if (!options_.LimitsHosts()) return;
   const std::string& host = trust_.HostOf(id);
   for (auto& [other, beside] : workers_) {
     if (other != id && trust_.HostOf(other) == host) ListAlone(other, beside);
   }
 }
 
-bool Scheduler::LimitsHosts() const {
-  return options_.most_per_host > 0 || options_.cores_per_run > 1;
-}
-
 bool Scheduler::IsFull(const std::string& host) const {
-  if (!LimitsHosts()) return false;
+  if (!options_.LimitsHosts()) return false;
   std::size_t leases = 0;
   std::size_t slots = 0;
   for (const auto& [id, worker] : workers_) {

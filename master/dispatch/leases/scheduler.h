@@ -115,7 +115,6 @@ class Scheduler {
   // lease_assignment.cc
   void List(InstanceId id, Worker& worker);       // and, of a host with a limit, the others there
   void ListAlone(InstanceId id, Worker& worker);  // where it belongs in available_, slots_ and busy_
-  bool LimitsHosts() const;                       // its options do
   bool IsFull(const std::string& host) const;     // it has as many leases as they say
   bool Slowed(InstanceId id, const Worker& worker) const;
   std::uint32_t Credit() const;  // leases per slot, by the predicted length of a run
