@@ -141,9 +141,10 @@ Result<std::optional<std::string>> AddCommandOf(const ExperimentText& experiment
   TRY(std::optional<Definition> definition, ReadCommand(experiment, sets));
   if (!definition) return std::optional<std::string>();
   if (IsForeign(experiment.file_name))
-    return InvalidInput(fmt::format("{}: its program would run in your name, and another user owns the file; a "
-                                    "copy of it and of what lies beside it is yours (cp -r)",
-                                    experiment.file_name));
+    return InvalidInput(
+        fmt::format("{}: its program would run in your name, and another user owns the file; a "
+                    "copy of it and of what lies beside it is yours (cp -r)",
+                    experiment.file_name));
   const fs::path parent = fs::path(experiment.file_name).parent_path();
   const fs::path folder = parent.empty() ? fs::path(".") : parent;
   std::vector<Source> sources;

@@ -19,8 +19,8 @@ namespace gauntlet::worker {
 // How many processes and threads a tree may have at the same time. The next one is refused (EAGAIN).
 inline constexpr int kMostTasksOfTree = 256;
 
-// Whether new processes and threads are asked for. A signal that comes meanwhile lets the call fail (EINTR), which
-// a program of our own making tries again and a shell does not.
+// Whether new processes and threads are asked for. A signal that comes meanwhile lets the call fail (EINTR),
+// which a program of our own making tries again and a shell does not.
 enum class Starting { kAsked, kFree };
 
 // Called by the root. From now on it and all below it can gain no rights (PR_SET_NO_NEW_PRIVS), have none of
