@@ -68,6 +68,7 @@ TEST_F(ProgramTest, OneThatFollowsItsSeedIsReproducible) {
   EXPECT_EQ(shown.at("reproducible"), "yes");
   const ProcessResult replayed = Gauntlet({"replay", scratch_ / "c", "3"});
   EXPECT_EQ(replayed.exit_code, 0) << replayed.err << replayed.out;
+  EXPECT_THAT(replayed.err, HasSubstr("gauntlet: its runs start ./sim.sh"));
 }
 
 // What is wrong is told before a campaign is made.

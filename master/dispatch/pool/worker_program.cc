@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "base/check.h"
+#include "base/printable.h"
+#include "base/shell_quoted.h"
 #include "base/system/atomic_file.h"
 #include "base/system/process_call.h"
 #include "base/system/regular_file.h"
@@ -53,6 +55,16 @@ Result<std::string> OfHash(const std::string& hash, const std::string& file, Res
   if (holds == hash) return bytes;
   return InvalidInput(fmt::format(
       "{} is another plug-in now: its SHA-256 is {}, the searches were begun with {}", file, holds, hash));
+}
+
+// Said once, before a program is started that a directory has brought along: it is the user who begins it.
+void AnnounceCommand(const std::string& hash, const std::string& text) {
+  static std::set<std::string> announced;
+  const auto definition = controllers::command::Parse(text);
+  if (!definition || !announced.insert(hash).second) return;
+  std::string line;
+  for (const std::string& argument : definition->run) line += " " + ShellQuoted(argument);
+  fmt::print(stderr, "gauntlet: its runs start{}\n", Printable(line));
 }
 
 // Names the libraries that the run needs.
@@ -113,7 +125,9 @@ Result<std::string> ReadPlugin(const std::string& hash) {
 
 Result<std::string> ReadCopy(const std::string& file, const std::string& hash) {
   TRY(CheckCopyIsOurs(file));
-  return OfHash(hash, file, ReadRegularFile(file, controllers::kMaxPluginBytes));
+  TRY(std::string bytes, OfHash(hash, file, ReadRegularFile(file, controllers::kMaxPluginBytes)));
+  AnnounceCommand(hash, bytes);
+  return bytes;
 }
 
 Result<std::string> DescribePlugin(const std::string& file) {

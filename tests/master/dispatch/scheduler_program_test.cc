@@ -26,10 +26,11 @@ class SchedulerProgramTest : public SchedulerTest {
  protected:
   SchedulerProgramTest() { Begin(Reproducible::kUnknown); }
 
-  void Begin(Reproducible known, std::uint32_t credit = 1, int most_per_host = 0) {
+  void Begin(Reproducible known, std::uint32_t credit = 1, int most_per_host = 0, int cores_per_run = 1) {
     DispatchOptions options = LeaseOptions(credit);
     options.reproducible = known;
     options.most_per_host = most_per_host;
+    options.cores_per_run = cores_per_run;
     scheduler_ = Scheduler(options, kFirstFence);
   }
   void JoinAt(InstanceId worker, const std::string& host, std::uint32_t slots = 1) {
@@ -270,6 +271,20 @@ TEST_F(SchedulerProgramTest, AHostHasNoMoreLeasesThanItMay) {
   EXPECT_THAT(Decide().leases, SizeIs(1));
   scheduler_.WorkerLeft(given[2].size() > 1 ? 1 : 2);
   EXPECT_LE(Decide().leases.size(), 1U) << "two slots are left on the host";
+}
+
+TEST_F(SchedulerProgramTest, ARunOfSeveralCoresTakesSoManySlotsOfItsHost) {
+  Begin(Reproducible::kYes, /*credit=*/1, /*most_per_host=*/0, /*cores_per_run=*/2);
+  JoinAt(1, "a", 4);
+  JoinAt(2, "b", 1);
+  JoinAt(3, "b", 1);
+  JoinAt(4, "c", 1);
+  SubmitRuns(1, 10);
+  std::map<InstanceId, std::size_t> given;
+  for (const LeaseOrder& order : Decide().leases) ++given[order.worker];
+  EXPECT_EQ(given[1], 2U);
+  EXPECT_EQ(given[2] + given[3], 1U);
+  EXPECT_EQ(given[4], 1U) << "a host of one core runs one at a time all the same";
 }
 
 // A program that crashes by chance, and takes longer then. Some workers die, some are silent for a while and
