@@ -67,6 +67,29 @@ std::vector<pid_t> SampleBelow(pid_t ancestor) {
   return below;
 }
 
+std::size_t TasksOfMachine() {
+  std::ifstream load("/proc/loadavg");
+  std::string averages;
+  std::string tasks;  // "2/345": running, all
+  load >> averages >> averages >> averages >> tasks;
+  std::size_t all = 0;
+  const std::size_t slash = tasks.find('/');
+  if (slash != std::string::npos) std::from_chars(tasks.data() + slash + 1, tasks.data() + tasks.size(), all);
+  return all;
+}
+
+bool GroupExceeds(pid_t group, std::size_t most) {
+  std::size_t found = 0;
+  std::error_code failed;
+  for (fs::directory_iterator entry("/proc", failed), end; !failed && entry != end; entry.increment(failed)) {
+    const std::string name = entry->path().filename();
+    pid_t process = 0;
+    if (std::from_chars(name.data(), name.data() + name.size(), process).ec != std::errc()) continue;
+    if (getpgid(process) == group && ++found > most) return true;
+  }
+  return false;
+}
+
 int ThreadsOf(pid_t process) {
   std::error_code failed;
   const fs::directory_iterator threads("/proc/" + std::to_string(process) + "/task", failed);

@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +18,12 @@ std::vector<pid_t> ProcessesBelow(pid_t ancestor);
 // The same by a look at those processes alone, where the kernel lists children (CONFIG_PROC_CHILDREN): for
 // who looks often. Some that start or end meanwhile may be missing.
 std::vector<pid_t> SampleBelow(pid_t ancestor);
+
+// Processes and threads of the whole machine, from a look of some microseconds; 0 when that cannot be said.
+std::size_t TasksOfMachine();
+
+// Whether a process group has more processes than that. Looks at no more than it must.
+bool GroupExceeds(pid_t group, std::size_t most);
 
 // Threads of a process; 0 when there is none.
 int ThreadsOf(pid_t process);

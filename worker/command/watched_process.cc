@@ -44,6 +44,9 @@ using std::chrono::milliseconds;
 // When a program is looked at first, and how far apart two looks are at most. A look costs up to 1 ms.
 constexpr milliseconds kFirstLook{20};
 constexpr milliseconds kMostBetweenLooks{250};
+// How often is looked whether the machine has many more processes, so that no program takes them all. Such a
+// look costs some microseconds.
+constexpr milliseconds kCrowdLook{10};
 // Its folder is looked at by every fourth.
 constexpr int kLooksPerFolder = 4;
 // Where the kernel tells no end of a process by a descriptor (before Linux 5.3).
@@ -121,6 +124,9 @@ Result<Image> MakeImage(const WatchedOptions& options) {
   CloseAllBut({socket});
   SetHardLimit(RLIMIT_CORE, 0);
   if (options.disk_bytes > 0) SetHardLimit(RLIMIT_FSIZE, rlim_t{options.disk_bytes});
+  // Of all processes of our user: no fewer than there are, and none of a super-user's.
+  if (const std::size_t tasks = TasksOfMachine(); tasks > 0)
+    SetHardLimit(RLIMIT_NPROC, tasks + kMostProcesses);
   for (const __rlimit_resource ours : {RLIMIT_AS, RLIMIT_CPU}) SetSoftLimit(ours, RLIM_INFINITY);
   TakeUsualSignals();
   int failed = chdir(options.folder.c_str()) == 0 ? 0 : errno;
@@ -166,18 +172,21 @@ class Watch {
                                            ? begin + std::chrono::duration_cast<Clock::duration>(
                                                          std::chrono::duration<double>(options_.wall_limit))
                                            : Clock::time_point::max();
+    const std::size_t before = TasksOfMachine();
     milliseconds between = kFirstLook;
     Clock::time_point next_look = begin + between;
     while (!Ended()) {
       Clock::time_point now = Clock::now();
       if (now >= wall_end) return ExceededLimit::kWall;
+      if (TasksOfMachine() > before + kMostProcesses && GroupExceeds(program_, kMostProcesses))
+        return ExceededLimit::kProcesses;
       if (now >= next_look) {
         if (const ExceededLimit exceeded = Look(); exceeded != ExceededLimit::kNone) return exceeded;
         between = std::min(2 * between, kMostBetweenLooks);
         now = Clock::now();
         next_look = now + between;
       }
-      Sleep(std::chrono::ceil<milliseconds>(std::min(next_look, wall_end) - now));
+      Sleep(std::min(kCrowdLook, std::chrono::ceil<milliseconds>(std::min(next_look, wall_end) - now)));
     }
     return ExceededLimit::kNone;
   }
