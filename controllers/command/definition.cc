@@ -231,6 +231,9 @@ std::optional<Complaint> ReadTexts(const std::string& name, const json& value,
   const bool right =
       value.is_array() && std::ranges::all_of(value, [](const json& one) { return one.is_string(); });
   if (!right) return Complaint{name, name + " = " + JsonText(value) + ", expected a list of texts"};
+  if (value.size() > kMostElements)
+    return Complaint{name, name + " has " + std::to_string(value.size()) + " texts; " +
+                               std::to_string(kMostElements) + " are possible"};
   for (const json& one : value) texts.push_back(one.get<std::string>());
   return std::nullopt;
 }

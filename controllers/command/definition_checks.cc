@@ -1,6 +1,7 @@
 #include "controllers/command/definition_checks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -152,6 +153,12 @@ class Checks {
         return Complaint{Numbered("parameter", i, "name"), "'" + one.name + "' is no name"};
       if (!names.insert(one.name).second)
         return Complaint{Numbered("parameter", i, "name"), "the parameter '" + one.name + "' is given twice"};
+      const auto whole = [](double value) { return value == std::floor(value); };
+      if (one.integer && !(whole(one.default_value) && whole(one.min) && whole(one.max)))
+        return Complaint{
+            Numbered("parameter", i, "default"),
+            "the parameter '" + one.name + "' is an integer: default = " + NumberText(one.default_value) +
+                ", low = " + NumberText(one.min) + " and high = " + NumberText(one.max) + " must be whole"};
       if (one.min > one.default_value || one.default_value > one.max)
         return Complaint{Numbered("parameter", i, "default"),
                          "the parameter '" + one.name + "': its default " + NumberText(one.default_value) +

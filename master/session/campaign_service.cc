@@ -22,7 +22,6 @@
 #include "master/store/event_kinds.h"
 #include "master/store/run_numbers.h"
 #include "proto/json_text.h"
-#include "proto/run_failure.h"
 #include "search/experiment/experiment_file.h"
 #include "search/search_table.h"
 
@@ -103,8 +102,8 @@ Status CheckCommands(const std::vector<SearchPlan>& plans) {
     TRY(const sim::RunResult result,
         SimulateInRunner(SpecOf(experiment, EmptyArena(experiment.arena), experiment.seed)));
     if (result.verdict == sim::Verdict::kCompleted) continue;
-    return InvalidInput(fmt::format("the program gives no result in the arena without obstacles: it {}",
-                                    proto::Explained(result.message)));
+    return InvalidInput(
+        fmt::format("the program gives no result in the arena without obstacles: {}", result.message));
   }
   return Ok{};
 }

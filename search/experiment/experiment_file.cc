@@ -275,6 +275,9 @@ Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment)
   if (!assignments) return Error{assignments.error().kind, Printable(assignments.error().message)};
   const std::filesystem::path folder = std::filesystem::path(experiment.file_name).parent_path();
   std::vector<std::string> files;
+  const bool is_command = std::ranges::any_of(*assignments, [](const Assignment& assignment) {
+    return assignment.path == "scenario" && TextOf(assignment.value) == controllers::command::kScenario;
+  });
   for (const Assignment& assignment : *assignments) {
     const auto* other = std::get_if<OtherToml>(&assignment.value);
     if (assignment.path == kPluginsKey && other != nullptr && other->texts) {
@@ -282,8 +285,12 @@ Result<std::vector<std::string>> PluginFilesOf(const ExperimentText& experiment)
     }
     const auto* hash = std::get_if<std::string>(&assignment.value);
     const bool names_library = assignment.path == "plugin" || assignment.path == "scenario_plugin";
-    if (names_library && hash != nullptr && IsSha256(*hash))
-      files.push_back(PluginFileIn((folder / "plugins").string(), *hash));
+    if (!names_library || hash == nullptr || !IsSha256(*hash)) continue;
+    std::string file = PluginFileIn((folder / "plugins").string(), *hash);
+    std::error_code missing;
+    // One that is not beside the experiment may be given by --plugin.
+    if (is_command && !std::filesystem::exists(file, missing)) continue;
+    files.push_back(std::move(file));
   }
   // Somebody else's file does not choose what runs in our name.
   for (const std::filesystem::path file : files) {

@@ -84,7 +84,10 @@ Result<Experiment> ExperimentOf(const CorpusEntry& entry, const std::vector<std:
     }
     const std::string named = controller.empty() ? SettingOf(entry.content, "controller") : controller;
     if (plugins.empty() && (tested == nullptr || controllers::FindController(named) == nullptr))
-      error.message += "; --plugin LIB.so names the library of one that a plug-in brings";
+      error.message +=
+          "; --plugin LIB.so names the library of one that a plug-in brings, --plugin NAME.toml the "
+          "experiment "
+          "of one that a program simulates";
     return error;
   }
   experiment->name = "check";

@@ -115,6 +115,15 @@ Result<WatchedOptions> CommandRuns::OptionsOf(const std::string& folder, const s
 }
 
 Result<CommandRuns::Ended> CommandRuns::RunIn(const std::string& folder, const sim::RunSpec& spec) {
+  for (std::size_t i = 0; i < spec.test_case.obstacles.size(); ++i) {
+    const sim::ObstacleGene& gene = spec.test_case.obstacles[i];
+    if (gene.Plain()) continue;
+    Ended refused;
+    refused.result =
+        Refused(fmt::format("limits: obstacle {} {}, of which a program of yours is told nothing", i + 1,
+                            gene.Lit() ? "carries lights" : "moves"));
+    return refused;
+  }
   TRY(const command::Definition* const definition, files_.Open(spec.scenario_plugin));
   TRY(const WatchedOptions options, OptionsOf(folder, spec, *definition));
   TRY(files_.LayInto(folder, spec.scenario_plugin));

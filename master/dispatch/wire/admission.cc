@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "controllers/command/definition.h"
+
 #include "master/dispatch/dispatch_log.h"
 
 namespace gauntlet {
@@ -39,6 +41,12 @@ std::optional<Refusal> ReasonToRefuse(const proto::Hello& hello, const CampaignI
           fmt::format("this worker was built without the controller '{}', which the campaign uses",
                       difference->controller));
     }
+    if (difference->controller.starts_with(controllers::command::kGoldenPrefix))
+      return SameForAll(
+          "the campaign's probe prints something else on this worker's machine than where the campaign was "
+          "begun, "
+          "so the program may be another version there: compare what the command `probe` of the experiment "
+          "prints");
     const std::string theirs =
         fmt::format("this worker's golden hash of controller '{}' is {:016x}, the campaign's is ",
                     difference->controller, *difference->offered);
