@@ -34,7 +34,8 @@ TEST(CorpusExperiment, OfAControllerThatNobodyKnowsThePlugInIsAskedFor) {
   const auto refused = ExperimentOf(entry, {}, {});
   ASSERT_FALSE(refused.ok());
   EXPECT_THAT(refused.error().message,
-              testing::EndsWith("; --plugin LIB.so names the library of one that a plug-in brings"));
+              testing::EndsWith("; --plugin LIB.so names the library of one that a plug-in brings, --plugin "
+                                "NAME.toml the experiment of one that a program simulates"));
 }
 
 }  // namespace
