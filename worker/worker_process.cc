@@ -27,6 +27,7 @@
 #include "proto/access_file.h"
 #include "proto/run_codec.h"
 #include "proto/run_failure.h"
+#include "worker/command/command_environment.h"
 #include "worker/command/probe.h"
 #include "worker/runner/fork_server.h"
 #include "worker/runner/runner_pool.h"
@@ -200,7 +201,9 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
   if (const Status allowed = AllowDescriptors(options.slots); !allowed.ok()) {
     return Complain(allowed.error().message, kExitRefused);
   }
-  Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run, options.plugins);
+  PluginSettings plugins = options.plugins;
+  plugins.setups = MakeSharedSetups();
+  Result<std::unique_ptr<ForkServer>> fork_server = ForkServer::Start(run, plugins);
   if (!fork_server.ok()) return Complain(fork_server.error().message, ExitCodeOf(fork_server.error()));
   ExplainAborts("gauntlet-worker");  // not of the fork server and its runners, whose aborts are theirs
   const UniqueFd signals = BlockStopSignals();
@@ -215,7 +218,7 @@ int RunWorker(const WorkerOptions& options, const RunFunction& run) {
   }
   if (!access->has_value()) return kExitDone;
   Result<proto::GoldenHashes> golden_hashes =
-      GoldenHashesOf((*access)->controllers, options.golden_hashes, options.plugins);
+      GoldenHashesOf((*access)->controllers, options.golden_hashes, plugins);
   if (!golden_hashes) {
     spdlog::error("{}", golden_hashes.error().message);
     return kExitRefused;

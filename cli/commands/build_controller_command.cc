@@ -12,6 +12,7 @@
 #include "base/system/atomic_file.h"
 #include "base/system/process_call.h"
 #include "base/system/program_path.h"
+#include "base/system/temporary_folder.h"
 #include "cli/build_errors.h"
 #include "cli/commands.h"
 #include "cli/options/options.h"
@@ -34,25 +35,6 @@ struct BuildControllerOptions {
   std::string output;
   std::string table;
   std::string sdk;
-};
-
-// A folder for the build that is gone afterwards.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "gauntlet-build-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  ~ScratchFolder() {
-    std::error_code error;
-    if (!path_.empty()) fs::remove_all(path_, error);
-  }
-  const std::string& path() const { return path_; }  // "": none could be made
-
- private:
-  std::string path_;
 };
 
 // As an argument of CMake, whatever bytes it holds.
@@ -142,7 +124,7 @@ Status FindSdk(const fs::path& prefix) {
 }
 
 Status Build(CommandContext& context, const BuildControllerOptions& options, const std::string& table) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch("build");
   if (scratch.path().empty()) return Error{ErrorKind::kIo, "no folder can be made in $TMPDIR or /tmp"};
   if (!table.empty()) {
     TRY(WriteOutputFile(scratch.path() + "/table.cc", table));

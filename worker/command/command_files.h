@@ -18,6 +18,7 @@ class CommandFiles {
  public:
   explicit CommandFiles(const PluginSettings& settings) : settings_(settings) {}
 
+  const PluginSettings& settings() const { return settings_; }
   // Stays valid. Error: there is none, others may write it, or its hash is another one.
   Result<const controllers::command::Definition*> Open(const std::string& hash);
   // Copies the files of an opened definition into a folder. Error: as Open.

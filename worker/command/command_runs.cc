@@ -96,7 +96,7 @@ Result<WatchedOptions> CommandRuns::OptionsOf(const std::string& folder, const s
                                               const command::Definition& definition) {
   auto environment = environments_.find(spec.scenario_plugin);
   if (environment == environments_.end()) {
-    TRY(std::vector<std::string> after_setup, EnvironmentAfterSetup(definition));
+    TRY(std::vector<std::string> after_setup, SharedEnvironment(settings_, spec.scenario_plugin, definition));
     environment = environments_.emplace(spec.scenario_plugin, std::move(after_setup)).first;
   }
   const auto wall = spec.scenario_parameters.find(command::kWallLimit);
@@ -166,12 +166,12 @@ Result<CommandRuns::Ended> CommandRuns::RunIn(const std::string& folder, const s
 }
 
 Result<CommandRuns::Ended> CommandRuns::Run(const sim::RunSpec& spec) {
-  TRY(const ScratchFolder scratch, ScratchFolder::Make(scratch_));
+  TRY(const ScratchFolder scratch, ScratchFolder::Make(settings_.scratch));
   std::error_code failed;
   if (!fs::is_empty(scratch.path(), failed)) {
     return InvalidInput(fmt::format(
         "{} is not empty: what it holds could be taken for what the program writes. Give a new folder",
-        scratch_));
+        settings_.scratch));
   }
   return RunIn(fs::absolute(scratch.path()), spec);
 }

@@ -17,7 +17,7 @@ namespace gauntlet::worker {
 // watched (watched_process.h), and what it leaves there is read.
 class CommandRuns {
  public:
-  explicit CommandRuns(const PluginSettings& settings) : files_(settings), scratch_(settings.scratch) {}
+  explicit CommandRuns(const PluginSettings& settings) : settings_(settings), files_(settings) {}
 
   // The encoded RunnerReport. Without a result this process ends in a way of which ClassifyExit makes what
   // befell the program, after saying on stderr how that ended and what it printed last.
@@ -32,8 +32,8 @@ class CommandRuns {
   Result<WatchedOptions> OptionsOf(const std::string& folder, const sim::RunSpec& spec,
                                    const controllers::command::Definition& definition);
 
+  PluginSettings settings_;
   CommandFiles files_;
-  std::string scratch_;
   std::map<std::string, std::vector<std::string>> environments_;  // after setup, by the definition's hash
 };
 

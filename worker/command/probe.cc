@@ -53,7 +53,7 @@ Result<proto::GoldenHashes> AskSeparately(const std::vector<std::string>& hashes
   const pid_t child = fork();
   if (child < 0) return SystemError("cannot start a process", errno);
   if (child == 0) {
-    CloseAllBut({pipe.second.get()});
+    CloseAllBut({pipe.second.get(), settings.setups ? settings.setups->get() : -1});
     if (DieWithParent(parent)) WriteFrame(pipe.second.get(), ProbeAll(hashes, settings));
     _exit(0);
   }
@@ -71,7 +71,7 @@ Result<proto::GoldenHashes> AskSeparately(const std::vector<std::string>& hashes
 
 Result<std::uint64_t> ProbeOf(CommandFiles& files, const std::string& hash) {
   TRY(const command::Definition* const definition, files.Open(hash));
-  TRY(std::vector<std::string> environment, EnvironmentAfterSetup(*definition));
+  TRY(std::vector<std::string> environment, SharedEnvironment(files.settings(), hash, *definition));
   TRY(const ScratchFolder scratch, ScratchFolder::Make(""));
   const std::string folder = std::filesystem::absolute(scratch.path());
   TRY(files.LayInto(folder, hash));

@@ -293,11 +293,14 @@ Result<WatchedOutcome> RunWatched(const WatchedOptions& options) {
     std::memcpy(&failed, failure->bytes.data(), sizeof failed);
     return NotExecuted(image.path, failed);
   }
-  // Whoever may write no more ends by SIGXFSZ, or as it ends of an error.
-  const bool full = outcome.wait_status != 0 && outcome.exceeded == ExceededLimit::kNone &&
-                    options.disk_bytes > 0 && BytesIn(options.folder) >= options.disk_bytes;
-  if (full || (WIFSIGNALED(outcome.wait_status) && WTERMSIG(outcome.wait_status) == SIGXFSZ))
-    outcome.exceeded = ExceededLimit::kDisk;
+  // What a quick one has left is looked at now. Whoever may write no more ends by SIGXFSZ, or as it ends of
+  // an error.
+  if (outcome.exceeded == ExceededLimit::kNone && options.disk_bytes > 0) {
+    const std::uint64_t bytes = BytesIn(options.folder);
+    const bool full = bytes > options.disk_bytes || (outcome.wait_status != 0 && bytes == options.disk_bytes);
+    const bool ended_by_it = WIFSIGNALED(outcome.wait_status) && WTERMSIG(outcome.wait_status) == SIGXFSZ;
+    if (full || ended_by_it) outcome.exceeded = ExceededLimit::kDisk;
+  }
   outcome.cpu_seconds = ChildrensSeconds() - before;
   return outcome;
 }

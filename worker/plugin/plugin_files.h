@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ struct PluginSettings {
   std::vector<std::string> files = {};  // these libraries instead, if one has the hash
   std::string scratch = "";  // working directory of a run, which stays; "": one that is removed after the run
   LoadPluginFunction load = nullptr;
+  // A file in memory in which the processes of a worker keep what the setup of a command left
+  // (worker/command/command_environment.h); null: each process asks for itself.
+  std::shared_ptr<const UniqueFd> setups = nullptr;
 };
 
 // Not for sharing between threads.

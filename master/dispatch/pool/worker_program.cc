@@ -31,6 +31,8 @@ namespace {
 
 // A kill comes from outside (a memory killer, an operator): the pure question may be asked again this often.
 constexpr int kTries = 3;
+// As gauntlet-worker ends when what it was given cannot be simulated on this machine, after saying why.
+constexpr int kExitUnusable = 2;
 
 // stdout of gauntlet-worker with these arguments; its stderr is ours.
 Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::string_view input) {
@@ -42,6 +44,7 @@ Result<std::string> RunWorkerProgram(std::vector<std::string> arguments, std::st
     TRY(CallOutput output, CallProcess(arguments, input, options));
     if (output.exit_code == 0) return std::move(output.out);
     if (output.signal == SIGKILL && attempt < kTries) continue;
+    if (output.exit_code == kExitUnusable) return InvalidInput("the run cannot be simulated here: see above");
     return Error{ErrorKind::kInternal,
                  fmt::format("{} ended {} {}", program, output.signal != 0 ? "by signal" : "with status",
                              output.signal != 0 ? output.signal : output.exit_code)};

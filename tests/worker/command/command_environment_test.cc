@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -54,6 +56,34 @@ TEST(CommandEnvironmentTest, ASetupThatFailsIsToldWithWhatItPrinted) {
     EXPECT_EQ(environment.error().message, "the command's setup ended with exit code 3\nno license\n");
   }
   EXPECT_FALSE(EnvironmentAfterSetup(WithSetup("export A='")).ok());
+}
+
+// Runners end with programs that crash, and are started anew: the setup is not.
+TEST(CommandEnvironmentTest, TheProcessesOfAWorkerRunASetupOnce) {
+  if (testing_support::kSanitized) GTEST_SKIP();
+  const testing_support::TemporaryDirectory folder;
+  const std::string count = folder.path() / "count";
+  const std::string hash(64, 'a');
+  const auto definition =
+      WithSetup("echo once >> " + count + "; [ $(wc -l < " + count + ") -ge 2 ] && export A=1");
+  const PluginSettings settings{.setups = MakeSharedSetups()};
+  ASSERT_TRUE(settings.setups);
+  EXPECT_FALSE(SharedEnvironment(settings, hash, definition).ok()) << "what failed is tried again";
+  const auto other = SharedEnvironment(settings, std::string(64, 'b'), WithSetup("export B=2"));
+  ASSERT_TRUE(other.ok());
+  for (int runner = 0; runner < 3; ++runner) {
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      const auto environment = SharedEnvironment(settings, hash, definition);
+      _exit(environment.ok() && std::ranges::count(*environment, "A=1") == 1 ? 0 : 1);
+    }
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+  }
+  EXPECT_EQ(testing_support::ReadFile(count), "once\nonce\n");
+  EXPECT_THAT(*SharedEnvironment(settings, std::string(64, 'b'), WithSetup("exit 1")), Contains("B=2"));
 }
 
 TEST(CommandEnvironmentTest, WhatSetupStartsDoesNotStay) {

@@ -238,6 +238,14 @@ TEST_F(WatchedProcessTest, OneFileAndWhatItPrintsAreLimited) {
   }
 }
 
+// It may be gone before its folder is looked at for the first time.
+TEST_F(WatchedProcessTest, WhatAQuickOneHasLeftIsLimitedToo) {
+  options_.disk_bytes = std::uint64_t{4} << 20;
+  const WatchedOutcome outcome = Sh("for i in 1 2 3 4 5 6; do head -c 1000000 /dev/zero > $i; done");
+  EXPECT_EQ(outcome.exceeded, ExceededLimit::kDisk);
+  EXPECT_EQ(outcome.wait_status, 0);
+}
+
 TEST_F(WatchedProcessTest, OneThatStartsProcessesWithoutEndEndsWithAllOfThem) {
   options_.wall_limit = 60.0;
   // Not quite without end: what goes wrong here must not take the machine along.

@@ -1,0 +1,152 @@
+#include "cli/adopt/project_folder.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "base/printable.h"
+#include "base/shell_quoted.h"
+#include "base/split.h"
+#include "controllers/command/outcome.h"
+
+namespace gauntlet {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostAbove = 6;  // folders above the file's
+constexpr std::uint64_t kMostProjectBytes = std::uint64_t{1} << 30;
+
+// Where ARGoS looks: as it is named, or with an ending.
+bool IsThere(const fs::path& library) {
+  std::error_code failed;
+  for (const char* ending : {"", ".so"})
+    if (fs::is_regular_file(library.string() + ending, failed)) return true;
+  return false;
+}
+
+bool FoundElsewhere(const std::string& library) {
+  if (library.starts_with('/')) return IsThere(library);
+  const char* const path = std::getenv("ARGOS_PLUGIN_PATH");
+  for (const std::string& folder : Split(path == nullptr ? "" : path, ':'))
+    if (!folder.empty() && IsThere(fs::path(folder) / library)) return true;
+  return false;
+}
+
+bool IsKeptByVersionControl(const fs::path& path) {
+  return path.filename() == ".git" || path.filename() == ".hg" || path.filename() == ".svn";
+}
+
+// "a/b" and "a" of "a/b/c".
+void AddParents(const std::string& path, std::set<std::string>& folders) {
+  for (fs::path parent = fs::path(path).parent_path(); !parent.empty(); parent = parent.parent_path())
+    folders.insert(parent.string());
+}
+
+}  // namespace
+
+Result<std::string> FindProjectFolder(const std::string& argos_file,
+                                      const std::vector<std::string>& libraries) {
+  std::error_code failed;
+  std::vector<fs::path> folders = {fs::current_path(failed)};
+  fs::path above = fs::canonical(argos_file, failed).parent_path();
+  for (int i = 0; i < kMostAbove && above != above.root_path(); ++i, above = above.parent_path())
+    folders.push_back(above);
+  std::string missing;
+  for (const fs::path& folder : folders) {
+    const auto lacking = std::ranges::find_if(libraries, [&](const std::string& library) {
+      return !IsThere(folder / library) && !FoundElsewhere(library);
+    });
+    if (lacking == libraries.end()) {
+      // Without libraries that are its own, a project is where its file is.
+      const bool anywhere = std::ranges::all_of(libraries, FoundElsewhere);
+      return (anywhere && folders.size() > 1 ? folders[1] : folder).string();
+    }
+    missing = *lacking;
+  }
+  return InvalidInput(
+      fmt::format("{}: its library {} is neither in {} nor in the folder of the file or above it, nor "
+                  "in ARGOS_PLUGIN_PATH: build the project first, and call adopt from the folder from "
+                  "which you start argos3",
+                  Printable(argos_file), Printable(missing), Printable(folders.front().string())));
+}
+
+std::map<std::string, FileStamp> FilesIn(const std::string& folder) {
+  std::map<std::string, FileStamp> files;
+  std::error_code failed;
+  for (auto entry = fs::recursive_directory_iterator(folder, failed); !failed && entry != fs::end(entry);
+       entry.increment(failed)) {
+    if (IsKeptByVersionControl(entry->path())) entry.disable_recursion_pending();
+    if (!entry->is_regular_file(failed)) continue;
+    const auto written = entry->last_write_time(failed).time_since_epoch();
+    files[entry->path().lexically_relative(folder).string()] = {
+        entry->file_size(failed), std::chrono::duration_cast<std::chrono::nanoseconds>(written).count()};
+  }
+  return files;
+}
+
+Status CopyProject(const std::string& project, const std::string& folder) {
+  std::uint64_t bytes = 0;
+  for (const auto& [name, stamp] : FilesIn(project)) bytes += stamp.size;
+  if (bytes > kMostProjectBytes)
+    return InvalidInput(
+        fmt::format("{} holds {} MB, and is copied once to see what a run writes: at most {} MB are "
+                    "possible. Give a folder with what the experiment needs",
+                    Printable(project), bytes >> 20, kMostProjectBytes >> 20));
+  std::error_code failed;
+  const auto options = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
+  for (const fs::directory_entry& entry : fs::directory_iterator(project, failed)) {
+    if (IsKeptByVersionControl(entry.path())) continue;
+    fs::copy(entry.path(), fs::path(folder) / entry.path().filename(), options, failed);
+    if (failed)
+      return InvalidInput(
+          fmt::format("{} cannot be copied: {}", Printable(entry.path().string()), failed.message()));
+  }
+  return Ok{};
+}
+
+std::string RunScript(const RunFolderPlan& plan) {
+  std::set<std::string> folders;  // that are the run's own
+  for (const auto& [path, name] : plan.libraries) AddParents(path, folders);
+  for (const std::string& path : plan.written) AddParents(path, folders);
+  const auto in_project = [&](const std::string& path) { return ShellQuoted(plan.project + "/" + path); };
+  std::string text = fmt::format(
+      "#!/bin/sh\n# Written by gauntlet adopt: makes this folder one in which the project's experiment runs, "
+      "and runs "
+      "it.\nproject={}\nown=\"$PWD\"/{}\n",
+      ShellQuoted(plan.project), ShellQuoted(plan.own));
+  if (!folders.empty()) text += "mkdir -p";
+  for (const std::string& folder : folders) text += " " + ShellQuoted(folder);
+  text += "\n# What the campaign keeps of the project, whatever becomes of it.\n";
+  for (const auto& [path, name] : plan.libraries)
+    text += fmt::format("ln -s \"$own\"/lib/{} {}\n", ShellQuoted(name), ShellQuoted(path));
+  text += "# What a run writes is its own; all other entries are the project's.\n";
+  std::error_code failed;
+  for (const std::string& path : plan.written)
+    if (fs::exists(plan.project + "/" + path, failed))
+      text += fmt::format("cp {} {}\n", in_project(path), ShellQuoted(path));
+  text += "ln -s \"$project\"/* . 2>/dev/null\n";
+  for (const std::string& folder : folders)
+    if (fs::exists(plan.project + "/" + folder, failed))
+      text += fmt::format("ln -s {}/* {}/ 2>/dev/null\n", in_project(folder), ShellQuoted(folder));
+  text += fmt::format(R"(export ARGOS_PLUGIN_PATH="$own/plugins"
+export LD_LIBRARY_PATH="$own/lib${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}"
+argos3 -n -c "$1"
+code=$?
+[ $code -eq 0 ] && [ -e gauntlet-trajectory.csv ] && exit 0
+if [ ! -e gauntlet-trajectory.csv.draft ] && grep -q 'Error while trying to distribute entities' {0} &&
+    grep -q -E 'Exceeded max trials|Impossible to place entity' {0}; then
+  echo 'gauntlet: the robots find no room' >&2
+fi
+[ $code -ne 0 ] && exit $code
+echo 'gauntlet: argos3 ended before the experiment did' >&2
+exit 1
+)",
+                      controllers::command::kStderrFile);
+  return text;
+}
+
+}  // namespace gauntlet
