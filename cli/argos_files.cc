@@ -1,5 +1,6 @@
 #include "cli/argos_files.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -8,10 +9,14 @@
 
 #include "base/system/atomic_file.h"
 #include "cli/output/output_file.h"
+#include "controllers/command/placeholders.h"
+#include "controllers/registry.h"
 #include "controllers/run_start.h"
+#include "master/directory/commands.h"
 #include "proto/run_codec.h"
 #include "search/cases/argos_controllers.h"
 #include "search/cases/argos_export.h"
+#include "search/cases/argos_template.h"
 
 namespace gauntlet {
 namespace {
@@ -63,12 +68,26 @@ std::string Unlikeness(const ArgosControllers& own, const sim::RunSpec& spec) {
                      own.id, spec.controller, unlike);
 }
 
+// The very file that a run of an ARGoS project had.
+Result<ArgosFile> FileOfCommand(RunId id, const sim::RunSpec& spec) {
+  TRY(const controllers::command::Definition definition, CommandOf(spec.scenario_plugin));
+  const auto form =
+      std::ranges::find(definition.files, definition.case_template, &controllers::command::File::name);
+  if (!definition.case_template.ends_with(".argos") || form == definition.files.end())
+    return InvalidInput(fmt::format("run {} is one of a program that is given no .argos file", id));
+  const auto folder =
+      std::filesystem::path(controllers::FindPlugin(spec.scenario_plugin)->file).parent_path();
+  TRY(const std::string text, ReadSmallFile(folder / kCommandFiles / form->hash, kMostControllerBytes));
+  return ArgosFile{WithoutRecorder(controllers::command::FillTemplate(definition, text, spec)), {}};
+}
+
 Result<ArgosFile> FileOf(const StoredCampaign& campaign, RunId id,
                          const std::optional<ArgosControllers>& controllers) {
   TRY(const std::optional<StoredRun> stored, campaign.view.store->LoadRun(id));
   if (!stored.has_value())
     return Error{ErrorKind::kNotFound, fmt::format("there is no run {} in this campaign", id)};
   TRY(const sim::RunSpec spec, proto::DecodeRunSpec(stored->spec));
+  if (spec.scenario == controllers::command::kScenario) return FileOfCommand(id, spec);
   const Result<sim::RunStart> start = controllers::StartOf(spec);
   if (!start)
     return Error{start.error().kind, fmt::format("run {} cannot begin: {}", id, start.error().message)};

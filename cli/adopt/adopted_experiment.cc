@@ -171,27 +171,26 @@ double ObstacleStep(const sim::Rectangle& area) {
   return std::max(0.005, power);
 }
 
-std::optional<sim::ObstacleGene> ObstacleInTheWay(const AdoptedProject& project) {
-  const sim::Rectangle area = ObstacleArea(project);
-  const double step = ObstacleStep(area);
-  const double length = 6.0 * step;
-  // Squares that were visited most, one of which is not too near to where a robot or a thing begins.
+std::optional<sim::ObstacleGene> ObstacleInTheWay(const AdoptedProject& project, const TrialRun& run) {
+  const double step = ObstacleStep(ObstacleArea(project));
+  // Squares by how often they were visited.
   std::map<std::pair<int, int>, int> visits;
-  for (const Pose& pose : project.poses)
+  for (const Pose& pose : run.poses)
     ++visits[{static_cast<int>(std::floor(pose.x / step)), static_cast<int>(std::floor(pose.y / step))}];
   std::vector<std::pair<int, std::pair<int, int>>> most;
   for (const auto& [square, count] : visits) most.emplace_back(-count, square);
   std::ranges::sort(most);
-  const double apart = length / 2.0 + RobotRadius(project) + kAroundRobot;
-  for (const auto& [count, square] : most) {
-    const sim::Vec2 place((square.first + 0.5) * step, (square.second + 0.5) * step);
-    const auto near = [&](const ArenaBody& body) {
-      const sim::Vec2 nearest =
-          place.cwiseMax(sim::Vec2(body.x_min, body.y_min)).cwiseMin(sim::Vec2(body.x_max, body.y_max));
-      return (nearest - place).norm() < apart;
-    };
-    if (std::ranges::any_of(project.robots, near) || std::ranges::any_of(project.fixed, near)) continue;
-    return sim::ObstacleGene{place.x(), place.y(), length, step, 0.0};
+  for (const double length : {6.0 * step, 3.0 * step, step}) {
+    for (const auto& [count, square] : most) {
+      const sim::Vec2 place((square.first + 0.5) * step, (square.second + 0.5) * step);
+      const sim::Vec2 half(length / 2.0 + kAroundRobot, step / 2.0 + kAroundRobot);
+      const auto touches = [&](const ArenaBody& body) {
+        return place.x() + half.x() > body.x_min && place.x() - half.x() < body.x_max &&
+               place.y() + half.y() > body.y_min && place.y() - half.y() < body.y_max;
+      };
+      if (std::ranges::any_of(run.bodies, touches)) continue;
+      return sim::ObstacleGene{Rounded(place.x()), Rounded(place.y()), Rounded(length), Rounded(step), 0.0};
+    }
   }
   return std::nullopt;
 }

@@ -35,9 +35,9 @@ double ObstacleStep(const sim::Rectangle& area);
 // Half the larger side of the largest robot's bounding box, m.
 double RobotRadius(const AdoptedProject& project);
 
-// Where an obstacle of this size would stand most in the robots' way without touching one at its beginning;
-// nothing when there is no such place.
-std::optional<sim::ObstacleGene> ObstacleInTheWay(const AdoptedProject& project);
+// An obstacle that would stand most in the way of robots that went so, without touching anything at its
+// beginning; nothing when there is no place for one.
+std::optional<sim::ObstacleGene> ObstacleInTheWay(const AdoptedProject& project, const TrialRun& run);
 
 // The experiment, as TOML.
 std::string AdoptedExperimentText(const AdoptedProject& project);

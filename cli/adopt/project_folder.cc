@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
@@ -46,6 +47,14 @@ void AddParents(const std::string& path, std::set<std::string>& folders) {
     folders.insert(parent.string());
 }
 
+// Leads to the same place, where that is outside of the project.
+void CopyLink(const fs::path& link, const fs::path& copy, const std::string& project,
+              std::error_code& failed) {
+  const fs::path target = fs::weakly_canonical(link, failed);
+  const bool inside = target.string().starts_with(project + "/");
+  fs::create_symlink(inside ? fs::read_symlink(link, failed) : target, copy, failed);
+}
+
 }  // namespace
 
 Result<std::string> FindProjectFolder(const std::string& argos_file,
@@ -55,23 +64,24 @@ Result<std::string> FindProjectFolder(const std::string& argos_file,
   fs::path above = fs::canonical(argos_file, failed).parent_path();
   for (int i = 0; i < kMostAbove && above != above.root_path(); ++i, above = above.parent_path())
     folders.push_back(above);
-  std::string missing;
+  // What is missing where most of them are.
+  std::vector<std::string> missing = libraries;
   for (const fs::path& folder : folders) {
-    const auto lacking = std::ranges::find_if(libraries, [&](const std::string& library) {
+    std::vector<std::string> lacking;
+    std::ranges::copy_if(libraries, std::back_inserter(lacking), [&](const std::string& library) {
       return !IsThere(folder / library) && !FoundElsewhere(library);
     });
-    if (lacking == libraries.end()) {
+    if (lacking.empty()) {
       // Without libraries that are its own, a project is where its file is.
-      const bool anywhere = std::ranges::all_of(libraries, FoundElsewhere);
-      return (anywhere && folders.size() > 1 ? folders[1] : folder).string();
+      return (std::ranges::all_of(libraries, FoundElsewhere) ? folders.at(1) : folder).string();
     }
-    missing = *lacking;
+    if (lacking.size() < missing.size()) missing = std::move(lacking);
   }
   return InvalidInput(
       fmt::format("{}: its library {} is neither in {} nor in the folder of the file or above it, nor "
                   "in ARGOS_PLUGIN_PATH: build the project first, and call adopt from the folder from "
                   "which you start argos3",
-                  Printable(argos_file), Printable(missing), Printable(folders.front().string())));
+                  Printable(argos_file), Printable(missing.front()), Printable(folders.front().string())));
 }
 
 std::map<std::string, FileStamp> FilesIn(const std::string& folder) {
@@ -97,14 +107,22 @@ Status CopyProject(const std::string& project, const std::string& folder) {
                     "possible. Give a folder with what the experiment needs",
                     Printable(project), bytes >> 20, kMostProjectBytes >> 20));
   std::error_code failed;
-  const auto options = fs::copy_options::recursive | fs::copy_options::copy_symlinks;
-  for (const fs::directory_entry& entry : fs::directory_iterator(project, failed)) {
-    if (IsKeptByVersionControl(entry.path())) continue;
-    fs::copy(entry.path(), fs::path(folder) / entry.path().filename(), options, failed);
-    if (failed)
-      return InvalidInput(
-          fmt::format("{} cannot be copied: {}", Printable(entry.path().string()), failed.message()));
+  for (auto entry = fs::recursive_directory_iterator(project, failed); !failed && entry != fs::end(entry);
+       entry.increment(failed)) {
+    const fs::path copy = folder / entry->path().lexically_relative(project);
+    if (IsKeptByVersionControl(entry->path())) {
+      entry.disable_recursion_pending();
+    } else if (entry->is_symlink(failed)) {
+      CopyLink(entry->path(), copy, project, failed);
+    } else if (entry->is_directory(failed)) {
+      fs::create_directory(copy, failed);
+    } else if (entry->is_regular_file(failed)) {
+      fs::copy_file(entry->path(), copy, failed);
+    }
+    if (failed) break;
   }
+  if (failed)
+    return InvalidInput(fmt::format("{} cannot be copied: {}", Printable(project), failed.message()));
   return Ok{};
 }
 

@@ -8,17 +8,21 @@
 #include <set>
 #include <string_view>
 
-#include "base/parse_number.h"
+#include "base/nearest_name.h"
 #include "base/split.h"
 #include "base/system/atomic_file.h"
 #include "controllers/command/metric_source.h"
+#include "controllers/command/trajectory_file.h"
+#include "controllers/command/trajectory_measures.h"
 
 namespace gauntlet {
 namespace {
 
 namespace command = controllers::command;
 
+constexpr std::string_view kMeasure = "trajectory:";
 constexpr std::size_t kMostLines = 2000;  // of the last ones printed
+constexpr std::size_t kMostPatterns = 100;
 constexpr std::size_t kMostLineBytes = 300;
 constexpr std::size_t kMostCsvBytes = std::size_t{16} << 20;
 constexpr const char* kNumber = "[-+.0-9eE]+";
@@ -55,15 +59,19 @@ std::vector<std::string> PatternsOf(const std::string& line) {
   return patterns;
 }
 
-void AddLogSources(const std::string& text, std::vector<std::string>& sources) {
+// Those of lines that were printed once go to `once`: a score, more likely than what every tick says.
+void AddLogSources(const std::string& text, std::vector<std::string>& once, std::vector<std::string>& often) {
   std::vector<std::string> lines = Split(text, '\n');
   std::ranges::reverse(lines);
   if (lines.size() > kMostLines) lines.resize(kMostLines);
+  std::vector<std::string> patterns;
+  std::map<std::string, int> counts;
   for (const std::string& line : lines) {
-    if (line.empty() || line.size() > kMostLineBytes) continue;
+    if (line.empty() || line.size() > kMostLineBytes || patterns.size() > kMostPatterns) continue;
     for (std::string& pattern : PatternsOf(line))
-      if (std::ranges::count(sources, pattern) == 0) sources.push_back(std::move(pattern));
+      if (++counts[pattern] == 1) patterns.push_back(std::move(pattern));
   }
+  for (std::string& pattern : patterns) (counts[pattern] == 1 ? once : often).push_back(std::move(pattern));
 }
 
 void AddCsvSources(const std::string& folder, const std::string& file, std::vector<std::string>& sources) {
@@ -79,15 +87,28 @@ void AddCsvSources(const std::string& folder, const std::string& file, std::vect
   }
 }
 
+Result<double> MeasureOf(const TrialRun& run, const std::string& name) {
+  if (FindByName(command::TrajectoryMeasureNames(), name) == nullptr)
+    return InvalidInput(UnknownName("measure", name, command::TrajectoryMeasureNames()));
+  sim::RunResult result;
+  TRY(command::ReadTrajectory(run.folder + "/" + kTrajectoryFile, kTrajectoryFile, /*record=*/true, result));
+  return command::TrajectoryMeasures({}, sim::RunSpec(), result.trajectory).at(name);
+}
+
+Result<double> ValueIn(const TrialRun& run, const std::string& from) {
+  if (from.starts_with(kMeasure)) return MeasureOf(run, from.substr(kMeasure.size()));
+  TRY(command::CheckSource(from));
+  return command::ReadSource(from, run.out, run.err, run.folder);
+}
+
 }  // namespace
 
 Result<ScoreCandidate> ScoreNamed(const std::string& from, const TrialRun& first, const TrialRun& other_seed,
                                   const TrialRun& with_obstacle) {
   ScoreCandidate candidate{.from = from};
-  TRY(candidate.first, command::ReadSource(from, first.out, first.err, first.folder));
-  TRY(candidate.other_seed, command::ReadSource(from, other_seed.out, other_seed.err, other_seed.folder));
-  TRY(candidate.with_obstacle,
-      command::ReadSource(from, with_obstacle.out, with_obstacle.err, with_obstacle.folder));
+  TRY(candidate.first, ValueIn(first, from));
+  TRY(candidate.other_seed, ValueIn(other_seed, from));
+  TRY(candidate.with_obstacle, ValueIn(with_obstacle, from));
   return candidate;
 }
 
@@ -95,9 +116,11 @@ std::vector<ScoreCandidate> FindScores(const TrialRun& first, const TrialRun& ot
                                        const TrialRun& with_obstacle, const std::vector<std::string>& written,
                                        std::size_t most) {
   std::vector<std::string> sources;
-  AddLogSources(first.out, sources);
-  AddLogSources(first.err, sources);
+  std::vector<std::string> often;
+  AddLogSources(first.out, sources, often);
+  AddLogSources(first.err, sources, often);
   for (const std::string& file : written) AddCsvSources(first.folder, file, sources);
+  sources.insert(sources.end(), often.begin(), often.end());
   std::vector<ScoreCandidate> found;
   for (const std::string& source : sources) {
     const Result<ScoreCandidate> candidate = ScoreNamed(source, first, other_seed, with_obstacle);

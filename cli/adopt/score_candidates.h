@@ -18,8 +18,9 @@ struct ScoreCandidate {
   bool Varies() const { return first != other_seed || first != with_obstacle; }
 };
 
-// Numbers in lines that were printed, the last line first, and columns of files that were written, the last
-// column first; at most `most`. Only those that all three runs have.
+// Numbers in lines that were printed once, the last line first, columns of files that were written, the last
+// column first, and numbers in lines that were printed often; at most `most`. Only those that all three runs
+// have.
 std::vector<ScoreCandidate> FindScores(const TrialRun& first, const TrialRun& other_seed,
                                        const TrialRun& with_obstacle, const std::vector<std::string>& written,
                                        std::size_t most = 20);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -23,7 +24,6 @@ namespace fs = std::filesystem;
 namespace command = controllers::command;
 
 constexpr std::chrono::minutes kLongestTrial{10};
-constexpr const char* kTrajectoryFile = "gauntlet-trajectory.csv";
 // The recorder prints it when the experiment begins.
 constexpr std::string_view kBegins = "gauntlet: the experiment begins\n";
 constexpr std::size_t kToldLines = 12;
@@ -99,6 +99,10 @@ Result<TrialRun> RunTrial(const std::string& folder, const std::string& command,
     return InvalidInput(fmt::format(
         "a run of the project did not end within {} minutes: is --length too long?", kLongestTrial.count()));
   if (!done) return done.error();
+  constexpr int kBySignal = 128;  // as shells say it
+  if (done->exit_code > kBySignal)
+    return InvalidInput(fmt::format("argos3 was ended by signal {} ({})", done->exit_code - kBySignal,
+                                    strsignal(done->exit_code - kBySignal)));
   return InvalidInput(done->exit_code == 0
                           ? "argos3 ended with exit code 0, but before the experiment did"
                           : fmt::format("argos3 ended with exit code {}: see above", done->exit_code));

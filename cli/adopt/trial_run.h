@@ -46,6 +46,7 @@ struct TrialRun {
 
 // Runs `command`, for /bin/sh, in the folder, where the recorder tells of the world in kWorldFile. `said`
 // gets the last lines that it printed when it fails. Error: it did not come to its end within ten minutes.
+inline constexpr const char* kTrajectoryFile = "gauntlet-trajectory.csv";
 inline constexpr const char* kWorldFile = "gauntlet-world.txt";
 Result<TrialRun> RunTrial(const std::string& folder, const std::string& command, std::ostream& said);
 

@@ -233,30 +233,36 @@ class Adoption {
     TRY(first_, RunOnce(folders_[0], 1, {}));
     TRY(const TrialRun again, RunOnce(folders_[1], 1, {}));
     TRY(other_seed_, RunOnce(folders_[2], 2, {}));
-    reproducible_ = first_.trajectory == again.trajectory && first_.out == again.out;
+    reproducible_ = first_.trajectory == again.trajectory;
     for (const LoadedLibrary& library : first_.libraries)
       if (library.path.starts_with(folder_ + "/"))
         Unsupported("library " + library.path,
                     "is loaded by a path of its own (RPATH): rebuilding it changes the "
                     "experiment");
     SortBodies();
-    const std::optional<sim::ObstacleGene> obstacle = ObstacleInTheWay(project_);
-    if (!obstacle)
-      return InvalidInput(
-          "the robots go nowhere where an obstacle could stand, so that none can be in their way");
-    Result<TrialRun> with_obstacle = RunOnce(folders_[3], 1, {*obstacle});
-    if (!with_obstacle)
-      return InvalidInput(fmt::format("with a box of {} x {} m at {}: {}", obstacle->length, obstacle->width,
-                                      PointText(obstacle->x, obstacle->y), with_obstacle.error().message));
-    with_obstacle_ = *std::move(with_obstacle);
-    if (reproducible_ && with_obstacle_.trajectory == first_.trajectory)
-      return InvalidInput(fmt::format(
-          "boxes do nothing here: with one of {} x {} m and a height of {} m at {}, where robots passed, "
-          "every robot "
-          "went as it did without. Robots that fly need higher ones (--height), and some physics engines "
-          "know none",
-          obstacle->length, obstacle->width, form_options_.height, PointText(obstacle->x, obstacle->y)));
-    return Ok{};
+    return RunWithObstacle();
+  }
+
+  Status RunWithObstacle() {
+    const std::optional<sim::ObstacleGene> obstacle = ObstacleInTheWay(project_, first_);
+    if (!obstacle) {
+      with_obstacle_ = first_;
+      Unsupported("obstacles",
+                  "none was tried: the robots go nowhere where one would touch nothing at the beginning");
+      return Ok{};
+    }
+    const std::string box =
+        fmt::format("a box of {} x {} m and a height of {} m at {}", obstacle->length, obstacle->width,
+                    form_options_.height, PointText(obstacle->x, obstacle->y));
+    Result<TrialRun> run = RunOnce(folders_[3], 1, {*obstacle});
+    if (!run) return InvalidInput(fmt::format("with {}: {}", box, run.error().message));
+    with_obstacle_ = *std::move(run);
+    if (!reproducible_ || with_obstacle_.trajectory != first_.trajectory) return Ok{};
+    return InvalidInput(
+        fmt::format("boxes do nothing here: with {}, where robots passed, every robot went as it did "
+                    "without. Robots that fly need higher ones (--height), and some physics engines "
+                    "know none",
+                    box));
   }
 
   void SortBodies() {
@@ -265,6 +271,7 @@ class Adoption {
     std::map<std::string, Pose> others;
     for (const ArenaBody& body : other_seed_.bodies) others[body.id] = {body.x, body.y};
     std::size_t random = 0;
+    std::map<std::string, std::size_t> movable;
     for (const ArenaBody& body : first_.bodies) {
       const auto other = others.find(body.id);
       const bool fixed = other != others.end() && other->second.x == body.x && other->second.y == body.y;
@@ -276,11 +283,11 @@ class Adoption {
       } else {
         project_.standing.push_back(body);
       }
-      if (!body.robot && body.movable)
-        Unsupported(body.kind + " " + body.id,
-                    "moves: it is kept free of obstacles where it begins, and not known to "
-                    "the rule that leaves a path");
+      if (!body.robot && body.movable) ++movable[body.kind];
     }
+    for (const auto& [kind, count] : movable)
+      Unsupported(fmt::format("{} of the kind {}", Counted(count, "movable thing"), kind),
+                  "kept free of obstacles where they begin, and not known to the rule that leaves a path");
     std::map<std::string, std::size_t> kinds;
     for (const ArenaBody& robot : project_.robots) ++kinds[robot.kind];
     for (const auto& [kind, count] : kinds)
@@ -291,7 +298,7 @@ class Adoption {
                                          " that stands in the arena");
     if (random > 0)
       project_.form.taken_over.push_back(
-          fmt::format("{} robots and things begin where the seed says", random));
+          fmt::format("places that differ from seed to seed: {}", Counted(random, "robot or thing")));
   }
 
   void Unsupported(std::string element, std::string meaning) {
@@ -302,13 +309,11 @@ class Adoption {
     candidates_ = FindScores(first_, other_seed_, with_obstacle_, plan_.written);
     std::string from = options_.score;
     if (from.empty()) from = candidates_.empty() ? "displacement" : candidates_.front().from;
-    if (from.find(':') == std::string::npos) {
-      project_.score = "trajectory:" + from;
-      return Ok{};
-    }
-    project_.score = from;
+    if (from.find(':') == std::string::npos) from = "trajectory:" + from;
     Result<ScoreCandidate> score = ScoreNamed(from, first_, other_seed_, with_obstacle_);
     if (!score) return InvalidInput(fmt::format("--score {}: {}", Printable(from), score.error().message));
+    if (candidates_.empty()) candidates_.push_back(*score);
+    project_.score = from;
     project_.scores = {score->first, score->other_seed};
     return Ok{};
   }

@@ -4,13 +4,13 @@
 
 #include <cmath>
 #include <fstream>
-#include <sstream>
 #include <vector>
 
 #include "base/nearest_name.h"
 #include "base/number_text.h"
 #include "base/parse_number.h"
 #include "base/printable.h"
+#include "controllers/command/left_file.h"
 
 namespace gauntlet::controllers::command {
 namespace {
@@ -113,7 +113,7 @@ std::optional<CsvSource> CsvOf(std::string_view source) {
 }
 
 Result<double> FromCsv(const CsvSource& source, const std::string& folder) {
-  std::ifstream file(folder + "/" + source.file, std::ios::binary | std::ios::ate);
+  std::ifstream file = OpenLeftFile(folder + "/" + source.file, /*at_end=*/true);
   if (!file) return InvalidInput("it has left no file " + source.file);
   if (file.tellg() > kMostCsvBytes) return InvalidInput("its file " + source.file + " is larger than 1 GB");
   file.seekg(0);

@@ -6,12 +6,12 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <vector>
 
 #include "base/nearest_name.h"
 #include "base/number_text.h"
 #include "base/printable.h"
+#include "controllers/command/left_file.h"
 #include "controllers/command/metric_source.h"
 #include "controllers/command/placeholders.h"
 #include "controllers/command/trajectory_file.h"
@@ -27,7 +27,7 @@ constexpr std::size_t kMostOutBytes = std::size_t{64} << 20;
 
 // The whole file, or its end; nothing when there is none.
 std::optional<std::string> EndOfFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::ifstream file = OpenLeftFile(path, /*at_end=*/true);
   if (!file) return std::nullopt;
   const auto size = static_cast<std::size_t>(file.tellg());
   std::string bytes(std::min(size, kMostOutBytes), '\0');

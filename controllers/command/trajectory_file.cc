@@ -13,6 +13,7 @@
 #include "base/number_text.h"
 #include "base/parse_number.h"
 #include "base/printable.h"
+#include "controllers/command/left_file.h"
 #include "controllers/parameters.h"
 #include "sim/arena/validity.h"
 #include "sim/geometry/trigonometry.h"
@@ -149,7 +150,7 @@ class Reader {
 }  // namespace
 
 Status ReadTrajectory(const std::string& path, const std::string& name, bool record, sim::RunResult& result) {
-  std::ifstream file(path, std::ios::binary);
+  std::ifstream file = OpenLeftFile(path);
   if (!file) return InvalidInput("it has left no file " + name);
   Reader reader;
   std::size_t number = 0;
