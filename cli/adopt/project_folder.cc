@@ -58,25 +58,31 @@ void CopyLink(const fs::path& link, const fs::path& copy, const std::string& pro
 }  // namespace
 
 Result<std::string> FindProjectFolder(const std::string& argos_file,
-                                      const std::vector<std::string>& libraries) {
+                                      const std::vector<std::string>& libraries,
+                                      const std::vector<std::string>& paths) {
   std::error_code failed;
   std::vector<fs::path> folders = {fs::current_path(failed)};
   fs::path above = fs::canonical(argos_file, failed).parent_path();
   for (int i = 0; i < kMostAbove && above != above.root_path(); ++i, above = above.parent_path())
     folders.push_back(above);
-  // What is missing where most of them are.
-  std::vector<std::string> missing = libraries;
+  std::vector<std::string> missing = libraries;  // where most of them are
+  std::string best;
+  std::ptrdiff_t most = -1;
   for (const fs::path& folder : folders) {
     std::vector<std::string> lacking;
     std::ranges::copy_if(libraries, std::back_inserter(lacking), [&](const std::string& library) {
       return !IsThere(folder / library) && !FoundElsewhere(library);
     });
-    if (lacking.empty()) {
-      // Without libraries that are its own, a project is where its file is.
-      return (std::ranges::all_of(libraries, FoundElsewhere) ? folders.at(1) : folder).string();
+    const auto found = std::ranges::count_if(paths, [&](const std::string& path) {
+      return path.front() != '/' && fs::exists(folder / path, failed);
+    });
+    if (lacking.empty() && found > most) {
+      most = found;
+      best = folder;
     }
     if (lacking.size() < missing.size()) missing = std::move(lacking);
   }
+  if (!best.empty()) return best;
   return InvalidInput(
       fmt::format("{}: its library {} is neither in {} nor in the folder of the file or above it, nor "
                   "in ARGOS_PLUGIN_PATH: build the project first, and call adopt from the folder from "

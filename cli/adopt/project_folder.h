@@ -10,10 +10,11 @@
 
 namespace gauntlet {
 
-// The folder from which all these libraries, as an .argos file names them, are found: the current one, else
-// that of the file or one above it. Error: which library is nowhere, and where it was looked for.
-Result<std::string> FindProjectFolder(const std::string& argos_file,
-                                      const std::vector<std::string>& libraries);
+// The folder from which all these libraries, as an .argos file names them, are found, and most of what else may be
+// files: the current one, that of the file or one above it. Error: which library is nowhere, and where it was
+// looked for.
+Result<std::string> FindProjectFolder(const std::string& argos_file, const std::vector<std::string>& libraries,
+                                      const std::vector<std::string>& paths);
 
 // What tells versions of a file apart.
 struct FileStamp {

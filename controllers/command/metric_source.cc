@@ -125,7 +125,10 @@ Result<double> FromCsv(const CsvSource& source, const std::string& folder) {
     if (rows++ == 0) first = line;
     last.swap(line);
   }
-  const std::vector<std::string_view> names = FieldsOf(first);
+  // A first row of numbers has no names.
+  std::vector<std::string_view> names = FieldsOf(first);
+  if (std::ranges::all_of(names, [](std::string_view name) { return ParseNumber<double>(name).has_value(); }))
+    names.clear();
   std::size_t column = 0;
   while (column < names.size() && names[column] != source.column) ++column;
   if (column == names.size()) {

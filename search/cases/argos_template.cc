@@ -245,11 +245,12 @@ class Maker {
       made_.libraries.push_back(library);
   }
 
+  // A value with a dot or a slash that is no list of numbers.
   void FindPaths(const xml_node& element) {
     for (const pugi::xml_attribute attribute : element.attributes()) {
       const std::string_view value = attribute.value();
-      if (value.starts_with('/') && value.size() > 1 && std::string_view(attribute.name()) != "library")
-        made_.absolute.emplace_back(value);
+      const bool like_one = value.find_first_of("./") != std::string_view::npos && !NumbersOf(value);
+      if (like_one && std::string_view(attribute.name()) != "library") made_.paths.emplace_back(value);
     }
     for (const xml_node child : element.children()) FindPaths(child);
   }

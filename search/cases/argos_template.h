@@ -37,7 +37,7 @@ struct ArgosTemplate {
   std::vector<ArgosParameter> parameters;
   std::vector<std::string> libraries;              // as the file names them
   std::map<std::string, sim::ObstacleGene> boxes;  // that stand in the arena, by id
-  std::vector<std::string> absolute;               // values that are absolute paths, but for libraries
+  std::vector<std::string> paths;                  // other values that may be those of files
   std::vector<std::string> taken_over;             // in words
   std::vector<ArgosRemark> differs;
   std::vector<ArgosRemark> unsupported;
