@@ -295,7 +295,7 @@ target. In place of EXPERIMENT stands the directory of a fit to tell it again, o
 
 The file of targets (docs/fit.md explains it):
   [[target]]                      # value, or at_most, or at_least
-  metric = "fitness"              # of the scenario; statistic: mean, sd, median, quantile
+  metric = "fitness"              # of the scenario; statistic: mean, sd, median, quantile:0.9
   value = 20.5
   n = 100                         # runs that were measured
   [[target]]

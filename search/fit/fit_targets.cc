@@ -208,6 +208,13 @@ Result<FitCases> ParseFitCases(const std::string& text) {
                   text));
 }
 
+std::string FitTarget::StatisticText() const {
+  if (statistic == Statistic::kQuantile)
+    return quantile == 0.5 ? "median" : fmt::format("quantile:{}", quantile);
+  const std::string name(kStatistics[static_cast<std::size_t>(statistic)]);
+  return formula.empty() ? name : fmt::format("{}:{}", name, formula);
+}
+
 std::string FitTarget::Title() const {
   const std::string of = metric.empty() ? formula : metric;
   const std::string name =

@@ -52,6 +52,9 @@ struct FitTarget {
   double n = 0;  // runs that `values` come from; of kEvery those that all have to keep to it; 0 = exact
   double spread = 0.0;  // of kDistribution: the standard deviation of the measured values
 
+  // As files of targets have it: "median", "quantile:0.9", "share:birds_left == 0"; besides "distribution",
+  // and "every:birds_left == 10" of what every run has to keep to.
+  std::string StatisticText() const;
   // "mean of fitness, random": without the value.
   std::string Title() const;
   // "at most 0.05", "0.654 (n = 100)".

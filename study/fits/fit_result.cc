@@ -24,6 +24,7 @@ namespace {
 
 constexpr double kLikely = 0.9;          // of the accepted values
 constexpr std::size_t kPairDraws = 200;  // to find a setting that meets two targets
+constexpr int kRulePlaces = 1000;        // that are asked whether they break a rule: .1 % is seen
 constexpr double kNormal95 = 1.959964;   // quantile of the normal distribution
 
 std::vector<double> PlacesOf(const std::vector<SettingsPoint>& draws, std::size_t key) {
@@ -105,6 +106,18 @@ void AddAccepted(FitResult& fit) {
     if (is_new) fit.accepted.push_back({draw, 0.0});
     fit.accepted[known->second].weight += 1.0 / static_cast<double>(fit.draws.size());
   }
+}
+
+// The share of even draws from the ranges that break a rule of the experiment.
+double RefusedShare(const FitRounds& rounds) {
+  sim::RandomStream random(rounds.seed(), sim::StreamPurpose::kStatistics, 0xFFFFFFFEU);
+  SettingsPoint place(rounds.plan().varied.size());
+  int refused = 0;
+  for (int i = 0; i < kRulePlaces; ++i) {
+    for (double& one : place) one = random.Uniform();
+    if (!rounds.allowed()(place)) ++refused;
+  }
+  return static_cast<double>(refused) / kRulePlaces;
 }
 
 // The misfit of the best setting for these targets alone, as the posterior has it.
@@ -205,6 +218,7 @@ FitResult ResultOf(const Experiment& experiment, const FitRounds& rounds, bool f
     fit.without_result += static_cast<std::uint64_t>(setting.without_result);
     ++(setting.judged ? fit.candidates : fit.settings);
   }
+  fit.refused = RefusedShare(rounds);
   const std::unique_ptr<FitPosterior> posterior = rounds.Posterior();
   if (posterior != nullptr) fit.draws = rounds.Accepted(*posterior);
   AddAccepted(fit);

@@ -52,6 +52,7 @@ struct FitResult {
   std::uint64_t without_result = 0;            // of these
   std::size_t settings = 0;                    // simulated, without those that were judged
   std::size_t candidates = 0;                  // that were judged
+  double refused = 0.0;                        // share of the ranges that breaks a rule of the experiment
   std::string why = {};                        // there is no posterior; "" = there is one
   std::vector<SettingsPoint> draws = {};       // from the posterior, equally likely
   std::vector<AcceptedSetting> accepted = {};  // the different ones of them, the likeliest first

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "analysis/statistics/sample.h"
 #include "base/number_text.h"
 #include "base/shell_quoted.h"
 #include "proto/json_text.h"
@@ -32,25 +33,55 @@ Table KeyTable(const FitResult& fit) {
 Table TargetTable(const FitResult& fit) {
   Table table({{"target", "target"},
                {"wanted", "wanted"},
+               ForPrograms("metric"),
+               ForPrograms("statistic"),
+               ForPrograms("value?"),
+               ForPrograms("at_most?"),
+               ForPrograms("at_least?"),
                {">ours", "ours"},
                {"(95 %)", "interval"},
                {">standard errors away", "misfit"},
                {"", "met"}});
-  for (const JudgedTarget& target : fit.targets) {
-    table.AddRow({target.title, target.wanted, DecimalCell(target.ours, 3), IntervalCell(target.interval),
-                  DecimalCell(target.misfit, 1), Cell(target.met ? "met" : "NOT MET", target.met)});
+  for (std::size_t i = 0; i < fit.targets.size(); ++i) {
+    const JudgedTarget& target = fit.targets[i];
+    const FitTarget& asked = fit.plan.targets[i];
+    const auto wanted = [&](bool here) {
+      return here ? Cell(analysis::Describe(asked.values).mean) : TextCell("");
+    };
+    const bool at_most = asked.demand == FitTarget::Demand::kAtMost;
+    const bool at_least = asked.demand == FitTarget::Demand::kAtLeast;
+    table.AddRow({target.title, target.wanted, TextCell(asked.metric), asked.StatisticText(),
+                  wanted(!at_most && !at_least), wanted(at_most), wanted(at_least),
+                  DecimalCell(target.ours, 3), IntervalCell(target.interval), DecimalCell(target.misfit, 1),
+                  Cell(target.met ? "met" : "NOT MET", target.met)});
   }
   return table;
+}
+
+std::vector<std::string> UndeterminedKeys(const FitResult& fit) {
+  std::vector<std::string> open;
+  for (const FittedKey& key : fit.keys) {
+    if (!key.determined) open.push_back(key.path);
+  }
+  return open;
+}
+
+// {KEY: value}; `value_of` a key's number.
+template <class ValueOf>
+nlohmann::ordered_json SettingJson(const FitResult& fit, const ValueOf& value_of) {
+  nlohmann::ordered_json setting = nlohmann::ordered_json::object();
+  for (std::size_t i = 0; i < fit.plan.varied.size(); ++i) {
+    const KeyValue value = value_of(i);
+    setting[fit.plan.varied[i].key.path] =
+        std::visit([](const auto& held) { return JsonValue(Value(held)); }, value);
+  }
+  return setting;
 }
 
 // The sentences below the settings.
 std::vector<std::string> WhatKeysSay(const FitResult& fit) {
   std::vector<std::string> sentences;
-  std::vector<std::string> open;
-  for (const FittedKey& key : fit.keys) {
-    if (!key.determined) open.push_back(key.path);
-  }
-  if (!open.empty())
+  if (const std::vector<std::string> open = UndeterminedKeys(fit); !open.empty())
     sentences.push_back(
         fmt::format("These targets do not determine {}: the likely values fill more than {:.0f} % of "
                     "the range, or every choice is left.",
@@ -86,6 +117,11 @@ std::vector<Section> TellFit(const FitResult& fit, const std::string& dir, const
   if (fit.without_result > 0)
     settings.lead.push_back(
         fmt::format("{} of the runs ended without a result.", FormatCount(fit.without_result)));
+  if (fit.refused > 0.0)
+    settings.lead.push_back(
+        fmt::format("About {:.3g} % of the ranges was never simulated: settings there break a rule of the "
+                    "experiment.",
+                    100.0 * fit.refused));
   Section targets{.title = "Targets, and what the chosen setting gives in fresh runs",
                   .table = TargetTable(fit)};
   if (fit.targets.empty()) targets.title = "Targets";
@@ -110,6 +146,16 @@ std::string FitJson(const FitResult& fit, const std::string& dir) {
   nlohmann::ordered_json trade_offs = nlohmann::ordered_json::array();
   for (const TradeOff& one : fit.trade_offs)
     trade_offs.push_back({{"keys", {one.one, one.other}}, {"rank_correlation", one.correlation}});
+  nlohmann::ordered_json accepted = nlohmann::ordered_json::array();
+  for (const AcceptedSetting& one : fit.accepted) {
+    const auto value_of = [&](std::size_t key) { return fit.plan.varied[key].ValueAt(one.place[key]); };
+    // A likelihood knows no distance.
+    accepted.push_back(
+        {{"weight", one.weight}, {"distance", nullptr}, {"values", SettingJson(fit, value_of)}});
+  }
+  nlohmann::ordered_json chosen;
+  if (fit.fitted)
+    chosen = SettingJson(fit, [&](std::size_t key) { return fit.plan.varied[key].key.get(*fit.fitted); });
   return JsonText({{"directory", dir},
                    {"finished", fit.finished},
                    {"met", fit.Met()},
@@ -117,12 +163,16 @@ std::string FitJson(const FitResult& fit, const std::string& dir) {
                    {"without_result", fit.without_result},
                    {"settings", fit.settings},
                    {"judged", fit.candidates},
-                   {"accepted", fit.accepted.size()},
+                   {"refused", fit.refused},
+                   {"accepted_count", fit.accepted.size()},
+                   {"chosen", std::move(chosen)},
+                   {"undetermined", UndeterminedKeys(fit)},
                    {"keys", KeyTable(fit).ToJson()},
                    {"trade_offs", std::move(trade_offs)},
                    {"targets", TargetTable(fit).ToJson()},
                    {"contradictions", fit.contradictions},
-                   {"outcome", OutcomeOf(fit)}});
+                   {"outcome", OutcomeOf(fit)},
+                   {"accepted", std::move(accepted)}});
 }
 
 }  // namespace gauntlet

@@ -12,6 +12,7 @@
 #include "analysis/statistics/sample.h"
 #include "base/nearest_name.h"
 #include "base/number_text.h"
+#include "base/split.h"
 #include "base/system/atomic_file.h"
 #include "controllers/registry.h"
 #include "search/cases/case_file.h"
@@ -101,6 +102,7 @@ class TargetFileReader {
       return InvalidInput(fmt::format("{}: statistic has no place in [[require]]", table.where));
     if (table.values.contains("formula") && table.kind == "target")
       table.values.emplace("statistic", "share");
+    TRY(SplitStatistic(table));
     const std::string formula = table.Take("formula");
     for (const auto& [key, value] : table.values) line += fmt::format(" {}={}", key, value);
     if (!formula.empty()) line += " formula=" + formula;
@@ -108,6 +110,22 @@ class TargetFileReader {
         ParseFitTargets(line, *controllers::FindScenario(experiment_));
     if (!parsed) return InvalidInput(fmt::format("{}: {}", table.where, parsed.error().message));
     for (const FitTarget& one : *parsed) targets_.text += (targets_.text.empty() ? "" : "; ") + one.ToText();
+    return Ok{};
+  }
+
+  // statistic = "quantile:Q" and "share:FORMULA" are quantile = Q and formula = "FORMULA" in one.
+  static Status SplitStatistic(WrittenTarget& table) {
+    const auto statistic = table.values.find("statistic");
+    if (statistic == table.values.end()) return Ok{};
+    const std::string written = statistic->second;
+    const std::string name = written.substr(0, written.find(':'));
+    if (name == written || (name != "quantile" && name != "share")) return Ok{};
+    const char* key = name == "share" ? "formula" : "quantile";
+    const std::string_view rest = Trimmed(std::string_view(written).substr(name.size() + 1));
+    if (const auto [other, is_new] = table.values.emplace(key, rest); !is_new)
+      return InvalidInput(fmt::format("{}: statistic = {} and {} = {}: one of them says it", table.where,
+                                      written, key, other->second));
+    statistic->second = name;
     return Ok{};
   }
 

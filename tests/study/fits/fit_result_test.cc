@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "search/experiment/experiment_file.h"
 #include "study/fits/fit_text.h"
 #include "tests/search/fit/toy_fit.h"
@@ -21,10 +23,11 @@ const std::string kTurn = "controller_parameters.turn_rate";
 const std::string kSpeed = "controller_parameters.bird_speed";
 const std::string kFactor = "controller_parameters.turning_speed_factor";
 
-FitResult ToyResult(const std::string& vary, const std::string& targets, int runs = 4000) {
+FitResult ToyResult(const std::string& vary, const std::string& targets, int runs = 4000,
+                    const FitPosterior::Allowed& allowed = Everywhere) {
   Experiment experiment = FittedToy();
   experiment.fit = {.vary = vary, .targets = targets, .runs = runs, .judged = 200};
-  FitRounds rounds(ToyPlan(experiment.fit).value(), 11, Everywhere);
+  FitRounds rounds(ToyPlan(experiment.fit).value(), 11, allowed);
   sim::RandomStream random(5, sim::StreamPurpose::kTest, 0);
   Finish(rounds, random);
   return ResultOf(experiment, rounds, true);
@@ -90,6 +93,65 @@ TEST(FitResultTest, ATargetOutOfReachIsNamedAlone) {
       fit.contradictions,
       ElementsAre(
           "No setting within the ranges meets this target: mean of fitness, random (30 (n = 1000))."));
+}
+
+TEST(FitResultTest, ProgramsAreToldSettingsByTheirTypesAndTargetsByTheirParts) {
+  const FitResult fit = ToyResult(
+      kTurn + "=0.5..1.5 physics=impulse|box2d scenario_parameters.rejoin_time=0..600",
+      "metric=fitness value=1.591 n=1000; metric=fitness statistic=quantile quantile=0.9 at_most=9; "
+      "metric=fitness statistic=median at_least=-9; statistic=share value=1 n=100 formula=fitness < 1000; "
+      "statistic=every runs=40 formula=fitness < 1000",
+      6000);
+  const auto told = nlohmann::json::parse(FitJson(fit, "dir"));
+  EXPECT_EQ(told.at("accepted_count"), fit.accepted.size());
+  ASSERT_EQ(told.at("accepted").size(), fit.accepted.size());
+  double weights = 0.0;
+  for (const auto& one : told.at("accepted")) {
+    weights += one.at("weight").get<double>();
+    EXPECT_TRUE(one.at("distance").is_null());
+    EXPECT_TRUE(one.at("values").at(kTurn).is_number_float());
+    EXPECT_TRUE(one.at("values").at("physics").is_string());
+  }
+  EXPECT_NEAR(weights, 1.0, 1e-9);
+  EXPECT_EQ(told.at("chosen").size(), 3U);
+  EXPECT_EQ(told.at("chosen").at(kTurn), fit.fitted->controller_parameters.at("turn_rate"));
+  EXPECT_EQ(told.at("chosen").at("physics"), fit.keys[1].chosen);
+  EXPECT_EQ(told.at("undetermined"), nlohmann::json({"physics", "scenario_parameters.rejoin_time"}));
+  const std::vector<std::string> parts = {
+      R"({"metric": "fitness", "statistic": "mean", "value": 1.591})",
+      R"({"metric": "fitness", "statistic": "quantile:0.9", "at_most": 9.0})",
+      R"({"metric": "fitness", "statistic": "median", "at_least": -9.0})",
+      R"({"metric": null, "statistic": "share:fitness < 1000", "value": 1.0})",
+      R"({"metric": null, "statistic": "every:fitness < 1000", "value": 1.0})"};
+  ASSERT_EQ(told.at("targets").size(), parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    auto target = told.at("targets")[i];
+    EXPECT_EQ(target.at("interval").size(), 2U);
+    for (const char* key : {"target", "wanted", "ours", "interval", "misfit", "met"})
+      EXPECT_EQ(target.erase(key), 1U) << key;
+    EXPECT_EQ(target, nlohmann::json::parse(parts[i]));
+  }
+}
+
+TEST(FitResultTest, WithoutAPosteriorNoSettingIsChosen) {
+  Experiment experiment = FittedToy();
+  experiment.fit = {.vary = kTurn + "=0.5..1.5", .targets = "metric=fitness value=1 n=10", .runs = 1000};
+  const FitResult fit =
+      ResultOf(experiment, FitRounds(ToyPlan(experiment.fit).value(), 11, Everywhere), false);
+  const auto told = nlohmann::json::parse(FitJson(fit, "dir"));
+  EXPECT_TRUE(told.at("chosen").is_null());
+  EXPECT_EQ(told.at("accepted"), nlohmann::json::array());
+  EXPECT_EQ(told.at("refused"), 0.0);
+}
+
+TEST(FitResultTest, RangesThatBreakARuleAreToldWithTheirShare) {
+  const FitResult fit = ToyResult(kTurn + "=0.5..1.5", "metric=fitness value=1.591 n=1000", 1000,
+                                  [](const SettingsPoint& place) { return place[0] < 0.75; });
+  EXPECT_NEAR(fit.refused, 0.25, 0.05);
+  EXPECT_EQ(TellFit(fit, "dir", "gauntlet").front().lead.back(),
+            fmt::format("About {:.3g} % of the ranges was never simulated: settings there break a rule of "
+                        "the experiment.",
+                        100.0 * fit.refused));
 }
 
 TEST(FitResultTest, TheFittedExperimentReadsBack) {

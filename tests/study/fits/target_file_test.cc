@@ -61,6 +61,17 @@ runs = 100
   EXPECT_THAT(read->cases, IsEmpty());
 }
 
+TEST_F(TargetFileTest, AQuantileAndAShareMayStandInTheStatistic) {
+  const std::string apart =
+      "[[target]]\nmetric = \"splits\"\nstatistic = \"quantile\"\nquantile = 0.9\nat_most = 3\n"
+      "[[target]]\nformula = \"birds_left == 0 || splits > 1\"\nvalue = 0.05\nn = 200\n";
+  const std::string in_one =
+      "[[target]]\nmetric = \"splits\"\nstatistic = \"quantile:0.9\"\nat_most = 3\n"
+      "[[target]]\nstatistic = \"share: birds_left == 0 || splits > 1\"\nvalue = 0.05\nn = 200\n";
+  ASSERT_EQ(ErrorOf(in_one), "");
+  EXPECT_EQ(Read(in_one)->text, Read(apart)->text);
+}
+
 TEST_F(TargetFileTest, AColumnOfMeasuredRunsIsADistribution) {
   std::ofstream(folder_ / "runs.csv") << "run,fitness\n1,0.1\n2,0.2\n3,\n4,0.3\n5,0.4\n6,0.5\n7,0.6\n";
   const auto read = Read("[[target]]\ncsv = \"runs.csv\"\ncolumn = \"fitness\"\n");
@@ -105,6 +116,16 @@ TEST_F(TargetFileTest, WhatCannotBeATargetIsNamedWithItsPlace) {
        "timeout, prey_path_length, splits, split_time, split_angle, split_speed_ratio, split_x, split_y"},
       {"[[target]]\nmetric = \"fitness\"\nstatistic = \"quantile\"\nquantile = 101\nvalue = 1\nn = 5\n",
        "quantile = 101: a number from 0 to 1 is needed"},
+      {"[[target]]\nmetric = \"fitness\"\nstatistic = \"quantile:101\"\nvalue = 1\nn = 5\n",
+       "quantile = 101: a number from 0 to 1 is needed"},
+      {"[[target]]\nmetric = \"fitness\"\nstatistic = \"quantile:0.9\"\nquantile = 0.5\nvalue = 1\nn = 5\n",
+       "targets.toml:1:1: statistic = quantile:0.9 and quantile = 0.5: one of them says it"},
+      {"[[target]]\nstatistic = \"share:splits > 0\"\nformula = \"splits > 1\"\nvalue = 1\nn = 5\n",
+       "targets.toml:1:1: statistic = share:splits > 0 and formula = splits > 1: one of them says it"},
+      {"[[target]]\nstatistic = \"share:\"\nvalue = 1\nn = 5\n",
+       "a formula is needed, as in birds_left == 0"},
+      {"[[target]]\nmetric = \"fitness\"\nstatistic = \"mean:2\"\nvalue = 1\nn = 5\n",
+       "unknown statistic 'mean:2'"},
       {"[[target]]\nmetric = \"fitness\"\nvalue = 1\nn = 0\n",
        "n = 0: a number from 2 to 1000000000 is needed"},
       {"[[target]]\nmetric = \"fitness\"\nn = 5\n", "one of value, at_most and at_least is needed"},
