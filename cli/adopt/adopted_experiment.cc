@@ -133,7 +133,7 @@ algorithm = "archive"
 runs = 300
 )",
       Numbers(area.min.x()), Numbers(area.max.x()), Numbers(area.min.y()), Numbers(area.max.y()),
-      Numbers(std::min(0.02, step / 5.0)), Numbers(2.0 * step), Numbers(8.0 * step), Numbers(step),
+      Numbers(std::min(0.02, step / 5.0)), Numbers(2.0 * step), Numbers(10.0 * step), Numbers(step),
       Numbers(step), Numbers(step));
 }
 

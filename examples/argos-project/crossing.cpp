@@ -21,6 +21,7 @@ class Crossing : public CCI_Controller {
     GetNodeAttribute(params, "speed", speed_);
     GetNodeAttributeOrDefault(params, "near", near_, near_);
     GetNodeAttributeOrDefault(params, "both_sides", both_sides_, both_sides_);
+    GetNodeAttributeOrDefault(params, "along", along_after_, along_after_);
   }
 
   void ControlStep() override {
@@ -33,7 +34,7 @@ class Crossing : public CCI_Controller {
       // The fault: it always turns to its left, also where the way around is on its right.
       const bool left = both_sides_ == 0 || obstacle.Angle() <= CRadians::ZERO;
       Turn(left);
-      along_ = 20;
+      along_ = along_after_;
       return;
     }
     if (along_ > 0) {
@@ -61,7 +62,8 @@ class Crossing : public CCI_Controller {
   Real speed_ = 10.0;  // cm/s
   Real near_ = 0.1;
   UInt32 both_sides_ = 0;
-  int along_ = 0;  // ticks for which it drives straight on
+  UInt32 along_after_ = 6;  // ticks
+  UInt32 along_ = 0;  // ticks for which it still drives straight on
 };
 REGISTER_CONTROLLER(Crossing, "crossing_controller")
 
