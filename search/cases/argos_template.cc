@@ -71,10 +71,10 @@ class Maker {
     TRY(Load());
     TRY(TakeLength());
     TRY(TakeArena());
+    FindPaths(root_);
     SetFramework();
     SetVisualization();
     TakeParameters();
-    FindPaths(root_);
     EscapeMarks(root_);
     MarkParameters();
     AppendObstacles();

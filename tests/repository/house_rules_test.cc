@@ -198,7 +198,7 @@ const std::vector<Room>& House() {
         "search/cases",   "search",        "master/http",    "master/directory", "master/campaign",
         "master/session", "slurm",         "study/sets",     "study/questions",  "study/fits",
         "study",          "report/tables", "report/figures", "report/pages",     "report/ui"},
-       kRunData + kSwarmData + kBehaviours,
+       kRunData + kSwarmData + kBehaviours + Prefixes{"controllers/command/"},
        {"box2d", "zmq", "sqlite3"}},
   };
   return house;
