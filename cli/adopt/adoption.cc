@@ -272,11 +272,10 @@ class Adoption {
       project_.form.taken_over.push_back(
           fmt::format("{} of the kind {}", Counted(count, "robot"), Printable(kind)));
     if (!project_.standing.empty())
-      project_.form.taken_over.push_back(Counted(project_.standing.size(), "thing") +
-                                         " that stands in the arena");
+      project_.form.taken_over.push_back(Counted(project_.standing.size(), "fixed thing") + " in the arena");
     if (random > 0)
       project_.form.taken_over.push_back(
-          fmt::format("places that differ from seed to seed: {}", Counted(random, "robot or thing")));
+          fmt::format("{} places where something begins that follow from the seed", random));
   }
 
   void Unsupported(std::string element, std::string meaning) {
@@ -290,7 +289,8 @@ class Adoption {
     if (from.find(':') == std::string::npos) from = "trajectory:" + from;
     Result<ScoreCandidate> score = ScoreNamed(from, first_, other_seed_, with_obstacle_);
     if (!score) return InvalidInput(fmt::format("--score {}: {}", Printable(from), score.error().message));
-    if (candidates_.empty()) candidates_.push_back(*score);
+    if (std::ranges::count(candidates_, from, &ScoreCandidate::from) == 0)
+      candidates_.insert(candidates_.begin(), *score);
     project_.score = from;
     project_.scores = {score->first, score->other_seed};
     return Ok{};

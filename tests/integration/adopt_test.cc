@@ -23,23 +23,7 @@ using testing::Not;
 
 namespace fs = std::filesystem;
 
-constexpr const char* kArgos = R"(<?xml version="1.0" ?>
-<argos-configuration>
-  <framework>
-    <system threads="4" />
-    <experiment length="20" ticks_per_second="10" random_seed="124" real_time="true" />
-  </framework>
-  <controllers>
-    <walker id="w" library="build/libwalker"><actuators /><sensors /><params speed="0.2" name="a@b" /></walker>
-  </controllers>
-  <loop_functions label="counting" mode="" output="/nowhere/log.txt" />
-  <arena size="4,2,1" center="0,0,0.5">
-    <box id="wall" size="0.1,2,0.5" movable="false"><body position="2,0,0" orientation="0,0,0" /></box>
-  </arena>
-  <physics_engines />
-  <visualization><qt-opengl /></visualization>
-</argos-configuration>
-)";
+constexpr const char* kArgos = GAUNTLET_SOURCE_DIR "/tests/integration/programs/walker.argos";
 
 class AdoptTest : public testing::Test {
  protected:
@@ -63,7 +47,7 @@ class AdoptTest : public testing::Test {
   }
   // The project's file with one text of it replaced.
   void Argos(const std::string& what, const std::string& by) {
-    std::string text = kArgos;
+    std::string text = ReadFile(kArgos);
     if (!what.empty()) text.replace(text.find(what), what.size(), by);
     Write("project/my.argos", text);
   }
