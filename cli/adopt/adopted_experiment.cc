@@ -80,6 +80,15 @@ std::string SetupOf(const AdoptedProject& project) {
   return setup;
 }
 
+// Each kilobot has a process of its own that ARGoS stops and continues each tick. Where a filter is asked for
+// every signal, some of these come too late, and the run waits for ever.
+std::string ConfineOf(const AdoptedProject& project) {
+  const bool kilobots = std::ranges::count(project.robots, "kilobot", &ArenaBody::kind) > 0;
+  return kilobots ? "# Kilobots are processes that are stopped and continued: no filter comes "
+                    "between.\nconfine = false\n"
+                  : "";
+}
+
 double MeanOf(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
@@ -214,7 +223,7 @@ failure = "{}"
 wall_limit = {}
 robot_radius = {}
 place = {{ x = "center_x", y = "center_y", same_within = {} }}
-setup = {}
+{}setup = {}
 
 [[command.refused]]
 pattern = "gauntlet: the robots find no room"

@@ -55,6 +55,13 @@ TEST(AdoptedExperimentTest, IsARightCommand) {
   EXPECT_EQ(command.standing[0].degrees, 45.0);
 }
 
+TEST(AdoptedExperimentTest, OnlyKilobotsAreNotConfined) {
+  AdoptedProject project = Project();
+  EXPECT_TRUE((**ReadCommand({AdoptedExperimentText(project), "mine.toml"}, {})).confine);
+  project.robots[1].kind = "kilobot";
+  EXPECT_FALSE((**ReadCommand({AdoptedExperimentText(project), "mine.toml"}, {})).confine);
+}
+
 TEST(AdoptedExperimentTest, AFailureOfScoresBelowZeroIsFurtherBelow) {
   AdoptedProject project = Project();
   project.scores = {-2.0, -4.0};
