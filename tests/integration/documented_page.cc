@@ -14,7 +14,7 @@
 namespace gauntlet::testing_support {
 namespace {
 
-constexpr const char* kPrograms[] = {"gauntlet ", "cmake ", "cp ", "printf "};
+constexpr const char* kPrograms[] = {"gauntlet ", "argos3 ", "cd ", "cmake ", "cp ", "printf "};
 
 bool IsCommand(const std::string& line) {
   return std::ranges::any_of(kPrograms, [&](const char* program) { return line.starts_with(program); });
