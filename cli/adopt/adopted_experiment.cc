@@ -236,8 +236,8 @@ from = {}
       QuoteToml("the ARGoS project of " + project.argos_file), QuoteToml(project.own + "/run.sh"),
       QuoteToml(project.own), QuoteToml(project.own + "/case.argos"), fmt::join(project.scores, ", "),
       FailureOf(project), NumberText(std::ceil(10.0 + 20.0 * project.seconds)), Numbers(RobotRadius(project)),
-      Numbers(SideOf(ObstacleArea(project)).minCoeff() / 10.0), QuoteToml(SetupOf(project)),
-      QuoteToml(project.score));
+      Numbers(SideOf(ObstacleArea(project)).minCoeff() / 10.0), ConfineOf(project),
+      QuoteToml(SetupOf(project)), QuoteToml(project.score));
   for (const char* name : {"displacement", "center_x", "center_y", "covered_area"})
     text += fmt::format("\n[[command.metric]]\nname = \"{0}\"\nfrom = \"trajectory:{0}\"\n", name);
   text += AxesText(project);

@@ -161,6 +161,11 @@ class Adoption {
     }
     project_.seconds = run.seconds;
     plan_.project = folder_;
+    plan_.links = !IsSmall(folder_);
+    if (plan_.links)
+      Unsupported("the project's files",
+                  "are links in the folder of a run, for they are many: a run that overwrites "
+                  "one which adopt did not see written changes the project");
     plan_.own = project_.own;
     TRY(KeepLibraries(run, copy.path(), argos.prefix));
     return ReplaceFile(OwnPath("run.sh"), RunScript(plan_), kReadableByAll);
@@ -293,6 +298,11 @@ class Adoption {
       candidates_.insert(candidates_.begin(), *score);
     project_.score = from;
     project_.scores = {score->first, score->other_seed};
+    if (score->first == 0.0 && score->other_seed == 0.0)
+      Unsupported("failure",
+                  "the score is 0 without obstacles, so that nothing is less than half of it: write one");
+    if (!score->Varies())
+      Unsupported("score", "it was the same in all runs, also with an obstacle: it may not be one (--score)");
     return Ok{};
   }
 

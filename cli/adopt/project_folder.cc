@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostAbove = 6;  // folders above the file's
+constexpr std::uint64_t kMostCopiedForARun = std::uint64_t{16} << 20;
 constexpr std::uint64_t kMostProjectBytes = std::uint64_t{1} << 30;
 
 // Where ARGoS looks: as it is named, or with an ending.
@@ -132,33 +133,53 @@ Status CopyProject(const std::string& project, const std::string& folder) {
   return Ok{};
 }
 
+bool IsSmall(const std::string& project) {
+  std::uint64_t bytes = 0;
+  for (const auto& [name, stamp] : FilesIn(project)) bytes += stamp.size;
+  std::error_code failed;
+  const bool linked = std::ranges::any_of(fs::directory_iterator(project, failed), [&](const auto& entry) {
+    return entry.is_symlink(failed) && entry.is_directory(failed);
+  });
+  return bytes <= kMostCopiedForARun && !linked;
+}
+
 std::string RunScript(const RunFolderPlan& plan) {
   std::set<std::string> folders;  // that are the run's own
   for (const auto& [path, name] : plan.libraries) AddParents(path, folders);
   for (const std::string& path : plan.written) AddParents(path, folders);
   const auto in_project = [&](const std::string& path) { return ShellQuoted(plan.project + "/" + path); };
-  std::string text = fmt::format(
-      "#!/bin/sh\n# Written by gauntlet adopt: makes this folder one in which the project's experiment runs, "
-      "and runs "
-      "it.\nproject={}\nown=\"$PWD\"/{}\n",
-      ShellQuoted(plan.project), ShellQuoted(plan.own));
+  std::string text = fmt::format(R"(#!/bin/sh
+# Written by gauntlet adopt: makes this folder one in which the project's experiment runs, and runs it.
+project={}
+own="$PWD"/{}
+if [ ! -d "$project" ]; then
+  echo "gauntlet: the project's folder $project is not on this machine" >&2
+  exit 1
+fi
+)",
+                                 ShellQuoted(plan.project), ShellQuoted(plan.own));
   if (!folders.empty()) text += "mkdir -p";
   for (const std::string& folder : folders) text += " " + ShellQuoted(folder);
   text += "\n# What the campaign keeps of the project, whatever becomes of it.\n";
   for (const auto& [path, name] : plan.libraries)
     text += fmt::format("ln -s \"$own\"/lib/{} {}\n", ShellQuoted(name), ShellQuoted(path));
-  text += "# What a run writes is its own; all other entries are the project's.\n";
+  text += plan.links ? "# The project's files, each as a link, but for what a run writes.\n"
+                     : "# A copy of the project: whatever a run writes is its own.\n";
   std::error_code failed;
   for (const std::string& path : plan.written)
-    if (fs::exists(plan.project + "/" + path, failed))
+    if (plan.links && fs::exists(plan.project + "/" + path, failed))
       text += fmt::format("cp {} {}\n", in_project(path), ShellQuoted(path));
-  text += "ln -s \"$project\"/* . 2>/dev/null\n";
-  for (const std::string& folder : folders)
-    if (fs::exists(plan.project + "/" + folder, failed))
-      text += fmt::format("ln -s {}/* {}/ 2>/dev/null\n", in_project(folder), ShellQuoted(folder));
+  text += fmt::format(R"(case_file=$1
+set --
+for entry in "$project"/* "$project"/.[!.]*; do
+  case $entry in */.git | */.hg | */.svn) ;; *) [ -e "$entry" ] && set -- "$@" "$entry" ;; esac
+done
+[ $# -eq 0 ] || cp -{}nH "$@" . || exit 1
+)",
+                      plan.links ? "rs" : "r");
   text += fmt::format(R"(export ARGOS_PLUGIN_PATH="$own/plugins"
 export LD_LIBRARY_PATH="$own/lib${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}"
-argos3 -n -c "$1"
+argos3 -n -c "$case_file"
 code=$?
 [ $code -eq 0 ] && [ -e gauntlet-trajectory.csv ] && exit 0
 if [ ! -e gauntlet-trajectory.csv.draft ] && grep -q 'Error while trying to distribute entities' {0} &&

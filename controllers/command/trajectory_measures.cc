@@ -47,9 +47,12 @@ std::map<std::string, double> TrajectoryMeasures(const Definition& definition, c
   std::vector<sim::RobotState> states(robots);
   for (std::size_t tick = 0; tick < trajectory.size(); ++tick) {
     states = trajectory[tick];
+    // Over a second, for programs may tell no more often than that where their robots are.
+    const std::size_t before = tick - std::min(tick, static_cast<std::size_t>(sim::kTicksPerSecond));
     for (std::size_t i = 0; tick > 0 && i < robots; ++i) {
-      const sim::Vec2 step = states[i].position() - trajectory[tick - 1][i].position();
-      states[i].speed = std::sqrt(step.squaredNorm()) / sim::kTickSeconds;
+      const sim::Vec2 step = states[i].position() - trajectory[before][i].position();
+      states[i].speed =
+          std::sqrt(step.squaredNorm()) / (static_cast<double>(tick - before) * sim::kTickSeconds);
     }
     observer.Record(states);
     measures.Add(observer);

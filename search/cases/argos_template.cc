@@ -199,8 +199,8 @@ class Maker {
       const std::optional<double> value = ParseNumber<double>(Trimmed(attribute.value()));
       std::string name = path.empty() ? "" : path + ".";
       name += NamePart(attribute.name());
-      if (!value || !(std::abs(*value) < kLargestParameter) || !IsName(name) || !names_.insert(name).second)
-        continue;
+      if (!value || !(std::abs(*value) < kLargestParameter) || !IsName(name)) continue;
+      while (!names_.insert(name).second) name += "_";  // of another id that differs in what no name has
       made_.parameters.push_back({name, *value});
       numbers_.emplace_back(attribute, name);
     }

@@ -74,20 +74,34 @@ TEST_F(ProjectFolderTest, IsCopiedWithoutVersionControlAndLinksGoWhereTheyWent) 
 TEST_F(ProjectFolderTest, ARunWritesIntoItsOwnFolderAlone) {
   Write("p/data/in.txt", "in");
   Write("p/data/old.txt", "old\n");
-  Write("p/build/libx.so", "rebuilt");
-  Write("run/own/lib/libx.so", "kept");
-  const RunFolderPlan plan{.project = scratch_ / "p",
-                           .own = "own",
-                           .libraries = {{"build/libx.so", "libx.so"}},
-                           .written = {"data/old.txt", "logs/new.txt"}};
-  const auto ended = RunIn("run", plan,
-                           "cat data/in.txt build/libx.so; echo new >> data/old.txt; echo 1 > logs/new.txt\n"
-                           "echo $ARGOS_PLUGIN_PATH; touch gauntlet-trajectory.csv\n");
-  EXPECT_EQ(ended.exit_code, 0) << ended.err;
-  EXPECT_EQ(ended.out, "inkept" + (scratch_ / "run/own/plugins\n"));
-  EXPECT_THAT(FilesIn(scratch_ / "p"),
-              ElementsAre(Pair("build/libx.so", testing::_), Pair("data/in.txt", testing::_),
-                          Pair("data/old.txt", testing::Field(&FileStamp::size, 4U))));
+  Write("p/.params", "1");
+  Write("p/.git/HEAD");
+  Write("outside/libx.so", "rebuilt");
+  fs::create_symlink("../outside", scratch_ / "p/build");
+  EXPECT_FALSE(IsSmall(scratch_ / "p"));
+  const auto before = FilesIn(scratch_ / "p");
+  for (const bool links : {true, false}) {
+    const std::string run = links ? "linked" : "copied";
+    Write(run + "/own/lib/libx.so", "kept");
+    const RunFolderPlan plan{.project = scratch_ / "p",
+                             .own = "own",
+                             .libraries = {{"build/libx.so", "libx.so"}},
+                             .written = {"data/old.txt", "logs/new.txt"},
+                             .links = links};
+    const auto ended =
+        RunIn(run, plan,
+              "cat data/in.txt build/libx.so .params; echo new >> data/old.txt; echo 1 > logs/new.txt\n"
+              "ls -d .git; echo $ARGOS_PLUGIN_PATH; touch gauntlet-trajectory.csv\n");
+    EXPECT_EQ(ended.exit_code, 0) << ended.err;
+    EXPECT_EQ(ended.out, "inkept1" + (scratch_ / (run + "/own/plugins\n")));
+    EXPECT_EQ(FilesIn(scratch_ / "p"), before);
+  }
+}
+
+// Another machine may have no such folder.
+TEST_F(ProjectFolderTest, WithoutTheProjectNothingRuns) {
+  const RunFolderPlan plan{.project = scratch_ / "gone", .own = "own", .libraries = {}, .written = {}};
+  EXPECT_EQ(RunIn("run", plan, "touch gauntlet-trajectory.csv\n").exit_code, 1);
 }
 
 TEST_F(ProjectFolderTest, HowARunEndedIsSaid) {
