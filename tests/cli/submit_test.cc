@@ -96,6 +96,18 @@ TEST_F(Submit, ADryRunPrintsScriptsAndAnswersAndChangesNothing) {
   EXPECT_FALSE(std::filesystem::exists(dir()));
 }
 
+// As many runs side by side as without `cores`, each with its cores.
+TEST_F(Submit, ACommandThatUsesSeveralCoresAsksForThem) {
+  std::ofstream(root_ / "e.toml")
+      << "scenario = \"command\"\n[command]\nrun = [\"true\"]\nmetrics = [\"items\"]\n"
+         "fitness = \"items\"\nfailure = \"items < 3\"\ncores = 3\n";
+  EXPECT_EQ(
+      Run({"submit", root_ / "e.toml", "--dir", dir(), "--dry-run", "--slurm", "workers_per_allocation=2"}),
+      kExitDone)
+      << err_.str();
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("#SBATCH --cpus-per-task=6"), HasSubstr("--slots 6")));
+}
+
 TEST_F(Submit, AnAddressThatNoMasterCouldListenOnIsRefusedBeforeAnythingIsMade) {
   for (const std::string bad : {"tcp://0.0.0.0:99999", "tcp://localhost:*", "inproc://x"}) {
     EXPECT_EQ(Run({"submit", "flocking", "--dir", dir(), "--slurm", "bind=" + bad}), kExitUsage);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 
@@ -105,6 +106,13 @@ TEST_F(OutcomeTest, RefusalsAreFoundInBothOutputs) {
   Leave(kStderrFile, "x\ncannot place robot 3\n");
   EXPECT_EQ(RefusedBy(DefinitionWith(refused), scratch_.path()), "cannot place robot 3");
   EXPECT_EQ(RefusedBy(DefinitionWith(json::object()), scratch_.path()), std::nullopt);
+}
+
+// Reading it would wait for somebody who writes.
+TEST_F(OutcomeTest, ANamedPipeIsNoFileThatWasLeft) {
+  for (const std::string& name : {std::string(kOutFile), std::string(kStdoutFile)})
+    ASSERT_EQ(mkfifo((scratch_ / name).c_str(), 0600), 0);
+  EXPECT_THAT(Error(), HasSubstr("it has neither written out.json"));
 }
 
 }  // namespace

@@ -35,6 +35,15 @@ TEST(TrajectoryMeasures, AreThoseOfGenericInTheProgramsCoordinates) {
   for (const std::string& name : TrajectoryMeasureNames()) EXPECT_EQ(measured.count(name), 1U) << name;
 }
 
+// A program may tell once a second where its robots are; between, they are taken to stand.
+TEST(TrajectoryMeasures, SpeedsAreThoseOfASecond) {
+  std::vector<std::vector<sim::RobotState>> trajectory;
+  for (int tick = 0; tick <= 40; ++tick) trajectory.push_back({{.x = 0.1 * (tick / 10), .y = 0.0}});
+  const auto measured = TrajectoryMeasures(DefinitionWith({}), {}, trajectory);
+  EXPECT_NEAR(measured.at("speed"), 0.1, 1e-9);
+  EXPECT_NEAR(measured.at("speed_max"), 0.1, 1e-9);
+}
+
 TEST(TrajectoryMeasures, LeaveOutWhatNeedsMoreThanPositions) {
   EXPECT_THAT(TrajectoryMeasureNames(), Contains("dispersion_mean"));
   EXPECT_THAT(TrajectoryMeasureNames(), Not(Contains("collisions")));
