@@ -105,7 +105,7 @@ TEST_F(Submit, ACommandThatUsesSeveralCoresAsksForThem) {
       Run({"submit", root_ / "e.toml", "--dir", dir(), "--dry-run", "--slurm", "workers_per_allocation=2"}),
       kExitDone)
       << err_.str();
-  EXPECT_THAT(out_.str(), AllOf(HasSubstr("#SBATCH --cpus-per-task=6"), HasSubstr("--slots 6")));
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("--cpus-per-task=6"), HasSubstr("--slots 6")));
 }
 
 TEST_F(Submit, AnAddressThatNoMasterCouldListenOnIsRefusedBeforeAnythingIsMade) {
