@@ -161,11 +161,6 @@ class Adoption {
     }
     project_.seconds = run.seconds;
     plan_.project = folder_;
-    plan_.links = !IsSmall(folder_);
-    if (plan_.links)
-      Unsupported("the project's files",
-                  "are links in the folder of a run, for they are many: a run that overwrites "
-                  "one which adopt did not see written changes the project");
     plan_.own = project_.own;
     TRY(KeepLibraries(run, copy.path(), argos.prefix));
     return ReplaceFile(OwnPath("run.sh"), RunScript(plan_), kReadableByAll);

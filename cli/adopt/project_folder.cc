@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostAbove = 6;  // folders above the file's
-constexpr std::uint64_t kMostCopiedForARun = std::uint64_t{16} << 20;
+constexpr std::size_t kFewEntries = 20;
+constexpr std::uintmax_t kSmallFile = std::uintmax_t{64} << 10;  // bytes
 constexpr std::uint64_t kMostProjectBytes = std::uint64_t{1} << 30;
 
 // Where ARGoS looks: as it is named, or with an ending.
@@ -55,6 +56,75 @@ void CopyLink(const fs::path& link, const fs::path& copy, const std::string& pro
   const bool inside = target.string().starts_with(project + "/");
   fs::create_symlink(inside ? fs::read_symlink(link, failed) : target, copy, failed);
 }
+
+// Whether a folder has so few entries, at any depth, that each run has one of its own.
+bool HasFewEntries(const fs::path& folder) {
+  std::error_code failed;
+  std::size_t entries = 0;
+  for (auto entry = fs::recursive_directory_iterator(folder, failed); !failed && entry != fs::end(entry);
+       entry.increment(failed))
+    if (++entries > kFewEntries) return false;
+  return true;
+}
+
+// The commands that make it: folders of its own in which there are copies of small files and links to the
+// rest.
+class RunFolder {
+ public:
+  explicit RunFolder(const RunFolderPlan& plan) : plan_(plan) {
+    for (const auto& [path, name] : plan.libraries) AddParents(path, folders_);
+    for (const std::string& path : plan.written) AddParents(path, folders_);
+  }
+
+  std::string Commands() {
+    Add("");
+    std::string made;
+    for (const std::string& folder : folders_) made += " " + ShellQuoted(folder);
+    std::string commands = made.empty() ? "" : "mkdir -p" + made + "\n";
+    for (const auto& [path, name] : plan_.libraries)
+      commands += fmt::format("ln -s \"$own\"/lib/{} {}\n", ShellQuoted(name), ShellQuoted(path));
+    return commands + commands_;
+  }
+
+ private:
+  bool IsOwn(const std::string& path, const fs::directory_entry& entry) {
+    if (folders_.contains(path)) return true;
+    std::error_code failed;
+    if (entry.is_symlink(failed) || !HasFewEntries(entry.path())) return false;
+    return folders_.insert(path).second;
+  }
+
+  void Add(const std::string& folder) {
+    std::string copied;
+    std::string linked;
+    std::set<std::string> own;
+    std::error_code failed;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(fs::path(plan_.project) / folder, failed)) {
+      const std::string name = entry.path().filename();
+      const std::string path = folder.empty() ? name : folder + "/" + name;
+      if (IsKeptByVersionControl(entry.path()) || plan_.libraries.contains(path)) continue;
+      const std::string quoted = " " + ShellQuoted(plan_.project + "/" + path);
+      const bool is_file = entry.is_regular_file(failed);
+      if (entry.is_directory(failed) && IsOwn(path, entry)) {
+        own.insert(path);
+      } else if (is_file &&
+                 (entry.file_size(failed) <= kSmallFile || std::ranges::count(plan_.written, path) > 0)) {
+        copied += quoted;
+      } else {
+        linked += quoted;
+      }
+    }
+    const std::string into = " " + ShellQuoted(folder.empty() ? "." : folder) + "\n";
+    if (!copied.empty()) commands_ += "cp -n" + copied + into;
+    if (!linked.empty()) commands_ += "ln -s" + linked + into;
+    for (const std::string& path : own) Add(path);
+  }
+
+  const RunFolderPlan& plan_;
+  std::set<std::string> folders_;  // that are the run's own
+  std::string commands_;
+};
 
 }  // namespace
 
@@ -133,21 +203,7 @@ Status CopyProject(const std::string& project, const std::string& folder) {
   return Ok{};
 }
 
-bool IsSmall(const std::string& project) {
-  std::uint64_t bytes = 0;
-  for (const auto& [name, stamp] : FilesIn(project)) bytes += stamp.size;
-  std::error_code failed;
-  const bool linked = std::ranges::any_of(fs::directory_iterator(project, failed), [&](const auto& entry) {
-    return entry.is_symlink(failed) && entry.is_directory(failed);
-  });
-  return bytes <= kMostCopiedForARun && !linked;
-}
-
 std::string RunScript(const RunFolderPlan& plan) {
-  std::set<std::string> folders;  // that are the run's own
-  for (const auto& [path, name] : plan.libraries) AddParents(path, folders);
-  for (const std::string& path : plan.written) AddParents(path, folders);
-  const auto in_project = [&](const std::string& path) { return ShellQuoted(plan.project + "/" + path); };
   std::string text = fmt::format(R"(#!/bin/sh
 # Written by gauntlet adopt: makes this folder one in which the project's experiment runs, and runs it.
 project={}
@@ -158,28 +214,10 @@ if [ ! -d "$project" ]; then
 fi
 )",
                                  ShellQuoted(plan.project), ShellQuoted(plan.own));
-  if (!folders.empty()) text += "mkdir -p";
-  for (const std::string& folder : folders) text += " " + ShellQuoted(folder);
-  text += "\n# What the campaign keeps of the project, whatever becomes of it.\n";
-  for (const auto& [path, name] : plan.libraries)
-    text += fmt::format("ln -s \"$own\"/lib/{} {}\n", ShellQuoted(name), ShellQuoted(path));
-  text += plan.links ? "# The project's files, each as a link, but for what a run writes.\n"
-                     : "# A copy of the project: whatever a run writes is its own.\n";
-  std::error_code failed;
-  for (const std::string& path : plan.written)
-    if (plan.links && fs::exists(plan.project + "/" + path, failed))
-      text += fmt::format("cp {} {}\n", in_project(path), ShellQuoted(path));
-  text += fmt::format(R"(case_file=$1
-set --
-for entry in "$project"/* "$project"/.[!.]*; do
-  case $entry in */.git | */.hg | */.svn) ;; *) [ -e "$entry" ] && set -- "$@" "$entry" ;; esac
-done
-[ $# -eq 0 ] || cp -{}nH "$@" . || exit 1
-)",
-                      plan.links ? "rs" : "r");
+  text += RunFolder(plan).Commands();
   text += fmt::format(R"(export ARGOS_PLUGIN_PATH="$own/plugins"
 export LD_LIBRARY_PATH="$own/lib${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}"
-argos3 -n -c "$case_file"
+argos3 -n -c "$1"
 code=$?
 [ $code -eq 0 ] && [ -e gauntlet-trajectory.csv ] && exit 0
 if [ ! -e gauntlet-trajectory.csv.draft ] && grep -q 'Error while trying to distribute entities' {0} &&

@@ -29,17 +29,13 @@ std::map<std::string, FileStamp> FilesIn(const std::string& folder);
 // Copies the project, without what version control keeps, links staying links. Error: also when it is larger
 // than a gigabyte.
 Status CopyProject(const std::string& project, const std::string& folder);
-// Whether a copy for each run costs little: it has at most 16 MB, and no folder that is a link.
-bool IsSmall(const std::string& project);
-
-// What the folder of a run has of the project: a copy, or folders of its own with links to files, except for
-// what a run writes or loads.
+// What the folder of a run has of the project as it is now: small files are copies, all other entries links.
+// Folders with few entries, and those in which a run writes or loads something, are the run's own.
 struct RunFolderPlan {
   std::string project;                           // its absolute path
   std::string own;                               // the folder of what is ours in a run's folder
   std::map<std::string, std::string> libraries;  // by path in the project: the name in `own`/lib
   std::vector<std::string> written;              // paths in the project's folder that a run writes or makes
-  bool links = false;  // to the project's files, which are too large to copy for each run
 };
 // A script for /bin/sh that makes the folder and starts ARGoS with the file that it is given.
 std::string RunScript(const RunFolderPlan& plan);

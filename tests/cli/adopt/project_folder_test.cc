@@ -75,27 +75,31 @@ TEST_F(ProjectFolderTest, ARunWritesIntoItsOwnFolderAlone) {
   Write("p/data/in.txt", "in");
   Write("p/data/old.txt", "old\n");
   Write("p/.params", "1");
+  Write("p/case.argos", "another");
+  Write("run/case.argos", "0");
   Write("p/.git/HEAD");
+  Write("p/large", std::string(100'000, 'x'));
   Write("outside/libx.so", "rebuilt");
+  Write("outside/other", "2");
   fs::create_symlink("../outside", scratch_ / "p/build");
-  EXPECT_FALSE(IsSmall(scratch_ / "p"));
+  fs::create_directory(scratch_ / "p/results");
+  for (int i = 0; i < 30; ++i) Write("p/many/" + std::to_string(i));
   const auto before = FilesIn(scratch_ / "p");
-  for (const bool links : {true, false}) {
-    const std::string run = links ? "linked" : "copied";
-    Write(run + "/own/lib/libx.so", "kept");
-    const RunFolderPlan plan{.project = scratch_ / "p",
-                             .own = "own",
-                             .libraries = {{"build/libx.so", "libx.so"}},
-                             .written = {"data/old.txt", "logs/new.txt"},
-                             .links = links};
-    const auto ended =
-        RunIn(run, plan,
-              "cat data/in.txt build/libx.so .params; echo new >> data/old.txt; echo 1 > logs/new.txt\n"
-              "ls -d .git; echo $ARGOS_PLUGIN_PATH; touch gauntlet-trajectory.csv\n");
-    EXPECT_EQ(ended.exit_code, 0) << ended.err;
-    EXPECT_EQ(ended.out, "inkept1" + (scratch_ / (run + "/own/plugins\n")));
-    EXPECT_EQ(FilesIn(scratch_ / "p"), before);
-  }
+  Write("run/own/lib/libx.so", "kept");
+  const RunFolderPlan plan{.project = scratch_ / "p",
+                           .own = "own",
+                           .libraries = {{"build/libx.so", "libx.so"}},
+                           .written = {"large", "logs/new.txt"}};
+  // Also where adopt has seen nothing written.
+  const auto ended =
+      RunIn("run", plan,
+            "cat case.argos data/in.txt build/libx.so build/other .params; echo new >> data/old.txt\n"
+            "echo 1 > logs/new.txt; echo 2 > results/few.txt; echo 3 >> large\n"
+            "ls -d .git many/7; echo $ARGOS_PLUGIN_PATH; touch gauntlet-trajectory.csv\n");
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  EXPECT_EQ(ended.out, "0inkept21many/7\n" + (scratch_ / "run/own/plugins\n"));
+  EXPECT_EQ(FilesIn(scratch_ / "p"), before);
+  EXPECT_TRUE(fs::is_symlink(scratch_ / "run/many"));
 }
 
 // Another machine may have no such folder.
