@@ -42,12 +42,17 @@ class TemporaryFolder {
     static TemporaryFolder folder;
     if (!folder.path_.empty()) return folder.path_;
     std::error_code failed;
-    std::string made = fs::temp_directory_path(failed) / "gauntlet-run-XXXXXX";
+    const fs::path place = fs::temp_directory_path(failed);
+    std::string made = place / "gauntlet-new-XXXXXX";
     if (mkdtemp(made.data()) == nullptr)
       return SystemError("cannot make a folder for temporary files", errno);
     folder.lock_.Reset(open(made.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     flock(folder.lock_.get(), LOCK_EX | LOCK_NB);
-    return folder.path_ = made;
+    // Its last name only now: one of this name without a lock is removed.
+    const fs::path named = place / ("gauntlet-run-" + made.substr(made.size() - 6));
+    if (rename(made.c_str(), named.c_str()) != 0)
+      return SystemError("cannot make a folder for temporary files", errno);
+    return folder.path_ = named;
   }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
