@@ -37,6 +37,12 @@ constexpr const char* kPlugins = "plugins";                    // in the folder 
 constexpr const char* kLibraries = "lib";
 constexpr const char* kCaseFile = "case.argos";
 
+// Without a path, files would be written where we are: in the project.
+Status CheckMade(const TemporaryFolder& folder) {
+  if (!folder.path().empty()) return Ok{};
+  return Error{ErrorKind::kIo, "no folder can be made in $TMPDIR or /tmp"};
+}
+
 // Everything that is learnt of the project on the way.
 class Adoption {
  public:
@@ -107,7 +113,7 @@ class Adoption {
 
   Status MakeOwnFolder() {
     std::error_code failed;
-    if (own_.path().empty()) return Error{ErrorKind::kIo, "no folder can be made in $TMPDIR or /tmp"};
+    TRY(CheckMade(own_));
     for (const char* name : {kPlugins, kLibraries}) fs::create_directories(OwnPath(name), failed);
     if (failed) return Error{ErrorKind::kIo, fmt::format("{}: {}", OwnPath(""), failed.message())};
     // ARGoS loads what is in these folders, wherever they are.
@@ -140,6 +146,7 @@ class Adoption {
   // In a copy of the project, to see what a run writes and loads.
   Status RunFirst(const ArgosInstallation& argos) {
     const TemporaryFolder copy("adopt");
+    TRY(CheckMade(copy));
     TRY(CopyProject(folder_, copy.path()));
     TRY(WriteCase(copy.path(), 1, {}));
     const auto before = FilesIn(copy.path());
@@ -197,6 +204,7 @@ class Adoption {
   }
 
   Result<TrialRun> RunOnce(const TemporaryFolder& folder, std::uint64_t seed, const sim::Genome& obstacles) {
+    TRY(CheckMade(folder));
     std::error_code failed;
     fs::copy(own_.path() + "/" + project_.own, folder.path() + "/" + project_.own,
              fs::copy_options::recursive, failed);
