@@ -111,7 +111,8 @@ Result<WatchedOptions> CommandRuns::OptionsOf(const std::string& folder, const s
       .cpu_limit = definition.cpu_limit > 0.0 ? definition.cpu_limit : wall_limit * definition.cores,
       .memory_bytes = Megabytes(definition.memory),
       .disk_bytes = Megabytes(definition.disk),
-      .confine = definition.confine};
+      .confine = definition.confine,
+      .group = &group_};
 }
 
 Result<CommandRuns::Ended> CommandRuns::RunIn(const std::string& folder, const sim::RunSpec& spec) {

@@ -34,6 +34,7 @@ class CommandRuns {
 
   PluginSettings settings_;
   CommandFiles files_;
+  ControlGroup group_;
   std::map<std::string, std::vector<std::string>> environments_;  // after setup, by the definition's hash
 };
 

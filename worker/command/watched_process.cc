@@ -122,6 +122,7 @@ Result<Image> MakeImage(const WatchedOptions& options) {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     dup2(image.streams[static_cast<std::size_t>(stream)].get(), stream);
   CloseAllBut({socket});
+  if (options.group != nullptr) ControlGroup::EndThisFirst();
   SetHardLimit(RLIMIT_CORE, 0);
   if (options.disk_bytes > 0) SetHardLimit(RLIMIT_FSIZE, rlim_t{options.disk_bytes});
   // Of all processes of our user: no fewer than there are, and none of a super-user's.
@@ -152,6 +153,12 @@ Error NotExecuted(const std::string& path, int failed) {
                           : failed == ENOEXEC ? "it is no program of this machine, and names no interpreter"
                                               : std::strerror(failed);
   return {ErrorKind::kNotFound, fmt::format("{}: {}", what, why)};
+}
+
+ExceededLimit MetIn(const ControlGroup* group) {
+  if (group == nullptr) return ExceededLimit::kNone;
+  if (group->OutOfMemory()) return ExceededLimit::kMemory;
+  return group->OutOfProcesses() ? ExceededLimit::kProcesses : ExceededLimit::kNone;
 }
 
 // Looks at a program and what it has started, children and orphans of this process.
@@ -209,16 +216,23 @@ class Watch {
 
   ExceededLimit Look() {
     ReapOrphans();
-    // First what has ended, or a process that ends meanwhile counts twice.
-    double seconds = ChildrensSeconds() - before_;
-    std::uint64_t bytes = 0;
-    const std::vector<pid_t> processes = SampleBelow(getpid());
-    if (processes.size() > kMostProcesses) return ExceededLimit::kProcesses;
-    for (const pid_t process : processes) {
-      seconds += gauntlet::CpuSecondsOf(process);
-      bytes += ResidentBytesOf(process);
+    if (const ExceededLimit exceeded = MetIn(options_.group); exceeded != ExceededLimit::kNone)
+      return exceeded;
+    double seconds = 0.0;
+    if (options_.group != nullptr && options_.group->IsWhole()) {
+      seconds = options_.group->CpuSeconds().value_or(0.0);
+    } else {
+      // First what has ended, or a process that ends meanwhile counts twice.
+      seconds = ChildrensSeconds() - before_;
+      std::uint64_t bytes = 0;
+      const std::vector<pid_t> processes = SampleBelow(getpid());
+      if (processes.size() > kMostProcesses) return ExceededLimit::kProcesses;
+      for (const pid_t process : processes) {
+        seconds += gauntlet::CpuSecondsOf(process);
+        bytes += ResidentBytesOf(process);
+      }
+      if (options_.memory_bytes > 0 && bytes > options_.memory_bytes) return ExceededLimit::kMemory;
     }
-    if (options_.memory_bytes > 0 && bytes > options_.memory_bytes) return ExceededLimit::kMemory;
     if (options_.cpu_limit > 0.0 && seconds > options_.cpu_limit) return ExceededLimit::kCpu;
     const bool looks_into_folder = options_.disk_bytes > 0 && ++looks_ % kLooksPerFolder == 0;
     return looks_into_folder && BytesIn(options_.folder) > options_.disk_bytes ? ExceededLimit::kDisk
@@ -272,6 +286,7 @@ Result<std::string> FindProgram(const std::string& name, const std::vector<std::
 Result<WatchedOutcome> RunWatched(const WatchedOptions& options) {
   TRY(Image image, MakeImage(options));
   TakeOrphans();
+  if (options.group != nullptr) options.group->Limit({options.memory_bytes, kMostProcesses});
   const double before = ChildrensSeconds();
   const pid_t parent = getpid();
   const pid_t program = fork();
@@ -293,6 +308,7 @@ Result<WatchedOutcome> RunWatched(const WatchedOptions& options) {
     std::memcpy(&failed, failure->bytes.data(), sizeof failed);
     return NotExecuted(image.path, failed);
   }
+  if (outcome.exceeded == ExceededLimit::kNone) outcome.exceeded = MetIn(options.group);
   // What a quick one has left is looked at now. Whoever may write no more ends by SIGXFSZ, or as it ends of
   // an error.
   if (outcome.exceeded == ExceededLimit::kNone && options.disk_bytes > 0) {
@@ -302,6 +318,8 @@ Result<WatchedOutcome> RunWatched(const WatchedOptions& options) {
     if (full || ended_by_it) outcome.exceeded = ExceededLimit::kDisk;
   }
   outcome.cpu_seconds = ChildrensSeconds() - before;
+  if (options.group != nullptr)
+    outcome.cpu_seconds = options.group->CpuSeconds().value_or(outcome.cpu_seconds);
   return outcome;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "worker/runner/control_group.h"
 
 namespace gauntlet::worker {
 
@@ -19,11 +20,13 @@ struct WatchedOptions {
   // Limits of all its processes together; 0: none.
   double wall_limit = 0.0;         // s
   double cpu_limit = 0.0;          // s, user and system time
-  std::uint64_t memory_bytes = 0;  // in RAM; what two of them share counts twice
+  std::uint64_t memory_bytes = 0;  // in RAM; without a group, what two of them share counts twice
   std::uint64_t disk_bytes = 0;    // in the folder, and of any one file that it writes
   // As runs of plug-ins are (confinement.h). Without, programs may gain rights (setuid), and no number of
   // processes is too many.
   bool confine = true;
+  // That of this process, which limits what it can; the rest is looked at. nullptr: everything is.
+  ControlGroup* group = nullptr;
 };
 
 enum class ExceededLimit { kNone, kWall, kCpu, kMemory, kDisk, kProcesses };
@@ -33,7 +36,8 @@ inline constexpr std::size_t kMostProcesses = 512;
 struct WatchedOutcome {
   int wait_status = 0;  // of the program; its processes were killed when a limit was exceeded
   ExceededLimit exceeded = ExceededLimit::kNone;
-  double cpu_seconds = 0.0;  // user and system time of all its processes, but of those nobody has waited for
+  // User and system time of all its processes; without a group, but of those nobody has waited for.
+  double cpu_seconds = 0.0;
 };
 
 // The path of a program: in the folder, or else in the environment's PATH; a name with a slash is a path.

@@ -27,6 +27,7 @@
 #include "base/system/process_tree.h"
 #include "base/system/resource_limits.h"
 #include "worker/runner/confinement.h"
+#include "worker/runner/control_group.h"
 #include "worker/runner/scratch_folder.h"
 
 namespace gauntlet::worker {
@@ -168,6 +169,7 @@ class Server {
               .cpu_seconds = CpuSecondsOf(usage)});
     }
     EndOrphans();
+    ControlGroup::RemoveAbandoned();
   }
 
   // What the processes of a runner that has ended have started is now a child of this process.
@@ -185,6 +187,7 @@ class Server {
   [[noreturn]] void End() {
     EndProcessesBelow();
     ScratchFolder::RemoveAbandoned();
+    ControlGroup::RemoveAbandoned();
     _exit(0);
   }
 

@@ -183,7 +183,21 @@ TEST_F(WatchedProcessTest, WhoHangsIsEndedByTheWallClock) {
   EXPECT_FALSE(Alive(NumberIn("pid")));
 }
 
-TEST_F(WatchedProcessTest, CpuTimeOfAllItsProcessesCounts) {
+// Whether the kernel limits it or we look.
+class WatchedProcessLimitTest : public WatchedProcessTest, public testing::WithParamInterface<bool> {
+ protected:
+  void SetUp() override {
+    WatchedProcessTest::SetUp();
+    if (GetParam()) options_.group = &group_;
+  }
+
+ private:
+  ControlGroup group_;
+};
+INSTANTIATE_TEST_SUITE_P(With, WatchedProcessLimitTest, testing::Bool(),
+                         [](const auto& limited) { return limited.param ? "ControlGroup" : "Looks"; });
+
+TEST_P(WatchedProcessLimitTest, CpuTimeOfAllItsProcessesCounts) {
   options_.cpu_limit = 0.4;
   const std::string spin = "sh -c 'while :; do :; done'";
   for (const std::string& script : {spin, spin + " & " + spin + " & wait",
@@ -200,7 +214,7 @@ TEST_F(WatchedProcessTest, CpuTimeOfAllItsProcessesCounts) {
   EXPECT_LT(idle.cpu_seconds, 0.4);
 }
 
-TEST_F(WatchedProcessTest, MemoryOfAllItsProcessesCounts) {
+TEST_P(WatchedProcessLimitTest, MemoryOfAllItsProcessesCounts) {
   options_.memory_bytes = std::uint64_t{200} << 20;
   const std::string hog = R"(perl -e '$x = "a" x (80 << 20); sleep 600')";
   const WatchedOutcome outcome = Sh(hog + " & " + hog + " & " + hog + " & wait");
@@ -246,7 +260,7 @@ TEST_F(WatchedProcessTest, WhatAQuickOneHasLeftIsLimitedToo) {
   EXPECT_EQ(outcome.wait_status, 0);
 }
 
-TEST_F(WatchedProcessTest, OneThatStartsProcessesWithoutEndEndsWithAllOfThem) {
+TEST_P(WatchedProcessLimitTest, OneThatStartsProcessesWithoutEndEndsWithAllOfThem) {
   options_.wall_limit = 60.0;
   // Not quite without end: what goes wrong here must not take the machine along.
   const WatchedOutcome outcome = Sh("i=0; while [ $i -lt 4000 ]; do sleep 600 & i=$((i+1)); done; wait");
