@@ -4,7 +4,8 @@
 //   <visualization><gauntlet_recorder file="trajectory.csv" every="1"/></visualization>
 //
 // file:  CSV with the columns time (s), robot, kind, x, y (m), heading (rad), of every controllable entity. It
-//        stands there under this name when the experiment has ended well, and not before.
+//        stands there under this name when the experiment has ended well, and not before. Where GAUNTLET_REPLAY is in
+//        the environment, there is also a file with ".replay" after this name and rows of every tick.
 // every: s between rows of a robot; 0 = every tick. The first and the last tick have rows in any case.
 // world: a file that tells what stands in the arena at the beginning and which libraries are loaded, with tabs:
 //        "robot" or "body", id, kind, movable (0 or 1), x, y (m), smallest and largest x, then y, of its bounding box;
@@ -24,6 +25,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 using argos::CARGoSException;  // which ARGoS' macros name without their namespace
 
@@ -57,11 +59,37 @@ int WriteLibrary(dl_phdr_info* info, std::size_t, void* file) {
   return 0;
 }
 
+// A file of poses, which has its name when it is whole.
+class Poses {
+ public:
+  Poses(const std::string& path, argos::Real every)
+      : path_(path), draft_(path + ".draft"), file_(OpenToWrite(draft_)), every_(every), next_(0.0) {
+    std::fprintf(file_, "time,robot,kind,x,y,heading\n");
+  }
+
+  bool IsDue(argos::Real now) const { return now + 1e-9 >= next_; }
+  void WroteAt(argos::Real now) { next_ = now + every_; }
+  std::FILE* file() const { return file_; }
+
+  void Finish() {
+    Close(file_, draft_);
+    if (std::rename(draft_.c_str(), path_.c_str()) != 0)
+      THROW_ARGOSEXCEPTION("gauntlet_recorder cannot write " << path_);
+  }
+
+ private:
+  std::string path_;
+  std::string draft_;
+  std::FILE* file_;
+  argos::Real every_;
+  argos::Real next_;  // s, when poses are written again
+};
+
 }  // namespace
 
 class GauntletRecorder : public argos::CVisualization {
  public:
-  GauntletRecorder() : trajectory_(NULL), every_(1.0), next_(0.0) {}
+  GauntletRecorder() : every_(1.0) {}
 
   virtual void Init(argos::TConfigurationNode& node) {
     argos::GetNodeAttribute(node, "file", path_);
@@ -76,20 +104,17 @@ class GauntletRecorder : public argos::CVisualization {
       WriteWorld();
       argos::LOG << "gauntlet: the experiment begins" << std::endl;
     }
-    const std::string draft = path_ + ".draft";
-    trajectory_ = OpenToWrite(draft);
-    std::fprintf(trajectory_, "time,robot,kind,x,y,heading\n");
+    files_.push_back(Poses(path_, every_));
+    if (std::getenv("GAUNTLET_REPLAY") != NULL) files_.push_back(Poses(path_ + ".replay", 0.0));
     WritePoses();
     while (!m_cSimulator.IsExperimentFinished()) {
       m_cSimulator.UpdateSpace();
-      if (Now() + 1e-9 >= next_ || m_cSimulator.IsExperimentFinished()) WritePoses();
+      WritePoses();
     }
     m_cSimulator.GetLoopFunctions().PostExperiment();
     argos::LOG.Flush();
     argos::LOGERR.Flush();
-    Close(trajectory_, draft);
-    if (std::rename(draft.c_str(), path_.c_str()) != 0)
-      THROW_ARGOSEXCEPTION("gauntlet_recorder cannot write " << path_);
+    for (std::size_t i = 0; i < files_.size(); ++i) files_[i].Finish();
   }
 
  private:
@@ -113,6 +138,14 @@ class GauntletRecorder : public argos::CVisualization {
   }
 
   void WritePoses() {
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (!files_[i].IsDue(Now()) && !m_cSimulator.IsExperimentFinished()) continue;
+      WritePosesTo(files_[i].file());
+      files_[i].WroteAt(Now());
+    }
+  }
+
+  void WritePosesTo(std::FILE* file) {
     const argos::CSpace::TMapPerType& robots = EntitiesOf("controller");
     argos::CSpace::TMapPerType::const_iterator one;
     for (one = robots.begin(); one != robots.end(); ++one) {
@@ -122,12 +155,11 @@ class GauntletRecorder : public argos::CVisualization {
       const argos::SAnchor& anchor = body->GetOriginAnchor();
       argos::CRadians z, y, x;
       anchor.Orientation.ToEulerAngles(z, y, x);
-      std::fprintf(trajectory_, "%.17g,%s,%s,%.17g,%.17g,%.17g\n", static_cast<double>(Now()),
+      std::fprintf(file, "%.17g,%s,%s,%.17g,%.17g,%.17g\n", static_cast<double>(Now()),
                    Plain(root.GetId()).c_str(), Plain(root.GetTypeDescription()).c_str(),
                    static_cast<double>(anchor.Position.GetX()), static_cast<double>(anchor.Position.GetY()),
                    static_cast<double>(z.GetValue()));
     }
-    next_ = Now() + every_;
   }
 
   void WriteWorld() {
@@ -153,9 +185,8 @@ class GauntletRecorder : public argos::CVisualization {
 
   std::string path_;
   std::string world_;
-  std::FILE* trajectory_;
   argos::Real every_;
-  argos::Real next_;  // s, when poses are written again
+  std::vector<Poses> files_;
 };
 
 REGISTER_VISUALIZATION(GauntletRecorder, "gauntlet_recorder", "Gauntlet", "1.0", "Records where the robots are.",

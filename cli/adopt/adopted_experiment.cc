@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -89,17 +90,11 @@ std::string ConfineOf(const AdoptedProject& project) {
                   : "";
 }
 
-double MeanOf(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-// Half of what the swarm scores without obstacles, or half as much again below zero.
-std::string FailureOf(const AdoptedProject& project) {
-  const double mean = MeanOf(project.scores);
-  return fmt::format("score < {}",
-                     NumberText(std::stod(fmt::format("{:.3g}", mean > 0.0 ? mean / 2.0 : mean * 1.5))));
+// Worse than ever without obstacles, and by a quarter than usual: what chance does not bring about.
+double FailureBelow(const std::vector<double>& scores) {
+  constexpr double kWorse = 0.25;
+  const double mean = std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
+  return std::min(std::ranges::min(scores), mean - kWorse * std::abs(mean));
 }
 
 std::string AxisText(const std::string& metric, double low, double high) {
@@ -218,8 +213,9 @@ template = {}
 trajectory = "gauntlet-trajectory.csv"
 # Lower is tougher: of a score of which less is better, write "-score", and "score > ..." in `failure`.
 fitness = "score"
-# Half of what was scored without obstacles ({}).
-failure = "{}"
+# Less than in any of {} runs without obstacles, and by a quarter than their mean. They had
+# {}.
+failure = "score < {}"
 wall_limit = {}
 robot_radius = {}
 place = {{ x = "center_x", y = "center_y", same_within = {} }}
@@ -234,8 +230,9 @@ from = {}
 )",
       Printable(project.argos_file), QuoteToml(project.name),
       QuoteToml("the ARGoS project of " + project.argos_file), QuoteToml(project.own + "/run.sh"),
-      QuoteToml(project.own), QuoteToml(project.own + "/case.argos"), fmt::join(project.scores, ", "),
-      FailureOf(project), NumberText(std::ceil(10.0 + 20.0 * project.seconds)), Numbers(RobotRadius(project)),
+      QuoteToml(project.own), QuoteToml(project.own + "/case.argos"), project.scores.size(),
+      fmt::join(project.scores, ", "), fmt::format("{:.4g}", FailureBelow(project.scores)),
+      NumberText(std::ceil(10.0 + 20.0 * project.seconds)), Numbers(RobotRadius(project)),
       Numbers(SideOf(ObstacleArea(project)).minCoeff() / 10.0), ConfineOf(project),
       QuoteToml(SetupOf(project)), QuoteToml(project.score));
   for (const char* name : {"displacement", "center_x", "center_y", "covered_area"})

@@ -35,6 +35,10 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostArgosFile = std::size_t{16} << 20;  // bytes
 constexpr const char* kPlugins = "plugins";                    // in the folder of what is ours
 constexpr const char* kLibraries = "lib";
+// Runs without obstacles of which the scores are taken, and of those that take longer.
+constexpr int kScores = 10;
+constexpr int kFewScores = 4;
+constexpr double kShortRun = 10.0;  // s
 constexpr const char* kCaseFile = "case.argos";
 
 // Without a path, files would be written where we are: in the project.
@@ -63,6 +67,7 @@ class Adoption {
     TRY(RunFirst(argos));
     TRY(RunAsPlanned());
     TRY(ChooseScore());
+    TRY(RunMore());
     TRY(Write());
     return Adopted{.taken_over = project_.form.taken_over,
                    .differs = project_.form.differs,
@@ -301,11 +306,24 @@ class Adoption {
       candidates_.insert(candidates_.begin(), *score);
     project_.score = from;
     project_.scores = {score->first, score->other_seed};
-    if (score->first == 0.0 && score->other_seed == 0.0)
-      Unsupported("failure",
-                  "the score is 0 without obstacles, so that nothing is less than half of it: write one");
     if (!score->Varies())
       Unsupported("score", "it was the same in all runs, also with an obstacle: it may not be one (--score)");
+    return Ok{};
+  }
+
+  // How the score differs without obstacles; two runs say little of that.
+  Status RunMore() {
+    const int runs = first_.seconds <= kShortRun ? kScores : kFewScores;
+    say_(fmt::format("running it {} times more without obstacles, to see what is usual", runs - 2));
+    for (int seed = 3; seed <= runs; ++seed) {
+      const TemporaryFolder folder("adopt");
+      TRY(const TrialRun run, RunOnce(folder, static_cast<std::uint64_t>(seed), {}));
+      TRY(const double score, ScoreIn(run, project_.score));
+      project_.scores.push_back(score);
+      project_.poses.insert(project_.poses.end(), run.poses.begin(), run.poses.end());
+    }
+    if (std::ranges::min(project_.scores) == 0.0)
+      Unsupported("failure", "the score can be 0 without obstacles, so that nothing is less: write one");
     return Ok{};
   }
 

@@ -31,9 +31,9 @@ struct Adopted {
   double seconds = 0.0;                // that a run takes
 };
 
-// Runs the project in five folders of its own; nothing is written into the project's. `say` gets what it
-// does, `said` what a compiler or ARGoS printed before it failed. Error: ARGoS is missing, the project does
-// not run, or a box in the way of its robots changes nothing.
+// Runs the project up to thirteen times, each in a folder of its own; nothing is written into the project's.
+// `say` gets what it does, `said` what a compiler or ARGoS printed before it failed. Error: ARGoS is missing,
+// the project does not run, or a box in the way of its robots changes nothing.
 Result<Adopted> Adopt(const AdoptionOptions& options, const std::function<void(const std::string&)>& say,
                       std::ostream& said);
 

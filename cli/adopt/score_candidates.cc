@@ -95,20 +95,20 @@ Result<double> MeasureOf(const TrialRun& run, const std::string& name) {
   return command::TrajectoryMeasures({}, sim::RunSpec(), result.trajectory).at(name);
 }
 
-Result<double> ValueIn(const TrialRun& run, const std::string& from) {
+}  // namespace
+
+Result<double> ScoreIn(const TrialRun& run, const std::string& from) {
   if (from.starts_with(kMeasure)) return MeasureOf(run, from.substr(kMeasure.size()));
   TRY(command::CheckSource(from));
   return command::ReadSource(from, run.out, run.err, run.folder);
 }
 
-}  // namespace
-
 Result<ScoreCandidate> ScoreNamed(const std::string& from, const TrialRun& first, const TrialRun& other_seed,
                                   const TrialRun& with_obstacle) {
   ScoreCandidate candidate{.from = from};
-  TRY(candidate.first, ValueIn(first, from));
-  TRY(candidate.other_seed, ValueIn(other_seed, from));
-  TRY(candidate.with_obstacle, ValueIn(with_obstacle, from));
+  TRY(candidate.first, ScoreIn(first, from));
+  TRY(candidate.other_seed, ScoreIn(other_seed, from));
+  TRY(candidate.with_obstacle, ScoreIn(with_obstacle, from));
   return candidate;
 }
 

@@ -25,6 +25,9 @@ std::vector<ScoreCandidate> FindScores(const TrialRun& first, const TrialRun& ot
                                        const TrialRun& with_obstacle, const std::vector<std::string>& written,
                                        std::size_t most = 20);
 
+// What a run has of it. Error: nothing.
+Result<double> ScoreIn(const TrialRun& run, const std::string& from);
+
 // One that the user names. Error: a run does not have it.
 Result<ScoreCandidate> ScoreNamed(const std::string& from, const TrialRun& first, const TrialRun& other_seed,
                                   const TrialRun& with_obstacle);

@@ -132,8 +132,7 @@ void AddAdopt(CommandParser& parser) {
   AddValue(command, "--length", "S", options.length, "how long a run is (default: as the file says)");
   AddValue(command, "--score", "WHERE", options.score,
            "log:PATTERN, csv:FILE:COLUMN or a measure of positions such as displacement (default: the first "
-           "that is "
-           "seen)");
+           "that is seen)");
   AddValue(command, "--height", "M", options.height, "height of obstacles (default: 0.5)");
   AddValue(command, "--record", "S", options.record,
            "time between recorded positions; 0 = each tick (default: 1)");
@@ -141,8 +140,8 @@ void AddAdopt(CommandParser& parser) {
   command.add_flag("--json", options.json, "print the result as one JSON document");
   command.add_flag("--quiet", options.quiet, "print no messages, except errors");
   command.footer(
-      R"(Runs the project five times: once in a copy, to see what it writes and which libraries it loads, then as the
-experiment will run it. Call it where you call argos3, with the same environment. Nothing is written into the project.
+      R"(Runs the project 13 times: once in a copy, to see what it writes and which libraries it loads, then as the
+experiment will run it, to see what is usual (7 times where a run takes over 10 s). Call it where you call argos3, with the same environment. Nothing is written into the project.
 Exit 2 when the project does not run, or when a box in the robots' way changes nothing. docs/from-argos.md goes through
 an example.
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "base/nearest_name.h"
@@ -127,6 +128,19 @@ std::vector<sim::Annotation> PlacesOf(const Definition& definition) {
   return places;
 }
 
+// What a replay is drawn by, with more rows than what counts.
+Status ReadReplay(const Definition& definition, const std::string& folder, sim::RunResult& result) {
+  const std::string name = definition.trajectory + kReplayEnding;
+  sim::RunResult finer;
+  if (!OpenLeftFile(folder + "/" + name)) return Ok{};
+  TRY(ReadTrajectory(folder + "/" + name, name, /*record=*/true, finer));
+  if (finer.robots.size() != result.robots.size())
+    return InvalidInput("its file " + name + " has " + std::to_string(finer.robots.size()) + " robots, " +
+                        definition.trajectory + " has " + std::to_string(result.robots.size()));
+  result.trajectory = std::move(finer.trajectory);
+  return Ok{};
+}
+
 }  // namespace
 
 std::optional<std::string> RefusedBy(const Definition& definition, const std::string& folder) {
@@ -175,6 +189,9 @@ Result<sim::RunResult> OutcomeOf(const Definition& definition, const sim::RunSpe
   result.failure.total = failed != 0.0;
   result.annotations = PlacesOf(definition);
   sim::SetHashes(result);
+  if (spec.record_trajectory && !definition.trajectory.empty()) {
+    TRY(ReadReplay(definition, folder, result));
+  }
   return result;
 }
 

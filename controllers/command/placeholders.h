@@ -14,6 +14,10 @@ namespace gauntlet::controllers::command {
 
 // Files in the run's folder.
 inline constexpr const char* kOutFile = "out.json";
+// Beside the trajectory, with this after its name, a replay may leave one with more rows, which is drawn.
+inline constexpr const char* kReplayEnding = ".replay";
+// What the environment of a replay says besides.
+inline constexpr const char* kReplayVariable = "GAUNTLET_REPLAY=1";
 std::string CaseFileOf(const Definition& definition);  // "case.json", "case.argos" of a template x.argos
 
 // What {seed} stands for: 1 to 2^31 - 1.

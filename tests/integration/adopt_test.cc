@@ -129,8 +129,11 @@ TEST_F(AdoptTest, ItsRunsAreThoseOfTheFileThatIsExported) {
     const json& row = runs.at(static_cast<std::size_t>(std::stoi(run) - 1));
     EXPECT_THAT(by_hand.out, HasSubstr("arrived: " + std::to_string(row.at("fitness").get<int>()) + "\n"));
   }
-  const ProcessResult replayed = Gauntlet({"replay", scratch_ / "c", "2", "--scratch", scratch_ / "kept"});
+  const ProcessResult replayed = Gauntlet(
+      {"replay", scratch_ / "c", "2", "--scratch", scratch_ / "kept", "--csv", scratch_ / "kept.csv"});
   EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+  // Positions between those that the run's measures are made of.
+  EXPECT_THAT(ReadFile(scratch_ / "kept.csv"), HasSubstr("5,0.5,0,-0.9,"));
   EXPECT_THAT(ReadFile(scratch_ / "kept/.gauntlet-stdout"), HasSubstr("library: 7"));
   EXPECT_EQ(ReadFile(scratch_ / "kept/results/score.csv").substr(0, 5), "20,9\n");
 }

@@ -100,10 +100,12 @@ Result<WatchedOptions> CommandRuns::OptionsOf(const std::string& folder, const s
     environment = environments_.emplace(spec.scenario_plugin, std::move(after_setup)).first;
   }
   const auto wall = spec.scenario_parameters.find(command::kWallLimit);
+  std::vector<std::string> variables = EnvironmentOfRun(environment->second, folder, definition);
+  if (spec.record_trajectory) variables.emplace_back(command::kReplayVariable);
   const double wall_limit = wall == spec.scenario_parameters.end() ? definition.wall_limit : wall->second;
   return WatchedOptions{
       .arguments = command::ArgumentsOf(definition, spec),
-      .environment = EnvironmentOfRun(environment->second, folder, definition),
+      .environment = std::move(variables),
       .folder = folder,
       .stdout_file = command::kStdoutFile,
       .stderr_file = command::kStderrFile,

@@ -47,6 +47,8 @@ constexpr milliseconds kMostBetweenLooks{250};
 // How often is looked whether the machine has many more processes, so that no program takes them all. Such a
 // look costs some microseconds.
 constexpr milliseconds kCrowdLook{10};
+// A program that starts processes without end has as many before it is ended, at most.
+constexpr std::size_t kMostProcessesOfUser = 8 * kMostProcesses;
 // Its folder is looked at by every fourth.
 constexpr int kLooksPerFolder = 4;
 // Where the kernel tells no end of a process by a descriptor (before Linux 5.3).
@@ -125,9 +127,9 @@ Result<Image> MakeImage(const WatchedOptions& options) {
   if (options.group != nullptr) ControlGroup::EndThisFirst();
   SetHardLimit(RLIMIT_CORE, 0);
   if (options.disk_bytes > 0) SetHardLimit(RLIMIT_FSIZE, rlim_t{options.disk_bytes});
-  // Of all processes of our user: no fewer than there are, and none of a super-user's.
+  // Of all processes of our user, other runs among them; of a super-user's, none.
   if (const std::size_t tasks = TasksOfMachine(); tasks > 0)
-    SetHardLimit(RLIMIT_NPROC, tasks + kMostProcesses);
+    SetHardLimit(RLIMIT_NPROC, tasks + kMostProcessesOfUser);
   for (const __rlimit_resource ours : {RLIMIT_AS, RLIMIT_CPU}) SetSoftLimit(ours, RLIM_INFINITY);
   TakeUsualSignals();
   int failed = chdir(options.folder.c_str()) == 0 ? 0 : errno;

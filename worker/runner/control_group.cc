@@ -24,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr mode_t kFolderMode = 0755;
+constexpr const char* kMembers = "cgroup.procs";
 constexpr std::string_view kPrefix = "gauntlet-";
 
 // The files of a controller in one version: where its limit is written, and the count of what the limit has
@@ -80,7 +81,34 @@ const Files& FilesOf(std::size_t controller) {
 }
 
 bool Join(const std::string& folder) {
-  return Write(folder + "/cgroup.procs", std::to_string(getpid()));
+  return Write(folder + "/" + kMembers, std::to_string(getpid()));
+}
+
+void KillMembers(const std::string& folder) {
+  const Result<std::string> members = ReadSmallFile(folder + "/" + kMembers);
+  if (!members) return;
+  for (const std::string_view member : Split(*members, '\n')) {
+    const auto process = ParseNumber<pid_t>(member);  // 0: it cannot be seen from here
+    if (process && *process > 0) kill(*process, SIGKILL);
+  }
+}
+
+// The number in a line "key number" of the file; that of the whole file without a key.
+std::optional<std::uint64_t> ReadNumber(const std::string& file, std::string_view key) {
+  const Result<std::string> text = ReadSmallFile(file);
+  if (!text) return std::nullopt;
+  for (const std::string_view line : Split(*text, '\n')) {
+    if (key.empty()) return ParseNumber<std::uint64_t>(line);
+    const std::size_t blank = line.find(' ');
+    if (line.substr(0, blank) == key)
+      return ParseNumber<std::uint64_t>(blank == line.npos ? "" : line.substr(blank + 1));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::uint64_t> ReadCount(const std::string& folder, std::size_t controller) {
+  const Files& files = FilesOf(controller);
+  return ReadNumber(folder + "/" + files.counts, files.key);
 }
 
 // Whether the controller, if it limits anything, limits to that from now on.
@@ -97,19 +125,6 @@ bool WriteLimit(const std::string& folder, std::size_t controller, const Control
   std::string text = std::to_string(memory ? number : number + 1);
   if (number == 0) text = memory && !Places()[controller].version_2 ? "-1" : "max";
   return Write(folder + "/" + files.limit, text);
-}
-
-std::optional<std::uint64_t> ReadCount(const std::string& folder, std::size_t controller) {
-  const Files& files = FilesOf(controller);
-  const Result<std::string> text = ReadSmallFile(folder + "/" + files.counts);
-  if (!text) return std::nullopt;
-  for (const std::string_view line : Split(*text, '\n')) {
-    if (files.key.empty()) return ParseNumber<std::uint64_t>(line);
-    const std::size_t blank = line.find(' ');
-    if (line.substr(0, blank) == files.key)
-      return ParseNumber<std::uint64_t>(blank == line.npos ? "" : line.substr(blank + 1));
-  }
-  return std::nullopt;
 }
 
 }  // namespace
@@ -171,7 +186,11 @@ std::string ControlGroup::Enter(std::size_t controller, const ControlGroupLimits
   return "";
 }
 
-void ControlGroup::Limit(const ControlGroupLimits& limits) {
+void ControlGroup::Limit(const ControlGroupLimits& wanted) {
+  ControlGroupLimits limits = wanted;
+  // Files in memory that others have left stay charged to the group.
+  if (limits_ && limits.memory_bytes > 0)
+    limits.memory_bytes += ReadNumber(parts_[kGroupMemory].folder + "/memory.stat", "shmem").value_or(0);
   for (std::size_t controller = 0; controller < kGroupControllers; ++controller) {
     Part& part = parts_[controller];
     if (!limits_) {
@@ -218,7 +237,10 @@ void ControlGroup::RemoveAbandoned() {
         const auto maker = ParseNumber<pid_t>(std::string_view(name).substr(kPrefix.size()));
         if (maker && kill(*maker, 0) != 0 && errno == ESRCH) abandoned.push_back(entry->path());
       }
-      for (const std::string& folder : abandoned) rmdir(folder.c_str());
+      for (const std::string& folder : abandoned) {
+        KillMembers(folder);
+        rmdir(folder.c_str());
+      }
     }
   }
 }

@@ -47,8 +47,8 @@ class ControlGroup {
   // This process leaves the group, which is removed; nothing else may be in it any more.
   ~ControlGroup();
 
-  // From now on; what is counted begins again.
-  void Limit(const ControlGroupLimits& limits);
+  // From now on; what is counted begins again. Files in memory that are there already do not count.
+  void Limit(const ControlGroupLimits& wanted);
 
   // Whether memory, processes and time are all limited or counted. Memory is what is in RAM, each page once,
   // files in memory (tmpfs) included, and the little that this process itself needs from now on.
@@ -62,7 +62,8 @@ class ControlGroup {
 
   // When memory is short, this process and what it starts are ended, not those of the group that started it.
   static void EndThisFirst();
-  // Removes those whose processes ended without their destructors.
+  // Removes those whose makers ended without their destructors, and ends who is still in them: it is gone
+  // when this is called again.
   static void RemoveAbandoned();
 
  private:

@@ -40,7 +40,7 @@ TEST(AdoptedExperimentTest, IsARightCommand) {
   const auto read = ReadCommand({text, "mine.toml"}, {});
   ASSERT_TRUE(read.ok()) << read.error().message;
   const controllers::command::Definition& command = **read;
-  EXPECT_EQ(command.failure, "score < 4.5");
+  EXPECT_EQ(command.failure, "score < 6.75");
   EXPECT_EQ(command.setup, "export PATH='/opt/my argos/bin:/bin'");
   EXPECT_EQ(command.robot_radius, 0.05);
   ASSERT_EQ(command.parameters.size(), 3U);
@@ -62,10 +62,14 @@ TEST(AdoptedExperimentTest, OnlyKilobotsAreNotConfined) {
   EXPECT_FALSE((**ReadCommand({AdoptedExperimentText(project), "mine.toml"}, {})).confine);
 }
 
-TEST(AdoptedExperimentTest, AFailureOfScoresBelowZeroIsFurtherBelow) {
+TEST(AdoptedExperimentTest, AFailureIsWorseThanEverAndByAQuarterThanUsual) {
   AdoptedProject project = Project();
+  project.scores = {8.0, 2.0, 11.0};
+  EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < 2\""));
   project.scores = {-2.0, -4.0};
-  EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < -4.5\""));
+  EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < -4\""));
+  project.scores = {-4.0, -4.0};
+  EXPECT_THAT(AdoptedExperimentText(project), HasSubstr("failure = \"score < -5\""));
   EXPECT_TRUE(ReadCommand({AdoptedExperimentText(project), "mine.toml"}, {}).ok());
   project.scores = {0.0, 0.0};
   EXPECT_TRUE(ReadCommand({AdoptedExperimentText(project), "mine.toml"}, {}).ok());

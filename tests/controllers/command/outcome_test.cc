@@ -100,6 +100,26 @@ TEST_F(OutcomeTest, ATrajectoryIsPartOfIt) {
   EXPECT_EQ(Error({{"trajectory", "u.csv"}}), "it has left no file u.csv");
 }
 
+TEST_F(OutcomeTest, AReplayIsDrawnByMoreRowsThanCount) {
+  const auto outcome = [&](bool replay) {
+    sim::RunSpec spec;
+    spec.record_trajectory = replay;
+    return OutcomeOf(DefinitionWith({{"trajectory", "t.csv"}}), spec, scratch_.path());
+  };
+  Leave(kOutFile, R"({"items": 6})");
+  Leave("t.csv", "0,a,robot,0,0,0\n1,a,robot,1,0,0\n");
+  const auto before = outcome(true);
+  EXPECT_EQ(before->trajectory.at(5).at(0).x, 0.0);
+  Leave("t.csv.replay", "0,a,robot,0,0,0\n0.5,a,robot,0.4,0,0\n1,a,robot,1,0,0\n");
+  EXPECT_EQ(outcome(true)->trajectory.at(5).at(0).x, 0.4);
+  EXPECT_EQ(outcome(true)->hash, before->hash);
+  EXPECT_EQ(outcome(true)->ticks, before->ticks);
+  EXPECT_TRUE(outcome(false)->trajectory.empty());
+  Leave("t.csv.replay", "0,a,robot,0,0,0\n0,b,robot,0,0,0\n");
+  EXPECT_EQ(outcome(true).error().message, "its file t.csv.replay has 2 robots, t.csv has 1");
+  EXPECT_TRUE(outcome(false).ok());
+}
+
 TEST_F(OutcomeTest, RefusalsAreFoundInBothOutputs) {
   const json refused = {{"refused", json::array({{{"pattern", "^cannot place"}}})}};
   EXPECT_EQ(RefusedBy(DefinitionWith(refused), scratch_.path()), std::nullopt);
