@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <regex>
 #include <set>
 #include <utility>
 
@@ -39,6 +40,8 @@ constexpr const char* kLibraries = "lib";
 constexpr int kScores = 10;
 constexpr int kFewScores = 4;
 constexpr double kShortRun = 10.0;  // s
+// Places where robots begin that our engine and ARGoS are compared from, each without and with an obstacle.
+constexpr std::size_t kComparedStarts = 5;
 constexpr const char* kCaseFile = "case.argos";
 
 // Without a path, files would be written where we are: in the project.
@@ -68,6 +71,7 @@ class Adoption {
     TRY(RunAsPlanned());
     TRY(ChooseScore());
     TRY(RunMore());
+    CompareWithOurs();
     TRY(Write());
     return Adopted{.taken_over = project_.form.taken_over,
                    .differs = project_.form.differs,
@@ -76,6 +80,7 @@ class Adoption {
                    .score = project_.score,
                    .libraries = kept_,
                    .reproducible = reproducible_,
+                   .engine = engine_,
                    .seconds = first_.seconds};
   }
 
@@ -136,15 +141,20 @@ class Adoption {
 
   // The run's file: the template with these obstacles.
   Status WriteCase(const std::string& folder, std::uint64_t seed, const sim::Genome& obstacles) {
+    return WriteFilled(folder, project_.form, seed, obstacles);
+  }
+
+  static Status WriteFilled(const std::string& folder, const ArgosTemplate& form, std::uint64_t seed,
+                            const sim::Genome& obstacles) {
     sim::RunSpec spec;
     spec.seed = seed;
     spec.test_case.obstacles = obstacles;
     controllers::command::Definition definition;
-    for (const ArgosParameter& parameter : project_.form.parameters) {
+    for (const ArgosParameter& parameter : form.parameters) {
       definition.parameters.push_back({.name = parameter.name, .default_value = parameter.value});
       spec.controller_parameters[parameter.name] = parameter.value;
     }
-    const std::string filled = controllers::command::FillTemplate(definition, project_.form.text, spec);
+    const std::string filled = controllers::command::FillTemplate(definition, form.text, spec);
     return ReplaceFile(folder + "/" + kCaseFile, WithWorld(filled, kWorldFile), kReadableByAll);
   }
 
@@ -210,10 +220,14 @@ class Adoption {
 
   Result<TrialRun> RunOnce(const TemporaryFolder& folder, std::uint64_t seed, const sim::Genome& obstacles) {
     TRY(CheckMade(folder));
+    TRY(WriteCase(folder.path(), seed, obstacles));
+    return RunCaseIn(folder);
+  }
+
+  Result<TrialRun> RunCaseIn(const TemporaryFolder& folder) {
     std::error_code failed;
     fs::copy(own_.path() + "/" + project_.own, folder.path() + "/" + project_.own,
              fs::copy_options::recursive, failed);
-    TRY(WriteCase(folder.path(), seed, obstacles));
     return RunTrial(folder.path(), fmt::format("sh {}/run.sh {}", ShellQuoted(project_.own), kCaseFile),
                     said_);
   }
@@ -320,11 +334,45 @@ class Adoption {
       TRY(const TrialRun run, RunOnce(folder, static_cast<std::uint64_t>(seed), {}));
       TRY(const double score, ScoreIn(run, project_.score));
       project_.scores.push_back(score);
+      if (more_starts_.size() + 2 < kComparedStarts) more_starts_.push_back(run);
       project_.poses.insert(project_.poses.end(), run.poses.begin(), run.poses.end());
     }
     if (std::ranges::min(project_.scores) == 0.0)
       Unsupported("failure", "the score can be 0 without obstacles, so that nothing is less: write one");
     return Ok{};
+  }
+
+  // With cases in which it needs no loop functions.
+  void CompareWithOurs() {
+    std::set<std::string> kinds;
+    for (const ArenaBody& robot : project_.robots) kinds.insert(robot.kind);
+    EngineQuestion question{.argos_file = fs::absolute(options_.argos_file),
+                            .project = folder_,
+                            .form = project_.form,
+                            .starts = {},
+                            .kinds = {kinds.begin(), kinds.end()},
+                            .run = [&](const std::string& file) { return RunFile(file); }};
+    std::vector<const TrialRun*> starts = {&first_, &other_seed_};
+    for (const TrialRun& run : more_starts_) starts.push_back(&run);
+    for (const TrialRun* run : starts) {
+      const std::optional<sim::ObstacleGene> obstacle = ObstacleInTheWay(project_, *run);
+      question.starts.push_back({run, obstacle ? sim::Genome{*obstacle} : sim::Genome()});
+    }
+    say_("looking whether Gauntlet's own engine would do");
+    engine_ = CompareEngines(question);
+  }
+
+  // A file of ARGoS as it is, but for the recorder.
+  Result<TrialRun> RunFile(const std::string& file) {
+    const TemporaryFolder folder("adopt");
+    TRY(CheckMade(folder));
+    TRY(ArgosTemplate form, MakeArgosTemplate(file, kCaseFile, form_options_));
+    static const std::regex seed("random_seed=\"([0-9]+)\"");
+    std::smatch found;
+    if (!std::regex_search(file, found, seed)) return InvalidInput("the file has no seed");
+    form.text = std::regex_replace(form.text, std::regex("@seed@"), found[1].str());
+    TRY(WriteFilled(folder.path(), form, /*seed=*/0, {}));
+    return RunCaseIn(folder);
   }
 
   // Error: the experiment would be refused, or it cannot be written.
@@ -362,6 +410,8 @@ class Adoption {
   TrialRun with_obstacle_;
   bool reproducible_ = false;
   std::vector<ScoreCandidate> candidates_;
+  std::vector<TrialRun> more_starts_;  // without obstacles, with seeds of their own
+  EngineComparison engine_;
 };
 
 }  // namespace

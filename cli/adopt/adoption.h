@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "cli/adopt/engine_comparison.h"
 #include "cli/adopt/score_candidates.h"
 #include "search/cases/argos_template.h"
 
@@ -28,10 +29,12 @@ struct Adopted {
   std::string score;
   std::vector<std::string> libraries;  // that the experiment keeps
   bool reproducible = false;           // two runs with one seed had the same trajectories
-  double seconds = 0.0;                // that a run takes
+  EngineComparison engine;
+  double seconds = 0.0;  // that a run takes
 };
 
-// Runs the project up to thirteen times, each in a folder of its own; nothing is written into the project's.
+// Runs the project up to thirteen times, each in a folder of its own, and cases like its own up to ten times;
+// nothing is written into the project's.
 // `say` gets what it does, `said` what a compiler or ARGoS printed before it failed. Error: ARGoS is missing,
 // the project does not run, or a box in the way of its robots changes nothing.
 Result<Adopted> Adopt(const AdoptionOptions& options, const std::function<void(const std::string&)>& say,

@@ -70,6 +70,7 @@ void PrintText(CommandContext& context, const AdoptOptions& options, const Adopt
   context.out << fmt::format("Two runs with one seed {}.\nThe score is {}; a run takes {:.1f} s.\n",
                              adopted.reproducible ? "are equal" : "differ", Printable(adopted.score),
                              adopted.seconds);
+  context.out << fmt::format("Gauntlet's own engine {}.\n", Printable(adopted.engine.said));
   if (!options.check)
     context.out << fmt::format("\n  {} evolve {}\n", context.program, PastedPath(options.output));
 }
@@ -93,6 +94,13 @@ json DocumentOf(const AdoptOptions& options, const Adopted& adopted) {
           {"score", adopted.score},
           {"reproducible", adopted.reproducible},
           {"libraries", adopted.libraries},
+          {"engine",
+           {{"compiles", adopted.engine.compiles},
+            {"cases", adopted.engine.cases},
+            {"apart", adopted.engine.apart},
+            {"apart_at_end", adopted.engine.apart_at_end},
+            {"trusted", adopted.engine.trusted},
+            {"said", adopted.engine.said}}},
           {"seconds", adopted.seconds},
           {"experiment", options.check ? json(nullptr) : json(options.output)}};
 }

@@ -17,6 +17,7 @@
 #include "base/printable.h"
 #include "base/split.h"
 #include "base/utf8.h"
+#include "sim/arena/color.h"
 
 namespace gauntlet {
 namespace {
@@ -146,7 +147,18 @@ class Maker {
     made_.arena = {middle - half, middle + half};
     made_.taken_over.push_back(fmt::format("arena of {} x {} m", (*size)[0], (*size)[1]));
     for (const xml_node box : arena.children("box")) TakeBox(box);
+    for (const xml_node light : arena.children("light")) TakeLight(light);
     return Ok{};
+  }
+
+  void TakeLight(const xml_node& light) {
+    const auto position = NumbersOf(light.attribute("position").value());
+    if (!position || position->size() < 3) return;
+    made_.lights.push_back(
+        {.position = {(*position)[0], (*position)[1]},
+         .height = (*position)[2],
+         .intensity = light.attribute("intensity").as_double(1.0),
+         .color = sim::ColorNamed(light.attribute("color").value()).value_or(sim::Color::kYellow)});
   }
 
   void TakeBox(const xml_node& box) {
@@ -216,7 +228,10 @@ class Maker {
   void TakeParameters() {
     std::size_t controllers = 0;
     for (const xml_node child : root_.child("controllers").children())
-      if (child.type() == pugi::node_element) ++controllers;
+      if (child.type() == pugi::node_element) {
+        ++controllers;
+        made_.controllers.emplace_back(child.name());
+      }
     for (xml_node controller : root_.child("controllers").children()) {
       if (controller.type() != pugi::node_element) continue;
       TakeLibrary(controller);

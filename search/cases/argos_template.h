@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "sim/arena/test_case.h"
+#include "sim/robot/surroundings.h"
 
 namespace gauntlet {
 
@@ -37,6 +38,8 @@ struct ArgosTemplate {
   std::vector<ArgosParameter> parameters;
   std::vector<std::string> libraries;              // as the file names them
   std::map<std::string, sim::ObstacleGene> boxes;  // that stand in the arena, by id
+  std::vector<sim::Light> lights;                  // that stand there
+  std::vector<std::string> controllers;            // the names of the elements of <controllers>
   std::vector<std::string> paths;                  // other values that may be those of files
   std::vector<std::string> taken_over;             // in words
   std::vector<ArgosRemark> differs;

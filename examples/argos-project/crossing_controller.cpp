@@ -1,14 +1,9 @@
-// A small ARGoS project: foot-bots cross an arena towards a light, and loop functions count those that arrive.
-// It has a fault: see Crossing::ControlStep.
+// Of a small ARGoS project: foot-bots cross an arena towards a light. It has a fault: see Crossing::ControlStep.
 #include <argos3/core/control_interface/ci_controller.h>
-#include <argos3/core/simulator/loop_functions.h>
-#include <argos3/core/utility/math/rng.h>
+#include <argos3/core/utility/math/vector2.h>
 #include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_light_sensor.h>
 #include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_proximity_sensor.h>
-#include <argos3/plugins/robots/foot-bot/simulator/footbot_entity.h>
 #include <argos3/plugins/robots/generic/control_interface/ci_differential_steering_actuator.h>
-
-#include <fstream>
 
 using namespace argos;
 
@@ -66,35 +61,3 @@ class Crossing : public CCI_Controller {
   UInt32 along_ = 0;  // ticks for which it still drives straight on
 };
 REGISTER_CONTROLLER(Crossing, "crossing_controller")
-
-// Counts the robots beyond a line, and writes how many there are each second.
-class CrossingLoop : public CLoopFunctions {
- public:
-  void Init(TConfigurationNode& node) override {
-    GetNodeAttribute(node, "line", line_);
-    std::string output;
-    GetNodeAttribute(node, "output", output);
-    out_.open(output);
-    out_ << "clock,arrived\n";
-  }
-
-  void PostStep() override {
-    if (GetSpace().GetSimulationClock() % 10 == 0) out_ << GetSpace().GetSimulationClock() << "," << Arrived() << "\n";
-  }
-
-  void PostExperiment() override { LOG << "arrived: " << Arrived() << " robots" << std::endl; }
-
- private:
-  int Arrived() {
-    int arrived = 0;
-    for (auto& robot : GetSpace().GetEntitiesByType("foot-bot")) {
-      const auto& body = any_cast<CFootBotEntity*>(robot.second)->GetEmbodiedEntity();
-      if (body.GetOriginAnchor().Position.GetX() > line_) ++arrived;
-    }
-    return arrived;
-  }
-
-  Real line_ = 0.0;  // m
-  std::ofstream out_;
-};
-REGISTER_LOOP_FUNCTIONS(CrossingLoop, "crossing_loop")

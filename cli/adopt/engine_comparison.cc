@@ -1,0 +1,311 @@
+#include "cli/adopt/engine_comparison.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+#include <optional>
+#include <regex>
+#include <set>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/key.h"
+#include "base/number_text.h"
+#include "base/parse_number.h"
+#include "base/printable.h"
+#include "base/split.h"
+#include "base/system/atomic_file.h"
+#include "base/system/process_call.h"
+#include "base/system/program_path.h"
+#include "base/system/temporary_folder.h"
+#include "proto/case_json.h"
+#include "search/cases/argos_controllers.h"
+#include "search/cases/case_file.h"
+#include "sim/arena/color.h"
+
+namespace gauntlet {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::size_t kMostSources = 5000;
+constexpr std::size_t kMostSourceBytes = std::size_t{1} << 20;
+constexpr std::size_t kMostCaseFile = std::size_t{16} << 20;
+constexpr std::chrono::minutes kLongestCall{5};
+
+// Of one robot at one time.
+struct RobotAt {
+  double time = 0.0;
+  std::string robot;
+  sim::Pose pose;
+};
+
+bool IsSource(const fs::path& path) {
+  const std::string ending = path.extension();
+  return ending == ".cpp" || ending == ".cc" || ending == ".cxx";
+}
+
+std::string SourceText(const fs::path& path) {
+  const Result<std::string> text = ReadSmallFile(path, kMostSourceBytes);
+  return text ? *text : "";
+}
+
+Result<std::string> Gauntlet(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), MasterProgramPath());
+  TRY(const CallOutput done, CallProcess(arguments, "", {.deadline = kLongestCall}));
+  if (done.exit_code <= 1) return done.out;  // 1: something failed in the simulated world
+  std::vector<std::string> lines = Split(Trimmed(done.err), '\n');
+  const auto of_compiler =
+      std::ranges::find_if(lines, [](const std::string& line) { return line.find("error: ") != line.npos; });
+  const std::string line(Trimmed(of_compiler == lines.end() ? lines.back() : *of_compiler));
+  constexpr std::string_view kName = "gauntlet: ";
+  return InvalidInput(line.starts_with(kName) ? line.substr(kName.size()) : line);
+}
+
+// Rows of a CSV file with these columns: time, robot, x, y, heading.
+std::vector<RobotAt> PlacesIn(const std::string& text, const std::array<std::size_t, 5>& columns) {
+  std::vector<RobotAt> places;
+  for (const std::string& line : Split(text, '\n')) {
+    const std::vector<std::string> fields = Split(line, ',');
+    if (fields.size() <= *std::ranges::max_element(columns)) continue;
+    const auto time = ParseNumber<double>(fields[columns[0]]);
+    const auto x = ParseNumber<double>(fields[columns[2]]);
+    const auto y = ParseNumber<double>(fields[columns[3]]);
+    const auto heading = ParseNumber<double>(fields[columns[4]]);
+    if (time && x && y && heading) places.push_back({*time, fields[columns[1]], {{*x, *y}, *heading}});
+  }
+  return places;
+}
+std::vector<RobotAt> PlacesOfArgos(const TrialRun& run) {
+  return PlacesIn(run.trajectory, {0, 1, 3, 4, 5});
+}
+
+std::vector<RobotAt> At(const std::vector<RobotAt>& places, double time) {
+  std::vector<RobotAt> then;
+  std::ranges::copy_if(places, std::back_inserter(then),
+                       [&](const RobotAt& place) { return std::abs(place.time - time) < 1e-6; });
+  return then;
+}
+
+double Distance(const RobotAt& a, const RobotAt& b) {
+  return (a.pose.position - b.pose.position).norm();
+}
+
+// The most that a robot is apart then; robots are the same that begin at the same place. Nothing: somebody is
+// missing.
+std::optional<double> Apart(const std::vector<RobotAt>& ours, const std::vector<RobotAt>& argos,
+                            double time) {
+  double most = 0.0;
+  const std::vector<RobotAt> ours_then = At(ours, time);
+  const std::vector<RobotAt> argos_then = At(argos, time);
+  const std::vector<RobotAt> argos_first = At(argos, 0.0);
+  for (const RobotAt& start : At(ours, 0.0)) {
+    const auto same = std::ranges::min_element(argos_first, {},
+                                               [&](const RobotAt& other) { return Distance(start, other); });
+    if (same == argos_first.end()) return std::nullopt;
+    const auto here = std::ranges::find(ours_then, start.robot, &RobotAt::robot);
+    const auto there = std::ranges::find(argos_then, same->robot, &RobotAt::robot);
+    if (here == ours_then.end() || there == argos_then.end()) return std::nullopt;
+    most = std::max(most, Distance(*here, *there));
+  }
+  return ours_then.empty() ? std::nullopt : std::optional(most);
+}
+
+std::string EngineExperiment(const EngineQuestion& question, std::size_t robots, const sim::Vec2& center) {
+  std::string text = fmt::format(
+      "name = \"engine\"\nscenario = \"generic\"\ncontroller = {}\nplugins = [\"libengine.so\"]\n"
+      "[scenario_parameters]\nrobots = {}\ntime_limit = {}\n"
+      "[generic]\nfitness = \"displacement\"\nfailure = \"displacement < 0\"\n",
+      QuoteToml(question.form.controllers.front()), robots, NumberText(question.form.length));
+  for (const sim::Light& light : question.form.lights)
+    text +=
+        fmt::format("[[generic.light]]\nx = {}\ny = {}\nheight = {}\nintensity = {}\ncolor = \"{}\"\n",
+                    NumberText(light.position.x() - center.x()), NumberText(light.position.y() - center.y()),
+                    NumberText(light.height), NumberText(light.intensity), NameOf(light.color));
+  return text;
+}
+
+class Comparison {
+ public:
+  explicit Comparison(const EngineQuestion& question) : question_(question) {}
+
+  Status Compile(const std::vector<std::string>& sources) {
+    std::vector<std::string> command = {"build-controller"};
+    std::set<std::string> folders = {question_.project};
+    for (const std::string& source : sources) {
+      command.push_back(source);
+      for (fs::path folder = fs::path(source).parent_path();
+           folder.string().starts_with(question_.project) && folder != question_.project;
+           folder = folder.parent_path())
+        folders.insert(folder);
+    }
+    for (const std::string& folder : folders) command.insert(command.end(), {"-I", folder});
+    command.insert(command.end(), {"--argos", question_.argos_file, "-o", Own("libengine.so")});
+    TRY(Gauntlet(command));
+    return Ok{};
+  }
+
+  // What is apart in each case, after a while and at the end.
+  Result<std::vector<std::pair<double, double>>> Compare() {
+    TRY(WriteCases());
+    std::vector<std::string> evaluate = {"evaluate", Own("engine.toml"), "--dir", Own("runs"), "--quiet"};
+    for (const std::string& file : cases_) evaluate.insert(evaluate.end(), {"--case", file});
+    TRY(Gauntlet(evaluate));
+    TRY(const std::vector<std::string> runs, Runs());
+    TRY(Gauntlet(Exporting(runs)));
+    std::vector<std::pair<double, double>> apart;
+    const double end = std::floor(question_.form.length + 1e-9);
+    for (const std::string& run : runs) {
+      TRY(Gauntlet({"replay", Own("runs"), run, "--csv", Own("ours.csv")}));
+      TRY(const std::string csv, ReadSmallFile(Own("ours.csv"), std::size_t{1} << 30));
+      TRY(const std::string file, ReadSmallFile(Own(fmt::format("argos/run-{}.argos", run)), kMostCaseFile));
+      TRY(const TrialRun there, question_.run(file));
+      const std::vector<RobotAt> ours = PlacesIn(csv, {1, 2, 3, 4, 5});
+      const std::vector<RobotAt> argos = PlacesOfArgos(there);
+      const auto soon = Apart(ours, argos, std::min(kComparedAt, end));
+      const auto late = Apart(ours, argos, end);
+      if (!soon || !late) return InvalidInput(fmt::format("a robot is missing in run {}", run));
+      apart.emplace_back(*soon, *late);
+    }
+    return apart;
+  }
+
+ private:
+  std::string Own(const std::string& name) const { return folder_.path() + "/" + name; }
+
+  // Those that ended: cases that break a rule of ours have none.
+  Result<std::vector<std::string>> Runs() const {
+    TRY(const std::string text, Gauntlet({"show", Own("runs"), "--json", "--runs"}));
+    const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+    std::vector<std::string> runs;
+    if (document.contains("runs")) {
+      for (const json& run : document["runs"])
+        if (run["verdict"] == "completed") runs.push_back(std::to_string(run["id"].get<int>()));
+    }
+    if (runs.empty()) return InvalidInput("no run of its cases ended there");
+    return runs;
+  }
+
+  std::vector<std::string> Exporting(const std::vector<std::string>& runs) const {
+    std::vector<std::string> command = {"export", Own("runs"),         "--format",
+                                        "argos",  "--controller-file", question_.argos_file,
+                                        "--out",  Own("argos")};
+    for (const std::string& run : runs) command.insert(command.end(), {"--run", run});
+    return command;
+  }
+
+  Status WriteCases() {
+    TRY(const std::string text, ReadSmallFile(question_.argos_file, kMostCaseFile));
+    TRY(const LoadedCase loaded, ParseArgos(text, fs::path(question_.argos_file).filename()));
+    const sim::Rectangle& arena = question_.form.arena;
+    const sim::Vec2 center = (arena.min + arena.max) / 2.0;
+    std::size_t robots = 0;
+    for (const EngineQuestion::Start& start : question_.starts) {
+      for (const bool with_obstacle : {false, true}) {
+        sim::TestCase made = loaded.test_case;
+        made.name = fmt::format("case-{}", cases_.size() + 1);
+        made.start_poses.clear();
+        for (const RobotAt& place : At(PlacesOfArgos(*start.run), 0.0))
+          made.start_poses.push_back({place.pose.position - center, place.pose.heading});
+        robots = made.start_poses.size();
+        made.robots = static_cast<int>(robots);
+        for (sim::ObstacleGene gene : with_obstacle ? start.obstacles : sim::Genome()) {
+          gene.x -= center.x();
+          gene.y -= center.y();
+          made.obstacles.push_back(gene);
+        }
+        cases_.push_back(Own(made.name + ".json"));
+        TRY(ReplaceFile(cases_.back(), proto::WriteCaseJson(made), kReadableByAll));
+      }
+    }
+    return ReplaceFile(Own("engine.toml"), EngineExperiment(question_, robots, center), kReadableByAll);
+  }
+
+  const EngineQuestion& question_;
+  const TemporaryFolder folder_{"engine"};
+  std::vector<std::string> cases_;
+};
+
+std::string Said(const EngineComparison& made, std::size_t wrong, double after) {
+  const std::string cases = fmt::format("{} cases, half of them with an obstacle,", made.cases);
+  if (wrong == 0)
+    return fmt::format(
+        "may be trusted with these controllers. In {} no robot was farther than {:.2g} m from where ARGoS "
+        "had it "
+        "after {} s, and at the end {:.2g} m (the median of the cases' farthest)",
+        cases, made.apart, NumberText(after), made.apart_at_end);
+  return fmt::format(
+      "is not to be trusted with these controllers. In {} of {} a robot was more than {} m from where ARGoS "
+      "had "
+      "it after {} s, {:.2g} m the farthest",
+      wrong, cases, kSamePlace, NumberText(after), made.apart);
+}
+
+}  // namespace
+
+std::vector<std::string> ControllerSources(const std::string& project, const std::string& controller) {
+  const std::regex registers(R"(REGISTER_CONTROLLER\s*\(\s*[A-Za-z_0-9:]+\s*,\s*")" + controller + "\"");
+  static const std::regex others(
+      R"(REGISTER_(LOOP_FUNCTIONS|QTOPENGL_USER_FUNCTIONS|CONTROLLER)|\bint\s+main\s*\()");
+  std::error_code failed;
+  std::size_t looked_at = 0;
+  for (auto entry = fs::recursive_directory_iterator(project, failed); !failed && entry != fs::end(entry);
+       entry.increment(failed)) {
+    if (!IsSource(entry->path()) || !entry->is_regular_file(failed) || ++looked_at > kMostSources) continue;
+    if (!std::regex_search(SourceText(entry->path()), registers)) continue;
+    std::vector<std::string> sources = {entry->path()};
+    for (const fs::directory_entry& beside : fs::directory_iterator(entry->path().parent_path(), failed)) {
+      if (IsSource(beside.path()) && beside.path() != entry->path() &&
+          !std::regex_search(SourceText(beside.path()), others))
+        sources.push_back(beside.path());
+    }
+    std::ranges::sort(sources);
+    return sources;
+  }
+  return {};
+}
+
+EngineComparison CompareEngines(const EngineQuestion& question) {
+  EngineComparison made;
+  const auto not_compared = [&](const std::string& why) {
+    made.said += (made.said.empty() ? "is not compared: " : ", but the two were not compared: ") + why;
+    return made;
+  };
+  if (question.kinds != std::vector<std::string>{"foot-bot"})
+    return not_compared("it has foot-bots alone, and all robots must be some");
+  if (question.form.controllers.size() != 1) return not_compared("all robots must have one controller");
+  const std::string& controller = question.form.controllers.front();
+  const std::vector<std::string> sources = ControllerSources(question.project, controller);
+  if (sources.empty())
+    return not_compared(fmt::format("no C++ source of {} lies in the project", Printable(controller)));
+  Comparison comparison(question);
+  if (const Status compiled = comparison.Compile(sources); !compiled)
+    return not_compared("the controllers do not compile for it: " + compiled.error().message);
+  made.compiles = true;
+  made.said = "takes the controllers (gauntlet build-controller)";
+  const auto apart = comparison.Compare();
+  if (!apart) return not_compared(apart.error().message);
+  made.cases = static_cast<int>(apart->size());
+  std::vector<double> at_end;
+  std::size_t wrong = 0;
+  for (const auto& [soon, late] : *apart) {
+    made.apart = std::max(made.apart, soon);
+    at_end.push_back(late);
+    wrong += soon > kSamePlace ? 1 : 0;
+  }
+  std::ranges::sort(at_end);
+  made.apart_at_end = at_end[at_end.size() / 2];
+  made.trusted = wrong == 0;
+  made.said = Said(made, wrong, std::min(kComparedAt, std::floor(question.form.length)));
+  return made;
+}
+
+}  // namespace gauntlet
