@@ -62,6 +62,12 @@ Result<SearchPlan> PlanFit(CommandContext& context, const FitOptions& options) {
   for (const std::string& notice : targets.notices) PrintMessage(context, notice);
   FitSpec& spec = experiment.fit;
   TRY(const auto varied, ParseVariedKeys(options.vary, AllKeysOf(experiment), experiment));
+  for (const VariedKey& key : varied) {
+    const auto sets_it = [&](const std::string& set) { return set.starts_with(key.key.path + "="); };
+    if (std::ranges::any_of(options.experiment.sets, sets_it))
+      return InvalidInput(
+          fmt::format("{} is given by --set and varied by --vary: leave one of them out", key.key.path));
+  }
   spec.vary.clear();
   for (const VariedKey& key : varied) spec.vary += (spec.vary.empty() ? "" : " ") + key.ToText();
   spec.targets = std::move(targets.text);

@@ -31,6 +31,9 @@ constexpr std::array<std::string_view, 12> kTargetKeys = {"cases",    "metric", 
                                                           "quantile", "value",  "at_most", "n",
                                                           "at_least", "csv",    "column",  "runs"};
 
+constexpr std::array<std::string_view, 6> kNumberKeys = {"quantile", "value",    "at_most",
+                                                         "n",        "at_least", "runs"};
+
 // A [[target]] or [[require]].
 struct WrittenTarget {
   std::string kind;
@@ -55,11 +58,11 @@ class TargetFileReader {
     for (const Assignment& one : assignments) {
       TRY(Sort(one));
     }
-    if (tables_.empty())
-      return InvalidInput(fmt::format("{}: there is no [[target]], so there is nothing to fit to", path_));
     for (WrittenTarget& table : tables_) {
       TRY(Add(table));
     }
+    if (std::ranges::count(tables_, "target", &WrittenTarget::kind) == 0)
+      return InvalidInput(fmt::format("{}: there is no [[target]], so there is nothing to fit to", path_));
     return std::move(targets_);
   }
 
@@ -88,6 +91,9 @@ class TargetFileReader {
     if (other != nullptr || std::holds_alternative<bool>(one.value))
       return InvalidInput(
           fmt::format("{}: {} is {}, expected a number or text", one.where, key, KindOf(one.value)));
+    const bool is_text = std::holds_alternative<std::string>(one.value);
+    if (is_text && std::ranges::find(kNumberKeys, key) != kNumberKeys.end())
+      return InvalidInput(fmt::format("{}: {} is text, expected a number", one.where, key));
     tables_.back().values[key] = TextOf(one.value);
     return Ok{};
   }

@@ -64,6 +64,8 @@ Result<CsvColumn> ReadCsvColumn(const std::string& path, const std::string& colu
   if (found == lines.front().cells.end()) {
     return InvalidInput(fmt::format("{}: {}", path, UnknownName("column", Printable(column), columns)));
   }
+  if (std::ranges::count(lines.front().cells, column) > 1)
+    return InvalidInput(fmt::format("{}: column {} is there more than once", path, Printable(column)));
   const auto wanted = static_cast<std::size_t>(found - lines.front().cells.begin());
   CsvColumn read;
   for (std::size_t i = 1; i < lines.size(); ++i) {

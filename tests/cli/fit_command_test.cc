@@ -47,6 +47,8 @@ TEST_F(FitCommand, NamesWhatIsMissingOrWrong) {
       {With({"--vary", "scenario_parameters.rejoin_time=0..1:log"}), "has no logarithm"},
       {With({"--vary", vary, "--vary", vary}), "twice"},
       {With({"--vary", "seed=1..2"}), "seed"},
+      {With({"--vary", vary, "--set", "controller_parameters.turn_rate=1"}),
+       "turn_rate is given by --set and varied by --vary"},
       {With({"--vary", vary, "--budget", "100"}),
        "100 runs are too few for a posterior over 1 key: at least 20 settings with 20 runs each are needed, "
        "400 "

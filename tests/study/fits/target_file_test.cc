@@ -100,11 +100,17 @@ TEST_F(TargetFileTest, CasesOfFilesAreHandedInOnce) {
 
 TEST_F(TargetFileTest, WhatCannotBeATargetIsNamedWithItsPlace) {
   std::ofstream(folder_ / "nan.csv") << "fitness\n0.1\nnan\n";
+  std::ofstream(folder_ / "twice.csv") << "fitness,fitness\n0.1,0.2\n0.3,0.4\n";
   std::ofstream(folder_ / "one.csv") << "fitness\n0.1\n";
   std::ofstream(folder_ / "blocked.json")
       << R"({"obstacles": [{"x": 2.5, "y": 2.5, "length": 1, "width": 0.4}]})";
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"", "targets.toml: there is no [[target]], so there is nothing to fit to"},
+      {"[[require]]\nformula = \"birds_left == 10\"\nruns = 100\n", "there is no [[target]]"},
+      {"[[target]]\nmetric = \"fitness\"\nvalue = \"3\"\nn = 5\n",
+       "targets.toml:3:1: value is text, expected a number"},
+      {"[[target]]\ncsv = \"twice.csv\"\ncolumn = \"fitness\"\n",
+       "twice.csv: column fitness is there more than once"},
       {"[[tragte]]\nvalue = 1\n", "targets.toml:1:1: unknown table 'tragte'; did you mean 'target'?"},
       {"[target]\nvalue = 1\n", "targets.toml:2:1: targets are written as [[target]]"},
       {"[[target]]\nmetrik = \"fitness\"\n",
