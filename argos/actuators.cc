@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include "argos/devices.h"
 
@@ -22,8 +23,12 @@ constexpr std::size_t kBeacon = 12;                       // its number among th
 class Wheels final : public argos::CCI_DifferentialSteeringActuator, public ActuatorLink {
  public:
   void Give(sim::Actuators& actuators) override {
-    actuators.left_wheel = m_fCurrentVelocity[0] * kMetres;
-    actuators.right_wheel = m_fCurrentVelocity[1] * kMetres;
+    // ARGoS drives as fast as it is told, the simulator no faster than that: the path stays the same.
+    const double fastest =
+        std::max(std::abs(m_fCurrentVelocity[0]), std::abs(m_fCurrentVelocity[1])) * kMetres;
+    const double slower = std::max(1.0, fastest / sim::foot_bot::kMaxWheelSpeed);
+    actuators.left_wheel = m_fCurrentVelocity[0] * kMetres / slower;
+    actuators.right_wheel = m_fCurrentVelocity[1] * kMetres / slower;
   }
 };
 
@@ -86,13 +91,25 @@ class Turret final : public argos::CCI_FootBotTurretActuator, public ActuatorLin
 
 class Scanner final : public argos::CCI_FootBotDistanceScannerActuator, public ActuatorLink {
  public:
+  explicit Scanner(RobotParts& parts) : parts_(parts) {}
   void Give(sim::Actuators& actuators) override {
     using Mode = sim::ScannerCommand::Mode;
     actuators.scanner = {};
-    if (m_eMode == EMode::kAngle) actuators.scanner = {.mode = Mode::kAngle, .value = m_cAngle.GetValue()};
-    if (m_eMode == EMode::kSpeed)
-      actuators.scanner = {.mode = Mode::kSpeed, .value = m_fRPM * kTurnPerMinute};
+    if (m_eMode == EMode::kAngle) {
+      actuators.scanner = {.mode = Mode::kAngle, .value = m_cAngle.GetValue()};
+      parts_.scanner = m_cAngle;
+      parts_.scanner.UnsignedNormalize();
+    }
+    if (m_eMode == EMode::kSpeed) {
+      const double speed = m_fRPM * kTurnPerMinute;
+      actuators.scanner = {.mode = Mode::kSpeed, .value = speed};
+      parts_.scanner += argos::CRadians(speed * sim::kTickSeconds);
+      parts_.scanner.UnsignedNormalize();
+    }
   }
+
+ private:
+  RobotParts& parts_;
 };
 
 template <typename Actuator>

@@ -13,6 +13,7 @@
 
 #include <argos3/core/control_interface/ci_actuator.h>
 #include <argos3/core/control_interface/ci_sensor.h>
+#include <argos3/core/utility/math/angles.h>
 
 namespace gauntlet::argos_form {
 
@@ -34,6 +35,8 @@ struct RobotParts {
   std::size_t message_bytes = sim::Payload().size();
   sim::Pose start;
   double turret = 0.0;  // rad, counter-clockwise from the heading
+  // That the scanner will have when it is read next; computed as ARGoS does, which controllers may compare.
+  argos::CRadians scanner;
 };
 
 class SensorLink {

@@ -194,22 +194,58 @@ class Battery final : public argos::CCI_BatterySensor, public SensorLink {
   void Take(const sim::SensorReadings& /*readings*/) override {}
 };
 
+// Readings have the angles that ARGoS' footbot_distance_scanner_rotzonly_sensor computes for them, to the
+// last bit: controllers keep maps by angle. (ARGoS takes a clockwise turn for a long one the other way; here
+// it is a turn back.)
 class Scanner final : public argos::CCI_FootBotDistanceScannerSensor, public SensorLink {
  public:
+  explicit Scanner(RobotParts& parts) : parts_(parts) {}
   void Take(const sim::SensorReadings& readings) override {
     for (TReadingsMap* const map : {&m_tReadingsMap, &m_tShortReadingsMap, &m_tLongReadingsMap}) Empty(*map);
-    for (const sim::ScannerReading& ray : readings.scanner_short) Add(ray, m_tShortReadingsMap);
-    for (const sim::ScannerReading& ray : readings.scanner_long) Add(ray, m_tLongReadingsMap);
+    if (readings.scanner_short.empty()) return;
+    const CRadians from = before_;
+    before_ = parts_.scanner;
+    if (readings.scanner_short.size() == 2) {
+      // It rests: each sensor's angle comes from that of the last one.
+      CRadians angle = before_;
+      for (std::size_t side = 0; side < 2; ++side) {
+        Add(angle.SignedNormalize(), readings.scanner_short[side], m_tShortReadingsMap);
+        angle += CRadians::PI_OVER_TWO;
+        Add(angle.SignedNormalize(), readings.scanner_long[side], m_tLongReadingsMap);
+        angle += CRadians::PI_OVER_TWO;
+      }
+      return;
+    }
+    CRadians turned = parts_.scanner - from;
+    turned.UnsignedNormalize();
+    const bool clockwise = turned > CRadians::PI;
+    const std::size_t rays = readings.scanner_short.size() / 2;
+    const CRadians span = clockwise ? (turned - CRadians::TWO_PI) / static_cast<double>(rays)
+                                    : turned / static_cast<double>(rays);
+    AddTurning(from, span, readings.scanner_short.first(rays), m_tShortReadingsMap);
+    AddTurning(from + CRadians::PI, span, readings.scanner_short.last(rays), m_tShortReadingsMap);
+    AddTurning(from + CRadians::PI_OVER_TWO, span, readings.scanner_long.first(rays), m_tLongReadingsMap);
+    AddTurning(from + CRadians::PI_OVER_TWO + CRadians::PI, span, readings.scanner_long.last(rays),
+               m_tLongReadingsMap);
   }
 
  private:
+  void AddTurning(CRadians angle, const CRadians& span, std::span<const sim::ScannerReading> rays,
+                  TReadingsMap& map) {
+    angle.SignedNormalize();
+    for (const sim::ScannerReading& ray : rays) {
+      Add(angle, ray, map);
+      angle += span;
+      angle.SignedNormalize();
+    }
+  }
   void Empty(TReadingsMap& map) {
     while (!map.empty()) spare_.push_back(map.extract(map.begin()));
   }
-  void Add(const sim::ScannerReading& ray, TReadingsMap& map) {
+  void Add(const CRadians& angle, const sim::ScannerReading& ray, TReadingsMap& map) {
     const double distance = ray.distance < 0.0 ? ray.distance : ray.distance * kCentimetres;
-    Insert(CRadians(ray.bearing), distance, map);
-    Insert(CRadians(ray.bearing), distance, m_tReadingsMap);
+    Insert(angle, distance, map);
+    Insert(angle, distance, m_tReadingsMap);
   }
   void Insert(const CRadians& angle, double distance, TReadingsMap& map) {
     if (spare_.empty()) {
@@ -225,6 +261,8 @@ class Scanner final : public argos::CCI_FootBotDistanceScannerSensor, public Sen
     spare_.push_back(std::move(result.node));
   }
 
+  const RobotParts& parts_;
+  CRadians before_;                             // where it was when it was read last
   std::vector<TReadingsMap::node_type> spare_;  // nodes that were used before
 };
 

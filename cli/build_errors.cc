@@ -1,8 +1,13 @@
 #include "cli/build_errors.h"
 
+#include <cxxabi.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <memory>
 #include <regex>
 #include <set>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -46,6 +51,21 @@ std::string AdviceOn(const std::string& header) {
   return fmt::format("<{}> {}", Printable(header), origin->advice);
 }
 
+// Linkers name symbols as C++ writes them, or as the compiler encodes them.
+std::string AdviceOnUndefined(std::string symbol) {
+  int failed = 0;
+  const std::unique_ptr<char, void (*)(void*)> plain(
+      abi::__cxa_demangle(symbol.c_str(), nullptr, nullptr, &failed), std::free);
+  if (plain != nullptr && failed == 0) symbol = plain.get();
+  const std::string before = symbol.substr(0, symbol.find('('));
+  const std::size_t member = before.rfind("::");
+  std::string of_class = before.substr(0, member == before.npos ? 0 : member);
+  for (const std::string_view prefix : {"vtable for ", "typeinfo for "})
+    if (before.starts_with(prefix)) of_class = before.substr(prefix.size());
+  return fmt::format("{}{} is in a source that was not named: name all that the controller consists of",
+                     Printable(symbol), of_class.empty() ? "" : " of the class " + Printable(of_class));
+}
+
 bool TellsOfAnError(const std::string& line) {
   for (const char* sign : {"rror:", "undefined", "CMake Error", "No rule to make"})
     if (line.find(sign) != std::string::npos) return true;
@@ -61,6 +81,7 @@ std::string BuildErrors(const std::string& output) {
   // A macro, by its letters.
   static const std::regex undeclared(
       R"re(error: (?:use of undeclared identifier '|‘|')([A-Z][A-Z0-9_]+)(?:’|')(?: was not declared.*)?$)re");
+  static const std::regex undefined(R"(undefined (?:reference to|symbol:?) (?:`|'|‘)?([^'’]+))");
   std::vector<std::string> lines;
   std::set<std::string> said;
   std::vector<std::string> advice;
@@ -74,9 +95,7 @@ std::string BuildErrors(const std::string& output) {
       one = fmt::format("{0} may be a macro that the sources' own build defines: say -D {0}=VALUE",
                         found[1].str());
     }
-    if (line.find("undefined reference") != std::string::npos ||
-        line.find("undefined symbol") != std::string::npos)
-      one = "what is undefined is in a source that was not named: name all that the controller consists of";
+    if (std::regex_search(line, found, undefined)) one = AdviceOnUndefined(found[1]);
     if (line.find("libgauntlet_sdk.a'") != std::string::npos ||
         line.find("libgauntlet_argos.a'") != std::string::npos)
       one = "Gauntlet's SDK is not built: give './dev build' in the folder of Gauntlet's sources";

@@ -99,24 +99,30 @@ double Distance(const RobotAt& a, const RobotAt& b) {
   return (a.pose.position - b.pose.position).norm();
 }
 
-// The most that a robot is apart then; robots are the same that begin at the same place. Nothing: somebody is
-// missing.
-std::optional<double> Apart(const std::vector<RobotAt>& ours, const std::vector<RobotAt>& argos,
-                            double time) {
-  double most = 0.0;
+// How far each robot is apart then; robots are the same that begin at the same place. Error: one is missing.
+Result<std::vector<double>> Apart(const std::vector<RobotAt>& ours, const std::vector<RobotAt>& argos,
+                                  double time) {
+  std::vector<double> apart;
   const std::vector<RobotAt> ours_then = At(ours, time);
   const std::vector<RobotAt> argos_then = At(argos, time);
   const std::vector<RobotAt> argos_first = At(argos, 0.0);
   for (const RobotAt& start : At(ours, 0.0)) {
     const auto same = std::ranges::min_element(argos_first, {},
                                                [&](const RobotAt& other) { return Distance(start, other); });
-    if (same == argos_first.end()) return std::nullopt;
     const auto here = std::ranges::find(ours_then, start.robot, &RobotAt::robot);
-    const auto there = std::ranges::find(argos_then, same->robot, &RobotAt::robot);
-    if (here == ours_then.end() || there == argos_then.end()) return std::nullopt;
-    most = std::max(most, Distance(*here, *there));
+    const auto there = same == argos_first.end()
+                           ? argos_then.end()
+                           : std::ranges::find(argos_then, same->robot, &RobotAt::robot);
+    if (here == ours_then.end() || there == argos_then.end())
+      return InvalidInput(fmt::format("a robot is missing after {} s", NumberText(time)));
+    apart.push_back(Distance(*here, *there));
   }
-  return ours_then.empty() ? std::nullopt : std::optional(most);
+  return apart;
+}
+
+double Median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values.empty() ? 0.0 : values[values.size() / 2];
 }
 
 std::string EngineExperiment(const EngineQuestion& question, std::size_t robots, const sim::Vec2& center) {
@@ -125,11 +131,11 @@ std::string EngineExperiment(const EngineQuestion& question, std::size_t robots,
       "[scenario_parameters]\nrobots = {}\ntime_limit = {}\n"
       "[generic]\nfitness = \"displacement\"\nfailure = \"displacement < 0\"\n",
       QuoteToml(question.form.controllers.front()), robots, NumberText(question.form.length));
-  for (const sim::Light& light : question.form.lights)
-    text +=
-        fmt::format("[[generic.light]]\nx = {}\ny = {}\nheight = {}\nintensity = {}\ncolor = \"{}\"\n",
-                    NumberText(light.position.x() - center.x()), NumberText(light.position.y() - center.y()),
-                    NumberText(light.height), NumberText(light.intensity), NameOf(light.color));
+  for (const ArgosLight& light : question.form.lights)
+    text += fmt::format("[[generic.light]]\nx = {}\ny = {}\nheight = {}\nintensity = {}\ncolor = \"{}\"\n",
+                        NumberText(light.position.x() - center.x()),
+                        NumberText(light.position.y() - center.y()), NumberText(light.height),
+                        NumberText(light.intensity), sim::ColorNamed(light.color) ? light.color : "yellow");
   return text;
 }
 
@@ -153,16 +159,15 @@ class Comparison {
     return Ok{};
   }
 
-  // What is apart in each case, after a while and at the end.
-  Result<std::vector<std::pair<double, double>>> Compare() {
+  Status Compare(EngineComparison& made) {
     TRY(WriteCases());
     std::vector<std::string> evaluate = {"evaluate", Own("engine.toml"), "--dir", Own("runs"), "--quiet"};
     for (const std::string& file : cases_) evaluate.insert(evaluate.end(), {"--case", file});
     TRY(Gauntlet(evaluate));
     TRY(const std::vector<std::string> runs, Runs());
     TRY(Gauntlet(Exporting(runs)));
-    std::vector<std::pair<double, double>> apart;
-    const double end = std::floor(question_.form.length + 1e-9);
+    std::vector<double> soon;
+    std::vector<double> at_end;
     for (const std::string& run : runs) {
       TRY(Gauntlet({"replay", Own("runs"), run, "--csv", Own("ours.csv")}));
       TRY(const std::string csv, ReadSmallFile(Own("ours.csv"), std::size_t{1} << 30));
@@ -170,13 +175,22 @@ class Comparison {
       TRY(const TrialRun there, question_.run(file));
       const std::vector<RobotAt> ours = PlacesIn(csv, {1, 2, 3, 4, 5});
       const std::vector<RobotAt> argos = PlacesOfArgos(there);
-      const auto soon = Apart(ours, argos, std::min(kComparedAt, end));
-      const auto late = Apart(ours, argos, end);
-      if (!soon || !late) return InvalidInput(fmt::format("a robot is missing in run {}", run));
-      apart.emplace_back(*soon, *late);
+      for (auto* const apart : {&soon, &at_end}) {
+        TRY(const std::vector<double> one, Apart(ours, argos, apart == &soon ? made.seconds : End()));
+        apart->insert(apart->end(), one.begin(), one.end());
+      }
     }
-    return apart;
+    made.cases = static_cast<int>(runs.size());
+    made.robots = static_cast<int>(soon.size());
+    made.near =
+        static_cast<int>(std::ranges::count_if(soon, [](double apart) { return apart <= kSamePlace; }));
+    made.apart = Median(soon);
+    made.apart_at_end = Median(at_end);
+    return Ok{};
   }
+
+  // s, of the last row that both have.
+  double End() const { return std::floor(question_.form.length + 1e-9); }
 
  private:
   std::string Own(const std::string& name) const { return folder_.path() + "/" + name; }
@@ -234,19 +248,13 @@ class Comparison {
   std::vector<std::string> cases_;
 };
 
-std::string Said(const EngineComparison& made, std::size_t wrong, double after) {
-  const std::string cases = fmt::format("{} cases, half of them with an obstacle,", made.cases);
-  if (wrong == 0)
-    return fmt::format(
-        "may be trusted with these controllers. In {} no robot was farther than {:.2g} m from where ARGoS "
-        "had it "
-        "after {} s, and at the end {:.2g} m (the median of the cases' farthest)",
-        cases, made.apart, NumberText(after), made.apart_at_end);
+std::string Said(const EngineComparison& made) {
   return fmt::format(
-      "is not to be trusted with these controllers. In {} of {} a robot was more than {} m from where ARGoS "
-      "had "
-      "it after {} s, {:.2g} m the farthest",
-      wrong, cases, kSamePlace, NumberText(after), made.apart);
+      "{} with these controllers. In {} cases, half of them with an obstacle, {} of {} robots were within {} "
+      "m of where "
+      "ARGoS had them after {} s, half of them within {:.1g} m, and at the end within {:.1g} m",
+      made.trusted ? "may be trusted" : "is not to be trusted", made.cases, made.near, made.robots,
+      kSamePlace, NumberText(made.seconds), made.apart, made.apart_at_end);
 }
 
 }  // namespace
@@ -291,20 +299,11 @@ EngineComparison CompareEngines(const EngineQuestion& question) {
     return not_compared("the controllers do not compile for it: " + compiled.error().message);
   made.compiles = true;
   made.said = "takes the controllers (gauntlet build-controller)";
-  const auto apart = comparison.Compare();
-  if (!apart) return not_compared(apart.error().message);
-  made.cases = static_cast<int>(apart->size());
-  std::vector<double> at_end;
-  std::size_t wrong = 0;
-  for (const auto& [soon, late] : *apart) {
-    made.apart = std::max(made.apart, soon);
-    at_end.push_back(late);
-    wrong += soon > kSamePlace ? 1 : 0;
-  }
-  std::ranges::sort(at_end);
-  made.apart_at_end = at_end[at_end.size() / 2];
-  made.trusted = wrong == 0;
-  made.said = Said(made, wrong, std::min(kComparedAt, std::floor(question.form.length)));
+  made.seconds = std::min(kComparedAt, std::floor(question.form.length + 1e-9));
+  if (const Status compared = comparison.Compare(made); !compared)
+    return not_compared(compared.error().message);
+  made.trusted = made.near >= kTrustedShare * made.robots;
+  made.said = Said(made);
   return made;
 }
 

@@ -32,13 +32,18 @@ struct EngineQuestion {
 struct EngineComparison {
   bool compiles = false;
   int cases = 0;              // that were compared
-  double apart = 0.0;         // m, the most of any robot in any case after kComparedAt, or at the end
-  double apart_at_end = 0.0;  // m, likewise, the median over the cases
+  double seconds = 0.0;       // when: kComparedAt, or at the end of shorter runs
+  int robots = 0;             // of all cases
+  int near = 0;               // of them within kSamePlace then
+  double apart = 0.0;         // m, the median of the robots then
+  double apart_at_end = 0.0;  // m, likewise at the end
   std::string said;           // what to say of the engine, "may be trusted ..."
   bool trusted = false;
 };
 inline constexpr double kComparedAt = 10.0;  // s
-inline constexpr double kSamePlace = 0.01;   // m, that a trusted engine's robots may be apart then
+inline constexpr double kSamePlace = 0.01;   // m
+// Of a trusted engine's robots are near then; the others may have touched something.
+inline constexpr double kTrustedShare = 0.9;
 
 // Compiles the controller (`gauntlet build-controller`), simulates cases in our engine, has ARGoS run the
 // very same (`gauntlet export --format argos`), without loop functions in both, and compares where the robots

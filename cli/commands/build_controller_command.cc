@@ -101,6 +101,11 @@ Status CheckBuildOptions(const BuildControllerOptions& options) {
   if (options.output.empty()) return InvalidInput("where to? say -o libNAME.so");
   std::error_code error;
   for (const std::string& source : options.sources) {
+    if (source.ends_with(".lua"))
+      return InvalidInput(
+          fmt::format("{}: Gauntlet's own engine runs controllers in C++. One in Lua runs in ARGoS itself: "
+                      "gauntlet adopt FILE.argos",
+                      Printable(source)));
     if (!fs::is_regular_file(source, error)) {
       return InvalidInput(fmt::format("{}: there is no such source file", Printable(source)));
     }

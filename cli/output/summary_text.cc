@@ -35,6 +35,10 @@ std::string RunsWithoutAResult(const SearchSummary& summary, const std::string& 
       text +=
           "    a memory killer or an operator of the machine may have done it: elsewhere it may end "
           "otherwise\n";
+    const std::string words = LastWords(directory, groups[i].first_run);
+    if (!words.empty())
+      text += fmt::format("    {} printed last: {}\n", groups[i].runs == 1 ? "it" : "the first",
+                          Printable(words));
     if (LeavesBundle(groups[i].verdict))
       text += fmt::format(
           "    to see {} again: {}\n", groups[i].runs == 1 ? "it" : "the first",

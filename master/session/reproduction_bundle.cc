@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/split.h"
 #include "base/system/atomic_file.h"
 #include "base/system/regular_file.h"
 #include "master/campaign/verdict_text.h"
@@ -14,10 +15,21 @@
 #include "search/search_table.h"
 
 namespace gauntlet {
+namespace {
+
+constexpr const char* kPrinted = "stderr.txt";  // in a bundle
+
+}  // namespace
 
 bool LeavesBundle(sim::Verdict verdict) {
   return verdict == sim::Verdict::kCrashed || verdict == sim::Verdict::kHung ||
          verdict == sim::Verdict::kOutOfMemory || verdict == sim::Verdict::kKilled;
+}
+
+std::string LastWords(const std::string& directory, RunId run) {
+  const Result<std::string> printed =
+      ReadRegularFile(fmt::format("{}/{}/{}", directory, BundleName(run), kPrinted));
+  return printed ? Split(Trimmed(*printed), '\n').back() : "";
 }
 
 std::string BundleName(RunId run) {
@@ -56,7 +68,7 @@ Status WriteBundle(const BundleContext& context, const Experiment& experiment, c
   for (const auto& [name, text] : {std::pair<const char*, std::string>("run.spec", run.spec),
                                    {"case.json", proto::WriteCaseJson(spec.test_case)},
                                    {"experiment.toml", WriteExperiment(experiment, {}, BuiltInCatalogue())},
-                                   {"stderr.txt", finished.stderr_tail},
+                                   {kPrinted, finished.stderr_tail},
                                    {"README.txt", readme}}) {
     TRY(ReplaceFile((folder / name).string(), text, kReadableByAll));
   }

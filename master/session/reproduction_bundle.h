@@ -17,6 +17,8 @@ bool LeavesBundle(sim::Verdict verdict);
 
 // "bundles/run-17", in the campaign's directory.
 std::string BundleName(RunId run);
+// What the run's bundle says that the last attempt printed last, "uncaught exception: ..."; "" when nothing.
+std::string LastWords(const std::string& directory, RunId run);
 
 struct BundleContext {
   std::string directory;  // of the campaign

@@ -81,7 +81,9 @@ Result<RobotsOf> ReadRobots(const pugi::xml_node& root, const std::string& contr
     return std::string_view(node.name()) == "foot-bot" &&
            node.child("controller").attribute("config").value() == controller;
   });
-  if (!robot || controller.empty()) return RobotsOf{};
+  if (controller.empty() || (!robot && !root.child("arena"))) return RobotsOf{};
+  // Loop functions make the robots: a controller that reads a number in its id finds it.
+  if (!robot) return RobotsOf{.ids = "", .message_bytes = {}};
   // In <distribute> ARGoS appends numbers; elsewhere the file itself has.
   std::string ids = robot.attribute("id").value();
   if (std::string_view(robot.parent().name()) != "entity") ids.erase(ids.find_last_not_of("0123456789") + 1);

@@ -224,10 +224,11 @@ std::string CommentText(const std::vector<std::string>& lines) {
   return text;
 }
 
-// ARGoS takes 32 bits, and 0 for the time of day.
+// As controllers that were written for ARGoS are seeded here (argos/controller_adapter.cc), so that they draw
+// the same numbers there. ARGoS takes 32 bits, and 0 for the time of day.
 std::uint32_t ArgosSeed(std::uint64_t seed) {
-  const auto low = static_cast<std::uint32_t>(seed & std::numeric_limits<std::uint32_t>::max());
-  return low == 0 ? 1 : low;
+  const auto folded = static_cast<std::uint32_t>(seed ^ seed >> 32);
+  return folded == 0 ? 1 : folded;
 }
 
 // m: ARGoS indexes lamps and LEDs by cells of whole metres and ends a run with one outside of them.

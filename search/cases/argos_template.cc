@@ -17,7 +17,6 @@
 #include "base/printable.h"
 #include "base/split.h"
 #include "base/utf8.h"
-#include "sim/arena/color.h"
 
 namespace gauntlet {
 namespace {
@@ -154,11 +153,10 @@ class Maker {
   void TakeLight(const xml_node& light) {
     const auto position = NumbersOf(light.attribute("position").value());
     if (!position || position->size() < 3) return;
-    made_.lights.push_back(
-        {.position = {(*position)[0], (*position)[1]},
-         .height = (*position)[2],
-         .intensity = light.attribute("intensity").as_double(1.0),
-         .color = sim::ColorNamed(light.attribute("color").value()).value_or(sim::Color::kYellow)});
+    made_.lights.push_back({.position = {(*position)[0], (*position)[1]},
+                            .height = (*position)[2],
+                            .intensity = light.attribute("intensity").as_double(1.0),
+                            .color = light.attribute("color").as_string("yellow")});
   }
 
   void TakeBox(const xml_node& box) {

@@ -8,7 +8,6 @@
 
 #include "base/result.h"
 #include "sim/arena/test_case.h"
-#include "sim/robot/surroundings.h"
 
 namespace gauntlet {
 
@@ -16,6 +15,13 @@ namespace gauntlet {
 struct ArgosParameter {
   std::string name;  // its place: "wheel_turning.max_speed", "loop_functions.foraging.items"
   double value = 0.0;
+};
+
+struct ArgosLight {
+  sim::Vec2 position = sim::Vec2::Zero();  // m
+  double height = 0.0;                     // m
+  double intensity = 1.0;
+  std::string color;  // as the file names it
 };
 
 // What is not as the file has it, or cannot be.
@@ -38,7 +44,7 @@ struct ArgosTemplate {
   std::vector<ArgosParameter> parameters;
   std::vector<std::string> libraries;              // as the file names them
   std::map<std::string, sim::ObstacleGene> boxes;  // that stand in the arena, by id
-  std::vector<sim::Light> lights;                  // that stand there
+  std::vector<ArgosLight> lights;                  // that stand there
   std::vector<std::string> controllers;            // the names of the elements of <controllers>
   std::vector<std::string> paths;                  // other values that may be those of files
   std::vector<std::string> taken_over;             // in words

@@ -31,6 +31,13 @@ TEST(ByteArray, PutsIntegersInNetworkOrder) {
   EXPECT_TRUE(array.Empty());
 }
 
+// As 421bd763 writes them: C++ promotes them, as there is no overload.
+TEST(ByteArray, PutsCharactersAndFlagsAsInts) {
+  CByteArray array;
+  array << 'x' << true;
+  EXPECT_EQ(BytesOf(array), (std::vector<int>{0, 0, 0, 120, 0, 0, 0, 1}));
+}
+
 TEST(ByteArray, PutsRealNumbersAsArgosDoes) {
   CByteArray array;
   array << 1.5;

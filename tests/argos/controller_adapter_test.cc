@@ -6,12 +6,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <memory>
+#include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "sim/simulation.h"
+#include "tests/support/paths.h"
 #include "tests/support/toy_scenario.h"
 
 #include <argos3/core/simulator/simulator.h>
@@ -321,6 +326,52 @@ TEST_F(Adapter, TurnsTheScannerAndTheTurret) {
   EXPECT_EQ(rays, 4u);
   EXPECT_NEAR(nearest, 100.0 * (2.95 - 2.75 - sim::foot_bot::kRadius), 1e-6);
   EXPECT_EQ(rotation, 0.5);
+}
+
+// Against what ARGoS had: controllers keep maps by angle, which must not grow.
+TEST_F(Adapter, TheScannersAnglesAreThoseOfArgosToTheLastBit) {
+  constexpr sim::Tick kTicks = 1000;
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetActuator<argos::CCI_FootBotDistanceScannerActuator>("footbot_distance_scanner")->SetRPM(30.0);
+    robot.GetSensor<argos::CCI_FootBotDistanceScannerSensor>("footbot_distance_scanner");
+  };
+  std::set<double> angles;
+  std::ostringstream seen;
+  seen.precision(17);
+  int tick = 0;
+  CScripted::step = [&](CScripted& robot) {
+    auto* const scanner =
+        robot.GetSensor<argos::CCI_FootBotDistanceScannerSensor>("footbot_distance_scanner");
+    ++tick;
+    for (const auto& [angle, distance] : scanner->GetReadingsMap()) angles.insert(angle.GetValue());
+    if (tick > 3 && tick < 998) return;
+    for (const auto& [angle, distance] : scanner->GetShortReadingsMap())
+      seen << tick << ",short," << angle.GetValue() << "\n";
+    for (const auto& [angle, distance] : scanner->GetLongReadingsMap())
+      seen << tick << ",long," << angle.GetValue() << "\n";
+  };
+  Run({{{0, 0}, 0}}, kTicks);
+  EXPECT_EQ(angles.size(), 120u);
+  std::ifstream file(GAUNTLET_SOURCE_DIR "/tests/argos/scanner_angles.csv");
+  const std::string recorded(std::istreambuf_iterator<char>(file), {});
+  EXPECT_EQ(recorded.substr(recorded.find("angle\n") + 6), seen.str());
+}
+
+TEST_F(Adapter, FasterWheelsThanThereAreKeepToThePath) {
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetActuator<argos::CCI_DifferentialSteeringActuator>("differential_steering")
+        ->SetLinearVelocity(200.0, 300.0);
+  };
+  CScripted::step = nullptr;
+  const sim::RunResult fast = Run({{{0, 0}, 0}}, 5);
+  EXPECT_EQ(fast.verdict, sim::Verdict::kCompleted) << fast.message;
+  CScripted::init = [](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetActuator<argos::CCI_DifferentialSteeringActuator>("differential_steering")
+        ->SetLinearVelocity(200.0 / 3.0, 100.0);
+  };
+  const sim::RunResult slow = Run({{{0, 0}, 0}}, 5);
+  EXPECT_NEAR(fast.robots[0].end.position.x(), slow.robots[0].end.position.x(), 1e-12);
+  EXPECT_NEAR(fast.robots[0].end.heading, slow.robots[0].end.heading, 1e-12);
 }
 
 TEST_F(Adapter, ClosesTheGripperBeyondHalfOfItsAperture) {

@@ -20,10 +20,17 @@ TEST(BuildErrors, AreTheLinesThatTellOfErrorsEachOnce) {
                 "[1/2] building\na.cpp:1:9: error: no\n  int x = ;\na.cpp:1:9: error: no\nld: undefined x\n"),
             "  a.cpp:1:9: error: no\n  ld: undefined x\n");
   EXPECT_EQ(BuildErrors("it broke\n"), "it broke\n");
-  EXPECT_EQ(
-      BuildErrors("a.cpp:(.text+0x8): undefined reference to `CNet::CNet()'\n"),
-      "  a.cpp:(.text+0x8): undefined reference to `CNet::CNet()'\n"
-      "what is undefined is in a source that was not named: name all that the controller consists of\n");
+  EXPECT_EQ(BuildErrors("a.cpp:(.text+0x8): undefined reference to `CNet::CNet()'\n"),
+            "  a.cpp:(.text+0x8): undefined reference to `CNet::CNet()'\n"
+            "CNet::CNet() of the class CNet is in a source that was not named: name all that the controller "
+            "consists "
+            "of\n");
+  EXPECT_THAT(BuildErrors("mine.so: undefined symbol: _ZN4CNet5WeighEd\n"),
+              HasSubstr("\nCNet::Weigh(double) of the class CNet is in a source"));
+  EXPECT_THAT(BuildErrors("a.cpp: undefined reference to `Weigh(double)'\n"),
+              HasSubstr("\nWeigh(double) is in a source"));
+  EXPECT_THAT(BuildErrors("a.cpp: undefined reference to `vtable for CNet'\n"),
+              HasSubstr("\nvtable for CNet of the class CNet is in a source"));
 }
 
 TEST(BuildErrors, SayWhereAMissingHeaderBelongs) {

@@ -73,6 +73,13 @@ TEST_F(ReproductionBundleTest, SaysWhatHappenedAndTheOneCommandThatRepeatsIt) {
                     HasSubstr("version       gauntlet 1.2.3"), HasSubstr("00000000deadbeef")));
 }
 
+TEST_F(ReproductionBundleTest, TellsTheLastLineThatWasPrinted) {
+  EXPECT_EQ(LastWords(context_.directory, 17), "");
+  finished_.stderr_tail = "loading\nuncaught exception: the weights are missing\n\n";
+  ASSERT_TRUE(WriteBundle(context_, experiment_, run_, finished_).ok());
+  EXPECT_EQ(LastWords(context_.directory, 17), "uncaught exception: the weights are missing");
+}
+
 TEST_F(ReproductionBundleTest, AnOlderOneIsReplaced) {
   ASSERT_TRUE(WriteBundle(context_, experiment_, run_, finished_).ok());
   finished_.stderr_tail = "Aborted\n";

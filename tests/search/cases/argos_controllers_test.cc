@@ -76,6 +76,7 @@ TEST(ReadArgosControllers, KnowsWhatTheFileSaysOfTheRobots) {
   EXPECT_EQ(numbered->message_bytes, std::nullopt);
   EXPECT_EQ(ReadArgosControllers(with_arena(distributed), "mine.argos", "s")->robots, "x");
   EXPECT_EQ(ReadArgosControllers(kTwo, "mine.argos", "w")->robots, std::nullopt);
+  EXPECT_EQ(ReadArgosControllers(with_arena("<box/>"), "mine.argos", "w")->robots, "");
   EXPECT_EQ(
       ErrorOf(with_arena(R"(<foot-bot id="f" rab_data_size="many"><controller config="w"/></foot-bot>)")),
       "mine.argos:2:6: <foot-bot id=\"f\"> has rab_data_size=\"many\", expected bytes from 1 to 65536");

@@ -46,9 +46,14 @@ class CByteArray {
     return value;
   }
 
+  // bool, char and the types of characters are promoted to an SInt32, since ARGoS has no overload for them.
   template <typename T>
   requires std::is_integral_v<T> CByteArray& operator<<(T value) {
-    AddInteger(static_cast<UInt64>(value), sizeof(T));
+    constexpr bool kPromoted = std::is_same_v<T, bool> || std::is_same_v<T, char> ||
+                               std::is_same_v<T, wchar_t> || std::is_same_v<T, char16_t> ||
+                               std::is_same_v<T, char32_t>;
+    using Added = std::conditional_t<kPromoted, decltype(+value), T>;
+    AddInteger(static_cast<UInt64>(static_cast<Added>(value)), sizeof(Added));
     return *this;
   }
   template <typename T>
