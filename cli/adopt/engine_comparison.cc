@@ -144,6 +144,7 @@ class Comparison {
   explicit Comparison(const EngineQuestion& question) : question_(question) {}
 
   Status Compile(const std::vector<std::string>& sources) {
+    if (folder_.path().empty()) return InvalidInput("no folder can be made in $TMPDIR or /tmp");
     std::vector<std::string> command = {"build-controller"};
     std::set<std::string> folders = {question_.project};
     for (const std::string& source : sources) {
@@ -250,9 +251,8 @@ class Comparison {
 
 std::string Said(const EngineComparison& made) {
   return fmt::format(
-      "{} with these controllers. In {} cases, half of them with an obstacle, {} of {} robots were within {} "
-      "m of where "
-      "ARGoS had them after {} s, half of them within {:.1g} m, and at the end within {:.1g} m",
+      "{} with these controllers. In {} cases, half of them with an obstacle, {} of {} robots were within "
+      "{} m of where ARGoS had them after {} s, half of them within {:.1g} m, and at the end within {:.1g} m",
       made.trusted ? "may be trusted" : "is not to be trusted", made.cases, made.near, made.robots,
       kSamePlace, NumberText(made.seconds), made.apart, made.apart_at_end);
 }

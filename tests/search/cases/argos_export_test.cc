@@ -3,11 +3,13 @@
 #include "search/cases/argos_export.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <set>
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -223,6 +225,17 @@ RC_GTEST_PROP(ArgosExportProperty, IsReadBackToTheBit, ()) {
   RC_ASSERT(proto::WriteCaseJson(found) == proto::WriteCaseJson(written));
   spec.test_case = found;
   RC_ASSERT(WriteArgos(spec, start, nullptr, written.name).text == text);
+}
+
+// A robot in ARGoS draws the numbers that it draws here (argos/controller_adapter.cc).
+TEST(ArgosExportSeed, IsThatOfControllersThatWereWrittenForArgos) {
+  const std::pair<std::uint64_t, const char*> seeds[] = {
+      {7, "7"}, {0x2'0000'0005, "7"}, {0x1'0000'0001, "1"}, {0xffff'ffff'0000'0000, "4294967295"}};
+  for (const auto& [seed, written] : seeds) {
+    sim::RunSpec spec = SpecOf("light-flocking");
+    spec.seed = seed;
+    EXPECT_THAT(FileOf(spec).text, HasSubstr(fmt::format("random_seed=\"{}\"", written))) << seed;
+  }
 }
 
 TEST(ArgosExportNotices, SayWhatArgosHasNot) {
