@@ -178,8 +178,12 @@ TEST_F(ControlGroupTest, ItIsRemovedAndSoAreThoseOfTheDeadWithAllInThem) {
     for (const GroupPlace& place :
          GroupPlaces(contents("/proc/self/mountinfo"), contents("/proc/self/cgroup")))
       parents.insert(place.parents.begin(), place.parents.end());
-    for (const std::string& parent : parents)
-      folders += fs::exists(parent + "/gauntlet-" + std::to_string(process)) ? 1 : 0;
+    for (const std::string& parent : parents) {
+      for (const auto& entry : fs::directory_iterator(parent)) {
+        const std::string name = entry.path().filename();
+        folders += name.starts_with("gauntlet-") && name.ends_with("-" + std::to_string(process)) ? 1 : 0;
+      }
+    }
     return folders;
   };
   const pid_t killed = fork();

@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr mode_t kFolderMode = 0755;
 constexpr const char* kMembers = "cgroup.procs";
-constexpr std::string_view kPrefix = "gauntlet-";
 
 // The files of a controller in one version: where its limit is written, and the count of what the limit has
 // met, or of the time, in a line "key count" or alone.
@@ -78,6 +77,15 @@ const std::array<GroupPlace, kGroupControllers>& Places() {
 const Files& FilesOf(std::size_t controller) {
   return Places()[controller].version_2 ? kControllers[controller].version_2
                                         : kControllers[controller].version_1;
+}
+
+// What the names of groups begin with whose makers' numbers mean something here: those of our namespace.
+const std::string& Prefix() {
+  static const std::string prefix = [] {
+    struct stat space {};
+    return fmt::format("gauntlet-{}-", stat("/proc/self/ns/pid", &space) == 0 ? space.st_ino : 0);
+  }();
+  return prefix;
 }
 
 bool Join(const std::string& folder) {
@@ -176,7 +184,7 @@ ControlGroup::~ControlGroup() {
 // The folder of a group that this process is in now, or "".
 std::string ControlGroup::Enter(std::size_t controller, const ControlGroupLimits& limits) {
   for (const std::string& parent : Places()[controller].parents) {
-    const std::string folder = fmt::format("{}/{}{}", parent, kPrefix, getpid());
+    const std::string folder = fmt::format("{}/{}{}", parent, Prefix(), getpid());
     const bool is_new = mkdir(folder.c_str(), kFolderMode) == 0;
     if (!is_new && errno != EEXIST) continue;
     if (WriteLimit(folder, controller, limits) && ReadCount(folder, controller) && Join(folder))
@@ -233,8 +241,8 @@ void ControlGroup::RemoveAbandoned() {
       for (fs::directory_iterator entry(parent, failed), end; !failed && entry != end;
            entry.increment(failed)) {
         const std::string name = entry->path().filename();
-        if (!name.starts_with(kPrefix)) continue;
-        const auto maker = ParseNumber<pid_t>(std::string_view(name).substr(kPrefix.size()));
+        if (!name.starts_with(Prefix())) continue;
+        const auto maker = ParseNumber<pid_t>(std::string_view(name).substr(Prefix().size()));
         if (maker && kill(*maker, 0) != 0 && errno == ESRCH) abandoned.push_back(entry->path());
       }
       for (const std::string& folder : abandoned) {
