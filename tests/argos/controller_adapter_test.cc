@@ -5,10 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -20,6 +23,7 @@
 #include "tests/support/toy_scenario.h"
 
 #include <argos3/core/simulator/simulator.h>
+#include <argos3/core/utility/datatypes/byte_array.h>
 #include <argos3/core/utility/math/rng.h>
 #include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_distance_scanner_actuator.h>
 #include <argos3/plugins/robots/foot-bot/control_interface/ci_footbot_distance_scanner_sensor.h>
@@ -355,6 +359,52 @@ TEST_F(Adapter, TheScannersAnglesAreThoseOfArgosToTheLastBit) {
   std::ifstream file(GAUNTLET_SOURCE_DIR "/tests/argos/scanner_angles.csv");
   const std::string recorded(std::istreambuf_iterator<char>(file), {});
   EXPECT_EQ(recorded.substr(recorded.find("angle\n") + 6), seen.str());
+}
+
+// Speeds come from what it draws, from the bytes of a char and a flag, and from how many angles its scanner
+// has had: each of these was different once. The trajectory was recorded in ARGoS.
+TEST_F(Adapter, ARobotGoesAsInArgosWhatItDrawsAndScans) {
+  struct Prober {
+    argos::CRandom::CRNG* random = nullptr;
+    std::set<double> angles;
+  };
+  std::map<std::string, Prober> probers;
+  CScripted::init = [&](CScripted& robot, argos::TConfigurationNode&) {
+    robot.GetActuator<argos::CCI_FootBotDistanceScannerActuator>("footbot_distance_scanner")->SetRPM(30.0);
+    robot.GetSensor<argos::CCI_FootBotDistanceScannerSensor>("footbot_distance_scanner");
+    robot.GetActuator<argos::CCI_DifferentialSteeringActuator>("differential_steering");
+    probers[robot.GetId()].random = argos::CRandom::CreateRNG("argos");
+  };
+  CScripted::step = [&](CScripted& robot) {
+    Prober& prober = probers.at(robot.GetId());
+    for (const auto& [angle, distance] :
+         robot.GetSensor<argos::CCI_FootBotDistanceScannerSensor>("footbot_distance_scanner")
+             ->GetReadingsMap())
+      prober.angles.insert(angle.GetValue());
+    argos::CByteArray bytes;
+    bytes << 'x' << true;
+    const double left = prober.random->Uniform(argos::CRange<argos::Real>(0.0, 10.0));
+    const double right = prober.random->Uniform(argos::CRange<argos::Real>(0.0, 10.0));
+    const double faster = static_cast<double>(bytes.Size()) / 8.0 * 120.0 /
+                          static_cast<double>(std::max<std::size_t>(prober.angles.size(), 120));
+    robot.GetActuator<argos::CCI_DifferentialSteeringActuator>("differential_steering")
+        ->SetLinearVelocity(left * faster, right * faster);
+  };
+  const sim::RunResult ours = Run({{{0, 0}, 0}, {{0, 1.5}, sim::kPi / 2.0}}, 400, /*seed=*/7);
+  std::ifstream file(GAUNTLET_SOURCE_DIR "/tests/argos/prober_trajectory.csv");
+  std::size_t compared = 0;
+  for (std::string line; std::getline(file, line);) {
+    double time = 0.0;
+    std::size_t robot = 0;
+    double x = 0.0;
+    double y = 0.0;
+    if (std::sscanf(line.c_str(), "%lf,fb%zu,foot-bot,%lf,%lf", &time, &robot, &x, &y) != 4) continue;
+    const sim::RobotState& state = ours.trajectory.at(static_cast<std::size_t>(time * 10.0)).at(robot);
+    EXPECT_NEAR(state.x, x, 1e-6) << line;
+    EXPECT_NEAR(state.y, y, 1e-6) << line;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 10u);
 }
 
 TEST_F(Adapter, FasterWheelsThanThereAreKeepToThePath) {
