@@ -1,7 +1,6 @@
 #include "cli/adopt/engine_comparison.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -41,13 +40,6 @@ constexpr std::size_t kMostSourceBytes = std::size_t{1} << 20;
 constexpr std::size_t kMostCaseFile = std::size_t{16} << 20;
 constexpr std::chrono::minutes kLongestCall{5};
 
-// Of one robot at one time.
-struct RobotAt {
-  double time = 0.0;
-  std::string robot;
-  sim::Pose pose;
-};
-
 bool IsSource(const fs::path& path) {
   const std::string ending = path.extension();
   return ending == ".cpp" || ending == ".cc" || ending == ".cxx";
@@ -70,49 +62,44 @@ Result<std::string> Gauntlet(std::vector<std::string> arguments) {
   return InvalidInput(line.starts_with(kName) ? line.substr(kName.size()) : line);
 }
 
-// Rows of a CSV file with these columns: time, robot, x, y, heading.
-std::vector<RobotAt> PlacesIn(const std::string& text, const std::array<std::size_t, 5>& columns) {
-  std::vector<RobotAt> places;
-  for (const std::string& line : Split(text, '\n')) {
+// Of what `replay --csv` writes: tick, time, robot, x, y, heading and more.
+std::vector<Pose> PosesIn(const std::string& csv) {
+  std::vector<Pose> poses;
+  for (const std::string& line : Split(csv, '\n')) {
     const std::vector<std::string> fields = Split(line, ',');
-    if (fields.size() <= *std::ranges::max_element(columns)) continue;
-    const auto time = ParseNumber<double>(fields[columns[0]]);
-    const auto x = ParseNumber<double>(fields[columns[2]]);
-    const auto y = ParseNumber<double>(fields[columns[3]]);
-    const auto heading = ParseNumber<double>(fields[columns[4]]);
-    if (time && x && y && heading) places.push_back({*time, fields[columns[1]], {{*x, *y}, *heading}});
+    if (fields.size() < 6) continue;
+    const auto time = ParseNumber<double>(fields[1]);
+    const auto x = ParseNumber<double>(fields[3]);
+    const auto y = ParseNumber<double>(fields[4]);
+    if (time && x && y) poses.push_back({.x = *x, .y = *y, .time = *time, .robot = fields[2]});
   }
-  return places;
-}
-std::vector<RobotAt> PlacesOfArgos(const TrialRun& run) {
-  return PlacesIn(run.trajectory, {0, 1, 3, 4, 5});
+  return poses;
 }
 
-std::vector<RobotAt> At(const std::vector<RobotAt>& places, double time) {
-  std::vector<RobotAt> then;
+std::vector<Pose> At(const std::vector<Pose>& places, double time) {
+  std::vector<Pose> then;
   std::ranges::copy_if(places, std::back_inserter(then),
-                       [&](const RobotAt& place) { return std::abs(place.time - time) < 1e-6; });
+                       [&](const Pose& place) { return std::abs(place.time - time) < 1e-6; });
   return then;
 }
 
-double Distance(const RobotAt& a, const RobotAt& b) {
-  return (a.pose.position - b.pose.position).norm();
+double Distance(const Pose& a, const Pose& b) {
+  return std::hypot(a.x - b.x, a.y - b.y);
 }
 
 // How far each robot is apart then; robots are the same that begin at the same place. Error: one is missing.
-Result<std::vector<double>> Apart(const std::vector<RobotAt>& ours, const std::vector<RobotAt>& argos,
+Result<std::vector<double>> Apart(const std::vector<Pose>& ours, const std::vector<Pose>& argos,
                                   double time) {
   std::vector<double> apart;
-  const std::vector<RobotAt> ours_then = At(ours, time);
-  const std::vector<RobotAt> argos_then = At(argos, time);
-  const std::vector<RobotAt> argos_first = At(argos, 0.0);
-  for (const RobotAt& start : At(ours, 0.0)) {
-    const auto same = std::ranges::min_element(argos_first, {},
-                                               [&](const RobotAt& other) { return Distance(start, other); });
-    const auto here = std::ranges::find(ours_then, start.robot, &RobotAt::robot);
-    const auto there = same == argos_first.end()
-                           ? argos_then.end()
-                           : std::ranges::find(argos_then, same->robot, &RobotAt::robot);
+  const std::vector<Pose> ours_then = At(ours, time);
+  const std::vector<Pose> argos_then = At(argos, time);
+  const std::vector<Pose> argos_first = At(argos, 0.0);
+  for (const Pose& start : At(ours, 0.0)) {
+    const auto same =
+        std::ranges::min_element(argos_first, {}, [&](const Pose& other) { return Distance(start, other); });
+    const auto here = std::ranges::find(ours_then, start.robot, &Pose::robot);
+    const auto there = same == argos_first.end() ? argos_then.end()
+                                                 : std::ranges::find(argos_then, same->robot, &Pose::robot);
     if (here == ours_then.end() || there == argos_then.end())
       return InvalidInput(fmt::format("a robot is missing after {} s", NumberText(time)));
     apart.push_back(Distance(*here, *there));
@@ -174,10 +161,9 @@ class Comparison {
       TRY(const std::string csv, ReadSmallFile(Own("ours.csv"), std::size_t{1} << 30));
       TRY(const std::string file, ReadSmallFile(Own(fmt::format("argos/run-{}.argos", run)), kMostCaseFile));
       TRY(const TrialRun there, question_.run(file));
-      const std::vector<RobotAt> ours = PlacesIn(csv, {1, 2, 3, 4, 5});
-      const std::vector<RobotAt> argos = PlacesOfArgos(there);
+      const std::vector<Pose> ours = PosesIn(csv);
       for (auto* const apart : {&soon, &at_end}) {
-        TRY(const std::vector<double> one, Apart(ours, argos, apart == &soon ? made.seconds : End()));
+        TRY(const std::vector<double> one, Apart(ours, there.poses, apart == &soon ? made.seconds : End()));
         apart->insert(apart->end(), one.begin(), one.end());
       }
     }
@@ -228,8 +214,8 @@ class Comparison {
         sim::TestCase made = loaded.test_case;
         made.name = fmt::format("case-{}", cases_.size() + 1);
         made.start_poses.clear();
-        for (const RobotAt& place : At(PlacesOfArgos(*start.run), 0.0))
-          made.start_poses.push_back({place.pose.position - center, place.pose.heading});
+        for (const Pose& pose : At(start.run->poses, 0.0))
+          made.start_poses.push_back({sim::Vec2(pose.x, pose.y) - center, pose.heading});
         robots = made.start_poses.size();
         made.robots = static_cast<int>(robots);
         for (sim::ObstacleGene gene : with_obstacle ? start.obstacles : sim::Genome()) {

@@ -65,7 +65,8 @@ void ReadPoses(TrialRun& run) {
   for (const std::string& line : Split(run.trajectory, '\n')) {
     const std::vector<std::string> fields = Split(line, ',');
     if (fields.size() == 6 && ParseNumber<double>(fields[3]))
-      run.poses.push_back({Number(fields[3]), Number(fields[4])});
+      run.poses.push_back(
+          {Number(fields[3]), Number(fields[4]), Number(fields[5]), Number(fields[0]), fields[1]});
   }
 }
 

@@ -28,9 +28,13 @@ struct LoadedLibrary {
   std::string named;  // absolute, as it was loaded
 };
 
+// Of one robot at one time.
 struct Pose {
   double x = 0.0;
   double y = 0.0;
+  double heading = 0.0;  // rad
+  double time = 0.0;     // s
+  std::string robot = {};
 };
 
 struct TrialRun {
